@@ -23,9 +23,8 @@ pub(super) struct DrawnMeasure {
     measure: Option<MeasureName>,
     headings: bool,
     /// The widest distance of two distributions that the task's declared values can make of the parameter.
-    widest: f64,
-    /// Whether that is finite; where it is not, numbers count as they are.
-    is_bounded: bool,
+    /// `None` where that is infinite: numbers count as they are.
+    widest: Option<f64>,
     /// The width of the kernel of the maximum mean discrepancy: the widest Wasserstein-1 distance of two such.
     bandwidth: f64,
     can_differ: bool,
@@ -52,8 +51,7 @@ impl DrawnMeasure {
             measure,
             colors: colors.then(|| ways_of(measure)),
             headings: parameter.kind == ParameterType::Heading || all.iter().any(draws_headings),
-            widest: 1.0,
-            is_bounded: true,
+            widest: Some(1.0),
             bandwidth: 1.0,
             can_differ: all.len() > 1,
             mixed: families.len() > 1 || (colors && kinds == [true; 2]),
@@ -68,8 +66,7 @@ impl DrawnMeasure {
                 .unwrap_or(1.0);
         }
         let widest = made.widest_of(all);
-        made.is_bounded = widest.is_finite();
-        made.widest = Some(widest).filter(|widest| usable(*widest)).unwrap_or(1.0);
+        made.widest = (widest != f64::INFINITY).then_some(if usable(widest) { widest } else { 1.0 });
         made
     }
 
@@ -106,7 +103,7 @@ impl DrawnMeasure {
 
     /// Whether its number has a bound that the task declares.
     pub(super) fn is_bounded(&self) -> bool {
-        self.is_bounded
+        self.widest.is_some()
     }
 
     /// The error for a number that is none, where the measure asked for is known to have none for some distributions.
@@ -139,7 +136,11 @@ impl DrawnMeasure {
     /// How far two distributions are apart.
     pub(super) fn between(&self, a: &Distribution, b: &Distribution) -> Found {
         let (name, method, raw) = self.raw(a, b);
-        let normalised = if method.is_none() { raw } else { share(raw, self.widest) };
+        let normalised = if method.is_none() {
+            raw
+        } else {
+            share(raw, self.widest.unwrap_or(1.0))
+        };
         (name, method, raw, normalised)
     }
 
@@ -161,7 +162,7 @@ impl DrawnMeasure {
             Some(MeasureName::Hellinger) => found("hellinger / widest", hellinger(a, b)),
             Some(MeasureName::JensenShannon) => found("jensen-shannon / widest", jensen_shannon(a, b)),
             Some(MeasureName::Jeffreys) => {
-                let name = if self.is_bounded {
+                let name = if self.is_bounded() {
                     "jeffreys / widest"
                 } else {
                     "jeffreys in nats"

@@ -101,14 +101,15 @@ impl WorldMeasure {
     /// Which laws it keeps among these worlds. Where arenas differ, or the classes of all are so many that cells are
     /// larger for some pairs than for others, occupancy has other cells and another diameter for each pair, and a
     /// detour may be shorter.
-    pub fn properties_among<'a>(self, worlds: impl IntoIterator<Item = &'a World> + Clone) -> MetricProperties {
-        let mut each = worlds.clone().into_iter();
-        let (Self::Occupancy(_), Some(first)) = (self, each.next()) else {
+    pub fn properties_among<'a>(self, worlds: impl IntoIterator<Item = &'a World>) -> MetricProperties {
+        let worlds: Vec<&World> = worlds.into_iter().collect();
+        let (Self::Occupancy(_), Some(first)) = (self, worlds.first()) else {
             return self.properties();
         };
         let arena = |world: &World| world.environment_params.arena_size();
         let cell = |raster: Result<Raster, SimilarityError>| raster.map(|raster| raster.shape().cell());
-        if each.all(|other| arena(other) == arena(first)) && cell(raster([first])) == cell(raster(worlds)) {
+        let has_one_arena = worlds.iter().all(|other| arena(other) == arena(first));
+        if has_one_arena && cell(raster(&[*first])) == cell(raster(&worlds)) {
             self.properties()
         } else {
             MetricProperties::Distance

@@ -150,10 +150,10 @@ impl OccupancyMeasure {
 }
 
 /// The raster of these worlds' arenas and classes.
-pub(super) fn raster<'a>(worlds: impl IntoIterator<Item = &'a World> + Clone) -> Result<Raster, SimilarityError> {
+pub(super) fn raster(worlds: &[&World]) -> Result<Raster, SimilarityError> {
     let mut cell = CELL;
     loop {
-        match Raster::of_worlds(worlds.clone(), cell, Classes::Separate) {
+        match Raster::of_worlds(worlds.iter().copied(), cell, Classes::Separate) {
             // An arena has a cell at least, and fewer classes than there are cells in all.
             Err(SimilarityError::TooFine { .. }) if cell < 1e6 => cell *= 2.0,
             made => return made,
@@ -164,7 +164,7 @@ pub(super) fn raster<'a>(worlds: impl IntoIterator<Item = &'a World> + Clone) ->
 /// How many objects stand in each cell of both, the one or the other first whichever was named first, so that it is as
 /// far there as back to the last bit.
 fn grids(a: &World, b: &World) -> Result<[Grid; 2], SimilarityError> {
-    let raster = raster([a, b])?;
+    let raster = raster(&[a, b])?;
     let mut grids = [raster.counts(a)?, raster.counts(b)?];
     if grids[0].masses() > grids[1].masses() {
         grids.swap(0, 1);

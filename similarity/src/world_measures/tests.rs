@@ -119,7 +119,7 @@ fn cells_grow_until_those_of_all_classes_fit() {
         });
         made.unwrap()
     };
-    let cell = |classes, side| occupancy::raster([&with(classes, side)]).unwrap().shape().cell();
+    let cell = |classes, side| occupancy::raster(&[&with(classes, side)]).unwrap().shape().cell();
     assert_eq!((cell(11, 300.0), cell(12, 300.0), cell(100, 300.0)), (1.0, 2.0, 4.0));
     let emd = WorldMeasure::Occupancy(OccupancyMeasure::EarthMovers);
     assert!(emd.between(&with(100, 300.0), &with(0, 300.0)).unwrap().is_finite());
