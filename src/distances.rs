@@ -244,7 +244,7 @@ pub fn between(
         let distance = measure.between(a, b)?;
         let diameter = measure.diameter();
         return Ok(match sample.scale {
-            Scale::Share if diameter > 0.0 => Compared {
+            Scale::Share if measure.has_diameter() => Compared {
                 distance: distance.in_shares_of(diameter),
                 by,
                 description: format!("by parameters, as a share of the task's diameter of {diameter}"),
@@ -264,8 +264,8 @@ pub fn between(
     let mut description = format!("by {}", by.name());
     if !are_worlds {
         let plural = if count == 1 { "" } else { "s" };
-        description += &format!(
-            ", mean of {count} world{plural} of each drawn under seed {}",
+        description = format!(
+            "{description}, mean of {count} world{plural} of each drawn under seed {}",
             sample.seed
         );
     }

@@ -87,7 +87,7 @@ pub fn variant_matrix_while(
     if let (By::Parameters, Some(task)) = (by, task) {
         let measure = VariantMeasure::new(task, weights);
         let unit = match sample.scale {
-            Scale::Share if measure.diameter() > 0.0 => measure.diameter(),
+            Scale::Share if measure.has_diameter() => measure.diameter(),
             _ => 1.0,
         };
         let apart = |a: usize, b: usize| {

@@ -189,6 +189,12 @@ impl VariantMeasure {
             .sum()
     }
 
+    /// Whether the diameter is a number to take shares of: above 0, and not infinite as by the measure `jeffreys`.
+    pub fn has_diameter(&self) -> bool {
+        let diameter = self.diameter();
+        diameter > 0.0 && diameter.is_finite()
+    }
+
     /// Which laws the whole keeps: a metric if all measures that count are, a pseudometric if one of them is, or if in
     /// addition a parameter that can differ counts nothing.
     pub fn properties(&self) -> MetricProperties {

@@ -1,7 +1,7 @@
 //! [`Placements`]: where the objects of many worlds come to stand, as one law for each class. Worlds pair by pair are in `occupancy.rs`
 //! and `objects.rs`.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use driftworld_spec::{Element, World};
 
@@ -59,13 +59,8 @@ impl Placements {
             return Err(SimilarityError::Empty);
         }
         let mut parts = Vec::new();
-        let classes: BTreeMap<&String, ()> = self
-            .by_class
-            .keys()
-            .chain(other.by_class.keys())
-            .map(|c| (c, ()))
-            .collect();
-        for class in classes.into_keys() {
+        let classes: BTreeSet<&String> = self.by_class.keys().chain(other.by_class.keys()).collect();
+        for class in classes {
             let (raw, counts) = match (self.by_class.get(class), other.by_class.get(class)) {
                 (Some(a), Some(b)) => {
                     // The lesser first, so that it is as far there as back to the last bit.
