@@ -115,6 +115,10 @@ impl PyMatrix {
     /// Measures every pair of variants, each under its label.
     #[staticmethod]
     #[pyo3(signature = (labels, variants, weights, by, worlds, scale, libraries))]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "they are the arguments of a function of Python"
+    )]
     fn measure(
         py: Python<'_>,
         labels: Vec<String>,

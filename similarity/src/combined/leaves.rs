@@ -10,6 +10,9 @@ use serde_json::Value as Json;
 use crate::assignment::Assignment;
 use crate::scalar::relative_difference;
 
+/// Metres between two points that count 1, as between two objects.
+const METRES: f64 = 10.0;
+
 /// Numbers and words by the paths at which they stand, in the order of the paths' numbers.
 #[derive(Debug, PartialEq)]
 pub(super) struct Leaves {
@@ -22,6 +25,8 @@ pub(super) struct Leaves {
 #[derive(Clone, Debug, PartialEq, PartialOrd)]
 enum Leaf {
     Number(f64),
+    /// A point of a list of points: metres on the ground.
+    Point([f64; 2]),
     /// The number of a word, a truth, or of what is empty.
     Word(u32),
     /// A set of words, such as modalities or stimuli: their numbers, each once, in order.
@@ -89,10 +94,14 @@ impl LeafReader {
                     all.push((self.number(path.clone()), Leaf::Things(things)));
                     return;
                 }
+                let are_points = list.iter().all(|child| point(child).is_some());
                 for (index, child) in list.iter().enumerate() {
                     path.push('/');
                     path.push_str(&index.to_string());
-                    self.walk(child, path, all);
+                    match point(child) {
+                        Some(place) if are_points => all.push((self.number(path.clone()), Leaf::Point(place))),
+                        _ => self.walk(child, path, all),
+                    }
                     path.truncate(length);
                 }
                 return;
@@ -119,8 +128,8 @@ impl LeafReader {
 }
 
 impl Leaves {
-    /// How far two are apart: the sum over all paths of the difference of two numbers over the larger in size, 1 for
-    /// another word, 1 for what stands in one only; of sets of words, how many have to be changed, added or taken away;
+    /// How far two are apart: the sum over all paths of the difference of two numbers over the larger in size, of points
+    /// the way between them in tens of metres, up to 2; 1 for another word, 1 for what stands in one only; of sets of words, how many have to be changed, added or taken away;
     /// of things, the sum over those that are matched, as is cheapest, and all that the others consist of. A metric; 0
     /// for equal ones. Both must come from one reader.
     pub(super) fn distance(&self, other: &Self) -> f64 {
@@ -138,6 +147,14 @@ fn is_thing(json: &Json) -> bool {
         || json
             .as_array()
             .is_some_and(|list| !list.is_empty() && list.iter().all(is_point))
+}
+
+/// The two numbers of a point.
+fn point(json: &Json) -> Option<[f64; 2]> {
+    match json.as_array()?.as_slice() {
+        [x, y] => Some([x.as_f64()?, y.as_f64()?]),
+        _ => None,
+    }
 }
 
 /// The sum over all paths of two lists in the order of their paths.
@@ -200,6 +217,11 @@ impl Leaf {
     fn distance(&self, other: &Self) -> f64 {
         match (self, other) {
             (Self::Number(a), Self::Number(b)) => relative_difference(*a, *b),
+            // As far as it is by way of no point, at most.
+            (Self::Point(a), Self::Point(b)) => {
+                let [x, y] = [0, 1].map(|axis| a[axis] - b[axis]);
+                ((x * x + y * y).sqrt() / METRES).min(self.size() + other.size())
+            }
             (Self::Things(a), Self::Things(b)) => between_things(a, b),
             _ if self == other => 0.0,
             _ => {
@@ -212,7 +234,7 @@ impl Leaf {
 
     fn words(&self) -> &[u32] {
         match self {
-            Self::Number(_) | Self::Things(_) => &[],
+            Self::Number(_) | Self::Point(_) | Self::Things(_) => &[],
             Self::Word(word) => std::slice::from_ref(word),
             Self::WordSet(words) => words,
         }
@@ -221,7 +243,7 @@ impl Leaf {
     /// How far it is from nothing.
     fn size(&self) -> f64 {
         match self {
-            Self::Number(_) | Self::Word(_) => 1.0,
+            Self::Number(_) | Self::Point(_) | Self::Word(_) => 1.0,
             Self::WordSet(words) => words.len() as f64,
             Self::Things(things) => things.iter().map(|thing| size(thing)).sum(),
         }
@@ -263,15 +285,24 @@ mod tests {
         let swapped = r#"[{"polygon":[[5,5],[6,5],[6,8]],"height":2},{"polygon":[[1,1],[2,1],[2,2]]}]"#;
         let lower = r#"[{"polygon":[[5,5],[6,5],[6,8]],"height":1},{"polygon":[[1,1],[2,1],[2,2]]}]"#;
         let fewer = r#"[{"polygon":[[5,5],[6,5],[6,8]],"height":1}]"#;
-        assert_eq!((d(walls, swapped), d(walls, lower), d(lower, fewer)), (0.0, 0.5, 6.0));
-        assert_eq!((d(walls, "[]"), d(walls, fewer)), (13.0, 6.5));
+        assert_eq!((d(walls, swapped), d(walls, lower), d(lower, fewer)), (0.0, 0.5, 3.0));
+        assert_eq!((d(walls, "[]"), d(walls, fewer)), (7.0, 3.5));
         let regions = [
             "[[[1,1],[2,1],[2,2]],[[5,5],[6,5],[6,8]]]",
             "[[[5,5],[6,5],[6,8]],[[1,1],[2,1],[2,2]]]",
         ];
         assert_eq!(d(regions[0], regions[1]), 0.0);
         // The order of waypoints is the way.
-        assert_eq!(d("[[1,1],[2,2]]", "[[2,2],[1,1]]"), 2.0);
+        assert!((d("[[1,1],[4,5]]", "[[4,5],[1,1]]") - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn points_count_by_the_way_between_them() {
+        let mut reader = LeafReader::default();
+        let mut d = |a: &str, b: &str| reader.read(a.as_bytes()).distance(&reader.read(b.as_bytes()));
+        let (here, near, far) = ("[[0,0],[7,7]]", "[[0.004,0],[7,7]]", "[[4,0],[7,7]]");
+        assert!((d(here, near) - 0.0004).abs() < 1e-12 && (d(here, far) - 0.4).abs() < 1e-12);
+        assert_eq!((d(here, "[[900,0],[7,7]]"), d(here, "[[0,0]]")), (2.0, 1.0));
     }
 
     fn texts() -> impl Strategy<Value = String> {
@@ -288,7 +319,11 @@ mod tests {
             )
         });
         let things = prop::collection::vec(thing, 0..4).prop_map(|things| format!("[{}]", things.join(",")));
-        prop::collection::vec(prop_oneof![leaf, list, set, things], 2).prop_map(|lines| lines.join("\n"))
+        let points = prop::collection::vec((-30..30, 0..3), 0..3).prop_map(|points| {
+            let points: Vec<String> = points.iter().map(|(x, y)| format!("[{x},{y}]")).collect();
+            format!("[{}]", points.join(","))
+        });
+        prop::collection::vec(prop_oneof![leaf, list, set, things, points], 2).prop_map(|lines| lines.join("\n"))
     }
 
     proptest! {
