@@ -23,6 +23,9 @@ pub const NUM_WORLDS: u64 = 16;
 /// How many worlds of each variant are compared by pictures and by dynamics, which take longer.
 pub const NUM_SLOW_WORLDS: u64 = 4;
 
+/// How many worlds of each variant are compared by placements: of few, laws of places seem farther apart than they are.
+pub const NUM_PLACED_WORLDS: u64 = 64;
+
 /// What keeps two from being compared.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -94,7 +97,7 @@ pub enum Side {
 pub struct Sample {
     /// By what; by default what variants of one task declare (parameters where they say nothing), else worlds.
     pub by: Option<By>,
-    /// How many of each, from 1; by default [`NUM_WORLDS`], or [`NUM_SLOW_WORLDS`] by pictures and dynamics. If absent,
+    /// How many of each, from 1; by default [`NUM_WORLDS`]; [`NUM_SLOW_WORLDS`] by pictures and dynamics, [`NUM_PLACED_WORLDS`] by placements. If absent,
     /// variants of one task are compared by what they declare.
     pub worlds: Option<u64>,
     /// The seed; default 0.
@@ -154,6 +157,7 @@ impl Sample {
     fn count(&self, by: By) -> u64 {
         let usual = match by.subject() {
             "pictures" | "dynamics" => NUM_SLOW_WORLDS,
+            "placements" => NUM_PLACED_WORLDS,
             _ => NUM_WORLDS,
         };
         self.worlds.unwrap_or(usual)
@@ -264,8 +268,13 @@ pub fn between(
     let mut description = format!("by {}", by.name());
     if !are_worlds {
         let plural = if count == 1 { "" } else { "s" };
+        let mean = if by == By::Placements {
+            "all places in"
+        } else {
+            "mean of"
+        };
         description = format!(
-            "{description}, mean of {count} world{plural} of each drawn under seed {}",
+            "{description}, {mean} {count} world{plural} of each drawn under seed {}",
             sample.seed
         );
     }

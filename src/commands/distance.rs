@@ -50,7 +50,7 @@ pub(crate) struct Distance {
     /// Compare this many worlds of each variant.
     ///
     /// Without it, variants of one task are compared by what the task declares, anything else by 16 worlds of each. By
-    /// pictures and dynamics, 4 worlds of each are compared by default.
+    /// pictures and dynamics, 4 worlds of each are compared by default, by placements 64.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000), num_args = 0..=1, default_missing_value = "16")]
     worlds: Option<u64>,
     /// Seed for drawing worlds from variants.

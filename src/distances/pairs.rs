@@ -1,6 +1,7 @@
 //! [`Pairs`]: worlds made ready to be compared in pairs by one measure, and the [`Means`] over pairs of worlds of two variants.
 
 use driftworld_env::{Catalogue, ExpertRun, Expertise, WorldAbstraction};
+use driftworld_similarity::distribution::Method;
 use driftworld_similarity::picture::PictureMeasure;
 use driftworld_similarity::{
     ColorMeasure, Distance, ObjectsMeasure, OccupancyMeasure, Part, Weights, WorldMeasure, world_rewards_distance,
@@ -231,7 +232,11 @@ impl Means {
             By::BehaviorSuccess => Distance::whole(self.mean(2).max(0.0)),
             by => {
                 let means = parts(by).into_iter().enumerate();
-                let of = means.map(|(k, (name, element, measure))| Part::of(name, element, measure, self.mean(k)));
+                let count = self.count;
+                let of = means.map(|(k, (name, element, measure))| Part {
+                    method: (count > 1).then_some(Method::Samples { count }),
+                    ..Part::of(name, element, measure, self.mean(k))
+                });
                 Distance::new(of.collect(), weights)
             }
         }

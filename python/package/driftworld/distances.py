@@ -128,7 +128,7 @@ def distance(
         b: Another.
         weights: What elements weigh, over what the task says: ``{"R": 2}`` or ``{"reward": 2}``, each 0 to 1,000,000.
         worlds: Compare so many worlds of each, 1 to 100,000, even where both are variants of one task; 16 where they are not, 4
-            by pictures and dynamics.
+            by pictures and dynamics, 64 by placements.
         seed: The seed of worlds that are drawn.
         index: The number of the first of them.
         by: ``"parameters"`` (two variants of one task), ``"worlds"``, ``"pictures"``, ``"occupancy"``,
@@ -424,7 +424,8 @@ def distance_matrix(
         items: Names, variants and task specs; a task stands for all its variants, and each variant is taken once.
         weights: As for :func:`distance`.
         by: As for :func:`distance`, by default what the variants' task declares; variants of several tasks need it.
-        worlds: Compare so many worlds of each, drawn under seed 0, 1 to 10,000; by default 16, or 4 by pictures and dynamics.
+        worlds: Compare so many worlds of each, drawn under seed 0, 1 to 10,000; by default 16, 4 by pictures
+            and dynamics, 64 by placements.
         scale: As for :func:`distance`.
         assets: Paths of asset libraries whose classes the worlds use.
 

@@ -121,7 +121,9 @@ mod tests {
             prop_assert_eq!(d(&of_a, &of_b), d(&of_b, &of_a));
             let mut shuffled = a.clone();
             shuffled.reverse();
-            shuffled.iter_mut().for_each(|world| world.reverse());
+            for world in &mut shuffled {
+                world.reverse();
+            }
             prop_assert_eq!(d(&of_a, &of_b), d(&Placements::of(&worlds(&shuffled)), &of_b));
             // A class that only one has counts 1, whatever the ways: only where all have the same classes is it a metric.
             let classes = |of: &Placements| of.by_class.keys().cloned().collect::<Vec<_>>();

@@ -48,7 +48,8 @@ pub(crate) struct Order {
     /// another measure than parameters.
     #[arg(long, value_parser = By::from_name, value_name = "MEASURE", conflicts_with = "from_matrix")]
     by: Option<By>,
-    /// Compare this many worlds of each variant, drawn under seed 0 [default: 16, or 4 by pictures and dynamics].
+    /// Compare this many worlds of each variant, drawn under seed 0 [default: 16; 4 by pictures and
+    /// dynamics, 64 by placements].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000), conflicts_with = "from_matrix")]
     worlds: Option<u64>,
     /// Unit of distances by parameters: units (1 is one parameter over its whole range) or share (of the task's diameter).
