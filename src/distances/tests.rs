@@ -133,17 +133,12 @@ fn all_names() -> impl Iterator<Item = By> {
 
 #[test]
 fn each_measure_obeys_the_laws_of_a_number_for_a_pair() {
-    let names = [
-        "find_objects#red",
-        "find_objects#penalty",
-        "get_to_goal#plain",
-        "find_objects#dusk",
-    ];
+    let names = ["find_objects#red", "find_objects#penalty", "get_to_goal#plain"];
     let built_in: Vec<(String, Variant)> = names
         .iter()
         .map(|name| ((*name).to_owned(), tasks::variant(name).expect("it is built in")))
         .collect();
-    let small: Vec<(String, Variant)> = ["a", "paid", "small", "fast"]
+    let small: Vec<(String, Variant)> = ["a", "paid", "small"]
         .iter()
         .map(|name| ((*name).to_owned(), small_task().variant(name).expect("it is declared")))
         .collect();
@@ -155,16 +150,15 @@ fn each_measure_obeys_the_laws_of_a_number_for_a_pair() {
             let found = between(&side(a), &side(b), &few(by), Ok).expect("both can be compared");
             assert_eq!(found.by, by);
             assert!(
-                found
-                    .description
-                    .starts_with(&format!("by {}, mean of 2 worlds", by.name())),
+                found.description.starts_with(&format!("by {}, ", by.name())),
                 "{}",
                 found.description
             );
+            assert!(found.description.contains("2 worlds of each"), "{}", found.description);
             found.distance.total
         };
         let matrix = variant_matrix(variants, &few(by), Ok).expect("all can be compared");
-        for (a, b) in [(0, 1), (0, 2), (0, 3)] {
+        for (a, b) in [(0, 1), (0, 2)] {
             let found = apart(a, b);
             assert!(found.is_finite() && found >= 0.0, "{} {found}", by.name());
             assert!(
