@@ -13,6 +13,25 @@ use driftworld_text::{ShownPath, one_line};
 #[strum(prefix = "curriculum/", serialize_all = "kebab-case")]
 #[non_exhaustive]
 pub enum CurriculumError {
+    /// An agent that is frozen earned something else when it ran an evaluation experience once more.
+    #[error(
+        "block {block}: found reward {again} in evaluation experience {experience} ({variant}) run once more, expected \
+         {first} as before, from an agent that is frozen; keep statistics, memory and random numbers of evaluations \
+         apart from the agent's own, and draw the latter from the seed that each experience begins with; or switch the \
+         check off"
+    )]
+    NotFrozen {
+        /// The block.
+        block: usize,
+        /// The variant, as `task#variant`.
+        variant: String,
+        /// The number of the experience over the whole lifetime.
+        experience: u64,
+        /// What it earned first.
+        first: f64,
+        /// What it earned when it was run once more.
+        again: f64,
+    },
     /// There is nothing to make blocks of.
     #[error("design: found no variants, expected at least 1")]
     NoVariants,

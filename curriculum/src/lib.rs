@@ -16,8 +16,8 @@ pub use design::{
 pub use error::CurriculumError;
 pub use run::{
     COLUMNS, ENDING, Experience, ExperienceSpec, Failed, FoundWorld, Journal, LeftOut, MOST_STEPS, Plan, Progress,
-    RegimeSummary, Rollout, RunContext, Sources, Summary, Trial, Tried, Undrawable, log_name, run, run_rollout,
-    same_log_name, try_worlds,
+    REPEATED_EVALUATIONS, RegimeSummary, Rollout, RunContext, Sources, Summary, Trial, Tried, Undrawable, log_name,
+    run, run_rollout, same_log_name, try_worlds,
 };
 pub use transfer::{
     DirectionReport, PairTransfer, TransferOptions, TransferReport, log_name_of_label, transfer_report,

@@ -71,6 +71,7 @@ fn live(log: &Path, most: u64, resume: bool) -> Result<(), CurriculumError> {
         stop: &AtomicBool::new(false),
         catalogue: Catalogue::default(),
         jobs: NonZeroUsize::MIN,
+        repeated_evaluations: driftworld_curriculum::REPEATED_EVALUATIONS,
     };
     run(&plan, &mut OnRailsAgent::new(), &mut journal, &mut around)?;
     journal.finish()

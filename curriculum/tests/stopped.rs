@@ -88,6 +88,7 @@ fn live(log: &Path, jobs: usize, before: u64) -> (Summary, u64) {
         stop: &stop,
         catalogue: Catalogue::default(),
         jobs: NonZeroUsize::new(jobs).expect("somebody has to live it"),
+        repeated_evaluations: driftworld_curriculum::REPEATED_EVALUATIONS,
     };
     let summary = run(&plan, &mut agent, &mut journal, &mut around).expect("it is lived");
     journal.finish().expect("the log is whole");

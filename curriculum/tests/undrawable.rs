@@ -66,6 +66,7 @@ fn live(plan: &Plan, folder: &Path, jobs: usize, most: u64) -> Result<Summary, C
         stop: &AtomicBool::new(false),
         catalogue: Catalogue::default(),
         jobs: NonZeroUsize::new(jobs).expect("somebody has to live it"),
+        repeated_evaluations: driftworld_curriculum::REPEATED_EVALUATIONS,
     };
     let summary = run(plan, &mut RandomAgent::new(0), &mut journal, &mut around)?;
     journal.finish()?;

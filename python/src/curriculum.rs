@@ -9,8 +9,8 @@ use driftworld::clock::Clock;
 use driftworld::scenarios::{Missing, Named, ScenarioFile, task_from};
 use driftworld::tasks::TaskError;
 use driftworld_curriculum::{
-    CurriculumError, Experience, FoundWorld, Journal, MOST_STEPS, Plan, Progress, Rollout, Tried, Undrawable,
-    run_rollout,
+    CurriculumError, Experience, FoundWorld, Journal, MOST_STEPS, Plan, Progress, REPEATED_EVALUATIONS, Rollout, Tried,
+    Undrawable, run_rollout,
 };
 use driftworld_spec::{BlockKind, Scenario, TaskSpec, World};
 use pyo3::exceptions::PyValueError;
@@ -206,16 +206,18 @@ impl PyJournal {
     }
 
     /// Runs the plan from the first experience that is not in the log, and says what it came to, as a dictionary. `learned`:
-    /// how many experiences the agent has learned from. `rollout` has the methods of [`Rollout`].
+    /// how many experiences the agent has learned from. `rollout` has the methods of [`Rollout`]. `check_frozen`: whether the first
+    /// evaluations of each block are run once more and have to pay the same.
     fn run<'py>(
         &mut self,
         py: Python<'py>,
         plan: &Bound<'py, PyPlan>,
         rollout: Bound<'py, PyAny>,
         learned: Whole,
+        check_frozen: bool,
     ) -> Result<Bound<'py, PyAny>> {
         let clock = Clock::from_environment().map_err(|error| PyValueError::new_err(error.to_string()))?;
-        let (plan, mut rollout) = (&plan.borrow().plan, PythonRollout(rollout));
+        let (plan, mut rollout) = (&plan.borrow().plan, PythonRollout { rollout, check_frozen });
         let summary = run_rollout(plan, &mut rollout, self.open()?, learned.0, &mut || clock.now())?;
         Ok(to_py(py, &summary)?)
     }
@@ -253,20 +255,30 @@ fn handle(world: World) -> Result<PyStream> {
 }
 
 /// An agent of Python's with its environment: what it does is in `package/driftworld/lifetimes.py`.
-struct PythonRollout<'py>(Bound<'py, PyAny>);
+struct PythonRollout<'py> {
+    rollout: Bound<'py, PyAny>,
+    /// Whether a block's first evaluations are run once more, to see that they change nothing.
+    check_frozen: bool,
+}
 
 impl Rollout for PythonRollout<'_> {
     type Error = Error;
 
+    fn repeated_evaluations(&self) -> usize {
+        if self.check_frozen { REPEATED_EVALUATIONS } else { 0 }
+    }
+
     fn begin_block(&mut self, learning: bool) -> Result<()> {
-        self.0.call_method1("begin_block", (learning,))?;
+        self.rollout.call_method1("begin_block", (learning,))?;
         Ok(())
     }
 
     fn experience(&mut self, number: u64, world: World) -> Result<Option<Experience>> {
         let agent = &world.agent_params;
         let time = (agent.time_step, agent.frame_skip.max(1), world.max_seconds);
-        let outcome = self.0.call_method1("experience", (number, handle(world)?, time))?;
+        let outcome = self
+            .rollout
+            .call_method1("experience", (number, handle(world)?, time))?;
         let (reward, success, steps, seconds, truncated) = outcome.extract()?;
         Ok(Some(Experience {
             reward,
@@ -278,13 +290,16 @@ impl Rollout for PythonRollout<'_> {
     }
 
     fn end_learning(&mut self, done: u64) -> Result<()> {
-        self.0.call_method1("end_learning", (done,))?;
+        self.rollout.call_method1("end_learning", (done,))?;
         Ok(())
     }
 
     fn logged(&mut self, progress: &Progress, reward: Option<f64>) -> Result<ControlFlow<()>> {
         let reward = reward.unwrap_or(f64::NAN);
-        let goes_on: bool = self.0.call_method1("logged", (progress.done - 1, reward))?.extract()?;
+        let goes_on: bool = self
+            .rollout
+            .call_method1("logged", (progress.done - 1, reward))?
+            .extract()?;
         Ok(if goes_on {
             ControlFlow::Continue(())
         } else {

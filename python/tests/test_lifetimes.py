@@ -75,7 +75,7 @@ def test_a_random_agents_log_has_the_form_of_the_commands(tmp_path: Path) -> Non
 def test_an_agent_learns_in_learning_blocks_only(tmp_path: Path) -> None:
     agent = Circler()
     assert isinstance(agent, Agent)
-    small(max_steps=7).run(agent, **SMALL)
+    small(max_steps=7).run(agent, check_frozen=False, **SMALL)
     assert agent.frozen == [False, True, False, True, False, True]
     assert len(agent.learned) == 7 * (2 + 5 + 3) and len(agent.begun) == 19
     assert {label for label, _ in agent.begun} == {None}
@@ -84,6 +84,34 @@ def test_an_agent_learns_in_learning_blocks_only(tmp_path: Path) -> None:
     assert chances[2:5] == chances[10:13] == chances[16:19]
     assert chances[2] == chances[4] and chances[5:7] == chances[7:9]
     assert len(set(chances)) == 2 + 2 + 3 + 3
+
+
+class Memoriser(Circler):
+    """Learns nothing where it may, and counts its evaluations."""
+
+    def act(self, observation: Any, info: dict[str, Any]) -> Any:
+        return np.array([len(self.begun), 20 * (len(self.begun) % 3), 0], dtype=np.float32)
+
+
+def test_an_agent_that_evaluations_change_is_refused(tmp_path: Path) -> None:
+    regimes = [{"task": "get_to_goal", "variant": "soft", "count": 6, "seed": 1, "max_steps": 30}]
+    curriculum = Curriculum.from_dict({"name": "frozen", "blocks": [{"type": "evaluation", "regimes": regimes}]})
+    with pytest.raises(CurriculumError, match="block 0: found reward .* in evaluation experience 0 .get_to_goal#soft."):
+        curriculum.run(Memoriser(), tmp_path / "log", **SMALL)
+    assert curriculum.run(Memoriser(), check_frozen=False, **SMALL).finished
+    # What is the same twice leaves the same log, checked or not.
+    for name, check in [("checked", True), ("unchecked", False)]:
+        curriculum.run(Pupil(), tmp_path / name, check_frozen=check, **SMALL)
+    assert rows(tmp_path / "checked", ["reward"]) == rows(tmp_path / "unchecked", ["reward"])
+
+
+def test_only_a_change_is_said(tmp_path: Path) -> None:
+    regime = {"task": "find_objects", "variant": "blue", "count": 1, "max_steps": 3}
+    kinds = ["learning", "learning", "evaluation", "evaluation", "learning"]
+    blocks = [{"type": kind, "regimes": [regime]} for kind in kinds]
+    agent = Circler()
+    Curriculum.from_dict({"name": "borders", "blocks": blocks}).run(agent, **SMALL)
+    assert agent.frozen == [False, True, False]
 
 
 def test_a_transition_is_what_a_step_said() -> None:

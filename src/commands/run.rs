@@ -5,7 +5,9 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use crate::clock::Clock;
-use crate::curriculum::{CurriculumError, Journal, Plan, Progress, RunContext, Summary, Undrawable, run};
+use crate::curriculum::{
+    CurriculumError, Journal, Plan, Progress, REPEATED_EVALUATIONS, RunContext, Summary, Undrawable, run,
+};
 use crate::env::Catalogue;
 use crate::metrics::MetricsError;
 use crate::scenarios::{Missing, ScenarioFile};
@@ -236,6 +238,7 @@ impl LifetimeRun<'_> {
             stop: interrupt.flag(),
             catalogue: self.catalogue.clone(),
             jobs: self.jobs,
+            repeated_evaluations: REPEATED_EVALUATIONS,
         };
         let ran = run(self.plan, self.agent.agent.as_mut(), &mut journal, &mut context);
         bar.finish_and_clear();

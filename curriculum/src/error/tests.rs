@@ -8,6 +8,13 @@ use strum::VariantNames;
 #[expect(clippy::too_many_lines, reason = "one case for each error")]
 fn every_error_has_its_message() {
     let errors = [
+        CurriculumError::NotFrozen {
+            block: 2,
+            variant: "find_objects#red".into(),
+            experience: 45,
+            first: 5.0,
+            again: 23.8,
+        },
         CurriculumError::NoVariants,
         CurriculumError::BadCount {
             kind: "learning",

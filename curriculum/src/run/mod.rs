@@ -15,6 +15,7 @@ mod summary;
 mod undrawable;
 mod worlds;
 
+use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -48,7 +49,13 @@ pub struct RunContext<'a> {
     pub catalogue: Catalogue,
     /// How many experiences are lived at the same time, where they do not depend on each other. Changes no byte of the log.
     pub jobs: NonZeroUsize,
+    /// How many of a block's first evaluation experiences are run once more at its end, to see that an agent that learns is
+    /// frozen there; [`REPEATED_EVALUATIONS`] is a good number, 0 switches the check off. Changes no byte of the log.
+    pub repeated_evaluations: usize,
 }
+
+/// How many evaluation experiences of each block are run twice where nobody says.
+pub const REPEATED_EVALUATIONS: usize = 4;
 
 /// Lives a scenario from the first experience that is not in the log to its last, and logs each as soon as it is over.
 ///
@@ -61,10 +68,12 @@ pub struct RunContext<'a> {
 /// a run that was interrupted and taken up again writes what an undisturbed one does. [`Agent::learn`] is called in learning
 /// blocks only. An agent that learns lives learning blocks one experience after the other; whoever takes up a log with such an
 /// agent hands over one that has learned what is in the log. Evaluation blocks, and all blocks of an agent that does not
-/// learn, are lived by its [`Agent::frozen`] copies, several at a time.
+/// learn, are lived by its [`Agent::frozen`] copies, several at a time; by the agent itself where it has no copies. Of an agent that
+/// learns the first evaluations of each block are run once more at its end, and have to pay the same.
 ///
 /// # Errors
 /// [`CurriculumError`] that says at which block, regime and experience; what was lived before is in the log.
+/// [`CurriculumError::NotFrozen`] for an agent that evaluations change.
 pub fn run(
     plan: &Plan,
     agent: &mut dyn Agent,
@@ -81,19 +90,21 @@ pub fn run(
         let learns = agent.learns();
         let end = if learns { plan.end_of_kind(next) } else { total };
         let still = !learns || plan.regimes[plan.regime_of(next)].kind == BlockKind::Evaluation;
-        let copies: Option<Vec<_>> = (still && jobs > 1)
+        let repeated = if learns { context.repeated_evaluations } else { 0 };
+        let copies: Option<Vec<_>> = still
             .then(|| {
                 let copy = |_| Some((agent.frozen()?, worker()));
                 (0..jobs).map(copy).collect()
             })
             .flatten();
         let flow = if let Some(copies) = copies {
-            run_in_parallel(plan, next..end, copies, journal, context)?
+            run_in_parallel(plan, &with_repeats(plan, next..end, repeated), copies, journal, context)?
         } else {
             let mut one_by_one = OneByOne {
                 agent,
                 worker: &mut own,
                 watch: context.watch,
+                repeated,
             };
             let place = (&mut worlds, &mut block);
             rollout::run_range(plan, next..end, place, &mut one_by_one, journal, context.now)?
@@ -106,24 +117,52 @@ pub fn run(
     Ok(journal.summary().clone())
 }
 
-/// Runs experiences that do not depend on each other at the same time, and logs them in their order.
+/// Experiences, and whether each is run once more: the first so many of each block of evaluations, behind its last.
+fn with_repeats(plan: &Plan, numbers: Range<u64>, repeated: usize) -> Vec<(u64, bool)> {
+    let mut items = Vec::new();
+    let mut first: Vec<u64> = Vec::new();
+    let end = numbers.end;
+    for number in numbers {
+        let planned = &plan.regimes[plan.regime_of(number)];
+        items.push((number, false));
+        if planned.kind == BlockKind::Evaluation && first.len() < repeated {
+            first.push(number);
+        }
+        if number + 1 == end || plan.regimes[plan.regime_of(number + 1)].block != planned.block {
+            items.extend(first.drain(..).map(|number| (number, true)));
+        }
+    }
+    items
+}
+
+/// Runs experiences that do not depend on each other at the same time, and logs them in their order, but for those that are
+/// run once more, which have to pay the same.
 fn run_in_parallel(
     plan: &Plan,
-    numbers: Range<u64>,
+    items: &[(u64, bool)],
     copies: Vec<(Box<dyn Agent + Send>, Worker<'_>)>,
     journal: &mut Journal,
     context: &mut RunContext,
 ) -> Result<ControlFlow<()>, CurriculumError> {
-    let work =
-        |(agent, worker): &mut (Box<dyn Agent + Send>, Worker), number| worker.draw_and_run(agent.as_mut(), number);
-    in_order::in_order(numbers, copies, work, |number, outcome| {
-        let now = (context.now)();
+    let work = |(agent, worker): &mut (Box<dyn Agent + Send>, Worker), item| {
+        worker.draw_and_run(agent.as_mut(), items[item as usize].0)
+    };
+    let mut earned: BTreeMap<u64, f64> = BTreeMap::new();
+    in_order::in_order(0..items.len() as u64, copies, work, |item, outcome| {
+        let (number, is_repeat) = items[item as usize];
         let progress = match outcome? {
             Outcome::CutOff => return Ok(ControlFlow::Break(())),
-            Outcome::Over { experience, between } => {
-                journal.append(plan, number, &experience, between.as_deref(), now)?
+            Outcome::Over { experience, .. } if is_repeat => {
+                let first = earned.remove(&number).unwrap_or(experience.reward);
+                rollout::expect_frozen(plan, number, first, experience.reward)?;
+                return Ok(ControlFlow::Continue(()));
             }
-            Outcome::LeftOut { reason } => journal.leave_out(plan, number, &reason, now)?,
+            Outcome::LeftOut { .. } if is_repeat => return Ok(ControlFlow::Continue(())),
+            Outcome::Over { experience, between } => {
+                earned.insert(number, experience.reward);
+                journal.append(plan, number, &experience, between.as_deref(), (context.now)())?
+            }
+            Outcome::LeftOut { reason } => journal.leave_out(plan, number, &reason, (context.now)())?,
         };
         Ok((context.watch)(&progress))
     })
@@ -208,10 +247,15 @@ struct OneByOne<'a, 'b> {
     agent: &'a mut dyn Agent,
     worker: &'a mut Worker<'b>,
     watch: &'a mut dyn FnMut(&Progress) -> ControlFlow<()>,
+    repeated: usize,
 }
 
 impl Rollout for OneByOne<'_, '_> {
     type Error = CurriculumError;
+
+    fn repeated_evaluations(&self) -> usize {
+        self.repeated
+    }
 
     fn experience(&mut self, number: u64, world: World) -> Result<Option<Experience>, CurriculumError> {
         self.worker.run(self.agent, number, world)

@@ -23,6 +23,12 @@ pub trait Rollout {
         Ok(())
     }
 
+    /// How many of a block's first evaluation experiences are run once more at its end, to see that the agent was frozen: a
+    /// frozen one earns the same again. None by default.
+    fn repeated_evaluations(&self) -> usize {
+        0
+    }
+
     /// Runs an experience in its world, from the first step to the last. `None` ends the run without a row.
     ///
     /// # Errors
@@ -52,6 +58,7 @@ pub trait Rollout {
 ///
 /// # Errors
 /// [`CurriculumError`] as [`run`](super::run), and those of the rollout; what was run before is in the log.
+/// [`CurriculumError::NotFrozen`] for an agent that earns something else in the same evaluation a second time.
 pub fn run_rollout<R: Rollout>(
     plan: &Plan,
     rollout: &mut R,
@@ -90,6 +97,7 @@ pub(super) fn run_range<R: Rollout>(
     now: &mut dyn FnMut() -> Timestamp,
 ) -> Result<ControlFlow<()>, R::Error> {
     let total = plan.num_experiences();
+    let mut evaluated: Vec<(u64, f64)> = Vec::new();
     for number in numbers {
         let planned = &plan.regimes[plan.regime_of(number)];
         let (progress, reward) = match worlds.draw(number)? {
@@ -102,6 +110,9 @@ pub(super) fn run_range<R: Rollout>(
                     return Ok(ControlFlow::Break(()));
                 };
                 let progress = journal.append(plan, number, &experience, between.as_deref(), now())?;
+                if planned.kind == BlockKind::Evaluation && evaluated.len() < rollout.repeated_evaluations() {
+                    evaluated.push((number, experience.reward));
+                }
                 (progress, Some(experience.reward))
             }
         };
@@ -112,6 +123,32 @@ pub(super) fn run_range<R: Rollout>(
         if rollout.logged(&progress, reward)?.is_break() {
             return Ok(ControlFlow::Break(()));
         }
+        if is_last {
+            for (number, reward) in evaluated.drain(..) {
+                let Drawn::World { world, .. } = worlds.draw(number)? else {
+                    continue;
+                };
+                let Some(again) = rollout.experience(number, world)? else {
+                    return Ok(ControlFlow::Break(()));
+                };
+                expect_frozen(plan, number, reward, again.reward)?;
+            }
+        }
     }
     Ok(ControlFlow::Continue(()))
+}
+
+/// Refuses an agent that earned something else when it ran an evaluation experience once more.
+pub(super) fn expect_frozen(plan: &Plan, number: u64, first: f64, again: f64) -> Result<(), CurriculumError> {
+    if first.to_bits() == again.to_bits() {
+        return Ok(());
+    }
+    let planned = &plan.regimes[plan.regime_of(number)];
+    Err(CurriculumError::NotFrozen {
+        block: planned.block,
+        variant: planned.id.clone(),
+        experience: number,
+        first,
+        again,
+    })
 }

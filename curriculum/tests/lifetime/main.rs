@@ -1,5 +1,6 @@
 //! A small scenario lived from the first experience to the last: logged, repeatable, scorable, interruptible.
 
+mod frozen;
 mod learners;
 mod rollout;
 
@@ -50,6 +51,10 @@ fn plan(scenario: &Scenario) -> Result<Plan, CurriculumError> {
                 world: yard(),
                 note: Some("made up".to_owned()),
             }),
+            "hill.json" => Ok(FoundWorld {
+                world: frozen::hill(),
+                note: None,
+            }),
             _ => Err(format!("{path}: not there")),
         },
     };
@@ -67,12 +72,15 @@ struct Living {
     most: u64,
     jobs: usize,
     resume: bool,
+    /// How many evaluations of each block are run twice.
+    repeated: usize,
 }
 
 const WHOLE: Living = Living {
     most: u64::MAX,
     jobs: 1,
     resume: false,
+    repeated: 0,
 };
 
 /// Lives a scenario by a clock that stands still, so that logs can be compared byte for byte.
@@ -100,6 +108,7 @@ fn live_by(
         stop: &AtomicBool::new(false),
         catalogue: Catalogue::default(),
         jobs: NonZeroUsize::new(living.jobs).expect("somebody has to live it"),
+        repeated_evaluations: living.repeated,
     };
     let summary = run(&plan, agent, &mut journal, &mut around)?;
     journal.finish()?;

@@ -358,6 +358,7 @@ class Curriculum(Sequence[Block]):
         *,
         resume: bool = True,
         skip_undrawable: bool = False,
+        check_frozen: bool = True,
         watch: Callable[[Experience, float], Any] | None = None,
         **options: Any,
     ) -> Summary:
@@ -374,13 +375,16 @@ class Curriculum(Sequence[Block]):
             resume: Go on with the log in the folder, if there is one; else the folder must hold nothing.
             skip_undrawable: Leave out experiences whose worlds cannot be drawn: each has a row without numbers in the log, and is
                 counted in the summary. If not, the run stops there; the same call with this goes on.
+            check_frozen: Run the first 4 evaluations of each block once more at its end, unlogged, and refuse an agent that does not
+                earn the same in them: evaluations change it, or its chance is not drawn from the seed of the experience.
             watch: Told each experience and its reward as soon as it is logged, NaN for one that is left out; ``False`` from it ends
                 the run there.
             options: Options of the environment, as for :class:`driftworld.DriftworldEnv`: ``modalities``, ``size``, ``actions`` and
                 so on. A log is taken up only with the same ones.
 
         Raises:
-            CurriculumError: If the log is of another curriculum, agent or environment, or a world cannot be drawn.
+            CurriculumError: If evaluations change the agent, the log is of another curriculum, agent or environment, or a world cannot be
+                drawn.
             MetricsError: If the log cannot be read or written, or the folder holds something else.
             EnvError: If an action is none.
             TypeError: If the agent lacks a method.
@@ -388,7 +392,7 @@ class Curriculum(Sequence[Block]):
         """
         # One of its own: what it depends on is noted in it. Of the same tasks, whatever became of their files since.
         plan = _native.Plan.from_values(self._plan.values(), skip_undrawable)
-        lifetime = Lifetime(plan, agent, options, log, resume, watch)
+        lifetime = Lifetime(plan, agent, options, log, resume, watch, check_frozen)
         return lifetime.live(lambda number: _experience(plan, number))
 
     def __len__(self) -> int:

@@ -79,7 +79,12 @@ class Agent(Protocol):
         """Learns from a step; only called in learning blocks."""
 
     def freeze(self, frozen: bool) -> None:
-        """Told before the first experience of a block that it may not learn, or may again."""
+        """Called before the first block, and before each block where it changes whether the agent may learn.
+
+        A frozen agent earns the same in the same world, drawn by the same seed: the first evaluations of each block are run once more
+        at its end, and a lifetime in which they pay something else is refused. Running statistics, memories and random numbers of
+        evaluations are kept apart from those of learning; the latter are drawn from the seed that ``begin`` gets.
+        """
 
 
 @dataclass(frozen=True)
@@ -127,6 +132,7 @@ class Lifetime:
         log: The folder to log into; without one the log is forgotten.
         resume: Go on with the log in the folder if there is one.
         watch: Told each experience and what it paid, as soon as it is logged; may say ``False`` to end there.
+        check_frozen: Run the first evaluations of each block once more, and refuse an agent that earns something else in them.
     """
 
     def __init__(
@@ -137,6 +143,7 @@ class Lifetime:
         log: str | PathLike[str] | None,
         resume: bool,
         watch: Callable[[Experience, float], Any] | None,
+        check_frozen: bool,
     ) -> None:
         missing = [name for name in ("act", "learn", "freeze") if not callable(getattr(agent, name, None))]
         if missing:
@@ -144,7 +151,7 @@ class Lifetime:
             raise TypeError(f"agent: found {found}, expected act, learn and freeze; see driftworld.Agent")
         self._plan, self._agent, self._options, self._watch = plan, agent, dict(options), watch
         self._log = None if log is None else Path(log)
-        self._resume = resume
+        self._resume, self._check_frozen = resume, check_frozen
         # What is saved lies beside the log: a log holds rows, nothing else.
         self._saves = None if self._log is None else _beside(self._log)
         self._whose = ""
@@ -164,7 +171,7 @@ class Lifetime:
             done = len(journal)
             self._own_saves(done, {"scenario": self._plan.scenario(), "agent": name, "environment": made_with})
             rollout = Rollout(self._agent, env, experience, self._options, self._watch, self._save)
-            said = journal.run(self._plan, rollout, self._load(done))
+            said = journal.run(self._plan, rollout, self._load(done), self._check_frozen)
         return Summary(**said, log=self._log)
 
     def _own_saves(self, done: int, lifetime: dict[str, Any]) -> None:
@@ -239,10 +246,13 @@ class Rollout:
     ) -> None:
         self._agent, self._env, self._experience, self._options = agent, env, experience, options
         self._watch, self.end_learning = watch, save
+        self._frozen: bool | None = None
 
     def begin_block(self, learning: bool) -> None:
-        """Before the first experience of a block."""
-        self._agent.freeze(not learning)
+        """Before the first experience of a block. An agent without labels is not to see the border between two blocks of learning."""
+        if self._frozen is not (not learning):
+            self._frozen = not learning
+            self._agent.freeze(self._frozen)
 
     def experience(
         self, number: int, world: _native.Stream, time: tuple[float, int, float]
