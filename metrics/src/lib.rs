@@ -60,10 +60,10 @@ pub use repeats::{
     probability_of_improvement,
 };
 pub use results::{
-    AsLogged, ComparedMetric, Direction, Headline, LifetimeMetrics, PairValues, RegimeMetrics, RepeatedMetric,
-    SavedFiles, SavedTables, Settings, SummaryRow, Value, Values, compare_agents, over_repeats, regimes_tsv, save_all,
+    AsLogged, ComparedMetric, Direction, EvaluationCell, Exchanged, Headline, LEARNED_SHARE, LifetimeMetrics, NullBand,
+    PairValues, Reached, Reading, RegimeMetrics, RepeatedMetric, SavedFiles, SavedTables, Settings, SummaryRow, Value, Values, compare_agents, over_repeats, regimes_tsv, save_all,
 };
-pub use score::{Assessment, Metric, Scorer, score};
+pub use score::{Assessment, Metric, NULL_PERMUTATIONS, Scorer, score};
 
 /// The Rust in `docs/metrics.md` is compiled with the documentation's tests.
 #[cfg(doctest)]

@@ -3,7 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
-use driftworld_metrics::{LifetimeMetrics, Options, Settings, save_all};
+use driftworld_metrics::{LifetimeMetrics, NullBand, Options, Reached, Settings, save_all};
+use indexmap::IndexMap;
 use serde::{Serialize, Serializer};
 
 use super::{Comparison, ScoredLog, ScoringRequest, Setup, score_logs};
@@ -114,19 +115,39 @@ impl Serialize for Scores {
         struct ComparedLifetimes<'a> {
             #[serde(flatten)]
             comparison: &'a Comparison,
-            lifetimes: &'a [LifetimeMetrics],
-            #[serde(skip_serializing_if = "<[_]>::is_empty")]
-            lifetimes_against: &'a [LifetimeMetrics],
+            lifetimes: Vec<WholeLifetime<'a>>,
+            #[serde(skip_serializing_if = "Vec::is_empty")]
+            lifetimes_against: Vec<WholeLifetime<'a>>,
         }
+        let whole = |lifetimes: &'_ [LifetimeMetrics]| lifetimes.iter().map(WholeLifetime::of).collect::<Vec<_>>();
         match (&self.comparison, self.lifetimes.as_slice()) {
-            (None, [lifetime]) => lifetime.serialize(serializer),
-            (None, lifetimes) => lifetimes.serialize(serializer),
+            (None, [lifetime]) => WholeLifetime::of(lifetime).serialize(serializer),
+            (None, lifetimes) => whole(lifetimes).serialize(serializer),
             (Some(comparison), lifetimes) => ComparedLifetimes {
                 comparison,
-                lifetimes,
-                lifetimes_against: &self.lifetimes_against,
+                lifetimes: whole(lifetimes),
+                lifetimes_against: whole(&self.lifetimes_against),
             }
             .serialize(serializer),
+        }
+    }
+}
+
+/// A lifetime with what l2metrics' files have no field for.
+#[derive(Serialize)]
+struct WholeLifetime<'a> {
+    #[serde(flatten)]
+    metrics: &'a LifetimeMetrics,
+    null: &'a IndexMap<String, NullBand>,
+    reached: &'a IndexMap<String, Reached>,
+}
+
+impl<'a> WholeLifetime<'a> {
+    fn of(metrics: &'a LifetimeMetrics) -> Self {
+        Self {
+            metrics,
+            null: &metrics.null_bands,
+            reached: &metrics.reached,
         }
     }
 }

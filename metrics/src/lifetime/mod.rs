@@ -6,6 +6,7 @@ mod prepare;
 mod regime;
 mod ste;
 mod usable;
+mod worlds;
 
 use indexmap::IndexMap;
 
@@ -14,6 +15,7 @@ pub use regime::{MAX_REGIMES, Regime};
 pub(crate) use ste::SteRun;
 pub use ste::{SteLog, experts_serving, read_ste_log};
 pub(crate) use usable::complete_rows;
+pub(crate) use worlds::{World, worlds};
 
 use crate::{BlockSubtype, BlockType, DataRange};
 

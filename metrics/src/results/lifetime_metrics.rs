@@ -8,7 +8,7 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::rounding::ten_decimals;
-use super::{AsLogged, Direction, Headline, RegimeMetrics, Value, Values};
+use super::{AsLogged, Direction, Headline, NullBand, Reached, RegimeMetrics, Value, Values};
 use crate::{DataRange, Definitions};
 
 /// Everything that scoring one lifetime gives. Serialises to the reference's `NAME_metrics.json`; regimes have a
@@ -48,6 +48,13 @@ pub struct LifetimeMetrics {
     /// What a reader of the values must be told; in the JSON where there is anything.
     #[serde(default)]
     pub notes: Vec<String>,
+    /// Of metrics that evaluations alone decide, where they would lie if the agent had never changed, by name; contrasts of
+    /// transfer are there even where only ratios were asked for. Not in the JSON, which has the reference's fields.
+    #[serde(default, rename = "null")]
+    pub null_bands: IndexMap<String, NullBand>,
+    /// What each task came to in evaluations, in the log's unit. Not in the JSON, which has the reference's fields.
+    #[serde(default)]
+    pub reached: IndexMap<String, Reached>,
     /// The values of each task, by first learning block: headlines, then the lists behind them.
     pub task_metrics: IndexMap<String, Values>,
     /// The values of each regime, in order; not in the JSON.
@@ -138,18 +145,37 @@ pub struct SummaryRow {
     pub explanation: Cow<'static, str>,
     /// Which way is good.
     pub good: Direction,
+    /// Where the value would lie if the agent had never changed; `None` for a metric that learning decides, too.
+    pub null_band: Option<NullBand>,
 }
 
 impl LifetimeMetrics {
     /// The lifetime's values as a table, one row for each headline of the metrics it was scored with, also those
-    /// without a value.
+    /// without a value. Where transfer was asked for as a ratio only, the contrasts come first: a mean of ratios is above 1 even
+    /// if nothing is transferred.
     pub fn summary(&self) -> Vec<SummaryRow> {
-        let row = |headline: &Headline| SummaryRow {
-            name: headline.name.clone(),
-            value: self.lifetime.number(&headline.name),
-            explanation: headline.explanation.clone(),
-            good: headline.good,
+        let row = |headline: &Headline| {
+            let null_band = self.null_bands.get(&*headline.name).copied();
+            let value = self.lifetime.number(&headline.name);
+            SummaryRow {
+                name: headline.name.clone(),
+                value: value.or_else(|| null_band.map(|band| band.value)),
+                explanation: headline.explanation.clone(),
+                good: headline.good,
+                null_band,
+            }
         };
-        self.headlines.iter().map(row).collect()
+        let is_there = |name: &str| self.headlines.iter().any(|headline| headline.name == name);
+        let has_band = |name: &str| self.null_bands.contains_key(name);
+        let mut contrasts: Vec<Headline> = crate::score::built_in_headlines();
+        contrasts.retain(|headline| has_band(&headline.name) && !is_there(&headline.name));
+        let mut rows = Vec::new();
+        for headline in &self.headlines {
+            if headline.name.ends_with("_transfer_ratio") {
+                rows.extend(contrasts.drain(..).map(|contrast| row(&contrast)));
+            }
+            rows.push(row(headline));
+        }
+        rows
     }
 }

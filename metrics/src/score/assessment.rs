@@ -102,10 +102,13 @@ impl<'a> Assessment<'a> {
 
     /// Mean or median, as the options say; `None` of no values.
     pub fn aggregate(&self, values: Vec<f64>) -> Option<f64> {
-        match self.options.aggregation_method {
-            AggregationMethod::Mean => mean(&values),
-            AggregationMethod::Median => median(values),
-        }
+        aggregate(values, self.options)
+    }
+
+    /// Terminal performance of each regime, by its number; NaN where it has none.
+    pub(super) fn term_perfs(&self) -> Vec<f64> {
+        let numbers = self.regimes.iter().map(|values| values.number("term_perf"));
+        numbers.map(|number| number.unwrap_or(f64::NAN)).collect()
     }
 
     /// Where a headline has numbers for tasks but none for the lifetime, brings those together, missing ones skipped.
@@ -119,5 +122,13 @@ impl<'a> Assessment<'a> {
     /// Values of regimes, tasks and lifetime.
     pub(super) fn into_values(self) -> (Vec<Values>, IndexMap<String, Values>, Values) {
         (self.regimes, self.tasks, self.whole)
+    }
+}
+
+/// Mean or median, as the options say; `None` of no values.
+pub(super) fn aggregate(values: Vec<f64>, options: &Options) -> Option<f64> {
+    match options.aggregation_method {
+        AggregationMethod::Mean => mean(&values),
+        AggregationMethod::Median => median(values),
     }
 }

@@ -4,19 +4,23 @@
 
 mod assessment;
 mod average_performance;
+mod exchange;
 mod metric;
+mod null_bands;
 mod performance_maintenance;
 mod performance_recovery;
 mod recovery_time;
 mod sample_efficiency;
 mod saturation;
 mod scorer;
+mod statistic;
 mod ste_relative_performance;
 mod terminal_performance;
 mod transfer;
 
 pub use assessment::Assessment;
 pub use metric::Metric;
+pub use null_bands::NULL_PERMUTATIONS;
 pub use scorer::{Scorer, score};
 
 use crate::results::Headline;

@@ -2,7 +2,12 @@
 //!
 //! Not here: what learning one task does to another, see `transfer`.
 
+use std::rc::Rc;
+
+use super::assessment::aggregate;
+use super::statistic::Statistic;
 use super::{Assessment, Metric};
+use crate::lifetime::Lifetime;
 use crate::results::{Direction, Headline};
 use crate::statistics::mean;
 use crate::{BlockType, MetricsError, Options};
@@ -33,13 +38,20 @@ impl Metric for PerformanceMaintenance {
 
     fn judge(&self, assessment: &mut Assessment<'_>) -> Result<(), MetricsError> {
         let method = assessment.options().maintenance_method;
+        let term_perfs = assessment.term_perfs();
         for task in assessment.lifetime().tasks() {
-            let Differences { mrlep, mrtlp } = differences(assessment, task);
+            let runs = differences(assessment.lifetime(), task);
+            let values = |value: fn(&Difference, &[f64]) -> f64| -> Vec<Vec<f64>> {
+                let run = |run: &Vec<Difference>| run.iter().map(|one| value(one, &term_perfs)).collect();
+                runs.iter().map(run).collect()
+            };
             if method.has_mrlep() {
+                let mrlep = values(Difference::mrlep);
                 assessment.set_task(task, "perf_maintenance_mrlep", mean(&mrlep.concat()));
                 assessment.set_task(task, "maintenance_val_mrlep", Some(mrlep));
             }
             if method.has_mrtlp() {
+                let mrtlp = values(Difference::mrtlp);
                 assessment.set_task(task, "perf_maintenance_mrtlp", mean(&mrtlp.concat()));
                 assessment.set_task(task, "maintenance_val_mrtlp", Some(mrtlp));
             }
@@ -48,54 +60,85 @@ impl Metric for PerformanceMaintenance {
     }
 }
 
-/// Differences of one task, in runs of consecutive regimes of the task.
-#[derive(Debug, Clone, PartialEq, Default)]
-struct Differences {
-    /// Against the most recent reference evaluation.
-    mrlep: Vec<Vec<f64>>,
-    /// Against the most recent learning regime.
-    mrtlp: Vec<Vec<f64>>,
+/// The lifetime's values as functions of terminal performances, as far as they are asked for.
+pub(super) fn statistics<'a>(lifetime: &Lifetime, options: &'a Options) -> Vec<Statistic<'a>> {
+    let tasks = lifetime.tasks().iter();
+    let tasks: Vec<Vec<Difference>> = tasks.map(|task| differences(lifetime, task).concat()).collect();
+    let tasks = Rc::new(tasks);
+    let method = options.maintenance_method;
+    let statistic = |name, value: fn(&Difference, &[f64]) -> f64| {
+        let tasks = Rc::clone(&tasks);
+        Statistic::new(name, move |term_perfs| {
+            let of_task = |task: &Vec<Difference>| {
+                let values: Vec<f64> = task.iter().map(|one| value(one, term_perfs)).collect();
+                mean(&values)
+            };
+            aggregate(tasks.iter().filter_map(of_task).collect(), options)
+        })
+    };
+    let mrlep = statistic("perf_maintenance_mrlep", Difference::mrlep);
+    let mrtlp = statistic("perf_maintenance_mrtlp", Difference::mrtlp);
+    let asked = [(method.has_mrlep(), mrlep), (method.has_mrtlp(), mrtlp)];
+    let asked = asked.into_iter().filter(|(is_asked, _)| *is_asked);
+    asked.map(|(_, statistic)| statistic).collect()
 }
 
-/// Compares each evaluation of a task with what it was right after learning.
+/// An evaluation and what it is compared with, by their regime numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Difference {
+    evaluation: usize,
+    /// The most recent reference evaluation.
+    reference: usize,
+    /// The most recent learning regime.
+    learnt: usize,
+}
+
+impl Difference {
+    fn mrlep(&self, term_perfs: &[f64]) -> f64 {
+        term_perfs[self.evaluation] - term_perfs[self.reference]
+    }
+
+    fn mrtlp(&self, term_perfs: &[f64]) -> f64 {
+        term_perfs[self.evaluation] - term_perfs[self.learnt]
+    }
+}
+
+/// Compares each evaluation of a task with what it was right after learning, in runs of consecutive regimes of the task.
 ///
 /// The first evaluation after each learning regime is its reference. Every later evaluation that is no reference
 /// gives one difference of terminal performances; runs of such evaluations end where the task is learnt again.
-fn differences(assessment: &Assessment<'_>, task: &str) -> Differences {
-    let lifetime = assessment.lifetime();
-    let mut found = Differences::default();
-    // Terminal performance of the most recent learning regime; whether its reference is still to come.
+fn differences(lifetime: &Lifetime, task: &str) -> Vec<Vec<Difference>> {
+    let mut found: Vec<Vec<Difference>> = Vec::new();
+    // The most recent learning regime; whether its reference is still to come.
     let (mut learnt, mut awaits_reference) = (None, false);
-    let mut reference: Option<f64> = None;
+    let mut reference: Option<usize> = None;
     let mut continues_run = false;
     for regime in lifetime.regimes_of(task) {
-        let Some(term_perf) = assessment.term_perf(regime.regime_num) else {
-            continue;
-        };
+        let number = regime.regime_num;
         let contributes = match regime.block_type {
             BlockType::Train => {
-                (learnt, awaits_reference) = (Some(term_perf), true);
+                (learnt, awaits_reference) = (Some(number), true);
                 None
             }
             BlockType::Test if !lifetime.is_assessed(regime) => None,
             BlockType::Test if awaits_reference => {
-                (reference, awaits_reference) = (Some(term_perf), false);
+                (reference, awaits_reference) = (Some(number), false);
                 None
             }
             BlockType::Test => reference.zip(learnt),
         };
         if let Some((reference, learnt)) = contributes {
-            push(&mut found.mrlep, term_perf - reference, continues_run);
-            push(&mut found.mrtlp, term_perf - learnt, continues_run);
+            let difference = Difference {
+                evaluation: number,
+                reference,
+                learnt,
+            };
+            match found.last_mut() {
+                Some(run) if continues_run => run.push(difference),
+                _ => found.push(vec![difference]),
+            }
         }
         continues_run = contributes.is_some();
     }
     found
-}
-
-fn push(runs: &mut Vec<Vec<f64>>, difference: f64, continues_run: bool) {
-    match runs.last_mut() {
-        Some(run) if continues_run => run.push(difference),
-        _ => runs.push(vec![difference]),
-    }
 }

@@ -4,9 +4,10 @@
 
 use indexmap::{IndexMap, IndexSet};
 
+use super::null_bands::null_bands;
 use super::{Assessment, Metric, all_asked, built_in, built_in_headlines};
 use crate::lifetime::{Lifetime, Regime, SteLog};
-use crate::results::{Headline, LifetimeMetrics, RegimeMetrics, Value, Values, as_logged, is_regime_column};
+use crate::results::{Headline, LifetimeMetrics, RegimeMetrics, Value, Values, as_logged, is_regime_column, reached};
 use crate::{BlockType, Log, MetricsError, Options};
 
 /// Scores a lifetime by the metrics of this crate, compared with the single-task experts there are.
@@ -93,6 +94,7 @@ impl Scorer {
             }
         }
         let notes = super::transfer::caution(&assessment).into_iter().collect();
+        let null_bands = null_bands(log, lifetime, options, &assessment.term_perfs())?;
         let (regimes, tasks, found) = assessment.into_values();
         check_names(&found, "the lifetime", |name| TAKEN.contains(&name))?;
         for (task, values) in &tasks {
@@ -124,6 +126,8 @@ impl Scorer {
             normalization_data_range: lifetime.normalization_data_range().cloned(),
             as_logged: as_logged(log, options)?,
             notes,
+            null_bands,
+            reached: reached(log, lifetime, options)?,
             task_metrics: tasks.into_iter().map(finish).collect::<IndexMap<_, _>>(),
             regimes: regimes
                 .map(|(regime, values)| RegimeMetrics::new(regime, values))
@@ -141,7 +145,7 @@ impl Default for Scorer {
 }
 
 /// Fields of the results that no headline and no value of a lifetime may have as its name.
-const TAKEN: [&str; 15] = [
+const TAKEN: [&str; 17] = [
     "run_id",
     "complexity",
     "difficulty",
@@ -156,6 +160,8 @@ const TAKEN: [&str; 15] = [
     "normalization_data_range",
     "as_logged",
     "notes",
+    "null",
+    "reached",
     "task_metrics",
 ];
 

@@ -3,9 +3,12 @@
 //! Not here: what becomes of a task whatever was learnt in between, see `performance_maintenance`.
 
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
 use indexmap::{IndexMap, IndexSet};
 
+use super::assessment::aggregate;
+use super::statistic::Statistic;
 use super::{Assessment, Metric};
 use crate::lifetime::Lifetime;
 use crate::results::{Direction, Headline, PairValues};
@@ -53,18 +56,16 @@ impl Metric for Transfer {
 
     fn judge(&self, assessment: &mut Assessment<'_>) -> Result<(), MetricsError> {
         let method = assessment.options().transfer_method;
-        let (forward, backward) = gaps(assessment);
+        let term_perfs = assessment.term_perfs();
+        let (forward, backward) = gaps(assessment.lifetime(), assessment.options());
         for (direction, gaps) in [("forward", &forward), ("backward", &backward)] {
             for (measure, is_asked_for, compare) in [
-                ("ratio", method.has_ratio(), ratio as fn(&Gap<'_>) -> Option<f64>),
+                ("ratio", method.has_ratio(), ratio as Compare),
                 ("contrast", method.has_contrast(), contrast),
             ] {
                 if is_asked_for {
-                    set(
-                        assessment,
-                        &format!("{direction}_transfer_{measure}"),
-                        &pairs(gaps, compare),
-                    );
+                    let name = format!("{direction}_transfer_{measure}");
+                    set(assessment, &name, &pairs(gaps, &term_perfs, compare));
                 }
             }
         }
@@ -72,12 +73,38 @@ impl Metric for Transfer {
     }
 }
 
+/// The lifetime's values as functions of terminal performances: contrasts always, ratios if they are asked for.
+pub(super) fn statistics<'a>(lifetime: &Lifetime, options: &'a Options) -> Vec<Statistic<'a>> {
+    let (forward, backward) = gaps(lifetime, options);
+    let (forward, backward) = (Rc::new(by_pair(&forward)), Rc::new(by_pair(&backward)));
+    let statistic = |name, pairs: &Rc<Vec<Vec<(usize, usize)>>>, compare: Compare| {
+        let pairs = Rc::clone(pairs);
+        Statistic::new(name, move |term_perfs| {
+            let first = |gaps: &Vec<(usize, usize)>| {
+                let mut values = gaps.iter().map(|gap| (term_perfs[gap.0], term_perfs[gap.1]));
+                values.find_map(|(before, after)| compare(before, after))
+            };
+            aggregate(pairs.iter().filter_map(first).collect(), options)
+        })
+    };
+    let mut found = vec![
+        statistic("forward_transfer_contrast", &forward, contrast),
+        statistic("backward_transfer_contrast", &backward, contrast),
+    ];
+    if options.transfer_method.has_ratio() {
+        found.push(statistic("forward_transfer_ratio", &forward, ratio));
+        found.push(statistic("backward_transfer_ratio", &backward, ratio));
+    }
+    found
+}
+
 /// What a reader of ratios and contrasts must be told, where performances they were made of are negative.
 pub(super) fn caution(assessment: &Assessment<'_>) -> Option<String> {
-    let (forward, backward) = gaps(assessment);
+    let term_perfs = assessment.term_perfs();
+    let (forward, backward) = gaps(assessment.lifetime(), assessment.options());
     let gaps = forward.values().chain(backward.values());
     let least = gaps
-        .flat_map(|gap| [gap.before, gap.after])
+        .flat_map(|gap| [term_perfs[gap.before], term_perfs[gap.after]])
         .fold(f64::INFINITY, f64::min);
     (least < 0.0).then(|| {
         format!(
@@ -98,12 +125,12 @@ fn set(assessment: &mut Assessment<'_>, name: &str, pairs: &Pairs<'_>) {
     assessment.set_lifetime(name, assessment.aggregate(first_values.collect()));
 }
 
-/// Two consecutive evaluations of a task between which another was learnt.
+/// Two consecutive evaluations of a task between which another was learnt, by their regime numbers.
 struct Gap<'a> {
     trained: &'a str,
     other: &'a str,
-    before: f64,
-    after: f64,
+    before: usize,
+    after: usize,
 }
 
 /// Gaps by the regime number of their later evaluation, and by the trained task where several may share one.
@@ -114,24 +141,22 @@ type Gaps<'a> = BTreeMap<(usize, usize), Gap<'a>>;
 /// QUIRK: each later evaluation holds one value per direction. Where several tasks were learnt since the evaluation
 /// before, all of them had a part in it, but the last pair in permutation order gets it: tasks in the order in which
 /// they first appear among the assessed regimes. Under the published definitions each of them gets it.
-fn gaps<'a>(assessment: &Assessment<'a>) -> (Gaps<'a>, Gaps<'a>) {
-    let places = Places::of(assessment.lifetime());
+fn gaps<'a>(lifetime: &'a Lifetime, options: &Options) -> (Gaps<'a>, Gaps<'a>) {
+    let places = Places::of(lifetime);
     let (mut forward, mut backward) = (Gaps::new(), Gaps::new());
     for (index, (trained, learning)) in places.trained().enumerate() {
-        let who = match assessment.options().definitions {
+        let who = match options.definitions {
             Definitions::Reference => 0,
             Definitions::Published => index,
         };
         for other in places.tasks.keys().copied().filter(|other| *other != trained) {
             let (evaluated, first_learnt) = places.evaluated_and_first_learnt(other);
             for pair in evaluated.windows(2) {
-                let term_perfs = assessment.term_perf(pair[0]).zip(assessment.term_perf(pair[1]));
-                let Some((before, after)) = term_perfs else { continue };
                 let gap = || Gap {
                     trained,
                     other,
-                    before,
-                    after,
+                    before: pair[0],
+                    after: pair[1],
                 };
                 let between = &learning[above(learning, pair[0])..above(learning, pair[1])];
                 if between.first().is_some_and(|place| *place < first_learnt) {
@@ -184,23 +209,36 @@ impl<'a> Places<'a> {
     }
 }
 
+/// How performance after is held against performance before.
+type Compare = fn(f64, f64) -> Option<f64>;
+
 /// After over before; nothing where before is 0.
-fn ratio(gap: &Gap<'_>) -> Option<f64> {
-    Some(gap.after / gap.before).filter(|value| value.is_finite())
+fn ratio(before: f64, after: f64) -> Option<f64> {
+    Some(after / before).filter(|value| value.is_finite())
 }
 
 /// Difference over sum; nothing where the sum is 0.
-fn contrast(gap: &Gap<'_>) -> Option<f64> {
-    Some((gap.after - gap.before) / (gap.before + gap.after)).filter(|value| value.is_finite())
+fn contrast(before: f64, after: f64) -> Option<f64> {
+    Some((after - before) / (before + after)).filter(|value| value.is_finite())
 }
 
-fn pairs<'a>(gaps: &Gaps<'a>, compare: fn(&Gap<'_>) -> Option<f64>) -> Pairs<'a> {
+fn pairs<'a>(gaps: &Gaps<'a>, term_perfs: &[f64], compare: Compare) -> Pairs<'a> {
     let mut pairs = Pairs::default();
     for gap in gaps.values() {
-        if let Some(value) = compare(gap) {
+        if let Some(value) = compare(term_perfs[gap.before], term_perfs[gap.after]) {
             let from = pairs.entry(gap.trained).or_default();
             from.entry(gap.other.to_owned()).or_default().push(value);
         }
     }
     pairs
+}
+
+/// The evaluations before and after of each pair of tasks, in order.
+fn by_pair(gaps: &Gaps<'_>) -> Vec<Vec<(usize, usize)>> {
+    let mut pairs: IndexMap<(&str, &str), Vec<(usize, usize)>> = IndexMap::new();
+    for gap in gaps.values() {
+        let of_pair = pairs.entry((gap.trained, gap.other)).or_default();
+        of_pair.push((gap.before, gap.after));
+    }
+    pairs.into_values().collect()
 }

@@ -1,0 +1,134 @@
+//! A null band: where a value would lie if the agent had never changed, and what may be said of it.
+//!
+//! Not here: how values are permuted, see `score::null_bands`.
+
+use serde::{Deserialize, Serialize};
+
+use super::Direction;
+use crate::statistics::quantile;
+
+/// How evaluations were permuted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Exchanged {
+    /// The rows of each world among each other.
+    Worlds,
+    /// By their place in the evaluation: the log does not say in which worlds they took place, or no world comes twice.
+    Positions,
+    /// By world where a world comes twice, else by place.
+    WorldsAndPositions,
+}
+
+/// A value of a lifetime beside those of the same log with its evaluations permuted.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct NullBand {
+    /// The value of the lifetime.
+    pub value: f64,
+    /// Lower end of the central 95 % of permuted values.
+    pub low: f64,
+    /// Upper end of the central 95 % of permuted values.
+    pub high: f64,
+    /// Twice the smaller share of values, the lifetime's own included, that lie as far below or as far above; at most 1.
+    pub p: f64,
+    /// How evaluations were permuted.
+    pub exchanged: Exchanged,
+}
+
+/// What may be said of a value beside its null band.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reading {
+    /// Outside the band on the good side, and better than no effect.
+    Good,
+    /// Outside the band on the bad side, and worse than no effect.
+    Bad,
+    /// Neither can be said.
+    Unclear,
+}
+
+/// Part of a value by which sums in another order may differ.
+const ROUNDING: f64 = 1e-9;
+
+impl NullBand {
+    /// Of the lifetime's value, and the permuted ones; `None` without any.
+    pub(crate) fn new(value: f64, permuted: Vec<f64>, exchanged: Exchanged) -> Option<Self> {
+        let (low, high) = (quantile(&permuted, 0.025)?, quantile(&permuted, 0.975)?);
+        let slack = ROUNDING * value.abs().max(1.0);
+        let share = |is_extreme: &dyn Fn(f64) -> bool| {
+            let extreme = permuted.iter().filter(|drawn| is_extreme(**drawn)).count();
+            (extreme + 1) as f64 / (permuted.len() + 1) as f64
+        };
+        let below = share(&|drawn| drawn <= value + slack);
+        let above = share(&|drawn| drawn >= value - slack);
+        Some(Self {
+            value,
+            low,
+            high,
+            p: (2.0 * below.min(above)).min(1.0),
+            exchanged,
+        })
+    }
+
+    /// Whether the value lies outside the band, by more than rounding.
+    pub fn is_outside(&self) -> bool {
+        let slack = ROUNDING * self.value.abs().max(1.0);
+        self.value < self.low - slack || self.value > self.high + slack
+    }
+
+    /// What may be said of the value, for the direction that is good.
+    pub fn reading(&self, good: Direction) -> Reading {
+        if !self.is_outside() {
+            return Reading::Unclear;
+        }
+        let is_high = self.value > self.high;
+        let (higher_is_good, neutral) = match good {
+            Direction::Higher => (true, None),
+            Direction::Lower => (false, None),
+            Direction::HigherThan(neutral) => (true, Some(neutral)),
+            Direction::LowerThan(neutral) => (false, Some(neutral)),
+        };
+        match neutral {
+            Some(neutral) if self.value == neutral || (self.value > neutral) != is_high => Reading::Unclear,
+            _ if is_high == higher_is_good => Reading::Good,
+            _ => Reading::Bad,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn band(value: f64) -> NullBand {
+        let permuted = (0..=1000).map(f64::from).map(|number| number / 500.0 - 1.0).collect();
+        NullBand::new(value, permuted, Exchanged::Worlds).expect("there are values")
+    }
+
+    #[test]
+    fn a_band_is_the_central_95_percent() {
+        let found = band(0.0);
+        assert!(
+            (found.low + 0.95).abs() < 1e-12 && (found.high - 0.95).abs() < 1e-12,
+            "{found:?}"
+        );
+        assert_eq!(found.p, 1.0);
+        assert_eq!(band(5.0).p, 2.0 / 1002.0);
+        assert_eq!(NullBand::new(1.0, Vec::new(), Exchanged::Worlds), None);
+    }
+
+    #[test]
+    fn good_is_said_only_outside_the_band_and_beyond_no_effect() {
+        let check = |value: f64, good: Direction, expected: Reading| {
+            assert_eq!(band(value).reading(good), expected, "{value} {good:?}");
+        };
+        check(0.9, Direction::HigherThan(0.0), Reading::Unclear);
+        check(0.96, Direction::HigherThan(0.0), Reading::Good);
+        check(-0.96, Direction::HigherThan(0.0), Reading::Bad);
+        check(0.96, Direction::LowerThan(0.0), Reading::Bad);
+        check(-0.96, Direction::LowerThan(0.0), Reading::Good);
+        // Above the band, but still a loss: neither.
+        check(0.96, Direction::HigherThan(1.0), Reading::Unclear);
+        check(-0.96, Direction::HigherThan(-2.0), Reading::Unclear);
+        check(0.96, Direction::Higher, Reading::Good);
+        check(0.96, Direction::Lower, Reading::Bad);
+    }
+}

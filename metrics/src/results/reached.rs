@@ -1,0 +1,162 @@
+//! What each task came to in evaluations, in the log's own unit, beside the level of its expert: whether it was learned at all.
+//!
+//! Not here: the metrics, which scale performances and do not say it, see `score`.
+
+use std::collections::BTreeMap;
+
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+
+use crate::lifetime::{Lifetime, Regime, SteRun, World, worlds};
+use crate::preprocess::given_range;
+use crate::statistics::mean;
+use crate::{BlockType, Log, MetricsError, Options};
+
+/// Part of its expert's level below which a task was never learned.
+pub const LEARNED_SHARE: f64 = 0.2;
+
+/// One evaluation of one task.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct EvaluationCell {
+    /// Number of the block, as logged.
+    pub block: u64,
+    /// Mean of the rows as they were logged.
+    pub mean: f64,
+    /// Standard error of the mean over worlds, or over rows where the log does not say their worlds; `None` for one
+    /// world.
+    pub standard_error: Option<f64>,
+    /// Number of worlds, or of rows.
+    pub num_worlds: usize,
+}
+
+/// What a task came to.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Reached {
+    /// Every evaluation, in order.
+    pub evaluations: Vec<EvaluationCell>,
+    /// Position in `evaluations` of the highest mean after the task was learned for the first time; `None` where there is no such
+    /// evaluation.
+    pub best: Option<usize>,
+    /// The expert's level, the mean over its runs: of its last evaluation of the task, or else of the last tenth of its
+    /// learning. `None` without an expert.
+    pub expert: Option<f64>,
+    /// The best evaluation's part of the expert's level: both from the lower end of the given range, or from 0. `None` where one
+    /// is missing, or the expert is not above that end.
+    pub share: Option<f64>,
+}
+
+impl Reached {
+    /// The last evaluation.
+    pub fn last(&self) -> Option<&EvaluationCell> {
+        self.evaluations.last()
+    }
+
+    /// The evaluation with the highest mean after learning.
+    pub fn best(&self) -> Option<&EvaluationCell> {
+        self.evaluations.get(self.best?)
+    }
+
+    /// Whether no evaluation after learning came to [`LEARNED_SHARE`] of the expert's level; `None` where that is not known.
+    pub fn is_never_learned(&self) -> Option<bool> {
+        self.share.map(|share| share < LEARNED_SHARE)
+    }
+}
+
+/// What each task came to, tasks in the lifetime's order; those without an evaluation have none in their list.
+pub(crate) fn reached(
+    log: &Log,
+    lifetime: &Lifetime,
+    options: &Options,
+) -> Result<IndexMap<String, Reached>, MetricsError> {
+    let worlds = worlds(log, lifetime, options)?;
+    let mut found = IndexMap::new();
+    for task in lifetime.tasks() {
+        let mut evaluations = Vec::new();
+        let mut best: Option<(usize, f64)> = None;
+        let mut is_learnt = false;
+        for regime in lifetime.regimes_of(task).filter(|regime| lifetime.is_assessed(regime)) {
+            if regime.block_type == BlockType::Train {
+                is_learnt = true;
+                continue;
+            }
+            let cell = cell(regime, &worlds[regime.regime_num]);
+            if is_learnt && best.is_none_or(|(_, highest)| cell.mean > highest) {
+                best = Some((evaluations.len(), cell.mean));
+            }
+            evaluations.push(cell);
+        }
+        let levels: Vec<f64> = lifetime.experts_of(task).iter().filter_map(|run| level(run, task)).collect();
+        let expert = mean(&levels);
+        // Ranges that lack a task are refused where they are used.
+        let range = given_range(task, lifetime, options).ok().flatten();
+        let floor = range.map_or(0.0, |range| range.min);
+        let share = best.zip(expert).and_then(|((_, highest), expert)| {
+            let share = (highest - floor) / (expert - floor);
+            (expert > floor && share.is_finite()).then_some(share)
+        });
+        let reached = Reached {
+            evaluations,
+            best: best.map(|(place, _)| place),
+            expert,
+            share,
+        };
+        found.insert(task.clone(), reached);
+    }
+    Ok(found)
+}
+
+/// Mean and standard error of an evaluation: each world counts once, by the mean of its rows.
+fn cell(regime: &Regime, worlds: &[Option<World>]) -> EvaluationCell {
+    let mut of_world: BTreeMap<World, Vec<f64>> = BTreeMap::new();
+    let mut means = Vec::new();
+    for (value, world) in regime.raw.iter().zip(worlds) {
+        match world {
+            Some(world) => of_world.entry(*world).or_default().push(*value),
+            None => means.push(*value),
+        }
+    }
+    means.extend(of_world.values().filter_map(|values| mean(values)));
+    EvaluationCell {
+        block: regime.block_num,
+        mean: mean(&regime.raw).unwrap_or(0.0),
+        standard_error: standard_error(&means),
+        num_worlds: means.len(),
+    }
+}
+
+/// Of the mean of independent values; `None` for fewer than two.
+fn standard_error(values: &[f64]) -> Option<f64> {
+    let center = mean(values)?;
+    let num = values.len() as f64;
+    let squares: f64 = values.iter().map(|value| (value - center) * (value - center)).sum();
+    (values.len() > 1).then(|| (squares / (num - 1.0) / num).sqrt())
+}
+
+/// The level of one run of an expert, as it was logged.
+fn level(run: &SteRun, task: &str) -> Option<f64> {
+    let of = |block_type: BlockType| {
+        let regimes = run.regimes.iter().filter(move |regime| regime.block_type == block_type);
+        regimes.filter(|regime| regime.task_name == task)
+    };
+    if let Some(evaluation) = of(BlockType::Test).next_back() {
+        return mean(&evaluation.raw);
+    }
+    let learning: Vec<f64> = of(BlockType::Train)
+        .flat_map(|regime| regime.raw.iter().copied())
+        .collect();
+    mean(&learning[learning.len() * 9 / 10..])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_standard_error_is_that_of_a_mean() {
+        assert_eq!(standard_error(&[1.0]), None);
+        assert_eq!(standard_error(&[]), None);
+        // Variance 4 by n - 1, four values.
+        let found = standard_error(&[1.0, 5.0, 3.0, 3.0]).expect("four values");
+        assert!((found - (8.0_f64 / 3.0 / 4.0).sqrt()).abs() < 1e-12, "{found}");
+    }
+}

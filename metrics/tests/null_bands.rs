@@ -1,0 +1,313 @@
+//! Null bands: of agents that never change the values lie inside, of agents that forget outside; and one band computed
+//! a second time, by going through all permutations.
+//!
+//! Not here: that permuting keeps every world's rows, see `score::exchange`.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
+
+use std::collections::BTreeMap;
+
+use driftworld_metrics::BlockType::{Test, Train};
+use driftworld_metrics::{
+    BlockType, Direction, Exchanged, LifetimeMetrics, Log, LogWriter, LoggerInfo, MaintenanceMethod, Options, Reading,
+    Record, ScenarioInfo, SteLog, TaskParams, Timestamp, TransferMethod, read_log, score,
+};
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+
+/// One row: block, its type, task, number of the world, reward.
+type Lived = (u64, BlockType, &'static str, f64, f64);
+
+const TASKS: [&str; 3] = ["find_red", "find_blue", "find_green"];
+
+fn log_of(rows: &[Lived]) -> Log {
+    let base = tempfile::tempdir().unwrap();
+    let dir = base.path().join("life");
+    let info = LoggerInfo::new(["reward", "world_index"]).unwrap();
+    let mut writer = LogWriter::create(&dir, &info, &ScenarioInfo::default()).unwrap();
+    for (number, (block, block_type, task, world, reward)) in (0..).zip(rows) {
+        let when = Timestamp::from_unix_micros(number as i64).unwrap();
+        let seed = if *block_type == Train { 1 } else { 2 };
+        let params = serde_json::Map::from_iter([("seed".to_owned(), seed.into())]);
+        let record = Record::new(*block, number, *block_type, *task, when)
+            .with_task_params(TaskParams::from(params))
+            .with_metric("reward", *reward)
+            .with_metric("world_index", *world);
+        writer.write(&record).unwrap();
+    }
+    drop(writer);
+    read_log(&dir).unwrap()
+}
+
+/// Every task is evaluated before and after each is learnt, in the same worlds. `reward` is given how many tasks were learnt, whether
+/// this is learning, the number of the task and that of the world.
+fn lifetime(worlds: u32, mut reward: impl FnMut(usize, BlockType, usize, u32) -> f64) -> Vec<Lived> {
+    let mut rows = Vec::new();
+    for learnt in 0..=TASKS.len() {
+        let block = 2 * learnt as u64;
+        for (number, task) in TASKS.into_iter().enumerate() {
+            for world in 0..worlds {
+                let earned = reward(learnt, Test, number, world);
+                rows.push((block, Test, task, f64::from(world), earned));
+            }
+        }
+        if let Some(task) = TASKS.get(learnt) {
+            for world in 0..worlds {
+                let earned = reward(learnt, Train, learnt, world);
+                rows.push((block + 1, Train, *task, f64::from(world), earned));
+            }
+        }
+    }
+    rows
+}
+
+fn options() -> Options {
+    Options {
+        maintenance_method: MaintenanceMethod::Both,
+        transfer_method: TransferMethod::Both,
+        ..Options::default()
+    }
+}
+
+fn scored(rows: &[Lived]) -> LifetimeMetrics {
+    score(&log_of(rows), &[], &options()).unwrap()
+}
+
+/// The metrics that have a band, with the direction that is good.
+fn directions() -> Vec<(&'static str, Direction)> {
+    let (points, ratio) = (Direction::HigherThan(0.0), Direction::HigherThan(1.0));
+    vec![
+        ("perf_maintenance_mrlep", points),
+        ("perf_maintenance_mrtlp", points),
+        ("forward_transfer_contrast", points),
+        ("backward_transfer_contrast", points),
+        ("forward_transfer_ratio", ratio),
+        ("backward_transfer_ratio", ratio),
+    ]
+}
+
+/// A reward like that of an agent that acts at random: near the floor, and now and then a lucky touch, in some worlds
+/// more often than in others.
+fn by_luck(rng: &mut ChaCha8Rng, world: u32) -> f64 {
+    let luck = 0.1 + 0.05 * f64::from(world % 5);
+    let touched = rng.random_range(0.0..1.0) < luck;
+    let touch = if touched { rng.random_range(30.0..130.0) } else { 0.0 };
+    touch - 20.0 + rng.random_range(0.0..5.0)
+}
+
+/// 200 lifetimes of an agent that never changes, with 20 worlds or fewer in an evaluation.
+fn random_lifetimes(shown: fn(Lived) -> Lived) -> Vec<LifetimeMetrics> {
+    let lifetimes = 0..200;
+    let of_seed = |seed: u64| {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let rows = lifetime(10 + 5 * (seed % 3) as u32, |_, _, _, world| by_luck(&mut rng, world));
+        scored(&rows.into_iter().map(shown).collect::<Vec<_>>())
+    };
+    lifetimes.map(of_seed).collect()
+}
+
+fn check_calibration(lifetimes: &[LifetimeMetrics], exchanged: Exchanged) {
+    for (name, good) in directions() {
+        let bands = lifetimes.iter().map(|scores| scores.null_bands[name]);
+        let (mut inside, mut called_good, mut called_bad) = (0, 0, 0);
+        for band in bands {
+            assert_eq!(band.exchanged, exchanged);
+            assert!(0.0 < band.p && band.p <= 1.0, "{band:?}");
+            inside += usize::from(!band.is_outside());
+            called_good += usize::from(band.reading(good) == Reading::Good);
+            called_bad += usize::from(band.reading(good) == Reading::Bad);
+        }
+        let counts = format!("{name}: {inside} inside, {called_good} good, {called_bad} bad of {}", lifetimes.len());
+        println!("{counts}");
+        assert!(inside * 100 >= lifetimes.len() * 93, "{counts}");
+        // 5 of 100, and two standard errors of that.
+        assert!(called_good * 100 <= lifetimes.len() * 8, "{counts}");
+        assert!(called_bad * 100 <= lifetimes.len() * 8, "{counts}");
+    }
+}
+
+#[test]
+fn an_agent_that_never_changes_is_called_good_in_at_most_one_of_twenty_lifetimes() {
+    let lifetimes = random_lifetimes(|row| row);
+    check_calibration(&lifetimes, Exchanged::Worlds);
+    // What the bands are for: without them, most of these lifetimes show "transfer".
+    let is_above = |scores: &&LifetimeMetrics| scores.lifetime.number("forward_transfer_ratio").unwrap() > 1.0;
+    let above = lifetimes.iter().filter(is_above).count();
+    assert!(above > 110, "forward ratio above 1 in {above} of 200 lifetimes");
+}
+
+#[test]
+fn without_worlds_rows_are_permuted_by_their_place() {
+    let lifetimes = random_lifetimes(|(block, block_type, task, _, reward)| (block, block_type, task, f64::NAN, reward));
+    check_calibration(&lifetimes, Exchanged::Positions);
+}
+
+#[test]
+fn of_an_agent_whose_rewards_repeat_the_band_is_the_value() {
+    let scores = scored(&lifetime(8, |_, _, task, world| f64::from(world * 7 % 5) + task as f64));
+    for (name, good) in directions() {
+        let band = scores.null_bands[name];
+        assert_eq!((band.low, band.high, band.p), (band.value, band.value, 1.0), "{name}");
+        assert_eq!(band.reading(good), Reading::Unclear, "{name}");
+    }
+    assert_eq!(scores.null_bands["perf_maintenance_mrlep"].value, 0.0);
+    assert_eq!(scores.null_bands["forward_transfer_ratio"].value, 1.0);
+}
+
+/// Learns each task, and forgets it when it learns the next.
+fn forgetting(rng: &mut ChaCha8Rng) -> Vec<Lived> {
+    lifetime(20, |learnt, block_type, task, _| {
+        let knows = if block_type == Train { task } else { learnt.wrapping_sub(1) };
+        let level = if knows == task { 80.0 } else { 10.0 };
+        level + rng.random_range(-8.0..8.0)
+    })
+}
+
+#[test]
+fn an_agent_that_forgets_lies_outside() {
+    let scores = scored(&forgetting(&mut ChaCha8Rng::seed_from_u64(1)));
+    for name in ["perf_maintenance_mrlep", "perf_maintenance_mrtlp", "backward_transfer_contrast"] {
+        let band = scores.null_bands[name];
+        assert_eq!(band.reading(Direction::HigherThan(0.0)), Reading::Bad, "{name}: {band:?}");
+        assert!(band.p < 0.01, "{name}: {band:?}");
+    }
+    let ratio = scores.null_bands["backward_transfer_ratio"];
+    assert_eq!(ratio.reading(Direction::HigherThan(1.0)), Reading::Bad, "{ratio:?}");
+}
+
+#[test]
+fn an_agent_that_learns_all_tasks_at_once_is_called_good() {
+    let mut rng = ChaCha8Rng::seed_from_u64(2);
+    let scores = scored(&lifetime(20, |learnt, _, _, _| 20.0 * learnt as f64 + rng.random_range(0.0..10.0)));
+    for (name, good) in directions() {
+        if name != "perf_maintenance_mrtlp" {
+            let band = scores.null_bands[name];
+            assert_eq!(band.reading(good), Reading::Good, "{name}: {band:?}");
+        }
+    }
+}
+
+#[test]
+fn each_band_holds_the_value_of_the_lifetime_and_contrast_comes_first() {
+    let rows = forgetting(&mut ChaCha8Rng::seed_from_u64(3));
+    let scores = scored(&rows);
+    assert_eq!(scores.null_bands.len(), directions().len());
+    for (name, _) in directions() {
+        let (found, expected) = (scores.null_bands[name].value, scores.lifetime.number(name).unwrap());
+        assert!((found - expected).abs() <= 1e-12 * expected.abs().max(1.0), "{name}");
+    }
+    // Ratios alone were asked for: the contrasts come before them all the same, and stand in no file.
+    let scores = score(&log_of(&rows), &[], &Options::default()).unwrap();
+    let names: Vec<String> = scores.summary().into_iter().map(|row| row.name.into_owned()).collect();
+    let place = |name: &str| names.iter().position(|found| found == name).unwrap();
+    assert!(place("forward_transfer_contrast") < place("forward_transfer_ratio"), "{names:?}");
+    assert!(place("backward_transfer_contrast") < place("forward_transfer_ratio"), "{names:?}");
+    let json = serde_json::to_value(&scores).unwrap();
+    for ours in ["null", "reached", "forward_transfer_contrast"] {
+        assert_eq!(json.get(ours), None, "{ours}");
+    }
+    // Learning decides these.
+    let band = |name: &str| scores.summary().into_iter().find(|row| row.name == name).unwrap().null_band;
+    assert_eq!(band("avg_train_perf"), None);
+    assert_eq!(band("perf_recovery"), None);
+}
+
+#[test]
+fn smoothed_evaluations_have_no_bands() {
+    let rows = forgetting(&mut ChaCha8Rng::seed_from_u64(4));
+    let options = Options {
+        smooth_eval_data: true,
+        ..options()
+    };
+    assert!(score(&log_of(&rows), &[], &options).unwrap().null_bands.is_empty());
+}
+
+/// Rewards of one task in three evaluations of four worlds; it is learnt after the first.
+const EVALUATIONS: [[f64; 4]; 3] = [[3.0, 0.0, 10.0, 4.0], [9.0, 7.0, 2.0, 8.0], [1.0, 6.0, 5.0, 0.5]];
+
+/// All orders of three.
+const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
+
+#[test]
+fn all_permutations_of_a_small_lifetime_give_the_band() {
+    let mut rows = Vec::new();
+    for (number, evaluation) in EVALUATIONS.iter().enumerate() {
+        let block = 2 * number as u64;
+        for (world, reward) in evaluation.iter().enumerate() {
+            rows.push((block, Test, "find_red", world as f64, *reward));
+        }
+        if number == 0 {
+            rows.push((1, Train, "find_red", 0.0, 5.0));
+        }
+    }
+    let band = scored(&rows).null_bands["perf_maintenance_mrlep"];
+    // From 0..10 to 1..101: ten points each. Maintenance is the last evaluation less the one right after learning.
+    let maintenance = |orders: [[usize; 3]; 4]| {
+        let mean = |evaluation: usize| {
+            let earned = (0..4).map(|world| EVALUATIONS[orders[world][evaluation]][world]);
+            earned.sum::<f64>() / 4.0
+        };
+        10.0 * (mean(2) - mean(1))
+    };
+    let mut all = Vec::new();
+    for a in ORDERS {
+        for b in ORDERS {
+            for c in ORDERS {
+                all.extend(ORDERS.map(|d| maintenance([a, b, c, d])));
+            }
+        }
+    }
+    assert_eq!(all.len(), 6 * 6 * 6 * 6);
+    let value = maintenance([ORDERS[0]; 4]);
+    assert!((band.value - value).abs() < 1e-9, "{band:?} {value}");
+    let share = |is: &dyn Fn(f64) -> bool| all.iter().filter(|drawn| is(**drawn)).count() as f64 / all.len() as f64;
+    let extreme = share(&|drawn| drawn <= value + 1e-9).min(share(&|drawn| drawn >= value - 1e-9));
+    // Four standard errors of twice a share of a thousand draws.
+    let error = 8.0 * (extreme * (1.0 - extreme) / 1000.0).sqrt() + 0.004;
+    assert!((band.p - 2.0 * extreme).abs() < error, "{band:?} {extreme}");
+    // Each end has its 2.5 % of all permutations beyond it, and no more than 5 %.
+    for beyond in [share(&|drawn| drawn < band.low - 1e-9), share(&|drawn| drawn > band.high + 1e-9)] {
+        assert!(beyond < 0.05, "{beyond} {band:?}");
+    }
+    for outside in [share(&|drawn| drawn <= band.low + 1e-9), share(&|drawn| drawn >= band.high - 1e-9)] {
+        assert!(outside > 0.01, "{outside} {band:?}");
+    }
+}
+
+/// An expert's log: it learns one task at this level, and is evaluated at another, if at all.
+fn expert(task: &'static str, learning: f64, evaluation: Option<f64>) -> SteLog {
+    let mut rows: Vec<Lived> = (0..10).map(|world| (0, Train, task, f64::from(world), learning)).collect();
+    rows.extend((0..4).filter_map(|world| Some((1, Test, task, f64::from(world), evaluation?))));
+    SteLog::new(log_of(&rows)).unwrap()
+}
+
+#[test]
+fn a_task_below_a_fifth_of_the_expert_was_never_learned() {
+    // The second task is never learned; the first is, and forgotten.
+    let rows = lifetime(4, |learnt, block_type, task, world| match (task, block_type, learnt) {
+        (0, Test, 1) => 60.0 + 10.0 * f64::from(world),
+        (1, ..) => -6.0,
+        (_, Train, _) => 30.0,
+        _ => 4.0,
+    });
+    let experts = [
+        expert("find_red", 10.0, Some(100.0)),
+        expert("find_blue", 284.0, None),
+        expert("find_green", -5.0, None),
+    ];
+    let scores = score(&log_of(&rows), &experts, &Options::default()).unwrap();
+    let reached: BTreeMap<&str, _> = scores.reached.iter().map(|(task, found)| (task.as_str(), found)).collect();
+    let red = reached["find_red"];
+    assert_eq!(red.evaluations.len(), 4);
+    // 60, 70, 80, 90: variance 500 / 3.
+    let best = red.best().unwrap();
+    assert_eq!((best.block, best.mean, best.num_worlds), (2, 75.0, 4));
+    assert!((best.standard_error.unwrap() - (500.0_f64 / 12.0).sqrt()).abs() < 1e-12);
+    assert_eq!((red.last().unwrap().mean, red.last().unwrap().standard_error), (4.0, Some(0.0)));
+    assert_eq!((red.expert, red.share, red.is_never_learned()), (Some(100.0), Some(0.75), Some(false)));
+    let blue = reached["find_blue"];
+    assert_eq!((blue.expert, blue.is_never_learned()), (Some(284.0), Some(true)));
+    // An expert at or below 0 is no level to take a part of.
+    assert_eq!((reached["find_green"].share, reached["find_green"].is_never_learned()), (None, None));
+}
