@@ -54,6 +54,12 @@ def test_one_lifetime_has_the_commands_scores(logs: list[Path]) -> None:
     assert found["avg_train_perf"] == expected["avg_train_perf"] == found.lifetime["avg_train_perf"]
     assert found.tasks == expected["task_metrics"] and set(found.tasks) == set(TASKS)
     assert found.repeats == []
+    assert found.null == expected["null"] and found.reached == expected["reached"]
+    for name, band in found.null.items():
+        assert band["low"] <= band["high"] and 0 < band["p"] <= 1, name
+        if name in expected:
+            assert band["value"] == pytest.approx(expected[name], abs=1e-9)
+    assert set(found.reached) == set(TASKS)
 
 
 def test_options_do_what_they_do_for_the_command(logs: list[Path], tmp_path: Path) -> None:

@@ -3,8 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use driftworld_metrics::{LifetimeMetrics, NullBand, Options, Reached, Settings, save_all};
-use indexmap::IndexMap;
+use driftworld_metrics::{LifetimeMetrics, Options, Settings, WholeLifetime, save_all};
 use serde::{Serialize, Serializer};
 
 use super::{Comparison, ScoredLog, ScoringRequest, Setup, score_logs};
@@ -119,9 +118,8 @@ impl Serialize for Scores {
             #[serde(skip_serializing_if = "Vec::is_empty")]
             lifetimes_against: Vec<WholeLifetime<'a>>,
         }
-        let whole = |lifetimes: &'_ [LifetimeMetrics]| lifetimes.iter().map(WholeLifetime::of).collect::<Vec<_>>();
         match (&self.comparison, self.lifetimes.as_slice()) {
-            (None, [lifetime]) => WholeLifetime::of(lifetime).serialize(serializer),
+            (None, [lifetime]) => lifetime.whole().serialize(serializer),
             (None, lifetimes) => whole(lifetimes).serialize(serializer),
             (Some(comparison), lifetimes) => ComparedLifetimes {
                 comparison,
@@ -133,21 +131,7 @@ impl Serialize for Scores {
     }
 }
 
-/// A lifetime with what l2metrics' files have no field for.
-#[derive(Serialize)]
-struct WholeLifetime<'a> {
-    #[serde(flatten)]
-    metrics: &'a LifetimeMetrics,
-    null: &'a IndexMap<String, NullBand>,
-    reached: &'a IndexMap<String, Reached>,
-}
-
-impl<'a> WholeLifetime<'a> {
-    fn of(metrics: &'a LifetimeMetrics) -> Self {
-        Self {
-            metrics,
-            null: &metrics.null_bands,
-            reached: &metrics.reached,
-        }
-    }
+/// Each lifetime with what l2metrics' files have no field for.
+fn whole(lifetimes: &[LifetimeMetrics]) -> Vec<WholeLifetime<'_>> {
+    lifetimes.iter().map(LifetimeMetrics::whole).collect()
 }

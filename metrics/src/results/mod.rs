@@ -13,6 +13,7 @@ mod regime_table;
 mod repeats;
 mod rounding;
 mod values;
+mod whole_lifetime;
 
 pub use as_logged::AsLogged;
 pub(crate) use as_logged::as_logged;
@@ -26,3 +27,4 @@ pub(crate) use regime_table::is_regime_column;
 pub use regime_table::{RegimeMetrics, regimes_tsv};
 pub use repeats::{ComparedMetric, RepeatedMetric, compare_agents, over_repeats};
 pub use values::{PairValues, Value, Values};
+pub use whole_lifetime::WholeLifetime;

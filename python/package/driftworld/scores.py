@@ -41,10 +41,10 @@ LIFETIME = (
     "avg_eval_perf",
     "perf_maintenance_mrlep",
     "perf_maintenance_mrtlp",
-    "forward_transfer_ratio",
     "forward_transfer_contrast",
-    "backward_transfer_ratio",
     "backward_transfer_contrast",
+    "forward_transfer_ratio",
+    "backward_transfer_ratio",
     "ste_rel_perf",
     "sample_efficiency",
 )
@@ -95,10 +95,43 @@ class Metrics:
         Raises:
             ValueError: If there are several lifetimes; ask each of :attr:`lifetimes` then.
         """
-        if len(self.lifetimes) != 1:
-            raise ValueError(f"tasks: found {len(self.lifetimes)} lifetimes, expected one; see `lifetimes`")
-        tasks: dict[str, dict[str, Any]] = self.lifetimes[0]["task_metrics"]
+        tasks: dict[str, dict[str, Any]] = self._only("tasks", "task_metrics")
         return tasks
+
+    @property
+    def null(self) -> dict[str, dict[str, Any]]:
+        """The null band of each metric of the one lifetime that evaluations alone decide.
+
+        Each has ``value``; ``low`` and ``high``, the central 95 % of values when the evaluation rows of each world are
+        permuted across evaluations 1,000 times, as if the agent never changed; ``p``, from 0 to 1; and ``exchanged``,
+        ``"worlds"``, ``"positions"`` or ``"worlds_and_positions"``. A metric that is missing has no null: learning
+        decides it, too. Contrasts of transfer are there whatever ``transfer_method`` is.
+
+        Raises:
+            ValueError: If there are several lifetimes; ask each of :attr:`lifetimes` for its ``"null"`` then.
+        """
+        bands: dict[str, dict[str, Any]] = self._only("null", "null")
+        return bands
+
+    @property
+    def reached(self) -> dict[str, dict[str, Any]]:
+        """What each task of the one lifetime came to, in the log's unit.
+
+        Each has ``evaluations``, a list of ``block``, ``mean``, ``standard_error`` over worlds and ``num_worlds``;
+        ``best``, the place of the highest after learning; ``expert``, the expert's level; and ``share``, the best over
+        the expert. Below 0.2 the task was never learned.
+
+        Raises:
+            ValueError: If there are several lifetimes; ask each of :attr:`lifetimes` for its ``"reached"`` then.
+        """
+        tasks: dict[str, dict[str, Any]] = self._only("reached", "reached")
+        return tasks
+
+    def _only(self, name: str, field: str) -> Any:
+        """A field of the one lifetime, for the property of this name."""
+        if len(self.lifetimes) != 1:
+            raise ValueError(f"{name}: found {len(self.lifetimes)} lifetimes, expected one; see `lifetimes`")
+        return self.lifetimes[0][field]
 
     def __getitem__(self, name: str) -> Any:
         values = [lifetime[name] for lifetime in self.lifetimes]

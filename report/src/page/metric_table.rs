@@ -1,6 +1,6 @@
 //! The table of metrics: each value, what it says, whether that is good, and how the tasks differ in it.
 
-use driftworld_metrics::{Direction, Lifetime, LifetimeMetrics};
+use driftworld_metrics::{Lifetime, LifetimeMetrics, NULL_PERMUTATIONS, NullBand, SummaryRow};
 use maud::{Markup, html};
 
 use super::{described, number, verdict};
@@ -29,8 +29,9 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
                 }
                 td.number { span.value { (number(value)) } }
                 td {
-                    (judged(name, value, &marks, row.good, scaled))
+                    (judged(name, value, &marks, &row, scaled))
                     span.from { (verdict::good_from(name, row.good)) }
+                    span.from { (null_band(row.null_band)) }
                 }
                 td.marks { @if !marks.is_empty() { (described(&drawing, None, &format!("{} of each task", verdict::title(name)))) @if let Some(count) = thinned_count(marks.len()) { span.from { (count) } } } }
             }
@@ -51,8 +52,14 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
             }
         }
         p.note {
-            strong { "One lifetime cannot distinguish an effect from noise. Several can, by confidence intervals. " }
+            strong { "One lifetime cannot distinguish an effect from the luck of one run of learning. Several can, by confidence intervals. " }
             (verdict::rule(scaled))
+        }
+        @if !metrics.null_bands.is_empty() {
+            p.note {
+                "Null band: the central 95 % of values when the evaluation rows of each world are permuted across evaluations "
+                (NULL_PERMUTATIONS) " times, as if the agent never changed. No effect is named inside it. “no null”: decided by learning, too."
+            }
         }
         @for note in &metrics.notes { p.note { strong { "Note: " } (shown(note)) "." } }
         @if scaled {
@@ -78,10 +85,19 @@ fn sentence(words: &str) -> String {
     first + letters.as_str()
 }
 
-fn judged(name: &str, value: f64, marks: &[(usize, f64)], direction: Direction, scaled: bool) -> Markup {
-    let tasks: Vec<f64> = marks.iter().map(|mark| mark.1).collect();
+/// Where the value would lie if the agent had never changed.
+fn null_band(band: Option<NullBand>) -> Markup {
     html! {
-        @if let Some(found) = verdict::of_lifetime(name, value, &tasks, direction, scaled) {
+        @if let Some(band) = band { "null band " (number(band.low)) " to " (number(band.high)) ", p " (number(band.p)) }
+        @else { "no null" }
+    }
+}
+
+fn judged(name: &str, value: f64, marks: &[(usize, f64)], row: &SummaryRow, scaled: bool) -> Markup {
+    let tasks: Vec<f64> = marks.iter().map(|mark| mark.1).collect();
+    let found = verdict::of_lifetime(name, value, &tasks, row.good, scaled);
+    html! {
+        @if let Some(found) = found.map(|found| verdict::beside_null(found, row.null_band, row.good)) {
             span class={ "verdict " (found.class) } { span aria-hidden="true" { (found.sign) " " } (found.word) }
         }
     }

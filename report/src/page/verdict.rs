@@ -1,6 +1,6 @@
 //! What the value of a metric says, in a word and a sign: the colour only repeats them. Which way is good is the metrics' to say.
 
-use driftworld_metrics::{Direction, Interval};
+use driftworld_metrics::{Direction, Interval, NullBand, Reading};
 
 /// A judgement of one value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -138,6 +138,14 @@ pub(super) fn of_lifetime(
     Some(found)
 }
 
+/// Names no effect that permuted evaluations show as well.
+pub(super) fn beside_null(found: Verdict, band: Option<NullBand>, direction: Direction) -> Verdict {
+    match band.map(|band| band.reading(direction)) {
+        Some(Reading::Unclear) if found.class != "even" => even("within its null band"),
+        _ => found,
+    }
+}
+
 /// Judges an interval: nothing can be told where it holds the value that means no effect.
 pub(super) fn of_interval(name: &str, interval: Interval, direction: Direction) -> Option<Verdict> {
     let neutral = neutral(direction)?;
@@ -205,6 +213,8 @@ pub(super) fn title(name: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use driftworld_metrics::Exchanged;
+
     use super::*;
 
     #[test]
@@ -260,6 +270,25 @@ mod tests {
         check(&[1.9, 1.3, 1.1, 0.6], "beats the expert");
         check(&[2.5, 1.3, 1.0, 0.6], "mixed");
         check(&[2.5, 0.9, 0.8], "mixed");
+    }
+
+    #[test]
+    fn inside_its_null_band_a_value_is_even() {
+        let check = |low: f64, expected: &str| {
+            let band = NullBand {
+                value: 1.2,
+                low,
+                high: low + 0.3,
+                p: 0.5,
+                exchanged: Exchanged::Worlds,
+            };
+            let above = Direction::HigherThan(1.0);
+            let found = of("forward_transfer_ratio", band.value, above, true).expect("there is a neutral value");
+            assert_eq!(beside_null(found, Some(band), above).word, expected);
+            assert_eq!(beside_null(found, None, above), found);
+        };
+        check(0.95, "within its null band");
+        check(0.8, "helps");
     }
 
     #[test]

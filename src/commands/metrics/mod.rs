@@ -1,5 +1,6 @@
 //! `driftworld metrics`: what agents kept and transferred, from the logs of their lifetimes. The metrics are the library's.
 
+mod reached_table;
 mod store;
 mod tables;
 

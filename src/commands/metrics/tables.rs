@@ -2,10 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use crate::metrics::{AsLogged, Direction, Improvement, Interval, LifetimeMetrics, RepeatedMetric};
+use crate::metrics::{
+    AsLogged, Direction, Exchanged, Improvement, Interval, LifetimeMetrics, NULL_PERMUTATIONS, NullBand, Reading,
+    RepeatedMetric,
+};
 
 use driftworld_text::{one_line, printable};
 
+use super::reached_table::reached;
 use crate::scoring::{Comparison, Scores, own_scale};
 use crate::table::{table, wide_table};
 
@@ -22,13 +26,11 @@ pub(super) fn scores(scores: &Scores) -> String {
 pub(crate) fn summary(scores: &LifetimeMetrics) -> String {
     let rows = scores.summary().into_iter().filter_map(|row| {
         let value = number(row.value?);
-        Some([
-            row.name.into_owned(),
-            value,
-            good(row.good),
-            row.explanation.into_owned(),
-        ])
+        let [band, p, reading] = beside_null(row.null_band, row.good);
+        Some([row.name.into_owned(), value, band, p, reading, row.explanation.into_owned()])
     });
+    let rows: Vec<[String; 6]> = rows.collect();
+    let has_bands = !scores.null_bands.is_empty();
     let head = format!(
         "{}: {} learning and {} evaluation experiences, scored by {}",
         one_line(&scores.run_id),
@@ -36,17 +38,51 @@ pub(crate) fn summary(scores: &LifetimeMetrics) -> String {
         scores.num_ex,
         one_line(&scores.metrics_column)
     );
-    let mut parts = vec![head, as_logged(&[("", std::slice::from_ref(scores))])];
+    let mut parts = vec![head];
+    parts.extend(reached(scores));
+    parts.push(as_logged(&[("", std::slice::from_ref(scores))]));
     if scores.normalization_data_range.is_some() {
         parts.push(SCALED.to_owned());
     }
-    let mut metrics = table(["metric", "value", "good", "what it says"], rows.collect(), &[1]);
+    let headings = ["metric", "value", "null band", "p", "reading", "what it says"];
+    let mut metrics = table(headings, rows, &[1, 3]);
+    if has_bands {
+        metrics.push('\n');
+        metrics.push_str(&what_bands_are(scores));
+    }
     for note in &scores.notes {
         metrics.push_str("\nnote: ");
         metrics.push_str(&printable(note));
     }
     parts.push(metrics);
     parts.join("\n\n")
+}
+
+/// The band of a value, its p, and whether the value is good, which is said outside the band only.
+fn beside_null(band: Option<NullBand>, direction: Direction) -> [String; 3] {
+    let Some(band) = band else {
+        return ["no null".to_owned(), String::new(), String::new()];
+    };
+    let reading = match band.reading(direction) {
+        Reading::Good => format!("good: {}", good(direction)),
+        Reading::Bad => "bad".to_owned(),
+        Reading::Unclear => "no clear effect".to_owned(),
+    };
+    let ends = format!("{} to {}", number(band.low), number(band.high));
+    [ends, number(band.p), reading]
+}
+
+/// What null bands are, and how these were made.
+fn what_bands_are(scores: &LifetimeMetrics) -> String {
+    let rows = match scores.null_bands.values().next().map(|band| band.exchanged) {
+        Some(Exchanged::Positions) => "rows by their place in the evaluation, as the log names no world twice,",
+        Some(Exchanged::WorldsAndPositions) => "rows of each world, or by place where no world is named twice,",
+        _ => "rows of each world",
+    };
+    format!(
+        "Null band: the central 95% of values when {rows} are permuted across evaluations {NULL_PERMUTATIONS} times, as if the \
+         agent never changed. no null: decided by learning, too."
+    )
 }
 
 /// What the metrics are made of, and what they cannot tell.
@@ -188,7 +224,7 @@ fn repeats(metrics: &[RepeatedMetric], share: &str) -> String {
     headings.extend(few.then_some(t.as_str()));
     headings.push("mean");
     headings.extend(few.then_some(t.as_str()));
-    headings.extend(["runs x tasks", "good"]);
+    headings.extend(["runs x tasks", "better"]);
     let numbers = if few { [1, 4] } else { [1, 3] };
     let headings = headings.into_iter().map(str::to_owned).collect();
     let cautions: BTreeSet<&str> = metrics.iter().filter_map(|row| row.caution.as_deref()).collect();
@@ -220,7 +256,7 @@ fn interval(found: Option<Interval>) -> String {
 }
 
 /// With three decimals; what rounds to nothing has no sign.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     let shown = format!("{value:.3}");
     if shown == "-0.000" { "0.000".to_owned() } else { shown }
 }
