@@ -61,7 +61,8 @@ pub use repeats::{
 };
 pub use results::{
     AsLogged, ComparedMetric, Direction, EvaluationCell, Exchanged, Headline, LEARNED_SHARE, LifetimeMetrics, NullBand,
-    PairValues, Reached, Reading, RegimeMetrics, RepeatedMetric, SavedFiles, SavedTables, Settings, SummaryRow, Value, Values, WholeLifetime, compare_agents, over_repeats, regimes_tsv, save_all,
+    PairValues, Reached, Reading, RegimeMetrics, RepeatedMetric, SavedFiles, SavedTables, Settings, SummaryRow, Value,
+    Values, WholeLifetime, compare_agents, over_repeats, regimes_tsv, save_all,
 };
 pub use score::{Assessment, Metric, NULL_PERMUTATIONS, Scorer, score};
 

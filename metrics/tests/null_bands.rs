@@ -6,11 +6,13 @@
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::fs;
 
 use driftworld_metrics::BlockType::{Test, Train};
 use driftworld_metrics::{
-    BlockType, Direction, Exchanged, LifetimeMetrics, Log, LogWriter, LoggerInfo, MaintenanceMethod, Options, Reading,
-    Record, ScenarioInfo, SteLog, TaskParams, Timestamp, TransferMethod, read_log, score,
+    BlockType, Direction, Exchanged, LifetimeMetrics, Log, MaintenanceMethod, Options, Reading, SteLog, Timestamp,
+    TransferMethod, read_log, score,
 };
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -21,22 +23,35 @@ type Lived = (u64, BlockType, &'static str, f64, f64);
 
 const TASKS: [&str; 3] = ["find_red", "find_blue", "find_green"];
 
+/// The log is written by hand: a writer that checks and flushes each of its rows takes longer than scoring them.
 fn log_of(rows: &[Lived]) -> Log {
     let base = tempfile::tempdir().unwrap();
     let dir = base.path().join("life");
-    let info = LoggerInfo::new(["reward", "world_index"]).unwrap();
-    let mut writer = LogWriter::create(&dir, &info, &ScenarioInfo::default()).unwrap();
-    for (number, (block, block_type, task, world, reward)) in (0..).zip(rows) {
-        let when = Timestamp::from_unix_micros(number as i64).unwrap();
+    let folder = dir.join("worker/0-train");
+    fs::create_dir_all(&folder).unwrap();
+    let info = r#"{"metrics_columns": ["reward", "world_index"], "log_format_version": "1.1"}"#;
+    fs::write(dir.join("logger_info.json"), info).unwrap();
+    fs::write(dir.join("scenario_info.json"), "{}").unwrap();
+    let mut text =
+        "block_num\texp_num\tworker_id\tblock_type\tblock_subtype\ttask_name\ttask_params\texp_status\ttimestamp\t\
+                    reward\tworld_index\n"
+            .to_owned();
+    for (number, (block, block_type, task, world, reward)) in (0_i64..).zip(rows) {
         let seed = if *block_type == Train { 1 } else { 2 };
-        let params = serde_json::Map::from_iter([("seed".to_owned(), seed.into())]);
-        let record = Record::new(*block, number, *block_type, *task, when)
-            .with_task_params(TaskParams::from(params))
-            .with_metric("reward", *reward)
-            .with_metric("world_index", *world);
-        writer.write(&record).unwrap();
+        let stamp = Timestamp::from_unix_micros(number).unwrap();
+        let params = format!("{{\"\"seed\"\": {seed}}}");
+        let world = if world.is_nan() {
+            "nan".to_owned()
+        } else {
+            world.to_string()
+        };
+        writeln!(
+            text,
+            "{block}\t{number}\tworker\t{block_type}\twake\t{task}\t\"{params}\"\tcomplete\t{stamp}\t{reward:?}\t{world}"
+        )
+        .unwrap();
     }
-    drop(writer);
+    fs::write(folder.join("data-log.tsv"), text).unwrap();
     read_log(&dir).unwrap()
 }
 
@@ -96,9 +111,9 @@ fn by_luck(rng: &mut ChaCha8Rng, world: u32) -> f64 {
     touch - 20.0 + rng.random_range(0.0..5.0)
 }
 
-/// 200 lifetimes of an agent that never changes, with 20 worlds or fewer in an evaluation.
-fn random_lifetimes(shown: fn(Lived) -> Lived) -> Vec<LifetimeMetrics> {
-    let lifetimes = 0..200;
+/// Lifetimes of an agent that never changes, with 20 worlds or fewer in an evaluation.
+fn random_lifetimes(num: u64, shown: fn(Lived) -> Lived) -> Vec<LifetimeMetrics> {
+    let lifetimes = 0..num;
     let of_seed = |seed: u64| {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let rows = lifetime(10 + 5 * (seed % 3) as u32, |_, _, _, world| by_luck(&mut rng, world));
@@ -118,8 +133,10 @@ fn check_calibration(lifetimes: &[LifetimeMetrics], exchanged: Exchanged) {
             called_good += usize::from(band.reading(good) == Reading::Good);
             called_bad += usize::from(band.reading(good) == Reading::Bad);
         }
-        let counts = format!("{name}: {inside} inside, {called_good} good, {called_bad} bad of {}", lifetimes.len());
-        println!("{counts}");
+        let counts = format!(
+            "{name}: {inside} inside, {called_good} good, {called_bad} bad of {}",
+            lifetimes.len()
+        );
         assert!(inside * 100 >= lifetimes.len() * 93, "{counts}");
         // 5 of 100, and two standard errors of that.
         assert!(called_good * 100 <= lifetimes.len() * 8, "{counts}");
@@ -129,7 +146,7 @@ fn check_calibration(lifetimes: &[LifetimeMetrics], exchanged: Exchanged) {
 
 #[test]
 fn an_agent_that_never_changes_is_called_good_in_at_most_one_of_twenty_lifetimes() {
-    let lifetimes = random_lifetimes(|row| row);
+    let lifetimes = random_lifetimes(200, |row| row);
     check_calibration(&lifetimes, Exchanged::Worlds);
     // What the bands are for: without them, most of these lifetimes show "transfer".
     let is_above = |scores: &&LifetimeMetrics| scores.lifetime.number("forward_transfer_ratio").unwrap() > 1.0;
@@ -139,7 +156,9 @@ fn an_agent_that_never_changes_is_called_good_in_at_most_one_of_twenty_lifetimes
 
 #[test]
 fn without_worlds_rows_are_permuted_by_their_place() {
-    let lifetimes = random_lifetimes(|(block, block_type, task, _, reward)| (block, block_type, task, f64::NAN, reward));
+    let lifetimes = random_lifetimes(60, |(block, block_type, task, _, reward)| {
+        (block, block_type, task, f64::NAN, reward)
+    });
     check_calibration(&lifetimes, Exchanged::Positions);
 }
 
@@ -158,7 +177,11 @@ fn of_an_agent_whose_rewards_repeat_the_band_is_the_value() {
 /// Learns each task, and forgets it when it learns the next.
 fn forgetting(rng: &mut ChaCha8Rng) -> Vec<Lived> {
     lifetime(20, |learnt, block_type, task, _| {
-        let knows = if block_type == Train { task } else { learnt.wrapping_sub(1) };
+        let knows = if block_type == Train {
+            task
+        } else {
+            learnt.wrapping_sub(1)
+        };
         let level = if knows == task { 80.0 } else { 10.0 };
         level + rng.random_range(-8.0..8.0)
     })
@@ -167,9 +190,17 @@ fn forgetting(rng: &mut ChaCha8Rng) -> Vec<Lived> {
 #[test]
 fn an_agent_that_forgets_lies_outside() {
     let scores = scored(&forgetting(&mut ChaCha8Rng::seed_from_u64(1)));
-    for name in ["perf_maintenance_mrlep", "perf_maintenance_mrtlp", "backward_transfer_contrast"] {
+    for name in [
+        "perf_maintenance_mrlep",
+        "perf_maintenance_mrtlp",
+        "backward_transfer_contrast",
+    ] {
         let band = scores.null_bands[name];
-        assert_eq!(band.reading(Direction::HigherThan(0.0)), Reading::Bad, "{name}: {band:?}");
+        assert_eq!(
+            band.reading(Direction::HigherThan(0.0)),
+            Reading::Bad,
+            "{name}: {band:?}"
+        );
         assert!(band.p < 0.01, "{name}: {band:?}");
     }
     let ratio = scores.null_bands["backward_transfer_ratio"];
@@ -179,7 +210,9 @@ fn an_agent_that_forgets_lies_outside() {
 #[test]
 fn an_agent_that_learns_all_tasks_at_once_is_called_good() {
     let mut rng = ChaCha8Rng::seed_from_u64(2);
-    let scores = scored(&lifetime(20, |learnt, _, _, _| 20.0 * learnt as f64 + rng.random_range(0.0..10.0)));
+    let scores = scored(&lifetime(20, |learnt, _, _, _| {
+        20.0 * learnt as f64 + rng.random_range(0.0..10.0)
+    }));
     for (name, good) in directions() {
         if name != "perf_maintenance_mrtlp" {
             let band = scores.null_bands[name];
@@ -201,14 +234,27 @@ fn each_band_holds_the_value_of_the_lifetime_and_contrast_comes_first() {
     let scores = score(&log_of(&rows), &[], &Options::default()).unwrap();
     let names: Vec<String> = scores.summary().into_iter().map(|row| row.name.into_owned()).collect();
     let place = |name: &str| names.iter().position(|found| found == name).unwrap();
-    assert!(place("forward_transfer_contrast") < place("forward_transfer_ratio"), "{names:?}");
-    assert!(place("backward_transfer_contrast") < place("forward_transfer_ratio"), "{names:?}");
+    assert!(
+        place("forward_transfer_contrast") < place("forward_transfer_ratio"),
+        "{names:?}"
+    );
+    assert!(
+        place("backward_transfer_contrast") < place("forward_transfer_ratio"),
+        "{names:?}"
+    );
     let json = serde_json::to_value(&scores).unwrap();
     for ours in ["null", "reached", "forward_transfer_contrast"] {
         assert_eq!(json.get(ours), None, "{ours}");
     }
     // Learning decides these.
-    let band = |name: &str| scores.summary().into_iter().find(|row| row.name == name).unwrap().null_band;
+    let band = |name: &str| {
+        scores
+            .summary()
+            .into_iter()
+            .find(|row| row.name == name)
+            .unwrap()
+            .null_band
+    };
     assert_eq!(band("avg_train_perf"), None);
     assert_eq!(band("perf_recovery"), None);
 }
@@ -267,17 +313,25 @@ fn all_permutations_of_a_small_lifetime_give_the_band() {
     let error = 8.0 * (extreme * (1.0 - extreme) / 1000.0).sqrt() + 0.004;
     assert!((band.p - 2.0 * extreme).abs() < error, "{band:?} {extreme}");
     // Each end has its 2.5 % of all permutations beyond it, and no more than 5 %.
-    for beyond in [share(&|drawn| drawn < band.low - 1e-9), share(&|drawn| drawn > band.high + 1e-9)] {
+    for beyond in [
+        share(&|drawn| drawn < band.low - 1e-9),
+        share(&|drawn| drawn > band.high + 1e-9),
+    ] {
         assert!(beyond < 0.05, "{beyond} {band:?}");
     }
-    for outside in [share(&|drawn| drawn <= band.low + 1e-9), share(&|drawn| drawn >= band.high - 1e-9)] {
+    for outside in [
+        share(&|drawn| drawn <= band.low + 1e-9),
+        share(&|drawn| drawn >= band.high - 1e-9),
+    ] {
         assert!(outside > 0.01, "{outside} {band:?}");
     }
 }
 
 /// An expert's log: it learns one task at this level, and is evaluated at another, if at all.
 fn expert(task: &'static str, learning: f64, evaluation: Option<f64>) -> SteLog {
-    let mut rows: Vec<Lived> = (0..10).map(|world| (0, Train, task, f64::from(world), learning)).collect();
+    let mut rows: Vec<Lived> = (0..10)
+        .map(|world| (0, Train, task, f64::from(world), learning))
+        .collect();
     rows.extend((0..4).filter_map(|world| Some((1, Test, task, f64::from(world), evaluation?))));
     SteLog::new(log_of(&rows)).unwrap()
 }
@@ -297,17 +351,30 @@ fn a_task_below_a_fifth_of_the_expert_was_never_learned() {
         expert("find_green", -5.0, None),
     ];
     let scores = score(&log_of(&rows), &experts, &Options::default()).unwrap();
-    let reached: BTreeMap<&str, _> = scores.reached.iter().map(|(task, found)| (task.as_str(), found)).collect();
+    let reached: BTreeMap<&str, _> = scores
+        .reached
+        .iter()
+        .map(|(task, found)| (task.as_str(), found))
+        .collect();
     let red = reached["find_red"];
     assert_eq!(red.evaluations.len(), 4);
     // 60, 70, 80, 90: variance 500 / 3.
     let best = red.best().unwrap();
     assert_eq!((best.block, best.mean, best.num_worlds), (2, 75.0, 4));
     assert!((best.standard_error.unwrap() - (500.0_f64 / 12.0).sqrt()).abs() < 1e-12);
-    assert_eq!((red.last().unwrap().mean, red.last().unwrap().standard_error), (4.0, Some(0.0)));
-    assert_eq!((red.expert, red.share, red.is_never_learned()), (Some(100.0), Some(0.75), Some(false)));
+    assert_eq!(
+        (red.last().unwrap().mean, red.last().unwrap().standard_error),
+        (4.0, Some(0.0))
+    );
+    assert_eq!(
+        (red.expert, red.share, red.is_never_learned()),
+        (Some(100.0), Some(0.75), Some(false))
+    );
     let blue = reached["find_blue"];
     assert_eq!((blue.expert, blue.is_never_learned()), (Some(284.0), Some(true)));
     // An expert at or below 0 is no level to take a part of.
-    assert_eq!((reached["find_green"].share, reached["find_green"].is_never_learned()), (None, None));
+    assert_eq!(
+        (reached["find_green"].share, reached["find_green"].is_never_learned()),
+        (None, None)
+    );
 }

@@ -15,6 +15,7 @@ mod logs;
 mod lost_logs;
 mod metrics;
 mod modes;
+mod null_bands;
 mod original_scenarios;
 mod other_contents;
 mod overwrite;

@@ -19,7 +19,11 @@ use crate::{DataRange, MetricsError, Options, VariantMode};
 /// The range a user gave for a task, under the name it is scored by; `None` when no ranges were given at all.
 ///
 /// Where variants do not count, the range of a task is the hull of its variants' ranges.
-pub(crate) fn given_range(task: &str, lifetime: &Lifetime, options: &Options) -> Result<Option<DataRange>, MetricsError> {
+pub(crate) fn given_range(
+    task: &str,
+    lifetime: &Lifetime,
+    options: &Options,
+) -> Result<Option<DataRange>, MetricsError> {
     let Some(ranges) = &options.data_range else {
         return Ok(None);
     };

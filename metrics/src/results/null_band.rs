@@ -50,8 +50,8 @@ const ROUNDING: f64 = 1e-9;
 
 impl NullBand {
     /// Of the lifetime's value, and the permuted ones; `None` without any.
-    pub(crate) fn new(value: f64, permuted: Vec<f64>, exchanged: Exchanged) -> Option<Self> {
-        let (low, high) = (quantile(&permuted, 0.025)?, quantile(&permuted, 0.975)?);
+    pub(crate) fn new(value: f64, permuted: &[f64], exchanged: Exchanged) -> Option<Self> {
+        let (low, high) = (quantile(permuted, 0.025)?, quantile(permuted, 0.975)?);
         let slack = ROUNDING * value.abs().max(1.0);
         let share = |is_extreme: &dyn Fn(f64) -> bool| {
             let extreme = permuted.iter().filter(|drawn| is_extreme(**drawn)).count();
@@ -99,8 +99,8 @@ mod tests {
     use super::*;
 
     fn band(value: f64) -> NullBand {
-        let permuted = (0..=1000).map(f64::from).map(|number| number / 500.0 - 1.0).collect();
-        NullBand::new(value, permuted, Exchanged::Worlds).expect("there are values")
+        let permuted: Vec<f64> = (0..=1000).map(|number| f64::from(number) / 500.0 - 1.0).collect();
+        NullBand::new(value, &permuted, Exchanged::Worlds).expect("there are values")
     }
 
     #[test]
@@ -112,7 +112,7 @@ mod tests {
         );
         assert_eq!(found.p, 1.0);
         assert_eq!(band(5.0).p, 2.0 / 1002.0);
-        assert_eq!(NullBand::new(1.0, Vec::new(), Exchanged::Worlds), None);
+        assert_eq!(NullBand::new(1.0, &[], Exchanged::Worlds), None);
     }
 
     #[test]

@@ -85,7 +85,11 @@ pub(crate) fn reached(
             }
             evaluations.push(cell);
         }
-        let levels: Vec<f64> = lifetime.experts_of(task).iter().filter_map(|run| level(run, task)).collect();
+        let levels: Vec<f64> = lifetime
+            .experts_of(task)
+            .iter()
+            .filter_map(|run| level(run, task))
+            .collect();
         let expert = mean(&levels);
         // Ranges that lack a task are refused where they are used.
         let range = given_range(task, lifetime, options).ok().flatten();

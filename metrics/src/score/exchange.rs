@@ -16,6 +16,8 @@ use crate::{BlockType, Log, MetricsError, Options};
 /// The evaluations of a lifetime that count, their rows end to end.
 pub(super) struct Evaluations<'a> {
     regimes: Vec<(&'a Regime, Range<usize>)>,
+    /// Whether every experience of an evaluation is one row.
+    is_one_row_each: Vec<bool>,
     /// Performance of each row.
     performance: Vec<f64>,
     /// Rows that are exchanged in the same way.
@@ -61,6 +63,9 @@ impl<'a> Evaluations<'a> {
         };
         Ok(Self {
             bundles: bundles(groups, &regimes),
+            is_one_row_each: (regimes.iter())
+                .map(|(regime, _)| regime.exp_nums.is_sorted_by(|a, b| a < b))
+                .collect(),
             regimes,
             performance,
             exchanged,
@@ -83,10 +88,9 @@ impl<'a> Evaluations<'a> {
 
     /// Sets the terminal performance of each evaluation by its regime number.
     pub(super) fn set_term_perfs(&self, term_perfs: &mut [f64]) {
-        for (regime, rows) in &self.regimes {
+        for ((regime, rows), is_one_row_each) in self.regimes.iter().zip(&self.is_one_row_each) {
             let performance = &self.performance[rows.clone()];
-            let is_one_each = regime.exp_nums.is_sorted_by(|a, b| a < b);
-            let found = if is_one_each {
+            let found = if *is_one_row_each {
                 mean(performance)
             } else {
                 mean(&mean_per_experience(&regime.exp_nums, performance))
@@ -160,7 +164,11 @@ mod tests {
     fn blocks() -> impl Strategy<Value = Vec<Block>> {
         let world = prop_oneof![4 => (0_u8..4).prop_map(Some), 1 => Just(None)];
         let rows = prop::collection::vec((world, -100.0..100.0), 1..8);
-        let block = (prop::bool::weighted(0.3), prop::sample::select(vec!["a_1", "b_1"]), rows);
+        let block = (
+            prop::bool::weighted(0.3),
+            prop::sample::select(vec!["a_1", "b_1"]),
+            rows,
+        );
         prop::collection::vec(block, 1..9)
     }
 

@@ -34,7 +34,13 @@ pub(super) fn null_bands(
     let mut statistics = performance_maintenance::statistics(lifetime, options);
     statistics.extend(transfer::statistics(lifetime, options));
     let mut found: Vec<_> = (statistics.into_iter())
-        .filter_map(|statistic| Some((statistic.of(term_perfs)?, statistic, Vec::with_capacity(NULL_PERMUTATIONS))))
+        .filter_map(|statistic| {
+            Some((
+                statistic.of(term_perfs)?,
+                statistic,
+                Vec::with_capacity(NULL_PERMUTATIONS),
+            ))
+        })
         .collect();
     if options.smooth_eval_data || found.is_empty() {
         return Ok(IndexMap::new());
@@ -51,7 +57,7 @@ pub(super) fn null_bands(
     }
     let exchanged = evaluations.exchanged;
     let bands = found.into_iter().filter_map(|(value, statistic, drawn)| {
-        let band = NullBand::new(value, drawn, exchanged)?;
+        let band = NullBand::new(value, &drawn, exchanged)?;
         Some((statistic.name.to_owned(), band))
     });
     Ok(bands.collect())

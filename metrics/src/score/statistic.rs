@@ -2,10 +2,13 @@
 //!
 //! Not here: which values there are; a metric that looks at evaluations alone says its own.
 
+/// A value of the lifetime, of terminal performances by regime number.
+type Compute<'a> = dyn Fn(&[f64]) -> Option<f64> + 'a;
+
 /// A headline that terminal performances alone decide.
 pub(super) struct Statistic<'a> {
     pub(super) name: &'static str,
-    compute: Box<dyn Fn(&[f64]) -> Option<f64> + 'a>,
+    compute: Box<Compute<'a>>,
 }
 
 impl<'a> Statistic<'a> {

@@ -22,8 +22,15 @@ pub(super) fn reached(scores: &LifetimeMetrics) -> Option<String> {
         ];
         if has_expert {
             cells.push(task.expert.map_or_else(String::new, number));
-            cells.push(task.share.map_or_else(String::new, |share| format!("{:.0}%", 100.0 * share)));
-            let word = if task.is_never_learned() == Some(true) { "never learned" } else { "" };
+            cells.push(
+                task.share
+                    .map_or_else(String::new, |share| format!("{:.0}%", 100.0 * share)),
+            );
+            let word = if task.is_never_learned() == Some(true) {
+                "never learned"
+            } else {
+                ""
+            };
             cells.push(word.to_owned());
         }
         cells
@@ -47,7 +54,10 @@ pub(super) fn reached(scores: &LifetimeMetrics) -> Option<String> {
         ));
     }
     if evaluated().count() > MOST_ROWS {
-        note.push_str(&format!(" And {} tasks more: see --json.", evaluated().count() - MOST_ROWS));
+        note.push_str(&format!(
+            " And {} tasks more: see --json.",
+            evaluated().count() - MOST_ROWS
+        ));
     }
     let headings = headings.into_iter().map(str::to_owned).collect();
     Some(format!("{}\n{note}", wide_table(headings, rows, &numbers)))

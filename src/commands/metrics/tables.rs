@@ -27,7 +27,14 @@ pub(crate) fn summary(scores: &LifetimeMetrics) -> String {
     let rows = scores.summary().into_iter().filter_map(|row| {
         let value = number(row.value?);
         let [band, p, reading] = beside_null(row.null_band, row.good);
-        Some([row.name.into_owned(), value, band, p, reading, row.explanation.into_owned()])
+        Some([
+            row.name.into_owned(),
+            value,
+            band,
+            p,
+            reading,
+            row.explanation.into_owned(),
+        ])
     });
     let rows: Vec<[String; 6]> = rows.collect();
     let has_bands = !scores.null_bands.is_empty();
