@@ -52,7 +52,7 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
             }
         }
         p.note {
-            strong { "One lifetime cannot distinguish an effect from the luck of one run of learning. Several can, by confidence intervals. " }
+            strong { "One lifetime cannot distinguish an effect from noise in learning. Several can, by confidence intervals. " }
             (verdict::rule(scaled))
         }
         @if !metrics.null_bands.is_empty() {

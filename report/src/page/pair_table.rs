@@ -25,7 +25,7 @@ pub(super) fn tables(metrics: &LifetimeMetrics) -> Markup {
         @if !found.is_empty() {
             h3 { "Transfer between tasks" }
             p.note {
-                "Row: the task that was learnt. Column: the task that was evaluated before and after. The first time each pair occurs; ▲ better, ▼ worse after the row's task was learnt, ● no clear difference."
+                "Row: the task that was learnt. Column: the task that was evaluated before and after. The first time each pair occurs; ▲ better, ▼ worse after the row's task was learnt, ● no clear difference, or the metric is within its null band."
             }
         }
         @for row in &found {
@@ -62,6 +62,7 @@ fn cell(row: &SummaryRow, value: Option<f64>) -> Markup {
     let Some(found) = verdict::of(&row.name, value, row.good, true) else {
         return html! { td { (number(value)) } };
     };
+    let found = verdict::beside_null(found, row.null_band, row.good);
     html! {
         td.(found.class) { (number(value)) " " span aria-hidden="true" { (found.sign) } }
     }

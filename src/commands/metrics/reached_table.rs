@@ -41,26 +41,26 @@ pub(super) fn reached(scores: &LifetimeMetrics) -> Option<String> {
     }
     let mut headings = vec!["reached", "first evaluation", "best after learning", "last evaluation"];
     let mut numbers = vec![1, 2, 3];
-    let mut note = format!(
+    let mut notes = vec![format!(
         "In units of {}, ± the standard error over worlds.",
         driftworld_text::one_line(&scores.metrics_column)
-    );
+    )];
     if has_expert {
         headings.extend(["expert", "best / expert", ""]);
         numbers.extend([4, 5]);
-        note.push_str(&format!(
-            " Below {:.0}% of the expert a task was never learned, and its maintenance and transfer say nothing.",
+        notes.push(format!(
+            "Below {:.0}% of the expert a task was never learned, and its maintenance and transfer say nothing.",
             100.0 * LEARNED_SHARE
         ));
     }
     if evaluated().count() > MOST_ROWS {
-        note.push_str(&format!(
-            " And {} tasks more: see --json.",
+        notes.push(format!(
+            "And {} tasks more: see --json.",
             evaluated().count() - MOST_ROWS
         ));
     }
     let headings = headings.into_iter().map(str::to_owned).collect();
-    Some(format!("{}\n{note}", wide_table(headings, rows, &numbers)))
+    Some(format!("{}\n{}", wide_table(headings, rows, &numbers), notes.join(" ")))
 }
 
 /// Mean and standard error of an evaluation.
