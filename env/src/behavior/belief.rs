@@ -1,6 +1,6 @@
 //! What the expert of one world takes another for: the same things in the same places, that pay as their likes do at home.
 
-use driftworld_spec::{Object, World};
+use driftworld_spec::{Object, Stimulus, World};
 
 use crate::EnvError;
 use crate::assets::Catalogue;
@@ -9,8 +9,8 @@ use crate::sim::{Environment, Step};
 /// A world as an expert from elsewhere believes it to be, kept in the state of the true one.
 pub(super) struct Belief {
     environment: Environment,
-    /// Of each object, whether it is believed to be used up by what sets it off, and is not so in truth.
-    is_vain: Vec<bool>,
+    /// Of each object, what is believed to use it up, where it is not so in truth; nothing where both agree.
+    vain: Vec<Vec<Stimulus>>,
     /// Which of those were set off.
     tried: Vec<bool>,
 }
@@ -28,9 +28,12 @@ impl Belief {
         });
         let believed = believed.map_err(|problem| EnvError::BadWorld { problem })?;
         let objects = believed.objects.iter().zip(&truth.objects);
-        let is_vain = objects.map(|(own, other)| is_used_up(own) && !has_effects_of(own, other));
+        let vain = objects.map(|(own, other)| match has_effects_of(own, other) {
+            true => Vec::new(),
+            false => uses_up(own),
+        });
         Ok(Self {
-            is_vain: is_vain.collect(),
+            vain: vain.collect(),
             tried: vec![false; truth.objects.len()],
             environment: Environment::with_catalogue(believed, catalogue.clone()),
         })
@@ -52,7 +55,8 @@ impl Belief {
     /// Takes note of what a step of the true world set off.
     pub(super) fn note(&mut self, step: &Step) {
         for event in &step.events {
-            self.tried[event.object] |= self.is_vain[event.object];
+            // Coming near is no try of what has to be touched.
+            self.tried[event.object] |= self.vain[event.object].contains(&event.stimulus);
         }
     }
 }
@@ -110,6 +114,8 @@ fn has_effects_of(a: &Object, b: &Object) -> bool {
     same == *a
 }
 
-fn is_used_up(object: &Object) -> bool {
-    !object.reward_once_stimulus.is_empty() || !object.destroy_stimulus.is_empty()
+/// What uses an object up.
+fn uses_up(object: &Object) -> Vec<Stimulus> {
+    let both = object.reward_once_stimulus.iter().chain(&object.destroy_stimulus);
+    both.copied().collect()
 }

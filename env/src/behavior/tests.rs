@@ -76,6 +76,28 @@ fn a_class_that_home_lacks_is_left_alone() {
     assert_eq!((found.earned, found.success, found.steps), (0.0, false, 300));
 }
 
+#[test]
+fn coming_near_is_no_try_of_what_has_to_be_touched() {
+    for range in [0.0, 1.5, 2.0, 4.0] {
+        let pays = |reward: f64| {
+            let mut draft = WorldDraft::default();
+            let mut object = cube([0.0, 8.0], RED, reward, "any");
+            object.range_stimulus_distance = range;
+            draft.objects.push(object);
+            sound(draft)
+        };
+        let (home, abroad) = (pays(50.0), pays(49.0));
+        let expertise = Expertise::default();
+        let run = |found: Result<ExpertRun, EnvError>| found.expect("both worlds are sound");
+        let visitor = run(expertise.abroad(&home, &abroad));
+        assert_eq!(
+            (visitor.earned, visitor),
+            (49.0, run(expertise.at_home(&abroad))),
+            "range {range}"
+        );
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 

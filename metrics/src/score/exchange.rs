@@ -213,7 +213,9 @@ mod tests {
             let world = world.filter(|world| !once(task, Some(*world)));
             found.entry((task, world)).or_default().push(*value);
         }
-        found.values_mut().for_each(|values| values.sort_by(f64::total_cmp));
+        for values in found.values_mut() {
+            values.sort_by(f64::total_cmp);
+        }
         found
     }
 
