@@ -10,7 +10,7 @@ use driftworld_similarity::{
     Distance, Placements, SimilarityError, VariantMeasure, Weights, world_sets_distance, world_sets_measure_distance,
 };
 pub use driftworld_spec::By;
-use driftworld_spec::{Variant, World};
+use driftworld_spec::{Element, Variant, World};
 use strum::VariantNames as _;
 
 use crate::picture_distance::PictureDistanceError;
@@ -230,6 +230,7 @@ pub fn between(
         _ => None,
     };
     let weights = lay_over(task.map_or_else(Weights::default, |(a, _)| Weights::of_task(a.task())))?;
+    let weighing = weighing(&weights);
     let by = sample.by.unwrap_or(match (task, sample.worlds) {
         (Some((a, _)), worlds) => match a.task().compare_by() {
             By::Parameters if worlds.is_some() => By::Worlds,
@@ -251,12 +252,12 @@ pub fn between(
             Scale::Share if measure.has_diameter() => Compared {
                 distance: distance.in_shares_of(diameter),
                 by,
-                description: format!("by parameters, as a share of the task's diameter of {diameter}"),
+                description: format!("by parameters, as a share of the task's diameter of {diameter}{weighing}"),
             },
             _ => Compared {
                 distance,
                 by,
-                description: "by parameters".to_owned(),
+                description: format!("by parameters{weighing}"),
             },
         });
     }
@@ -293,11 +294,26 @@ pub fn between(
         description += &means.remark();
         means.distance(&weights)
     };
+    if !distance.parts.is_empty() {
+        description += &weighing;
+    }
     Ok(Compared {
         distance,
         by,
         description,
     })
+}
+
+/// What elements weigh in the total, if not all 1.
+fn weighing(weights: &Weights) -> String {
+    let other = Element::ALL.into_iter().filter(|element| weights.of(*element) != 1.0);
+    let other: Vec<String> = other
+        .map(|element| format!("{} {}", element.letter(), weights.of(element)))
+        .collect();
+    if other.is_empty() {
+        return String::new();
+    }
+    format!("; in the total elements weigh {}", other.join(", "))
 }
 
 #[cfg(test)]

@@ -32,6 +32,11 @@ fn format(option: &str, path: &Path) -> Result<Format, Failure> {
     }
 }
 
+/// Refuses a name that says no format, before anything is measured.
+pub(crate) fn expect_name(option: &str, path: &Path) -> Result<(), Failure> {
+    format(option, path).map(|_| ())
+}
+
 /// Writes a matrix. The labels, for which numpy's format has no place, come into a JSON file beside it.
 ///
 /// CSV guards labels that a spreadsheet would take for formulas, unless `cells` are raw.

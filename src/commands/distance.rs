@@ -89,7 +89,9 @@ impl Distance {
             one_line(&self.b)
         ))?;
         output::line(by_element(&distance))?;
-        if self.explain {
+        if self.explain && distance.parts.is_empty() {
+            output::line("\nno parts: it is of the whole decision process")?;
+        } else if self.explain {
             output::line("")?;
             output::line(parts(&distance))?;
         }

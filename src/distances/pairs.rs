@@ -212,6 +212,9 @@ impl Means {
     /// What else is to be known of the number, behind a comma or a semicolon; often nothing.
     pub(super) fn remark(&self) -> String {
         match self.by.subject() {
+            _ if self.by == By::BehaviorSuccess => {
+                format!("; own experts succeed in {:.1} % of worlds more", 100.0 * self.mean(2))
+            }
             "behavior" => format!(
                 "; the second's expert earns {:.1} points less in the first's worlds, the first's {:.1} less in the second's",
                 self.mean(0),

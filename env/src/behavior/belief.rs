@@ -28,9 +28,12 @@ impl Belief {
         });
         let believed = believed.map_err(|problem| EnvError::BadWorld { problem })?;
         let objects = believed.objects.iter().zip(&truth.objects);
-        let vain = objects.map(|(own, other)| match has_effects_of(own, other) {
-            true => Vec::new(),
-            false => uses_up(own),
+        let vain = objects.map(|(own, other)| {
+            if has_effects_of(own, other) {
+                Vec::new()
+            } else {
+                uses_up(own)
+            }
         });
         Ok(Self {
             vain: vain.collect(),

@@ -100,7 +100,7 @@ pub(super) fn actions_unlike(a: &World, b: &World) -> Option<Unlike> {
             let mut tried = tried(own).into_iter();
             tried.find_map(|action| {
                 Unlike::of(
-                    format!("what the body does by {action:?}"),
+                    format!("what the body does in a second by {}", in_words(action)),
                     &intent_of(a, action),
                     &intent_of(b, action),
                 )
@@ -126,14 +126,27 @@ fn tried(agent: &AgentParams) -> Vec<Action> {
     actions
 }
 
-/// What an action tells the body to do in a second; `None` if the action is not one of the world's.
-fn intent_of(world: &World, action: Action) -> Option<Intent> {
+fn in_words(action: Action) -> String {
+    match action {
+        Action::Continuous([a, b, c]) => format!("the action [{a}, {b}, {c}]"),
+        Action::Discrete(row) => format!("action number {row}"),
+    }
+}
+
+/// What an action tells the body to do in a second, in words; `None` if the action is not one of the world's.
+fn intent_of(world: &World, action: Action) -> Option<String> {
     let per_second = AgentParams {
         time_step: 1.0,
         ..world.agent_params.clone()
     };
     let numbers = action.numbers(world).ok()?;
-    Some(Intent::new(per_second.action_model, numbers, &per_second))
+    let intent = Intent::new(per_second.action_model, numbers, &per_second);
+    let goes = match intent.towards {
+        Some(([x, y], metres)) => format!("goes up to {metres} m towards ({x}, {y})"),
+        None => format!("goes {} m", intent.ahead),
+    };
+    let interacts = if intent.interact { ", interacts" } else { "" };
+    Some(format!("turns {} degrees, {goes}{interacts}", intent.turn_deg))
 }
 
 /// What differs of the form of observations.

@@ -3,15 +3,19 @@
 
 use super::exact::{MAX_EXACT, Total, best_path};
 use super::items::Items;
-use super::two_opt;
+use super::{bottleneck, two_opt};
 
 /// Lengths that differ by no more than this share are equal.
 const EQUAL: f64 = 1e-9;
 
-/// Exact for few items; beyond, the path that two-opt finds.
+/// Exact for few items; beyond, the shorter of the paths that two-opt and the search for small largest steps find, and of equally
+/// short ones that with the smaller largest step.
 pub(super) fn order(items: &Items) -> Vec<usize> {
     if items.len() > MAX_EXACT {
-        return two_opt::order(items);
+        let (short, even) = (two_opt::order(items), bottleneck::order(items));
+        let is_as_short = length(&even, items) <= length(&short, items) * (1.0 + EQUAL);
+        let is_better = is_as_short && largest_step(&even, items) < largest_step(&short, items);
+        return if is_better { even } else { short };
     }
     // More than any path is long, and finite: where every path has such a step, the ends still stand where they belong.
     let penalty = 2.0 * items.len() as f64 * items.largest_gap();

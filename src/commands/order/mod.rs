@@ -86,6 +86,9 @@ impl Order {
         for target in [&self.matrix, &self.plot].into_iter().flatten() {
             overwrite::refuse_inputs(target, self.tasks.iter().map(String::as_str))?;
         }
+        if let Some(path) = &self.matrix {
+            matrix_file::expect_name("matrix", path)?;
+        }
         let (matrix, by) = self.measure()?;
         if let Some(path) = &self.matrix {
             matrix_file::write("matrix", path, &matrix, cells(self.raw_cells))?;
