@@ -13,6 +13,7 @@ pub use driftworld_spec::By;
 use driftworld_spec::{Element, Variant, World};
 use strum::VariantNames as _;
 
+use crate::behavior::MAX_BEHAVIOR_WORLDS;
 use crate::picture_distance::PictureDistanceError;
 pub use matrix::{labelled_matrix, variant_matrix, variant_matrix_while};
 use pairs::{Means, Pairs};
@@ -163,6 +164,18 @@ impl Sample {
         self.worlds.unwrap_or(usual)
     }
 
+    /// Refuses more worlds than experts, tables or pictures are made of in a sensible time.
+    fn check_count(by: By, count: u64) -> Result<(), DistancesError> {
+        let is_slow = matches!(by.subject(), "behavior" | "dynamics" | "pictures");
+        if !is_slow || count <= MAX_BEHAVIOR_WORLDS {
+            return Ok(());
+        }
+        Err(DistancesError::By {
+            found: format!("{count} worlds by {}", by.name()),
+            expected: "at most 1000 worlds",
+        })
+    }
+
     /// Worlds of a variant.
     fn draw(&self, variant: &Variant, count: u64) -> Result<Vec<World>, DistancesError> {
         let sampler = Sampler::new(variant, self.seed);
@@ -265,6 +278,7 @@ pub fn between(
     // Two worlds are one pair, however many are asked for.
     let are_worlds = matches!((a, b), (Side::World(_), Side::World(_)));
     let count = if are_worlds { 1 } else { sample.count(by) };
+    Sample::check_count(by, count)?;
     let (a, b) = (sample.of(a, count)?, sample.of(b, count)?);
     let mut description = format!("by {}", by.name());
     if !are_worlds {

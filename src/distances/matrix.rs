@@ -98,6 +98,7 @@ pub fn variant_matrix_while(
         return Ok(matrix);
     }
     sample.check_scale(by)?;
+    Sample::check_count(by, sample.count(by))?;
     let count = sample.count(by) as usize;
     let drawn: Vec<Vec<World>> = variants
         .iter()

@@ -219,6 +219,20 @@ fn a_task_says_what_its_variants_are_compared_by() {
 }
 
 #[test]
+fn more_worlds_than_take_a_sensible_time_are_refused_before_they_are_drawn() {
+    let side = |name: &str| Side::Variant(tasks::variant(name).expect("it is built in"));
+    let (a, b) = (side("find_objects#red"), side("find_objects#blue"));
+    for by in [By::Behavior, By::Dynamics, By::PicturesWhole] {
+        let sample = Sample {
+            worlds: Some(MAX_BEHAVIOR_WORLDS + 1),
+            ..Sample::by(by)
+        };
+        let refused = between(&a, &b, &sample, Ok).expect_err("they are too many");
+        assert!(refused.to_string().contains("found 1001 worlds by"), "{refused}");
+    }
+}
+
+#[test]
 fn measures_say_what_they_are_made_of() {
     let side = |name: &str| Side::Variant(tasks::variant(name).expect("it is built in"));
     let parts = |a: &str, b: &str, by: By| {
