@@ -33,7 +33,7 @@ fn live(folder: &Path, reward: impl Fn(u64, &str) -> f64) {
         };
         for task in tasks {
             rows.extend((0..8).map(|world| {
-                let of_world = f64::from(world * 5 % 7) + 0.1 * (block * u64::from(world) % 3) as f64;
+                let of_world = f64::from(world * 5 % 7);
                 (block, block_type, *task, world, reward(block, task) + of_world)
             }));
         }
