@@ -218,7 +218,10 @@ fn a_declared_measure_of_a_placement_is_used_or_refused() {
         let said = TaskSpec::from_json("t", &text(name))
             .expect_err("points are not compared so")
             .to_string();
-        assert!(said.contains("wasserstein_1, wasserstein_2 or same_or_not"), "{said}");
+        assert!(
+            said.contains("wasserstein_1, wasserstein_2, bures_wasserstein or same_or_not"),
+            "{said}"
+        );
     }
 }
 
