@@ -1,227 +1,314 @@
-//! Laws of variants at a wanted distance: what a search of everything finds is found, by no more changes, and nothing idle changes.
+//! Laws of variants at a wanted distance: every distance that a search of everything finds is found, by no more changes, and nothing
+//! idle changes. Tasks have parameters of every type; where numbers alone are cut by requirements is in `at_distance.rs`.
 
-use std::sync::Arc;
+mod drawn_task;
 
+use std::collections::BTreeMap;
+
+use drawn_task::{Drawn, Numbers};
 use driftworld_generator::{GeneratorError, Subject, at_distance};
-use driftworld_spec::{Element, TaskSpec, Value, Variant};
-use proptest::prelude::*;
+use driftworld_spec::{Domain, Element, ParameterType, TaskSpec, Value, Variant};
 
 /// How far off a found distance may be.
 const TOLERANCE: f64 = 1e-3;
 
-/// Parts that the grid divides each range into.
-const PARTS: u32 = 12;
+/// Distances that each task is asked for.
+const DISTANCES: usize = 24;
 
-const NAMES: [&str; 3] = ["a", "b", "word"];
-
-/// Two numbers in 0..1 and a word, requirements over them, and when `b` is read.
-#[derive(Clone, Debug)]
-struct Case {
-    defaults: [f64; 2],
-    require: Vec<String>,
-    read_if: Option<String>,
+/// The values that a grid asks a parameter for: all choices, whole numbers and ends, and where the variant is.
+fn grid_of(from: &Variant, name: &str, parts: usize) -> Vec<Value> {
+    let parameter = &from.task().parameters()[name];
+    let here = from.value(name).expect("it has a value").clone();
+    let [low, high] = match parameter.domain() {
+        Some(Domain::Choices(choices)) => return choices,
+        Some(Domain::Range(range)) => range,
+        None => panic!("{name} has a domain"),
+    };
+    let at = |part: usize| low + (high - low) * part as f64 / parts as f64;
+    let mut values: Vec<Value> = match (&here, parameter.kind) {
+        (Value::Integer(_), _) => (low as i64..=high as i64).map(Value::Integer).collect(),
+        (Value::Vector(_), _) => {
+            let corner = |x: usize| (0..=parts).map(move |y| Value::Vector(vec![at(x), at(y)]));
+            (0..=parts).flat_map(corner).collect()
+        }
+        (_, ParameterType::Heading) => (0..=parts)
+            .map(|part| Value::Number(at(part).rem_euclid(360.0)))
+            .collect(),
+        _ => (0..=parts).map(|part| Value::Number(at(part))).collect(),
+    };
+    values.push(here);
+    values
 }
 
-impl Case {
-    fn task(&self) -> Option<Arc<TaskSpec>> {
-        let read_if = self
-            .read_if
-            .as_ref()
-            .map_or_else(String::new, |text| format!(r#", "read_if": {text:?}"#));
-        let [a, b] = self.defaults;
-        let text = format!(
-            r#"{{ "name": "t", "require": {:?}, "variants": {{ "here": {{}} }}, "parameters": {{
-                "a": {{ "role": "variant", "type": "number", "affects": ["T"], "range": [0, 1], "default": {a} }},
-                "b": {{ "role": "variant", "type": "number", "affects": ["T"], "range": [0, 1], "default": {b}{read_if} }},
-                "word": {{ "role": "variant", "type": "string", "affects": ["T"], "choices": ["x", "y", "z"], "default": "x" }} }} }}"#,
-            self.require
-        );
-        // Where the defaults break a requirement there is no variant to go from.
-        TaskSpec::from_json("t", &text).ok()
+/// How far apart two variants are in a parameter, as a share of its range; words and truth values are equal or 1 apart.
+fn apart(from: &Variant, to: &Variant, name: &str) -> f64 {
+    let parameter = &from.task().parameters()[name];
+    let [low, high] = parameter.range.unwrap_or([0.0, 1.0]);
+    let (a, b) = (from.value_as_read(name), to.value_as_read(name));
+    match (a.as_deref(), b.as_deref()) {
+        (Some(Value::Number(a)), Some(Value::Number(b))) if parameter.kind == ParameterType::Heading => {
+            let turn = (a - b).rem_euclid(360.0);
+            turn.min(360.0 - turn) / 180.0
+        }
+        (Some(Value::Number(a)), Some(Value::Number(b))) => (a - b).abs() / (high - low),
+        (Some(Value::Integer(a)), Some(Value::Integer(b))) => (a - b).abs() as f64 / (high - low),
+        (Some(Value::Vector(a)), Some(Value::Vector(b))) => {
+            let squares: f64 = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum();
+            (squares / a.len() as f64).sqrt() / (high - low)
+        }
+        (Some(Value::Color(a)), Some(Value::Color(b))) => a.distance(*b),
+        (Some(Value::Point(a)), Some(Value::Point(b))) => libm::hypot(a[0] - b[0], a[1] - b[1]) / 40.0,
+        (Some(Value::Distribution(a)), Some(Value::Distribution(b))) => {
+            let mean = |variant: &Variant, law| variant.settle(law).mean().expect("it draws numbers");
+            (mean(from, a) - mean(to, b)).abs()
+        }
+        (a, b) => f64::from(u8::from(a != b)),
     }
 }
 
-/// One for a number moved over its whole range and for another word, as far as they are read.
-fn distance(from: &Variant, to: &Variant) -> f64 {
-    let apart = |name: &str| match (from.value_as_read(name).as_deref(), to.value_as_read(name).as_deref()) {
-        (Some(Value::Number(a)), Some(Value::Number(b))) => (a - b).abs(),
-        (a, b) => f64::from(u8::from(a != b)),
+/// The Wasserstein-1 distance of the uniform laws from `lo` to `hi`, which count by what is drawn from them.
+fn drawn_apart(from: &Variant, to: &Variant) -> f64 {
+    let number = |variant: &Variant, name| variant.value(name).and_then(Value::as_number);
+    let ends = |name| Some(number(from, name)? - number(to, name)?);
+    let (Some(low), Some(high)) = (ends("lo"), ends("hi")) else {
+        return 0.0;
     };
-    NAMES.iter().map(|name| apart(name)).sum()
+    if low * high >= 0.0 {
+        return f64::midpoint(low.abs(), high.abs());
+    }
+    // The quantiles cross: two triangles.
+    (low * low + high * high) / (2.0 * (low.abs() + high.abs()))
 }
 
-fn changed(from: &Variant, to: &Variant) -> Vec<&'static str> {
-    NAMES
-        .into_iter()
-        .filter(|name| from.value(name) != to.value(name))
-        .collect()
+/// The sum over all parameters, as `similarity` has it.
+fn distance(from: &Variant, to: &Variant, names: &[String]) -> f64 {
+    let by_value = names.iter().filter(|name| *name != "lo" && *name != "hi");
+    by_value.map(|name| apart(from, to, name)).sum::<f64>() + drawn_apart(from, to)
 }
 
-/// The distance of every variant on a grid that the task allows, and how many parameters it changes.
-fn on_a_grid(from: &Variant) -> Vec<(f64, usize)> {
-    let numbers = |name: &str| {
-        let here = from.value(name).cloned();
-        let grid = (0..=PARTS).map(|part| Value::Number(f64::from(part) / f64::from(PARTS)));
-        here.into_iter().chain(grid).collect::<Vec<_>>()
+fn changed<'a>(from: &Variant, to: &Variant, names: &'a [String]) -> Vec<&'a String> {
+    names.iter().filter(|name| from.value(name) != to.value(name)).collect()
+}
+
+/// Distances to nine digits.
+type Digits = u64;
+
+fn digits(distance: f64) -> Digits {
+    (distance * 1e9).round() as Digits
+}
+
+/// Every distance of a grid over what the task allows, with the fewest parameters that it is reached by.
+fn on_a_grid(from: &Variant, names: &[String]) -> BTreeMap<Digits, usize> {
+    let smooth = |name: &&String| {
+        let parameter = &from.task().parameters()[*name];
+        parameter.range.is_some() && parameter.kind != ParameterType::Integer
     };
-    let mut found = Vec::new();
-    for a in numbers("a") {
-        for b in numbers("b") {
-            for word in ["x", "y", "z"] {
-                let values = [a.clone(), b.clone(), Value::Text(word.to_owned())];
-                if let Ok(variant) = from.with("grid", NAMES.map(str::to_owned).into_iter().zip(values)) {
-                    found.push((distance(from, &variant), changed(from, &variant).len()));
-                }
-            }
+    let axes: usize = names
+        .iter()
+        .filter(smooth)
+        .map(|name| 1 + usize::from(name == "pays"))
+        .sum();
+    let parts = [1, 40, 12, 6, 4, 3].get(axes).copied().unwrap_or(2);
+    let grids: Vec<Vec<Value>> = names.iter().map(|name| grid_of(from, name, parts)).collect();
+    let mut found = BTreeMap::new();
+    for number in 0..grids.iter().map(Vec::len).product() {
+        let mut left: usize = number;
+        let mut value = |grid: &Vec<Value>| {
+            let value = grid[left % grid.len()].clone();
+            left /= grid.len();
+            value
+        };
+        let values: Vec<Value> = grids.iter().map(&mut value).collect();
+        if let Ok(variant) = from.with("grid", names.iter().cloned().zip(values)) {
+            let count = changed(from, &variant, names).len();
+            let fewest = found.entry(digits(distance(from, &variant, names))).or_insert(count);
+            *fewest = count.min(*fewest);
         }
     }
     found
 }
 
-fn requirement() -> impl Strategy<Value = String> {
-    let bound = || (1..20_u32).prop_map(|twentieths| f64::from(twentieths) / 20.0);
-    prop_oneof![
-        bound().prop_map(|bound| format!("a < {bound}")),
-        bound().prop_map(|bound| format!("b >= {bound}")),
-        bound().prop_map(|bound| format!("a + b <= {}", 2.0 * bound)),
-        bound().prop_map(|bound| format!("a - b <= {bound}")),
-        bound().prop_map(|bound| format!("word == 'x' or a > {bound}")),
-        bound().prop_map(|bound| format!("word != 'y' or b < {bound}")),
-        bound().prop_map(|bound| format!("a < {bound} or b > {bound}")),
-    ]
-}
-
-fn case() -> impl Strategy<Value = Case> {
-    let value = || (0..=10_u32).prop_map(|tenths| f64::from(tenths) / 10.0);
-    let read_if = prop::sample::select(vec![None, Some("word == 'x'"), Some("word == 'y'"), Some("a > 0.5")]);
-    ((value(), value()), prop::collection::vec(requirement(), 1..4), read_if).prop_map(|((a, b), require, read_if)| {
-        Case {
-            defaults: [a, b],
-            require,
-            read_if: read_if.map(str::to_owned),
-        }
-    })
-}
-
-fn whole() -> Subject {
-    Subject::Parameters(NAMES.map(str::to_owned).to_vec())
-}
-
-/// Which distance is asked for: one of the grid's, the farthest of them, or one that nothing has.
-#[derive(Clone, Copy)]
-enum Asked {
-    Drawn(prop::sample::Index),
-    Farthest,
-    Beyond,
-}
-
-/// A distance that the grid has is found by as few changes; beyond what it has, the error names no less than its farthest.
-fn check(case: &Case, asked: Asked) -> Result<bool, TestCaseError> {
-    let Some(task) = case.task() else { return Ok(false) };
-    let from = task.variant("here").expect("it is declared");
-    let grid = on_a_grid(&from);
-    let farthest = grid
-        .iter()
-        .fold(0.0_f64, |farthest, (distance, _)| farthest.max(*distance));
-    let target = match asked {
-        Asked::Drawn(which) => which.get(&grid).0,
-        Asked::Farthest => farthest,
-        Asked::Beyond => 9.0,
-    };
-    let found = at_distance(&from, &whole(), target, TOLERANCE, |other| distance(&from, other));
-    if let (Asked::Beyond, Err(GeneratorError::TooFar { farthest: most, .. })) = (asked, &found) {
-        prop_assert!(
-            *most >= farthest - 1e-9,
-            "found at most {most}, the grid has {farthest}"
-        );
-        return Ok(true);
+/// The least above 0, the largest, and others evenly in between, each a little off.
+fn asked(grid: &BTreeMap<Digits, usize>, numbers: &mut Numbers, most: usize) -> Vec<Digits> {
+    let all: Vec<Digits> = grid.keys().copied().filter(|distance| *distance > 0).collect();
+    if all.len() <= most {
+        return all;
     }
-    let found = found.map_err(|error| TestCaseError::fail(format!("{error}; the grid has {target}")))?;
-    prop_assert!((distance(&from, &found.variant) - target).abs() <= TOLERANCE);
-    let as_far = grid.iter().filter(|(distance, _)| (distance - target).abs() < 1e-9);
-    let fewest = as_far.map(|(_, count)| *count).min().expect("it is one of them");
-    let changes = changed(&from, &found.variant);
-    prop_assert!(
-        changes.len() <= fewest,
-        "{target}: {changes:?}, the grid changes {fewest}"
+    let (step, last) = ((all.len() - 2) as f64 / (most - 2) as f64, all.len() - 1);
+    let between = (0..most - 2).map(|k| all[(1.0 + (k as f64 + numbers.share()) * step) as usize]);
+    let mut asked: Vec<Digits> = [all[0], all[last]].into_iter().chain(between).collect();
+    asked.dedup();
+    asked
+}
+
+/// What is wrong with the answer for a distance that the grid reaches by so many changes.
+fn fault(from: &Variant, names: &[String], target: f64, fewest: usize) -> Option<String> {
+    let measure = |other: &Variant| distance(from, other, names);
+    let found = match at_distance(from, &Subject::Parameters(names.to_vec()), target, TOLERANCE, measure) {
+        Ok(found) => found.variant,
+        Err(error) => return Some(format!("{error}; the grid has {target} by {fewest} changes")),
+    };
+    let is_allowed = from.with(
+        "again",
+        found
+            .values()
+            .iter()
+            .filter(|(name, _)| names.contains(name))
+            .map(|(name, value)| (name.clone(), value.clone())),
     );
-    for name in changes.into_iter().filter(|name| !found.variant.reads(name)) {
-        let back = from.value(name).cloned().map(|value| (name.to_owned(), value));
-        prop_assert!(
-            found.variant.with("back", back).is_err(),
-            "nothing reads {name} and nothing forbids it"
-        );
+    if is_allowed.is_err() || (measure(&found) - target).abs() > TOLERANCE {
+        return Some(format!("{target}: found {}, {is_allowed:?}", measure(&found)));
     }
-    Ok(true)
+    let changes = changed(from, &found, names);
+    if changes.len() > fewest {
+        return Some(format!("{target}: changes {changes:?}, the grid {fewest}"));
+    }
+    let idle = changes.into_iter().filter(|name| !found.reads(name)).find(|name| {
+        let back = from.value(name).cloned().map(|value| ((*name).clone(), value));
+        found
+            .with("back", back)
+            .is_ok_and(|back| (measure(&back) - target).abs() <= TOLERANCE)
+    });
+    idle.map(|name| format!("{target}: nothing reads {name}, and nothing forbids that it stays"))
 }
 
-/// A tenth of the 500 specs: tests that run side by side.
-fn check_fifty(seed: u8) {
-    let algorithm = prop::test_runner::RngAlgorithm::ChaCha;
-    let rng = prop::test_runner::TestRng::from_seed(algorithm, &[seed; 32]);
-    let mut runner = prop::test_runner::TestRunner::new_with_rng(ProptestConfig::default(), rng);
-    let mut num_checked = 0;
-    while num_checked < 50 {
-        let drawn = (case(), any::<prop::sample::Index>())
-            .new_tree(&mut runner)
-            .expect("it can be drawn");
-        let (case, which) = prop::strategy::ValueTree::current(&drawn);
-        let asked = match num_checked % 25 {
-            24 => Asked::Beyond,
-            odd if odd % 2 == 1 => Asked::Farthest,
-            _ => Asked::Drawn(which),
+/// Whether the error beyond all that there is names no less than the grid's farthest.
+fn fault_beyond(from: &Variant, names: &[String], farthest: f64) -> Option<String> {
+    let measure = |other: &Variant| distance(from, other, names);
+    match at_distance(from, &Subject::Parameters(names.to_vec()), 50.0, TOLERANCE, measure) {
+        Err(GeneratorError::TooFar { farthest: most, .. }) if most >= farthest - 1e-9 => None,
+        Err(GeneratorError::NoneBetween { .. }) => None,
+        other => Some(format!("50: found {other:?}, the grid's farthest is {farthest}")),
+    }
+}
+
+/// Asks so many drawn tasks for many distances each; what is wrong with the answers.
+fn faults(seed: u64, tasks: usize, most: usize) -> Vec<String> {
+    let mut numbers = Numbers(seed);
+    let (mut found, mut checked) = (Vec::new(), 0);
+    while checked < tasks {
+        let Drawn { text, names } = Drawn::new(&mut numbers);
+        // Where the variant breaks a requirement there is none to go from.
+        let Ok(task) = TaskSpec::from_json("t", &text) else {
+            continue;
         };
-        match check(&case, asked) {
-            Ok(is_checked) => num_checked += u32::from(is_checked),
-            Err(error) => panic!("{case:?}: {error}"),
+        let from = task.variant("here").expect("it is declared");
+        let grid = on_a_grid(&from, &names);
+        // Nothing but the variant itself is allowed.
+        if grid.len() < 2 {
+            continue;
+        }
+        checked += 1;
+        let as_number = |digits: Digits| digits as f64 / 1e9;
+        let asked = asked(&grid, &mut numbers, most);
+        let mut wrong: Vec<String> = asked
+            .iter()
+            .filter_map(|target| fault(&from, &names, as_number(*target), grid[target]))
+            .collect();
+        let farthest = *grid.keys().next_back().expect("it has one");
+        wrong.extend(fault_beyond(&from, &names, as_number(farthest)));
+        if !wrong.is_empty() {
+            found.push(format!("{text}\n  {}", wrong.join("\n  ")));
         }
     }
+    found
 }
 
-macro_rules! fifties {
-    ($($name:ident: $seed:literal,)*) => {
-        /// What a search of everything finds is found, by as few changes.
-        mod what_a_grid_finds_is_found_by_as_few_changes {
-            $(
-                #[test]
-                fn $name() {
-                    super::check_fifty($seed);
-                }
-            )*
-        }
+#[track_caller]
+fn check(seed: u64, tasks: usize, most: usize) {
+    let faults = faults(seed, tasks, most);
+    assert!(
+        faults.is_empty(),
+        "{} of {tasks} tasks:\n{}",
+        faults.len(),
+        faults.join("\n")
+    );
+}
+
+/// Tests of so many tasks each, which run side by side.
+macro_rules! drawn_tasks {
+    ($tasks:literal: $($name:ident: $seed:literal,)*) => {
+        $(
+            #[test]
+            fn $name() {
+                super::check($seed, $tasks, super::DISTANCES);
+            }
+        )*
     };
 }
 
-fifties! {
-    in_the_first_fifty: 1,
-    in_the_second_fifty: 2,
-    in_the_third_fifty: 3,
-    in_the_fourth_fifty: 4,
-    in_the_fifth_fifty: 5,
-    in_the_sixth_fifty: 6,
-    in_the_seventh_fifty: 7,
-    in_the_eighth_fifty: 8,
-    in_the_ninth_fifty: 9,
-    in_the_tenth_fifty: 10,
+/// What a search of everything finds is found, by as few changes.
+mod what_a_grid_finds_is_found_by_as_few_changes {
+    drawn_tasks! {
+        4:
+        in_the_first_four: 1,
+        in_the_second_four: 2,
+        in_the_third_four: 3,
+        in_the_fourth_four: 4,
+    }
+
+    #[test]
+    #[ignore = "500 tasks take minutes: cargo nextest run -p driftworld-generator --run-ignored only"]
+    fn in_five_hundred() {
+        super::check(1000, 500, super::DISTANCES);
+    }
 }
 
 #[test]
 fn the_parameter_that_alone_will_do_is_changed_alone() {
-    let case = Case {
-        defaults: [0.2, 0.5],
-        require: vec!["a <= 0.6".to_owned()],
-        read_if: None,
-    };
-    let task = case.task().expect("its defaults are allowed");
+    let text = r#"{ "name": "t", "require": ["a <= 0.6"], "variants": { "here": {} }, "parameters": {
+        "a": { "role": "variant", "type": "number", "affects": ["T"], "range": [0, 1], "default": 0.2 },
+        "b": { "role": "variant", "type": "number", "affects": ["T"], "range": [0, 1], "default": 0.5 },
+        "word": { "role": "variant", "type": "string", "affects": ["T"], "choices": ["x", "y", "z"], "default": "x" } } }"#;
+    let task = TaskSpec::from_json("t", text).expect("its defaults are allowed");
     let from = task.variant("here").expect("it is declared");
+    let names = ["a", "b", "word"].map(str::to_owned);
     let find = |target: f64| {
         let found = at_distance(&from, &Subject::Element(Element::T), target, 1e-6, |other| {
-            distance(&from, other)
+            distance(&from, other, &names)
         });
-        changed(&from, &found.expect("it is allowed").variant)
+        changed(&from, &found.expect("it is allowed").variant, &names)
     };
     assert_eq!(find(0.1), ["a"]);
     assert_eq!(find(0.5), ["b"], "a cannot go as far");
     assert_eq!(find(1.0), ["word"]);
     assert_eq!(find(1.2), ["a", "word"]);
+}
+
+#[test]
+fn a_vector_goes_to_the_corner_that_lies_farthest() {
+    let text = r#"{ "name": "t", "variants": { "here": {} }, "parameters": {
+        "pays": { "role": "variant", "type": "vector", "affects": ["T"], "range": [-10, 10], "default": [8, -8] } } }"#;
+    let task = TaskSpec::from_json("t", text).expect("it is sound");
+    let from = task.variant("here").expect("it is declared");
+    let names = ["pays".to_owned()];
+    let find = |target| {
+        at_distance(&from, &Subject::Element(Element::T), target, 1e-6, |other| {
+            distance(&from, other, &names)
+        })
+    };
+    assert!(find(0.89).is_ok());
+    let Err(GeneratorError::TooFar { farthest, .. }) = find(0.95) else {
+        panic!("both numbers can go 18 of 20 and no farther")
+    };
+    assert!((farthest - 0.9).abs() < 1e-9, "{farthest}");
+}
+
+#[test]
+fn a_number_that_decides_what_is_read_is_moved_for_the_sake_of_another() {
+    let text = r#"{ "name": "t", "variants": { "here": { "hi": 0.4, "m": 1, "word": "x" } }, "parameters": {
+        "lo": { "role": "variant", "affects": ["T"], "type": "number", "range": [0, 1], "default": 0.1 },
+        "hi": { "role": "variant", "affects": ["T"], "type": "number", "range": [0, 1], "default": 0.4 },
+        "m": { "role": "variant", "affects": ["T"], "type": "integer", "range": [-3, 8], "default": 1, "read_if": "lo <= 0.05" },
+        "arc": { "role": "variant", "affects": ["T"], "type": "heading", "range": [300, 420], "default": 350 },
+        "word": { "role": "variant", "affects": ["T"], "type": "string", "choices": ["x", "y", "z"], "default": "x" },
+        "law": { "role": "variant", "affects": ["T"], "type": "distribution", "default": { "constant": { "value": 0.2 } },
+                 "choices": [{ "constant": { "value": 0.2 } }, { "uniform": { "low": 0, "high": 1 } }, { "normal": { "mean": 0.9, "std": 0.1 } }] },
+        "drawn": { "role": "randomized", "type": "number", "affects": ["T"],
+                   "distribution": { "uniform": { "low": { "param": "lo" }, "high": { "param": "hi" } } } } } }"#;
+    let task = TaskSpec::from_json("t", text).expect("it is sound");
+    let from = task.variant("here").expect("it is declared");
+    let names = ["lo", "hi", "m", "arc", "word", "law"].map(str::to_owned);
+    // 1 for the word, 0.7 for the law, 0.05 for lo at 0, which m is read for: five whole steps of eleven; the rest for the arc.
+    assert_eq!(fault(&from, &names, 2.482_323_232, 5), None);
 }

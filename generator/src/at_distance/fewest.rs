@@ -3,131 +3,134 @@
 
 use driftworld_spec::{Domain, ParameterType, Value, Variant};
 
-use super::{Changes, Found, Free, FreeParameters, MOST_COMBINATIONS, Search, Space};
+use super::level::Profiles;
+use super::reach::{Reach, Way};
+use super::space::Space;
+use super::{Found, FreeParameters, Search};
 
-/// The most variants that are looked at by straight ways, and the most where requirements cut them, for each number of parameters.
-const MOST_LOOKS: usize = 6_000;
+/// The most variants that are looked at by straight ways, the most where requirements cut them, both for each number of parameters, and
+/// how many it may be before larger numbers are not tried any more.
+const MOST_LOOKS: usize = 24_000;
 const MOST_SCANNED: usize = 24_000;
+const MOST_IN_ALL: usize = 200_000;
 
 /// The fewest variants that are looked at for each set of parameters whose straight way is cut.
-const FEWEST_SCANNED: usize = 600;
+const FEWEST_SCANNED: usize = 500;
+
+/// The most points that are worked out where distances add up, for each number of parameters; the most and the fewest for each way.
+const MOST_ON_LEVELS: usize = 40_000;
+const MOST_POINTS: usize = 400;
+const FEWEST_POINTS: usize = 24;
+
+/// The most variants that are looked at for a better answer once there is one.
+const MOST_FOR_BETTER: usize = 6_000;
 
 /// Shares of ranges that differ by less are equal.
 const EQUAL: f64 = 1e-6;
 
-/// Parameters that all change: the listed ones to these choices, the smooth ones to whatever meets the target.
-struct Way<'a> {
-    choices: Changes,
-    smooth: Vec<Free<'a>>,
-}
-
-/// The best of all answers; that change no more parameters than `found`, if there is one that meets the target.
+/// The best of all answers, if any was found.
 pub(super) fn fewest<'a, D: FnMut(&Variant) -> f64>(
     search: &mut Search<'a, D>,
     free: &FreeParameters<'a>,
-    found: Option<Found>,
 ) -> Option<Found> {
-    let found = found.map(|found| without_idle_changes(search, found));
-    let all = free.smooth.len() + free.listed.len();
-    let most = found
-        .as_ref()
-        .map_or(all, |found| changed(search.from, &found.variant).len());
-    for size in 0..most {
-        if let Some(better) = of_size(search, free, size) {
-            return Some(without_idle_changes(search, better));
+    let reach = Reach::new(search, free);
+    let mut profiles = Profiles::default();
+    for size in 0..=reach.len() {
+        if let Some(found) = of_size(search, &reach, &mut profiles, size) {
+            return Some(without_idle_changes(search, found));
+        }
+        if search.num_looks > MOST_IN_ALL {
+            break;
         }
     }
-    let (ways, mut best) = (ways(search.from, free, most), found);
-    straight(search, free, &ways, &mut best);
-    best.map(|best| without_idle_changes(search, best))
+    None
 }
 
 /// The best answer found that changes so many parameters.
 fn of_size<'a, D: FnMut(&Variant) -> f64>(
     search: &mut Search<'a, D>,
-    free: &FreeParameters<'a>,
+    reach: &Reach<'a>,
+    profiles: &mut Profiles,
     size: usize,
 ) -> Option<Found> {
-    let ways = ways(search.from, free, size);
+    let ways = reach.ways(search, size);
     let mut best = None;
-    let cut = straight(search, free, &ways, &mut best);
-    let budget = (MOST_SCANNED / cut.len().max(1)).max(FEWEST_SCANNED);
-    for way in cut.into_iter().take(MOST_SCANNED / FEWEST_SCANNED) {
-        if best.is_some() {
-            break;
-        }
-        search.nearest = None;
-        if search.scan(&Space::new(search.from, &way.smooth), &way.choices, budget) {
-            best = search.nearest.take();
+    let cut = straight(search, &ways, &mut best);
+    eprintln!("DBG size {size} ways {} cut {} best {} looks {}", ways.len(), cut.len(), best.is_some(), search.num_looks);
+    if best.is_some() {
+        return best;
+    }
+    let sums = || cut.iter().filter(|way| way.are_tied.contains(&false));
+    let points = (MOST_ON_LEVELS / sums().count().max(1)).min(MOST_POINTS);
+    for points in [FEWEST_POINTS, points] {
+        let until = search.num_looks + MOST_ON_LEVELS;
+        for way in sums() {
+            let found = search.on_level(way, profiles, points);
+            if found.is_some() {
+                return found;
+            }
+            if search.num_looks > until {
+                break;
+            }
         }
     }
-    best
+    let budget = (MOST_SCANNED / cut.len().max(1)).max(FEWEST_SCANNED);
+    for way in cut.into_iter().take(MOST_SCANNED / FEWEST_SCANNED) {
+        search.nearest = None;
+        if search.scan(&Space::new(search.from, &way.smooth), &way.choices, budget) {
+            return search.nearest.take();
+        }
+    }
+    None
 }
 
 /// Goes every way straight; returns those that are cut off.
 fn straight<'w, 'a, D: FnMut(&Variant) -> f64>(
     search: &mut Search<'a, D>,
-    free: &FreeParameters,
     ways: &'w [Way<'a>],
     best: &mut Option<Found>,
 ) -> Vec<&'w Way<'a>> {
-    let until = search.num_looks + MOST_LOOKS;
+    let (until, until_better) = (search.num_looks + MOST_LOOKS, search.num_looks + MOST_FOR_BETTER);
     let mut cut = Vec::new();
+    let change = |search: &Search<D>, found: &Found| total_change(search.from, &found.variant);
     for way in ways {
+        if search.num_looks >= until_better && best.is_some() {
+            break;
+        }
         let refused = search.num_refused;
         search.nearest = None;
-        if search.num_looks < until && search.straight(&way.choices, &way.smooth) {
-            let found = search.nearest.take();
-            let change = |found: &Found| total_change(search.from, &found.variant);
-            let is_better = |new: &Found| best.as_ref().is_none_or(|best| change(new) < change(best) - EQUAL);
-            if found.as_ref().is_some_and(is_better) {
-                *best = found;
+        let found = match &way.smooth[..] {
+            [] => search
+                .look(way.choices.clone())
+                .filter(|found| search.meets(found))
+                .into_iter()
+                .collect(),
+            [(_, parameter)] if way.sum.is_some() && parameter.kind != ParameterType::Vector => {
+                search.along_a_line(&way.choices, way.smooth[0])
             }
-        } else if !way.smooth.is_empty() && (free.is_bent || search.num_refused > refused) {
-            cut.push(way);
+            smooth => {
+                let is_met = search.num_looks < until
+                    && if way.sum.is_some() {
+                        search.straight(&way.choices, smooth)
+                    } else {
+                        search.straight_to_corners(&way.choices, smooth)
+                    };
+                if !is_met && (way.sum.is_none() || search.num_refused > refused || search.num_looks >= until) {
+                    cut.push(way);
+                }
+                search.nearest.take().filter(|_| is_met).into_iter().collect::<Vec<_>>()
+            }
+        };
+        for found in found {
+            if best
+                .as_ref()
+                .is_none_or(|best| change(search, &found) < change(search, best) - EQUAL)
+            {
+                *best = Some(found);
+            }
         }
     }
     cut
-}
-
-/// Every set of so many parameters, with every choice of those that are listed, in the order of the task; bounded.
-fn ways<'a>(from: &Variant, free: &FreeParameters<'a>, size: usize) -> Vec<Way<'a>> {
-    let mut all = vec![Way {
-        choices: Changes::new(),
-        smooth: Vec::new(),
-    }];
-    let candidates: Vec<Free> = free.smooth.iter().chain(&free.listed).copied().collect();
-    // Longer ones are made of shorter ones by parameters that come later.
-    let mut last = vec![0];
-    for _ in 0..size {
-        let (mut longer, mut ends) = (Vec::new(), Vec::new());
-        for (way, start) in all.iter().zip(&last) {
-            for (place, (name, parameter)) in candidates.iter().enumerate().skip(*start) {
-                let mut add = |choice: Option<Value>| {
-                    let mut choices = way.choices.clone();
-                    let mut smooth = way.smooth.clone();
-                    match choice {
-                        Some(choice) => choices.push(((*name).to_owned(), choice)),
-                        None => smooth.push((name, parameter)),
-                    }
-                    longer.push(Way { choices, smooth });
-                    ends.push(place + 1);
-                };
-                match parameter.domain() {
-                    Some(Domain::Choices(choices)) => {
-                        let others = choices.into_iter().filter(|choice| from.value(name) != Some(choice));
-                        others.for_each(|choice| add(Some(choice)));
-                    }
-                    _ => add(None),
-                }
-            }
-            if longer.len() >= MOST_COMBINATIONS {
-                break;
-            }
-        }
-        (all, last) = (longer, ends);
-    }
-    all
 }
 
 /// The same without the changes that it meets the target without, those first that nothing reads.

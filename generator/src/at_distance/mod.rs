@@ -1,14 +1,19 @@
 //! A variant at a wanted distance from another. The distance is handed in; what it measures is `similarity`'s to say.
 
 mod fewest;
+mod level;
+mod line;
+mod reach;
 mod scan;
+mod space;
+mod straight;
 mod subject;
 
-use driftworld_spec::{Domain, Parameter, ParameterType, Value, Variant};
+use driftworld_spec::{Domain, Value, Variant};
 
 use crate::GeneratorError;
-use crate::interpolation::interpolate;
-use scan::{Scan, Space};
+use scan::Scan;
+use space::Space;
 pub use subject::Subject;
 use subject::{Free, FreeParameters, parameters_of};
 
@@ -18,9 +23,6 @@ const MOST_COMBINATIONS: usize = 4096;
 /// The most variants that are looked at where requirements cut off the straight way, and the fewest for each combination.
 const MOST_LOOKS: usize = 60_000;
 const FEWEST_LOOKS: usize = 1500;
-
-/// Halvings of a stretch before it is given up.
-const HALVINGS: u32 = 80;
 
 /// A variant that was found, and how far it is.
 #[derive(Clone, Debug)]
@@ -67,30 +69,22 @@ pub fn at_distance(
     let free = parameters_of(from, subject)?;
     let mut search = Search {
         from,
+        name: format!("{}@{}", from.name(), (target * 1e6).round() / 1e6),
         target,
         tolerance,
         distance,
         nearest: None,
+        nearest_of_all: None,
         farthest: None,
         num_looks: 0,
         num_refused: 0,
         is_complete: true,
     };
-    search.whole(&free);
-    let found = search.nearest.clone();
-    if !search.is_met()
-        && search
-            .farthest
-            .as_ref()
-            .is_none_or(|farthest| farthest.distance < target)
-    {
-        return search.finish();
-    }
-    let met = found.clone().filter(|found| search.meets(found));
-    if let Some(best) = fewest::fewest(&mut search, &free, met) {
+    if let Some(best) = fewest::fewest(&mut search, &free) {
         return Ok(best);
     }
-    search.nearest = found;
+    search.nearest = search.nearest_of_all.clone();
+    search.whole(&free);
     search.finish()
 }
 
@@ -130,10 +124,14 @@ fn with(changes: &Changes, more: &Changes) -> Changes {
 
 struct Search<'a, D> {
     from: &'a Variant,
+    /// What variants on the way are called.
+    name: String,
     target: f64,
     tolerance: f64,
     distance: D,
+    /// The nearest of the part that is being looked through.
     nearest: Option<Found>,
+    nearest_of_all: Option<Found>,
     farthest: Option<Found>,
     num_looks: usize,
     /// How many variants the task did not allow.
@@ -179,25 +177,6 @@ impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
         scan.run()
     }
 
-    /// Goes straight from a combination of choices to the ends; true if it meets the target.
-    fn straight(&mut self, combination: &Changes, smooth: &[Free]) -> bool {
-        let Some(base) = self.look(combination.clone()) else {
-            return false;
-        };
-        if self.meets(&base) {
-            return true;
-        }
-        let ends = self.farthest_ends(combination, smooth);
-        if ends.is_empty() {
-            return false;
-        }
-        let Some(end) = self.look(with(combination, &ends)) else {
-            return false;
-        };
-        let crosses = (base.distance - self.target) * (end.distance - self.target) <= 0.0;
-        self.meets(&end) || (crosses && self.halve(combination, &ends))
-    }
-
     /// Whether the nearest variant so far is near enough.
     fn is_met(&self) -> bool {
         self.nearest.as_ref().is_some_and(|nearest| self.meets(nearest))
@@ -206,16 +185,17 @@ impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
     /// Measures a variant and remembers it; `None` if the task does not allow it.
     fn look(&mut self, changes: Changes) -> Option<Found> {
         self.num_looks += 1;
-        let name = format!("{}@{}", self.from.name(), (self.target * 1e6).round() / 1e6);
-        let Ok(variant) = self.from.with(&name, changes) else {
+        let Ok(variant) = self.from.with(&self.name, changes) else {
             self.num_refused += 1;
             return None;
         };
         let distance = (self.distance)(&variant);
         let found = Found { variant, distance };
         let miss = |found: &Found| (found.distance - self.target).abs();
-        if self.nearest.as_ref().is_none_or(|nearest| miss(&found) < miss(nearest)) {
-            self.nearest = Some(found.clone());
+        for nearest in [&mut self.nearest, &mut self.nearest_of_all] {
+            if nearest.as_ref().is_none_or(|nearest| miss(&found) < miss(nearest)) {
+                *nearest = Some(found.clone());
+            }
         }
         if self
             .farthest
@@ -227,62 +207,21 @@ impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
         Some(found)
     }
 
+    /// The distance of a variant that need not meet the requirements; `None` if nothing could be drawn from it.
+    fn beyond(&mut self, changes: Changes) -> Option<f64> {
+        self.num_looks += 1;
+        let variant = self.from.beyond_requirements(&self.name, changes).ok()?;
+        Some((self.distance)(&variant))
+    }
+
     fn meets(&self, found: &Found) -> bool {
         (found.distance - self.target).abs() <= self.tolerance
-    }
-
-    /// The ends of the ranges that lie farthest beside a combination of choices, taken parameter by parameter.
-    fn farthest_ends(&mut self, combination: &Changes, smooth: &[Free]) -> Changes {
-        let mut ends = Changes::new();
-        for (name, parameter) in smooth {
-            let options = ends_of(self.from, name, parameter);
-            let mut best: Option<(f64, Value)> = None;
-            for value in options {
-                let change = vec![((*name).to_owned(), value.clone())];
-                let Some(found) = self.look(with(combination, &with(&ends, &change))) else {
-                    continue;
-                };
-                if best.as_ref().is_none_or(|best| found.distance > best.0) {
-                    best = Some((found.distance, value));
-                }
-            }
-            ends.extend(best.map(|(_, value)| ((*name).to_owned(), value)));
-        }
-        ends
-    }
-
-    /// Halves the stretch to the ends until it meets the target; false if it cannot.
-    fn halve(&mut self, combination: &Changes, ends: &Changes) -> bool {
-        let (mut low, mut high) = (0.0, 1.0);
-        let Some(start) = self.look(combination.clone()) else {
-            return false;
-        };
-        for _ in 0..HALVINGS {
-            let t = f64::midpoint(low, high);
-            let between = ends.iter().map(|(name, end)| {
-                let parameter = &self.from.task().parameters()[name];
-                let value = self.from.value(name).expect("variant parameters have values");
-                let between = interpolate(parameter, false, value, end, t, (self.from, self.from));
-                (name.clone(), between.unwrap_or_else(|| end.clone()))
-            });
-            let changes = with(combination, &between.collect());
-            let Some(found) = self.look(changes) else { return false };
-            if self.meets(&found) {
-                return true;
-            }
-            if (found.distance < self.target) == (start.distance < self.target) {
-                low = t;
-            } else {
-                high = t;
-            }
-        }
-        false
     }
 
     /// The nearest variant if it meets the target, else what came of the search.
     fn finish(&mut self) -> Result<Found, GeneratorError> {
         let (target, variant) = (self.target, self.from.id());
-        let (Some(nearest), Some(farthest)) = (self.nearest.clone(), self.farthest.clone()) else {
+        let (Some(nearest), Some(farthest)) = (self.nearest_of_all.clone(), self.farthest.clone()) else {
             return Err(GeneratorError::NothingToVary {
                 variant,
                 asked: "variants that the task allows".to_owned(),
@@ -309,23 +248,6 @@ impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
             values,
         })
     }
-}
-
-/// What a number could be at the most: the ends of its range; of a heading also the opposite direction.
-fn ends_of(from: &Variant, name: &str, parameter: &Parameter) -> Vec<Value> {
-    let Some(Domain::Range([low, high])) = parameter.domain() else {
-        return Vec::new();
-    };
-    let at = |end: f64| match from.value(name) {
-        Some(Value::Integer(_)) => Value::Integer(end.round() as i64),
-        Some(Value::Vector(numbers)) => Value::Vector(vec![end; numbers.len()]),
-        _ => Value::Number(end),
-    };
-    if parameter.kind == ParameterType::Heading {
-        let here = from.value(name).and_then(Value::as_number).unwrap_or(low);
-        return vec![Value::Number((here + 180.0).rem_euclid(360.0)), at(low), at(high)];
-    }
-    vec![at(low), at(high)]
 }
 
 /// The values in which a variant differs from another.

@@ -5,12 +5,17 @@
 //! is the wanted distance between two points on either side of it. From the points that came nearest it goes on in all directions by
 //! ever smaller steps. Nothing is drawn by chance: the same arguments find the same variant.
 
-use driftworld_spec::{Domain, ParameterType, Value, Variant};
+use driftworld_spec::Variant;
 
-use super::{Changes, Free, Search, with};
+use super::space::{Axis, Point, Space};
+use super::{Changes, Search, with};
 
 /// Points on each line but the first.
 const PARTS: usize = 32;
+
+/// A budget that does not last for a close look at every line: then all of the box is looked at coarsely first.
+const LITTLE: usize = 3000;
+const PARTS_OF_LITTLE: usize = 3;
 
 /// Halvings towards a border, and towards the wanted distance.
 const HALVINGS: u32 = 48;
@@ -27,144 +32,6 @@ const PAIRS: usize = 24;
 /// The most axes whose diagonals are tried, too.
 const MOST_DIAGONAL: usize = 8;
 
-/// One number that may move.
-pub(super) struct Axis {
-    /// The parameter, by its place among those that move.
-    owner: usize,
-    place: Option<usize>,
-    here: f64,
-    low: f64,
-    high: f64,
-    is_whole: bool,
-}
-
-/// The numbers that may move, and the parameters that they are of.
-pub(super) struct Space<'a> {
-    from: &'a Variant,
-    owners: Vec<Free<'a>>,
-    axes: Vec<Axis>,
-}
-
-/// A number for each axis.
-type Point = Vec<f64>;
-
-/// A point that the task allows, and its distance.
-type Seen = (Point, f64);
-
-impl<'a> Space<'a> {
-    pub(super) fn new(from: &'a Variant, smooth: &[Free<'a>]) -> Self {
-        let mut axes = Vec::new();
-        for (owner, (name, parameter)) in smooth.iter().enumerate() {
-            let (Some(Domain::Range([low, high])), Some(value)) = (parameter.domain(), from.value(name)) else {
-                continue;
-            };
-            let mut axis = |place, here, high| {
-                axes.push(Axis {
-                    owner,
-                    place,
-                    here,
-                    low,
-                    high,
-                    is_whole: matches!(value, Value::Integer(_)),
-                });
-            };
-            match value {
-                Value::Vector(numbers) => {
-                    for (place, here) in numbers.iter().enumerate() {
-                        axis(Some(place), *here, high);
-                    }
-                }
-                // An arc may lead across north: along it, from its low end.
-                Value::Number(here) if parameter.kind == ParameterType::Heading => {
-                    let arc = (high - low).min(360.0);
-                    axis(None, low + (here - low).rem_euclid(360.0).min(arc), low + arc);
-                }
-                other => axis(None, other.as_number().unwrap_or(low), high),
-            }
-        }
-        Self {
-            from,
-            owners: smooth.to_vec(),
-            axes,
-        }
-    }
-
-    fn here(&self) -> Point {
-        self.axes.iter().map(|axis| axis.here).collect()
-    }
-
-    /// What a point changes.
-    fn changes(&self, point: &[f64]) -> Changes {
-        let mut changes = Changes::new();
-        for (axis, number) in self.axes.iter().zip(point) {
-            if *number == axis.here {
-                continue;
-            }
-            let (name, parameter) = self.owners[axis.owner];
-            if axis.place.is_some() && changes.last().is_none_or(|(last, _)| last != name) {
-                changes.extend(self.from.value(name).map(|value| (name.to_owned(), value.clone())));
-            }
-            match (axis.place, changes.last_mut()) {
-                (Some(place), Some((_, Value::Vector(numbers)))) => numbers[place] = *number,
-                _ if axis.is_whole => changes.push((name.to_owned(), Value::Integer(number.round() as i64))),
-                _ if parameter.kind == ParameterType::Heading => {
-                    changes.push((name.to_owned(), Value::Number(number.rem_euclid(360.0))));
-                }
-                _ => changes.push((name.to_owned(), Value::Number(*number))),
-            }
-        }
-        changes
-    }
-
-    /// How many different numbers an axis is looked at by: all of a short range of whole numbers.
-    fn parts(&self, axis: usize, most: usize) -> usize {
-        let Axis {
-            low, high, is_whole, ..
-        } = &self.axes[axis];
-        if *is_whole {
-            (((high - low) as usize).max(1)).min(most)
-        } else {
-            most
-        }
-    }
-
-    fn at(&self, axis: usize, part: usize, parts: usize) -> f64 {
-        let Axis { low, high, .. } = &self.axes[axis];
-        if part == parts {
-            return *high;
-        }
-        low + (high - low) * part as f64 / parts as f64
-    }
-
-    /// Points that lines along one axis lead through: those of a grid over all other axes, coarser the more axes there are.
-    fn anchors(&self, along: usize) -> Vec<Point> {
-        let most = match self.axes.len() {
-            0..=2 => 16,
-            3 => 6,
-            4 => 3,
-            5 => 2,
-            // Too many for a grid: the axes through where the variant is, and through the middle and both corners.
-            _ => {
-                let of = |part: usize| (0..self.axes.len()).map(|axis| self.at(axis, part, 2)).collect();
-                return vec![of(0), of(1), of(2)];
-            }
-        };
-        let mut anchors = vec![self.here()];
-        for axis in (0..self.axes.len()).filter(|axis| *axis != along) {
-            let parts = self.parts(axis, most);
-            let moved = |anchor: Point| {
-                (0..=parts).map(move |part| {
-                    let mut moved = anchor.clone();
-                    moved[axis] = self.at(axis, part, parts);
-                    moved
-                })
-            };
-            anchors = anchors.into_iter().flat_map(moved).collect();
-        }
-        anchors
-    }
-}
-
 /// The directions of small steps: along each axis, and along the diagonals of each pair of few.
 fn directions(axes: usize) -> Vec<Vec<(usize, f64)>> {
     let mut found = Vec::new();
@@ -177,6 +44,9 @@ fn directions(axes: usize) -> Vec<Vec<(usize, f64)>> {
     }
     found
 }
+
+/// A point that the task allows, and its distance.
+type Seen = (Point, f64);
 
 /// A search through one combination of choices.
 pub(super) struct Scan<'s, 'a, D> {
@@ -207,6 +77,13 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
             return Ok(());
         }
         seen.extend(self.look(&here)?.map(|distance| (here.clone(), distance)));
+        if self.budget < LITTLE && self.space.axes.len() > 1 {
+            for along in 0..self.space.axes.len() {
+                for anchor in self.space.anchors(along, PARTS_OF_LITTLE) {
+                    self.line(&anchor, along, PARTS / 2, &mut seen)?;
+                }
+            }
+        }
         for along in 0..self.space.axes.len() {
             self.line(&here, along, 4 * PARTS, &mut seen)?;
         }
@@ -216,7 +93,7 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
             return Ok(());
         }
         for along in 0..self.space.axes.len() {
-            for anchor in self.space.anchors(along) {
+            for anchor in self.space.anchors(along, PARTS) {
                 self.line(&anchor, along, PARTS, &mut seen)?;
             }
         }

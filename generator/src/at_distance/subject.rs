@@ -44,6 +44,8 @@ pub(super) type Free<'a> = (&'a str, &'a Parameter);
 pub(super) struct FreeParameters<'a> {
     pub(super) smooth: Vec<Free<'a>>,
     pub(super) listed: Vec<Free<'a>>,
+    /// Those that decide what is read, or are read under a condition.
+    pub(super) tied: Vec<&'a str>,
     /// Whether the distance may fail to grow evenly where all numbers move together: one decides what is read, or goes in whole steps.
     pub(super) is_bent: bool,
 }
@@ -76,12 +78,22 @@ pub(super) fn parameters_of<'a>(from: &'a Variant, subject: &Subject) -> Result<
             .values()
             .filter_map(|parameter| parameter.read_if.as_ref())
     };
+    let is_word = |text: &str, name: &str| {
+        let mut words = text.split(|character: char| !(character.is_alphanumeric() || character == '_'));
+        words.any(|word| word == name)
+    };
+    let decides = |name: &str| conditions().any(|text| is_word(text, name));
+    let tied = free
+        .iter()
+        .filter(|(name, parameter)| parameter.read_if.is_some() || decides(name))
+        .map(|(name, _)| *name)
+        .collect();
     let (smooth, listed): (Vec<Free>, Vec<Free>) = free
         .into_iter()
         .partition(|(_, parameter)| matches!(parameter.domain(), Some(Domain::Range(_))));
-    let decides = |name: &str| conditions().any(|text| text.contains(name));
     let is_whole = |parameter: &Parameter| parameter.kind == ParameterType::Integer && smooth.len() > 1;
     Ok(FreeParameters {
+        tied,
         is_bent: smooth
             .iter()
             .any(|(name, parameter)| decides(name) || is_whole(parameter)),

@@ -26,6 +26,7 @@ impl ObjectFeatures {
     /// In Oklab; an object with the colours of its asset is 1 from any other.
     pub(super) fn color_distance(&self, other: &Self) -> f64 {
         match (self.color, other.color) {
+            (Some(a), Some(b)) if a.0 == b.0 => 0.0,
             (Some(a), Some(b)) => a.distance(b),
             (None, None) => 0.0,
             _ => 1.0,
@@ -34,17 +35,52 @@ impl ObjectFeatures {
 
     /// What it costs to match two objects of one class: how far apart they are in everything but what they pay, which only
     /// decides between matches that are equally cheap else. A metric.
+    #[cfg(test)]
     fn cost(&self, other: &Self) -> f64 {
+        self.cost_of_place(other) + self.cost_of_kind(other)
+    }
+
+    fn cost_of_place(&self, other: &Self) -> f64 {
+        self.metres(other) * (1.0 / UNIT_OF_PLACE)
+            + turn(self.heading, other.heading) * (1.0 / 180.0)
+            + relative_difference(self.scale, other.scale)
+    }
+
+    /// The same for all objects of two kinds.
+    fn cost_of_kind(&self, other: &Self) -> f64 {
+        if self.kind == other.kind {
+            return 0.0;
+        }
         let pays = (self.reward - other.reward).abs() / UNIT_OF_REWARD + (self.odds - other.odds).abs();
-        self.metres(other) / UNIT_OF_PLACE
-            + turn(self.heading, other.heading) / 180.0
-            + self.motion.distance(&other.motion)
+        self.motion.distance(&other.motion)
             + self.body.distance(&other.body)
             + self.paid_for.distance(&other.paid_for)
             + self.color_distance(other)
             + self.model.distance(&other.model)
-            + relative_difference(self.scale, other.scale)
             + TIE_BREAK * pays.min(1.0)
+    }
+}
+
+/// How many pairs of kinds are remembered while two sets are matched.
+const REMEMBERED: usize = 64;
+
+/// What pairs of kinds cost, each worked out when it is met first: worlds have many objects of few kinds.
+struct Kinds([(u32, u32, f64); REMEMBERED]);
+
+impl Kinds {
+    fn new() -> Self {
+        // No kind has the number that stands for none.
+        Self([(u32::MAX, u32::MAX, 0.0); REMEMBERED])
+    }
+
+    #[inline]
+    fn cost(&mut self, one: &ObjectFeatures, other: &ObjectFeatures) -> f64 {
+        let place = one.kind.wrapping_mul(31).wrapping_add(other.kind) as usize % REMEMBERED;
+        let known = &mut self.0[place];
+        if (known.0, known.1) != (one.kind, other.kind) {
+            *known = (one.kind, other.kind, one.cost_of_kind(other));
+        }
+        known.2
     }
 }
 
@@ -89,8 +125,19 @@ pub(super) fn each_match<'a>(
              is_met,
          }| {
             costs.clear();
-            for one in fewer {
-                costs.extend(more.iter().map(|other| one.cost(other)));
+            if is_of_one_kind(fewer) && is_of_one_kind(more) {
+                // What the kinds cost is the same whichever are matched.
+                for one in fewer {
+                    costs.extend(more.iter().map(|other| one.cost_of_place(other)));
+                }
+            } else {
+                let mut kinds = Kinds::new();
+                for one in fewer {
+                    let costs_of_one = more
+                        .iter()
+                        .map(|other| one.cost_of_place(other) + kinds.cost(one, other));
+                    costs.extend(costs_of_one);
+                }
             }
             // All are finite and within the limits of an assignment; more objects than it takes are compared in their order.
             let is_solved = assignment.solve(costs, fewer.len(), more.len()).is_ok();
@@ -115,6 +162,10 @@ pub(super) fn each_match<'a>(
             }
         },
     );
+}
+
+fn is_of_one_kind(objects: &[ObjectFeatures]) -> bool {
+    objects.windows(2).all(|pair| pair[0].kind == pair[1].kind)
 }
 
 /// Whether a class has fewer objects than the other, or as many that come first.

@@ -90,6 +90,11 @@ impl Objects {
     fn add(&mut self, a: &ObjectFeatures, b: &ObjectFeatures) {
         self.metres += a.metres(b);
         self.turn += turn(a.heading, b.heading);
+        self.scale += relative_difference(a.scale, b.scale);
+        // All else is the same.
+        if a.kind == b.kind {
+            return;
+        }
         self.motion += a.motion.distance(&b.motion);
         self.body += a.body.distance(&b.body);
         self.reward += (a.reward - b.reward).abs();
@@ -97,7 +102,6 @@ impl Objects {
         self.odds += (a.odds - b.odds).abs();
         self.color += a.color_distance(b);
         self.model += a.model.distance(&b.model);
-        self.scale += relative_difference(a.scale, b.scale);
     }
 }
 

@@ -16,6 +16,7 @@ use crate::combined::read::as_read;
 pub(super) struct Sketcher {
     texts: LeafTexts,
     reader: LeafReader,
+    kinds: BTreeMap<[u64; 10], u32>,
 }
 
 /// A world as it is compared.
@@ -65,6 +66,8 @@ pub(super) struct ObjectFeatures {
     pub(super) body: Arc<Leaves>,
     pub(super) paid_for: Arc<Leaves>,
     pub(super) model: Arc<Leaves>,
+    /// The same number for objects that are alike in all but their places, headings and sizes.
+    pub(super) kind: u32,
 }
 
 impl Sketcher {
@@ -123,7 +126,7 @@ impl Sketcher {
 
     fn features(&mut self, index: usize, object: &Object) -> ObjectFeatures {
         self.texts.read_object(object);
-        ObjectFeatures {
+        let mut features = ObjectFeatures {
             index,
             place: object.coordinates,
             heading: object.heading.rem_euclid(360.0),
@@ -135,7 +138,24 @@ impl Sketcher {
             body: self.leaves(Comparison::Bodies),
             paid_for: self.leaves(Comparison::PaidFor),
             model: self.leaves(Comparison::ModelsOfObjects),
-        }
+            kind: 0,
+        };
+        features.kind = self.kind(&features);
+        features
+    }
+
+    /// A number for all of an object but its place, heading and size.
+    fn kind(&mut self, object: &ObjectFeatures) -> u32 {
+        let [l, a, b] = object.color.map_or([0.0; 3], |color| color.0);
+        let numbers = [object.reward, object.odds, l, a, b].map(f64::to_bits);
+        // Equal leaves are one, which the reader keeps.
+        let leaves = [&object.motion, &object.body, &object.paid_for, &object.model];
+        let leaves = leaves.map(|leaves| Arc::as_ptr(leaves).addr() as u64);
+        let mut key = [u64::from(object.color.is_some()); 10];
+        key[1..6].copy_from_slice(&numbers);
+        key[6..].copy_from_slice(&leaves);
+        let next = u32::try_from(self.kinds.len()).unwrap_or(u32::MAX);
+        *self.kinds.entry(key).or_insert(next)
     }
 
     /// The leaves of a comparison in the world or object that was read last.

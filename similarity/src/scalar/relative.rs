@@ -14,10 +14,10 @@
 /// assert_eq!(relative_difference(0.0, 0.0), 0.0);
 /// ```
 pub fn relative_difference(a: f64, b: f64) -> f64 {
-    let larger = a.abs().max(b.abs());
-    if larger == 0.0 {
+    if a == b {
         return 0.0;
     }
+    let larger = a.abs().max(b.abs());
     // Divided first, so that the largest numbers do not overflow.
     (a / larger - b / larger).abs()
 }

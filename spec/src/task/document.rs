@@ -47,7 +47,8 @@ pub(crate) struct TaskDocument {
     #[schemars(length(max = 1000))]
     pub(crate) groups: Vec<Group>,
     /// Conditions over parameters that every variant and every world must meet, such as `"min_size < max_size"`: comparisons,
-    /// arithmetic, min, max, abs, and, or, not; colours by `==`, `!=` and `distance(a, b)` in Oklab, 0 to 1. A world that breaks one is drawn again, a bounded number of times.
+    /// arithmetic, min, max, abs, and, or, not; texts by `==` and `!=`; colours by
+    /// those and by `distance(a, b)` in Oklab, 0 to 1. A world that breaks one is drawn again, a bounded number of times.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 100), inner(length(min = 1, max = 500)))]
     pub(crate) require: Vec<String>,

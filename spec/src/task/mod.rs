@@ -295,8 +295,19 @@ impl TaskSpec {
 
     /// What keeps a variant with these values from being drawn: distributions with a fault, requirements that do not hold.
     pub(crate) fn problems_of(&self, values: &IndexMap<String, Value>) -> Vec<Problem> {
+        if let Some((requirement, shown)) = variant::broken(&self.requirements, values) {
+            let expected = format!("what \"require\" states: {requirement}");
+            let mut problems = self.faults_of(values);
+            problems.push(Problem::new("spec/requirement", "/require", shown, expected));
+            return problems;
+        }
+        self.faults_of(values)
+    }
+
+    /// What keeps a variant with these values from being drawn beside requirements: distributions with a fault, margins out of range.
+    pub(crate) fn faults_of(&self, values: &IndexMap<String, Value>) -> Vec<Problem> {
         let mut problems = Vec::new();
-        let mut check = |pointer: String, source: &Source| {
+        let mut check = |pointer: &dyn Fn() -> String, source: &Source| {
             let distribution = match source {
                 Source::Distribution(distribution) => distribution,
                 Source::Param(reference) => match values.get(&reference.param) {
@@ -308,31 +319,31 @@ impl TaskSpec {
                 .ok()
                 .and_then(|distribution| distribution.fault())
             {
-                problems.push(Problem::new("spec/distribution", pointer, found, expected));
+                problems.push(Problem::new("spec/distribution", pointer(), found, expected));
             }
         };
         for (name, parameter) in &self.document.parameters {
             parameter
                 .distribution
                 .iter()
-                .for_each(|source| check(format!("/parameters/{name}/distribution"), source));
+                .for_each(|source| check(&|| format!("/parameters/{name}/distribution"), source));
         }
         for hole in &self.world.holes {
-            check(format!("/world{}", hole.pointer), &hole.source);
+            check(&|| format!("/world{}", hole.pointer), &hole.source);
         }
         for (index, fixture) in self.fixtures.iter().enumerate() {
             fixture
                 .holes
                 .iter()
-                .for_each(|hole| check(format!("/world/objects/{index}{}", hole.pointer), &hole.source));
+                .for_each(|hole| check(&|| format!("/world/objects/{index}{}", hole.pointer), &hole.source));
         }
         for (index, group) in self.groups.iter().enumerate() {
-            check(format!("/groups/{index}/placement"), &group.spec.placement);
+            check(&|| format!("/groups/{index}/placement"), &group.spec.placement);
             if let Count::Drawn(source) = &group.count {
-                check(format!("/groups/{index}/count"), source);
+                check(&|| format!("/groups/{index}/count"), source);
             }
             for hole in &group.object.holes {
-                check(format!("/groups/{index}/object{}", hole.pointer), &hole.source);
+                check(&|| format!("/groups/{index}/object{}", hole.pointer), &hole.source);
             }
         }
         for (index, group) in self.groups.iter().enumerate() {
@@ -348,10 +359,6 @@ impl TaskSpec {
                     problems.push(Problem::new("spec/range", pointer, format!("{metres} m"), "0 to 300 m"));
                 }
             }
-        }
-        if let Some((requirement, shown)) = variant::broken(&self.requirements, values) {
-            let expected = format!("what \"require\" states: {requirement}");
-            problems.push(Problem::new("spec/requirement", "/require", shown, expected));
         }
         problems
     }

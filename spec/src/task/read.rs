@@ -187,7 +187,8 @@ mod tests {
             ("drawn > 1", "a fixed or variant parameter"),
             ("triger == 'near'", "trigger"),
             ("trigger ==", "/parameters/reach/read_if"),
-            ("reach + 1", "neither true nor false"),
+            ("reach + 1", "found a number in \"reach + 1\", expected a condition"),
+            ("trigger == 'neer'", "did you mean 'near'?"),
         ] {
             assert!(said(wrong).contains(expected), "{wrong}: {}", said(wrong));
         }

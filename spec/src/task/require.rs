@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::expression::{Expression, Term};
+use super::expression::{Expression, Kind, Misfit, Term};
 use crate::value::Value;
 
 /// A condition over parameters, such as `min_size < max_size and (count <= 5 or light >= 1)`.
@@ -34,6 +34,11 @@ impl Requirement {
     /// The parameters that it speaks of, each once, in the order of the text.
     pub fn names(&self) -> &[String] {
         &self.expression.names
+    }
+
+    /// Where it compares what cannot be compared, or is no condition: what was found and expected. `kind_of`: what a name stands for.
+    pub(super) fn misfit(&self, kind_of: impl Fn(&str) -> Option<Kind>) -> Option<Misfit> {
+        self.expression.misfit(kind_of)
     }
 
     /// Whether it holds for the given values; `None` where a value is missing, or an operator has no meaning for its operands.

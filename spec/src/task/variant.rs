@@ -147,6 +147,28 @@ impl Variant {
     /// [`SpecError::Values`] with every parameter that cannot have its value, a distribution that cannot be drawn from, or a
     /// requirement that does not hold.
     pub fn with(&self, name: &str, changes: impl IntoIterator<Item = (String, Value)>) -> Result<Self, SpecError> {
+        self.changed(name, changes, TaskSpec::problems_of)
+    }
+
+    /// As [`Variant::with`], but the task's requirements need not hold: how far apart two variants are can then be asked of what they
+    /// forbid, too. Nothing should be drawn from it.
+    ///
+    /// # Errors
+    /// [`SpecError::Values`] with every parameter that cannot have its value, or a distribution that cannot be drawn from.
+    pub fn beyond_requirements(
+        &self,
+        name: &str,
+        changes: impl IntoIterator<Item = (String, Value)>,
+    ) -> Result<Self, SpecError> {
+        self.changed(name, changes, TaskSpec::faults_of)
+    }
+
+    fn changed(
+        &self,
+        name: &str,
+        changes: impl IntoIterator<Item = (String, Value)>,
+        check: impl Fn(&TaskSpec, &IndexMap<String, Value>) -> Vec<Problem>,
+    ) -> Result<Self, SpecError> {
         let mut values = (*self.values).clone();
         let mut problems = Vec::new();
         for (parameter, value) in changes {
@@ -158,7 +180,7 @@ impl Variant {
             }
         }
         if problems.is_empty() {
-            problems = self.task.problems_of(&values);
+            problems = check(&self.task, &values);
         }
         if problems.is_empty() {
             Ok(Self::new(Arc::clone(&self.task), name, values))
@@ -170,15 +192,15 @@ impl Variant {
 }
 
 fn accepted(parameters: &IndexMap<String, Parameter>, name: &str, value: &Value) -> Result<Value, Problem> {
-    let known: Vec<&String> = parameters
-        .iter()
-        .filter(|(_, p)| p.role == Role::Variant)
-        .map(|(name, _)| name)
-        .collect();
     let parameter = parameters
         .get(name)
         .filter(|parameter| parameter.role == Role::Variant)
         .ok_or_else(|| {
+            let known: Vec<&String> = parameters
+                .iter()
+                .filter(|(_, p)| p.role == Role::Variant)
+                .map(|(name, _)| name)
+                .collect();
             let expected = format!("a variant parameter, one of {}", first_of(&known));
             Problem::new(
                 "spec/unknown-parameter",

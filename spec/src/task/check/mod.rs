@@ -11,6 +11,7 @@ use std::sync::OnceLock;
 
 use indexmap::IndexMap;
 
+use super::expression::Kind;
 use super::family::{self, Variants};
 use super::parameter::{Parameter, Role};
 use super::require::Requirement;
@@ -333,30 +334,18 @@ impl<'a> Check<'a> {
         if self.problems.len() > before {
             return false;
         }
-        let example = |name: &str| -> Option<Value> {
-            let parameter = self.parameters.get(name)?;
-            let settled = self.variants.first()?.1.get(name).cloned();
-            settled.or_else(|| {
-                self.candidates_of_parameter(parameter)
-                    .into_iter()
-                    .next()?
-                    .cast(parameter.kind)
-            })
-        };
-        let truth = requirement.holds(example);
-        if truth == Some(false) && requirement.names().is_empty() {
+        if let Some((found, expected)) = requirement.misfit(|name| Kind::of(self.parameters.get(name)?)) {
+            let found = format!("{found} in {:?}", requirement.text());
+            self.report(Problem::new("spec/requirement", pointer, found, expected));
+            return false;
+        }
+        if requirement.names().is_empty() && requirement.holds(|_| None) == Some(false) {
             let found = format!("{:?}, which names no parameter and never holds", requirement.text());
             let expected = "a condition that some values of the parameters meet";
             self.report(Problem::new("spec/requirement", pointer, found, expected));
             return false;
         }
-        let sound = truth.is_some();
-        if !sound {
-            let found = format!("{:?}, which is neither true nor false", requirement.text());
-            let expected = "a condition: numbers compared with numbers, colours with colours, joined by and, or, not";
-            self.report(Problem::new("spec/requirement", pointer, found, expected));
-        }
-        sound
+        true
     }
 
     /// Whether every declared variant meets the requirements that chance has no part in.

@@ -3,10 +3,12 @@
 //! Written here because the crates at hand do not serve (docs/decisions/0005-requirements.md): this one needs no memory beyond
 //! its text, cannot loop, and says at which character a text goes wrong.
 
+mod kinds;
 mod token;
 
 use crate::Color;
 use crate::value::Value;
+pub(super) use kinds::{Kind, Misfit};
 use token::{Token, tokens};
 
 /// The longest text, in characters.

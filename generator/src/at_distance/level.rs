@@ -1,0 +1,138 @@
+//! Several numbers that move at once, of which one adds its distance to that of all others: points that make the wanted sum are worked
+//! out, and the task is asked for each whether it allows it. Where no number adds its distance, or what is allowed is too narrow to be
+//! hit, `scan.rs` goes on.
+
+use std::collections::HashMap;
+
+use driftworld_spec::{Value, Variant};
+
+use super::reach::Way;
+use super::space::Space;
+use super::{Changes, Found, Free, Search, with};
+
+/// Parts that a number's range is measured at, and each range of a vector.
+const PARTS: usize = 128;
+const PARTS_OF_VECTOR: usize = 6;
+
+/// Halvings of a part in which the sum is the wanted one.
+const HALVINGS: u32 = 40;
+
+/// A parameter's places from end to end, and how far each is.
+struct Profile {
+    places: Vec<(Vec<f64>, f64)>,
+}
+
+/// The profiles of the parameters that were asked for.
+#[derive(Default)]
+pub(super) struct Profiles(HashMap<String, Profile>);
+
+impl Profiles {
+    fn measure<D: FnMut(&Variant) -> f64>(&mut self, search: &mut Search<D>, free: Free) {
+        if self.0.contains_key(free.0) {
+            return;
+        }
+        let space = Space::new(search.from, &[free]);
+        let parts = if space.axes.len() == 1 { PARTS } else { PARTS_OF_VECTOR };
+        let mut places = vec![Vec::new()];
+        for axis in &space.axes {
+            let mut stops: Vec<f64> = (0..=parts).map(|part| axis.at(part, parts)).collect();
+            stops.push(axis.here);
+            stops.sort_by(f64::total_cmp);
+            stops.dedup();
+            let longer = |place: Vec<f64>| {
+                stops
+                    .iter()
+                    .map(move |stop| [&place[..], &[*stop]].concat())
+                    .collect::<Vec<_>>()
+            };
+            places = places.into_iter().flat_map(longer).take(PARTS * PARTS).collect();
+        }
+        let measured = places.into_iter().filter_map(|place| {
+            let distance = search.beyond(space.changes(&place))?;
+            Some((place, distance))
+        });
+        let places = measured.collect();
+        self.0.insert(free.0.to_owned(), Profile { places });
+    }
+}
+
+impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
+    /// A point of a way that makes the wanted sum and is allowed, out of about so many; `None` if there is none among them.
+    pub(super) fn on_level(&mut self, way: &Way<'a>, profiles: &mut Profiles, points: usize) -> Option<Found> {
+        for free in &way.smooth {
+            profiles.measure(self, *free);
+        }
+        for last in (0..way.smooth.len()).filter(|last| !way.are_tied[*last]) {
+            let mut others = way.smooth.clone();
+            let last = others.remove(last);
+            if matches!(self.from.value(last.0), Some(Value::Vector(_))) {
+                continue;
+            }
+            let each = libm::pow(points as f64, 1.0 / others.len().max(1) as f64) as usize;
+            let mut anchors: Vec<(Changes, f64)> = vec![(way.choices.clone(), way.sum.unwrap_or(0.0))];
+            for other in others {
+                let space = Space::new(self.from, &[other]);
+                let places = &profiles.0[other.0].places;
+                let step = (places.len() as f64 / each.max(2) as f64).max(1.0);
+                let chosen = (0..)
+                    .map(|k| (f64::from(k) * step) as usize)
+                    .take_while(|index| *index < places.len() - 1);
+                let chosen: Vec<usize> = chosen.chain([places.len() - 1]).collect();
+                let extend = |(changes, sum): &(Changes, f64)| {
+                    let moved = chosen.iter().map(|index| {
+                        let (place, distance) = &places[*index];
+                        (with(changes, &space.changes(place)), sum + distance)
+                    });
+                    let may_be = |sum: f64| way.sum.is_none() || sum <= self.target + self.tolerance;
+                    moved.filter(|(_, sum)| may_be(*sum)).collect::<Vec<_>>()
+                };
+                anchors = anchors.iter().flat_map(extend).take(4 * points).collect();
+            }
+            let profile = &profiles.0[last.0];
+            for (changes, sum) in &anchors {
+                let sum = if way.sum.is_some() {
+                    Some(*sum)
+                } else {
+                    self.beyond(changes.clone())
+                };
+                let found = sum.and_then(|sum| self.meet(last, profile, changes, sum));
+                if found.is_some() {
+                    return found;
+                }
+            }
+        }
+        None
+    }
+
+    /// An allowed place of a number that adds what a sum lacks.
+    fn meet(&mut self, last: Free<'a>, profile: &Profile, changes: &Changes, sum: f64) -> Option<Found> {
+        let space = Space::new(self.from, &[last]);
+        let lack = self.target - sum;
+        for part in profile.places.windows(2) {
+            let [(low, near), (high, far)] = part else { continue };
+            if (*near - lack) * (*far - lack) > 0.0 {
+                continue;
+            }
+            let (mut low, mut high) = (low[0], high[0]);
+            let is_rising = near < far;
+            let mut share = if near == far { 0.0 } else { (lack - near) / (far - near) };
+            for _ in 0..HALVINGS {
+                let at = if share == 0.0 { low } else { low + (high - low) * share };
+                // What is not allowed here is not allowed a hair's breadth away either.
+                let Some(found) = self.look(with(changes, &space.changes(&[at]))) else {
+                    break;
+                };
+                if self.meets(&found) {
+                    return Some(found);
+                }
+                if (found.distance < self.target) == is_rising {
+                    low = at;
+                } else {
+                    high = at;
+                }
+                share = 0.5;
+            }
+        }
+        None
+    }
+}

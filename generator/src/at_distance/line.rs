@@ -1,0 +1,83 @@
+//! One number that moves alone, by a distance that depends on no other: where it makes the wanted distance, and whether the task allows
+//! that. Several numbers are `scan.rs`'s.
+
+use driftworld_spec::{ParameterType, Variant};
+
+use super::space::Space;
+use super::{Changes, Found, Free, Search, with};
+
+/// Halvings of a stretch.
+const HALVINGS: u32 = 60;
+
+/// Parts of the tolerance that the wanted distance is tried with: where a requirement ends just there, one of them is allowed.
+const TRIED: [f64; 3] = [0.0, -0.95, 0.95];
+
+impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
+    /// Every place of a number that meets the target beside some choices, and is allowed.
+    pub(super) fn along_a_line(&mut self, choices: &Changes, moving: Free<'a>) -> Vec<Found> {
+        let space = Space::new(self.from, &[moving]);
+        let [axis] = &space.axes[..] else { return Vec::new() };
+        let mut stops = vec![axis.low, axis.here, axis.high];
+        if moving.1.kind == ParameterType::Heading {
+            let opposite = [axis.here - 180.0, axis.here + 180.0];
+            stops.extend(
+                opposite
+                    .into_iter()
+                    .filter(|stop| (axis.low..=axis.high).contains(stop)),
+            );
+        }
+        stops.sort_by(f64::total_cmp);
+        stops.dedup();
+        let mut measure = |search: &mut Self, at: f64| search.beyond(with(choices, &space.changes(&[at])));
+        let mut found = Vec::new();
+        for stretch in stops.windows(2) {
+            let (Some(low), Some(high)) = (measure(self, stretch[0]), measure(self, stretch[1])) else {
+                continue;
+            };
+            for part in TRIED {
+                let target = self.target + part * self.tolerance;
+                let at = if (low - target).abs() <= self.tolerance * 0.04 {
+                    stretch[0]
+                } else if (high - target).abs() <= self.tolerance * 0.04 {
+                    stretch[1]
+                } else if (low < target) == (high < target) {
+                    continue;
+                } else {
+                    self.halved(stretch, target, low < target, &mut measure)
+                };
+                if let Some(there) = self
+                    .look(with(choices, &space.changes(&[at])))
+                    .filter(|there| self.meets(there))
+                {
+                    found.push(there);
+                    break;
+                }
+            }
+        }
+        found
+    }
+
+    /// Where on a stretch the distance is the wanted one. `is_rising`: it grows from its beginning to its end.
+    fn halved(
+        &mut self,
+        stretch: &[f64],
+        target: f64,
+        is_rising: bool,
+        measure: &mut impl FnMut(&mut Self, f64) -> Option<f64>,
+    ) -> f64 {
+        let (mut low, mut high) = (stretch[0], stretch[1]);
+        for _ in 0..HALVINGS {
+            let at = f64::midpoint(low, high);
+            let Some(distance) = measure(self, at) else { break };
+            if (distance - target).abs() <= self.tolerance * 0.04 {
+                return at;
+            }
+            if (distance < target) == is_rising {
+                low = at;
+            } else {
+                high = at;
+            }
+        }
+        f64::midpoint(low, high)
+    }
+}

@@ -1,0 +1,306 @@
+//! How far each parameter reaches by itself, and which sets of parameters and choices can make a wanted distance up. Requirements have no
+//! part in it: they are met, or not, by the variants that `fewest.rs` then looks at.
+//!
+//! Distances of parameters that have nothing to do with each other add up, and each grows with its number. Whether they add up is asked
+//! of every pair; where they do not, all values of the pair are measured together.
+
+use driftworld_spec::{Domain, Value, Variant};
+
+use super::space::Space;
+use super::straight::ends_of;
+use super::{Changes, Free, FreeParameters, MOST_COMBINATIONS, Search, with};
+
+/// The widest range of whole numbers that are chosen one by one.
+const WIDEST_LIST: f64 = 128.0;
+
+/// The most sets of parameters that are thought of for one size.
+const MOST_SETS: usize = 100_000;
+
+/// Sums that differ by less are equal.
+const ROUNDING: f64 = 1e-9;
+
+/// Part of a distance that may lie beyond the last point of a way that something can be drawn at.
+const NEARLY: f64 = 1e-4;
+
+/// Parts that the range of a number is measured at that may decide what is read, and each range of two.
+const PARTS: usize = 32;
+const PARTS_OF_TWO: usize = 8;
+
+/// A parameter that may change, with the distance of each choice, or how far its number reaches.
+struct Candidate<'a> {
+    free: Free<'a>,
+    /// The choices other than where it is; none if it moves smoothly.
+    choices: Vec<(Value, f64)>,
+    ends: Vec<Value>,
+    /// Values from end to end of a number that may decide what is read, and how much farther it may reach between them; none and
+    /// infinity where there are too many.
+    between: (Vec<Value>, f64),
+    least: f64,
+    most: f64,
+    /// Whether its distance depends on another parameter.
+    is_tied: bool,
+}
+
+/// Parameters that all change: the listed ones to these choices, the smooth ones to whatever meets the target.
+pub(super) struct Way<'a> {
+    pub(super) choices: Changes,
+    pub(super) smooth: Vec<Free<'a>>,
+    /// The sum of the choices' distances; `None` if some distance depends on another parameter.
+    pub(super) sum: Option<f64>,
+    /// Whether another parameter's value decides how far each of the smooth ones is.
+    pub(super) are_tied: Vec<bool>,
+}
+
+/// All that may change.
+pub(super) struct Reach<'a> {
+    candidates: Vec<Candidate<'a>>,
+}
+
+impl<'a> Reach<'a> {
+    pub(super) fn new<D: FnMut(&Variant) -> f64>(search: &mut Search<'a, D>, free: &FreeParameters<'a>) -> Self {
+        let all = free.smooth.iter().chain(&free.listed);
+        let mut candidates: Vec<Candidate> = all.map(|free| Candidate::new(search, *free)).collect();
+        for candidate in &mut candidates {
+            if free.tied.contains(&candidate.free.0) {
+                candidate.is_tied = true;
+                candidate.between = candidate.between(search.from);
+            }
+        }
+        for b in 0..candidates.len() {
+            for a in 0..b {
+                let are_tied = candidates[a].is_tied && candidates[b].is_tied;
+                if !are_tied && !candidates[a].adds_up_with(&candidates[b], search) {
+                    candidates[a].is_tied = true;
+                    candidates[b].is_tied = true;
+                }
+            }
+        }
+        // Those that reach farthest first: where all sets are too many, it is theirs that are thought of.
+        candidates.sort_by(|a, b| b.most.total_cmp(&a.most));
+        Self { candidates }
+    }
+
+    /// How many parameters there are.
+    pub(super) fn len(&self) -> usize {
+        self.candidates.len()
+    }
+
+    /// Every way that may meet the target by so many changes; bounded.
+    pub(super) fn ways<D: FnMut(&Variant) -> f64>(&self, search: &mut Search<'a, D>, size: usize) -> Vec<Way<'a>> {
+        let (mut ways, mut num_sets) = (Vec::new(), 0);
+        let mut set: Vec<usize> = (0..size).collect();
+        loop {
+            num_sets += 1;
+            if num_sets > MOST_SETS || ways.len() >= MOST_COMBINATIONS {
+                break;
+            }
+            let members: Vec<&Candidate> = set.iter().map(|index| &self.candidates[*index]).collect();
+            ways_of(&members, search, &mut ways);
+            // The next set of this size, in lexical order.
+            let Some(place) = (0..size).rev().find(|place| set[*place] < self.len() - size + place) else {
+                break;
+            };
+            set[place] += 1;
+            for later in place + 1..size {
+                set[later] = set[later - 1] + 1;
+            }
+        }
+        ways
+    }
+}
+
+/// The ways of one set of parameters.
+fn ways_of<'a, D: FnMut(&Variant) -> f64>(
+    members: &[&Candidate<'a>],
+    search: &mut Search<'a, D>,
+    ways: &mut Vec<Way<'a>>,
+) {
+    let (low, high) = (search.target - search.tolerance, search.target + search.tolerance);
+    let is_smooth = |member: &&&Candidate| member.choices.is_empty();
+    let (tied, apart): (Vec<&Candidate>, Vec<&Candidate>) = members.iter().partition(|member| member.is_tied);
+    let reach: f64 = apart.iter().map(|member| member.most).sum();
+    let least: f64 = apart.iter().map(|member| member.least).sum();
+    if least > high || (tied.is_empty() && reach < low) {
+        return;
+    }
+    let smooth: Vec<Free> = members.iter().filter(is_smooth).map(|member| member.free).collect();
+    let listed: Vec<&Candidate> = apart.iter().filter(|member| !is_smooth(member)).copied().collect();
+    let moving: f64 = apart.iter().filter(is_smooth).map(|member| member.most).sum();
+    let tied_smooth: Vec<&Candidate> = tied.iter().filter(is_smooth).copied().collect();
+    let tied_listed: Vec<&Candidate> = tied.iter().filter(|member| !is_smooth(member)).copied().collect();
+    for together in products(&tied_listed, |_| true) {
+        let Some((nearest, farthest)) = reach_together(search, &together.0, &tied_smooth) else {
+            continue;
+        };
+        let (from, to) = (nearest - ROUNDING, farthest + moving + ROUNDING);
+        // What is still to come of the choices can only add to a sum.
+        for (choices, sum) in products(&listed, |sum| sum + from <= high) {
+            if sum + to >= low {
+                ways.push(Way {
+                    choices: with(&together.0, &choices),
+                    smooth: smooth.clone(),
+                    sum: tied.is_empty().then_some(sum),
+                    are_tied: members.iter().filter(is_smooth).map(|member| member.is_tied).collect(),
+                });
+            }
+            if ways.len() >= MOST_COMBINATIONS {
+                return;
+            }
+        }
+    }
+}
+
+/// Every combination of choices with the sum of their distances, of those sums that may be.
+fn products(members: &[&Candidate], may_be: impl Fn(f64) -> bool) -> Vec<(Changes, f64)> {
+    let mut all = vec![(Changes::new(), 0.0)];
+    for member in members {
+        let mut longer = Vec::new();
+        for (changes, sum) in &all {
+            for (choice, distance) in &member.choices {
+                if may_be(sum + distance) && longer.len() < 16 * MOST_COMBINATIONS {
+                    longer.push((
+                        with(changes, &vec![(member.free.0.to_owned(), choice.clone())]),
+                        sum + distance,
+                    ));
+                }
+            }
+        }
+        all = longer;
+    }
+    all
+}
+
+/// The least and the greatest distance that numbers tied to each other and to choices make together; `None` if the choices cannot be.
+fn reach_together<D: FnMut(&Variant) -> f64>(
+    search: &mut Search<D>,
+    choices: &Changes,
+    smooth: &[&Candidate],
+) -> Option<(f64, f64)> {
+    if choices.is_empty() && smooth.is_empty() {
+        return Some((0.0, 0.0));
+    }
+    if smooth.is_empty() {
+        return search.beyond(choices.clone()).map(|distance| (distance, distance));
+    }
+    let mut corners = vec![choices.clone()];
+    let mut farther = 0.0;
+    for candidate in smooth {
+        let (between, by) = &candidate.between;
+        farther += by;
+        let to = |corner: &Changes| {
+            let ends = candidate.ends.iter().chain(between);
+            let moved = ends.map(|end| with(corner, &vec![(candidate.free.0.to_owned(), end.clone())]));
+            moved.chain([corner.clone()]).collect::<Vec<_>>()
+        };
+        corners = corners.iter().flat_map(to).take(MOST_COMBINATIONS).collect();
+    }
+    if farther.is_infinite() {
+        return Some((0.0, farther));
+    }
+    let mut farthest: f64 = 0.0;
+    for corner in corners {
+        let ends: Changes = corner[choices.len()..].to_vec();
+        // Where nothing can be drawn at a corner, it is as near to it as something can.
+        if let Some((distance, _)) = search.towards(choices, ends, Search::beyond) {
+            farthest = farthest.max(distance * (1.0 + NEARLY));
+        }
+    }
+    Some((0.0, farthest + farther))
+}
+
+impl<'a> Candidate<'a> {
+    fn new<D: FnMut(&Variant) -> f64>(search: &mut Search<'a, D>, free: Free<'a>) -> Self {
+        let (name, parameter) = free;
+        let here = search.from.value(name).cloned();
+        let choices = match (parameter.domain(), &here) {
+            (Some(Domain::Choices(choices)), _) => choices,
+            (Some(Domain::Range([low, high])), Some(Value::Integer(_))) if high - low <= WIDEST_LIST => {
+                (low.ceil() as i64..=high.floor() as i64).map(Value::Integer).collect()
+            }
+            _ => Vec::new(),
+        };
+        let ends = if choices.is_empty() {
+            ends_of(search.from, name, parameter)
+        } else {
+            Vec::new()
+        };
+        let mut is_tied = false;
+        let mut measure = |value: &Value| {
+            let distance = search.beyond(vec![(name.to_owned(), value.clone())]);
+            is_tied |= distance.is_none();
+            distance.unwrap_or(0.0)
+        };
+        let others = choices.into_iter().filter(|choice| here.as_ref() != Some(choice));
+        let choices: Vec<(Value, f64)> = others
+            .map(|choice| {
+                let distance = measure(&choice);
+                (choice, distance)
+            })
+            .collect();
+        let reaches: Vec<f64> = ends.iter().map(&mut measure).collect();
+        let distances = choices.iter().map(|(_, distance)| *distance);
+        Self {
+            least: if ends.is_empty() {
+                distances.clone().fold(f64::INFINITY, f64::min)
+            } else {
+                0.0
+            },
+            most: distances.chain(reaches).fold(0.0, f64::max),
+            free,
+            choices,
+            ends,
+            between: (Vec::new(), 0.0),
+            is_tied,
+        }
+    }
+
+    /// Values from end to end, and how much farther the number may reach between two of them.
+    fn between(&self, from: &Variant) -> (Vec<Value>, f64) {
+        if !self.choices.is_empty() {
+            return (Vec::new(), 0.0);
+        }
+        let space = Space::new(from, &[self.free]);
+        let parts = match space.axes.len() {
+            1 => PARTS,
+            2 => PARTS_OF_TWO,
+            _ => return (Vec::new(), f64::INFINITY),
+        };
+        let mut points = vec![Vec::new()];
+        for axis in &space.axes {
+            let longer = |point: Vec<f64>| (0..=parts).map(move |part| [&point[..], &[axis.at(part, parts)]].concat());
+            points = points.into_iter().flat_map(longer).collect();
+        }
+        let changes = points.into_iter().filter_map(|point| space.changes(&point).pop());
+        (
+            changes.map(|(_, value)| value).collect(),
+            2.0 * self.most / parts as f64,
+        )
+    }
+
+    /// Values that stand for all when it is asked whether distances add up.
+    fn some(&self) -> Vec<&Value> {
+        let ends = [self.choices.first(), self.choices.last()];
+        self.ends
+            .iter()
+            .chain(ends.into_iter().flatten().map(|(choice, _)| choice))
+            .collect()
+    }
+
+    /// Whether the distance of both changed is the sum of both.
+    fn adds_up_with<D: FnMut(&Variant) -> f64>(&self, other: &Self, search: &mut Search<D>) -> bool {
+        let change = |candidate: &Self, value: &Value| vec![(candidate.free.0.to_owned(), value.clone())];
+        for a in self.some() {
+            for b in other.some() {
+                let (a, b) = (change(self, a), change(other, b));
+                let both = search.beyond(with(&a, &b));
+                let (Some(a), Some(b), Some(both)) = (search.beyond(a), search.beyond(b), both) else {
+                    return false;
+                };
+                if (both - a - b).abs() > ROUNDING * both.max(1.0) {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+}

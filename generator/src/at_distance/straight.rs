@@ -1,0 +1,179 @@
+//! The straight way from a variant to ends of its ranges, where all numbers move together. What is found on it is remembered in `mod.rs`.
+
+use driftworld_spec::{Domain, Parameter, ParameterType, Value, Variant};
+
+use super::{Changes, Found, Free, Search, with};
+use crate::interpolation::interpolate;
+
+/// The most corners of the ranges that are gone to where distances do not add up.
+const MOST_CORNERS: usize = 81;
+
+/// Halvings towards a border of what is allowed.
+const HALVINGS_TO_BORDER: u32 = 24;
+
+/// Halvings of a stretch before it is given up.
+const HALVINGS: u32 = 80;
+
+impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
+    /// Goes straight from a combination of choices to the ends; true if it meets the target.
+    pub(super) fn straight(&mut self, combination: &Changes, smooth: &[Free]) -> bool {
+        let Some(base) = self.look(combination.clone()) else {
+            return false;
+        };
+        if self.meets(&base) {
+            return true;
+        }
+        let ends = self.farthest_ends(combination, smooth);
+        if ends.is_empty() {
+            return false;
+        }
+        self.straight_to(combination, &base, &ends)
+    }
+
+    /// As [`Self::straight`], to one corner after the other, the farthest first: where numbers decide together how far they reach.
+    pub(super) fn straight_to_corners(&mut self, combination: &Changes, smooth: &[Free]) -> bool {
+        let Some(base) = self.look(combination.clone()) else {
+            return false;
+        };
+        let mut corners = vec![Changes::new()];
+        for (name, parameter) in smooth {
+            let ends = ends_of(self.from, name, parameter);
+            let to = |corner: &Changes| {
+                let moved = ends
+                    .iter()
+                    .map(|end| with(corner, &vec![((*name).to_owned(), end.clone())]));
+                moved.chain([corner.clone()]).collect::<Vec<_>>()
+            };
+            corners = corners.iter().flat_map(to).take(MOST_CORNERS).collect();
+        }
+        let mut reached: Vec<(f64, Changes)> = Vec::new();
+        for corner in corners {
+            let looked = self.towards(combination, corner, |search, changes| {
+                search.look(changes).map(|found| found.distance)
+            });
+            if let Some((distance, corner)) = looked {
+                if (distance - self.target).abs() <= self.tolerance {
+                    return true;
+                }
+                reached.push((distance, corner));
+            }
+        }
+        reached.sort_by(|a, b| b.0.total_cmp(&a.0));
+        reached.into_iter().any(|(distance, corner)| {
+            (base.distance - self.target) * (distance - self.target) <= 0.0
+                && self.straight_to(combination, &base, &corner)
+        })
+    }
+
+    /// How far it is at some ends beside a combination of choices, or, where those are not allowed, as near to them as may be.
+    pub(super) fn towards(
+        &mut self,
+        combination: &Changes,
+        ends: Changes,
+        mut measure: impl FnMut(&mut Self, Changes) -> Option<f64>,
+    ) -> Option<(f64, Changes)> {
+        if let Some(distance) = measure(self, with(combination, &ends)) {
+            return Some((distance, ends));
+        }
+        let (mut low, mut high, mut last) = (0.0, 1.0, None);
+        for _ in 0..HALVINGS_TO_BORDER {
+            let t = f64::midpoint(low, high);
+            let between = self.on_the_way(&ends, t);
+            match measure(self, with(combination, &between)) {
+                Some(distance) => (low, last) = (t, Some((distance, between))),
+                None => high = t,
+            }
+        }
+        last
+    }
+
+    /// A part of the way from where the variant is to some ends.
+    fn on_the_way(&self, ends: &Changes, t: f64) -> Changes {
+        let between = ends.iter().map(|(name, end)| {
+            let parameter = &self.from.task().parameters()[name];
+            let value = self.from.value(name).expect("variant parameters have values");
+            let between = interpolate(parameter, false, value, end, t, (self.from, self.from));
+            (name.clone(), between.unwrap_or_else(|| end.clone()))
+        });
+        between.collect()
+    }
+
+    fn straight_to(&mut self, combination: &Changes, base: &Found, ends: &Changes) -> bool {
+        let Some(end) = self.look(with(combination, ends)) else {
+            return false;
+        };
+        let crosses = (base.distance - self.target) * (end.distance - self.target) <= 0.0;
+        self.meets(&end) || (crosses && self.halve(combination, ends))
+    }
+
+    /// The ends of the ranges that lie farthest beside a combination of choices, taken parameter by parameter.
+    fn farthest_ends(&mut self, combination: &Changes, smooth: &[Free]) -> Changes {
+        let mut ends = Changes::new();
+        for (name, parameter) in smooth {
+            let options = ends_of(self.from, name, parameter);
+            let mut best: Option<(f64, Value)> = None;
+            for value in options {
+                let change = vec![((*name).to_owned(), value.clone())];
+                let Some(found) = self.look(with(combination, &with(&ends, &change))) else {
+                    continue;
+                };
+                if best.as_ref().is_none_or(|best| found.distance > best.0) {
+                    best = Some((found.distance, value));
+                }
+            }
+            ends.extend(best.map(|(_, value)| ((*name).to_owned(), value)));
+        }
+        ends
+    }
+
+    /// Halves the stretch to the ends until it meets the target; false if it cannot.
+    fn halve(&mut self, combination: &Changes, ends: &Changes) -> bool {
+        let (mut low, mut high) = (0.0, 1.0);
+        let Some(start) = self.look(combination.clone()) else {
+            return false;
+        };
+        for _ in 0..HALVINGS {
+            let t = f64::midpoint(low, high);
+            let changes = with(combination, &self.on_the_way(ends, t));
+            let Some(found) = self.look(changes) else { return false };
+            if self.meets(&found) {
+                return true;
+            }
+            if (found.distance < self.target) == (start.distance < self.target) {
+                low = t;
+            } else {
+                high = t;
+            }
+        }
+        false
+    }
+}
+
+/// What a number could be at the most: the ends of its range; of a heading also the opposite direction, of a vector the corner that lies
+/// farthest.
+pub(super) fn ends_of(from: &Variant, name: &str, parameter: &Parameter) -> Vec<Value> {
+    let Some(Domain::Range([low, high])) = parameter.domain() else {
+        return Vec::new();
+    };
+    let here = from.value(name);
+    let at = |end: f64| match here {
+        Some(Value::Integer(_)) => Value::Integer(end.round() as i64),
+        Some(Value::Vector(numbers)) => Value::Vector(vec![end; numbers.len()]),
+        _ => Value::Number(end),
+    };
+    let mut ends = vec![at(low), at(high)];
+    match here {
+        Some(Value::Vector(numbers)) => {
+            let farther = |number: &f64| if number - low > high - number { low } else { high };
+            ends.insert(0, Value::Vector(numbers.iter().map(farther).collect()));
+        }
+        Some(Value::Number(here)) if parameter.kind == ParameterType::Heading => {
+            let opposite = here + 180.0;
+            if (opposite - low).rem_euclid(360.0) <= high - low {
+                ends.insert(0, Value::Number(opposite.rem_euclid(360.0)));
+            }
+        }
+        _ => {}
+    }
+    ends
+}

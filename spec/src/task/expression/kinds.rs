@@ -1,0 +1,254 @@
+//! What kind of thing each part of a condition is, and where parts of unlike kinds meet. Values have no part in it.
+
+use super::{Binary, Expression, Function, Node, Term, Unary};
+use crate::Color;
+use crate::error::nearest;
+use crate::task::parameter::{Parameter, Role};
+use crate::value::{ParameterType, Value};
+
+/// What a name stands for.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::task) enum Kind {
+    Number,
+    Truth,
+    /// A text, with all that it can be where that is known.
+    Text(Option<Vec<String>>),
+    Color,
+    /// So many numbers, of which one can be asked for: `start[0]`. The word is what messages call it.
+    List(&'static str, Option<usize>),
+}
+
+impl Kind {
+    /// What a parameter stands for; `None` for distributions.
+    pub(in crate::task) fn of(parameter: &Parameter) -> Option<Self> {
+        let texts = || {
+            let choices = parameter.choices.as_ref().filter(|_| parameter.role == Role::Variant)?;
+            let text = |choice: &Value| match choice {
+                Value::Text(text) => Some(text.clone()),
+                _ => None,
+            };
+            Some(choices.iter().filter_map(text).collect())
+        };
+        match parameter.kind {
+            ParameterType::Number | ParameterType::Integer | ParameterType::Heading => Some(Self::Number),
+            ParameterType::Boolean => Some(Self::Truth),
+            ParameterType::String => Some(Self::Text(texts())),
+            ParameterType::Color => Some(Self::Color),
+            ParameterType::Point => Some(Self::List("a point", Some(2))),
+            ParameterType::Vector => Some(Self::List("a vector", parameter.vector_length())),
+            ParameterType::Distribution => None,
+        }
+    }
+
+    fn describe(&self) -> &'static str {
+        match self {
+            Self::Number => "a number",
+            Self::Truth => "true or false",
+            Self::Text(_) => "a text",
+            Self::Color => "a colour",
+            Self::List(word, _) => word,
+        }
+    }
+
+    /// Whether it is a colour, or a text that can only be the name of one.
+    fn is_color(&self) -> bool {
+        match self {
+            Self::Color => true,
+            Self::Text(Some(all)) => all.iter().all(|text| Color::from_name(text).is_some()),
+            _ => false,
+        }
+    }
+}
+
+/// What was found, and what was expected.
+pub(in crate::task) type Misfit = (String, String);
+
+impl Expression {
+    /// Where it does not come to true or false, or compares what cannot be compared. `kind_of`: what a name stands for; `None` passes.
+    pub(in crate::task) fn misfit(&self, kind_of: impl Fn(&str) -> Option<Kind>) -> Option<Misfit> {
+        let check = Check {
+            names: &self.names,
+            kind_of,
+        };
+        match check.kind(&self.root) {
+            Err(misfit) => Some(misfit),
+            Ok(None | Some(Kind::Truth)) => None,
+            Ok(Some(other)) => {
+                let found = check.shown(&self.root, &other);
+                Some((found, "a condition, such as a comparison with < or ==".to_owned()))
+            }
+        }
+    }
+}
+
+struct Check<'a, F> {
+    names: &'a [String],
+    kind_of: F,
+}
+
+impl<F: Fn(&str) -> Option<Kind>> Check<'_, F> {
+    /// The kind of a part; `None` where a name in it stands for nothing that is known.
+    fn kind(&self, node: &Node) -> Result<Option<Kind>, Misfit> {
+        match node {
+            Node::Constant(term) => Ok(Some(match term {
+                Term::Number(_) => Kind::Number,
+                Term::Truth(_) => Kind::Truth,
+                Term::Text(text) => Kind::Text(Some(vec![text.clone()])),
+                Term::Color(_) => Kind::Color,
+            })),
+            Node::Name(name, index) => self.named(&self.names[*name], *index),
+            Node::Unary(Unary::Minus, inner) => {
+                self.all(&[inner], "-", "a number after -", |kind| *kind == Kind::Number)?;
+                Ok(Some(Kind::Number))
+            }
+            Node::Unary(Unary::Not, inner) => {
+                self.all(&[inner], "not", "a condition after not", |kind| *kind == Kind::Truth)?;
+                Ok(Some(Kind::Truth))
+            }
+            Node::Binary(operator, a, b) => self.binary(*operator, a, b).map(Some),
+            Node::Call(Function::Distance, nodes) => {
+                let nodes: Vec<&Node> = nodes.iter().collect();
+                let expected = "two colours, such as distance(good, 'red')";
+                self.all(&nodes, "distance", expected, Kind::is_color)?;
+                Ok(Some(Kind::Number))
+            }
+            Node::Call(function, nodes) => {
+                let nodes: Vec<&Node> = nodes.iter().collect();
+                let name = match function {
+                    Function::Min => "min",
+                    Function::Max => "max",
+                    _ => "abs",
+                };
+                self.all(&nodes, name, &format!("numbers in {name}"), |kind| {
+                    *kind == Kind::Number
+                })?;
+                Ok(Some(Kind::Number))
+            }
+        }
+    }
+
+    fn named(&self, name: &str, index: Option<usize>) -> Result<Option<Kind>, Misfit> {
+        let Some(kind) = (self.kind_of)(name) else {
+            return Ok(None);
+        };
+        let numbers = match &kind {
+            Kind::List(_, numbers) => *numbers,
+            Kind::Color => Some(3),
+            _ => Some(0),
+        };
+        match (index, &kind, numbers) {
+            (None, Kind::List(word, _), _) => Err((
+                format!("{name} ({word})"),
+                format!("one number of it, such as {name}[0]"),
+            )),
+            (None, _, _) => Ok(Some(kind)),
+            (Some(_), _, Some(0)) => {
+                let found = format!("an index of {name} ({})", kind.describe());
+                Err((found, format!("{name} alone")))
+            }
+            (Some(index), _, Some(numbers)) if index >= numbers => Err((
+                format!("{name}[{index}]"),
+                format!("an index from 0 to {}", numbers - 1),
+            )),
+            (Some(_), _, _) => Ok(Some(Kind::Number)),
+        }
+    }
+
+    fn binary(&self, operator: Binary, a: &Node, b: &Node) -> Result<Kind, Misfit> {
+        let symbol = super::BINARY
+            .iter()
+            .find(|entry| entry.1 == operator)
+            .map_or("", |entry| entry.0);
+        let numbers = || {
+            let expected = format!("numbers on both sides of {symbol}");
+            self.all(&[a, b], symbol, &expected, |kind| *kind == Kind::Number)
+        };
+        match operator {
+            Binary::Or | Binary::And => {
+                let expected = format!("conditions on both sides of {symbol}");
+                self.all(&[a, b], symbol, &expected, |kind| *kind == Kind::Truth)?;
+                Ok(Kind::Truth)
+            }
+            Binary::Plus | Binary::Minus | Binary::Times | Binary::Over | Binary::Remainder => {
+                numbers()?;
+                Ok(Kind::Number)
+            }
+            Binary::Less | Binary::LessOrEqual | Binary::Greater | Binary::GreaterOrEqual => {
+                numbers()?;
+                Ok(Kind::Truth)
+            }
+            Binary::Equal | Binary::NotEqual => {
+                if let (Some(first), Some(second)) = (self.kind(a)?, self.kind(b)?) {
+                    self.alike((a, &first), (b, &second), symbol)?;
+                }
+                Ok(Kind::Truth)
+            }
+        }
+    }
+
+    /// Whether two things can be equal: things of one kind, a colour and the name of one, a text and one that it can be.
+    fn alike(&self, a: (&Node, &Kind), b: (&Node, &Kind), symbol: &str) -> Result<(), Misfit> {
+        match (a.1, b.1) {
+            (Kind::Text(Some(first)), Kind::Text(Some(second))) => {
+                self.is_choice(a.0, (b.0, second))?;
+                self.is_choice(b.0, (a.0, first))
+            }
+            (Kind::Number, Kind::Number) | (Kind::Truth, Kind::Truth) | (Kind::Text(_), Kind::Text(_)) => Ok(()),
+            (Kind::Color, other) | (other, Kind::Color) if other.is_color() => Ok(()),
+            (Kind::Color, Kind::Text(_)) | (Kind::Text(_), Kind::Color) => {
+                let (text, kind) = if *a.1 == Kind::Color { b } else { a };
+                let expected = format!("a colour or the CSS name of one beside {symbol}, such as 'red'");
+                Err((self.shown(text, kind), expected))
+            }
+            _ => {
+                let found = format!("{} {symbol} {}", self.shown(a.0, a.1), self.shown(b.0, b.1));
+                let expected = format!("two numbers, texts, colours or truth values beside {symbol}");
+                Err((found, expected))
+            }
+        }
+    }
+
+    /// Refuses a text in quotes that a name never is.
+    fn is_choice(&self, text: &Node, (other, all): (&Node, &[String])) -> Result<(), Misfit> {
+        let (Node::Constant(Term::Text(text)), Node::Name(name, _)) = (text, other) else {
+            return Ok(());
+        };
+        if all.contains(text) {
+            return Ok(());
+        }
+        let name = &self.names[*name];
+        let meant = nearest(text, all.iter());
+        let meant = meant.map_or_else(String::new, |near| format!(" (did you mean '{near}'?)"));
+        let quoted: Vec<String> = all.iter().take(20).map(|choice| format!("'{choice}'")).collect();
+        let more = all.len().checked_sub(20).filter(|more| *more > 0);
+        let more = more.map_or_else(String::new, |more| format!(" and {more} more"));
+        let expected = format!("one of the choices of {name}: {}{more}{meant}", quoted.join(", "));
+        Err((format!("'{text}' beside {name}"), expected))
+    }
+
+    /// Whether all parts fit; else the first that does not.
+    fn all(&self, nodes: &[&Node], symbol: &str, expected: &str, fits: impl Fn(&Kind) -> bool) -> Result<(), Misfit> {
+        for node in nodes {
+            let Some(kind) = self.kind(node)? else { continue };
+            if !fits(&kind) {
+                return Err((
+                    format!("{} beside {symbol}", self.shown(node, &kind)),
+                    expected.to_owned(),
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// A part as messages show it.
+    fn shown(&self, node: &Node, kind: &Kind) -> String {
+        match node {
+            Node::Constant(Term::Text(text)) => format!("'{text}'"),
+            Node::Constant(Term::Number(number)) => format!("{number}"),
+            Node::Constant(Term::Truth(truth)) => format!("{truth}"),
+            Node::Name(name, None) => format!("{} ({})", self.names[*name], kind.describe()),
+            Node::Name(name, Some(index)) => format!("{}[{index}] ({})", self.names[*name], kind.describe()),
+            _ => kind.describe().to_owned(),
+        }
+    }
+}
