@@ -435,8 +435,8 @@ def distance_matrix(
     """
     found = _variants(items)
     laid = None if weights is None else dict(weights)
-    labels, items = [label for label, _ in found], [item for _, item in found]
-    return DistanceMatrix._of(_native.Matrix.measure(labels, items, laid, by, worlds, scale, library_bytes(assets)))
+    labels, variants_of = [label for label, _ in found], [item for _, item in found]
+    return DistanceMatrix._of(_native.Matrix.measure(labels, variants_of, laid, by, worlds, scale, library_bytes(assets)))
 
 
 def _variants(items: Named | Iterable[Named]) -> list[tuple[str, Variant]]:
