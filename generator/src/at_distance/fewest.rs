@@ -33,10 +33,10 @@ pub(super) fn fewest<'a, D: FnMut(&Variant) -> f64>(
     search: &mut Search<'a, D>,
     free: &FreeParameters<'a>,
 ) -> Option<Found> {
-    let reach = Reach::new(search, free);
+    let mut reach = Reach::new(search, free);
     let mut profiles = Profiles::default();
     for size in 0..=reach.len() {
-        if let Some(found) = of_size(search, &reach, &mut profiles, size) {
+        if let Some(found) = of_size(search, &mut reach, &mut profiles, size) {
             return Some(without_idle_changes(search, found));
         }
         if search.num_looks > MOST_IN_ALL {
@@ -49,14 +49,13 @@ pub(super) fn fewest<'a, D: FnMut(&Variant) -> f64>(
 /// The best answer found that changes so many parameters.
 fn of_size<'a, D: FnMut(&Variant) -> f64>(
     search: &mut Search<'a, D>,
-    reach: &Reach<'a>,
+    reach: &mut Reach<'a>,
     profiles: &mut Profiles,
     size: usize,
 ) -> Option<Found> {
     let ways = reach.ways(search, size);
     let mut best = None;
     let cut = straight(search, &ways, &mut best);
-    eprintln!("DBG size {size} ways {} cut {} best {} looks {}", ways.len(), cut.len(), best.is_some(), search.num_looks);
     if best.is_some() {
         return best;
     }

@@ -4,6 +4,8 @@
 //! Distances of parameters that have nothing to do with each other add up, and each grows with its number. Whether they add up is asked
 //! of every pair; where they do not, all values of the pair are measured together.
 
+use std::collections::HashMap;
+
 use driftworld_spec::{Domain, Value, Variant};
 
 use super::space::Space;
@@ -54,7 +56,11 @@ pub(super) struct Way<'a> {
 /// All that may change.
 pub(super) struct Reach<'a> {
     candidates: Vec<Candidate<'a>>,
+    together: Together,
 }
+
+/// How near and how far parameters are that were measured together, by their names and choices.
+type Together = HashMap<String, Option<(f64, f64)>>;
 
 impl<'a> Reach<'a> {
     pub(super) fn new<D: FnMut(&Variant) -> f64>(search: &mut Search<'a, D>, free: &FreeParameters<'a>) -> Self {
@@ -77,7 +83,10 @@ impl<'a> Reach<'a> {
         }
         // Those that reach farthest first: where all sets are too many, it is theirs that are thought of.
         candidates.sort_by(|a, b| b.most.total_cmp(&a.most));
-        Self { candidates }
+        Self {
+            candidates,
+            together: Together::new(),
+        }
     }
 
     /// How many parameters there are.
@@ -86,7 +95,7 @@ impl<'a> Reach<'a> {
     }
 
     /// Every way that may meet the target by so many changes; bounded.
-    pub(super) fn ways<D: FnMut(&Variant) -> f64>(&self, search: &mut Search<'a, D>, size: usize) -> Vec<Way<'a>> {
+    pub(super) fn ways<D: FnMut(&Variant) -> f64>(&mut self, search: &mut Search<'a, D>, size: usize) -> Vec<Way<'a>> {
         let (mut ways, mut num_sets) = (Vec::new(), 0);
         let mut set: Vec<usize> = (0..size).collect();
         loop {
@@ -95,7 +104,7 @@ impl<'a> Reach<'a> {
                 break;
             }
             let members: Vec<&Candidate> = set.iter().map(|index| &self.candidates[*index]).collect();
-            ways_of(&members, search, &mut ways);
+            ways_of(&members, search, &mut self.together, &mut ways);
             // The next set of this size, in lexical order.
             let Some(place) = (0..size).rev().find(|place| set[*place] < self.len() - size + place) else {
                 break;
@@ -113,6 +122,7 @@ impl<'a> Reach<'a> {
 fn ways_of<'a, D: FnMut(&Variant) -> f64>(
     members: &[&Candidate<'a>],
     search: &mut Search<'a, D>,
+    known: &mut Together,
     ways: &mut Vec<Way<'a>>,
 ) {
     let (low, high) = (search.target - search.tolerance, search.target + search.tolerance);
@@ -129,7 +139,12 @@ fn ways_of<'a, D: FnMut(&Variant) -> f64>(
     let tied_smooth: Vec<&Candidate> = tied.iter().filter(is_smooth).copied().collect();
     let tied_listed: Vec<&Candidate> = tied.iter().filter(|member| !is_smooth(member)).copied().collect();
     for together in products(&tied_listed, |_| true) {
-        let Some((nearest, farthest)) = reach_together(search, &together.0, &tied_smooth) else {
+        let numbers: Vec<&str> = tied_smooth.iter().map(|member| member.free.0).collect();
+        let key = format!("{:?} {numbers:?}", together.0);
+        let measured = known
+            .entry(key)
+            .or_insert_with(|| reach_together(search, &together.0, &tied_smooth));
+        let Some((nearest, farthest)) = *measured else {
             continue;
         };
         let (from, to) = (nearest - ROUNDING, farthest + moving + ROUNDING);
@@ -293,9 +308,11 @@ impl<'a> Candidate<'a> {
             for b in other.some() {
                 let (a, b) = (change(self, a), change(other, b));
                 let both = search.beyond(with(&a, &b));
-                let (Some(a), Some(b), Some(both)) = (search.beyond(a), search.beyond(b), both) else {
-                    return false;
+                // Where one of them alone cannot be drawn from, it says nothing about the other.
+                let (Some(a), Some(b)) = (search.beyond(a), search.beyond(b)) else {
+                    continue;
                 };
+                let Some(both) = both else { return false };
                 if (both - a - b).abs() > ROUNDING * both.max(1.0) {
                     return false;
                 }
