@@ -56,11 +56,11 @@ pub(super) struct Way<'a> {
 /// All that may change.
 pub(super) struct Reach<'a> {
     candidates: Vec<Candidate<'a>>,
-    together: Together,
+    spans: JointSpans,
 }
 
 /// How near and how far parameters are that were measured together, by their names and choices.
-type Together = HashMap<String, Option<(f64, f64)>>;
+type JointSpans = HashMap<String, Option<(f64, f64)>>;
 
 impl<'a> Reach<'a> {
     pub(super) fn new<D: FnMut(&Variant) -> f64>(search: &mut Search<'a, D>, free: &FreeParameters<'a>) -> Self {
@@ -85,7 +85,7 @@ impl<'a> Reach<'a> {
         candidates.sort_by(|a, b| b.most.total_cmp(&a.most));
         Self {
             candidates,
-            together: Together::new(),
+            spans: JointSpans::new(),
         }
     }
 
@@ -104,7 +104,7 @@ impl<'a> Reach<'a> {
                 break;
             }
             let members: Vec<&Candidate> = set.iter().map(|index| &self.candidates[*index]).collect();
-            ways_of(&members, search, &mut self.together, &mut ways);
+            ways_of(&members, search, &mut self.spans, &mut ways);
             // The next set of this size, in lexical order.
             let Some(place) = (0..size).rev().find(|place| set[*place] < self.len() - size + place) else {
                 break;
@@ -122,7 +122,7 @@ impl<'a> Reach<'a> {
 fn ways_of<'a, D: FnMut(&Variant) -> f64>(
     members: &[&Candidate<'a>],
     search: &mut Search<'a, D>,
-    known: &mut Together,
+    known: &mut JointSpans,
     ways: &mut Vec<Way<'a>>,
 ) {
     let (low, high) = (search.target - search.tolerance, search.target + search.tolerance);
