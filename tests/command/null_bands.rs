@@ -67,11 +67,9 @@ fn good_is_said_outside_the_null_band_only() {
     );
 
     let json = parsed(&succeed_in(folder.path(), &["metrics", "learns", "--json"]));
-    let band = &json["null"]["perf_maintenance_mrlep"];
-    assert!(
-        band["high"].as_f64() < json["perf_maintenance_mrlep"].as_f64(),
-        "{json}"
-    );
+    // Eight worlds cannot show maintenance, but that learning one task helps the other.
+    let band = &json["null"]["forward_transfer_contrast"];
+    assert!(band["high"].as_f64() < band["value"].as_f64(), "{json}");
     assert!(
         band["p"].as_f64().expect("a number") < 0.01 && band["exchanged"] == "worlds",
         "{json}"
