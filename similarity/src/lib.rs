@@ -61,7 +61,6 @@ pub use order::{
 };
 pub use reward::{
     Epic, MAX_REWARDS, RewardSamples, RewardTable, SampledReward, pearson_distance, world_rewards_distance,
-    world_sets_rewards_distance,
 };
 pub use transport::{
     MAX_DIRECTIONS, MAX_SINKHORN_STEPS, MAX_TRANSPORTED, Move, Sinkhorn, SinkhornSettings, TransportPlan,

@@ -82,7 +82,7 @@ pub fn variant_matrix_while(
         (None, task) => task.map_or(By::Parameters, |task| task.compare_by()),
     };
     // Labels are looked at before anything is drawn.
-    DistanceMatrix::measure(labels.clone(), |_, _| Ok::<_, DistancesError>(0.0))?;
+    DistanceMatrix::check_labels(&labels)?;
     let weights = lay_over(task.map_or_else(Weights::default, |task| Weights::of_task(task)))?;
     if let (By::Parameters, Some(task)) = (by, task) {
         let measure = VariantMeasure::new(task, weights);

@@ -10,7 +10,7 @@ use driftworld_spec::{By, Element, World};
 use rayon::prelude::*;
 
 use super::DistancesError;
-use crate::behavior::POINTS;
+use crate::behavior::{ExpertPair, POINTS};
 use crate::dynamics::{self, DynamicsOptions};
 use crate::picture_distance::{PictureDistanceError, PictureOptions, Pose, Views, poses};
 
@@ -125,15 +125,18 @@ impl<'a> Pairs<'a> {
                     return self.looks(&a?, &b?);
                 }
                 let [(of_a, a), (of_b, b)] = [&seen[a], &seen[b]];
-                let common = |own: &[Pose], other: &[Pose]| -> Vec<usize> {
-                    (0..own.len()).filter(|k| other.contains(&own[*k])).collect()
+                // Pictures are copied only where a place is taken in one of the worlds.
+                let fewer = |views: &Views, own: &[Pose], other: &[Pose]| {
+                    let common: Vec<usize> = (0..own.len()).filter(|k| other.contains(&own[*k])).collect();
+                    (common.len() < own.len()).then(|| views.only(&common))
                 };
-                let [a, b] = [a.only(&common(of_a, of_b)), b.only(&common(of_b, of_a))];
+                let (fewer_of_a, fewer_of_b) = (fewer(a, of_a, of_b), fewer(b, of_b, of_a));
+                let (a, b) = (fewer_of_a.as_ref().unwrap_or(a), fewer_of_b.as_ref().unwrap_or(b));
                 if a.is_empty() {
                     let tried = options.across * options.across;
                     return Err(PictureDistanceError::NoPlace { tried }.into());
                 }
-                self.looks(&a, &b)?
+                self.looks(a, b)?
             }
             Ready::Dynamics(options, tables) => {
                 let area = dynamics::common_area(worlds[0], worlds[1]);
@@ -144,13 +147,13 @@ impl<'a> Pairs<'a> {
                 return self.outcomes(&a?, &b?, options);
             }
             Ready::Behavior(expertise, own) => {
-                let (b_in_a, a_in_b) = (
-                    expertise.abroad(worlds[1], worlds[0])?,
-                    expertise.abroad(worlds[0], worlds[1])?,
-                );
-                let succeeds = |run: ExpertRun| f64::from(u8::from(run.success));
-                let more = succeeds(own[a]) - succeeds(b_in_a) + succeeds(own[b]) - succeeds(a_in_b);
-                vec![own[a].earned - b_in_a.earned, own[b].earned - a_in_b.earned, more / 2.0]
+                let pair = ExpertPair {
+                    a_in_a: own[a],
+                    b_in_a: expertise.abroad(worlds[1], worlds[0])?,
+                    b_in_b: own[b],
+                    a_in_b: expertise.abroad(worlds[0], worlds[1])?,
+                };
+                vec![pair.regret_in_a(), pair.regret_in_b(), pair.success_difference()]
             }
         })
     }

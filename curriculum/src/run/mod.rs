@@ -68,7 +68,7 @@ pub const REPEATED_EVALUATIONS: usize = 4;
 /// a run that was interrupted and taken up again writes what an undisturbed one does. [`Agent::learn`] is called in learning
 /// blocks only. An agent that learns lives learning blocks one experience after the other; whoever takes up a log with such an
 /// agent hands over one that has learned what is in the log. Evaluation blocks, and all blocks of an agent that does not
-/// learn, are lived by its [`Agent::frozen`] copies, several at a time; by the agent itself where it has no copies. Of an agent that
+/// learn, are run by its [`Agent::frozen`] copies, several at a time; by the agent itself where it has no copies. Of an agent that
 /// learns the first evaluations of each block are run once more at its end, and have to pay the same.
 ///
 /// # Errors

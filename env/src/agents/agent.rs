@@ -27,8 +27,8 @@ pub trait Agent {
         true
     }
 
-    /// A copy that acts as this agent does now and never learns. Copies run episodes in parallel. `None`, the default,
-    /// for an agent that cannot be copied: its episodes run one after the other.
+    /// A copy that acts as this agent does now and never learns. Copies run evaluations, one or several at a time. `None`,
+    /// the default, for an agent that cannot be copied: it runs its evaluations itself, one after the other.
     fn frozen(&self) -> Option<Box<dyn Agent + Send>> {
         None
     }

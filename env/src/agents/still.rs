@@ -5,8 +5,8 @@ use driftworld_spec::{ActionModel, ActionSpace};
 use super::{Agent, in_space};
 use crate::sim::{Action, Environment};
 
-/// Stands where it is and does nothing; in a world with an action table it draws near that by the row that comes nearest. A world
-/// on rails moves it all the same.
+/// Stands where it is and does nothing. In a world with an action table it takes the row that comes nearest to that. A world on rails
+/// moves it all the same.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StillAgent;
 

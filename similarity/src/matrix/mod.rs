@@ -116,6 +116,15 @@ impl DistanceMatrix {
         Ok(Self::mirrored(labels, values))
     }
 
+    /// Whether a matrix can have these labels, before anything is measured.
+    ///
+    /// # Errors
+    /// [`SimilarityError::TooMany`] for more than [`MAX_ITEMS`], [`SimilarityError::BadMatrix`] for a label that stands twice.
+    pub fn check_labels(labels: &[String]) -> Result<(), SimilarityError> {
+        Self::bounded(labels.len())?;
+        Self::distinct(labels)
+    }
+
     fn bounded(found: usize) -> Result<usize, SimilarityError> {
         let limit = MAX_ITEMS;
         if found > limit {

@@ -11,4 +11,4 @@ pub use epic::Epic;
 pub use pearson_distance::pearson_distance;
 pub use samples::{RewardSamples, SampledReward};
 pub use table::{MAX_REWARDS, RewardTable};
-pub use worlds::{world_rewards_distance, world_sets_rewards_distance};
+pub use worlds::world_rewards_distance;

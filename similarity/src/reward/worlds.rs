@@ -1,12 +1,11 @@
 //! How far apart the rewards of two worlds are, by EPIC over states and choices that are drawn. How objects of two worlds are
 //! matched is said in `combined/matching.rs`, EPIC in `epic.rs` and `samples.rs`.
 
-use driftworld_spec::{Element, Object, World};
+use driftworld_spec::{Object, World};
 
 use super::samples::RewardSamples;
 use crate::SimilarityError;
-use crate::combined::{Distance, Part, Weights, match_objects};
-use crate::distribution::Method;
+use crate::combined::match_objects;
 use crate::split_mix::SplitMix64;
 
 /// The discount where neither world's shaping names one.
@@ -67,34 +66,6 @@ pub fn world_rewards_distance(a: &World, b: &World, discount: Option<f64>) -> Re
     let samples = draw(matches.len(), [0, 1].map(|axis| a.reach(axis).max(b.reach(axis))))?;
     let measure = |own: &Rewards| samples.measure(|state, action, next| own.pays(state, *action, next));
     measure(&a)?.distance(&measure(&b)?, discount)
-}
-
-/// The mean of [`world_rewards_distance`] over pairs, the first with the first and so on, as a distance in the reward
-/// alone; worlds without a partner are left out. `weights`: what the reward weighs.
-///
-/// # Errors
-/// [`SimilarityError::Empty`] if there is no pair, and as [`world_rewards_distance`].
-pub fn world_sets_rewards_distance(a: &[World], b: &[World], weights: &Weights) -> Result<Distance, SimilarityError> {
-    let count = a.len().min(b.len());
-    if count == 0 {
-        return Err(SimilarityError::Empty);
-    }
-    let mut sum = 0.0;
-    for (a, b) in a.iter().zip(b) {
-        sum += world_rewards_distance(a, b, None)?;
-    }
-    let mean = sum / count as f64;
-    let part = Part {
-        name: "rewards".to_owned(),
-        element: Element::R,
-        measure: "epic",
-        method: Some(Method::Samples { count }),
-        raw: mean,
-        normalised: mean,
-        weight: 1.0,
-        share: 0.0,
-    };
-    Ok(Distance::new(vec![part], weights))
 }
 
 /// Where the agent is, and which objects are used up.
