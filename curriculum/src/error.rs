@@ -81,6 +81,12 @@ pub enum CurriculumError {
         /// How many learning blocks there are.
         last: u32,
     },
+    /// A variant that is held out is learned as well.
+    #[error("design: found {variant} among the variants to learn and among those held out, expected one of the two")]
+    HeldOut {
+        /// The variant.
+        variant: String,
+    },
     /// A drift has nowhere to go.
     #[error("design: found one variant to drift through, expected at least 2")]
     NoWay,

@@ -10,8 +10,8 @@ mod run;
 mod transfer;
 
 pub use design::{
-    Choice, Control, Design, Drifting, Evaluate, Hypothesis, MAX_BLOCKS, MAX_PROBED, MAX_SEED, MAX_STEPS, Picked,
-    Steps, arrange, control, design, design_control, distances, experts, probe, probe_named, steps,
+    Choice, Control, Design, Drifting, Evaluate, Hypothesis, LEARN, MAX_BLOCKS, MAX_PROBED, MAX_SEED, MAX_STEPS, Picked,
+    Split, Steps, arrange, control, design, design_control, distances, experts, probe, probe_named, steps,
 };
 pub use error::CurriculumError;
 pub use run::{

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use driftworld::design::{self, DesignOrder, DesignRequest};
 use driftworld::ordering::OrderRequest;
-use driftworld_curriculum::{Design, Drifting, Evaluate};
+use driftworld_curriculum::{Design, Drifting, Evaluate, Split};
 use driftworld_spec::{By, DriftSwitch, Scenario, sound_name};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -18,7 +18,7 @@ const REFUSED: &str = "CurriculumError";
 /// Scenarios, each by its name and its text: those that were designed, and their controls.
 type Texts = (Vec<(String, String)>, Vec<(String, String)>);
 
-/// Designs scenarios by the options of `Curriculum.design`; draws the blocks where a file is named for it.
+/// Designs scenarios by the options of `Curriculum.design`, or their experts where these are asked for; draws the blocks where a file is named for it.
 #[pyfunction]
 pub(crate) fn design_curriculum(py: Python<'_>, tasks: Vec<String>, options: Bound<'_, PyDict>) -> Result<Texts> {
     let options = Options::new(options, REFUSED);
@@ -29,6 +29,7 @@ pub(crate) fn design_curriculum(py: Python<'_>, tasks: Vec<String>, options: Bou
             options.refuse("plot: found it for several scenarios, expected it for one; leave it out".to_owned())
         );
     }
+    let experts = request.experts;
     let designed = run_detached(py, move || {
         let designed = design::design(&request)?;
         if let Some(path) = plot {
@@ -41,7 +42,8 @@ pub(crate) fn design_curriculum(py: Python<'_>, tasks: Vec<String>, options: Bou
         let text = |scenario: Scenario| (scenario.name.clone(), scenario.to_json_pretty());
         scenarios.into_iter().map(text).collect()
     };
-    Ok((texts(designed.scenarios), texts(designed.controls)))
+    let scenarios = if experts { designed.experts } else { designed.scenarios };
+    Ok((texts(scenarios), texts(designed.controls)))
 }
 
 fn request(tasks: Vec<String>, options: &Options<'_>) -> Result<DesignRequest> {
@@ -80,6 +82,8 @@ fn request(tasks: Vec<String>, options: &Options<'_>) -> Result<DesignRequest> {
         tolerance: options.number("tolerance")?,
         steps: options.whole("steps")?,
         lifetimes: options.whole("lifetimes")?,
+        hold_out: options.list("hold_out", "a list of names of variants")?.unwrap_or_default(),
+        experts: options.flag("experts")?,
         controls: options.path("controls")?.is_some(),
         worlds: options.whole("worlds")?.unwrap_or(usual.worlds),
         libraries: options.path("assets")?.into_iter().collect(),
@@ -110,6 +114,12 @@ fn blocks(options: &Options<'_>) -> Result<Design> {
         evaluation: after.map(Evaluate::After).or(evaluation).unwrap_or(usual.evaluation),
         form: options.named("form")?,
         blocks: options.whole("blocks")?,
+        lifetime: options.whole("lifetime")?.unwrap_or(usual.lifetime),
+        fixed_evaluation: options.flag("fixed_evaluation")?,
+        split: options
+            .choice("split", &[("validation", Split::Validation), ("test", Split::Test)])?
+            .unwrap_or(usual.split),
+        paired_learning: options.flag("paired_learning")?,
         drifting: schedule.map(|schedule| Drifting {
             schedule,
             switch: if mixes {

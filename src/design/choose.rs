@@ -1,6 +1,6 @@
 //! The variants of a curriculum and their order: all that are named, those of a probe, or a sequence of steps.
 
-use driftworld_curriculum::{Choice, Hypothesis, Picked, Steps, arrange, distances, probe, probe_named, steps};
+use driftworld_curriculum::{Choice, Design, Hypothesis, Picked, Steps, arrange, distances, probe, probe_named, steps};
 use driftworld_similarity::{DistanceMatrix, Method};
 use driftworld_spec::{By, DEFAULT_VARIANT, Element, Variant};
 
@@ -58,7 +58,7 @@ impl Chosen {
 
 impl DesignRequest {
     pub(super) fn choose(&self) -> Result<Chosen, Failure> {
-        let named = tasks::variants_of(&self.tasks)?;
+        let named = self.learned()?;
         if let Some(distance) = self.step_distance {
             let wanted = Steps {
                 distance,
@@ -146,6 +146,33 @@ impl DesignRequest {
             by,
             order,
             evidence: None,
+        })
+    }
+
+    /// The variants that are learned: all that are named but those held out.
+    fn learned(&self) -> Result<Vec<(String, Variant)>, Failure> {
+        let mut named = tasks::variants_of(&self.tasks)?;
+        let held_out = tasks::variants_of(&self.hold_out)?;
+        let is_held_out = |task: &str, variant: &Variant| {
+            held_out.iter().any(|(other, held)| other == task && held.name() == variant.name())
+        };
+        named.retain(|(task, variant)| !is_held_out(task, variant));
+        if named.is_empty() {
+            return Err(Failure::input(format!(
+                "{}: found every variant held out, expected at least one to learn",
+                argument("hold_out")
+            )));
+        }
+        Ok(named)
+    }
+
+    /// The design, with the variants that are held out.
+    pub(super) fn laid_out(&self) -> Result<Design, Failure> {
+        let held_out = tasks::variants_of(&self.hold_out)?;
+        let choice = |(task, variant): &(String, Variant)| Choice::new(task, variant.name());
+        Ok(Design {
+            held_out: held_out.iter().map(choice).collect(),
+            ..self.design.clone()
         })
     }
 

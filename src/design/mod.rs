@@ -7,7 +7,7 @@ mod proof;
 mod request;
 mod words;
 
-use driftworld_curriculum::{Control, Design, control, design as lay_out, design_control, experts};
+use driftworld_curriculum::{Control, Design, control, design as lay_out, design_control, experts as single_task};
 use driftworld_report::picture;
 use driftworld_spec::{Scenario, ScenarioForm};
 use std::path::Path;
@@ -27,6 +27,8 @@ pub struct Designed {
     pub scenarios: Vec<Scenario>,
     /// The same variants, worlds and counts in other orders, where they were asked for.
     pub controls: Vec<Scenario>,
+    /// Single-task experts of each lifetime, where they were asked for.
+    pub experts: Vec<Scenario>,
     /// The variants and their order.
     pub chosen: Chosen,
 }
@@ -61,25 +63,28 @@ pub fn design(request: &DesignRequest) -> Result<Designed, Failure> {
     let chosen = request.choose()?;
     let proof = request.prove(&chosen)?;
     let mut drawable = Drawable::new(request.worlds, &request.catalogue()?);
-    let (options, picked) = (&request.design, chosen.in_order(&chosen.order));
-    let mut scenarios = match (request.lifetimes, request.form()) {
-        (Some(lifetimes), _) => {
-            let lifetime = |lifetime| {
-                let name = format!("{}-{}", options.name, lifetime + 1);
-                lay_out(
-                    &picked,
-                    &Design {
-                        name,
-                        lifetime,
-                        ..options.clone()
-                    },
-                )
-            };
-            (0..lifetimes).map(lifetime).collect::<Result<Vec<_>, _>>()?
-        }
-        (None, Some(ScenarioForm::Expert)) => experts(&picked, options)?,
-        (None, _) => vec![lay_out(&picked, options)?],
+    let (options, picked) = (&request.laid_out()?, chosen.in_order(&chosen.order));
+    let (mut scenarios, mut experts) = (Vec::new(), Vec::new());
+    let lifetimes = match request.lifetimes {
+        None => vec![options.clone()],
+        Some(lifetimes) => (0..lifetimes)
+            .map(|lifetime| Design {
+                name: format!("{}-{}", options.name, lifetime + 1),
+                lifetime,
+                ..options.clone()
+            })
+            .collect(),
     };
+    for lifetime in &lifetimes {
+        if request.form() == Some(ScenarioForm::Expert) {
+            scenarios.extend(single_task(&picked, lifetime)?);
+        } else {
+            scenarios.push(lay_out(&picked, lifetime)?);
+        }
+        if request.experts {
+            experts.extend(single_task(&picked, lifetime)?);
+        }
+    }
     let mut controls = Vec::new();
     for &kind in Control::ALL.iter().filter(|_| request.controls) {
         let order = control(&chosen.matrix, &chosen.order, kind, options.seed)?;
@@ -96,10 +101,10 @@ pub fn design(request: &DesignRequest) -> Result<Designed, Failure> {
             },
         )?);
     }
-    for scenario in scenarios.iter_mut().chain(&mut controls) {
+    for scenario in scenarios.iter_mut().chain(&mut controls).chain(&mut experts) {
         scenario.proof.clone_from(&proof);
     }
-    for scenario in scenarios.iter().chain(&controls) {
+    for scenario in scenarios.iter().chain(&controls).chain(&experts) {
         drawable.check(scenario)?;
         // What the schema refuses, such as a name that no folder can have.
         Scenario::from_json("scenario", &scenario.to_json_pretty())?;
@@ -107,6 +112,7 @@ pub fn design(request: &DesignRequest) -> Result<Designed, Failure> {
     Ok(Designed {
         scenarios,
         controls,
+        experts,
         chosen,
     })
 }

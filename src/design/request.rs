@@ -69,8 +69,12 @@ pub struct DesignRequest {
     pub tolerance: Option<f64>,
     /// How many steps: one fewer than variants; default [`DEFAULT_STEPS`](super::DEFAULT_STEPS).
     pub steps: Option<u32>,
-    /// So many lifetimes of the permuted form, each in an order of its own.
+    /// So many lifetimes, each in worlds of its own and, in the permuted form, in an order of its own.
     pub lifetimes: Option<u64>,
+    /// Variants, or tasks, that are evaluated and never learned.
+    pub hold_out: Vec<String>,
+    /// Whether single-task experts of each lifetime are designed, too.
+    pub experts: bool,
     /// Whether the same variants are laid out in reversed, random and contrasting order, too.
     pub controls: bool,
     /// How many worlds of each regime are drawn to see whether they can be; 0 for none.
@@ -96,6 +100,8 @@ impl DesignRequest {
             tolerance: None,
             steps: None,
             lifetimes: None,
+            hold_out: Vec::new(),
+            experts: false,
             controls: false,
             worlds: 5,
             libraries: Vec::new(),
@@ -178,12 +184,16 @@ impl DesignRequest {
         };
         within("lifetimes", self.lifetimes.unwrap_or(1), 1..=MAX_LIFETIMES)?;
         within("worlds", self.worlds.into(), 0..=MAX_TRIED.into())?;
-        let [lifetimes, form, controls, drift] = ["lifetimes", "form", "controls", "drift"].map(argument);
-        if self.lifetimes.is_some() && self.form() != Some(ScenarioForm::Permuted) {
-            return Err(Failure::usage(format!(
-                "{lifetimes}: found without {form} permuted, expected both; only the permuted form has several \
-                 lifetimes"
-            )));
+        let [lifetimes, form, controls, drift, experts] =
+            ["lifetimes", "form", "controls", "drift", "experts"].map(argument);
+        if self.form() == Some(ScenarioForm::Expert) {
+            let several = [(self.lifetimes.is_some(), &lifetimes), (self.experts, &experts)];
+            if let Some((_, other)) = several.iter().find(|(is_given, _)| *is_given) {
+                return Err(Failure::usage(format!(
+                    "{other}: found with {form} expert, which has no lifetime, expected the form of a lifetime; leave \
+                     {form} out, and {experts} writes the experts of each lifetime"
+                )));
+            }
         }
         if self.is_of_several() && self.controls {
             return Err(Failure::usage(format!(

@@ -317,10 +317,10 @@ fn evaluation_never_draws_what_is_learned_and_stands_where_it_is_wanted() {
         regimes(&places, kind)
             .iter()
             .map(|r| r["seed"].to_string())
-            .collect::<Vec<_>>()
+            .collect::<std::collections::BTreeSet<_>>()
     };
-    assert!(seeds("learning").iter().all(|seed| seed == "12"));
-    assert!(seeds("evaluation").iter().all(|seed| seed == "13"));
+    assert_eq!((seeds("learning").len(), seeds("evaluation").len()), (1, 1));
+    assert!(seeds("learning").is_disjoint(&seeds("evaluation")));
     assert!(regimes(&places, "evaluation").iter().all(|regime| regime["count"] == 3));
     assert!(
         refused(1, &[&three[..], &["--evaluate-after", "4"]].concat())
@@ -354,6 +354,10 @@ fn the_forms_arrange_the_blocks_and_say_so() {
     };
     assert_eq!(
         indices(&with("dispersed", &["--learn", "10"])),
+        ["0", "100000000000", "10", "100000000010", "20", "100000000020"]
+    );
+    assert_eq!(
+        indices(&with("dispersed", &["--learn", "10", "--paired-learning"])),
         ["0", "0", "10", "10", "20", "20"]
     );
     assert_eq!(with("condensed", &["--task-label", "info"])["task_label"], "info");
@@ -379,6 +383,33 @@ fn the_forms_arrange_the_blocks_and_say_so() {
     let orders =
         ["curriculum-1.json", "curriculum-2.json", "curriculum-3.json"].map(|file| learned(&several(&lifetimes, file)));
     assert!(orders[0] != orders[1] || orders[1] != orders[2], "{orders:?}");
+}
+
+#[test]
+fn lifetimes_have_their_own_worlds_and_experts_what_their_lifetime_has() {
+    let folder = scratch();
+    let into = |name: &str| folder.path().join(name);
+    let (lifetimes, experts) = (into("lifetimes"), into("experts"));
+    let arguments = ["--hold-out", park("#dusk"), "--learn", "4", "--form", "dispersed", "--lifetimes", "2"];
+    let folders = ["--experts", text(&experts), "-o", text(&lifetimes)];
+    let two = [park("#blue"), park("#red"), park("#dusk")];
+    let output = curriculum(&[&two[..], &arguments, &folders].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let lives = ["curriculum-1", "curriculum-2"].map(|name| read(&lifetimes.join(format!("{name}.json"))));
+    let worlds = |scenario: &Value, kind: &str| -> std::collections::BTreeSet<String> {
+        let world = |regime: &&Value| format!("{} {} {}", name(regime), regime["seed"], regime["first_index"]);
+        regimes(scenario, kind).iter().map(world).collect()
+    };
+    for kind in ["learning", "evaluation"] {
+        assert!(worlds(&lives[0], kind).is_disjoint(&worlds(&lives[1], kind)), "{kind}");
+    }
+    assert!(!learned(&lives[0]).contains(&"dusk".to_owned()));
+    assert!(regimes(&lives[0], "evaluation").iter().any(|regime| name(regime) == "dusk"));
+    let red = read(&experts.join("curriculum-2-red.json"));
+    assert_eq!(learned(&red), ["red"; 3]);
+    assert!(worlds(&lives[1], "learning").is_superset(&worlds(&red, "learning")));
+    assert!(worlds(&lives[1], "evaluation").is_superset(&worlds(&red, "evaluation")));
+    assert!(!experts.join("curriculum-1-dusk.json").exists(), "what is not learned has no expert");
 }
 
 #[test]
@@ -514,7 +545,11 @@ fn what_is_asked_for_wrongly_is_answered_with_what_is_possible() {
         "{form}"
     );
     assert!(refused(2, &[park(""), "--form", "expert"]).contains("--output"));
-    assert!(refused(2, &[park(""), "--lifetimes", "2"]).contains("--form permuted"));
+    for option in ["--lifetimes", "--experts"] {
+        let both = refused(2, &[park(""), "--form", "expert", option, "2"]);
+        assert!(both.contains(&format!("{option}: found with --form expert")), "{both}");
+    }
+    assert!(refused(1, &[park(""), "--hold-out", park("")]).contains("found every variant held out"));
     assert!(refused(2, &[park(""), "--steps", "3"]).contains("--step-distance"));
     let both = refused(2, &[park(""), "--order", "path", "--method", "exact"]);
     assert!(both.contains("--order: found together with --method"), "{both}");

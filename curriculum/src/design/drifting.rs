@@ -2,7 +2,8 @@
 
 use driftworld_spec::{DriftSchedule, DriftSwitch, Regime, RegimeDrift};
 
-use super::{Choice, Design};
+use super::Choice;
+use super::streams::Streams;
 use crate::CurriculumError;
 
 /// How learning blocks drift from each variant to the next.
@@ -21,7 +22,7 @@ pub(super) fn lessons(
     variants: &[Choice],
     path: &[usize],
     num_blocks: u64,
-    options: &Design,
+    (learn, streams): (u32, &Streams),
     drifting: Drifting,
 ) -> Result<Vec<Vec<Regime>>, CurriculumError> {
     let ways = path.len().saturating_sub(1) as u64;
@@ -30,7 +31,7 @@ pub(super) fn lessons(
     // Lengths are counted in parts of which a way has as many as there are blocks, and a block as many as there are ways.
     for block in 0..num_blocks {
         let (start, end) = (block * ways, (block + 1) * ways);
-        let learned = |part: u64| ((part - start) * u64::from(options.learn) + ways / 2) / ways;
+        let learned = |part: u64| ((part - start) * u64::from(learn) + ways / 2) / ways;
         let mut regimes = Vec::new();
         let mut here = start;
         while here < end {
@@ -57,7 +58,7 @@ pub(super) fn lessons(
                 };
                 regimes.push(Regime {
                     drift: Some(drift),
-                    ..variants[from].regime(count, options.seed * 2, taken[from])
+                    ..streams.learning(&variants[from], count, taken[from])
                 });
                 taken[from] += u64::from(count);
             }
@@ -70,13 +71,19 @@ pub(super) fn lessons(
 
 #[cfg(test)]
 mod tests {
+    use super::super::Design;
     use super::*;
 
     /// Each regime as `variant>variant from-until ×count`, blocks parted by `|`.
     #[track_caller]
     fn check(path: &[usize], num_blocks: u64, expected: &str) {
         let variants = ["a", "b", "c"].map(|name| Choice::new("t", name));
-        let lessons = lessons(&variants, path, num_blocks, &Design::default(), Drifting::default()).unwrap();
+        let options = Design {
+            learn: 20,
+            ..Design::default()
+        };
+        let streams = (options.learn, &Streams::new(&variants, &options));
+        let lessons = lessons(&variants, path, num_blocks, streams, Drifting::default()).unwrap();
         let regime = |regime: &Regime| {
             let drift = regime.drift.as_ref().unwrap();
             format!(

@@ -1,8 +1,8 @@
 //! Which variant each learning block is about: the forms of lifelong learning. Evaluation blocks are `evaluation.rs`'s.
 
-use driftworld_similarity::{DistanceMatrix, Method, OrderOptions, order};
 use driftworld_spec::ScenarioForm;
 
+use super::balanced::balanced_order;
 use crate::CurriculumError;
 
 /// The most learning blocks of a scenario.
@@ -77,7 +77,7 @@ pub(super) fn sequence(
         });
     }
     let places = if form == Some(ScenarioForm::Permuted) {
-        permutation(count, seed, lifetime)?
+        balanced_order(count, seed, lifetime)?
     } else {
         (0..count).collect()
     };
@@ -120,20 +120,6 @@ pub(super) fn reordered(
     } else {
         last
     })
-}
-
-/// The order in which a lifetime meets its variants where chance decides.
-fn permutation(count: usize, seed: u64, lifetime: u64) -> Result<Vec<usize>, CurriculumError> {
-    // The names are as long as each other, so that they sort as the numbers do.
-    let names = (0..count).map(|index| format!("{index:08}")).collect();
-    let alike = DistanceMatrix::measure(names, |_, _| Ok::<_, CurriculumError>(0.0))?;
-    // An odd factor: lifetimes of one seed and neighbouring seeds are far apart.
-    let seed = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(lifetime);
-    let options = OrderOptions {
-        seed,
-        ..OrderOptions::default()
-    };
-    Ok(order(&alike, Method::Random, &options)?.indices)
 }
 
 #[cfg(test)]

@@ -1,6 +1,8 @@
 //! Whole designs. Forms, drifts and orders have their tests beside them.
 
 use super::*;
+use proptest::prelude::*;
+use std::collections::BTreeSet;
 
 fn choices(count: usize) -> Vec<Choice> {
     (0..count).map(|k| Choice::new("t", format!("v{k}"))).collect()
@@ -60,53 +62,159 @@ fn evaluations_stand_where_they_are_wanted() {
     );
 }
 
-#[test]
-fn learning_and_evaluation_never_share_a_seed() {
-    for seed in [0, 1, 2, MAX_SEED] {
+/// What the experiences of a regime are drawn from: variant, seed and index.
+fn worlds<'a>(regimes: impl IntoIterator<Item = &'a Regime>) -> Vec<(String, u64, u64)> {
+    let of = |regime: &Regime| {
+        let (variant, seed, first) = (regime.variant.clone(), regime.seed, regime.first_index);
+        (0..u64::from(regime.count)).map(move |k| (variant.clone(), seed, first + k))
+    };
+    let mut worlds: Vec<_> = regimes.into_iter().flat_map(of).collect();
+    worlds.sort();
+    worlds
+}
+
+fn evaluated(scenario: &Scenario) -> Vec<&Regime> {
+    let blocks = scenario.blocks.iter().filter(|block| block.kind == BlockKind::Evaluation);
+    blocks.flat_map(|block| &block.regimes).collect()
+}
+
+/// Layouts: what variants of one task share.
+fn layouts(worlds: &[(String, u64, u64)]) -> BTreeSet<(u64, u64)> {
+    worlds.iter().map(|(_, seed, index)| (*seed, *index)).collect()
+}
+
+/// Any design of `variants` variants that keeps to them.
+fn any_design(variants: usize) -> impl Strategy<Value = Design> {
+    let all = variants as u32;
+    let form = prop_oneof![
+        Just((None, None)),
+        (1..12_u32).prop_map(|blocks| (None, Some(blocks))),
+        Just((Some(ScenarioForm::Condensed), None)),
+        Just((Some(ScenarioForm::Permuted), None)),
+        (2 * all..4 * all).prop_map(|blocks| (Some(ScenarioForm::Dispersed), Some(blocks))),
+    ];
+    let counts = (1..30_u32, 1..9_u32, 0..4_u32);
+    let flags = (any::<bool>(), any::<bool>(), 0..3_u64);
+    (form, counts, flags, 0..MAX_SEED).prop_map(|((form, blocks), (learn, evaluate, before), flags, seed)| Design {
+        form,
+        blocks,
+        learn,
+        evaluate,
+        pre_deployment: before,
+        evaluation: if flags.0 { Evaluate::Every } else { Evaluate::Ends },
+        split: if flags.1 { Split::Test } else { Split::Validation },
+        lifetime: flags.2,
+        seed,
+        ..Design::default()
+    })
+}
+
+proptest! {
+    #[test]
+    fn nothing_is_learned_twice_and_variants_lifetimes_and_uses_share_no_layout(
+        options in any_design(4), other in 3..9_u64,
+    ) {
+        let of = |options: &Design| design(&choices(4), options).unwrap();
+        let scenario = of(&options);
+        let lessons = worlds(learned(&scenario));
+        prop_assert_eq!(layouts(&lessons).len(), lessons.len());
+        let tested = layouts(&worlds(evaluated(&scenario)));
+        prop_assert_eq!(tested.len(), options.evaluate as usize, "evaluation is in pairs");
+        prop_assert!(layouts(&lessons).is_disjoint(&tested));
+        let later = of(&Design { lifetime: other, ..options.clone() });
+        prop_assert!(layouts(&lessons).is_disjoint(&layouts(&worlds(learned(&later)))));
+        prop_assert!(tested.is_disjoint(&layouts(&worlds(evaluated(&later)))));
+        let neighbour = of(&Design { seed: options.seed + 1, ..options.clone() });
+        prop_assert!(layouts(&lessons).is_disjoint(&layouts(&worlds(learned(&neighbour)))));
+        let turned = if options.split == Split::Test { Split::Validation } else { Split::Test };
+        let tuned = of(&Design { split: turned, ..options.clone() });
+        prop_assert_eq!(&lessons, &worlds(learned(&tuned)));
+        prop_assert!(tested.is_disjoint(&layouts(&worlds(evaluated(&tuned)))));
+        let fixed = |lifetime| of(&Design { fixed_evaluation: true, lifetime, ..options.clone() });
+        prop_assert_eq!(worlds(evaluated(&fixed(other))), worlds(evaluated(&fixed(other + 1))));
+    }
+
+    #[test]
+    fn the_order_does_not_decide_which_worlds_there_are(seed in 0..MAX_SEED, before in 0..3_u32) {
+        let options = Design { form: Some(ScenarioForm::Dispersed), learn: 20, seed, ..Design::default() };
+        let mut reversed = choices(3);
+        reversed.reverse();
+        let of = |variants: &[Choice]| worlds(learned(&design(variants, &options).unwrap()));
+        prop_assert_eq!(of(&choices(3)), of(&reversed));
+        let paired = Design { paired_learning: true, pre_deployment: before, ..options };
+        let lessons = worlds(learned(&design(&choices(3), &paired).unwrap()));
+        prop_assert_eq!(layouts(&lessons).len(), 60 + before as usize);
+    }
+
+    #[test]
+    fn experts_have_what_their_lifetime_has_of_their_variant(options in any_design(4)) {
+        let scenario = design(&choices(4), &options).unwrap();
+        let before = |scenario: &Scenario| {
+            let block = scenario.blocks.iter().find(|block| block.phase == Phase::PreDeployment);
+            block.cloned()
+        };
+        let deployed = |scenario: &Scenario| {
+            let blocks = scenario.blocks.iter().filter(|block| block.phase == Phase::Deployment);
+            Scenario { blocks: blocks.cloned().collect(), ..scenario.clone() }
+        };
+        let mut together = Vec::new();
+        for expert in experts(&choices(4), &options).unwrap() {
+            prop_assert_eq!(before(&expert), before(&scenario));
+            let expert = deployed(&expert);
+            let variant = learned(&expert)[0].variant.clone();
+            let is_own = |regime: &&Regime| regime.variant == variant;
+            prop_assert!(learned(&expert).iter().all(is_own) && evaluated(&expert).iter().all(is_own));
+            let tested: BTreeSet<_> = worlds(evaluated(&expert)).into_iter().collect();
+            let all: BTreeSet<_> = worlds(evaluated(&scenario).into_iter().filter(is_own)).into_iter().collect();
+            prop_assert_eq!(tested, all);
+            let starts: Vec<_> = learned(&expert).iter().map(|regime| regime.first_index).collect();
+            let deployed = deployed(&scenario);
+            let own: Vec<_> = learned(&deployed).into_iter().filter(is_own).map(|regime| regime.first_index).collect();
+            prop_assert_eq!(starts, own);
+            together.extend(worlds(learned(&expert)));
+        }
+        together.sort();
+        prop_assert_eq!(together, worlds(learned(&deployed(&scenario))));
+    }
+
+    #[test]
+    fn experts_of_a_drift_have_as_many_experiences_as_it(learn in 1..60_u32, blocks in 1..6_u32) {
         let options = Design {
-            seed,
-            pre_deployment: 3,
+            learn,
+            blocks: Some(blocks),
+            drifting: Some(Drifting::default()),
             ..Design::default()
         };
-        let scenario = design(&choices(2), &options).unwrap();
-        let odd = |block: &Block| block.regimes.iter().all(|regime| regime.seed % 2 == 1);
-        assert!(
-            scenario
-                .blocks
-                .iter()
-                .all(|block| odd(block) == (block.kind == BlockKind::Evaluation))
-        );
+        let count = |scenario: &Scenario| learned(scenario).iter().map(|regime| regime.count).sum::<u32>();
+        let experts: Vec<u32> = experts(&choices(3), &options).unwrap().iter().map(count).collect();
+        prop_assert_eq!(experts.iter().sum::<u32>(), count(&design(&choices(3), &options).unwrap()));
     }
 }
 
 #[test]
-fn no_world_is_learned_twice_and_the_order_does_not_decide_which_worlds_there_are() {
+fn what_is_held_out_is_evaluated_and_never_learned() {
     let options = Design {
-        form: Some(ScenarioForm::Dispersed),
-        pre_deployment: 7,
+        held_out: vec![Choice::new("t", "new")],
         ..Design::default()
     };
-    let worlds = |variants: &[Choice]| {
-        let scenario = design(variants, &options).unwrap();
-        let mut worlds = Vec::new();
-        for regime in learned(&scenario) {
-            worlds.extend((0..u64::from(regime.count)).map(|k| (regime.variant.clone(), regime.first_index + k)));
-        }
-        worlds.sort();
-        let all = worlds.len();
-        worlds.dedup();
-        assert_eq!((all, worlds.len()), (7 + 9 * 20, all), "no world comes twice");
-        worlds.retain(|(_, index)| *index < BEFORE_DEPLOYMENT);
-        worlds
+    let scenario = design(&choices(2), &options).unwrap();
+    let is_new = |regime: &&Regime| regime.variant == "new";
+    assert!(!learned(&scenario).iter().any(|regime| is_new(&regime)));
+    let evaluations = scenario.blocks.iter().filter(|block| block.kind == BlockKind::Evaluation);
+    assert!(evaluations.into_iter().all(|block| block.regimes.iter().filter(is_new).count() == 1));
+    assert_eq!(experts(&choices(2), &options).unwrap().len(), 2);
+    let both = Design {
+        held_out: vec![Choice::new("t", "v1")],
+        ..Design::default()
     };
-    let mut reversed = choices(3);
-    reversed.reverse();
-    assert_eq!(worlds(&choices(3)), worlds(&reversed));
+    let error = design(&choices(2), &both).unwrap_err();
+    assert!(error.to_string().contains("t#v1"), "{error}");
 }
 
 #[test]
 fn an_expert_learns_one_variant_and_is_named_after_it() {
     let options = Design {
+        form: Some(ScenarioForm::Expert),
         blocks: Some(2),
         ..Design::default()
     };

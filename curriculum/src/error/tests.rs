@@ -30,6 +30,7 @@ fn every_error_has_its_message() {
             expected: "2 variants".into(),
         },
         CurriculumError::NoSuchPlace { found: 4, last: 3 },
+        CurriculumError::HeldOut { variant: "t#v".into() },
         CurriculumError::NoWay,
         CurriculumError::DriftBetweenTasks {
             from: "t#v".into(),

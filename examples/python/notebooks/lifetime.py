@@ -87,7 +87,8 @@ class Seeker:
 VARIANTS = [f"{SPEC}#day", f"{SPEC}#evening"]
 PLAN = {"learn": 12, "eval_episodes": 6, "seed": 5}
 OPTIONS = {"modalities": "rgb", "size": 48, "interact": False, "frame_skip": 2, "max_steps": 150}
-curriculum = driftworld.Curriculum.design(*VARIANTS, form="alternating", blocks=4, name="two_skies", **PLAN)
+PLAN |= {"form": "alternating", "blocks": 4}
+curriculum = driftworld.Curriculum.design(*VARIANTS, name="two_skies", **PLAN)
 experts = []
 for number, plan in enumerate(driftworld.Curriculum.experts(*VARIANTS, **PLAN)):
     plan.run(Seeker("expert", by_sky=False), log=LOGS / f"expert_{number}", **OPTIONS)

@@ -212,6 +212,9 @@ class Curriculum(Sequence[Block]):
         mix: bool = False,
         task_label: TaskLabel | None = None,
         seed: int | None = None,
+        split: WorldSplit | None = None,
+        paired_learning: bool = False,
+        hold_out: Sequence[str] | None = None,
         worlds: int | None = None,
         assets: PathLike | None = None,
         controls: PathLike | None = None,
@@ -222,8 +225,8 @@ class Curriculum(Sequence[Block]):
         Args:
             tasks: Variants, or tasks, which stand for all their variants.
             name: The scenario's name.
-            learn: Experiences of each learning block; 20 if not given.
-            eval_episodes: Experiences of each variant in each evaluation block; 5 if not given.
+            learn: Experiences of each learning block; 2,500 if not given.
+            eval_episodes: Experiences of each variant in each evaluation block; 50 if not given.
             evaluate: When the agent is evaluated, frozen, in all variants: ``"every"`` block (default) or at the ``"ends"``.
             evaluate_after: After so many learning blocks each instead; 0 is before the first.
             pre_deployment: Experiences of the first variant in a block before deployment.
@@ -246,6 +249,10 @@ class Curriculum(Sequence[Block]):
             mix: Values with nothing in between switch at random.
             task_label: Whether the learner gets a task label: ``"none"`` (default), ``"info"`` or ``"observation"``.
             seed: What all worlds follow from.
+            split: Which worlds it is evaluated in: ``"validation"`` to choose hyperparameters, ``"test"`` (default) for what
+                is reported. The two share no world.
+            paired_learning: The variants of a task are learned in the same layouts, one by one. If not, no two share one.
+            hold_out: Variants, or tasks, that are evaluated and never learned.
             worlds: Draw so many worlds of each regime first, and refuse a design that could not run; 5 if not given, 0 for
                 none.
             assets: An asset library whose classes the tasks use.
@@ -263,34 +270,43 @@ class Curriculum(Sequence[Block]):
 
     @classmethod
     def experts(cls, *tasks: str, **options: Any) -> list[Curriculum]:
-        """Single-task experts to compare with: a curriculum for every variant, in which it alone is learned.
+        """Single-task experts to compare with: a curriculum for every variant that the lifetime learns, in which it alone is
+        learned, as long as in the lifetime, in the same worlds and after the same experiences before deployment.
 
         Args:
             tasks: As for :meth:`design`.
-            options: As for :meth:`design`, which also says what is raised; without ``form``.
+            options: Those of the lifetime, as for :meth:`design`, which also says what is raised; and ``lifetime``, its number
+                among :meth:`lifetimes`, from 0.
 
         Raises:
             TypeError: For an option that there is not.
         """
-        return cls._several("experts", options, {"tasks": tasks, "form": "expert"})
+        return cls._several("experts", options, {"tasks": tasks, "experts": True}, ("lifetime", "fixed_evaluation"))
 
     @classmethod
     def lifetimes(cls, count: int, *tasks: str, **options: Any) -> list[Curriculum]:
-        """So many lifetimes of the permuted form, each in an order of its own.
+        """So many lifetimes, each in worlds of its own and, in the permuted form, which is the default, in an order of its own.
+
+        The orders are the rows of a balanced Latin square: each variant comes equally often in each place and after each other.
 
         Args:
             count: How many, 1 to 10,000.
             tasks: As for :meth:`design`.
-            options: As for :meth:`design`, which also says what is raised; without ``form``.
+            options: As for :meth:`design`, which also says what is raised; and ``fixed_evaluation``: all are evaluated in the
+                same worlds.
 
         Raises:
             TypeError: For an option that there is not.
         """
-        return cls._several("lifetimes", options, {"tasks": tasks, "form": "permuted", "lifetimes": count})
+        options = {"form": "permuted", **options}
+        return cls._several("lifetimes", options, {"tasks": tasks, "lifetimes": count}, ("fixed_evaluation",))
 
     @classmethod
-    def _several(cls, maker: str, options: dict[str, Any], fixed: dict[str, Any]) -> list[Curriculum]:
-        known = [name for name in inspect.signature(cls.design).parameters if name not in ("tasks", "form")]
+    def _several(
+        cls, maker: str, options: dict[str, Any], fixed: dict[str, Any], own: tuple[str, ...]
+    ) -> list[Curriculum]:
+        known = [name for name in inspect.signature(cls.design).parameters if name != "tasks"]
+        known.extend(own)
         for name in options:
             if name not in known:
                 raise TypeError(f"{maker}: found option {name!r}, expected one of {', '.join(known)}")
@@ -426,7 +442,7 @@ class Curriculum(Sequence[Block]):
 
 
 #: Options of a design that are whole numbers.
-_WHOLE = ("learn", "eval_episodes", "pre_deployment", "blocks", "variants", "steps", "seed", "worlds", "lifetimes")
+_WHOLE = ("learn", "eval_episodes", "pre_deployment", "blocks", "variants", "steps", "seed", "worlds", "lifetimes", "lifetime")
 
 
 def _is_whole(value: Any) -> bool:

@@ -5,7 +5,7 @@ mod tables;
 
 use std::path::{Path, PathBuf};
 
-use crate::curriculum::{Design, Drifting, Evaluate};
+use crate::curriculum::{Design, Drifting, Evaluate, LEARN, Split};
 use crate::design::{self, DesignOrder, DesignRequest, Designed};
 use crate::distances::By;
 use crate::modality::Kind;
@@ -37,7 +37,7 @@ pub(crate) use tables::{blocks, choices};
   driftworld curriculum find_objects --probe reward --order gradual --controls controls -o reward.json --plot reward.png
   driftworld curriculum find_objects#blue --probe observation --step-distance 0.1 --steps 5 -o steps.json
   driftworld curriculum find_objects#blue find_objects#dusk --form alternating --blocks 6 --drift cosine -o drift.json
-  driftworld curriculum find_objects --form expert -o experts
+  driftworld curriculum find_objects#blue find_objects#red --lifetimes 5 --experts experts -o lifetimes
   driftworld run scenario.json --agent random --logs log")]
 pub(crate) struct Curriculum {
     /// Variants, or tasks, which stand for all their variants.
@@ -84,11 +84,18 @@ pub(crate) struct Curriculum {
     /// Number of learning blocks [default: set by the form].
     #[arg(long, value_name = "N")]
     blocks: Option<u32>,
-    /// Write this many lifetimes of the permuted form into the folder --output.
+    /// Write this many lifetimes into the folder --output, each with worlds of its own.
     ///
-    /// Each has an order of its own.
+    /// With --form permuted, their orders are the rows of a balanced Latin square: each variant is equally often in
+    /// each place and after each other variant.
     #[arg(long, value_name = "N")]
     lifetimes: Option<u64>,
+    /// Evaluate all lifetimes on the same worlds.
+    #[arg(long, requires = "lifetimes")]
+    fixed_evaluation: bool,
+    /// Evaluate these variants, or tasks, too, and never learn them.
+    #[arg(long, num_args = 1.., value_name = "VARIANT")]
+    hold_out: Vec<String>,
     /// Drift from each variant to the next: linear, cosine, step:N or sawtooth:N.
     ///
     /// With --blocks, the whole drift is divided among that many blocks.
@@ -103,13 +110,15 @@ pub(crate) struct Curriculum {
     #[arg(long, default_value = "curriculum", value_parser = name)]
     name: String,
     /// Experiences per learning block.
-    #[arg(long, default_value_t = 20, value_name = "N")]
+    ///
+    /// By default, as many as a PPO learner took to reach 80 % of the expert's reward in find_objects.
+    #[arg(long, default_value_t = LEARN, value_name = "N")]
     learn: u32,
     /// Experiences of the first variant before deployment.
     #[arg(long, default_value_t = 0, value_name = "N")]
     pre_deployment: u32,
     /// Experiences per variant in each evaluation block.
-    #[arg(long, visible_alias = "evaluate-with", default_value_t = 5, value_name = "N")]
+    #[arg(long, visible_alias = "evaluate-with", default_value_t = 50, value_name = "N")]
     eval_episodes: u32,
     /// When to evaluate the frozen agent, on all variants.
     #[arg(long, value_enum, default_value_t = EvaluationSchedule::Every)]
@@ -129,6 +138,14 @@ pub(crate) struct Curriculum {
     /// Seed of all worlds. Learning and evaluation never share a world.
     #[arg(long, default_value_t = 0)]
     seed: u64,
+    /// Which worlds to evaluate on: validation to choose hyperparameters, test for what you report.
+    #[arg(long, value_enum, default_value_t = WorldSplit::Test)]
+    split: WorldSplit,
+    /// Learn the variants of a task in the same layouts, one by one.
+    ///
+    /// A learner can then use what it remembers of a layout, not of the task. By default, no two variants share one.
+    #[arg(long)]
+    paired_learning: bool,
     /// Draw this many worlds of each regime first, and fail if one cannot be drawn.
     ///
     /// 0 writes the scenario unchecked.
@@ -142,6 +159,11 @@ pub(crate) struct Curriculum {
     /// pre-deployment block.
     #[arg(long, value_name = "DIR")]
     controls: Option<PathBuf>,
+    /// Also write single-task experts of each lifetime into this folder.
+    ///
+    /// Each learns one variant, in the worlds and as long as the lifetime does, and is evaluated where the lifetime is.
+    #[arg(long, value_name = "DIR")]
+    experts: Option<PathBuf>,
     /// Draw the blocks over experiences into this PNG file.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
@@ -191,6 +213,15 @@ enum Form {
     Expert,
     /// One variant after the other, starting over if there are more blocks.
     Custom,
+}
+
+/// What the worlds of evaluation are for.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum WorldSplit {
+    /// For choosing hyperparameters and agents.
+    Validation,
+    /// For what you report.
+    Test,
 }
 
 /// Complexity of a scenario, in l2logger's words.
@@ -264,7 +295,7 @@ impl Curriculum {
                 let path = write_into(&self.output, scenario)?;
                 output::line(format!("{}: {}", path.shown(), tables::learned(scenario)))?;
             }
-            return Ok(());
+            return self.write_experts(&designed, say);
         }
         self.write_one(&designed, say)
     }
@@ -285,6 +316,15 @@ impl Curriculum {
         for (folder, scenario) in folder.flat_map(|folder| designed.controls.iter().map(move |one| (folder, one))) {
             let path = write_into(folder, scenario)?;
             say(format!("{}: {}", path.shown(), tables::path(scenario, matrix)))?;
+        }
+        self.write_experts(designed, say)
+    }
+
+    fn write_experts(&self, designed: &Designed, say: impl Fn(String) -> Result<(), Failure>) -> Result<(), Failure> {
+        let Some(folder) = &self.experts else { return Ok(()) };
+        for scenario in &designed.experts {
+            let path = write_into(folder, scenario)?;
+            say(format!("{}: {}", path.shown(), tables::learned(scenario)))?;
         }
         Ok(())
     }
@@ -312,6 +352,8 @@ impl Curriculum {
             tolerance: self.tolerance,
             steps: self.steps,
             lifetimes: self.lifetimes,
+            hold_out: self.hold_out.clone(),
+            experts: self.experts.is_some(),
             controls: self.controls.is_some(),
             worlds: self.worlds,
             libraries: self.libraries.paths().to_vec(),
@@ -339,6 +381,14 @@ impl Curriculum {
             }),
             blocks: self.blocks,
             lifetime: 0,
+            fixed_evaluation: self.fixed_evaluation,
+            split: match self.split {
+                WorldSplit::Validation => Split::Validation,
+                WorldSplit::Test => Split::Test,
+            },
+            paired_learning: self.paired_learning,
+            // What is held out is named in the request.
+            held_out: Vec::new(),
             drifting: self.drift.map(|schedule| Drifting {
                 schedule,
                 switch: if self.mix {

@@ -1,0 +1,85 @@
+//! [`Streams`]: which worlds the parts of a lifetime draw. Seeds are of the lifetime and of what the worlds are for, the first
+//! index of what is learned is of the variant.
+
+use driftworld_spec::{MAX_EXPERIENCES, Regime};
+use sha2::{Digest, Sha256};
+
+use super::{Choice, Design, MAX_BLOCKS};
+
+/// What the worlds of evaluation blocks are for. The two have no world in common.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Split {
+    /// For choosing hyperparameters and agents.
+    Validation,
+    /// For what is reported.
+    #[default]
+    Test,
+}
+
+/// How far apart the worlds of two variants begin: no lifetime learns more of one.
+const SPAN: u64 = MAX_EXPERIENCES as u64 * MAX_BLOCKS as u64;
+
+/// Seeds are at most this, which every reader of JSON keeps whole.
+const SEED_BITS: u32 = 53;
+
+/// The worlds of one lifetime.
+pub(super) struct Streams<'a> {
+    options: &'a Design,
+    /// Names of all variants, in their alphabetical order.
+    ids: Vec<String>,
+}
+
+impl<'a> Streams<'a> {
+    pub(super) fn new(variants: &[Choice], options: &'a Design) -> Self {
+        let mut ids: Vec<String> = variants.iter().chain(&options.held_out).map(Choice::id).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        Self { options, ids }
+    }
+
+    /// `count` experiences of learning, behind the first `taken` of the variant.
+    pub(super) fn learning(&self, choice: &Choice, count: u32, taken: u64) -> Regime {
+        let seed = spread(self.options.seed, self.options.lifetime, "learn");
+        choice.regime(count, seed, self.start(choice) + taken)
+    }
+
+    /// Experiences before deployment.
+    pub(super) fn before_deployment(&self, choice: &Choice) -> Regime {
+        let seed = spread(self.options.seed, self.options.lifetime, "before deployment");
+        choice.regime(self.options.pre_deployment, seed, 0)
+    }
+
+    /// Evaluation, the same each time. All variants have worlds of the same numbers, so that they can be compared in pairs.
+    pub(super) fn evaluation(&self, choice: &Choice) -> Regime {
+        let lifetime = if self.options.fixed_evaluation {
+            0
+        } else {
+            self.options.lifetime
+        };
+        let purpose = match self.options.split {
+            Split::Validation => "validation",
+            Split::Test => "test",
+        };
+        choice.regime(self.options.evaluate, spread(self.options.seed, lifetime, purpose), 0)
+    }
+
+    /// The first world that is learned of a variant. It is the same whatever the order of the variants.
+    fn start(&self, choice: &Choice) -> u64 {
+        if self.options.paired_learning {
+            return 0;
+        }
+        let id = choice.id();
+        self.ids.partition_point(|other| *other < id) as u64 * SPAN
+    }
+}
+
+/// A seed for one use in one lifetime, at most 2⁵³ − 1. Seeds that are near each other give seeds that are not.
+fn spread(seed: u64, lifetime: u64, purpose: &str) -> u64 {
+    let mut hash = Sha256::new();
+    hash.update(seed.to_le_bytes());
+    hash.update(lifetime.to_le_bytes());
+    hash.update(purpose.as_bytes());
+    let digest = hash.finalize();
+    let number = digest.iter().take(8).fold(0, |seed, byte| seed << 8 | u64::from(*byte));
+    number >> (u64::BITS - SEED_BITS)
+}
