@@ -169,6 +169,10 @@ impl PyPlan {
     }
 
     /// Notes what else its lifetime depends on: a log is taken up only if it is the same.
+    fn set_run_seed(&mut self, seed: u64) {
+        self.plan.set_run_seed(seed);
+    }
+
     fn add_fingerprint(&mut self, what: &str, print: &Bound<'_, PyAny>) -> Result<()> {
         self.plan.add_fingerprint(what, from_python(print)?);
         Ok(())

@@ -58,6 +58,11 @@ pub(crate) struct Run {
     /// The log does not depend on it.
     #[arg(long, value_name = "N", value_parser = jobs)]
     jobs: Option<NonZeroUsize>,
+    /// Seed of the agent's random numbers: another seed is a repeat in the same worlds.
+    ///
+    /// The log says it. 0 is the run that the scenario has of itself.
+    #[arg(long, default_value_t = 0, value_name = "S")]
+    seed: u64,
     /// Skip experiences whose worlds cannot be drawn.
     ///
     /// Each gets a row without numbers in the log, with the reason, and is counted in the summary. If a run stopped at
@@ -117,6 +122,7 @@ impl Run {
         for (name, task) in plan.tasks() {
             tasks::check_classes(name, task, &classes)?;
         }
+        plan.set_run_seed(self.seed);
         let agent = self.agent.agent()?;
         if let Some(script) = &agent.script {
             plan.add_fingerprint("script", script.as_str());

@@ -31,6 +31,9 @@ pub struct FoundWorld {
     pub note: Option<String>,
 }
 
+/// What logs call the seed of a run.
+const RUN_SEED: &str = "run_seed";
+
 /// A scenario with everything that living it needs.
 pub struct Plan {
     pub(super) scenario: Scenario,
@@ -129,6 +132,19 @@ impl Plan {
     /// it is still the same. `what` is a name that is no variant's, so one without `#`.
     pub fn add_fingerprint(&mut self, what: &str, fingerprint: impl Into<Value>) {
         self.fingerprints.insert(what.to_owned(), fingerprint.into());
+    }
+
+    /// Gives the agent other random numbers in the same worlds: a repeat of a run, not a copy. 0, the default, is the run that the
+    /// scenario has of itself.
+    pub fn set_run_seed(&mut self, seed: u64) {
+        for planned in &mut self.regimes {
+            planned.run_seed = seed;
+        }
+        if seed == 0 {
+            self.fingerprints.remove(RUN_SEED);
+        } else {
+            self.add_fingerprint(RUN_SEED, seed);
+        }
     }
 
     /// The scenario that it was made from.
@@ -236,6 +252,7 @@ impl Plan {
             max_steps: regime.max_steps,
             source,
             learned_before: 0,
+            run_seed: 0,
             learned,
             labels: None,
         };

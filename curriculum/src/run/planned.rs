@@ -31,6 +31,8 @@ pub(super) struct Planned {
     pub(super) source: Source,
     /// How many regimes of learning before it begin with the same variant under the same seed.
     pub(super) learned_before: u64,
+    /// What tells repeats of the scenario apart in the agent's random numbers.
+    pub(super) run_seed: u64,
     /// The regime that the agent learned in last before this one.
     pub(super) learned: Option<usize>,
     /// The label of its variant, and of the one that its drift leads to.
@@ -157,6 +159,10 @@ impl Planned {
         hash.update(index.to_le_bytes());
         if self.kind == BlockKind::Learning {
             hash.update(self.learned_before.to_le_bytes());
+        }
+        if self.run_seed != 0 {
+            hash.update(b"run");
+            hash.update(self.run_seed.to_le_bytes());
         }
         let digest = hash.finalize();
         digest.iter().take(8).fold(0, |seed, byte| seed << 8 | u64::from(*byte))

@@ -191,6 +191,26 @@ fn a_lifetime_repeats_to_the_byte_and_agents_differ() {
     assert_ne!(first, lived("third", &mut OnRailsAgent::new()));
 }
 
+#[test]
+fn another_run_seed_is_a_repeat_in_the_same_worlds_and_the_log_says_which() {
+    let plan = |seed| {
+        let mut plan = plan(&scenario(&["red", "dusk"])).unwrap_or_else(|error| panic!("{error}"));
+        plan.set_run_seed(seed);
+        plan
+    };
+    let (own, again, other) = (plan(0), plan(5), plan(6));
+    let seeds = |plan: &Plan| {
+        let seed = |number| plan.experience_spec(number).unwrap_or_else(|error| panic!("{error}")).agent_seed;
+        (0..plan.num_experiences()).map(seed).collect::<Vec<_>>()
+    };
+    assert_eq!(seeds(&again), seeds(&plan(5)));
+    for (a, b) in [(&own, &again), (&again, &other)] {
+        assert!(seeds(a).iter().zip(seeds(b)).all(|(a, b)| *a != b));
+        let world = |plan: &Plan, number| plan.world(number).unwrap_or_else(|error| panic!("{error}"));
+        assert!((0..own.num_experiences()).all(|number| world(a, number) == world(b, number)));
+    }
+}
+
 /// `DRIFTWORLD_UPDATE_GOLDEN=1` rewrites the file.
 #[test]
 fn the_golden_log_is_written_as_it_was() {

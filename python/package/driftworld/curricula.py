@@ -375,6 +375,7 @@ class Curriculum(Sequence[Block]):
         resume: bool = True,
         skip_undrawable: bool = False,
         check_frozen: bool = True,
+        seed: int = 0,
         watch: Callable[[Experience, float], Any] | None = None,
         **options: Any,
     ) -> Summary:
@@ -393,6 +394,8 @@ class Curriculum(Sequence[Block]):
                 counted in the summary. If not, the run stops there; the same call with this goes on.
             check_frozen: Run the first 4 evaluations of each block once more at its end, unlogged, and refuse an agent that does not
                 earn the same in them: evaluations change it, or its chance is not drawn from the seed of the experience.
+            seed: What the agent begins experiences with follows from it, too: another seed is a repeat in the same worlds. 0 is the
+                run that the curriculum has of itself.
             watch: Told each experience and its reward as soon as it is logged, NaN for one that is left out; ``False`` from it ends
                 the run there.
             options: Options of the environment, as for :class:`driftworld.DriftworldEnv`: ``modalities``, ``size``, ``actions`` and
@@ -408,6 +411,7 @@ class Curriculum(Sequence[Block]):
         """
         # One of its own: what it depends on is noted in it. Of the same tasks, whatever became of their files since.
         plan = _native.Plan.from_values(self._plan.values(), skip_undrawable)
+        plan.set_run_seed(seed)
         lifetime = Lifetime(plan, agent, options, log, resume, watch, check_frozen)
         return lifetime.live(lambda number: _experience(plan, number))
 
