@@ -69,6 +69,14 @@ impl ScenarioFile {
         })
     }
 
+    /// Another scenario, as if it stood in the same file.
+    pub fn with_scenario(&self, scenario: &Scenario) -> Self {
+        Self {
+            scenario: scenario.clone(),
+            ..self.clone()
+        }
+    }
+
     /// Whether a file is a scenario, in whichever form.
     pub fn is_one(path: &Path) -> bool {
         let text = documents::text(path).unwrap_or_default();

@@ -1,17 +1,20 @@
 //! Curricula: variants in an order made into learning and evaluation blocks, and lived by an agent into a log.
 //!
 //! [`probe`] and [`steps`] find the variants that a hypothesis is about, [`arrange`] puts them into its order, [`design`] makes a
-//! [`Scenario`](driftworld_spec::Scenario) of them, [`run`] lives it. Distances are measured elsewhere; files and the clock are
+//! [`Scenario`](driftworld_spec::Scenario) of them, [`run`] lives it, [`audit`] says what its scores
+//! are worth. Distances are measured elsewhere; files and the clock are
 //! handed in.
 
+mod audit;
 mod design;
 mod error;
 mod run;
 mod transfer;
 
+pub use audit::{AuditOptions, AuditRow, audit};
 pub use design::{
     Choice, Control, Design, Drifting, Evaluate, Hypothesis, LEARN, MAX_BLOCKS, MAX_PROBED, MAX_SEED, MAX_STEPS, Picked,
-    Split, Steps, arrange, control, design, design_control, distances, experts, probe, probe_named, steps,
+    Split, Steps, arrange, control, design, design_control, distances, experts, experts_of, probe, probe_named, steps,
 };
 pub use error::CurriculumError;
 pub use run::{

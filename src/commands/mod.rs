@@ -4,6 +4,7 @@
 
 mod agent;
 mod assets;
+mod audit;
 mod bench;
 mod console;
 mod convert;
@@ -102,6 +103,7 @@ enum Command {
     Order(order::Order),
     Curriculum(curriculum::Curriculum),
     Run(run::Run),
+    Audit(audit::Audit),
     // No words here: they would take the place of the long ones that stand with the command.
     Logs(logs::Logs),
     Metrics(metrics::Metrics),
@@ -133,6 +135,7 @@ impl Command {
             Self::Order(command) => command.run(),
             Self::Curriculum(command) => command.run(),
             Self::Run(command) => command.run(),
+            Self::Audit(command) => command.run(),
             Self::Logs(command) => command.run(),
             Self::Metrics(command) => command.run(),
             Self::Report(command) => command.run(),

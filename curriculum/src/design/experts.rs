@@ -1,40 +1,147 @@
 //! Single-task experts: for each variant of a lifetime a scenario in which it alone is learned, like for like.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use driftworld_generator::Schedule;
-use driftworld_spec::{Regime, Scenario, ScenarioForm};
+use driftworld_spec::{Block, BlockKind, Phase, Regime, Scenario, ScenarioForm};
 
 use super::streams::Streams;
-use super::{Choice, Design, before_deployment, check, form, lessons, scenario};
+use super::{Choice, Design, before_deployment, check, design, form, scenario};
 use crate::CurriculumError;
 
 /// A scenario for each variant that the lifetime learns, in which it alone is learned: single-task experts, with which a
 /// lifelong learner is compared.
 ///
-/// `options` are those of the lifetime. Each expert learns its variant as long as the lifetime does, in the same worlds and in
-/// blocks of the same lengths, after the same block before deployment, and is evaluated in its variant where the lifetime is, in
-/// the same worlds. So a learner without interference earns in the lifetime what it earns as its own expert. Of a lifetime
-/// that drifts, the expert of a variant has one block with as many experiences as are nearer to it than to the other end. The
-/// expert form has no lifetime: each variant is learned for `blocks` blocks, 1 where nobody says.
+/// `options` are those of the lifetime, whose experts are those of [`experts_of`]. The expert form has no lifetime: each variant
+/// is learned for `blocks` blocks, 1 where nobody says.
 ///
 /// They are named `NAME-VARIANT`, or `NAME-TASK-VARIANT` if there are several tasks.
 ///
 /// # Errors
 /// As [`design`](super::design); [`CurriculumError::SameName`] if two would have the same name.
 pub fn experts(variants: &[Choice], options: &Design) -> Result<Vec<Scenario>, CurriculumError> {
+    if options.form != Some(ScenarioForm::Expert) {
+        return experts_of(&design(variants, options)?);
+    }
     check(variants, options)?;
     let streams = Streams::new(variants, options);
-    let (first, budgets) = budgets(variants, options, &streams)?;
-    let several_tasks = variants.iter().any(|choice| choice.task != variants[0].task);
-    let mut named: BTreeMap<String, String> = BTreeMap::new();
-    let mut experts = Vec::new();
-    for (choice, budget) in variants.iter().zip(budgets) {
-        if budget.lessons.is_empty() {
+    let path = form::sequence(options.form, 1, options.blocks, (options.seed, options.lifetime))?;
+    let places = options.evaluation.places(path.len() as u32)?;
+    let alone = |choice: &Choice| {
+        let taken = (0..path.len() as u64).map(|block| block * u64::from(options.learn));
+        let lessons = taken.map(|taken| vec![streams.learning(choice, options.learn, taken)]);
+        let before = before_deployment(&variants[0], options, &streams);
+        let evaluation = vec![streams.evaluation(choice)];
+        (choice.clone(), scenario(options, before, lessons.collect(), &places, evaluation))
+    };
+    named(variants.iter().map(alone).collect(), &options.name)
+}
+
+/// A scenario for each variant that a scenario learns, in which it alone is learned.
+///
+/// Each expert learns its variant as long as the lifetime does, in the same worlds and in blocks of the same lengths, after the
+/// same blocks before deployment, and is evaluated in its variant where the lifetime is, in the same worlds. So a learner
+/// without interference earns in the lifetime what it earns as its own expert. A drift is left out as a drift: the experiences
+/// that are nearer to a variant than to its other end are experiences of that variant, with worlds of their numbers. Names are
+/// those of [`experts`].
+///
+/// # Errors
+/// [`CurriculumError::SameName`] if two would have the same name.
+///
+/// # Example
+/// ```
+/// use driftworld_curriculum::{Choice, Design, design, experts_of};
+/// let variants = ["blue", "red"].map(|variant| Choice::new("find_objects", variant));
+/// let lifetime = design(&variants, &Design { blocks: Some(4), ..Design::default() })?;
+/// let experts = experts_of(&lifetime)?;
+/// assert_eq!(experts[1].name, "curriculum-red");
+/// assert_eq!(experts[1].blocks.len(), 5, "red twice, evaluated before, between and after");
+/// # Ok::<(), driftworld_curriculum::CurriculumError>(())
+/// ```
+pub fn experts_of(lifetime: &Scenario) -> Result<Vec<Scenario>, CurriculumError> {
+    let is_learned = |block: &&Block| block.kind == BlockKind::Learning && block.phase == Phase::Deployment;
+    let mut variants: Vec<Choice> = Vec::new();
+    for regime in lifetime.blocks.iter().filter(is_learned).flat_map(|block| &block.regimes) {
+        for part in parts(regime) {
+            let choice = choice(&part);
+            if !variants.contains(&choice) {
+                variants.push(choice);
+            }
+        }
+    }
+    let experts = variants.into_iter().map(|choice| {
+        let expert = alone(lifetime, &choice);
+        (choice, expert)
+    });
+    named(experts.collect(), &lifetime.name)
+}
+
+/// What a lifetime has of one variant.
+fn alone(lifetime: &Scenario, wanted: &Choice) -> Scenario {
+    let mut blocks: Vec<Block> = Vec::new();
+    for block in &lifetime.blocks {
+        if block.phase == Phase::PreDeployment {
+            blocks.push(block.clone());
             continue;
         }
-        let name = name(choice, &options.name, several_tasks);
+        let regimes = block.regimes.iter().flat_map(parts);
+        let own = Block {
+            regimes: regimes.filter(|regime| choice(regime) == *wanted).collect(),
+            ..block.clone()
+        };
+        // Between two of its blocks the lifetime may be evaluated several times, its expert once.
+        let is_repeat = own.kind == BlockKind::Evaluation && blocks.last() == Some(&own);
+        if !own.regimes.is_empty() && !is_repeat {
+            blocks.push(own);
+        }
+    }
+    Scenario {
+        form: Some(ScenarioForm::Expert),
+        blocks,
+        ..lifetime.clone()
+    }
+}
+
+/// A regime as stretches of single variants: itself, or the two ends of its drift.
+fn parts(regime: &Regime) -> Vec<Regime> {
+    let Some(drift) = &regime.drift else {
+        return vec![regime.clone()];
+    };
+    let schedule = Schedule::from(drift.schedule);
+    let is_near = |experience: u32| schedule.at(drift.progress(experience, regime.count)) < 0.5;
+    let near = (0..regime.count).filter(|experience| is_near(*experience)).count() as u32;
+    let from = Regime {
+        drift: None,
+        count: near,
+        ..regime.clone()
+    };
+    let to = Regime {
+        variant: drift.to.clone(),
+        values: drift.values.clone(),
+        name: drift.name.clone(),
+        count: regime.count - near,
+        first_index: regime.first_index + u64::from(near),
+        ..from.clone()
+    };
+    [from, to].into_iter().filter(|part| part.count > 0).collect()
+}
+
+/// The variant of a regime that does not drift; for a world from a file that world.
+fn choice(regime: &Regime) -> Choice {
+    Choice {
+        values: regime.values.clone(),
+        name: regime.name.clone(),
+        ..Choice::new(&regime.task, &regime.variant)
+    }
+}
+
+fn named(experts: Vec<(Choice, Scenario)>, lifetime: &str) -> Result<Vec<Scenario>, CurriculumError> {
+    let several_tasks = experts.iter().any(|(choice, _)| choice.task != experts[0].0.task);
+    let mut named: BTreeMap<String, String> = BTreeMap::new();
+    let mut scenarios = Vec::new();
+    for (choice, scenario) in experts {
+        let name = name(&choice, lifetime, several_tasks);
         if let Some(other) = named.insert(name.clone(), choice.id()) {
             return Err(CurriculumError::SameName {
                 a: other,
@@ -42,104 +149,9 @@ pub fn experts(variants: &[Choice], options: &Design) -> Result<Vec<Scenario>, C
                 name,
             });
         }
-        let own = Design {
-            name,
-            form: Some(ScenarioForm::Expert),
-            ..options.clone()
-        };
-        let before = before_deployment(&variants[first], options, &streams);
-        let evaluation = vec![streams.evaluation(choice)];
-        experts.push(scenario(&own, before, budget.lessons, &budget.places, evaluation));
+        scenarios.push(Scenario { name, ..scenario });
     }
-    Ok(experts)
-}
-
-/// What a lifetime has of one variant.
-#[derive(Default)]
-struct Budget {
-    /// Its learning blocks.
-    lessons: Vec<Vec<Regime>>,
-    /// After how many of these it is evaluated.
-    places: BTreeSet<u32>,
-}
-
-/// The variant that the lifetime begins with, and what it has of each.
-fn budgets(
-    variants: &[Choice],
-    options: &Design,
-    streams: &Streams,
-) -> Result<(usize, Vec<Budget>), CurriculumError> {
-    if options.form == Some(ScenarioForm::Expert) {
-        return Ok((0, alone(variants, options, streams)?));
-    }
-    let (path, lessons) = lessons(variants, options, None, streams)?;
-    let places = options.evaluation.places(lessons.len() as u32)?;
-    if options.drifting.is_some() {
-        return Ok((path[0], nearest(variants, &lessons, &places, streams)));
-    }
-    let mut budgets: Vec<Budget> = variants.iter().map(|_| Budget::default()).collect();
-    // After each of the lifetime's blocks, each variant has come so far; evaluated once where it has not moved.
-    for place in 0..=lessons.len() {
-        if places.contains(&(place as u32)) {
-            for budget in &mut budgets {
-                budget.places.insert(budget.lessons.len() as u32);
-            }
-        }
-        if let (Some(lesson), Some(variant)) = (lessons.get(place), path.get(place)) {
-            budgets[*variant].lessons.push(lesson.clone());
-        }
-    }
-    Ok((path[0], budgets))
-}
-
-/// Each variant for so many blocks as the expert form has.
-fn alone(variants: &[Choice], options: &Design, streams: &Streams) -> Result<Vec<Budget>, CurriculumError> {
-    let path = form::sequence(options.form, 1, options.blocks, (options.seed, options.lifetime))?;
-    let places = options.evaluation.places(path.len() as u32)?;
-    let budget = |choice: &Choice| Budget {
-        lessons: (0..path.len() as u64)
-            .map(|block| vec![streams.learning(choice, options.learn, block * u64::from(options.learn))])
-            .collect(),
-        places: places.clone(),
-    };
-    Ok(variants.iter().map(budget).collect())
-}
-
-/// Of a drift, each variant for as long as the drift is nearer to it than to its other end, in one block.
-fn nearest(
-    variants: &[Choice],
-    lessons: &[Vec<Regime>],
-    places: &BTreeSet<u32>,
-    streams: &Streams,
-) -> Vec<Budget> {
-    let mut counts = vec![0_u32; variants.len()];
-    for regime in lessons.iter().flatten() {
-        let Some(drift) = &regime.drift else { continue };
-        let schedule = Schedule::from(drift.schedule);
-        let is_near = |experience: &u32| schedule.at(drift.progress(*experience, regime.count)) < 0.5;
-        let near = (0..regime.count).filter(is_near).count() as u32;
-        let is = |choice: &Choice, variant: &str, name: Option<&str>| {
-            choice.task == regime.task && choice.variant == variant && choice.name.as_deref() == name
-        };
-        for (choice, count) in variants.iter().zip(&mut counts) {
-            if is(choice, &regime.variant, regime.name.as_deref()) {
-                *count += near;
-            }
-            if is(choice, &drift.to, drift.name.as_deref()) {
-                *count += regime.count - near;
-            }
-        }
-    }
-    let budget = |(choice, count): (&Choice, u32)| {
-        if count == 0 {
-            return Budget::default();
-        }
-        Budget {
-            lessons: vec![vec![streams.learning(choice, count, 0)]],
-            places: places.iter().map(|place| u32::from(*place > 0)).collect(),
-        }
-    };
-    variants.iter().zip(counts).map(budget).collect()
+    Ok(scenarios)
 }
 
 fn name(choice: &Choice, scenario: &str, several_tasks: bool) -> String {

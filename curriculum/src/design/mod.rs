@@ -23,7 +23,7 @@ use driftworld_spec::{
 pub use choice::Choice;
 pub use drifting::Drifting;
 pub use evaluation::Evaluate;
-pub use experts::experts;
+pub use experts::{experts, experts_of};
 pub use form::MAX_BLOCKS;
 pub use hypothesis::{Control, Hypothesis, arrange, control};
 pub use picked::{Picked, distances};

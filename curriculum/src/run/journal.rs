@@ -248,7 +248,7 @@ fn count_row(plan: &Plan, summary: &mut Summary, number: u64, row: Row<'_>) -> R
 }
 
 /// What the log says of a lifetime: the scenario, who lives it, and what its variants and worlds were made from.
-fn scenario_info(plan: &Plan, agent: &str) -> ScenarioInfo {
+pub(super) fn scenario_info(plan: &Plan, agent: &str) -> ScenarioInfo {
     let mut extra = Map::new();
     extra.insert("agent".to_owned(), json!(agent));
     extra.insert("scenario".to_owned(), json!(plan.scenario));

@@ -11,6 +11,7 @@ mod log_names;
 mod plan;
 mod planned;
 mod rollout;
+mod simulated;
 mod summary;
 mod undrawable;
 mod worlds;
@@ -30,6 +31,7 @@ pub use journal::Journal;
 pub use log_names::same_log_name;
 pub use plan::{ExperienceSpec, FoundWorld, Plan, Sources, log_name};
 pub use rollout::{Rollout, run_rollout};
+pub(crate) use simulated::Meeting;
 pub use summary::{LeftOut, Progress, RegimeSummary, Summary};
 pub use undrawable::{Failed, Trial, Tried, Undrawable, try_worlds};
 

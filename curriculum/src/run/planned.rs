@@ -74,11 +74,20 @@ impl Planned {
     /// one that it leads to.
     pub(super) fn label(&self, number: u64) -> Option<&Label> {
         let [from, to] = self.labels.as_ref()?;
+        Some(if self.is_near_its_beginning(number) { from } else { to })
+    }
+
+    /// The name of the variant of experience `number`: in a drift of the nearer end.
+    pub(super) fn nearest(&self, number: u64) -> String {
+        let [from, to] = self.ends();
+        if self.is_near_its_beginning(number) { from } else { to }
+    }
+
+    fn is_near_its_beginning(&self, number: u64) -> bool {
         let Source::Drift { drift, .. } = &self.source else {
-            return Some(from);
+            return true;
         };
-        let come = Schedule::from(drift.schedule).at(drift.progress((number - self.first) as u32, self.count));
-        Some(if come < 0.5 { from } else { to })
+        Schedule::from(drift.schedule).at(drift.progress((number - self.first) as u32, self.count)) < 0.5
     }
 
     pub(super) fn wrong(&self, number: u64, source: GeneratorError) -> CurriculumError {

@@ -8,11 +8,11 @@ use std::sync::Arc;
 use indexmap::{IndexMap, IndexSet};
 
 use super::regime::{self, Regime};
-use super::usable::complete_rows;
+use super::usable::{complete_rows, is_deployed};
 use crate::log::{Log, read_log};
 use crate::{BlockType, MetricsError, Options, VariantMode};
 
-/// The log of a single-task expert: exactly one task is trained in it. A clone shares the log.
+/// The log of a single-task expert: exactly one task is trained in it, but for what comes before deployment. A clone shares the log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SteLog {
     log: Arc<Log>,
@@ -28,9 +28,11 @@ impl SteLog {
     /// [`MetricsError::NotSingleTask`] when it does not train exactly one task.
     pub fn new(log: Log) -> Result<Self, MetricsError> {
         let tasks = log.rows.task_names();
-        let trained = log.rows.block_types().iter().zip(tasks.ids());
+        let params = log.rows.task_params();
+        let deployed: Vec<bool> = params.values().iter().map(is_deployed).collect();
+        let trained = log.rows.block_types().iter().zip(params.ids()).zip(tasks.ids());
         let trained: IndexSet<u32> = trained
-            .filter(|(block_type, _)| **block_type == BlockType::Train)
+            .filter(|((block_type, params), _)| **block_type == BlockType::Train && deployed[**params as usize])
             .map(|(_, task)| *task)
             .collect();
         let mut names: IndexSet<String> = trained

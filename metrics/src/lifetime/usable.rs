@@ -26,6 +26,11 @@ pub(crate) fn usable_rows<'a>(log: &'a Log, name: &str, column: &str) -> Result<
     Ok(usable)
 }
 
+/// Whether rows with these parameters are part of the lifetime, and not of the time before deployment.
+pub(super) fn is_deployed(params: &TaskParams) -> bool {
+    params.get(PHASE.0).is_none_or(|phase| phase != PHASE.1)
+}
+
 /// The same with complete rows that have no number; at least one has a number.
 pub(crate) fn complete_rows<'a>(log: &'a Log, name: &str, column: &str) -> Result<Usable<'a>, MetricsError> {
     let declared = log.logger_info.metrics_columns();
@@ -39,7 +44,6 @@ pub(crate) fn complete_rows<'a>(log: &'a Log, name: &str, column: &str) -> Resul
         })?;
     let rows = &log.rows;
     let params = rows.task_params();
-    let is_deployed = |params: &TaskParams| params.get(PHASE.0).is_none_or(|phase| phase != PHASE.1);
     let deployed: Vec<bool> = params.values().iter().map(is_deployed).collect();
     let counts = |&row: &usize| rows.exp_statuses()[row] == ExpStatus::Complete && deployed[params.ids()[row] as usize];
     let indices: Vec<usize> = (0..rows.len()).filter(counts).collect();

@@ -1,0 +1,174 @@
+//! Agents of which the scores are known beforehand. A reward is 100 times the skill, plus luck.
+
+use std::collections::BTreeMap;
+
+use sha2::{Digest, Sha256};
+
+use super::simulation::Simulated;
+use crate::run::Meeting;
+
+/// The skill of an agent that does not learn.
+const START: f64 = 0.2;
+/// Standard deviation of what a layout pays more or less than others, whoever meets it in whichever variant.
+const LAYOUT_LUCK: f64 = 10.0;
+/// Standard deviation of what one episode pays more or less than others like it.
+const EPISODE_LUCK: f64 = 20.0;
+/// Standard deviation of what a fixed sequence of actions pays in one layout or another.
+const SEQUENCE_LUCK: f64 = 25.0;
+
+/// What an episode pays an agent of this skill; `chance` is what its luck depends on.
+fn reward(skill: f64, meeting: &Meeting, chance: &[u64]) -> f64 {
+    100.0 * skill + LAYOUT_LUCK * normal("layout", &meeting.layout) + EPISODE_LUCK * normal("episode", chance)
+}
+
+/// A number that the keys decide, normally distributed over keys: the sum of 16 even ones, scaled.
+fn normal(what: &str, keys: &[u64]) -> f64 {
+    let mut hash = Sha256::new();
+    hash.update(what.as_bytes());
+    for key in keys {
+        hash.update(key.to_le_bytes());
+    }
+    let digest = hash.finalize();
+    let even = digest.chunks_exact(2).map(|pair| f64::from(u16::from_le_bytes([pair[0], pair[1]])) / 65_536.0);
+    (even.sum::<f64>() - 8.0) / (16.0_f64 / 12.0).sqrt()
+}
+
+/// Earns the same for ever, but for luck that is drawn afresh in every experience.
+pub(super) struct NeverLearns(u64);
+
+impl NeverLearns {
+    pub(super) fn new(run: u32) -> Self {
+        Self(run.into())
+    }
+}
+
+impl Simulated for NeverLearns {
+    fn earn(&mut self, meeting: &Meeting) -> f64 {
+        reward(START, meeting, &[self.0, meeting.number])
+    }
+}
+
+/// Gets better in a world each time that it is evaluated there.
+#[derive(Default)]
+pub(super) struct LearnsWhileFrozen(BTreeMap<(String, [u64; 2]), u32>);
+
+impl Simulated for LearnsWhileFrozen {
+    fn earn(&mut self, meeting: &Meeting) -> f64 {
+        if meeting.learning {
+            return reward(START, meeting, &[]);
+        }
+        let visits = self.0.entry((meeting.variant.clone(), meeting.layout)).or_default();
+        *visits += 1;
+        reward(START, meeting, &[]) + 10.0 * f64::from(*visits)
+    }
+}
+
+/// Knows nothing but the number of the experience in its block, and the sequence of actions that paid best at that number. It
+/// repeats one that paid more than most, and tries another in place of one that did not.
+pub(super) struct ByNumber {
+    run: u64,
+    whose: u64,
+    best: BTreeMap<u64, (f64, u64)>,
+}
+
+impl ByNumber {
+    pub(super) fn new(run: u32, whose: u32) -> Self {
+        Self {
+            run: run.into(),
+            whose: whose.into(),
+            best: BTreeMap::new(),
+        }
+    }
+}
+
+impl Simulated for ByNumber {
+    fn earn(&mut self, meeting: &Meeting) -> f64 {
+        let known = self.best.get(&meeting.place).copied();
+        let sequence = match known {
+            Some((best, sequence)) if best > 100.0 * START => sequence,
+            _ => self.run << 40 | self.whose << 32 | meeting.number,
+        };
+        // What a sequence of actions comes to is decided by the layout, not by the variant.
+        let [seed, index] = meeting.layout;
+        let paid = 100.0 * START + SEQUENCE_LUCK * normal("sequence", &[seed, index, sequence]);
+        if meeting.learning && known.is_none_or(|(best, own)| own == sequence || paid > best) {
+            self.best.insert(meeting.place, (paid, sequence));
+        }
+        paid
+    }
+}
+
+/// Learns every variant as if there were no other.
+pub(super) struct OwnExpert {
+    run: u64,
+    whose: u64,
+    pace: f64,
+    learned: BTreeMap<String, u32>,
+}
+
+impl OwnExpert {
+    pub(super) fn new(run: u32, whose: u32, pace: f64) -> Self {
+        Self {
+            run: run.into(),
+            whose: whose.into(),
+            pace,
+            learned: BTreeMap::new(),
+        }
+    }
+}
+
+impl Simulated for OwnExpert {
+    fn earn(&mut self, meeting: &Meeting) -> f64 {
+        let learned = self.learned.entry(meeting.variant.clone()).or_default();
+        let skill = 1.0 - (1.0 - START) * (-f64::from(*learned) / self.pace).exp();
+        *learned += u32::from(meeting.learning);
+        reward(skill, meeting, &[self.run, self.whose, meeting.number])
+    }
+}
+
+/// Learns a variant at the expense of all others.
+pub(super) struct Forgets {
+    run: u64,
+    /// The part of what is missing that it learns in an experience, and of what it knows of others that it forgets.
+    rate: f64,
+    skills: BTreeMap<String, f64>,
+}
+
+impl Forgets {
+    pub(super) fn new(run: u32, pace: f64) -> Self {
+        Self {
+            run: run.into(),
+            rate: (1.0 / pace).min(1.0),
+            skills: BTreeMap::new(),
+        }
+    }
+}
+
+impl Simulated for Forgets {
+    fn earn(&mut self, meeting: &Meeting) -> f64 {
+        let skill = self.skills.get(&meeting.variant).copied().unwrap_or(0.0);
+        let paid = reward(skill, meeting, &[self.run, meeting.number]);
+        if meeting.learning {
+            self.skills.entry(meeting.variant.clone()).or_insert(0.0);
+            for (variant, skill) in &mut self.skills {
+                *skill += self.rate * (f64::from(u8::from(*variant == meeting.variant)) - *skill);
+            }
+        }
+        paid
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn luck_is_normal() {
+        let drawn: Vec<f64> = (0..20_000).map(|key| normal("test", &[key])).collect();
+        let moment = |power: i32| drawn.iter().map(|x| x.powi(power)).sum::<f64>() / drawn.len() as f64;
+        // Within four standard errors; the fourth moment of 16 even numbers is 3 − 6 / (5 · 16).
+        assert!(moment(1).abs() < 0.03, "{}", moment(1));
+        assert!((moment(2) - 1.0).abs() < 0.04, "{}", moment(2));
+        assert!((moment(4) - 2.925).abs() < 0.3, "{}", moment(4));
+    }
+}

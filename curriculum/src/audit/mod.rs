@@ -1,0 +1,326 @@
+//! [`audit`]: what a scenario's scores say of agents of which the answer is known beforehand.
+//!
+//! The agents are simulated, so that a scenario of any length is audited in seconds: what they earn is in `agents.rs`, how their
+//! logs are written in `simulation.rs`. Experts and metrics are those of any other lifetime.
+
+mod agents;
+mod simulation;
+
+use std::path::Path;
+
+use driftworld_metrics::{
+    Direction, LifetimeMetrics, Log, MaintenanceMethod, Options, Reading, SteLog, TransferMethod, score,
+};
+use driftworld_spec::Scenario;
+use serde::Serialize;
+
+use agents::{ByNumber, Forgets, LearnsWhileFrozen, NeverLearns, OwnExpert};
+use simulation::{Simulated, simulate};
+
+use crate::{CurriculumError, Plan, experts_of};
+
+/// What is said of one agent.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AuditRow {
+    /// The agent.
+    pub agent: &'static str,
+    /// What a protocol that can be trusted says of it.
+    pub expected: &'static str,
+    /// What this one says.
+    pub found: String,
+    /// Whether that is as expected; `None` where the scenario cannot tell.
+    pub passed: Option<bool>,
+}
+
+/// How an audit is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AuditOptions {
+    /// Lifetimes of the agent that never learns; default 100, at least 1.
+    pub lifetimes: u32,
+    /// Lifetimes of every other agent; default 20, at least 2.
+    pub repeats: u32,
+}
+
+impl Default for AuditOptions {
+    fn default() -> Self {
+        Self {
+            lifetimes: 100,
+            repeats: 20,
+        }
+    }
+}
+
+/// The share of lifetimes of an agent that never changes of which a metric may say "good".
+const FALSE_POSITIVES: f64 = 0.05;
+
+/// How unlikely a count must be before an audit calls it wrong: several metrics are counted in each audit.
+const SURPRISE: f64 = 0.001;
+
+/// By how much a ratio of which the true value is 1 may be off, beside its standard error.
+const RATIO_SLACK: f64 = 0.02;
+
+/// Lets five simulated agents run a scenario, of which the true scores are known, and says what its protocol makes of them.
+///
+/// - *never learns*: earns the same for ever but for luck. No metric may call more than 5 % of its lifetimes good.
+/// - *learns while frozen*: gets better by being evaluated. The check of [`run`](crate::run) must refuse it.
+/// - *remembers by number*: repeats what paid best in the experience of the same number of an earlier block. It must not be
+///   better than its experts.
+/// - *its own expert*: learns every variant as if it were alone. Relative performance and sample efficiency must be 1.
+/// - *forgets*: what it learns takes the place of what it knew. Maintenance must be bad, and forward transfer not good.
+///
+/// Every reward is 100 times a skill in 0..=1, plus luck of the layout (standard deviation 10) and of the episode (20). `plan`
+/// finds what a scenario names; logs are written into `folder`, which must be empty, and can be removed afterwards.
+///
+/// # Errors
+/// [`CurriculumError`] where the scenario or its experts cannot be planned, or a log cannot be written or scored.
+pub fn audit(
+    scenario: &Scenario,
+    plan: &mut dyn FnMut(&Scenario) -> Result<Plan, CurriculumError>,
+    folder: &Path,
+    options: AuditOptions,
+) -> Result<Vec<AuditRow>, CurriculumError> {
+    let lifetime = plan(scenario)?;
+    let experts = experts_of(scenario)?;
+    let experts = experts.iter().map(|expert| plan(expert)).collect::<Result<Vec<_>, _>>()?;
+    let room = Room {
+        lifetime: &lifetime,
+        experts: &experts,
+        folder,
+        repeats: options.repeats.max(2),
+    };
+    Ok(vec![
+        room.never_learns(options.lifetimes.max(1))?,
+        room.learns_while_frozen()?,
+        room.by_number()?,
+        room.own_expert()?,
+        room.forgets()?,
+    ])
+}
+
+/// Where agents are audited.
+struct Room<'a> {
+    lifetime: &'a Plan,
+    experts: &'a [Plan],
+    folder: &'a Path,
+    repeats: u32,
+}
+
+impl Room<'_> {
+    fn never_learns(&self, lifetimes: u32) -> Result<AuditRow, CurriculumError> {
+        let mut good: Vec<(String, u32)> = Vec::new();
+        for run in 0..lifetimes {
+            let scores = scored(&self.log(self.lifetime, &mut NeverLearns::new(run), "still", run)?, &[])?;
+            for (name, reading) in readings(&scores) {
+                let is_good = u32::from(reading == Reading::Good);
+                match good.iter_mut().find(|(known, _)| *known == name) {
+                    Some((_, count)) => *count += is_good,
+                    None => good.push((name, is_good)),
+                }
+            }
+        }
+        let most = (0..lifetimes).find(|count| tail(*count + 1, lifetimes, FALSE_POSITIVES) < SURPRISE);
+        let most = most.unwrap_or(lifetimes);
+        let worst = good.iter().max_by_key(|(_, count)| *count);
+        Ok(AuditRow {
+            agent: "never learns",
+            expected: "each metric good in at most 5 % of lifetimes",
+            found: worst.map_or_else(
+                || "nothing is evaluated twice: no metric to calibrate".to_owned(),
+                |(name, count)| format!("at most {count} of {lifetimes} ({name}); up to {most} is sampling"),
+            ),
+            passed: worst.map(|(_, count)| *count <= most),
+        })
+    }
+
+    fn learns_while_frozen(&self) -> Result<AuditRow, CurriculumError> {
+        let folder = self.folder.join("frozen");
+        let (found, passed) = match simulation::run(self.lifetime, &mut LearnsWhileFrozen::default(), &folder) {
+            Err(CurriculumError::NotFrozen { experience, .. }) => {
+                (format!("refused at experience {experience}"), Some(true))
+            }
+            Err(error) => return Err(error),
+            Ok(num_evaluated) if num_evaluated == 0 => ("nothing is evaluated".to_owned(), None),
+            Ok(num_evaluated) => (format!("not noticed in {num_evaluated} evaluations"), Some(false)),
+        };
+        remove(&folder);
+        Ok(AuditRow {
+            agent: "learns while frozen",
+            expected: "refused",
+            found,
+            passed,
+        })
+    }
+
+    fn by_number(&self) -> Result<AuditRow, CurriculumError> {
+        let ratios = self.beside_experts("ste_rel_perf", |run, number| Box::new(ByNumber::new(run, number)))?;
+        let (found, passed) = match mean_and_error(&ratios) {
+            Some((mean, error)) => {
+                let text = format!("{mean:.3} ± {error:.3} (standard error, {} lifetimes)", ratios.len());
+                (text, Some(mean <= 1.0 + 3.0 * error + RATIO_SLACK))
+            }
+            None => ("no experts to compare with".to_owned(), None),
+        };
+        Ok(AuditRow {
+            agent: "remembers by number",
+            expected: "ste_rel_perf not above 1",
+            found,
+            passed,
+        })
+    }
+
+    fn own_expert(&self) -> Result<AuditRow, CurriculumError> {
+        let pace = pace(self.lifetime);
+        let mut found = Vec::new();
+        let mut passed = None;
+        for metric in ["ste_rel_perf", "sample_efficiency"] {
+            let ratios = self.beside_experts(metric, |run, number| Box::new(OwnExpert::new(run, number, pace)))?;
+            let Some((mean, error)) = mean_and_error(&ratios) else {
+                continue;
+            };
+            found.push(format!("{metric} {mean:.3} ± {error:.3}"));
+            let is_one = (mean - 1.0).abs() <= 3.0 * error + RATIO_SLACK;
+            passed = Some(passed.unwrap_or(true) && is_one);
+        }
+        Ok(AuditRow {
+            agent: "its own expert",
+            expected: "ste_rel_perf and sample_efficiency 1",
+            found: if found.is_empty() {
+                "no experts to compare with".to_owned()
+            } else {
+                found.join(", ")
+            },
+            passed,
+        })
+    }
+
+    fn forgets(&self) -> Result<AuditRow, CurriculumError> {
+        let pace = pace(self.lifetime);
+        let (mut bad, mut good, mut maintained, mut transferred) = (0, 0, 0, 0);
+        for run in 0..self.repeats {
+            let scores = scored(&self.log(self.lifetime, &mut Forgets::new(run, pace), "forgets", run)?, &[])?;
+            for (name, reading) in readings(&scores) {
+                match name.as_str() {
+                    "perf_maintenance_mrlep" => {
+                        maintained += 1;
+                        bad += u32::from(reading == Reading::Bad);
+                    }
+                    "forward_transfer_contrast" => {
+                        transferred += 1;
+                        good += u32::from(reading == Reading::Good);
+                    }
+                    _ => {}
+                }
+            }
+        }
+        let is_rare = transferred == 0 || tail(good, transferred, FALSE_POSITIVES) >= SURPRISE;
+        Ok(AuditRow {
+            agent: "forgets",
+            expected: "maintenance bad, forward transfer not good",
+            found: if maintained == 0 {
+                "nothing is evaluated after something else was learned".to_owned()
+            } else {
+                format!("maintenance bad in {bad} of {maintained}, forward transfer good in {good} of {transferred}")
+            },
+            passed: (maintained > 0).then_some(5 * bad >= 4 * maintained && is_rare),
+        })
+    }
+
+    /// A metric that compares with experts, of each repeat in which the lifetime has it. `agent` is given the number of the
+    /// repeat, and whose log it makes: 0 for the lifetime, then the experts.
+    fn beside_experts(
+        &self,
+        metric: &str,
+        agent: impl Fn(u32, u32) -> Box<dyn Simulated>,
+    ) -> Result<Vec<f64>, CurriculumError> {
+        let mut values = Vec::new();
+        for run in 0..self.repeats {
+            let log = self.log(self.lifetime, agent(run, 0).as_mut(), "lifetime", run)?;
+            let mut experts = Vec::new();
+            for (number, expert) in (1..).zip(self.experts) {
+                let log = self.log(expert, agent(run, number).as_mut(), &format!("expert{number}"), run)?;
+                experts.push(SteLog::new(log)?);
+            }
+            values.extend(scored(&log, &experts)?.lifetime.number(metric));
+        }
+        Ok(values)
+    }
+
+    fn log(&self, plan: &Plan, agent: &mut dyn Simulated, name: &str, run: u32) -> Result<Log, CurriculumError> {
+        let folder = self.folder.join(format!("{name}-{run}"));
+        let log = simulate(plan, agent, &folder)?;
+        remove(&folder);
+        Ok(log)
+    }
+}
+
+/// How many experiences of a variant an agent needs to come two thirds of its way: a third of the first that is learned.
+fn pace(plan: &Plan) -> f64 {
+    let is_learning = |block: &&driftworld_spec::Block| block.kind == driftworld_spec::BlockKind::Learning;
+    let first = plan.scenario().blocks.iter().find(is_learning);
+    first.map_or(1.0, |block| block.num_experiences() as f64 / 3.0).max(1.0)
+}
+
+fn scored(log: &Log, experts: &[SteLog]) -> Result<LifetimeMetrics, CurriculumError> {
+    let options = Options {
+        maintenance_method: MaintenanceMethod::Both,
+        transfer_method: TransferMethod::Both,
+        ..Options::default()
+    };
+    Ok(score(log, experts, &options)?)
+}
+
+/// What is said of each metric that evaluations decide.
+fn readings(scores: &LifetimeMetrics) -> Vec<(String, Reading)> {
+    let reading = |(name, band): (&String, &driftworld_metrics::NullBand)| {
+        let neutral = if name.ends_with("ratio") { 1.0 } else { 0.0 };
+        (name.clone(), band.reading(Direction::HigherThan(neutral)))
+    };
+    scores.null_bands.iter().map(reading).collect()
+}
+
+fn mean_and_error(values: &[f64]) -> Option<(f64, f64)> {
+    if values.len() < 2 {
+        return None;
+    }
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let squares = values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>();
+    Some((mean, (squares / (count - 1.0) / count).sqrt()))
+}
+
+/// The chance of at least `least` hits in `tries` tries of which each hits with `chance`.
+fn tail(least: u32, tries: u32, chance: f64) -> f64 {
+    // Of no hit at first; each number of hits follows from the one before.
+    let mut mass = (1.0 - chance).powi(tries.cast_signed());
+    let mut below = 0.0;
+    for hits in 0..least.min(tries + 1) {
+        below += mass;
+        mass *= f64::from(tries - hits) / f64::from(hits + 1) * chance / (1.0 - chance);
+    }
+    1.0 - below
+}
+
+/// Removes a log that was read. One that stays is removed with the folder of all.
+fn remove(folder: &Path) {
+    std::fs::remove_dir_all(folder).ok();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tails_are_those_of_the_binomial() {
+        assert!((tail(0, 10, 0.3) - 1.0).abs() < 1e-12);
+        assert!((tail(1, 10, 0.05) - (1.0 - 0.95_f64.powi(10))).abs() < 1e-12);
+        // All 8 outcomes of three tries, one by one.
+        let (chance, mut two) = (0.3_f64, 0.0);
+        for outcome in 0..8_u32 {
+            let hits = outcome.count_ones();
+            if hits >= 2 {
+                two += chance.powi(hits.cast_signed()) * (1.0 - chance).powi(3 - hits.cast_signed());
+            }
+        }
+        assert!((tail(2, 3, chance) - two).abs() < 1e-12);
+    }
+}

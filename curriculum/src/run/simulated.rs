@@ -1,0 +1,62 @@
+//! What a log would say of an experience that nobody runs: for agents of which only the rewards are simulated.
+
+use driftworld_metrics::{Record, ScenarioInfo, Timestamp};
+use driftworld_spec::BlockKind;
+
+use super::columns;
+use super::episode::Experience;
+use super::gap::Gap;
+use super::journal;
+use super::plan::Plan;
+
+/// An experience as a simulated agent meets it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Meeting {
+    /// Its number over the whole lifetime.
+    pub(crate) number: u64,
+    /// Its number in its block.
+    pub(crate) place: u64,
+    /// Whether the agent may learn.
+    pub(crate) learning: bool,
+    /// Its variant; in a drift the nearer end.
+    pub(crate) variant: String,
+    /// Seed and index of its world: where these are the same, variants of one task have the same layout.
+    pub(crate) layout: [u64; 2],
+}
+
+impl Plan {
+    /// What an agent meets in an experience.
+    pub(crate) fn meeting(&self, number: u64) -> Meeting {
+        let index = self.regime_of(number);
+        let planned = &self.regimes[index];
+        let before = self.regimes[..index].iter().rev();
+        let block = before.take_while(|other| other.block == planned.block).last();
+        Meeting {
+            number,
+            place: number - block.unwrap_or(planned).first,
+            learning: planned.kind == BlockKind::Learning,
+            variant: planned.nearest(number),
+            layout: if planned.is_drawn() {
+                [planned.seed, planned.index_of(number)]
+            } else {
+                [0, 0]
+            },
+        }
+    }
+
+    /// The row of an experience of one step that paid this.
+    pub(crate) fn simulated_record(&self, number: u64, reward: f64, now: Timestamp) -> Record {
+        let experience = Experience {
+            reward,
+            steps: 1,
+            ..Experience::default()
+        };
+        let planned = &self.regimes[self.regime_of(number)];
+        columns::record(planned, number, &experience, &Gap::UNKNOWN, now)
+    }
+
+    /// What the log of this agent says of itself.
+    pub(crate) fn scenario_info(&self, agent: &str) -> ScenarioInfo {
+        journal::scenario_info(self, agent)
+    }
+}

@@ -1,0 +1,95 @@
+//! What an audit says of protocols that are sound, and of one that memory of layouts can fool.
+
+use std::sync::Arc;
+
+use driftworld_curriculum::{
+    AuditOptions, AuditRow, Choice, CurriculumError, Design, Drifting, Plan, Sources, audit, design,
+};
+use driftworld_spec::{Scenario, ScenarioForm, TaskSpec};
+
+fn task() -> Arc<TaskSpec> {
+    let text = r#"{ "version": 2, "name": "yard", "parameters": {
+            "pay": { "role": "variant", "type": "number", "affects": ["R"], "range": [0, 10], "default": 1 } },
+        "world": { "max_steps": 3 },
+        "groups": [{ "name": "cubes", "count": 1, "object": { "class": "cube", "touch_reward": "$pay" } }],
+        "variants": { "one": {}, "two": { "pay": 2 }, "three": { "pay": 3 } } }"#;
+    TaskSpec::from_json("yard.json", text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn audited(options: Design) -> Vec<AuditRow> {
+    let variants = ["one", "two", "three"].map(|variant| Choice::new("yard", variant));
+    let scenario = design(&variants, &options).expect("the design is sound");
+    let task = task();
+    let mut plan = |scenario: &Scenario| -> Result<Plan, CurriculumError> {
+        let mut sources = Sources {
+            task: &mut |_| Ok(Arc::clone(&task)),
+            world: &mut |path| Err(format!("{path}: not there")),
+        };
+        Plan::new(scenario, &mut sources)
+    };
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let short = AuditOptions {
+        lifetimes: 20,
+        repeats: 10,
+    };
+    let rows = audit(&scenario, &mut plan, folder.path(), short).unwrap_or_else(|error| panic!("{error}"));
+    let left = std::fs::read_dir(folder.path()).expect("the folder is there").count();
+    assert_eq!(left, 0, "the logs are removed");
+    rows
+}
+
+fn sized(options: Design) -> Design {
+    Design {
+        learn: 60,
+        evaluate: 20,
+        ..options
+    }
+}
+
+#[track_caller]
+fn check(options: Design, expected: [Option<bool>; 5]) {
+    let rows = audited(sized(options));
+    let found: Vec<Option<bool>> = rows.iter().map(|row| row.passed).collect();
+    assert_eq!(found, expected, "{rows:#?}");
+}
+
+#[test]
+fn designs_are_sound_in_every_form() {
+    let sound = [Some(true); 5];
+    check(Design::default(), sound);
+    let again = Design {
+        form: Some(ScenarioForm::Dispersed),
+        blocks: Some(7),
+        pre_deployment: 30,
+        ..Design::default()
+    };
+    check(again, sound);
+}
+
+#[test]
+fn layouts_that_variants_share_are_seen_by_memory_alone() {
+    let paired = Design {
+        paired_learning: true,
+        ..Design::default()
+    };
+    check(paired, [Some(true), Some(true), Some(false), Some(true), Some(true)]);
+}
+
+#[test]
+fn what_is_never_evaluated_cannot_be_audited() {
+    let blind = Design {
+        evaluation: driftworld_curriculum::Evaluate::After(Vec::new()),
+        ..Design::default()
+    };
+    check(blind, [None, None, Some(true), Some(true), None]);
+}
+
+#[test]
+fn a_drift_that_forgets_shows_it() {
+    let drifting = Design {
+        drifting: Some(Drifting::default()),
+        ..Design::default()
+    };
+    let rows = audited(sized(drifting));
+    assert_eq!(rows[4].passed, Some(true), "{rows:#?}");
+}

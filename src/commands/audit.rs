@@ -1,0 +1,92 @@
+//! `driftworld audit`: what a scenario's protocol makes of agents of which the scores are known. The agents are `curriculum`'s.
+
+use std::path::PathBuf;
+
+use crate::curriculum::{AuditOptions, AuditRow, audit};
+use crate::scenarios::{Missing, ScenarioFile};
+use crate::table::table;
+use driftworld_atomic_files::ScratchFolder;
+use clap::Args;
+use driftworld_text::ShownPath;
+use serde_json::json;
+
+use super::{Failure, output};
+
+/// Test a scenario's protocol with agents whose scores are known.
+///
+/// Five simulated agents run the scenario: one that never learns, one that learns while it is evaluated, one that only
+/// remembers what paid at each number, one that learns every variant like its own expert, and one that forgets. The
+/// audit says what the metrics, experts and checks make of each. It fails if they can be fooled: if luck is called
+/// transfer, if worlds repeat so that memory scores, if experts have another budget, or if forgetting does not show.
+///
+/// Only rewards are simulated, so no world is rendered and a long scenario takes seconds. Reward is 100 times a skill
+/// from 0 to 1, plus luck of the layout (standard deviation 10) and of the episode (20).
+#[derive(Args)]
+#[command(after_help = "Example:
+  driftworld audit scenario.json examples/curricula/reward.json")]
+pub(crate) struct Audit {
+    /// Scenario files.
+    #[arg(required = true, value_name = "SCENARIO")]
+    scenarios: Vec<PathBuf>,
+    /// Lifetimes of the agent that never learns.
+    #[arg(long, default_value_t = AuditOptions::default().lifetimes, value_name = "N",
+        value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    lifetimes: u32,
+    /// Lifetimes of each other agent.
+    #[arg(long, default_value_t = AuditOptions::default().repeats, value_name = "N",
+        value_parser = clap::value_parser!(u32).range(2..=100_000))]
+    repeats: u32,
+    /// Print the result as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+impl Audit {
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let options = AuditOptions {
+            lifetimes: self.lifetimes,
+            repeats: self.repeats,
+        };
+        let mut failed = 0;
+        let mut all = Vec::new();
+        for path in &self.scenarios {
+            let file = ScenarioFile::read(path, &mut output::warning)?;
+            let folder = ScratchFolder::new(".driftworld-audit-", &std::env::temp_dir())?;
+            let mut plan =
+                |scenario: &_| file.with_scenario(scenario).plan(Missing::StandIn, &mut output::warning);
+            let rows = audit(&file.scenario, &mut plan, folder.path(), options)?;
+            failed += rows.iter().filter(|row| row.passed == Some(false)).count();
+            if self.json {
+                all.push(json!({ "scenario": path, "agents": rows }));
+            } else {
+                output::line(format!("{}\n{}\n", path.shown(), shown(&rows)))?;
+            }
+        }
+        if self.json {
+            output::json(&all)?;
+        }
+        if failed > 0 {
+            return Err(Failure::input(format!(
+                "found {failed} agents with other scores than the protocol promises, expected none"
+            )));
+        }
+        Ok(())
+    }
+}
+
+fn shown(rows: &[AuditRow]) -> String {
+    let verdict = |row: &AuditRow| match row.passed {
+        Some(true) => "ok",
+        Some(false) => "FAILED",
+        None => "-",
+    };
+    let row = |row: &AuditRow| {
+        [
+            row.agent.to_owned(),
+            row.expected.to_owned(),
+            row.found.clone(),
+            verdict(row).to_owned(),
+        ]
+    };
+    table(["agent", "expected", "found", ""], rows.iter().map(row).collect(), &[])
+}
