@@ -80,6 +80,7 @@ const VERDICTS: &[(&str, Verdict)] = &[
     // The form of the body.
     ("/objects/*/class", Moves),
     ("/objects/*/model", Moves),
+    ("/objects/*/body_model", Moves),
     ("/objects/*/coordinates", Moves),
     ("/objects/*/heading", Moves),
     ("/objects/*/scale", Moves),

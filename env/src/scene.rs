@@ -44,6 +44,8 @@ pub(crate) struct PanelGroup {
 pub struct Item {
     /// What it looks like.
     pub asset: Arc<Asset>,
+    /// The asset whose body it has: nearly always that of its look.
+    pub body: Arc<Asset>,
     /// Where it stands, in metres.
     pub position: [f32; 2],
     /// Where it faces, in degrees clockwise from +y.
@@ -123,8 +125,11 @@ impl Scene {
         let class = object.class.to_lowercase();
         let class_id = self.catalogue.class_number(&class);
         self.highest_class = self.highest_class.max(class_id);
+        let asset = self.catalogue.asset(&class, &object.model);
+        let body = object.body_model.as_ref().map(|model| self.catalogue.asset(&class, model));
         self.items.push(Item {
-            asset: self.catalogue.asset(&class, &object.model),
+            body: body.unwrap_or_else(|| Arc::clone(&asset)),
+            asset,
             position: object.coordinates.map(|metres| metres as f32),
             heading_deg: object.heading as f32,
             scale: object.scale as f32,

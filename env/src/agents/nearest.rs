@@ -260,7 +260,7 @@ mod tests {
             let is_at_object = avoided.iter().any(|&index| {
                 let item = &scene.items[index as usize];
                 let place = world.objects[index as usize].coordinates.map(|metres| metres as f32);
-                apart(place) < item.asset.collider.radius() * item.scale + margin
+                apart(place) < item.body.collider.radius() * item.scale + margin
             });
             let is_at_wall = world.environment_params.walls.iter().any(|wall| {
                 let corners: Vec<[f32; 2]> = wall.polygon.iter().map(|corner| corner.map(|m| m as f32)).collect();

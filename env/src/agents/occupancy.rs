@@ -111,7 +111,7 @@ impl OccupancyGrid {
                 Disc {
                     object,
                     centre: world.objects[object as usize].coordinates.map(|metres| metres as f32),
-                    radius: item.asset.collider.radius() * item.scale + margin,
+                    radius: item.body.collider.radius() * item.scale + margin,
                 }
             })
             .collect();

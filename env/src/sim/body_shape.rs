@@ -9,7 +9,7 @@ use crate::scene::Item;
 pub(super) fn body_shape(item: &Item) -> (SharedShape, Pose) {
     let scale = item.scale;
     let least = |metres: f32| (metres * scale).max(0.005);
-    let (shape, height, tilt) = match &item.asset.collider {
+    let (shape, height, tilt) = match &item.body.collider {
         ColliderShape::Box { half } => {
             let [x, y, z] = half.map(least);
             (SharedShape::cuboid(x, y, z), z, 0.0)
@@ -33,7 +33,7 @@ pub(super) fn body_shape(item: &Item) -> (SharedShape, Pose) {
                 (shape, 0.0, 0.0)
             } else {
                 // Points in one plane hold nothing: the cylinder around them.
-                let (radius, half) = (least(item.asset.collider.radius()), least(item.asset.height / 2.0));
+                let (radius, half) = (least(item.body.collider.radius()), least(item.body.height / 2.0));
                 (SharedShape::cylinder(half, radius), half, std::f32::consts::FRAC_PI_2)
             }
         }

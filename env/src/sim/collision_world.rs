@@ -232,7 +232,7 @@ impl CollisionWorld {
         };
         let collider = ColliderBuilder::new(shape).position(pose).user_data(u128::from(index));
         let group = if solid { SOLID } else { GHOST };
-        let outline = Outline::of(&item.asset.collider, item.scale, self.height);
+        let outline = Outline::of(&item.body.collider, item.scale, self.height);
         let handle = self.insert(collider, group, outline, item.heading_deg);
         if self.handles.len() <= index as usize {
             self.handles.resize(index as usize + 1, None);

@@ -218,13 +218,15 @@ impl Environment {
                 enclosure,
             });
         }
-        if !item.asset.known {
-            let (class, model) = (object.class.clone(), object.model.0.clone());
-            warnings.push(Warning::UnknownAsset {
-                object: index,
-                class,
-                model,
-            });
+        let body = object.body_model.as_ref().map(|model| (&item.body, model));
+        for (asset, model) in [(&item.asset, &object.model)].into_iter().chain(body) {
+            if !asset.known {
+                warnings.push(Warning::UnknownAsset {
+                    object: index,
+                    class: object.class.clone(),
+                    model: model.0.clone(),
+                });
+            }
         }
         if object.stands_still() {
             warnings.push(Warning::StandsStill { object: index });

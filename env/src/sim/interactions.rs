@@ -218,7 +218,7 @@ fn is_range(sim: SimRef, index: usize, squared: f64, reach: f64) -> bool {
         return false;
     }
     let item = &sim.scene().items[index];
-    let height = f64::from(item.asset.height * item.scale);
+    let height = f64::from(item.body.height * item.scale);
     let dz = (height - sim.world.agent_params.agent_height) / 2.0;
     squared + dz * dz < reach * reach
 }

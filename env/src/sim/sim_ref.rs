@@ -34,6 +34,6 @@ impl<'a> SimRef<'a> {
     /// The radius of an object's body in metres.
     pub(crate) fn body_radius(self, index: usize) -> f32 {
         let item = &self.views.scene.items[index];
-        item.asset.collider.radius() * item.scale
+        item.body.collider.radius() * item.scale
     }
 }

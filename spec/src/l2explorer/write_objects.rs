@@ -13,7 +13,12 @@ impl Writer {
         let written = objects.iter().enumerate().map(|(index, object)| {
             let full = map_of(object);
             for (key, _) in changed(&PARTS.object, &full) {
-                if key != "speed" || !moves(object.motion_model) {
+                let is_said = match key {
+                    "speed" => moves(object.motion_model),
+                    "body_model" => object.body_model.as_ref() == Some(&object.model),
+                    _ => false,
+                };
+                if !is_said {
                     self.lose(index, key, key, LEFT_OUT);
                 }
             }

@@ -28,6 +28,10 @@ fields! {
         /// Which asset of the class, counted from "1".
         #[serde(default)]
         pub model: Model => Field::original(Leaves(ModelsOfObjects)),
+        /// The model of the class whose body it has, whatever it looks like: the shape that is bumped into, and the height from which
+        /// its range is measured. That of its own model if absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub body_model: Option<Model> => Field::ours(Leaves(Bodies)),
         /// Position on the ground in metres.
         #[schemars(inner(range(min = -300.0, max = 300.0)))]
         pub coordinates: [f64; 2] => Field::original(Measured(&[PlacesOfObjects])).unit("m"),
@@ -123,6 +127,7 @@ impl Object {
         Self {
             class: class.into(),
             model: Model::default(),
+            body_model: None,
             coordinates,
             heading: 0.0,
             scale: 1.0,
