@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use driftworld_env::{ExpertRun, Expertise, MAX_EXPERT_STEPS};
+use driftworld_env::{Catalogue, ExpertRun, Expertise, MAX_EXPERT_STEPS};
 use driftworld_generator::Sampler;
 use driftworld_spec::{Variant, World};
 use rayon::prelude::*;
@@ -138,10 +138,23 @@ pub fn behavior(request: &BehaviorRequest) -> Result<BehaviorOutcome, Failure> {
 /// # Errors
 /// As [`behavior`].
 pub fn behavior_between(a: &Variant, b: &Variant, request: &BehaviorRequest) -> Result<BehaviorOutcome, Failure> {
+    behavior_with(a, b, request, libraries::catalogue(&request.libraries)?)
+}
+
+/// The same with assets out of a catalogue; the libraries in the request are not looked at.
+///
+/// # Errors
+/// As [`behavior`].
+pub(crate) fn behavior_with(
+    a: &Variant,
+    b: &Variant,
+    request: &BehaviorRequest,
+    catalogue: Catalogue,
+) -> Result<BehaviorOutcome, Failure> {
     request.check()?;
     let expertise = Expertise {
         steps: request.steps,
-        catalogue: libraries::catalogue(&request.libraries)?,
+        catalogue,
     };
     let (of_a, of_b) = (Sampler::new(a, request.seed), Sampler::new(b, request.seed));
     let pairs: Vec<ExpertPair> = (0..request.worlds)

@@ -2,7 +2,7 @@
 //! variants that differ in one element only. What a spec may say is tested in `spec`.
 
 use driftworld::elements::{ElementsRequest, elements};
-use driftworld::env::{Agent, Environment, OnRailsAgent, ScriptedAgent, Step};
+use driftworld::env::{Action, Agent, Environment, OnRailsAgent, ScriptedAgent, Step};
 use driftworld::generator::Sampler;
 use driftworld::similarity::{Weights, variant_distance};
 use driftworld::spec::{Element, Variant};
@@ -124,6 +124,59 @@ fn each_task_of_the_paper_has_variants_that_differ_from_its_first_in_one_element
                 .filter(|variant| only_element(&variants[0], variant) == Some(element));
             let names: Vec<&str> = alone.map(Variant::name).collect();
             assert!(names.len() >= 3, "{task}: in {} alone differ {names:?}", element.name());
+        }
+    }
+}
+
+/// Of each task of the paper, two variants that differ in the reward alone, of which one asks for another behaviour.
+const TURNED: [[&str; 3]; 6] = [
+    ["find_objects", "blue", "turned"],
+    ["get_to_goal", "bags", "traps"],
+    ["select_object", "green", "yellow"],
+    ["select_object", "red", "blue"],
+    ["moving_object", "wandering", "turned"],
+    ["scavenger_hunt", "plain", "grove"],
+];
+
+/// What the steps of an episode paid, and the actions that were taken.
+fn replayed(variant: &Variant, index: u64, actions: Option<&[Action]>) -> (Vec<f64>, Vec<Action>) {
+    let world = Sampler::new(variant, 11).world(index);
+    let mut environment = Environment::new(world.unwrap_or_else(|error| panic!("{error}")));
+    let mut expert = OnRailsAgent::new();
+    let (mut paid, mut taken) = (Vec::new(), Vec::new());
+    while !environment.ended() && actions.is_none_or(|actions| taken.len() < actions.len()) {
+        let action = actions.map_or_else(|| expert.act(&environment), |actions| actions[taken.len()].clone());
+        taken.push(action.clone());
+        let step = environment.step(action).unwrap_or_else(|error| panic!("{error}"));
+        paid.push(step.reward);
+    }
+    (paid, taken)
+}
+
+#[test]
+fn each_task_has_rewards_that_turn_what_is_best_and_show_it_within_an_episode() {
+    for [task, a, b] in TURNED {
+        let variant = |name: &str| {
+            let all = tasks::variants(task).unwrap_or_else(|error| panic!("{error}"));
+            let own = all.into_iter().find(|variant| variant.name() == name);
+            own.unwrap_or_else(|| panic!("{task} has {name}"))
+        };
+        let request = ElementsRequest {
+            worlds: 6,
+            ..ElementsRequest::between(task, a, b)
+        };
+        let found = elements(&request).unwrap_or_else(|error| panic!("{error}"));
+        let tried = &found.variants[0];
+        assert_eq!(tried.elements(), [Element::R], "{task}: {a} and {b}");
+        let optimum = tried.optimum.unwrap_or_else(|| panic!("{task}: {b} changes the reward"));
+        assert!(optimum.turned && optimum.regret > 50.0, "{task}: {a} and {b}: {optimum:?}");
+        // Who lives in one as an expert of the other is paid otherwise before half of the tour is over.
+        for index in 0..WORLDS {
+            let (expected, actions) = replayed(&variant(a), index, None);
+            let (paid, _) = replayed(&variant(b), index, Some(&actions));
+            let first = expected.iter().zip(&paid).position(|(expected, paid)| expected != paid);
+            let first = first.unwrap_or_else(|| panic!("{task}, world {index}: {a} and {b} pay the same"));
+            assert!(first * 2 < expected.len(), "{task}, world {index}: step {first} of {}", expected.len());
         }
     }
 }

@@ -3,8 +3,15 @@
 
 use std::fmt::Write;
 
+use driftworld::behavior::{BehaviorRequest, behavior_between};
+use driftworld::elements::Optimum;
+use driftworld::env::{Agent, Environment, OnRailsAgent, StillAgent};
+use driftworld::generator::Sampler;
 use driftworld::spec::{BlockKind, Domain, Element, Parameter, Role, Scenario, TaskSpec, Value, Variant};
 use driftworld::tasks;
+
+/// Worlds of each variant in which agents are measured.
+const WORLDS: u64 = 8;
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
@@ -25,7 +32,7 @@ fn tables(task: &std::sync::Arc<TaskSpec>) -> String {
     let first = variants.first().map_or("", |variant| variant.name());
     let _ = writeln!(
         text,
-        "\n| variant | differs from `{first}` in | values | |\n|---|---|---|---|"
+        "\n| variant | differs from `{first}` in | best changes | values | |\n|---|---|---|---|---|"
     );
     for variant in &variants {
         let changed = changed(&variants[0], variant);
@@ -33,14 +40,68 @@ fn tables(task: &std::sync::Arc<TaskSpec>) -> String {
             let touched = |(name, _): &(&String, String)| task.parameters()[*name].affects.contains(element);
             changed.iter().any(touched)
         });
-        let elements: Vec<&str> = elements.map(Element::letter).collect();
+        let elements: Vec<Element> = elements.collect();
+        let turned = turned(&variants[0], variant, &elements);
+        let elements: Vec<&str> = elements.into_iter().map(Element::letter).collect();
         let values: Vec<String> = changed
             .iter()
             .map(|(name, value)| format!("`{name}` {value}"))
             .collect();
         let said = task.variant_description(variant.name()).unwrap_or_default();
         let (name, elements, values) = (variant.name(), elements.join(" "), values.join(", "));
-        let _ = writeln!(text, "| `{name}` | {elements} | {values} | {said} |");
+        let _ = writeln!(text, "| `{name}` | {elements} | {turned} | {values} | {said} |");
+    }
+    text
+}
+
+/// Whether what is best in the first variant is not best in one that changes the reward, and what the first's expert loses there.
+fn turned(first: &Variant, variant: &Variant, elements: &[Element]) -> String {
+    if !elements.contains(&Element::R) {
+        return String::new();
+    }
+    let request = BehaviorRequest {
+        worlds: WORLDS,
+        ..BehaviorRequest::between(first.id(), variant.id())
+    };
+    let found = behavior_between(first, variant, &request).unwrap_or_else(|error| panic!("{error}"));
+    let optimum = Optimum::of(&found);
+    if optimum.turned {
+        format!("yes, {:.0} points", optimum.regret)
+    } else {
+        "no".to_owned()
+    }
+}
+
+/// What an agent earns in the first worlds of a variant, on average.
+fn earned(variant: &Variant, mut agent: impl Agent) -> f64 {
+    let sampler = Sampler::new(variant, 0);
+    let each = (0..WORLDS).map(|index| {
+        let world = sampler.world(index).unwrap_or_else(|error| panic!("{error}"));
+        let mut environment = Environment::new(world);
+        agent.begin(index);
+        while !environment.ended() {
+            let action = agent.act(&environment);
+            environment.step(action).unwrap_or_else(|error| panic!("{error}"));
+        }
+        environment.episode_return()
+    });
+    each.sum::<f64>() / WORLDS as f64
+}
+
+/// The variants in which standing still earns no less than the on-rails agent, or nearly all that it earns.
+fn still() -> String {
+    let mut text = "| variant | standing still | `onrails` | |\n|---|---|---|---|\n".to_owned();
+    for variant in tasks::built_in_names()
+        .into_iter()
+        .flat_map(|name| tasks::variants(name).unwrap_or_else(|error| panic!("{error}")))
+    {
+        let (still, rails) = (earned(&variant, StillAgent), earned(&variant, OnRailsAgent::new()));
+        let said = match still {
+            still if still >= rails => "standing still is best",
+            still if still > 0.0 && still >= 0.9 * rails => "standing still is nearly best",
+            _ => continue,
+        };
+        let _ = writeln!(text, "| `{}` | {still:.1} | {rails:.1} | {said} |", variant.id());
     }
     text
 }
@@ -121,6 +182,7 @@ fn the_tables_of_tasks_are_those_of_the_specs() {
             let task = tasks::task(name).unwrap_or_else(|error| panic!("{error}"));
             replaced(docs, name, &tables(&task));
         }
+        replaced(docs, "still", &still());
     });
 }
 

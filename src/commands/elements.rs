@@ -16,6 +16,9 @@ use super::{Failure, output};
 /// be there, p where things are at the start, A what actions do to the body, T what follows, R what is paid and what ends, O the form of
 /// observations, phi how a state looks. Each variant is compared with the first that the task declares, or A with B.
 ///
+/// Of a variant that changes the reward, it is tried whether what is best changes: whether an expert of the first loses in its
+/// worlds, as by `distance --by behavior`. Where it does not, nothing has to be forgotten.
+///
 /// A variant is contradicted where an element differs that no parameter that differs `affects`; S covers p, and O covers phi. It is idle
 /// where it sets a parameter that nothing reads. The exit code is 1 if one is contradicted.
 #[derive(Args)]
@@ -77,6 +80,12 @@ impl Elements {
     }
 }
 
+/// Whether what is best changes: of variants that change the reward.
+fn optimum(variant: &VariantElements) -> String {
+    let said = variant.optimum.map(|optimum| if optimum.turned { "yes" } else { "no" });
+    said.unwrap_or("-").to_owned()
+}
+
 /// A row for each variant: declared beside measured.
 pub(crate) fn shown(found: &ElementsOutcome) -> String {
     let letters = |elements: &[Element]| {
@@ -93,6 +102,7 @@ pub(crate) fn shown(found: &ElementsOutcome) -> String {
             variant.variant.clone(),
             letters(&variant.declared),
             letters(&variant.elements()),
+            optimum(variant),
             proof.worlds.to_string(),
             proof.runs.to_string(),
             proof.steps.to_string(),
@@ -101,13 +111,13 @@ pub(crate) fn shown(found: &ElementsOutcome) -> String {
         ]
     };
     let headings = [
-        "variant", "declared", "measured", "worlds", "episodes", "steps", "looks", "verdict",
+        "variant", "declared", "measured", "best changes", "worlds", "episodes", "steps", "looks", "verdict",
     ];
     let rows = found.variants.iter().map(row).collect();
     format!(
         "{}, beside {}:\n{}",
         found.task,
         found.base,
-        table(headings, rows, &[3, 4, 5, 6])
+        table(headings, rows, &[4, 5, 6, 7])
     )
 }

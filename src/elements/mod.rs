@@ -1,6 +1,7 @@
 //! [`elements`]: which elements of the decision process the variants of a task change, found by trying it, beside what the
 //! task's parameters claim. The experiment on worlds is `env`'s.
 
+mod optimum;
 mod outcome;
 mod request;
 
@@ -10,6 +11,7 @@ use driftworld_env::{Experiment, Findings};
 use driftworld_generator::Sampler;
 use driftworld_spec::{Element, TaskSpec, Value, Variant, World};
 
+pub use optimum::Optimum;
 pub use outcome::{Contradiction, ElementsOutcome, Measured, VariantElements, Verdict};
 pub use request::{DEFAULT_ELEMENTS_WORLDS, ElementsRequest, MAX_ELEMENTS_WORLDS};
 
@@ -116,6 +118,10 @@ impl Trial {
     fn of_variant(&self, base: &Variant, worlds: &[World], other: &Variant) -> Result<VariantElements, Failure> {
         let mut outcome = self.compared(base, worlds, other)?;
         outcome.idle = self.idle(base, other, &outcome)?;
+        let pays_otherwise = outcome.declared.contains(&Element::R) || outcome.elements().contains(&Element::R);
+        if pays_otherwise {
+            outcome.optimum = Some(Optimum::tried(base, other, self.seed, self.num_worlds, &self.experiment.catalogue)?);
+        }
         outcome.judge();
         Ok(outcome)
     }

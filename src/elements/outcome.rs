@@ -4,7 +4,7 @@ use driftworld_env::{Findings, Policy, Proof, Witness};
 use driftworld_spec::{Element, Modality, Variant};
 use serde::{Deserialize, Serialize};
 
-use super::ElementsRequest;
+use super::{ElementsRequest, Optimum};
 
 /// What came of trying a task's variants.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -41,6 +41,10 @@ pub struct VariantElements {
     pub contradictions: Vec<Contradiction>,
     /// Parameters that differ and that nothing reads: where such a one alone is set back, nothing changes.
     pub idle: Vec<String>,
+    /// Whether what is best changes, of a variant that changes the reward; absent of others, and of drawn worlds that are
+    /// compared for a probe.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub optimum: Option<Optimum>,
     /// How much was tried.
     pub proof: Proof,
     /// All in a word.
@@ -149,6 +153,7 @@ impl VariantElements {
                 .collect(),
             contradictions,
             idle: Vec::new(),
+            optimum: None,
             proof: found.proof,
             verdict: Verdict::Sound,
         };

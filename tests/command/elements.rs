@@ -28,8 +28,8 @@ fn what_is_declared_stands_beside_what_is_measured() {
         let words = line.unwrap_or_else(|| panic!("{name} in {said}")).split_whitespace();
         words.map(str::to_owned).collect::<Vec<_>>()
     };
-    assert_eq!(row("b")[1..5], ["S", "R", "S", "3"]);
-    assert_eq!(row("d")[1..7], ["S", "R", "O", "S", "phi", "3"]);
+    assert_eq!(row("b")[1..6], ["S", "R", "S", "yes", "3"]);
+    assert_eq!(row("d")[1..8], ["S", "R", "O", "S", "phi", "yes", "3"]);
     assert_eq!(row("d").last().map(String::as_str), Some("sound"));
 }
 

@@ -247,8 +247,8 @@ fn what_cannot_be_lived_says_where() {
     assert_eq!(
         error.to_string(),
         "block 1, regime 0: find_objects#bleu: find_objects: found variant \"bleu\", expected one of blue, red, green, \
-         dusk, huddle, penalty, spheres, clearing, wide, modest, poor, half, interact, near, held, long_held, slim, slow, stiff, \
-         waypoints; did you mean \"blue\"?"
+         dusk, huddle, penalty, spheres, clearing, wide, modest, poor, half, turned, interact, near, held, long_held, slim, slow, \
+         stiff and 1 more; did you mean \"blue\"?"
     );
     let log = folder.path().join("b");
     live(&scenario(&["blue"]), &mut RandomAgent::new(0), &log, 1).unwrap_or_else(|error| panic!("{error}"));

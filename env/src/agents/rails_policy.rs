@@ -143,7 +143,8 @@ impl RailsPolicy {
     }
 }
 
-/// The objects worth going to, by index: those that pay now; if there are none, those whose touch is a success.
+/// The objects worth going to, by index: those that pay now, without those whose touch is a success as long as others pay; if
+/// nothing pays, those whose touch is a success.
 fn wanted(sim: SimRef) -> Vec<usize> {
     let world = sim.world;
     let states = sim.objects();
@@ -156,19 +157,24 @@ fn wanted(sim: SimRef) -> Vec<usize> {
     };
     let pays =
         |index: &usize| world.objects[*index].is_target() && states[*index].present && states[*index].reward > 0.0;
-    let paying: Vec<usize> = (0..states.len()).filter(pays).filter(in_turn).collect();
-    if !paying.is_empty() {
-        return paying;
-    }
     let ends = |object: &Object| {
         world.rules.success.iter().any(|condition| match condition {
             EndCondition::Touch(tag) => object.tag.as_ref() == Some(tag),
             _ => false,
         })
     };
-    (0..states.len())
-        .filter(|&index| states[index].present && ends(&world.objects[index]))
-        .collect()
+    let paying: Vec<usize> = (0..states.len()).filter(pays).filter(in_turn).collect();
+    if paying.is_empty() {
+        return (0..states.len())
+            .filter(|&index| states[index].present && ends(&world.objects[index]))
+            .collect();
+    }
+    // What ends the episode is left until nothing else pays.
+    let (last, mut before): (Vec<usize>, Vec<usize>) = paying.into_iter().partition(|&index| ends(&world.objects[index]));
+    if before.is_empty() {
+        before = last;
+    }
+    before
 }
 
 /// Whether the agent stands where something that pays would come back.

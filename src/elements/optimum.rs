@@ -1,0 +1,101 @@
+//! [`Optimum`]: whether a variant asks for other behaviour than the one that it is compared with. What experts earn in each
+//! other's worlds is measured by `behavior`.
+
+use driftworld_env::Catalogue;
+use driftworld_spec::Variant;
+use serde::{Deserialize, Serialize};
+
+use crate::Failure;
+use crate::behavior::{BehaviorOutcome, BehaviorRequest, ExpertPair, behavior_with};
+
+/// The most pairs of worlds in which experts are exchanged.
+const MOST_WORLDS: u64 = 16;
+
+/// The least regret in points that counts as another optimum.
+const LEAST_REGRET: f64 = 1.0;
+
+/// What the expert of the variant that is compared with loses in worlds of this one, and the reverse.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Optimum {
+    /// Whether what is best there is not best here: the regret here is more than two standard errors above 0, and at least
+    /// a point.
+    pub turned: bool,
+    /// What the other expert earns less here than this variant's own, in points, on average.
+    pub regret: f64,
+    /// What this variant's expert earns less there than the own one.
+    pub regret_in_base: f64,
+    /// Pairs of worlds that experts were exchanged in.
+    pub worlds: u64,
+}
+
+impl Optimum {
+    /// Exchanges the experts of two variants in pairs of worlds, 16 at most.
+    ///
+    /// # Errors
+    /// [`Failure`] where a world cannot be drawn.
+    pub(super) fn tried(
+        base: &Variant,
+        other: &Variant,
+        seed: u64,
+        worlds: u64,
+        catalogue: &Catalogue,
+    ) -> Result<Self, Failure> {
+        let request = BehaviorRequest {
+            worlds: worlds.min(MOST_WORLDS),
+            seed,
+            ..BehaviorRequest::between(base.id(), other.id())
+        };
+        Ok(Self::of(&behavior_with(base, other, &request, catalogue.clone())?))
+    }
+
+    /// What an exchange of experts says, the first variant of it as the one that is compared with.
+    pub fn of(found: &BehaviorOutcome) -> Self {
+        let count = found.pairs.len().max(1) as f64;
+        let deviation = |pair: &ExpertPair| (pair.regret_in_b() - found.regret_in_b).powi(2);
+        let variance = found.pairs.iter().map(deviation).sum::<f64>() / (count - 1.0).max(1.0);
+        let error = (variance / count).sqrt();
+        Self {
+            turned: found.regret_in_b >= LEAST_REGRET && found.regret_in_b > 2.0 * error,
+            regret: found.regret_in_b,
+            regret_in_base: found.regret_in_a,
+            worlds: found.pairs.len() as u64,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use driftworld_env::ExpertRun;
+
+    use super::*;
+
+    /// An exchange in which the expert of the first earns so much less in each world of the second.
+    fn exchanged(regrets: &[f64]) -> Optimum {
+        let pair = |regret: &f64| ExpertPair {
+            b_in_b: ExpertRun {
+                earned: *regret,
+                ..ExpertRun::default()
+            },
+            ..ExpertPair::default()
+        };
+        let pairs: Vec<ExpertPair> = regrets.iter().map(pair).collect();
+        let mean = regrets.iter().sum::<f64>() / regrets.len() as f64;
+        Optimum::of(&BehaviorOutcome {
+            distance: mean / 200.0,
+            regret_in_a: 0.0,
+            regret_in_b: mean,
+            success_difference: 0.0,
+            pairs,
+        })
+    }
+
+    #[test]
+    fn an_optimum_is_another_where_regret_is_clear() {
+        assert!(exchanged(&[100.0, 100.0, 100.0]).turned);
+        assert!(exchanged(&[40.0, 60.0, 50.0]).turned);
+        assert!(!exchanged(&[0.0, 0.0]).turned, "the same tour");
+        assert!(!exchanged(&[0.5, 0.5]).turned, "half a point");
+        assert!(!exchanged(&[-50.0, 60.0, -20.0, 30.0]).turned, "luck");
+        assert!(!exchanged(&[-80.0, -90.0]).turned, "a better tour");
+    }
+}
