@@ -41,7 +41,7 @@ mod score;
 mod statistics;
 
 pub use error::MetricsError;
-pub use lifetime::{Lifetime, MAX_REGIMES, Regime, SteLog, experts_serving, read_ste_log};
+pub use lifetime::{Drift, Lifetime, MAX_REGIMES, Regime, SteLog, experts_serving, read_ste_log};
 pub use log::{
     BlockSubtype, BlockType, Complexity, DEFAULT_WORKER, Delimiter, DictionaryColumn, Difficulty, ExpStatus, KeptRows,
     LOG_FORMAT_VERSION, Log, LogColumn, LogCounts, LogTable, LogWarning, LogWriter, LoggerInfo, MAX_CELL_BYTES,

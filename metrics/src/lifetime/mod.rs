@@ -2,6 +2,7 @@
 //!
 //! Not here: reading files (`log`), changing the numbers (`preprocess`), and judging them (`score`).
 
+mod drift;
 mod prepare;
 mod regime;
 mod ste;
@@ -10,6 +11,7 @@ mod worlds;
 
 use indexmap::IndexMap;
 
+pub use drift::Drift;
 pub(crate) use regime::mean_per_experience;
 pub use regime::{MAX_REGIMES, Regime};
 pub(crate) use ste::SteRun;
@@ -50,6 +52,14 @@ impl Lifetime {
     /// The regimes of one task, in order.
     pub fn regimes_of(&self, task: &str) -> impl Iterator<Item = &Regime> {
         self.regimes.iter().filter(move |regime| regime.task_name == task)
+    }
+
+    /// The regimes in which a task is evaluated or learnt, in order; also drifts that count as learning of it.
+    pub(crate) fn regimes_about(&self, task: &str) -> impl Iterator<Item = &Regime> {
+        self.regimes.iter().filter(move |regime| match regime.block_type {
+            BlockType::Test => regime.task_name == task,
+            BlockType::Train => regime.learns.iter().any(|learnt| learnt == task),
+        })
     }
 
     /// The runs of a task's single-task expert.

@@ -5,7 +5,7 @@
 use indexmap::IndexSet;
 
 use super::usable::usable_rows;
-use super::{Lifetime, Regime, SteLog, regime, ste};
+use super::{Lifetime, Regime, SteLog, drift, regime, ste};
 use crate::log::{Log, Timestamp};
 use crate::options::MAX_PERFORMANCE;
 use crate::preprocess;
@@ -22,8 +22,9 @@ impl Lifetime {
     pub fn prepare(log: &Log, experts: &[SteLog], options: &Options) -> Result<Self, MetricsError> {
         options.check()?;
         let rows = usable_rows(log, &log.run_id, &options.perf_measure)?;
-        let regimes = regime::form(&log.run_id, &rows, options)?;
+        let mut regimes = regime::form(&log.run_id, &rows, options)?;
         let tasks = tasks_by_training(&regimes);
+        drift::set_learnt(&mut regimes, &tasks);
         let experts = ste::gather(experts, &tasks, options)?;
         let stamps = || rows.indices.iter().map(|&row| log.rows.timestamps()[row]);
         let mut lifetime = Self {

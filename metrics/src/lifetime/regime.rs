@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 
 use indexmap::IndexSet;
 
+use super::drift::Drift;
 use super::usable::Usable;
 use crate::log::TaskParams;
 use crate::{BlockSubtype, BlockType, Definitions, MetricsError, Options};
@@ -35,6 +36,11 @@ pub struct Regime {
     pub task_name: String,
     /// Parameters of its first row.
     pub task_params: TaskParams,
+    /// Its ends, where the variant changes bit by bit.
+    pub drift: Option<Drift>,
+    /// The tasks that it counts as learning of, for maintenance and transfer: its own, or in a drift those that it passes. Empty for
+    /// an evaluation.
+    pub learns: Vec<String>,
     /// Experience number of each row, ascending.
     pub exp_nums: Vec<u64>,
     /// Steps of the environment up to the end of each row, over all rows of the lifetime that count; `None` where the log has no
@@ -74,6 +80,9 @@ impl Regime {
         keep(&mut self.performance, &has);
         if let Some(steps) = &mut self.steps {
             keep(steps, &has);
+        }
+        if let Some(drift) = &mut self.drift {
+            keep(&mut drift.is_nearer_to, &has);
         }
     }
 
@@ -137,6 +146,8 @@ pub(crate) fn form(run_id: &str, usable: &Usable<'_>, options: &Options) -> Resu
             block_type,
             block_subtype,
             task_name: scored.names[task].clone(),
+            drift: Drift::of(rows, stretch, params_of(first), options),
+            learns: Vec::new(),
             task_params: params_of(first).clone(),
             exp_nums: stretch.iter().map(|&row| rows.exp_nums()[row]).collect(),
             steps: (steps.as_mut()).map(|steps| steps.by_ref().take(stretch.len()).collect()),

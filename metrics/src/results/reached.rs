@@ -74,7 +74,7 @@ pub(crate) fn reached(
         let mut evaluations = Vec::new();
         let mut best: Option<(usize, f64)> = None;
         let mut is_learnt = false;
-        for regime in lifetime.regimes_of(task).filter(|regime| lifetime.is_assessed(regime)) {
+        for regime in lifetime.regimes_about(task).filter(|regime| lifetime.is_assessed(regime)) {
             if regime.block_type == BlockType::Train {
                 is_learnt = true;
                 continue;

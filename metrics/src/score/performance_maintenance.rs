@@ -41,9 +41,10 @@ impl Metric for PerformanceMaintenance {
         let term_perfs = assessment.term_perfs();
         for task in assessment.lifetime().tasks() {
             let runs = differences(assessment.lifetime(), task);
-            let values = |value: fn(&Difference, &[f64]) -> f64| -> Vec<Vec<f64>> {
-                let run = |run: &Vec<Difference>| run.iter().map(|one| value(one, &term_perfs)).collect();
-                runs.iter().map(run).collect()
+            let values = |value: fn(&Difference, &[f64]) -> Option<f64>| -> Vec<Vec<f64>> {
+                let run = |run: &Vec<Difference>| run.iter().filter_map(|one| value(one, &term_perfs)).collect();
+                let runs = runs.iter().map(run).filter(|run: &Vec<f64>| !run.is_empty());
+                runs.collect()
             };
             if method.has_mrlep() {
                 let mrlep = values(Difference::mrlep);
@@ -66,11 +67,11 @@ pub(super) fn statistics<'a>(lifetime: &Lifetime, options: &'a Options) -> Vec<S
     let tasks: Vec<Vec<Difference>> = tasks.map(|task| differences(lifetime, task).concat()).collect();
     let tasks = Rc::new(tasks);
     let method = options.maintenance_method;
-    let statistic = |name, value: fn(&Difference, &[f64]) -> f64| {
+    let statistic = |name, value: fn(&Difference, &[f64]) -> Option<f64>| {
         let tasks = Rc::clone(&tasks);
         Statistic::new(name, move |term_perfs| {
             let of_task = |task: &Vec<Difference>| {
-                let values: Vec<f64> = task.iter().map(|one| value(one, term_perfs)).collect();
+                let values: Vec<f64> = task.iter().filter_map(|one| value(one, term_perfs)).collect();
                 mean(&values)
             };
             aggregate(tasks.iter().filter_map(of_task).collect(), options)
@@ -89,35 +90,36 @@ struct Difference {
     evaluation: usize,
     /// The most recent reference evaluation.
     reference: usize,
-    /// The most recent learning regime.
-    learnt: usize,
+    /// The most recent learning regime; `None` for a drift, whose end is on a scale of its own.
+    learnt: Option<usize>,
 }
 
 impl Difference {
-    fn mrlep(&self, term_perfs: &[f64]) -> f64 {
-        term_perfs[self.evaluation] - term_perfs[self.reference]
+    fn mrlep(&self, term_perfs: &[f64]) -> Option<f64> {
+        Some(term_perfs[self.evaluation] - term_perfs[self.reference])
     }
 
-    fn mrtlp(&self, term_perfs: &[f64]) -> f64 {
-        term_perfs[self.evaluation] - term_perfs[self.learnt]
+    fn mrtlp(&self, term_perfs: &[f64]) -> Option<f64> {
+        Some(term_perfs[self.evaluation] - term_perfs[self.learnt?])
     }
 }
 
 /// Compares each evaluation of a task with what it was right after learning, in runs of consecutive regimes of the task.
 ///
 /// The first evaluation after each learning regime is its reference. Every later evaluation that is no reference
-/// gives one difference of terminal performances; runs of such evaluations end where the task is learnt again.
+/// gives one difference of terminal performances; runs of such evaluations end where the task is learnt again. Drifts
+/// that pass the task count as learning of it.
 fn differences(lifetime: &Lifetime, task: &str) -> Vec<Vec<Difference>> {
     let mut found: Vec<Vec<Difference>> = Vec::new();
     // The most recent learning regime; whether its reference is still to come.
     let (mut learnt, mut awaits_reference) = (None, false);
     let mut reference: Option<usize> = None;
     let mut continues_run = false;
-    for regime in lifetime.regimes_of(task) {
+    for regime in lifetime.regimes_about(task) {
         let number = regime.regime_num;
         let contributes = match regime.block_type {
             BlockType::Train => {
-                (learnt, awaits_reference) = (Some(number), true);
+                (learnt, awaits_reference) = (Some((number, regime.task_name == task)), true);
                 None
             }
             BlockType::Test if !lifetime.is_assessed(regime) => None,
@@ -131,7 +133,7 @@ fn differences(lifetime: &Lifetime, task: &str) -> Vec<Vec<Difference>> {
             let difference = Difference {
                 evaluation: number,
                 reference,
-                learnt,
+                learnt: learnt.1.then_some(learnt.0),
             };
             match found.last_mut() {
                 Some(run) if continues_run => run.push(difference),

@@ -159,10 +159,10 @@ fn gaps<'a>(lifetime: &'a Lifetime, options: &Options) -> (Gaps<'a>, Gaps<'a>) {
                     after: pair[1],
                 };
                 let between = &learning[above(learning, pair[0])..above(learning, pair[1])];
-                if between.first().is_some_and(|place| *place < first_learnt) {
+                if between.first().is_some_and(|place| *place < first_learnt) && !places.drift_begins(other, pair) {
                     forward.insert((pair[1], who), gap());
                 }
-                if between.last().is_some_and(|place| *place > first_learnt) {
+                if between.last().is_some_and(|place| *place > first_learnt) && !places.drift_begins(other, pair) {
                     backward.insert((pair[1], who), gap());
                 }
             }
@@ -176,24 +176,42 @@ fn above(places: &[usize], limit: usize) -> usize {
     places.partition_point(|place| *place <= limit)
 }
 
-/// Regime numbers of each task's learning and evaluation, ascending; tasks in order of appearance.
+/// Regime numbers of each task's learning and evaluation, ascending; tasks in order of appearance. Drifts count as learning of the
+/// tasks that they pass.
 struct Places<'a> {
     tasks: IndexMap<&'a str, (Vec<usize>, Vec<usize>)>,
+    /// Regime numbers of drifts.
+    drifts: IndexSet<usize>,
 }
 
 impl<'a> Places<'a> {
     fn of(lifetime: &'a Lifetime) -> Self {
-        let assessed = || lifetime.regimes().iter().filter(|regime| lifetime.is_assessed(regime));
-        let names: IndexSet<&str> = assessed().map(|regime| regime.task_name.as_str()).collect();
-        let mut tasks: IndexMap<_, _> = names.into_iter().map(|name| (name, (Vec::new(), Vec::new()))).collect();
-        for regime in assessed() {
-            let (learning, evaluation) = &mut tasks[regime.task_name.as_str()];
+        let assessed = lifetime.regimes().iter().filter(|regime| lifetime.is_assessed(regime));
+        let (mut tasks, mut drifts) = (IndexMap::<_, (Vec<_>, Vec<_>)>::new(), IndexSet::new());
+        for regime in assessed {
+            let number = regime.regime_num;
+            if regime.drift.is_some() {
+                drifts.insert(number);
+            }
             match regime.block_type {
-                BlockType::Train => learning.push(regime.regime_num),
-                BlockType::Test => evaluation.push(regime.regime_num),
+                BlockType::Train => {
+                    for task in &regime.learns {
+                        tasks.entry(task.as_str()).or_default().0.push(number);
+                    }
+                }
+                BlockType::Test => tasks.entry(regime.task_name.as_str()).or_default().1.push(number),
             }
         }
-        Self { tasks }
+        Self { tasks, drifts }
+    }
+
+    /// Whether a task was learnt for the first time between two evaluations, by a drift: then what changed there was
+    /// its own learning, and no transfer.
+    fn drift_begins(&self, task: &str, evaluations: &[usize]) -> bool {
+        let first = self.tasks[task].0.first();
+        first.is_some_and(|first| {
+            evaluations[0] < *first && *first < evaluations[1] && self.drifts.contains(first)
+        })
     }
 
     fn trained(&self) -> impl Iterator<Item = (&'a str, &[usize])> + use<'a, '_> {
