@@ -51,8 +51,8 @@ pub use log::{
     validate_log,
 };
 pub use options::{
-    AggregationMethod, DataRange, DataRanges, Definitions, MAX_WINDOW_LENGTH, MaintenanceMethod, Noise,
-    NormalizationMethod, Options, SmoothingMethod, SteAveragingMethod, TransferMethod, VariantMode,
+    AggregationMethod, Anchors, DataRange, DataRanges, Definitions, MAX_WINDOW_LENGTH, MaintenanceMethod, Noise,
+    NormalizationMethod, Options, Scales, SmoothingMethod, SteAveragingMethod, TransferMethod, VariantMode,
 };
 pub use repeats::{
     Aggregate, BootstrapOptions, Estimate, FEW_RUNS, Improvement, Interval, MAX_RESAMPLES, MAX_RUNS, MAX_SCORES,
@@ -60,9 +60,10 @@ pub use repeats::{
     probability_of_improvement,
 };
 pub use results::{
-    AsLogged, ComparedMetric, Direction, EvaluationCell, Exchanged, Headline, LEARNED_SHARE, LifetimeMetrics, NullBand,
-    PairValues, Reached, Reading, RegimeMetrics, RepeatedMetric, SavedFiles, SavedTables, Settings, SummaryRow, Value,
-    Values, WholeLifetime, compare_agents, over_repeats, regimes_tsv, save_all,
+    AsLogged, ComparedMetric, CurvePoint, Direction, EvaluationCell, EvaluationCurve, Exchanged, Headline,
+    LEARNED_SHARE, LifetimeMetrics, NullBand, PairValues, Reached, Reading, RegimeMetrics, RepeatedMetric, SavedFiles,
+    SavedTables, ScaledBy, Settings, SummaryRow, Value, Values, WholeLifetime, compare_agents, over_repeats,
+    regimes_tsv, save_all,
 };
 pub use score::{Assessment, Metric, NULL_PERMUTATIONS, Scorer, score};
 

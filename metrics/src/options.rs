@@ -184,6 +184,18 @@ pub struct DataRange {
 /// Ranges by task, lower-case names.
 pub type DataRanges = IndexMap<String, DataRange>;
 
+/// What agents earn in a task that know nothing of it, and all, in the log's unit.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Anchors {
+    /// The best of agents that know nothing, such as one that acts at random and one that stands still: scaled to 1.
+    pub floor: f64,
+    /// An expert's: scaled to 101.
+    pub ceiling: f64,
+}
+
+/// Floors and ceilings by task, lower-case names as logs have them.
+pub type Scales = IndexMap<String, Anchors>;
+
 /// The choices under which a lifetime is scored. [`Options::default`] is what l2metrics does when asked for nothing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -212,6 +224,10 @@ pub struct Options {
     pub clamp_outliers: bool,
     /// Known range per task, lower-case name; default none: taken from the data. When given, every task needs one.
     pub data_range: Option<DataRanges>,
+    /// Floor and ceiling per task, lower-case name; default none. A task without one, or with a ceiling that is not above its floor,
+    /// is scaled by its own range. Ranges in `data_range` come before.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scales: Option<Scales>,
     /// Normal noise on the lifetime's performances, not on the experts'; default none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub noise: Option<Noise>,
@@ -235,6 +251,7 @@ impl Default for Options {
             window_length: None,
             clamp_outliers: false,
             data_range: None,
+            scales: None,
             noise: None,
             definitions: Definitions::Reference,
         }
@@ -264,6 +281,16 @@ impl Options {
                     option: "noise",
                     found: format!("mean {:e}, standard deviation {:e}", noise.mean, noise.std),
                     expected: "two numbers below 1e100 in magnitude, the second not negative".to_owned(),
+                });
+            }
+        }
+        for (task, anchors) in self.scales.iter().flatten() {
+            let bounded = |value: f64| value.abs() < MAX_PERFORMANCE;
+            if !bounded(anchors.floor) || !bounded(anchors.ceiling) {
+                return Err(MetricsError::BadOption {
+                    option: "scales",
+                    found: format!("{:e} to {:e} for task {task}", anchors.floor, anchors.ceiling),
+                    expected: "two numbers below 1e100 in magnitude".to_owned(),
                 });
             }
         }

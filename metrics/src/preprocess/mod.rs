@@ -14,9 +14,23 @@ pub(crate) use normalization::normalize;
 pub(crate) use smoothing::{smooth, smoothed};
 
 use crate::lifetime::Lifetime;
-use crate::{DataRange, MetricsError, Options, VariantMode};
+use crate::{Anchors, DataRange, MetricsError, Options, VariantMode};
 
-/// The range a user gave for a task, under the name it is scored by; `None` when no ranges were given at all.
+/// The floor and ceiling of a task, under the name it is scored by; `None` where they are not known, or the ceiling is not above the
+/// floor: then nothing can be learned. Where variants do not count, the lowest floor and the highest ceiling of its variants.
+pub(crate) fn anchors(task: &str, options: &Options) -> Option<Anchors> {
+    let scales = options.scales.iter().flatten();
+    let of_task = scales.filter(|(name, _)| options.variant_mode.scored_name(name) == task);
+    let hull = |a: Anchors, b: Anchors| Anchors {
+        floor: a.floor.min(b.floor),
+        ceiling: a.ceiling.max(b.ceiling),
+    };
+    let found = of_task.map(|(_, anchors)| *anchors).reduce(hull);
+    found.filter(|anchors| anchors.ceiling > anchors.floor)
+}
+
+/// The range a user gave for a task, under the name it is scored by: its own range, or else its floor and ceiling; `None` when
+/// nothing was given, or no floor and ceiling of this task.
 ///
 /// Where variants do not count, the range of a task is the hull of its variants' ranges.
 pub(crate) fn given_range(
@@ -25,7 +39,11 @@ pub(crate) fn given_range(
     options: &Options,
 ) -> Result<Option<DataRange>, MetricsError> {
     let Some(ranges) = &options.data_range else {
-        return Ok(None);
+        let range = |anchors: Anchors| DataRange {
+            min: anchors.floor,
+            max: anchors.ceiling,
+        };
+        return Ok(anchors(task, options).map(range));
     };
     let belongs = |name: &str| options.variant_mode.scored_name(name) == task;
     let hull = |a: DataRange, b: DataRange| DataRange {

@@ -8,7 +8,7 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::rounding::ten_decimals;
-use super::{AsLogged, Direction, Headline, NullBand, Reached, RegimeMetrics, Value, Values};
+use super::{AsLogged, Direction, EvaluationCurve, Headline, NullBand, Reached, RegimeMetrics, Value, Values};
 use crate::{DataRange, Definitions};
 
 /// Everything that scoring one lifetime gives. Serialises to the reference's `NAME_metrics.json`; regimes have a
@@ -55,6 +55,10 @@ pub struct LifetimeMetrics {
     /// What each task came to in evaluations, in the log's unit. Not in the JSON, which has the reference's fields.
     #[serde(default)]
     pub reached: IndexMap<String, Reached>,
+    /// What the evaluation curve of each task says, without regard to borders between tasks. Not in the JSON, which has the
+    /// reference's fields.
+    #[serde(default)]
+    pub curves: IndexMap<String, EvaluationCurve>,
     /// The values of each task, by first learning block: headlines, then the lists behind them.
     pub task_metrics: IndexMap<String, Values>,
     /// The values of each regime, in order; not in the JSON.

@@ -3,6 +3,7 @@
 //! Not here: computing them (`score`), and printing or drawing them (the command's).
 
 mod as_logged;
+mod curves;
 mod files;
 mod headline;
 mod lifetime_metrics;
@@ -17,12 +18,14 @@ mod whole_lifetime;
 
 pub use as_logged::AsLogged;
 pub(crate) use as_logged::as_logged;
+pub(crate) use curves::curves;
+pub use curves::{CurvePoint, EvaluationCurve};
 pub use files::{SavedFiles, SavedTables, Settings, save_all};
 pub use headline::{Direction, Headline};
 pub use lifetime_metrics::{LifetimeMetrics, SummaryRow};
 pub use null_band::{Exchanged, NullBand, Reading};
 pub(crate) use reached::reached;
-pub use reached::{EvaluationCell, LEARNED_SHARE, Reached};
+pub use reached::{EvaluationCell, LEARNED_SHARE, Reached, ScaledBy};
 pub(crate) use regime_table::is_regime_column;
 pub use regime_table::{RegimeMetrics, regimes_tsv};
 pub use repeats::{ComparedMetric, RepeatedMetric, compare_agents, over_repeats};

@@ -8,9 +8,9 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
 use crate::lifetime::{Lifetime, Regime, SteRun, World, worlds};
-use crate::preprocess::given_range;
+use crate::preprocess::{anchors, given_range};
 use crate::statistics::mean;
-use crate::{BlockType, Log, MetricsError, Options};
+use crate::{BlockType, Log, MetricsError, NormalizationMethod, Options};
 
 /// Part of its expert's level below which a task was never learned.
 pub const LEARNED_SHARE: f64 = 0.2;
@@ -27,6 +27,9 @@ pub struct EvaluationCell {
     pub standard_error: Option<f64>,
     /// Number of worlds, or of rows.
     pub num_worlds: usize,
+    /// The mean as the part of the way from the task's floor to its ceiling; `None` where these are not known.
+    #[serde(default)]
+    pub score: Option<f64>,
 }
 
 /// What a task came to.
@@ -38,11 +41,39 @@ pub struct Reached {
     /// evaluation.
     pub best: Option<usize>,
     /// The expert's level, the mean over its runs: of its last evaluation of the task, or else of the last tenth of its
-    /// learning. `None` without an expert.
+    /// learning; without an expert the task's ceiling. `None` where neither is known.
     pub expert: Option<f64>,
-    /// The best evaluation's part of the expert's level: both from the lower end of the given range, or from 0. `None` where one
-    /// is missing, or the expert is not above that end.
+    /// The best evaluation's part of the expert's level: both from the task's floor, or else the lower end of the given range, or
+    /// else 0. `None` where one is missing, or the expert is not above that end.
     pub share: Option<f64>,
+    /// The same of the first evaluation after each learning of the task, in order: what it could still learn. Empty where there are
+    /// no such parts.
+    #[serde(default)]
+    pub shares: Vec<f64>,
+    /// What an agent earns that knows nothing of the task, if that is known.
+    #[serde(default)]
+    pub floor: Option<f64>,
+    /// What an agent earns that knows the task, if that is known, and above the floor.
+    #[serde(default)]
+    pub ceiling: Option<f64>,
+    /// What the task's performances were scaled by for the metrics.
+    #[serde(default)]
+    pub scaled_by: ScaledBy,
+}
+
+/// What performances of a task are scaled by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ScaledBy {
+    /// The task's floor and ceiling.
+    Anchors,
+    /// A range that was given for the task.
+    Range,
+    /// The smallest and largest performance of the lifetime and its experts.
+    #[default]
+    Own,
+    /// Nothing.
+    Nothing,
 }
 
 impl Reached {
@@ -54,6 +85,26 @@ impl Reached {
     /// The evaluation with the highest mean after learning.
     pub fn best(&self) -> Option<&EvaluationCell> {
         self.evaluations.get(self.best?)
+    }
+
+    /// A performance in the log's unit as the part of the way from floor to ceiling; `None` where these are not known.
+    pub fn score(&self, performance: f64) -> Option<f64> {
+        let (floor, ceiling) = (self.floor?, self.ceiling?);
+        Some((performance - floor) / (ceiling - floor))
+    }
+
+    /// Whether floor and ceiling are known.
+    pub fn is_scaled(&self) -> bool {
+        self.floor.is_some() && self.ceiling.is_some()
+    }
+
+    /// How much of the expert's level the agent came to when it first learned the task, less what it came to when it last
+    /// did; above 0 where it lost the ability to learn. `None` for a task that was learned and evaluated fewer than two times.
+    pub fn plasticity_loss(&self) -> Option<f64> {
+        match self.shares.as_slice() {
+            [first, .., last] => Some(first - last),
+            _ => None,
+        }
     }
 
     /// Whether no evaluation after learning came to [`LEARNED_SHARE`] of the expert's level; `None` where that is not known.
@@ -72,16 +123,23 @@ pub(crate) fn reached(
     let mut found = IndexMap::new();
     for task in lifetime.tasks() {
         let mut evaluations = Vec::new();
+        let (mut after_learning, mut was_learning) = (Vec::new(), false);
         let mut best: Option<(usize, f64)> = None;
         let mut is_learnt = false;
-        for regime in lifetime.regimes_about(task).filter(|regime| lifetime.is_assessed(regime)) {
+        for regime in lifetime
+            .regimes_about(task)
+            .filter(|regime| lifetime.is_assessed(regime))
+        {
             if regime.block_type == BlockType::Train {
-                is_learnt = true;
+                (is_learnt, was_learning) = (true, true);
                 continue;
             }
             let cell = cell(regime, &worlds[regime.regime_num]);
             if is_learnt && best.is_none_or(|(_, highest)| cell.mean > highest) {
                 best = Some((evaluations.len(), cell.mean));
+            }
+            if std::mem::take(&mut was_learning) {
+                after_learning.push(cell.mean);
             }
             evaluations.push(cell);
         }
@@ -90,20 +148,29 @@ pub(crate) fn reached(
             .iter()
             .filter_map(|run| level(run, task))
             .collect();
-        let expert = mean(&levels);
+        let anchors = anchors(task, options);
+        let expert = mean(&levels).or(anchors.map(|anchors| anchors.ceiling));
         // Ranges that lack a task are refused where they are used.
         let range = given_range(task, lifetime, options).ok().flatten();
-        let floor = range.map_or(0.0, |range| range.min);
-        let share = best.zip(expert).and_then(|((_, highest), expert)| {
-            let share = (highest - floor) / (expert - floor);
-            (expert > floor && share.is_finite()).then_some(share)
-        });
-        let reached = Reached {
-            evaluations,
+        let floor = anchors.map_or(range.map_or(0.0, |range| range.min), |anchors| anchors.floor);
+        let part = |level: f64| {
+            let expert = expert.filter(|expert| *expert > floor)?;
+            Some((level - floor) / (expert - floor)).filter(|part| part.is_finite())
+        };
+        let mut reached = Reached {
             best: best.map(|(place, _)| place),
             expert,
-            share,
+            share: best.and_then(|(_, highest)| part(highest)),
+            shares: after_learning.into_iter().filter_map(part).collect(),
+            floor: anchors.map(|anchors| anchors.floor),
+            ceiling: anchors.map(|anchors| anchors.ceiling),
+            scaled_by: scaled_by(task, lifetime, options),
+            evaluations: Vec::new(),
         };
+        for cell in &mut evaluations {
+            cell.score = reached.score(cell.mean);
+        }
+        reached.evaluations = evaluations;
         found.insert(task.clone(), reached);
     }
     Ok(found)
@@ -125,6 +192,17 @@ fn cell(regime: &Regime, worlds: &[Option<World>]) -> EvaluationCell {
         mean: mean(&regime.raw).unwrap_or(0.0),
         standard_error: standard_error(&means),
         num_worlds: means.len(),
+        score: None,
+    }
+}
+
+/// What the metrics see of a task is scaled by this.
+fn scaled_by(task: &str, lifetime: &Lifetime, options: &Options) -> ScaledBy {
+    match given_range(task, lifetime, options) {
+        _ if options.normalization_method == NormalizationMethod::Off => ScaledBy::Nothing,
+        Ok(Some(_)) if options.data_range.is_some() => ScaledBy::Range,
+        Ok(Some(_)) => ScaledBy::Anchors,
+        _ => ScaledBy::Own,
     }
 }
 

@@ -5,25 +5,27 @@
 use indexmap::IndexMap;
 use serde::Serialize;
 
-use super::{LifetimeMetrics, NullBand, Reached};
+use super::{EvaluationCurve, LifetimeMetrics, NullBand, Reached};
 
-/// A lifetime as JSON: the fields of [`LifetimeMetrics`], then `null`, the null band of each metric that has one, and
-/// `reached`, what each task came to.
+/// A lifetime as JSON: the fields of [`LifetimeMetrics`], then `null`, the null band of each metric that has one,
+/// `reached`, what each task came to, and `curves`, what each evaluation curve says.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct WholeLifetime<'a> {
     #[serde(flatten)]
     metrics: &'a LifetimeMetrics,
     null: &'a IndexMap<String, NullBand>,
     reached: &'a IndexMap<String, Reached>,
+    curves: &'a IndexMap<String, EvaluationCurve>,
 }
 
 impl LifetimeMetrics {
-    /// This lifetime to be serialised with its null bands and what its tasks reached, which the saved file leaves out.
+    /// This lifetime to be serialised with its null bands, what its tasks reached and their curves, which the saved file leaves out.
     pub fn whole(&self) -> WholeLifetime<'_> {
         WholeLifetime {
             metrics: self,
             null: &self.null_bands,
             reached: &self.reached,
+            curves: &self.curves,
         }
     }
 }

@@ -7,7 +7,9 @@ use indexmap::{IndexMap, IndexSet};
 use super::null_bands::null_bands;
 use super::{Assessment, Metric, all_asked, built_in, built_in_headlines};
 use crate::lifetime::{Lifetime, Regime, SteLog};
-use crate::results::{Headline, LifetimeMetrics, RegimeMetrics, Value, Values, as_logged, is_regime_column, reached};
+use crate::results::{
+    Headline, LifetimeMetrics, RegimeMetrics, Value, Values, as_logged, curves, is_regime_column, reached,
+};
 use crate::{BlockType, Log, MetricsError, Options};
 
 /// Scores a lifetime by the metrics of this crate, compared with the single-task experts there are.
@@ -110,6 +112,7 @@ impl Scorer {
         };
         let regimes = lifetime.regimes().iter().zip(regimes);
         let (min, max) = extent(lifetime.regimes().iter());
+        let reached = reached(log, lifetime, options)?;
         let info = &log.scenario_info;
         Ok(LifetimeMetrics {
             lifetime: in_order(&found),
@@ -127,7 +130,8 @@ impl Scorer {
             as_logged: as_logged(log, options)?,
             notes,
             null_bands,
-            reached: reached(log, lifetime, options)?,
+            curves: curves(lifetime, &reached),
+            reached,
             task_metrics: tasks.into_iter().map(finish).collect::<IndexMap<_, _>>(),
             regimes: regimes
                 .map(|(regime, values)| RegimeMetrics::new(regime, values))
@@ -145,7 +149,7 @@ impl Default for Scorer {
 }
 
 /// Fields of the results that no headline and no value of a lifetime may have as its name.
-const TAKEN: [&str; 17] = [
+const TAKEN: [&str; 18] = [
     "run_id",
     "complexity",
     "difficulty",
@@ -162,6 +166,7 @@ const TAKEN: [&str; 17] = [
     "notes",
     "null",
     "reached",
+    "curves",
     "task_metrics",
 ];
 

@@ -209,9 +209,7 @@ impl<'a> Places<'a> {
     /// its own learning, and no transfer.
     fn drift_begins(&self, task: &str, evaluations: &[usize]) -> bool {
         let first = self.tasks[task].0.first();
-        first.is_some_and(|first| {
-            evaluations[0] < *first && *first < evaluations[1] && self.drifts.contains(first)
-        })
+        first.is_some_and(|first| evaluations[0] < *first && *first < evaluations[1] && self.drifts.contains(first))
     }
 
     fn trained(&self) -> impl Iterator<Item = (&'a str, &[usize])> + use<'a, '_> {

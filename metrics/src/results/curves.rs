@@ -1,0 +1,213 @@
+//! Measures that need no borders between tasks: of each task's evaluation curve alone.
+//!
+//! Not here: what a task came to beside its expert, see `reached`.
+
+use std::collections::HashMap;
+
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+
+use super::Reached;
+use crate::BlockType;
+use crate::lifetime::{Lifetime, Regime};
+use crate::statistics::mean;
+
+/// A point of an evaluation curve.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct CurvePoint {
+    /// Learning experiences (rows) of any task before it.
+    pub learned: usize,
+    /// Mean of the evaluation; of several without learning between them, the mean of their means.
+    pub mean: f64,
+    /// Standard error of the mean over worlds; `None` for one world.
+    pub standard_error: Option<f64>,
+}
+
+/// What a task's evaluation curve says. Performance is in the log's unit; where the task has a floor and a ceiling, it is the part
+/// of the way from floor to ceiling, usually 0..=1.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EvaluationCurve {
+    /// Whether performance is the part of the way from floor to ceiling.
+    pub is_scaled: bool,
+    /// The curve: straight between its points, by learning experiences; at least one.
+    pub points: Vec<CurvePoint>,
+    /// Area under the curve, over its width: the mean performance while anything was learned, between the lowest and the
+    /// highest point. Of one point its mean.
+    pub area: f64,
+    /// The highest point less the last: 0 or above, and 0 for a curve that never falls.
+    pub forgetting: f64,
+    /// Standard error of `forgetting`, its two points taken as independent; `None` where they are one, or an error is not known.
+    pub forgetting_error: Option<f64>,
+    /// Learning experiences from where the task is first learned, or else from the first point, until the curve is half-way
+    /// from its height there to the highest point after; 0 or above. `None` where it never rises.
+    pub lag: Option<f64>,
+    /// The expert's level less the curve, in the mean over the learning experiences in which the task was present: its own, and
+    /// those of a drift to which it was nearer. Outside its points the curve goes on level. `None` without an expert, or if the
+    /// task was never present.
+    pub regret: Option<f64>,
+    /// Learning experiences in which the task was present.
+    pub num_present: usize,
+}
+
+/// The curve of each task that is evaluated, in the lifetime's order; `reached` is of the same lifetime.
+pub(crate) fn curves(lifetime: &Lifetime, reached: &IndexMap<String, Reached>) -> IndexMap<String, EvaluationCurve> {
+    let timeline = Timeline::of(lifetime);
+    let of_task = |(task, reached): (&String, &Reached)| {
+        let evaluated = timeline.evaluated.get(task.as_str())?;
+        let curve = Curve::new(evaluated, reached)?;
+        let present = timeline.present.get(task.as_str()).map_or(&[][..], Vec::as_slice);
+        let begins = timeline.begins.get(task.as_str()).copied();
+        Some((task.clone(), curve.judged(present, begins, reached)))
+    };
+    reached.iter().filter_map(of_task).collect()
+}
+
+/// When each task is evaluated and learned, by the number of learning experiences before.
+#[derive(Default)]
+struct Timeline<'a> {
+    evaluated: HashMap<&'a str, Vec<usize>>,
+    /// The learning experiences in which a task is present.
+    present: HashMap<&'a str, Vec<usize>>,
+    /// Where the first learning of a task begins.
+    begins: HashMap<&'a str, usize>,
+}
+
+impl<'a> Timeline<'a> {
+    fn of(lifetime: &'a Lifetime) -> Self {
+        let mut found = Self::default();
+        let mut learned = 0;
+        for regime in lifetime.regimes() {
+            match regime.block_type {
+                BlockType::Test if lifetime.is_assessed(regime) => {
+                    found.evaluated.entry(&regime.task_name).or_default().push(learned);
+                }
+                BlockType::Test => {}
+                BlockType::Train => {
+                    for row in 0..regime.len() {
+                        found
+                            .present
+                            .entry(present(regime, row))
+                            .or_default()
+                            .push(learned + row);
+                    }
+                    for task in &regime.learns {
+                        found.begins.entry(task).or_insert(learned);
+                    }
+                    learned += regime.len();
+                }
+            }
+        }
+        found
+    }
+}
+
+/// The task that is learned in a row: in a drift the nearer one.
+fn present(regime: &Regime, row: usize) -> &str {
+    regime
+        .drift
+        .as_ref()
+        .map_or(&regime.task_name, |drift| drift.nearer(row))
+}
+
+/// Points in ascending order, at least one, none above another.
+struct Curve(Vec<CurvePoint>);
+
+impl Curve {
+    /// Of evaluations after so many learning experiences each.
+    fn new(learned: &[usize], reached: &Reached) -> Option<Self> {
+        let scaled = |value: f64| reached.score(value).unwrap_or(value);
+        let of_error = |error: f64| scaled(error) - scaled(0.0);
+        let evaluations: Vec<_> = learned.iter().zip(&reached.evaluations).collect();
+        let points = evaluations.chunk_by(|a, b| a.0 == b.0).filter_map(|same| {
+            let means: Vec<f64> = same.iter().map(|(_, cell)| scaled(cell.mean)).collect();
+            let errors: Option<Vec<f64>> = same.iter().map(|(_, cell)| cell.standard_error.map(of_error)).collect();
+            let squares = |errors: Vec<f64>| errors.iter().map(|error| error * error).sum::<f64>();
+            Some(CurvePoint {
+                learned: *same.first()?.0,
+                mean: mean(&means)?,
+                standard_error: errors.map(|errors| squares(errors).sqrt() / means.len() as f64),
+            })
+        });
+        let points: Vec<CurvePoint> = points.collect();
+        (!points.is_empty()).then_some(Self(points))
+    }
+
+    fn judged(self, present: &[usize], begins: Option<usize>, reached: &Reached) -> EvaluationCurve {
+        let regrets: Option<Vec<f64>> = reached.expert.map(|expert| {
+            let expert = reached.score(expert).unwrap_or(expert);
+            // In the middle of the experience.
+            present.iter().map(|row| expert - self.at(*row as f64 + 0.5)).collect()
+        });
+        let (forgetting, forgetting_error) = self.forgetting();
+        EvaluationCurve {
+            is_scaled: reached.is_scaled(),
+            area: self.area(),
+            forgetting,
+            forgetting_error,
+            lag: self.lag(begins),
+            regret: regrets.and_then(|regrets| mean(&regrets)),
+            num_present: present.len(),
+            points: self.0,
+        }
+    }
+
+    /// Its height, straight between points, level outside.
+    fn at(&self, learned: f64) -> f64 {
+        let after = self.0.partition_point(|point| point.learned as f64 <= learned);
+        match (after.checked_sub(1).map(|before| self.0[before]), self.0.get(after)) {
+            (Some(a), Some(b)) => {
+                let share = (learned - a.learned as f64) / (b.learned - a.learned) as f64;
+                a.mean + (b.mean - a.mean) * share
+            }
+            (Some(last), None) => last.mean,
+            (None, first) => first.map_or(0.0, |first| first.mean),
+        }
+    }
+
+    fn area(&self) -> f64 {
+        let (first, last) = (self.0[0], self.0[self.0.len() - 1]);
+        let of_pair = |pair: &[CurvePoint]| {
+            (pair[1].learned - pair[0].learned) as f64 * f64::midpoint(pair[0].mean, pair[1].mean)
+        };
+        let width = (last.learned - first.learned) as f64;
+        if self.0.len() == 1 {
+            return first.mean;
+        }
+        self.0.windows(2).map(of_pair).sum::<f64>() / width
+    }
+
+    fn forgetting(&self) -> (f64, Option<f64>) {
+        let last = self.0[self.0.len() - 1];
+        let best = self
+            .0
+            .iter()
+            .fold(last, |best, point| if point.mean > best.mean { *point } else { best });
+        let error = (best.standard_error.zip(last.standard_error)).map(|(a, b)| a.hypot(b));
+        (best.mean - last.mean, error.filter(|_| best.learned != last.learned))
+    }
+
+    fn lag(&self, begins: Option<usize>) -> Option<f64> {
+        let begins = begins.unwrap_or(self.0[0].learned);
+        // What was known when learning began: the evaluation before, or else the first.
+        let start = self
+            .0
+            .iter()
+            .take_while(|point| point.learned <= begins)
+            .last()
+            .unwrap_or(&self.0[0])
+            .mean;
+        let after = || self.0.iter().filter(|point| point.learned > begins);
+        let best = after().map(|point| point.mean).fold(start, f64::max);
+        let half = f64::midpoint(start, best);
+        let mut before = (begins, start);
+        for point in after() {
+            if best > start && point.mean >= half {
+                let width = (point.learned - before.0) as f64;
+                let share = (half - before.1) / (point.mean - before.1);
+                return Some((before.0 - begins) as f64 + width * share);
+            }
+            before = (point.learned, point.mean);
+        }
+        None
+    }
+}
