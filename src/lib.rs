@@ -43,6 +43,7 @@ pub mod ordering;
 mod output_file;
 mod overwrite;
 pub mod picture_distance;
+pub mod scales;
 pub mod scenarios;
 pub mod scoring;
 mod table;

@@ -55,15 +55,16 @@ pub use options::{
     NormalizationMethod, Options, Scales, SmoothingMethod, SteAveragingMethod, TransferMethod, VariantMode,
 };
 pub use repeats::{
-    Aggregate, BootstrapOptions, Estimate, FEW_RUNS, Improvement, Interval, MAX_RESAMPLES, MAX_RUNS, MAX_SCORES,
-    MAX_SCORES_DRAWN, MAX_STRATA, Resampling, ScoreTable, StratumImprovement, estimate, performance_profile,
-    probability_of_improvement,
+    Aggregate, BootstrapOptions, Estimate, FEW_RUNS, Improvement, Interval, MAX_POWER_LIFETIMES, MAX_RESAMPLES,
+    MAX_RUNS, MAX_SCORES, MAX_SCORES_DRAWN, MAX_STRATA, POWER_LEVEL, POWER_WANTED, Resampling, ScoreTable,
+    StratumImprovement, estimate, lifetimes_for, performance_profile, probability_of_improvement, smallest_effect,
+    welch_power,
 };
 pub use results::{
     AsLogged, ComparedMetric, CurvePoint, Direction, EvaluationCell, EvaluationCurve, Exchanged, Headline,
-    LEARNED_SHARE, LifetimeMetrics, NullBand, PairValues, Reached, Reading, RegimeMetrics, RepeatedMetric, SavedFiles,
-    SavedTables, ScaledBy, Settings, SummaryRow, Value, Values, WholeLifetime, compare_agents, over_repeats,
-    regimes_tsv, save_all,
+    LEARNED_SHARE, LifetimeMetrics, MetricPower, NullBand, PairValues, Reached, Reading, RegimeMetrics, RepeatedMetric,
+    SavedFiles, SavedTables, ScaledBy, Settings, SummaryRow, Value, Values, WholeLifetime, compare_agents,
+    metric_power, over_repeats, regimes_tsv, save_all,
 };
 pub use score::{Assessment, Metric, NULL_PERMUTATIONS, Scorer, score};
 

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 use driftworld::lifetime_report::{ReportRequest, write_report};
+use driftworld::scales::ScalesFile;
 use driftworld::scoring::{Scores, ScoringRequest, ScoringSettings, score};
-use driftworld_metrics::{BootstrapOptions, DataRanges, Noise};
+use driftworld_metrics::{Anchors, BootstrapOptions, DataRanges, Noise, Scales};
 use driftworld_report::{Figure, FigureOptions};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -127,10 +128,12 @@ fn scoring(logs: Vec<PathBuf>, options: &Options<'_>) -> Result<ScoringRequest> 
             window_length: options.whole("window_length")?,
             clamp_outliers: options.flag("clamp_outliers")?,
             data_range: data_ranges(options)?,
+            scales: scales(options)?,
             noise: noise(options)?,
             strict_definitions: options.flag("strict_definitions")?,
         },
         common_ranges: options.flag("common_ranges")?,
+        power: options.number("power")?,
         intervals: BootstrapOptions {
             confidence: options.number("confidence")?.unwrap_or(usual.confidence),
             resamples: options.whole("resamples")?.unwrap_or(usual.resamples),
@@ -156,6 +159,27 @@ fn data_ranges(options: &Options<'_>) -> Result<Option<DataRanges>> {
         ranges.insert(task.to_lowercase(), range);
     }
     Ok(Some(ranges))
+}
+
+/// Floors and ceilings of tasks: the path of a file, or a dictionary for each, by names that are lower-cased.
+fn scales(options: &Options<'_>) -> Result<Option<Scales>> {
+    let expected = r#"a file, or floor and ceiling for each task, such as {"find_red": {"floor": 0, "ceiling": 10}}"#;
+    let tasks = match options.json("scales")? {
+        None => return Ok(None),
+        Some(Value::String(path)) => {
+            let read = ScalesFile::read(path.as_ref()).map_err(|failure| refused(REFUSED, &failure))?;
+            return Ok(Some(read.anchors()));
+        }
+        Some(Value::Object(tasks)) => tasks,
+        Some(other) => return Err(options.wrong("scales", other, expected)),
+    };
+    let mut scales = Scales::new();
+    for (task, anchors) in tasks {
+        let anchors: Anchors = serde_json::from_value(anchors)
+            .map_err(|error| options.refuse(format!("scales, {task:?}: {error}; expected {expected}")))?;
+        scales.insert(task.to_lowercase(), anchors);
+    }
+    Ok(Some(scales))
 }
 
 fn noise(options: &Options<'_>) -> Result<Option<Noise>> {

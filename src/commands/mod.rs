@@ -26,6 +26,7 @@ mod render;
 mod report;
 mod run;
 mod sample;
+mod scales;
 mod schema;
 mod scoring;
 mod sheet;
@@ -104,6 +105,7 @@ enum Command {
     Curriculum(curriculum::Curriculum),
     Run(run::Run),
     Audit(audit::Audit),
+    Scales(scales::Scales),
     // No words here: they would take the place of the long ones that stand with the command.
     Logs(logs::Logs),
     Metrics(metrics::Metrics),
@@ -136,6 +138,7 @@ impl Command {
             Self::Curriculum(command) => command.run(),
             Self::Run(command) => command.run(),
             Self::Audit(command) => command.run(),
+            Self::Scales(command) => command.run(),
             Self::Logs(command) => command.run(),
             Self::Metrics(command) => command.run(),
             Self::Report(command) => command.run(),

@@ -71,6 +71,7 @@ impl Report {
             figures: self.figures.shown()?,
             figure_options: self.figures.options()?,
             scoring: ScoringRequest {
+                power: None,
                 logs: self.logs,
                 recursive: true,
                 against: self.against,

@@ -8,6 +8,7 @@ use crate::metrics::{
     AggregationMethod, BootstrapOptions, MaintenanceMethod, Noise, NormalizationMethod, Resampling, SmoothingMethod,
     SteAveragingMethod, TransferMethod, VariantMode,
 };
+use crate::scales::ScalesFile;
 use crate::scoring::{ScoringSettings, data_ranges};
 use clap::Args;
 
@@ -59,6 +60,11 @@ pub(crate) struct Scoring {
     /// Read each task's range from a JSON file: `{"find_red": {"min": 0, "max": 10}}`.
     #[arg(short, long, value_name = "FILE")]
     data_range_file: Option<PathBuf>,
+    /// Scale each task from its floor to its ceiling, as `driftworld scales` measures them.
+    ///
+    /// A task that is not in the file, or whose ceiling is not above its floor, is scaled by its own range.
+    #[arg(long, value_name = "FILE", conflicts_with = "data_range_file")]
+    scales: Option<PathBuf>,
     /// Add Gaussian noise to the performance, in normalised units.
     #[arg(short = 'N', long, num_args = 2, value_names = ["MEAN", "STD"], allow_negative_numbers = true)]
     noise: Option<Vec<f64>>,
@@ -103,6 +109,9 @@ impl Scoring {
             window_length: self.window_length,
             clamp_outliers: self.clamp_outliers,
             data_range: self.data_range_file.as_deref().map(data_ranges).transpose()?,
+            scales: (self.scales.as_deref())
+                .map(|path| ScalesFile::read(path).map(|file| file.anchors()))
+                .transpose()?,
             noise,
             strict_definitions: self.strict_definitions,
         })

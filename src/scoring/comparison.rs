@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use driftworld_metrics::{
-    BootstrapOptions, ComparedMetric, LifetimeMetrics, RepeatedMetric, compare_agents, over_repeats,
+    BootstrapOptions, ComparedMetric, LifetimeMetrics, MetricPower, RepeatedMetric, compare_agents, metric_power,
+    over_repeats,
 };
 use serde::Serialize;
 
@@ -23,6 +24,9 @@ pub struct Comparison {
     /// Each metric, how probably a lifetime is better than one of the other agent.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub improvement: Vec<ComparedMetric>,
+    /// Each metric, what so many lifetimes can show, if that was asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub power: Vec<MetricPower>,
 }
 
 impl Comparison {
@@ -31,6 +35,7 @@ impl Comparison {
         lifetimes: &[LifetimeMetrics],
         others: &[LifetimeMetrics],
         intervals: &BootstrapOptions,
+        effect: Option<f64>,
     ) -> Result<Self, Failure> {
         let improvement = compare_agents(lifetimes, others, intervals)?;
         if improvement.is_empty() && !others.is_empty() {
@@ -46,6 +51,7 @@ impl Comparison {
             repeats: over_repeats(lifetimes, intervals)?,
             repeats_against: over_repeats(others, intervals)?,
             improvement,
+            power: effect.map_or_else(Vec::new, |effect| metric_power(lifetimes, others, effect)),
         })
     }
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use driftworld_metrics::{
     AggregationMethod, BootstrapOptions, DataRanges, Definitions, MaintenanceMethod, Noise, NormalizationMethod,
-    Options, SmoothingMethod, SteAveragingMethod, TransferMethod, VariantMode,
+    Options, Scales, SmoothingMethod, SteAveragingMethod, TransferMethod, VariantMode,
 };
 
 use super::{Experts, settings};
@@ -23,6 +23,8 @@ pub struct ScoringRequest {
     pub settings: ScoringSettings,
     /// Scale each task by its range over all lifetimes, not each lifetime by its own; so it is with `against` anyway.
     pub common_ranges: bool,
+    /// Say how many lifetimes show a difference of this much, in each metric's own unit; needs several lifetimes.
+    pub power: Option<f64>,
     /// How intervals over several lifetimes are made.
     pub intervals: BootstrapOptions,
 }
@@ -94,6 +96,8 @@ pub struct ScoringSettings {
     pub clamp_outliers: bool,
     /// The range of each task.
     pub data_range: Option<DataRanges>,
+    /// The floor and ceiling of tasks; not together with `data_range`.
+    pub scales: Option<Scales>,
     /// Normal noise on every performance of the lifetime, in normalised units.
     pub noise: Option<Noise>,
     /// Follow the published definitions where the reference's program departs from them.
@@ -107,6 +111,12 @@ impl ScoringSettings {
             Some(path) => settings::load(path)?.options,
             None => Options::default(),
         };
+        if self.scales.is_some() && (self.data_range.is_some() || options.data_range.is_some()) {
+            return Err(Failure::usage(format!(
+                "{}: found ranges of tasks, too, expected one of the two",
+                argument("scales")
+            )));
+        }
         set(&mut options.perf_measure, self.perf_measure.clone());
         set(&mut options.variant_mode, self.variant_mode);
         set(&mut options.ste_averaging_method, self.ste_averaging_method);
@@ -119,6 +129,7 @@ impl ScoringSettings {
         options.window_length = self.window_length.or(options.window_length);
         options.clamp_outliers |= self.clamp_outliers;
         options.data_range = self.data_range.clone().or(options.data_range);
+        options.scales = self.scales.clone().or(options.scales);
         options.noise = self.noise.or(options.noise);
         if self.strict_definitions {
             options.definitions = Definitions::Published;

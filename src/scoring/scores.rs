@@ -7,7 +7,7 @@ use driftworld_metrics::{LifetimeMetrics, Options, Settings, WholeLifetime, save
 use serde::{Serialize, Serializer};
 
 use super::{Comparison, ScoredLog, ScoringRequest, Setup, score_logs};
-use crate::{Failure, Warn, output_file};
+use crate::{Failure, Warn, argument, output_file};
 
 /// What several lifetimes are called together, as in l2metrics.
 const NAME_OF_SEVERAL: &str = "ll_metrics";
@@ -63,7 +63,8 @@ impl Scores {
         let Setup { options, experts, .. } = &setup;
         let others = score_logs(&setup.others, experts, options, warn)?;
         let is_alone = lifetimes.len() == 1 && !request.recursive && request.against.is_empty();
-        let comparison = (!is_alone).then(|| Comparison::new(&lifetimes, &others, &request.intervals));
+        check_power(request.power, lifetimes.len())?;
+        let comparison = (!is_alone).then(|| Comparison::new(&lifetimes, &others, &request.intervals, request.power));
         Ok(Self {
             lifetimes,
             lifetimes_against: others,
@@ -129,6 +130,22 @@ impl Serialize for Scores {
             .serialize(serializer),
         }
     }
+}
+
+/// Refuses to say what lifetimes can show where there is one, or of a difference that is none.
+fn check_power(effect: Option<f64>, num: usize) -> Result<(), Failure> {
+    let Some(effect) = effect else { return Ok(()) };
+    let (found, expected) = if !(effect.is_finite() && effect > 0.0) {
+        (effect.to_string(), "a difference above 0")
+    } else if num < 2 {
+        (format!("{num} lifetime"), "at least two, to see how much they vary")
+    } else {
+        return Ok(());
+    };
+    Err(Failure::usage(format!(
+        "{}: found {found}, expected {expected}",
+        argument("power")
+    )))
 }
 
 /// Each lifetime with what l2metrics' files have no field for.

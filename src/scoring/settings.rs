@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use driftworld_metrics::{DataRange, DataRanges, Definitions, Noise, Options};
+use driftworld_metrics::{DataRange, DataRanges, Definitions, Noise, Options, Scales};
 use driftworld_spec::did_you_mean;
 use driftworld_text::{ShownPath, one_line};
 use serde_json::{Map, Value, json};
@@ -62,6 +62,7 @@ pub(super) fn load(path: &Path) -> Result<Loaded, Failure> {
             seed: 0
         }),
         definitions: Definitions::Published,
+        scales: Some(Scales::new()),
         ..Options::default()
     });
     let known = || known.as_object().into_iter().flat_map(|known| known.keys());

@@ -70,10 +70,12 @@ fn with_common_ranges(logs: &[PathBuf], experts: &Experts, mut options: Options)
 
 /// What must be known before levels of different lifetimes are compared, where each has a scale of its own.
 pub(crate) fn own_scale(options: &Options) -> Option<String> {
-    let is_own = options.normalization_method != NormalizationMethod::Off && options.data_range.is_none();
+    let is_own = options.normalization_method != NormalizationMethod::Off
+        && options.data_range.is_none()
+        && options.scales.is_none();
     is_own.then(|| {
         "Each lifetime is scaled by its own smallest and largest performance, so levels (avg_train_perf, \
-         avg_eval_perf) cannot be compared between lifetimes. Use --common-ranges, -d or -n none for one scale."
+         avg_eval_perf) cannot be compared between lifetimes. Use --common-ranges, --scales, -d or -n none for one scale."
             .to_owned()
     })
 }

@@ -182,7 +182,7 @@ impl Curve {
             .0
             .iter()
             .fold(last, |best, point| if point.mean > best.mean { *point } else { best });
-        let error = (best.standard_error.zip(last.standard_error)).map(|(a, b)| a.hypot(b));
+        let error = (best.standard_error.zip(last.standard_error)).map(|(a, b)| libm::hypot(a, b));
         (best.mean - last.mean, error.filter(|_| best.learned != last.learned))
     }
 

@@ -32,6 +32,10 @@ pub struct NullBand {
     pub p: f64,
     /// How evaluations were permuted.
     pub exchanged: Exchanged,
+    /// Standard error of the value, from those of its evaluations over worlds, taken as independent: an agent in other worlds would
+    /// earn something else. `None` where one of them is not known, or there are more than 2,000 evaluations.
+    #[serde(default)]
+    pub standard_error: Option<f64>,
 }
 
 /// What may be said of a value beside its null band.
@@ -65,6 +69,7 @@ impl NullBand {
             high,
             p: (2.0 * below.min(above)).min(1.0),
             exchanged,
+            standard_error: None,
         })
     }
 
@@ -72,6 +77,14 @@ impl NullBand {
     pub fn is_outside(&self) -> bool {
         let slack = ROUNDING * self.value.abs().max(1.0);
         self.value < self.low - slack || self.value > self.high + slack
+    }
+
+    /// Whether the value is within two of its standard errors of no effect; `None` where one of these is not known.
+    pub fn is_within_two_errors(&self, good: Direction) -> Option<bool> {
+        let (Direction::HigherThan(neutral) | Direction::LowerThan(neutral)) = good else {
+            return None;
+        };
+        Some((self.value - neutral).abs() < 2.0 * self.standard_error?)
     }
 
     /// What may be said of the value, for the direction that is good.

@@ -178,15 +178,7 @@ pub(crate) fn reached(
 
 /// Mean and standard error of an evaluation: each world counts once, by the mean of its rows.
 fn cell(regime: &Regime, worlds: &[Option<World>]) -> EvaluationCell {
-    let mut of_world: BTreeMap<World, Vec<f64>> = BTreeMap::new();
-    let mut means = Vec::new();
-    for (value, world) in regime.raw.iter().zip(worlds) {
-        match world {
-            Some(world) => of_world.entry(*world).or_default().push(*value),
-            None => means.push(*value),
-        }
-    }
-    means.extend(of_world.values().filter_map(|values| mean(values)));
+    let means = means_of_worlds(&regime.raw, worlds);
     EvaluationCell {
         block: regime.block_num,
         mean: mean(&regime.raw).unwrap_or(0.0),
@@ -194,6 +186,25 @@ fn cell(regime: &Regime, worlds: &[Option<World>]) -> EvaluationCell {
         num_worlds: means.len(),
         score: None,
     }
+}
+
+/// The mean of the rows of each world; each row of which the world is not known by itself.
+fn means_of_worlds(values: &[f64], worlds: &[Option<World>]) -> Vec<f64> {
+    let mut of_world: BTreeMap<World, Vec<f64>> = BTreeMap::new();
+    let mut means = Vec::new();
+    for (value, world) in values.iter().zip(worlds) {
+        match world {
+            Some(world) => of_world.entry(*world).or_default().push(*value),
+            None => means.push(*value),
+        }
+    }
+    means.extend(of_world.values().filter_map(|values| mean(values)));
+    means
+}
+
+/// The standard error over worlds of a regime's mean performance, as the metrics see it; `None` for one world.
+pub(crate) fn performance_error(regime: &Regime, worlds: &[Option<World>]) -> Option<f64> {
+    standard_error(&means_of_worlds(&regime.performance, worlds))
 }
 
 /// What the metrics see of a task is scaled by this.

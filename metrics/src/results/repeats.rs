@@ -99,7 +99,7 @@ pub fn compare_agents(
 }
 
 /// The headlines of all lifetimes, each once.
-fn headlines(lifetimes: &[LifetimeMetrics]) -> Vec<Headline> {
+pub(super) fn headlines(lifetimes: &[LifetimeMetrics]) -> Vec<Headline> {
     let mut headlines: Vec<Headline> = Vec::new();
     for headline in lifetimes.iter().flat_map(|lifetime| &lifetime.headlines) {
         if headlines.iter().all(|known| known.name != headline.name) {

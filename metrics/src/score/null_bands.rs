@@ -7,10 +7,11 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
 use super::exchange::Evaluations;
+use super::statistic::Statistic;
 use super::{performance_maintenance, transfer};
-use crate::lifetime::Lifetime;
-use crate::results::NullBand;
-use crate::{Log, MetricsError, Options};
+use crate::lifetime::{Lifetime, Regime, worlds};
+use crate::results::{NullBand, performance_error};
+use crate::{BlockType, Log, MetricsError, Options};
 
 /// How often the evaluations of a lifetime are permuted.
 pub const NULL_PERMUTATIONS: usize = 1000;
@@ -56,9 +57,45 @@ pub(super) fn null_bands(
         }
     }
     let exchanged = evaluations.exchanged;
+    let errors = errors(log, lifetime, options)?;
     let bands = found.into_iter().filter_map(|(value, statistic, drawn)| {
-        let band = NullBand::new(value, &drawn, exchanged)?;
+        let mut band = NullBand::new(value, &drawn, exchanged)?;
+        band.standard_error = standard_error(&statistic, term_perfs, &errors);
         Some((statistic.name.to_owned(), band))
     });
     Ok(bands.collect())
+}
+
+/// The standard error of each evaluation that counts, by its regime number, as far as it is known.
+fn errors(log: &Log, lifetime: &Lifetime, options: &Options) -> Result<Vec<(usize, Option<f64>)>, MetricsError> {
+    let worlds = worlds(log, lifetime, options)?;
+    let counts = |regime: &&Regime| regime.block_type == BlockType::Test && lifetime.is_assessed(regime);
+    let evaluated = lifetime.regimes().iter().filter(counts);
+    let error = |regime: &Regime| (regime.regime_num, performance_error(regime, &worlds[regime.regime_num]));
+    Ok(evaluated.map(error).collect())
+}
+
+/// More evaluations than these take too long to vary one by one.
+const MOST_EVALUATIONS: usize = 2000;
+
+/// Of a value that is made of evaluations with these errors, by how it changes with each of them.
+fn standard_error(statistic: &Statistic<'_>, term_perfs: &[f64], errors: &[(usize, Option<f64>)]) -> Option<f64> {
+    if errors.len() > MOST_EVALUATIONS {
+        return None;
+    }
+    let mut varied = term_perfs.to_vec();
+    let mut square = 0.0;
+    for (regime, error) in errors {
+        let step = 1e-4 * term_perfs[*regime].abs().max(1.0);
+        let mut at = |value: f64| {
+            varied[*regime] = value;
+            statistic.of(&varied)
+        };
+        let slope = (at(term_perfs[*regime] + step)? - at(term_perfs[*regime] - step)?) / (2.0 * step);
+        varied[*regime] = term_perfs[*regime];
+        if slope != 0.0 {
+            square += (slope * (*error)?).powi(2);
+        }
+    }
+    Some(square.sqrt())
 }

@@ -95,6 +95,7 @@ struct Difference {
 }
 
 impl Difference {
+    #[expect(clippy::unnecessary_wraps, reason = "stands beside `mrtlp`, which may have none")]
     fn mrlep(&self, term_perfs: &[f64]) -> Option<f64> {
         Some(term_perfs[self.evaluation] - term_perfs[self.reference])
     }

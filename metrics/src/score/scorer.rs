@@ -4,11 +4,13 @@
 
 use indexmap::{IndexMap, IndexSet};
 
+use super::assessment::aggregate;
 use super::null_bands::null_bands;
 use super::{Assessment, Metric, all_asked, built_in, built_in_headlines};
 use crate::lifetime::{Lifetime, Regime, SteLog};
 use crate::results::{
-    Headline, LifetimeMetrics, RegimeMetrics, Value, Values, as_logged, curves, is_regime_column, reached,
+    Headline, LEARNED_SHARE, LifetimeMetrics, Reached, RegimeMetrics, Value, Values, as_logged, curves,
+    is_regime_column, reached,
 };
 use crate::{BlockType, Log, MetricsError, Options};
 
@@ -95,7 +97,7 @@ impl Scorer {
                 headlines.push(headline);
             }
         }
-        let notes = super::transfer::caution(&assessment).into_iter().collect();
+        let mut notes: Vec<String> = super::transfer::caution(&assessment).into_iter().collect();
         let null_bands = null_bands(log, lifetime, options, &assessment.term_perfs())?;
         let (regimes, tasks, found) = assessment.into_values();
         check_names(&found, "the lifetime", |name| TAKEN.contains(&name))?;
@@ -113,6 +115,7 @@ impl Scorer {
         let regimes = lifetime.regimes().iter().zip(regimes);
         let (min, max) = extent(lifetime.regimes().iter());
         let reached = reached(log, lifetime, options)?;
+        notes.extend(never_learned(&reached, &tasks, options));
         let info = &log.scenario_info;
         Ok(LifetimeMetrics {
             lifetime: in_order(&found),
@@ -146,6 +149,35 @@ impl Default for Scorer {
     fn default() -> Self {
         Self::new()
     }
+}
+
+/// What is said of tasks that were never learned: that they are none to keep, and what maintenance is without them.
+fn never_learned(
+    reached: &IndexMap<String, Reached>,
+    tasks: &IndexMap<String, Values>,
+    options: &Options,
+) -> Option<String> {
+    let is_not = |task: &str| reached.get(task).and_then(Reached::is_never_learned) == Some(true);
+    let not: Vec<&str> = tasks.keys().map(String::as_str).filter(|task| is_not(task)).collect();
+    if not.is_empty() {
+        return None;
+    }
+    let mut parts = vec![format!(
+        "never learned (below {:.0}% of the expert): {}: their maintenance and transfer say nothing",
+        100.0 * LEARNED_SHARE,
+        not.join(", ")
+    )];
+    for name in ["perf_maintenance_mrlep", "perf_maintenance_mrtlp"] {
+        let learned = tasks.iter().filter(|(task, _)| !is_not(task));
+        let values: Vec<f64> = learned.filter_map(|(_, values)| values.number(name)).collect();
+        let has_any = tasks.values().any(|values| values.number(name).is_some());
+        match aggregate(values, options) {
+            Some(value) => parts.push(format!("{name} of the others: {value:.3}")),
+            None if has_any => parts.push(format!("{name} is of tasks never learned alone")),
+            None => {}
+        }
+    }
+    Some(parts.join("; "))
 }
 
 /// Fields of the results that no headline and no value of a lifetime may have as its name.

@@ -64,6 +64,9 @@ class Metrics:
         lifetimes_against: The other agent's lifetimes.
         repeats_against: Each metric over those.
         intervals: How the intervals were made.
+        power: With ``power``, of each metric the standard ``deviations`` between lifetimes, the ``power`` of Welch's test at 5 % for the
+            ``effect`` asked about, the ``lifetimes_needed`` of each agent for a power of 80 %, and the ``smallest_effect`` that the
+            lifetimes at hand show.
     """
 
     lifetimes: list[dict[str, Any]]
@@ -72,6 +75,7 @@ class Metrics:
     lifetimes_against: list[dict[str, Any]] = field(default_factory=list, repr=False)
     repeats_against: list[dict[str, Any]] = field(default_factory=list, repr=False)
     intervals: dict[str, Any] = field(default_factory=dict, repr=False)
+    power: list[dict[str, Any]] = field(default_factory=list, repr=False)
     _asked: tuple[list[str], dict[str, Any]] = field(default=([], {}), repr=False, compare=False)
     _scores: _native.Scores | None = field(default=None, repr=False, compare=False)
 
@@ -125,6 +129,20 @@ class Metrics:
             ValueError: If there are several lifetimes; ask each of :attr:`lifetimes` for its ``"reached"`` then.
         """
         tasks: dict[str, dict[str, Any]] = self._only("reached", "reached")
+        return tasks
+
+    @property
+    def curves(self) -> dict[str, dict[str, Any]]:
+        """What the evaluation curve of each task of the one lifetime says, without regard to borders between tasks.
+
+        Each has ``points``, a list of ``learned``, ``mean`` and ``standard_error``; ``area``, ``forgetting`` and its
+        ``forgetting_error``, ``regret`` (or ``None``), in the log's unit, or if ``is_scaled``, as parts of the way from floor to
+        ceiling; ``lag`` and ``num_present`` in learning experiences. ``docs/metrics.md`` defines them.
+
+        Raises:
+            ValueError: If there are several lifetimes; ask each of :attr:`lifetimes` for its ``"curves"`` then.
+        """
+        tasks: dict[str, dict[str, Any]] = self._only("curves", "curves")
         return tasks
 
     def _only(self, name: str, field: str) -> Any:
@@ -193,11 +211,13 @@ def metrics(
     window_length: int | None = None,
     clamp_outliers: bool = False,
     data_range: Mapping[str, Mapping[str, float]] | None = None,
+    scales: PathLike | Mapping[str, Mapping[str, float]] | None = None,
     noise: tuple[float, float] | None = None,
     noise_seed: int | None = None,
     strict_definitions: bool = False,
     load_settings: PathLike | None = None,
     common_ranges: bool = False,
+    power: float | None = None,
     confidence: float | None = None,
     resamples: int | None = None,
     resampling: Resampling | None = None,
@@ -223,11 +243,15 @@ def metrics(
         window_length: Of the smoothing window, in experiences.
         clamp_outliers: Clip performances to the ranges given, or to the 0.1 and 0.9 quantiles of each task.
         data_range: The range of each task: ``{"findobjects_red": {"min": 0, "max": 10}}``.
+        scales: Floor and ceiling of tasks, as a file of ``driftworld scales`` or as
+            ``{"findobjects_red": {"floor": 2, "ceiling": 486}}``; not together with ``data_range``.
         noise: Mean and standard deviation of normal noise on every performance.
         noise_seed: What it is drawn from.
         strict_definitions: Follow the published definitions where the reference's program departs from them.
         load_settings: A JSON file of settings to start from.
         common_ranges: Scale each task by its range over all lifetimes.
+        power: Say of each metric how many lifetimes of two agents show a difference of this much, in the metric's own unit;
+            needs several lifetimes.
         confidence: How much of the bootstrap's distribution an interval holds.
         resamples: How many times lifetimes are drawn again.
         resampling: ``"runs"``, whole lifetimes, by default; or ``"strata"``, within each task.
@@ -241,6 +265,7 @@ def metrics(
     for paths in ("ste", "against"):
         options[paths] = None if options[paths] is None else _paths(options[paths])
     options["noise"] = None if noise is None else list(noise)
+    options["scales"] = os.fspath(scales) if isinstance(scales, (str, os.PathLike)) else scales
     scores, said = _native.Scores.of(folders, options)
     _warn(said)
     values = scores.values()

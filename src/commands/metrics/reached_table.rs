@@ -1,6 +1,9 @@
-//! What each task of a lifetime came to beside its expert, as the first table that people see. The numbers are `metrics`'.
+//! What each task came to beside its expert, and what its evaluation curve says: the first tables that people see. The numbers are
+//! `metrics`'.
 
-use crate::metrics::{EvaluationCell, LEARNED_SHARE, LifetimeMetrics};
+use std::collections::BTreeMap;
+
+use crate::metrics::{EvaluationCell, LEARNED_SHARE, LifetimeMetrics, Reached};
 
 use super::tables::number;
 use crate::table::wide_table;
@@ -8,30 +11,35 @@ use crate::table::wide_table;
 /// Tasks beyond these are in the JSON only.
 const MOST_ROWS: usize = 40;
 
+/// What is said of a task that was never learned.
+const NEVER_LEARNED: &str = "never learned";
+
 /// A row per evaluated task: its first evaluation, the best after learning, the last, and the expert's level where there is one.
 /// `None` without evaluations.
 pub(super) fn reached(scores: &LifetimeMetrics) -> Option<String> {
     let evaluated = || scores.reached.iter().filter(|(_, task)| !task.evaluations.is_empty());
     let has_expert = evaluated().any(|(_, task)| task.expert.is_some());
+    let is_scaled = evaluated().any(|(_, task)| task.is_scaled());
+    let relearns = evaluated().any(|(_, task)| task.plasticity_loss().is_some());
     let rows = evaluated().take(MOST_ROWS).map(|(name, task)| {
+        let of = |evaluation: Option<&EvaluationCell>| evaluation.map_or_else(String::new, |found| cell(task, found));
         let mut cells = vec![
             name.clone(),
-            cell(task.evaluations.first()),
-            cell(task.best()),
-            cell(task.last()),
+            of(task.evaluations.first()),
+            of(task.best()),
+            of(task.last()),
         ];
+        if is_scaled {
+            cells.push(scale(task));
+        }
         if has_expert {
             cells.push(task.expert.map_or_else(String::new, number));
-            cells.push(
-                task.share
-                    .map_or_else(String::new, |share| format!("{:.0}%", 100.0 * share)),
-            );
-            let word = if task.is_never_learned() == Some(true) {
-                "never learned"
-            } else {
-                ""
-            };
-            cells.push(word.to_owned());
+            cells.push(task.share.map_or_else(String::new, percent));
+            if relearns {
+                cells.push(task.shares.iter().copied().map(percent).collect::<Vec<_>>().join(", "));
+            }
+            let is_not = task.is_never_learned() == Some(true);
+            cells.push(if is_not { NEVER_LEARNED } else { "" }.to_owned());
         }
         cells
     });
@@ -41,13 +49,20 @@ pub(super) fn reached(scores: &LifetimeMetrics) -> Option<String> {
     }
     let mut headings = vec!["reached", "first evaluation", "best after learning", "last evaluation"];
     let mut numbers = vec![1, 2, 3];
-    let mut notes = vec![format!(
-        "In units of {}, ± the standard error over worlds.",
-        driftworld_text::one_line(&scores.metrics_column)
-    )];
+    let column = driftworld_text::one_line(&scores.metrics_column);
+    let mut notes = vec![format!("In units of {column}, ± the standard error over worlds.")];
+    if is_scaled {
+        headings.push("scale");
+        notes = vec![format!(
+            "In % of the way from floor to ceiling where these are known, else in units of {column}; ± the standard error over worlds."
+        )];
+    }
     if has_expert {
-        headings.extend(["expert", "best / expert", ""]);
-        numbers.extend([4, 5]);
+        let first = headings.len();
+        headings.extend(["expert", "best / expert"]);
+        headings.extend(relearns.then_some("after each learning"));
+        headings.push("");
+        numbers.extend([first, first + 1]);
         notes.push(format!(
             "Below {:.0}% of the expert a task was never learned, and its maintenance and transfer say nothing.",
             100.0 * LEARNED_SHARE
@@ -63,11 +78,117 @@ pub(super) fn reached(scores: &LifetimeMetrics) -> Option<String> {
     Some(format!("{}\n{}", wide_table(headings, rows, &numbers), notes.join(" ")))
 }
 
-/// Mean and standard error of an evaluation.
-fn cell(evaluation: Option<&EvaluationCell>) -> String {
-    let Some(found) = evaluation else { return String::new() };
-    match found.standard_error {
-        Some(error) => format!("{} ± {}", number(found.mean), number(error)),
-        None => number(found.mean),
+/// A row per task that some of these lifetimes evaluate after learning: means over lifetimes, and in how many it was never learned.
+/// `None` without any. `agent` is put behind the heading.
+pub(super) fn reached_by_several(agent: &str, lifetimes: &[LifetimeMetrics]) -> Option<String> {
+    let mut tasks: BTreeMap<&str, Vec<&Reached>> = BTreeMap::new();
+    for (name, task) in lifetimes.iter().flat_map(|lifetime| &lifetime.reached) {
+        if task.best.is_some() {
+            tasks.entry(name).or_default().push(task);
+        }
+    }
+    let rows = tasks.iter().take(MOST_ROWS).map(|(name, found)| {
+        let mean = |of: &dyn Fn(&Reached) -> Option<f64>, show: fn(f64) -> String| {
+            let values: Vec<f64> = found.iter().filter_map(|task| of(task)).collect();
+            let mean = values.iter().sum::<f64>() / values.len() as f64;
+            if values.is_empty() { String::new() } else { show(mean) }
+        };
+        let is_scaled = found.iter().all(|task| task.is_scaled());
+        let level = |of: fn(&Reached) -> Option<&EvaluationCell>| match is_scaled {
+            true => mean(&|task| of(task)?.score, percent),
+            false => mean(&|task| Some(of(task)?.mean), number),
+        };
+        let known = found.iter().filter_map(|task| task.is_never_learned());
+        let (not, all) = known.fold((0, 0), |(not, all), is_not| (not + usize::from(is_not), all + 1));
+        vec![
+            (*name).to_owned(),
+            level(Reached::best),
+            level(Reached::last),
+            mean(&|task| task.expert, number),
+            mean(&|task| task.share, percent),
+            if not == 0 {
+                String::new()
+            } else {
+                format!("{NEVER_LEARNED} in {not} of {all}")
+            },
+        ]
+    });
+    let rows: Vec<Vec<String>> = rows.collect();
+    let headings = [
+        &*format!("reached{agent}"),
+        "best after learning",
+        "last evaluation",
+        "expert",
+        "best / expert",
+        "",
+    ];
+    let headings = headings.into_iter().map(str::to_owned).collect();
+    (!rows.is_empty()).then(|| wide_table(headings, rows, &[1, 2, 3, 4]))
+}
+
+/// A row per evaluated task: what its curve says. `None` unless a task is evaluated more than once.
+pub(super) fn curves(scores: &LifetimeMetrics) -> Option<String> {
+    let shown = || scores.curves.iter().filter(|(_, curve)| curve.points.len() > 1);
+    let level = |value: f64, is_scaled: bool| if is_scaled { percent(value) } else { number(value) };
+    let rows = shown().take(MOST_ROWS).map(|(name, curve)| {
+        let level = |value: f64| level(value, curve.is_scaled);
+        let error = curve
+            .forgetting_error
+            .map_or_else(String::new, |error| format!(" ± {}", level(error)));
+        let is_noise = curve.forgetting > 0.0
+            && curve
+                .forgetting_error
+                .is_some_and(|error| curve.forgetting < 2.0 * error);
+        vec![
+            name.clone(),
+            level(curve.area),
+            level(curve.forgetting) + &error,
+            curve.lag.map_or_else(String::new, |lag| format!("{lag:.0}")),
+            curve.regret.map_or_else(String::new, level),
+            if is_noise {
+                "forgetting within 2 standard errors"
+            } else {
+                ""
+            }
+            .to_owned(),
+        ]
+    });
+    let rows: Vec<Vec<String>> = rows.collect();
+    if rows.is_empty() {
+        return None;
+    }
+    let headings = ["curve", "area", "forgetting", "lag", "regret", ""];
+    let headings = headings.into_iter().map(str::to_owned).collect();
+    Some(format!(
+        "{}\nOf evaluation curves alone. area: mean height. forgetting: highest less last. lag: learning experiences to half \
+         of the gain. regret: expert less curve while the task was present.",
+        wide_table(headings, rows, &[1, 2, 3, 4])
+    ))
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.0}%", 100.0 * share)
+}
+
+/// Mean and standard error of an evaluation, as the part of the way from floor to ceiling where these are known.
+fn cell(task: &Reached, found: &EvaluationCell) -> String {
+    let (mean, error) = match (found.score, task.floor.zip(task.ceiling)) {
+        (Some(score), Some((floor, ceiling))) => {
+            let error = found.standard_error.map(|error| percent(error / (ceiling - floor)));
+            (percent(score), error)
+        }
+        _ => (number(found.mean), found.standard_error.map(number)),
+    };
+    match error {
+        Some(error) => format!("{mean} ± {error}"),
+        None => mean,
+    }
+}
+
+/// What 0 % and 100 % are.
+fn scale(task: &Reached) -> String {
+    match task.floor.zip(task.ceiling) {
+        Some((floor, ceiling)) => format!("{floor:.1} to {ceiling:.1}"),
+        None => "as logged".to_owned(),
     }
 }

@@ -4,12 +4,12 @@ use std::collections::BTreeSet;
 
 use crate::metrics::{
     AsLogged, Direction, Exchanged, Improvement, Interval, LifetimeMetrics, NULL_PERMUTATIONS, NullBand, Reading,
-    RepeatedMetric,
+    RepeatedMetric, ScaledBy,
 };
 
 use driftworld_text::{one_line, printable};
 
-use super::reached_table::reached;
+use super::reached_table::{curves, reached, reached_by_several};
 use crate::scoring::{Comparison, Scores, own_scale};
 use crate::table::{table, wide_table};
 
@@ -25,7 +25,9 @@ pub(super) fn scores(scores: &Scores) -> String {
 /// The lifetime's values as a table for a newcomer.
 pub(crate) fn summary(scores: &LifetimeMetrics) -> String {
     let rows = scores.summary().into_iter().filter_map(|row| {
-        let value = number(row.value?);
+        let error = row.null_band.and_then(|band| band.standard_error);
+        let error = error.map_or_else(String::new, |error| format!(" ± {}", number(error)));
+        let value = number(row.value?) + &error;
         let [band, p, reading] = beside_null(row.null_band, row.good);
         Some([
             row.name.into_owned(),
@@ -48,9 +50,8 @@ pub(crate) fn summary(scores: &LifetimeMetrics) -> String {
     let mut parts = vec![head];
     parts.extend(reached(scores));
     parts.push(as_logged(&[("", std::slice::from_ref(scores))]));
-    if scores.normalization_data_range.is_some() {
-        parts.push(SCALED.to_owned());
-    }
+    parts.extend(curves(scores));
+    parts.extend(scaled(scores));
     let headings = ["metric", "value", "null band", "p", "reading", "what it says"];
     let mut metrics = table(headings, rows, &[1, 3]);
     if has_bands {
@@ -70,11 +71,14 @@ fn beside_null(band: Option<NullBand>, direction: Direction) -> [String; 3] {
     let Some(band) = band else {
         return ["no null".to_owned(), String::new(), String::new()];
     };
-    let reading = match band.reading(direction) {
+    let mut reading = match band.reading(direction) {
         Reading::Good => format!("good: {}", good(direction)),
         Reading::Bad => "bad".to_owned(),
         Reading::Unclear => "no clear effect".to_owned(),
     };
+    if band.is_within_two_errors(direction) == Some(true) {
+        reading.push_str(", within 2 s.e.");
+    }
     let ends = format!("{} to {}", number(band.low), number(band.high));
     [ends, number(band.p), reading]
 }
@@ -88,14 +92,38 @@ fn what_bands_are(scores: &LifetimeMetrics) -> String {
     };
     format!(
         "Null band: the central 95% of values when {rows} are permuted across evaluations {NULL_PERMUTATIONS} times, as if the \
-         agent never changed. no null: decided by learning, too."
+         agent never changed. no null: decided by learning, too. ±: standard error over worlds; within 2 s.e.: of no effect."
     )
 }
 
-/// What the metrics are made of, and what they cannot tell.
+/// What the metrics are made of, and what they cannot tell; nothing where nothing is scaled.
+fn scaled(scores: &LifetimeMetrics) -> Option<String> {
+    scores.normalization_data_range.as_ref()?;
+    let by = |by: ScaledBy| {
+        let tasks = scores.reached.iter().filter(move |(_, task)| task.scaled_by == by);
+        tasks.map(|(name, _)| name.as_str()).collect::<Vec<_>>()
+    };
+    let (anchored, own) = (by(ScaledBy::Anchors), by(ScaledBy::Own));
+    if anchored.is_empty() {
+        return Some(SCALED.to_owned());
+    }
+    let mut text = format!(
+        "Metrics are computed after scaling each task from its floor to its ceiling, to 1..101: {}.",
+        one_line(anchored.join(", "))
+    );
+    if !own.is_empty() {
+        let tasks = one_line(own.join(", ")).to_string();
+        text.push_str(" No floor below a ceiling is known of these, which are scaled by this lifetime's own range: ");
+        text.push_str(&tasks);
+        text.push('.');
+    }
+    Some(text)
+}
+
+/// What metrics are made of where nothing is known of the tasks.
 const SCALED: &str = "Metrics are computed after scaling each task to 1..101, by default between this lifetime's own \
      worst and best. They show how performance changed, not how good it was. To compare agents, use the rows above, \
-     or --common-ranges.";
+     --scales, or --common-ranges.";
 
 /// Columns as they were logged, in the mean over lifetimes: how good agents are, before anything is scaled.
 fn as_logged(agents: &[(&str, &[LifetimeMetrics])]) -> String {
@@ -130,21 +158,23 @@ fn several(scores: &Scores, together: &Comparison) -> String {
     let (lifetimes, others) = (scores.lifetimes.as_slice(), scores.lifetimes_against.as_slice());
     let options = &scores.options;
     let share = format!("{}% interval", together.intervals.confidence * 100.0);
-    let mut parts = vec![
-        format!(
-            "{}: {} learning and {} evaluation experiences in all, scored by {}",
-            counted(lifetimes.len(), "lifetime"),
-            lifetimes.iter().map(|life| life.num_lx).sum::<usize>(),
-            lifetimes.iter().map(|life| life.num_ex).sum::<usize>(),
-            one_line(lifetimes.first().map_or("", |life| &life.metrics_column)),
-        ),
+    let mut parts = vec![format!(
+        "{}: {} learning and {} evaluation experiences in all, scored by {}",
+        counted(lifetimes.len(), "lifetime"),
+        lifetimes.iter().map(|life| life.num_lx).sum::<usize>(),
+        lifetimes.iter().map(|life| life.num_ex).sum::<usize>(),
+        one_line(lifetimes.first().map_or("", |life| &life.metrics_column)),
+    )];
+    parts.extend(reached_by_several("", lifetimes));
+    parts.extend(reached_by_several(" by the other agent", others));
+    parts.extend([
         as_logged(&if others.is_empty() {
             vec![("", lifetimes)]
         } else {
             vec![("", lifetimes), (" of the other agent", others)]
         }),
         repeats(&together.repeats, &share),
-    ];
+    ]);
     let notes: BTreeSet<&str> = lifetimes
         .iter()
         .chain(others)
@@ -154,6 +184,10 @@ fn several(scores: &Scores, together: &Comparison) -> String {
     parts.extend(notes.into_iter().map(|note| format!("note: {}", one_line(note))));
     if let Some(own) = own_scale(options) {
         parts.push(own);
+    } else if options.scales.is_some() && options.data_range.is_none() {
+        parts.push(
+            "Tasks with a floor and a ceiling are scaled by them, others by each lifetime's own range.".to_owned(),
+        );
     } else if options.data_range.is_some() {
         parts.push("All lifetimes are scaled by the same ranges.".to_owned());
     }
@@ -171,6 +205,7 @@ fn several(scores: &Scores, together: &Comparison) -> String {
         ));
         parts.push(improvements(together, &share));
     }
+    parts.extend(super::power_table::power(&together.power));
     parts.join("\n\n")
 }
 

@@ -1,0 +1,144 @@
+//! Power: how probably Welch's test tells two agents apart, how many lifetimes that takes, and which effect some can show.
+//!
+//! Not here: the test of agents that were run, see `improvement`.
+
+use super::student::reach;
+
+/// The chance of calling equal agents different, in a test of two sides.
+pub const POWER_LEVEL: f64 = 0.05;
+
+/// The power that is asked for where nobody says.
+pub const POWER_WANTED: f64 = 0.8;
+
+/// More lifetimes than these for each agent are not looked for.
+pub const MAX_POWER_LIFETIMES: usize = 100_000;
+
+/// Points of each variance; the integrand is smooth, and its ends vanish.
+const NUM_POINTS: usize = 48;
+
+/// Points between which quantiles of Student's t are taken as straight in one over the degrees of freedom.
+const NUM_QUANTILES: usize = 64;
+
+/// The chance, 0..=1, that Welch's t test of two sides at 5 % calls two agents different, whose lifetimes are independent and
+/// normally distributed with these standard deviations and with means that differ by `effect`. `lifetimes` are those of each
+/// agent. `None` for fewer than two lifetimes of one, or without any deviation.
+///
+/// The difference of means is normal and independent of the two sample variances; given these, the chance is a normal
+/// distribution's, and it is integrated over their chi-squared distributions.
+pub fn welch_power(lifetimes: [usize; 2], deviations: [f64; 2], effect: f64) -> Option<f64> {
+    let variances = deviations.map(|deviation| deviation * deviation);
+    if lifetimes.iter().any(|num| *num < 2) || variances.iter().all(|variance| *variance == 0.0) {
+        return None;
+    }
+    let nums = lifetimes.map(|num| num as f64);
+    let of_mean = [variances[0] / nums[0], variances[1] / nums[1]];
+    let deviation = (of_mean[0] + of_mean[1]).sqrt();
+    let points = nums.map(|num| chi_squared(num - 1.0));
+    let quantiles = Quantiles::new(nums);
+    let mut power = 0.0;
+    for (a, weight_a) in &points[0] {
+        for (b, weight_b) in &points[1] {
+            let (a, b) = (a * of_mean[0], b * of_mean[1]);
+            let freedom = (a + b) * (a + b) / (a * a / (nums[0] - 1.0) + b * b / (nums[1] - 1.0));
+            let limit = quantiles.at(freedom) * (a + b).sqrt();
+            let beyond = normal((effect - limit) / deviation) + normal((-effect - limit) / deviation);
+            power += weight_a * weight_b * beyond;
+        }
+    }
+    Some(power.clamp(0.0, 1.0))
+}
+
+/// The fewest lifetimes of each agent with which the power is 80 %; `None` if that takes more than
+/// [`MAX_POWER_LIFETIMES`], or cannot be said.
+pub fn lifetimes_for(deviations: [f64; 2], effect: f64) -> Option<usize> {
+    let enough = |num: usize| Some(welch_power([num; 2], deviations, effect)? >= POWER_WANTED);
+    let mut high = 2;
+    while !enough(high)? {
+        if high >= MAX_POWER_LIFETIMES {
+            return None;
+        }
+        high = (high * 2).min(MAX_POWER_LIFETIMES);
+    }
+    let mut low = high / 2;
+    while low + 1 < high {
+        let middle = usize::midpoint(low, high);
+        if enough(middle)? {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    Some(high)
+}
+
+/// The smallest difference of means that so many lifetimes of each agent show with a power of 80 %; `None` as in
+/// [`welch_power`].
+pub fn smallest_effect(lifetimes: [usize; 2], deviations: [f64; 2]) -> Option<f64> {
+    let scale = libm::hypot(deviations[0], deviations[1]);
+    let (mut low, mut high) = (0.0, scale);
+    while welch_power(lifetimes, deviations, high)? < POWER_WANTED {
+        (low, high) = (high, 2.0 * high);
+    }
+    for _ in 0..30 {
+        let middle = f64::midpoint(low, high);
+        if welch_power(lifetimes, deviations, middle)? < POWER_WANTED {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    Some(high)
+}
+
+/// The chance that a standard normal number is below.
+fn normal(value: f64) -> f64 {
+    0.5 * libm::erfc(-value / std::f64::consts::SQRT_2)
+}
+
+/// Values of a chi-squared variable over its degrees of freedom, with weights that add up to 1: evenly in its logarithm.
+fn chi_squared(freedom: f64) -> Vec<(f64, f64)> {
+    // The logarithm of the density of ln(x / freedom), but for a constant: 0 at its highest.
+    let log_density = |u: f64| freedom / 2.0 * (u - (libm::exp(u) - 1.0));
+    let end = |direction: f64| {
+        let step = direction * 0.05 / freedom.sqrt();
+        (1..100_000)
+            .map(|num| f64::from(num) * step)
+            .find(|u| log_density(*u) < -30.0)
+    };
+    let (low, high) = (end(-1.0).unwrap_or(-1.0), end(1.0).unwrap_or(1.0));
+    let at = |point: usize| low + (high - low) * point as f64 / (NUM_POINTS - 1) as f64;
+    let weights: Vec<f64> = (0..NUM_POINTS).map(|point| libm::exp(log_density(at(point)))).collect();
+    let sum: f64 = weights.iter().sum();
+    (0..NUM_POINTS)
+        .map(|point| (libm::exp(at(point)), weights[point] / sum))
+        .collect()
+}
+
+/// Quantiles of Student's t for all degrees of freedom that Welch's test can have.
+struct Quantiles {
+    /// One over the most degrees, and the step from one to the next.
+    first: f64,
+    step: f64,
+    values: Vec<f64>,
+}
+
+impl Quantiles {
+    fn new(nums: [f64; 2]) -> Self {
+        let (most, least) = (nums[0] + nums[1] - 2.0, nums[0].min(nums[1]) - 1.0);
+        let (first, last) = (1.0 / most, 1.0 / least);
+        let step = (last - first) / NUM_QUANTILES as f64;
+        let values = (0..=NUM_QUANTILES).map(|place| reach(1.0 - POWER_LEVEL, 1.0 / (first + step * place as f64)));
+        Self {
+            first,
+            step,
+            values: values.collect(),
+        }
+    }
+
+    fn at(&self, freedom: f64) -> f64 {
+        let place = ((1.0 / freedom - self.first) / self.step).clamp(0.0, NUM_QUANTILES as f64);
+        let below = (place.floor() as usize).min(NUM_QUANTILES - 1);
+        let share = place - below as f64;
+        self.values[below] + (self.values[below + 1] - self.values[below]) * share
+    }
+}

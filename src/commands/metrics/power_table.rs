@@ -1,0 +1,41 @@
+//! What so many lifetimes can show, as a table. The numbers are `metrics`'.
+
+use crate::metrics::{MAX_POWER_LIFETIMES, MetricPower};
+use crate::table::table;
+
+use super::tables::number;
+
+/// A row per metric; `None` where there is none.
+pub(super) fn power(found: &[MetricPower]) -> Option<String> {
+    let effect = found.first()?.effect;
+    let rows = found.iter().map(|row| {
+        let [a, b] = row.deviations.map(number);
+        let [num_a, num_b] = row.lifetimes;
+        [
+            row.headline.name.to_string(),
+            if row.deviations[0] == row.deviations[1] {
+                a
+            } else {
+                format!("{a}, {b}")
+            },
+            if num_a == num_b {
+                num_a.to_string()
+            } else {
+                format!("{num_a}, {num_b}")
+            },
+            row.power.map_or_else(String::new, |power| format!("{power:.2}")),
+            row.lifetimes_needed
+                .map_or_else(|| format!("over {MAX_POWER_LIFETIMES}"), |num| num.to_string()),
+            row.smallest_effect.map_or_else(String::new, number),
+        ]
+    });
+    let power = format!("power for {effect}");
+    let needed = format!("lifetimes for {effect}");
+    let headings = ["metric", "sd", "lifetimes", &*power, &*needed, "smallest effect"];
+    Some(format!(
+        "{}\nFor a difference of {effect} in the metric's own unit between two agents, by Welch's t test at 5%: its power with the \
+         lifetimes at hand; how many lifetimes of each agent have a power of 80%; and the smallest difference that those at hand \
+         show with 80%. One agent alone is compared with one that varies as much.",
+        table(headings, rows.collect(), &[1, 2, 3, 4, 5])
+    ))
+}

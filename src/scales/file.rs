@@ -1,0 +1,94 @@
+//! [`ScalesFile`]: floors and ceilings of variants as a file. Measuring them is the module's.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use driftworld_metrics::{Anchors, Scales};
+use driftworld_text::{ShownPath, one_line};
+use serde::{Deserialize, Serialize};
+
+use crate::{Failure, documents};
+
+/// Floors and ceilings of variants, and how they were measured. A file made by hand needs `scales` alone.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ScalesFile {
+    /// Version of the program that measured them.
+    #[serde(default)]
+    pub version: String,
+    /// Worlds that each agent ran in, of each variant.
+    #[serde(default)]
+    pub worlds: u64,
+    /// The seed that they were drawn under.
+    #[serde(default)]
+    pub seed: u64,
+    /// The variants by their names in logs, such as `findobjects_red`.
+    pub scales: BTreeMap<String, VariantScale>,
+}
+
+/// The floor and ceiling of a variant, in units of reward for an episode.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct VariantScale {
+    /// The variant's own name, such as `find_objects#red`.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub variant: String,
+    /// What the best agent earns that knows nothing.
+    pub floor: f64,
+    /// What an agent earns that knows the map; where it is not above the floor, nothing can be learned.
+    pub ceiling: f64,
+    /// What each agent earned.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub agents: BTreeMap<String, AgentLevel>,
+}
+
+/// What an agent earned in a variant's worlds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AgentLevel {
+    /// Mean reward of an episode.
+    pub mean: f64,
+    /// Standard error of the mean, over worlds.
+    pub standard_error: f64,
+    /// Part of the episodes that succeeded, 0..=1.
+    pub success: f64,
+}
+
+impl AgentLevel {
+    /// Of episodes, at least two: what each paid, and whether it succeeded. Rounded to six decimals, as files have them.
+    pub(super) fn of(episodes: &[(f64, bool)]) -> Self {
+        let num = episodes.len() as f64;
+        let mean = episodes.iter().map(|episode| episode.0).sum::<f64>() / num;
+        let squares: f64 = episodes.iter().map(|episode| (episode.0 - mean).powi(2)).sum();
+        let rounded = |value: f64| (value * 1e6).round() / 1e6;
+        Self {
+            mean: rounded(mean),
+            standard_error: rounded((squares / (num - 1.0) / num).sqrt()),
+            success: rounded(episodes.iter().filter(|episode| episode.1).count() as f64 / num),
+        }
+    }
+}
+
+impl ScalesFile {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`Failure`] where it cannot be read or says something else.
+    pub fn read(path: &Path) -> Result<Self, Failure> {
+        let expected = "scales, such as {\"scales\": {\"find_red\": {\"floor\": 0, \"ceiling\": 10}}}";
+        serde_json::from_str(&documents::text(path)?)
+            .map_err(|error| Failure::input(format!("{}: {}; expected {expected}", path.shown(), one_line(error))))
+    }
+
+    /// The floors and ceilings alone, by lower-case names.
+    pub fn anchors(&self) -> Scales {
+        let anchors = |scale: &VariantScale| Anchors {
+            floor: scale.floor,
+            ceiling: scale.ceiling,
+        };
+        let scales = self.scales.iter();
+        scales
+            .map(|(name, scale)| (name.to_lowercase(), anchors(scale)))
+            .collect()
+    }
+}

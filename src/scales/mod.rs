@@ -1,0 +1,124 @@
+//! Scales: what agents that know nothing earn in each variant, and one that knows all; measured, and read from files.
+//!
+//! Not here: what metrics do with them, see `driftworld-metrics`.
+
+mod file;
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use driftworld_curriculum::{MOST_STEPS, log_name};
+use driftworld_env::{Agent, Catalogue, Environment, OnRailsAgent, RandomAgent, StillAgent};
+use driftworld_generator::Sampler;
+use driftworld_spec::{Variant, World};
+use rayon::prelude::*;
+
+pub use file::{AgentLevel, ScalesFile, VariantScale};
+
+use crate::{Failure, libraries, tasks};
+
+/// How many worlds each agent runs in where nobody says.
+pub const DEFAULT_SCALES_WORLDS: u64 = 50;
+
+/// The most worlds that an agent can run in.
+pub const MAX_SCALES_WORLDS: u64 = 10_000;
+
+/// The agents that make the floor: they know nothing of a variant.
+const FLOOR: [&str; 2] = ["random", "still"];
+
+/// The agent that makes the ceiling: it knows the map and what pays.
+const CEILING: &str = "onrails";
+
+/// What is measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScalesRequest {
+    /// Variants, or tasks, which stand for all their variants.
+    pub tasks: Vec<String>,
+    /// Worlds of each variant, 2 to [`MAX_SCALES_WORLDS`].
+    pub worlds: u64,
+    /// The seed that they are drawn under.
+    pub seed: u64,
+    /// Asset libraries whose classes the tasks use.
+    pub libraries: Vec<PathBuf>,
+}
+
+/// Runs three agents in the same worlds of each variant: one that acts at random, one that stands still, one that knows the
+/// map. The better of the first two is the floor, the third the ceiling. `progress` is told of each variant that is done.
+///
+/// # Errors
+/// [`Failure`] where a task or variant is nowhere or wrong, a world cannot be drawn, or the number of worlds is out of range.
+pub fn scales(request: &ScalesRequest, progress: &(dyn Fn() + Sync)) -> Result<ScalesFile, Failure> {
+    if !(2..=MAX_SCALES_WORLDS).contains(&request.worlds) {
+        return Err(Failure::usage(format!(
+            "worlds: found {}, expected 2 to {MAX_SCALES_WORLDS}",
+            request.worlds
+        )));
+    }
+    let catalogue = libraries::catalogue(&request.libraries)?;
+    let variants = tasks::variants_of(&request.tasks)?;
+    let measure = |(_, variant): &(String, Variant)| {
+        let found = of_variant(variant, request, &catalogue)?;
+        progress();
+        Ok((log_name(variant.task().name(), variant.name()), found))
+    };
+    let measured: Result<Vec<_>, Failure> = variants.par_iter().map(measure).collect();
+    Ok(ScalesFile {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        worlds: request.worlds,
+        seed: request.seed,
+        scales: measured?.into_iter().collect(),
+    })
+}
+
+/// How many variants a request names.
+///
+/// # Errors
+/// As [`scales`].
+pub fn num_variants(request: &ScalesRequest) -> Result<usize, Failure> {
+    Ok(tasks::variants_of(&request.tasks)?.len())
+}
+
+fn of_variant(variant: &Variant, request: &ScalesRequest, catalogue: &Catalogue) -> Result<VariantScale, Failure> {
+    let sampler = Sampler::new(variant, request.seed);
+    let worlds = (0..request.worlds).map(|index| sampler.world(index));
+    let worlds: Vec<World> = worlds.collect::<Result<_, _>>()?;
+    let mut agents: BTreeMap<String, AgentLevel> = BTreeMap::new();
+    for (name, mut agent) in agents_of_scales() {
+        let mut episodes = Vec::new();
+        for (index, world) in (0..).zip(&worlds) {
+            // The same chance in every variant, and another in every world.
+            agent.begin(request.seed.rotate_left(32) ^ index);
+            episodes.push(episode(agent.as_mut(), world, catalogue)?);
+        }
+        agents.insert(name.to_owned(), AgentLevel::of(&episodes));
+    }
+    let level = |name: &str| agents.get(name).map_or(f64::NAN, |level| level.mean);
+    Ok(VariantScale {
+        variant: variant.id(),
+        floor: FLOOR.into_iter().map(level).fold(f64::NEG_INFINITY, f64::max),
+        ceiling: level(CEILING),
+        agents,
+    })
+}
+
+fn agents_of_scales() -> [(&'static str, Box<dyn Agent>); 3] {
+    [
+        (FLOOR[0], Box::new(RandomAgent::new(0))),
+        (FLOOR[1], Box::new(StillAgent)),
+        (CEILING, Box::new(OnRailsAgent::new())),
+    ]
+}
+
+/// What an agent earns in a world from the first step to the last, and whether it succeeds.
+fn episode(agent: &mut dyn Agent, world: &World, catalogue: &Catalogue) -> Result<(f64, bool), Failure> {
+    let mut environment = Environment::with_catalogue(world.clone(), catalogue.clone());
+    let mut success = false;
+    while !environment.ended() && environment.num_steps() < MOST_STEPS {
+        let action = agent.act(&environment);
+        success = environment.step(action)?.success;
+    }
+    Ok((environment.episode_return(), success))
+}
+
+#[cfg(test)]
+mod tests;
