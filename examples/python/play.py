@@ -95,7 +95,8 @@ class Episodes(gymnasium.Wrapper[Any, Any, Any, Any]):
             again = self._index if self._length == 0 else self._index + 1
             observation, info = self.env.reset(options={"index": again})
         if self._index != info["index"]:
-            print(f"world {info['index']} of {info['variant_id']}")
+            variant = self.unwrapped.origin()["variant_id"]  # type: ignore[attr-defined]
+            print(f"world {info['index']} of {variant}")
         self._index = info["index"]
         self._return = 0.0
         self._length = 0

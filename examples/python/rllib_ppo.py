@@ -33,8 +33,8 @@ OPTIONS: dict[str, Any] = {
 class ForRllib(gym.vector.VectorWrapper):
     """Native environments as RLlib's networks want them.
 
-    Pictures are in 0 to 1, rewards on a scale of about 1. RLlib hands runner *w* the seed *s* + *w*, and environment *i* of a runner draws its worlds under the
-    runner's seed + *i*: seeds are spread out, so that no two runners live in the same worlds.
+    Pictures are in 0 to 1, rewards on a scale of about 1. RLlib hands runner *w* the seed *s* + *w*; the environments of a runner
+    draw their worlds under seeds that are spread from it, so that no two runners live in the same worlds.
     """
 
     def __init__(self, env: gym.vector.VectorEnv) -> None:
@@ -43,7 +43,7 @@ class ForRllib(gym.vector.VectorWrapper):
         self.observation_space = gym.vector.utils.batch_space(self.single_observation_space, self.num_envs)
 
     def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
-        observation, info = self.env.reset(seed=None if seed is None else seed * 1000, options=options)
+        observation, info = self.env.reset(seed=seed, options=options)
         return observation.astype(np.float32) / 255.0, info
 
     def step(self, actions: Any) -> tuple[Any, Any, Any, Any, dict[str, Any]]:

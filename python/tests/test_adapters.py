@@ -9,6 +9,7 @@ import types
 from pathlib import Path
 from typing import Any
 
+import driftworld
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -37,7 +38,8 @@ def in_a_loop(seed: int, num_envs: int, **options: Any) -> Any:
     from stable_baselines3.common.vec_env import DummyVecEnv
 
     envs = DummyVecEnv([lambda: gym.make(FIND, **options)] * num_envs)
-    envs.seed(seed)
+    # Its own seeding adds 0, 1, 2 and so on.
+    envs._seeds = list(driftworld.spread_seeds(seed, num_envs))
     return envs
 
 
@@ -83,12 +85,13 @@ def test_sb3s_options_are_for_all_or_for_each() -> None:
     pytest.importorskip("stable_baselines3", reason="the adapter is for it")
     from driftworld.adapters.sb3 import DriftworldVecEnv
 
-    envs = DriftworldVecEnv(FIND, 3, render_mode="rgb_array", render_size=(24, 32), **SMALL)
+    envs = DriftworldVecEnv(FIND, 3, render_mode="rgb_array", render_size=(24, 32), info="full", **SMALL)
     envs.seed(3)
     envs.set_options([{"variant": "red"}, {}, {"variant": "dusk"}])
     envs.reset()
     told = [(info["variant_id"].partition("#")[2], info["seed"], info["index"]) for info in envs.reset_infos]
-    assert told == [("red", 3, 0), ("default", 4, 0), ("dusk", 5, 0)]
+    first, second, third = driftworld.spread_seeds(3, 3)
+    assert told == [("red", first, 0), ("default", second, 0), ("dusk", third, 0)]
     envs.set_options({"variant": "near"})
     envs.reset()
     assert [info["variant_id"].partition("#")[2] for info in envs.reset_infos] == ["near"] * 3

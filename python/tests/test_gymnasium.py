@@ -168,7 +168,7 @@ def test_depth_in_metres_millimetres_and_grey_tell_the_same() -> None:
 
 
 def test_a_seed_gives_world_0_and_each_reset_after_it_the_next() -> None:
-    env = bare(FIND, variant="red", modalities="state")
+    env = bare(FIND, variant="red", modalities="state", info="full")
     variant = driftworld.variant("find_objects#red")
     places = []
     for seed in (11, None, None, 11, None, 12):
@@ -201,7 +201,7 @@ def test_an_index_is_gone_to_and_gone_on_from() -> None:
 
 
 def test_a_variant_holds_until_another_and_a_queue_goes_round() -> None:
-    env = bare(FIND, modalities="state")
+    env = bare(FIND, modalities="state", info="full")
 
     def ids(resets: int, **options: Any) -> list[str]:
         told = [env.reset(options=options)[1]] + [env.reset()[1] for _ in range(resets - 1)]
@@ -213,7 +213,7 @@ def test_a_variant_holds_until_another_and_a_queue_goes_round() -> None:
 
 
 def test_a_given_world_is_for_one_episode(world_file: Path) -> None:
-    env = bare(FIND, modalities="state")
+    env = bare(FIND, modalities="state", info="full")
     env.reset(seed=1)
     given = env.reset(options={"world": world_file})[1]
     from_text = env.reset(options={"world": world_file.read_text()})[1]
@@ -293,9 +293,9 @@ def test_a_label_in_the_observation_is_one_hot() -> None:
 
 
 def test_a_drift_ends_at_its_goal() -> None:
-    env = bare(FIND, modalities="state", drift={"to": "dusk", "episodes": 4})
+    env = bare(FIND, modalities="state", drift={"to": "dusk", "episodes": 4}, info="full")
     told = [env.reset(seed=0)[1], *(env.reset()[1] for _ in range(5))]
-    alone = bare(FIND, variant="dusk", modalities="state").reset(seed=0, options={"index": 5})[1]
+    alone = bare(FIND, variant="dusk", modalities="state", info="full").reset(seed=0, options={"index": 5})[1]
     assert told[5]["world_hash"] == alone["world_hash"]
     assert len({info["variant_id"] for info in told}) > 2
 
@@ -354,7 +354,7 @@ def test_unknown_things_are_named_with_what_is_known() -> None:
     ids=str,
 )
 def test_wrong_options_of_a_reset_say_so_and_change_nothing(options: dict[str, Any], message: str) -> None:
-    env = bare(FIND, modalities="state")
+    env = bare(FIND, modalities="state", info="full")
     before = env.reset(seed=3)[1]
     with pytest.raises((ValueError, TypeError, OSError), match=message):
         env.reset(options=options)

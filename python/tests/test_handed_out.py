@@ -10,6 +10,7 @@ import gymnasium as gym
 import numpy as np
 import pytest
 from driftworld._equality import first_difference
+from gymnasiums_loops import spread
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -22,7 +23,7 @@ def native(num_envs: int, **options: Any) -> Any:
 
 
 def sync(num_envs: int, **options: Any) -> Any:
-    return gym.make_vec(FIND, num_envs, vectorization_mode="sync", **{"size": 16, **options})
+    return spread(gym.make_vec(FIND, num_envs, vectorization_mode="sync", **{"size": 16, **options}))
 
 
 def turning(envs: Any, steps: int) -> list[Any]:
@@ -221,7 +222,7 @@ def test_gymnasiums_wrapper_turns_everything_into_torchs(mode: str) -> None:
     torch = pytest.importorskip("torch", reason="the tensors are its")
     options = {"modalities": ["rgb", "state"], "max_episode_steps": 3, "task_label": "info", "autoreset_mode": mode}
     for copy in (True, False):
-        plain, envs = native(2, **options), gym.wrappers.vector.NumpyToTorch(native(2, copy=copy, **options))
+        plain, envs = native(2, info="full", **options), gym.wrappers.vector.NumpyToTorch(native(2, copy=copy, info="full", **options))
         told, found = plain.reset(seed=0), envs.reset(seed=0)
         assert found[1]["variant_id"].tolist() == told[1]["variant_id"].tolist()
         for action in turning(plain, 8):
@@ -234,6 +235,6 @@ def test_gymnasiums_wrapper_turns_everything_into_torchs(mode: str) -> None:
             if "final_obs" in told[4]:
                 last, expected = found[4]["final_obs"][0]["rgb"], told[4]["final_obs"][0]["rgb"]
                 assert np.array_equal(last.numpy(), expected)
-    single = gym.wrappers.NumpyToTorch(gym.make(FIND, modalities="rgb", size=16))
+    single = gym.wrappers.NumpyToTorch(gym.make(FIND, modalities="rgb", size=16, info="full"))
     observation, info = single.reset(seed=0)
     assert isinstance(observation, torch.Tensor) and info["variant_id"] == "find_objects#default"

@@ -79,10 +79,15 @@ def test_an_agent_learns_in_learning_blocks_only(tmp_path: Path) -> None:
     assert agent.frozen == [False, True, False, True, False, True]
     assert len(agent.learned) == 7 * (2 + 5 + 3) and len(agent.begun) == 19
     assert {label for label, _ in agent.begun} == {None}
-    # Every evaluation of a world has the same chance, learning another; variants share that of a world's number under a seed.
+    # No world is known by its number in another block; variants share that of a world's number under a seed.
     chances = [seed for _, seed in agent.begun]
-    assert chances[2:5] == chances[10:13] == chances[16:19]
     assert chances[2] == chances[4] and chances[5:7] == chances[7:9]
+    assert len(set(chances)) == 2 + 2 + 3 + 2 + 3 + 2
+    # Where it is asked for, every evaluation of a world has the same, learning another.
+    paired = Circler()
+    small(max_steps=7).run(paired, check_frozen=False, paired_chance=True, **SMALL)
+    chances = [seed for _, seed in paired.begun]
+    assert chances[2:5] == chances[10:13] == chances[16:19]
     assert len(set(chances)) == 2 + 2 + 3 + 3
 
 
@@ -122,7 +127,7 @@ def test_a_transition_is_what_a_step_said() -> None:
             transitions.append(transition)
 
     watcher = Watcher()
-    small(max_steps=5).run(watcher, **SMALL)
+    small(max_steps=5).run(watcher, info="full", **SMALL)
     first = transitions[:5]
     assert [transition.truncated for transition in first] == [False] * 4 + [True]
     for before, after in pairwise(first):
@@ -202,6 +207,14 @@ def test_a_log_is_taken_up_only_by_what_it_was_begun_with(tmp_path: Path) -> Non
         small(max_steps=4).run(Circler(), log, **SMALL)
     with pytest.raises(CurriculumError, match="/agent"):
         small(max_steps=3).run(Pupil(), log, **SMALL)
+    with pytest.raises(CurriculumError, match="/made_from/environment/info"):
+        small(max_steps=3).run(Circler(), log, info="full", **SMALL)
+    with pytest.raises(CurriculumError, match="/made_from/paired_chance"):
+        small(max_steps=3).run(Circler(), log, paired_chance=True, **SMALL)
+    greedy = Circler()
+    greedy.policy = "greedy"  # type: ignore[attr-defined]
+    with pytest.raises(CurriculumError, match="/made_from/policy"):
+        small(max_steps=3).run(greedy, log, **SMALL)
     with pytest.raises(driftworld.MetricsError) as refused:
         small(max_steps=3).run(Circler(), log, resume=False, **SMALL)
     assert refused.value.code == "metrics/log-exists"

@@ -191,7 +191,7 @@ def test_a_queue_costs_by_what_is_different_in_it(monkeypatch: pytest.MonkeyPatc
 @pytest.mark.parametrize("length", [1, 2, 3, 4, 6])
 def test_a_queue_is_dealt_out_over_and_over(num_envs: int, length: int) -> None:
     names = ["red", "blue", "red", "dusk", "near", "blue"][:length]
-    envs = native(num_envs, autoreset_mode="disabled")
+    envs = native(num_envs, autoreset_mode="disabled", info="full")
     told = [envs.reset(seed=0, options={"queue": np.array(names)})[1]["variant_id"]]
     told += [envs.reset()[1]["variant_id"] for _ in range(2 * length)]
     dealt = [name for each in told for name in each]

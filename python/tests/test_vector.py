@@ -9,12 +9,14 @@ import warnings
 from pathlib import Path
 from typing import Any
 
+import driftworld
 import gymnasium as gym
 import numpy as np
 import pytest
 from driftworld._equality import first_difference
 from driftworld.envs.autoreset import AutoresetMode
 from gymnasium.vector import AsyncVectorEnv, SyncVectorEnv
+from gymnasiums_loops import spread
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -31,7 +33,7 @@ def native(env_id: str, num_envs: int, **options: Any) -> Any:
 
 def sync(env_id: str, num_envs: int, mode: Any = None, **options: Any) -> Any:
     kwargs = {"autoreset_mode": mode} if mode is not None and HAS_MODES else {}
-    return gym.make_vec(env_id, num_envs=num_envs, vectorization_mode="sync", vector_kwargs=kwargs, **options)
+    return spread(gym.make_vec(env_id, num_envs=num_envs, vectorization_mode="sync", vector_kwargs=kwargs, **options))
 
 
 def expect_same(left: Any, right: Any, place: str) -> None:
@@ -145,7 +147,7 @@ def test_processes_of_gymnasiums_live_the_same(context: str) -> None:
     ours = native(FIND, 2, **options)
     theirs = gym.make_vec(FIND, num_envs=2, vectorization_mode="async", vector_kwargs={"context": context}, **options)
     try:
-        expect_same(ours.reset(seed=2), theirs.reset(seed=2), "reset")
+        expect_same(ours.reset(seed=2), theirs.reset(seed=driftworld.spread_seeds(2, 2)), "reset")
         assert live_side_by_side(ours, theirs, 20) >= 4
     finally:
         theirs.close()
@@ -227,20 +229,22 @@ def test_the_number_of_threads_changes_nothing(num_threads: int) -> None:
 
 def test_each_environment_may_have_a_variant_of_its_own() -> None:
     names = ["red", "dusk", "near"]
-    ours = native(FIND, 3, modalities="state", size=40)
+    ours = native(FIND, 3, modalities="state", size=40, info="full")
     infos = ours.reset(seed=0, options={"variants": names})[1]
     assert [each.partition("#")[2] for each in infos["variant_id"]] == names
-    theirs = SyncVectorEnv(
-        [lambda name=name: gym.make(FIND, variant=name, modalities="state", size=40) for name in names]
+    theirs = spread(
+        SyncVectorEnv(
+            [lambda name=name: gym.make(FIND, variant=name, modalities="state", size=40, info="full") for name in names]
+        )
     )
     expect_same(infos, theirs.reset(seed=0)[1], "infos")
-    made = native(FIND, 3, variants=names, modalities="state", size=40)
+    made = native(FIND, 3, variants=names, modalities="state", size=40, info="full")
     expect_same(made.reset(seed=0), ours.reset(seed=0), "made with variants")
     assert [each.partition("#")[2] for each in ours.reset()[1]["variant_id"]] == names
 
 
 def test_a_queue_is_dealt_out_like_cards() -> None:
-    ours = native(FIND, 2, modalities="state", size=16, max_episode_steps=1)
+    ours = native(FIND, 2, modalities="state", size=16, max_episode_steps=1, info="full")
     told = [ours.reset(seed=0, options={"queue": ["red", "blue", "green"]})[1]]
     for _ in range(6):
         _, _, _, truncated, infos = ours.step(ours.action_space.sample())
@@ -251,7 +255,7 @@ def test_a_queue_is_dealt_out_like_cards() -> None:
 
 
 def test_a_mask_begins_some_and_leaves_the_others() -> None:
-    ours = native(FIND, 3, modalities="state", size=40, autoreset_mode="disabled")
+    ours = native(FIND, 3, modalities="state", size=40, autoreset_mode="disabled", info="full")
     ours.reset(seed=0)
     ours.step(np.ones(ours.action_space.shape, dtype=np.float32))
     before = [ours.state(env) for env in range(3)]
@@ -351,6 +355,23 @@ OPTIONS = st.fixed_dictionaries(
         "task_label": st.sampled_from(["none", "info", "obs"]),
     }
 )
+
+
+@pytest.mark.parametrize("seed", [0, 1, 7, 2**31 - 1, 2**62])
+def test_neighbouring_seeds_share_no_world(seed: int) -> None:
+    ours = native(FIND, 32, modalities="state", size=8, max_episode_steps=1, autoreset_mode="same_step")
+    seen: list[set[str]] = []
+    for one in (seed, seed + 1):
+        infos = ours.reset(seed=one)[1]
+        assert infos["seed"].tolist() == driftworld.spread_seeds(one, 32)
+        hashes = set(infos["world_hash"])
+        for _ in range(3):
+            hashes |= set(ours.step(ours.action_space.sample())[4]["world_hash"])
+        seen.append(hashes)
+    assert [len(hashes) for hashes in seen] == [128, 128] and not seen[0] & seen[1]
+    # The first is the seed itself, as of a single environment, and how many there are changes none of the others.
+    assert driftworld.spread_seeds(seed, 1) == [seed]
+    assert driftworld.spread_seeds(seed, 5) == driftworld.spread_seeds(seed, 32)[:5]
 
 
 def test_a_limit_and_a_size_move_no_object() -> None:

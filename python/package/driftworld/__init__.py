@@ -9,7 +9,7 @@ from driftworld import _native
 from driftworld.classes import segmentation_classes
 from driftworld.curricula import Block, Curriculum, Experience
 from driftworld.distances import Distance, DistanceMatrix, Order, distance, distance_matrix, order
-from driftworld.envs import DriftworldEnv, DriftworldVectorEnv, register_envs
+from driftworld.envs import DriftworldEnv, DriftworldVectorEnv, register_envs, spread_seeds
 from driftworld.errors import (
     CurriculumError,
     DriftworldError,
@@ -25,6 +25,7 @@ from driftworld.lifetimes import Agent, Summary, Transition
 from driftworld.logs import Log, LogWriter, read_log, validate_log
 from driftworld.scores import Metrics, metrics, report
 from driftworld.specs import Drift, TaskSpec, Variant, built_in_tasks, validate, variant, variants
+from driftworld.vector_lifetimes import VectorAgent, VectorTransition
 
 __version__: str = _native.__version__
 __all__ = [
@@ -53,6 +54,8 @@ __all__ = [
     "TaskSpec",
     "Transition",
     "Variant",
+    "VectorAgent",
+    "VectorTransition",
     "__version__",
     "built_in_tasks",
     "distance",
@@ -63,6 +66,7 @@ __all__ = [
     "read_log",
     "report",
     "segmentation_classes",
+    "spread_seeds",
     "validate",
     "validate_log",
     "variant",

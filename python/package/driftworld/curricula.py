@@ -31,9 +31,11 @@ from driftworld._literals import (
     Phase,
     Probe,
     TaskLabel,
+    WorldSplit,
 )
-from driftworld.lifetimes import Agent, Lifetime, Summary, environment
+from driftworld.lifetimes import Agent, Lifetime, Rollout, Summary, environment, noted
 from driftworld.specs import variants
+from driftworld.vector_lifetimes import VectorAgent, VectorRollout
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -376,6 +378,7 @@ class Curriculum(Sequence[Block]):
         skip_undrawable: bool = False,
         check_frozen: bool = True,
         seed: int = 0,
+        paired_chance: bool = False,
         watch: Callable[[Experience, float], Any] | None = None,
         **options: Any,
     ) -> Summary:
@@ -396,10 +399,13 @@ class Curriculum(Sequence[Block]):
                 earn the same in them: evaluations change it, or its chance is not drawn from the seed of the experience.
             seed: What the agent begins experiences with follows from it, too: another seed is a repeat in the same worlds. 0 is the
                 run that the curriculum has of itself.
+            paired_chance: Give ``begin`` the same number in every evaluation of a world, so that an agent that has not changed
+                earns the same in it. An agent can know a world by that number; by default it is another one in every block.
             watch: Told each experience and its reward as soon as it is logged, NaN for one that is left out; ``False`` from it ends
                 the run there.
             options: Options of the environment, as for :class:`driftworld.DriftworldEnv`: ``modalities``, ``size``, ``actions`` and
-                so on. A log is taken up only with the same ones.
+                so on. A log is taken up only with the same ones. Infos name neither variant nor world, and have no ``events``,
+                unless ``info="full"`` asks for them.
 
         Raises:
             CurriculumError: If evaluations change the agent, the log is of another curriculum, agent or environment, or a world cannot be
@@ -409,11 +415,69 @@ class Curriculum(Sequence[Block]):
             TypeError: If the agent lacks a method.
             ValueError: If an option is wrong; then no log is begun.
         """
-        # One of its own: what it depends on is noted in it. Of the same tasks, whatever became of their files since.
+        plan = self._own_plan(skip_undrawable, seed)
+
+        def rollout(save: Callable[[int], None]) -> Rollout:
+            env = environment(plan, options)
+            return Rollout(agent, env, lambda number: _experience(plan, number), options, paired_chance, watch, save)
+
+        made_with = {"environment": noted(options), **({"paired_chance": True} if paired_chance else {})}
+        return Lifetime(plan, agent, log, resume, check_frozen).live(made_with, rollout)
+
+    def run_vector(
+        self,
+        agent: VectorAgent,
+        log: PathLike | None = None,
+        *,
+        num_envs: int,
+        num_threads: int = 0,
+        resume: bool = True,
+        skip_undrawable: bool = False,
+        check_frozen: bool = True,
+        seed: int = 0,
+        paired_chance: bool = False,
+        watch: Callable[[Experience, float], Any] | None = None,
+        **options: Any,
+    ) -> Summary:
+        """Lives the curriculum as :meth:`run` does, many experiences of a block at the same time.
+
+        Each environment takes the block's next experience when its last one has ended; a block begins when all of the one before are
+        over. The log has the same columns, in the order of the curriculum, and is of the same worlds. An agent that does in each
+        environment what another one does in :meth:`run` earns the same in evaluations; with one environment, everywhere.
+
+        Args:
+            agent: See :class:`driftworld.VectorAgent`.
+            log: The folder of the log; without one nothing is kept.
+            num_envs: How many environments, 1 to 65,536. A log is taken up only with as many.
+            num_threads: Threads that step; 0 is one for each processor.
+            resume: As for :meth:`run`. What was under way when a learning block was interrupted has been learned from and is not
+                in the log: only an agent with ``save`` and ``load`` goes on as if nothing had happened.
+            skip_undrawable: As for :meth:`run`, like all that follows.
+            check_frozen: As there.
+            seed: As there.
+            paired_chance: As there.
+            watch: As there.
+            options: As there.
+
+        Raises:
+            CurriculumError, MetricsError, EnvError, TypeError, ValueError: As :meth:`run`.
+        """
+        plan = self._own_plan(skip_undrawable, seed)
+
+        def rollout(save: Callable[[int], None]) -> Rollout:
+            return VectorRollout(
+                plan, agent, num_envs, num_threads, lambda number: _experience(plan, number), options, paired_chance, watch, save
+            )
+
+        made_with = {"environment": noted(options), "num_envs": int(num_envs)}
+        made_with |= {"paired_chance": True} if paired_chance else {}
+        return Lifetime(plan, agent, log, resume, check_frozen).live(made_with, rollout)
+
+    def _own_plan(self, skip_undrawable: bool, seed: int) -> _native.Plan:
+        """A plan of one run: what that depends on is noted in it. Of the same tasks, whatever became of their files since."""
         plan = _native.Plan.from_values(self._plan.values(), skip_undrawable)
         plan.set_run_seed(seed)
-        lifetime = Lifetime(plan, agent, options, log, resume, watch, check_frozen)
-        return lifetime.live(lambda number: _experience(plan, number))
+        return plan
 
     def __len__(self) -> int:
         return len(self._blocks)

@@ -5,6 +5,7 @@ Which experiences there are is said by ``curricula.py``, what a log holds by the
 
 from __future__ import annotations
 
+import hashlib
 import json
 import math
 import os
@@ -20,6 +21,7 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import gymnasium
 import numpy as np
+from numpy.typing import NDArray
 
 from driftworld import _native
 from driftworld._files import write_whole
@@ -66,14 +68,18 @@ class Agent(Protocol):
 
     - ``name``, what logs call it; its class's name if not;
     - ``begin(label, seed)``, called before each experience with the name of its variant where the scenario tells it, else
-      ``None``, and the number that its chance should be drawn from: the same in every evaluation of a world, so that an agent that
-      has not changed earns the same in it;
+      ``None``, and the number that its chance should be drawn from: another one in every block, so that no world is known by it,
+      unless ``paired_chance`` is asked for;
+    - ``policy``, how it chooses its actions in evaluations, such as ``"sampled"`` or ``"greedy"``; it is noted in the log;
     - ``save(path)`` and ``load(path)``, called with a path that nothing is at, respectively with the last that was saved at: after
       each learning block, and when a log is taken up.
     """
 
     def act(self, observation: Any, info: dict[str, Any]) -> Any:
-        """An action for an observation; ``info`` is what the last reset or step said beside it."""
+        """An action for an observation; ``info`` is what the last reset or step said beside it.
+
+        There are ``is_success``, and ``task_label`` where the scenario says so; with ``info="full"`` also what names the world.
+        """
 
     def learn(self, transition: Transition) -> None:
         """Learns from a step; only called in learning blocks."""
@@ -128,50 +134,47 @@ class Lifetime:
     Args:
         plan: What is lived.
         agent: Who lives it.
-        options: Options of the environment.
         log: The folder to log into; without one the log is forgotten.
         resume: Go on with the log in the folder if there is one.
-        watch: Told each experience and what it paid, as soon as it is logged; may say ``False`` to end there.
         check_frozen: Run the first evaluations of each block once more, and refuse an agent that earns something else in them.
     """
 
     def __init__(
-        self,
-        plan: _native.Plan,
-        agent: Agent,
-        options: Mapping[str, Any],
-        log: str | PathLike[str] | None,
-        resume: bool,
-        watch: Callable[[Experience, float], Any] | None,
-        check_frozen: bool,
+        self, plan: _native.Plan, agent: Any, log: str | PathLike[str] | None, resume: bool, check_frozen: bool
     ) -> None:
         missing = [name for name in ("act", "learn", "freeze") if not callable(getattr(agent, name, None))]
         if missing:
             found = f"{type(agent).__name__} without {', '.join(missing)}"
             raise TypeError(f"agent: found {found}, expected act, learn and freeze; see driftworld.Agent")
-        self._plan, self._agent, self._options, self._watch = plan, agent, dict(options), watch
+        self._plan, self._agent = plan, agent
         self._log = None if log is None else Path(log)
         self._resume, self._check_frozen = resume, check_frozen
         # What is saved lies beside the log: a log holds rows, nothing else.
         self._saves = None if self._log is None else _beside(self._log)
         self._whose = ""
 
-    def live(self, experience: Callable[[int], Experience]) -> Summary:
-        """Lives it from the first experience that is not in the log to the last; ``experience`` finds one by its number."""
+    def live(self, made_with: Mapping[str, Any], rollout: Callable[[Callable[[int], None]], Rollout]) -> Summary:
+        """Lives it from the first experience that is not in the log to the last.
+
+        Args:
+            made_with: What the lifetime depends on beside the plan, by name; a log is taken up only with the same.
+            rollout: Makes what lives single experiences, from what saves the agent after so many of them.
+        """
         with ExitStack() as stack:
             folder = self._log or Path(stack.enter_context(tempfile.TemporaryDirectory())) / "log"
             # First: where an option is wrong no log is begun.
-            env = environment(self._plan, self._options)
-            stack.callback(env.close)
-            made_with = _told(self._options)
-            self._plan.add_fingerprint("environment", made_with)
+            lived = rollout(self._save)
+            stack.callback(lived.close)
+            policy = getattr(self._agent, "policy", None)
+            notes = {**made_with, **({} if policy is None else {"policy": str(policy)})}
+            for what, print in notes.items():
+                self._plan.add_fingerprint(what, print)
             name = str(getattr(self._agent, "name", type(self._agent).__name__))
             journal = _native.Journal(folder, self._plan, name, self._resume)
             stack.callback(journal.close)
             done = len(journal)
-            self._own_saves(done, {"scenario": self._plan.scenario(), "agent": name, "environment": made_with})
-            rollout = Rollout(self._agent, env, experience, self._options, self._watch, self._save)
-            said = journal.run(self._plan, rollout, self._load(done), self._check_frozen)
+            self._own_saves(done, {"scenario": self._plan.scenario(), "agent": name, **notes})
+            said = journal.run(self._plan, lived, self._load(done), self._check_frozen)
         return Summary(**said, log=self._log)
 
     def _own_saves(self, done: int, lifetime: dict[str, Any]) -> None:
@@ -231,22 +234,45 @@ class Rollout:
         env: The environment.
         experience: Finds an experience by its number.
         options: Options of the environment.
+        paired_chance: Give every evaluation of a world the same number in all blocks.
         watch: Told each experience and what it paid, as soon as it is logged; may say ``False`` to end there.
         save: Saves the agent after so many experiences.
     """
 
     def __init__(
         self,
-        agent: Agent,
-        env: gymnasium.Env[Any, Any],
+        agent: Any,
+        env: Any,
         experience: Callable[[int], Experience],
         options: Mapping[str, Any],
+        paired_chance: bool,
         watch: Callable[[Experience, float], Any] | None,
         save: Callable[[int], None],
     ) -> None:
         self._agent, self._env, self._experience, self._options = agent, env, experience, options
-        self._watch, self.end_learning = watch, save
+        self._paired_chance, self._watch, self.end_learning = paired_chance, watch, save
         self._frozen: bool | None = None
+
+    def close(self) -> None:
+        """Closes the environment."""
+        self._env.close()
+
+    def _beginning(self, now: Experience) -> tuple[str | None, int]:
+        """What an agent is given before an experience: the name of its variant where it may know it, and a number for its chance."""
+        chance = now.chance
+        if not (now.learning or self._paired_chance):
+            # The same only when the experience is run once more: worlds come again in every block.
+            print = hashlib.sha256(f"{now.block} {chance}".encode()).digest()
+            chance = int.from_bytes(print[:8], "big")
+        return None if now.label is None else now.label["name"], chance
+
+    def _seconds(self, steps: int, time: tuple[float, int, float]) -> float:
+        """How long so many steps take, by the time that :meth:`experience` was given."""
+        time_step, skip, max_seconds = time
+        seconds_per_step = time_step * (self._options.get("frame_skip") or skip)
+        # A limit of seconds cuts the last step short; one of steps stands in its place.
+        limited = max_seconds > 0 and self._options.get("max_steps") is None
+        return min(steps * seconds_per_step, max_seconds if limited else math.inf)
 
     def begin_block(self, learning: bool) -> None:
         """Before the first experience of a block. An agent without labels is not to see the border between two blocks of learning."""
@@ -264,13 +290,8 @@ class Rollout:
         now = self._experience(number)
         begin = getattr(self._agent, "begin", None)
         if begin is not None:
-            begin(None if now.label is None else now.label["name"], now.chance)
-        time_step, skip, max_seconds = time
-        seconds_per_step = time_step * (self._options.get("frame_skip") or skip)
-        # A limit of seconds cuts the last step short; one of steps stands in its place.
-        limited = max_seconds > 0 and self._options.get("max_steps") is None
-        most = max_seconds if limited else math.inf
-        observation, info = self._env.reset(options={"world": world, "label": now.label})
+            begin(*self._beginning(now))
+        observation, info = self._env.reset(options={"world": world, "label": now.label, "origin": origin(now)})
         earned, steps, terminated, truncated = 0.0, 0, False, False
         while not (terminated or truncated):
             action = self._agent.act(observation, info)
@@ -282,7 +303,7 @@ class Rollout:
                     Transition(observation, action, float(reward), terminated, truncated, following, info)
                 )
             observation = following
-        return earned, bool(info["is_success"]), steps, min(steps * seconds_per_step, most), truncated and not terminated
+        return earned, bool(info["is_success"]), steps, self._seconds(steps, time), truncated and not terminated
 
     def logged(self, number: int, reward: float) -> bool:
         """After an experience was logged, NaN for one that was left out; whether to go on."""
@@ -291,14 +312,19 @@ class Rollout:
 
 def environment(plan: _native.Plan, options: Mapping[str, Any]) -> gymnasium.Env[Any, Any]:
     """The environment that a plan is lived in, at its first world."""
+    refuse_options(options)
+    env = DriftworldEnv(world=first_world(plan), **options)
+    return Permitted(env, plan.experience_spec(0)["label"], options.get("info") == "full")
+
+
+def refuse_options(options: Mapping[str, Any]) -> None:
+    """Refuses options of environments that the curriculum has the say over."""
     refused = [name for name in ("task", "world", "variant", "drift", "task_label") if name in options]
     if refused:
         raise TypeError(f"{refused[0]}: found it among the options, expected none: the curriculum says what is lived")
-    env = DriftworldEnv(world=_first_world(plan), **options)
-    return Labelled(env, plan.experience_spec(0)["label"])
 
 
-def _first_world(plan: _native.Plan) -> _native.Stream:
+def first_world(plan: _native.Plan) -> _native.Stream:
     """The first world of a plan that can be drawn; the spaces of all others are the same."""
     for number in range(len(plan)):
         try:
@@ -309,51 +335,81 @@ def _first_world(plan: _native.Plan) -> _native.Stream:
     raise ValueError("curriculum: found no experience, expected at least one")
 
 
-class Labelled(gymnasium.Wrapper[Any, Any, Any, Any]):
-    """An environment that tells the label of each experience, where the scenario wants it told.
+def origin(experience: Experience) -> dict[str, Any]:
+    """What names an experience's variant and world, for those who ask for it."""
+    return {
+        "task_id": experience.task,
+        "variant_id": experience.variant,
+        "seed": experience.seed,
+        "index": experience.index,
+    }
 
-    As the environments do with ``task_label``: the number of the variant as ``info["task_label"]``, or one-hot as ``"task"`` in
-    observations.
+
+#: What an agent in a curriculum is given beside observations, whatever the scenario says of labels.
+PERMITTED = ("is_success",)
+
+
+class Permitted(gymnasium.Wrapper[Any, Any, Any, Any]):
+    """An environment whose infos hold what the scenario permits: no name of a variant or a world, and no events.
+
+    Where the scenario wants labels, the number of the variant is ``info["task_label"]``, or one-hot ``"task"`` in observations.
 
     Args:
         env: The environment.
-        label: The label of the first experience, or ``None`` where none are told.
+        label: The label of the first experience, or ``None`` where none are given.
+        full: Leave everything in infos, with the names of the experience.
     """
 
-    def __init__(self, env: gymnasium.Env[Any, Any], label: Mapping[str, Any] | None) -> None:
+    def __init__(self, env: gymnasium.Env[Any, Any], label: Mapping[str, Any] | None, full: bool) -> None:
         super().__init__(env)
-        self._label = label
+        self._label, self._full = label, full
         self._observed = label is not None and bool(label["observed"])
         if label is not None and self._observed:
-            space = env.observation_space
-            if not isinstance(space, gymnasium.spaces.Dict):
-                raise ValueError(
-                    "modalities: found a single image, expected a list: the scenario's task_label is a part of observations"
-                )
-            box = gymnasium.spaces.Box(0.0, 1.0, (label["of"],), np.float32)
-            self.observation_space = gymnasium.spaces.Dict({**space.spaces, "task": box})
+            self.observation_space = with_label(env.observation_space, label)
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
-        """Begins an episode; ``options["label"]`` is its label."""
+        """Begins an episode; ``options["label"]`` is its label, ``options["origin"]`` what it is called in full infos."""
         options = dict(options or {})
         self._label = options.pop("label", self._label)
+        names = options.pop("origin", {})
         observation, info = self.env.reset(seed=seed, options=options)
-        return self._told(observation, info)
+        return self._permitted(observation, {**info, **names})
 
     def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
         """Lets the agent act once."""
         observation, reward, terminated, truncated, info = self.env.step(action)
-        observation, info = self._told(observation, info)
+        observation, info = self._permitted(observation, info)
         return observation, reward, terminated, truncated, info
 
-    def _told(self, observation: Any, info: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
+    def _permitted(self, observation: Any, info: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
+        if not self._full:
+            info = {name: info[name] for name in PERMITTED}
         if self._label is None:
             return observation, info
         if self._observed:
-            one_hot = np.zeros(self._label["of"], dtype=np.float32)
-            one_hot[self._label["number"]] = 1.0
-            return {**observation, "task": one_hot}, info
+            return {**observation, "task": one_hot(self._label)}, info
         return observation, {**info, "task_label": self._label["number"]}
+
+
+def with_label(space: gymnasium.Space[Any], label: Mapping[str, Any]) -> gymnasium.spaces.Dict:
+    """The space of observations that hold a label.
+
+    Raises:
+        ValueError: If observations have no room for it.
+    """
+    if not isinstance(space, gymnasium.spaces.Dict):
+        raise ValueError(
+            "modalities: found a single image, expected a list: the scenario's task_label is a part of observations"
+        )
+    box = gymnasium.spaces.Box(0.0, 1.0, (label["of"],), np.float32)
+    return gymnasium.spaces.Dict({**space.spaces, "task": box})
+
+
+def one_hot(label: Mapping[str, Any]) -> NDArray[np.float32]:
+    """A label as observations have it."""
+    numbers = np.zeros(label["of"], dtype=np.float32)
+    numbers[label["number"]] = 1.0
+    return numbers
 
 
 def _beside(log: Path) -> Path:
@@ -364,7 +420,7 @@ def _beside(log: Path) -> Path:
     return whole.with_name(f"{whole.name}.agent")
 
 
-def _told(options: Mapping[str, Any]) -> dict[str, Any]:
+def noted(options: Mapping[str, Any]) -> dict[str, Any]:
     """Options of an environment as they are written down: the same however they were written; left out where none is given."""
     told: dict[str, Any] = json.loads(json.dumps(options, default=_said, sort_keys=True))
     return {name: value for name, value in told.items() if value is not None}

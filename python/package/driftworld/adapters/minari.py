@@ -29,9 +29,6 @@ except ImportError as error:
 
 __all__ = ["collect"]
 
-#: What an episode's metadata take from the info of its reset.
-_KEPT = ("task_id", "variant_id", "seed", "index", "world_hash")
-
 
 def collect(
     env: gymnasium.Env[Any, Any],
@@ -113,7 +110,8 @@ def _lived(
 ) -> tuple[Any, dict[str, Any]]:
     """One episode as Minari's buffer, and what is to be known of it."""
     observation, info = env.reset(seed=seed, options=options)
-    told = {name: info[name] for name in _KEPT if name in info}
+    # Of the environment itself: the info names the variant only where the agent may know it.
+    told = env.unwrapped.origin()  # type: ignore[attr-defined]
     observations, actions, rewards, terminations, truncations = [observation], [], [], [], []
     has_ended = False
     while not has_ended:
@@ -137,11 +135,11 @@ def _lived(
     )
     # Minari keeps `seed` for itself.
     metadata = {
-        "task_id": told.get("task_id", ""),
-        "variant_id": told.get("variant_id", ""),
-        "world_seed": int(told.get("seed", 0)),
-        "world_index": int(told.get("index", 0)),
-        "world_hash": told.get("world_hash", ""),
+        "task_id": told["task_id"],
+        "variant_id": told["variant_id"],
+        "world_seed": int(told["seed"]),
+        "world_index": int(told["index"]),
+        "world_hash": told["world_hash"],
         "episode_return": float(np.sum(rewards)),
         "is_success": bool(info.get("is_success", False)),
     }

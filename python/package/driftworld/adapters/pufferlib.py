@@ -58,7 +58,7 @@ class DriftworldPuffer(PufferEnv):  # type: ignore[misc, unused-ignore] # Any wh
             env_id,
             num_envs=num_envs,
             vectorization_mode="vector_entry_point",
-            **{"modalities": "rgb", **options, "autoreset_mode": "same_step", "copy": False},
+            **{"modalities": "rgb", **options, "info": "full", "autoreset_mode": "same_step", "copy": False},
         )
         self.single_observation_space = self.envs.single_observation_space
         self.single_action_space = self.envs.single_action_space
@@ -74,7 +74,7 @@ class DriftworldPuffer(PufferEnv):  # type: ignore[misc, unused-ignore] # Any wh
         super().__init__(buf)
 
     def reset(self, seed: int | None = None) -> tuple[npt.NDArray[Any], list[dict[str, Any]]]:
-        """Begins new episodes everywhere, environment ``i`` under ``seed + i``."""
+        """Begins new episodes everywhere, under :func:`driftworld.spread_seeds`."""
         seed, self._seed = self._seed if seed is None else seed, None
         self.observations[:], told = self.envs.reset(seed=seed)
         self._variants = list(told["variant_id"])

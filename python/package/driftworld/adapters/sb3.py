@@ -18,7 +18,7 @@ import gymnasium
 import numpy as np
 import numpy.typing as npt
 
-import driftworld  # noqa: F401 - registers the environments
+import driftworld
 
 try:
     from stable_baselines3.common.vec_env import VecEnv, VecMonitor
@@ -43,7 +43,7 @@ def make_vec_env(
     Args:
         env_id: Such as ``"driftworld/FindObjects-v0"``.
         num_envs: How many, from 1.
-        seed: Environment ``i`` draws its worlds under ``seed + i``; ``None`` draws seeds.
+        seed: The environments draw their worlds under :func:`driftworld.spread_seeds` of it; ``None`` draws one.
         monitor_dir: A folder for ``monitor.csv``, the returns of all episodes; ``None`` writes no file. Returns and lengths are in
             ``info["episode"]`` either way, so that Stable-Baselines3 prints ``ep_rew_mean``.
         **options: Options of the environment, such as ``variant``, ``modalities`` or ``num_threads``; ``autoreset_mode`` and ``copy``
@@ -89,6 +89,13 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
         )
         self._actions: npt.NDArray[Any] | None = None
         super().__init__(num_envs, self.envs.single_observation_space, self.envs.single_action_space)
+
+    def seed(self, seed: int | None = None) -> Sequence[int | None]:
+        """Seeds the next reset, by :func:`driftworld.spread_seeds`; ``None`` draws a seed. Returns the seed of each environment."""
+        if seed is None:
+            seed = int(np.random.randint(0, np.iinfo(np.int32).max))
+        self._seeds: list[int | None] = list(driftworld.spread_seeds(seed, self.num_envs))
+        return self._seeds
 
     def reset(self) -> Any:
         """Begins new episodes everywhere, with the seeds and options set before; both are used once.

@@ -20,6 +20,7 @@ import numpy as np
 from driftworld._equality import first_difference
 from driftworld.check.case import SHORT_EPISODE, Case
 from driftworld.check.report import Finding
+from driftworld.envs import spread_seeds
 
 
 class Broken(Exception):
@@ -171,9 +172,9 @@ def _alone_as_in_the_batch(case: Case) -> None:
         actions = case.actions(batch.action_space)
         first = [_row(observations, index) for index in range(case.num_envs)]
         rows = [_told(batch, action) for action in actions]
-    for index in range(case.num_envs):
+    for index, seed in enumerate(spread_seeds(case.seed, case.num_envs)):
         with closing(case.single(max_episode_steps=case.options.get("max_episode_steps", SHORT_EPISODE))) as env:
-            _expect_same(env.reset(seed=case.seed + index)[0], first[index], f"environment {index}, reset")
+            _expect_same(env.reset(seed=seed)[0], first[index], f"environment {index}, reset")
             has_ended = False
             for number, (action, row) in enumerate(zip(actions, rows, strict=True)):
                 alone = (env.reset()[0], 0.0, False, False) if has_ended else env.step(action[index])[:4]
@@ -228,7 +229,7 @@ def _expect_same_lives(case: Case, ours: Any, theirs: Any, *, resets_by_mask: bo
     """The same seeds and actions for both; everything that comes back must be equal."""
     _expect_same(ours.single_observation_space, theirs.single_observation_space, "single_observation_space")
     _expect_same(ours.single_action_space, theirs.single_action_space, "single_action_space")
-    _expect_same(ours.reset(seed=case.seed), theirs.reset(seed=case.seed), "reset")
+    _expect_same(ours.reset(seed=case.seed), theirs.reset(seed=spread_seeds(case.seed, theirs.num_envs)), "reset")
     num_ends = 0
     for number, action in enumerate(case.actions(theirs.action_space)):
         left, right = ours.step(action), theirs.step(action)

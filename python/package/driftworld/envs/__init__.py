@@ -5,8 +5,9 @@ What a world does in a step is decided in Rust; here are the spaces, the infos a
 
 from __future__ import annotations
 
+from driftworld.envs.origin import spread_seeds
 from driftworld.envs.registration import ENV_IDS, register_envs
 from driftworld.envs.single import DriftworldEnv
 from driftworld.envs.vector import DriftworldVectorEnv
 
-__all__ = ["ENV_IDS", "DriftworldEnv", "DriftworldVectorEnv", "register_envs"]
+__all__ = ["ENV_IDS", "DriftworldEnv", "DriftworldVectorEnv", "register_envs", "spread_seeds"]

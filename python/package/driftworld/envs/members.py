@@ -172,19 +172,18 @@ class Members:
             return [seed_in_range(one, "index") for one in index]
         return [seed_in_range(index, "index")] * self.num_envs
 
+    def origin(self, env: int) -> dict[str, Any]:
+        """Where an environment's world comes from."""
+        keys = ("task_id", "variant_id", "seed", "index", "world_hash")
+        return dict(zip(keys, self.batch.origin(env), strict=True))
+
     def reset_info(self, env: int) -> dict[str, Any]:
         """What a reset says of an environment; notes in which variant it is."""
-        task, variant, seed, index, world_hash = self.batch.origin(env)
-        self._name(env, variant)
-        info: dict[str, Any] = {
-            "task_id": task,
-            "variant_id": variant,
-            "seed": seed,
-            "index": index,
-            "world_hash": world_hash,
-            "events": (),
-            "is_success": False,
-        }
+        origin = self.origin(env)
+        self._name(env, origin["variant_id"])
+        if not self._options.names_variant:
+            del origin["task_id"], origin["variant_id"]
+        info: dict[str, Any] = {**origin, "events": (), "is_success": False}
         if self.label_in_info:
             info["task_label"] = self.label_number(env)
         return info

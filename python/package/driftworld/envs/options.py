@@ -16,7 +16,7 @@ from typing import Annotated, Any, TypedDict, TypeVar, get_args, get_type_hints
 import numpy as np
 
 from driftworld import _native
-from driftworld._literals import ActionsName, DepthForm, LabelPlace, Modality, RendererName
+from driftworld._literals import ActionsName, DepthForm, InfoFor, LabelPlace, Modality, RendererName
 from driftworld.errors import SpecError
 
 #: What an observation may hold.
@@ -25,6 +25,7 @@ DEFAULT_MODALITIES: tuple[Modality, ...] = ("rgb", "depth", "state")
 DEPTHS: tuple[DepthForm, ...] = get_args(DepthForm)
 RENDERERS: tuple[RendererName, ...] = get_args(RendererName)
 LABELS: tuple[LabelPlace, ...] = get_args(LabelPlace)
+INFOS: tuple[InfoFor, ...] = get_args(InfoFor)
 ACTIONS: dict[str, str] = {"normalized": "normalized", "continuous": "continuous", "discrete": "default_discrete"}
 
 
@@ -45,6 +46,7 @@ class EnvOptions(TypedDict, total=False):
     renderer: Annotated[RendererName, "cpu"]
     drift: Annotated[Mapping[str, Any] | None, None]
     task_label: Annotated[LabelPlace, "none"]
+    info: Annotated[InfoFor, "agent"]
     assets: Annotated[str | PathLike[str] | Iterable[str | PathLike[str]], ()]
 
 
@@ -79,6 +81,7 @@ class Options:
         depth: The numbers of depth images.
         renderer: What draws.
         task_label: Where the agent is told which variant it is in.
+        names_variant: Whether infos name task and variant.
         libraries: The bytes of asset libraries, the last one first in search.
         overrides: What is laid over each world, as JSON.
     """
@@ -88,6 +91,7 @@ class Options:
     depth: str
     renderer: str
     task_label: str
+    names_variant: bool
     libraries: tuple[bytes, ...]
     overrides: str
 
@@ -111,6 +115,7 @@ class Options:
         _one_of("depth", options["depth"], DEPTHS)
         _one_of("renderer", options["renderer"], RENDERERS)
         _one_of("task_label", task_label, LABELS)
+        _one_of("info", options["info"], INFOS)
         if task_label == "obs" and not is_dict:
             raise ValueError(
                 'task_label: found "obs", expected modalities to be a list: a single image has no room for it'
@@ -128,6 +133,7 @@ class Options:
             depth=options["depth"],
             renderer=options["renderer"],
             task_label=task_label,
+            names_variant=task_label != "none" or options["info"] == "full",
             libraries=library_bytes(options["assets"]),
             overrides=json.dumps({name: value for name, value in overrides.items() if value is not None}),
         )

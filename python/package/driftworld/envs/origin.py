@@ -252,6 +252,23 @@ def world_text(world: Any) -> tuple[str, str]:
     raise TypeError(f"world: found {type(world).__name__}, expected a path, JSON text or a dictionary")
 
 
+def spread_seeds(seed: int, num_envs: int) -> list[int]:
+    """The seeds of environments that step together: the seed itself for the first, and for each other one drawn from it.
+
+    They are not added up: environments under seeds s and s + 1 share no world. The first ones are the same however many there are.
+
+    Args:
+        seed: What all of them follow from, 0 to 2⁶³ − 1.
+        num_envs: How many environments, from 1.
+
+    Returns:
+        One seed for each environment, each 0 to 2⁶³ − 1.
+    """
+    first = seed_in_range(seed)
+    drawn = np.random.SeedSequence(first).generate_state(num_envs, np.uint64) >> np.uint64(1)
+    return [first, *drawn[1:].tolist()]
+
+
 def seed_in_range(seed: Any, option: str = "seed") -> int:
     """A seed or index as a whole number that worlds can be drawn under."""
     try:

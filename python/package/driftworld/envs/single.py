@@ -45,6 +45,7 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         renderer: ``"cpu"``, ``"gpu"``, or ``"auto"`` for a graphics card if there is one.
         drift: The way to another variant, such as ``{"to": "dusk", "episodes": 500, "schedule": "cosine"}``.
         task_label: Whether the agent is told its variant: ``"none"``, in ``"info"``, or as a part of ``"obs"``, one-hot.
+        info: ``"agent"``: infos name task and variant only where ``task_label`` tells the agent. ``"full"``: always, for records.
         assets: Paths of asset libraries (``driftworld assets pack``).
         render_mode: ``"rgb_array"``, ``"human"`` or ``None``.
         render_size: Height and width of rendered pictures.
@@ -103,8 +104,9 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
                 this episode alone, such as what :meth:`state` said.
 
         Returns:
-            The first observation, and the info: ``task_id``, ``variant_id``, ``seed``, ``index``, ``world_hash`` (of the world as it
-            was drawn, before options were laid over it), ``events`` and ``is_success``.
+            The first observation, and the info: ``seed``, ``index``, ``world_hash`` (of the world as it was drawn, before options
+            were laid over it), ``events`` and ``is_success``; ``task_id`` and ``variant_id`` with a ``task_label`` or
+            ``info="full"``.
         """
         teach_conversions()
         members = self._members
@@ -168,6 +170,10 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         """The world as it is now, as a document: a reset to it (``options={"world": …}``) goes on to the last bit."""
         state: dict[str, Any] = json.loads(self._members.batch.state(0))
         return state
+
+    def origin(self) -> dict[str, Any]:
+        """Where the world comes from, for records and not for agents: ``task_id``, ``variant_id``, ``seed``, ``index``, ``world_hash``."""
+        return self._members.origin(0)
 
     def warnings(self) -> list[str]:
         """What the world asks for that is not as its author may think, such as a class that nobody knows."""

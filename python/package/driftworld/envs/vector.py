@@ -19,7 +19,7 @@ from driftworld.envs.autoreset import AutoresetMode, autoreset_mode_of
 from driftworld.envs.conversion import teach_conversions
 from driftworld.envs.members import Members
 from driftworld.envs.options import EnvOptions, Options, refuse_unknown, shows_options, whole
-from driftworld.envs.origin import Home, seed_in_range
+from driftworld.envs.origin import Home, seed_in_range, spread_seeds
 from driftworld.envs.picture import Camera
 from driftworld.errors import EnvError
 
@@ -161,7 +161,8 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         """Begins an episode in every environment, or in some.
 
         Args:
-            seed: Environment *i* draws under ``seed`` + *i*, or under the seed of its own from a list; ``None`` goes on.
+            seed: The environments draw under :func:`driftworld.spread_seeds` of it, the first under the seed itself; or each under
+                its own from a list; ``None`` goes on. (Gymnasium's own loops add 0, 1, 2 and so on, so that two seeds share worlds.)
             options: As for :meth:`DriftworldEnv.reset`, for all environments; and ``"variants"``, a variant for each; ``"index"`` may
                 be a list; a ``"queue"`` is dealt out like cards, episode after episode; ``"reset_mask"``, bool (num_envs,), says
                 which environments begin, the others go on.
@@ -216,7 +217,7 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         if seed is None:
             return [None] * self.num_envs
         if isinstance(seed, (int, np.integer)):
-            return [seed_in_range(int(seed) + env) for env in range(self.num_envs)]
+            return list(spread_seeds(int(seed), self.num_envs))
         if isinstance(seed, str) or not isinstance(seed, Iterable):
             raise ValueError(f"seed: found {seed!r}, expected a whole number, or a list of them")
         seeds = list(seed)

@@ -1,0 +1,219 @@
+"""Living a curriculum in many environments at the same time: what ``lifetimes.py`` does in one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from driftworld import _native
+from driftworld.envs import DriftworldVectorEnv
+from driftworld.errors import CurriculumError
+from driftworld.lifetimes import Rollout, first_world, one_hot, origin, refuse_options, with_label
+
+if TYPE_CHECKING:
+    from driftworld.curricula import Experience
+
+
+@dataclass(frozen=True, slots=True)
+class VectorTransition:
+    """One step of all environments, as an agent learns from it. Arrays are the agent's to keep; the first axis is the environment.
+
+    Attributes:
+        observations: What was seen before.
+        actions: What was done.
+        rewards: What that paid, float64 ``(num_envs,)``.
+        terminated: Whether what happened ended the episode, bool ``(num_envs,)``.
+        truncated: Whether a limit of steps did, bool ``(num_envs,)``.
+        next_observations: What was seen then: of an episode that has ended its last observation, never the first of the next.
+        active: Which environments run an experience, bool ``(num_envs,)``; near the end of a block some have none. What the others
+            hold is to be left out.
+        infos: What the step said beside it.
+    """
+
+    observations: Any
+    actions: Any
+    rewards: NDArray[np.float64]
+    terminated: NDArray[np.bool_]
+    truncated: NDArray[np.bool_]
+    next_observations: Any
+    active: NDArray[np.bool_]
+    infos: dict[str, Any]
+
+
+@runtime_checkable
+class VectorAgent(Protocol):
+    """Who lives a curriculum in many environments at the same time (:meth:`driftworld.Curriculum.run_vector`).
+
+    It may have ``name``, ``policy``, ``save`` and ``load`` as :class:`driftworld.Agent` has them, and ``begin(env, label, seed)``, called
+    before each experience with the number of its environment, and what ``Agent.begin`` gets.
+    """
+
+    def act(self, observations: Any, infos: dict[str, Any]) -> Any:
+        """Actions for all environments, ``(num_envs,)`` rows or ``(num_envs, numbers)``.
+
+        ``infos`` holds ``active`` and ``is_success``, bool ``(num_envs,)``, and what the scenario permits, as ``Agent.act`` gets it.
+        """
+
+    def learn(self, transition: VectorTransition) -> None:
+        """Learns from a step of all; only called in learning blocks."""
+
+    def freeze(self, frozen: bool) -> None:
+        """As :meth:`driftworld.Agent.freeze`. In a block that is run once more, the same experiences share the same batches."""
+
+
+class VectorRollout(Rollout):
+    """An agent in its environments. The native loop asks for one experience after the other, and gets those that ran meanwhile.
+
+    Args:
+        plan: Where the worlds are from.
+        agent: Who acts.
+        num_envs: How many environments.
+        num_threads: Threads that step them.
+        experience: Finds an experience by its number.
+        options: Options of the environments.
+        paired_chance: Give every evaluation of a world the same number in all blocks.
+        watch: Told each experience and what it paid, as soon as it is logged; may say ``False`` to end there.
+        save: Saves the agent after so many experiences.
+    """
+
+    def __init__(
+        self,
+        plan: _native.Plan,
+        agent: VectorAgent,
+        num_envs: int,
+        num_threads: int,
+        experience: Callable[[int], Experience],
+        options: Mapping[str, Any],
+        paired_chance: bool,
+        watch: Callable[[Experience, float], Any] | None,
+        save: Callable[[int], None],
+    ) -> None:
+        refuse_options(options)
+        # Views: what an agent gets is copied once, when all environments that end have begun anew.
+        envs = DriftworldVectorEnv(
+            world=first_world(plan), num_envs=num_envs, num_threads=num_threads, copy=False, **options
+        )
+        super().__init__(agent, envs, experience, options, paired_chance, watch, save)
+        self._plan, self._num_envs, self._full = plan, num_envs, options.get("info") == "full"
+        label = plan.experience_spec(0)["label"]
+        self._labelled, self._observed = label is not None, label is not None and bool(label["observed"])
+        if label is not None and self._observed:
+            with_label(envs.single_observation_space, label)
+        self._labels: list[Mapping[str, Any] | None] = [label] * num_envs
+        self._names: list[dict[str, Any]] = [{}] * num_envs
+        self._has_begun = self._learning = False
+        self._abandon()
+
+    def _abandon(self) -> None:
+        """Forgets what is under way."""
+        self._next, self._block = 0, -1
+        self._running: list[int | None] = [None] * self._num_envs
+        self._over: dict[int, tuple[float, bool, int, bool]] = {}
+        self._earned = np.zeros(self._num_envs)
+        self._steps = np.zeros(self._num_envs, dtype=np.int64)
+        self._observations: Any = None
+        self._success = np.zeros(self._num_envs, dtype=np.bool_)
+        self._events = np.empty(self._num_envs, dtype=object)
+        self._events.fill(())
+
+    def begin_block(self, learning: bool) -> None:
+        """Before the first experience of a block."""
+        self._abandon()
+        super().begin_block(learning)
+
+    def experience(
+        self, number: int, world: _native.Stream, time: tuple[float, int, float]
+    ) -> tuple[float, bool, int, float, bool]:
+        """One experience, which may have run while earlier ones were asked for: as :meth:`driftworld.lifetimes.Rollout.experience`."""
+        if number not in self._over and number not in self._running:
+            # The first of a block; or one that is run once more: from here on, so that batches are what they were.
+            self._abandon()
+            now = self._experience(number)
+            self._next, self._block, self._learning = number, now.block, now.learning
+        while number not in self._over:
+            self._step()
+        reward, success, steps, truncated = self._over.pop(number)
+        return reward, success, steps, self._seconds(steps, time), truncated
+
+    def _step(self) -> None:
+        """One step of all environments, after those without an experience got the next ones of the block."""
+        begun = [self._begin(env) for env in range(self._num_envs) if self._running[env] is None]
+        if any(begun):
+            self._observations = self._copied()
+        active = np.array([number is not None for number in self._running])
+        observations = self._observations
+        actions = self._agent.act(observations, self._permitted(active))
+        self._seen, rewards, terminated, truncated, infos = self._env.step(actions)
+        rewards, terminated, truncated = rewards * active, terminated & active, truncated & active
+        self._success, self._events = infos["is_success"] & active, infos["events"]
+        self._earned += rewards
+        self._steps += active
+        self._observations = self._copied()
+        if self._learning:
+            following = self._observations
+            self._agent.learn(
+                VectorTransition(
+                    observations, actions, rewards, terminated, truncated, following, active, self._permitted(active)
+                )
+            )
+        for env in np.flatnonzero(terminated | truncated).tolist():
+            number = self._running[env]
+            assert number is not None, "an environment that is active runs an experience"
+            cut_off = bool(truncated[env] and not terminated[env])
+            self._over[number] = (float(self._earned[env]), bool(self._success[env]), int(self._steps[env]), cut_off)
+            self._running[env] = None
+
+    def _begin(self, env: int) -> bool:
+        """Begins the block's next experience in an environment; whether there is one."""
+        while self._next < len(self._plan):
+            now = self._experience(self._next)
+            if now.block != self._block:
+                return False
+            self._next += 1
+            try:
+                world = self._plan.world(now.number)
+            except CurriculumError as error:
+                if error.code != "curriculum/world":
+                    raise
+                # The native loop leaves it out, or refuses it, when its turn comes.
+                continue
+            begin = getattr(self._agent, "begin", None)
+            if begin is not None:
+                begin(env, *self._beginning(now))
+            # Before the first step every environment needs a world.
+            chosen = {"reset_mask": np.arange(self._num_envs) == env} if self._has_begun else {}
+            self._seen, infos = self._env.reset(options={"world": world, **chosen})
+            self._has_begun, self._success[env], self._events[env] = True, False, ()
+            if self._full:
+                self._names[env] = {**origin(now), "world_hash": infos["world_hash"][env]}
+            self._labels[env] = now.label
+            self._running[env], self._earned[env], self._steps[env] = now.number, 0.0, 0
+            return True
+        return False
+
+    def _copied(self) -> Any:
+        """The present observations as the agent's own, with labels where they hold them."""
+        seen = self._seen
+        if not isinstance(seen, Mapping):
+            return seen.copy()
+        copied = {kind: view.copy() for kind, view in seen.items()}
+        if self._observed:
+            copied["task"] = np.stack([one_hot(label) for label in self._labels if label is not None])
+        return copied
+
+    def _permitted(self, active: NDArray[np.bool_]) -> dict[str, Any]:
+        """What the agent is given beside observations."""
+        infos = {"active": active, "is_success": self._success.copy()}
+        if self._labelled and not self._observed:
+            infos["task_label"] = np.array([-1 if label is None else label["number"] for label in self._labels])
+        if self._full:
+            infos["events"] = self._events.copy()
+            infos |= {
+                name: np.array([names.get(name) for names in self._names], dtype=object)
+                for name in ("task_id", "variant_id", "seed", "index", "world_hash")
+            }
+        return infos

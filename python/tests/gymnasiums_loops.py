@@ -1,0 +1,20 @@
+"""Gymnasium's own vector environments, as tests compare ours with them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import driftworld
+
+
+def spread(envs: Any) -> Any:
+    """Lets a reset under one seed spread it as ours do; by themselves, Gymnasium's add 0, 1, 2 and so on."""
+    reset = envs.reset
+
+    def reset_spread(*, seed: Any = None, options: dict[str, Any] | None = None) -> Any:
+        if isinstance(seed, int):
+            seed = driftworld.spread_seeds(seed, envs.num_envs)
+        return reset(seed=seed, options=options)
+
+    envs.reset = reset_spread
+    return envs

@@ -1,0 +1,111 @@
+"""What an agent is given beside its observations: nothing that names variant or world, unless it is asked for."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import driftworld
+import gymnasium as gym
+import numpy as np
+import pytest
+from driftworld import Curriculum
+from small_lifetime import SMALL, Circler
+
+LABELS = ["none", "info", "observation"]
+#: All that names a variant, a world, or what is in it.
+NAMES = ["task_id", "variant_id", "seed", "index", "world_hash", "events"]
+
+
+class Listener(Circler):
+    """Keeps all that it is given beside observations, with whether it was frozen."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.given: list[dict[str, Any]] = []
+
+    def act(self, observation: Any, info: dict[str, Any]) -> Any:
+        self.given.append(info | {"frozen": self.frozen[-1]})
+        return super().act(observation, info)
+
+    def learn(self, transition: driftworld.Transition) -> None:
+        super().learn(transition)
+        self.given.append(transition.info | {"frozen": False})
+
+
+def curriculum(variants: list[str], seed: int, label: str) -> Curriculum:
+    """Learning and evaluation in each variant, three steps an episode."""
+    regimes = [{"task": "find_objects", "variant": name, "count": 2, "seed": seed, "max_steps": 3} for name in variants]
+    kinds = ["learning", "evaluation", "learning", "learning"]
+    blocks = [{"type": kind, "regimes": regimes} for kind in kinds]
+    return Curriculum.from_dict({"name": "permitted", "task_label": label, "blocks": blocks})
+
+
+def given(variants: list[str], seed: int, label: str, **options: Any) -> Listener:
+    """What an agent hears in such a curriculum."""
+    listener = Listener()
+    size = {**SMALL, "modalities": ["rgb"]} if label == "observation" else SMALL
+    curriculum(variants, seed, label).run(listener, **size, **options)
+    return listener
+
+
+@pytest.mark.parametrize("label", LABELS)
+def test_what_is_given_is_a_function_of_what_is_permitted(label: str) -> None:
+    draw = np.random.default_rng(LABELS.index(label))
+    names = np.array(["blue", "red", "green", "dusk", "wide", "penalty", "slow"])
+    heard = [given(draw.choice(names, 2, replace=False).tolist(), int(draw.integers(2**31)), label) for _ in range(4)]
+    # Whatever the variants and the worlds are, whether it learns or not: the same is given, to the last key.
+    assert all(one.given == heard[0].given for one in heard)
+    wanted = {"is_success", "frozen", *(["task_label"] if label == "info" else [])}
+    assert {key for info in heard[0].given for key in info} == wanted
+    assert {info["frozen"] for info in heard[0].given} == {False, True}
+    # Boundaries between blocks of learning are not given either.
+    assert heard[0].frozen == [False, True, False]
+    if label == "none":
+        assert all(begun is None for one in heard for begun, _ in one.begun)
+
+
+@pytest.mark.parametrize("label", LABELS)
+def test_full_infos_name_what_is_lived(label: str) -> None:
+    listener = given(["blue", "red"], 5, label, info="full")
+    resets = [info for info in listener.given if "variant_id" in info]
+    assert all(key in info for info in resets for key in NAMES)
+    plan = curriculum(["blue", "red"], 5, label)
+    lived = [(one.task, one.variant, one.seed, one.index) for block in plan for one in block]
+    told = [tuple(info[key] for key in ("task_id", "variant_id", "seed", "index")) for info in resets]
+    assert told[: len(lived) // 2] == lived[: len(lived) // 2]
+
+
+def test_no_number_tells_a_world_again() -> None:
+    listener = given(["blue", "red"], 5, "none")
+    plan = curriculum(["blue", "red"], 5, "none")
+    places = [(one.block, one.index) for block in plan for one in block]
+    places[8:8] = places[4:8]  # the evaluations are run once more
+    numbers: dict[int, set[tuple[int, int | None]]] = {}
+    for place, (_, number) in zip(places, listener.begun, strict=True):
+        numbers.setdefault(number, set()).add(place)
+    assert all(len(found) == 1 for found in numbers.values())
+
+
+@pytest.mark.parametrize("where", ["none", "info", "obs"])
+@pytest.mark.parametrize("wanted", ["agent", "full"])
+def test_a_single_environment_names_its_variant_where_it_may(where: str, wanted: str) -> None:
+    options: dict[str, Any] = {"modalities": ["rgb"], "size": 8, "task_label": where, "info": wanted, "max_steps": 2}
+    names = {"task_id", "variant_id"} if where != "none" or wanted == "full" else set()
+    env = gym.make("driftworld/FindObjects-v0", variant="red", **options)
+    info = env.reset(seed=3)[1]
+    assert info.keys() & {"task_id", "variant_id"} == names
+    assert env.unwrapped.origin()["variant_id"] == "find_objects#red"  # type: ignore[attr-defined]
+    assert env.unwrapped.origin()["world_hash"] == info["world_hash"]  # type: ignore[attr-defined]
+    for mode in ("next_step", "same_step"):
+        envs = gym.make_vec(
+            "driftworld/FindObjects-v0", 2, vectorization_mode="vector_entry_point", autoreset_mode=mode, **options
+        )
+        keys = set(envs.reset(seed=3)[1])
+        for _ in range(4):
+            keys |= set(envs.step(envs.action_space.sample())[4])
+        assert keys & {"task_id", "variant_id"} == names
+
+
+def test_an_unknown_info_is_refused() -> None:
+    with pytest.raises(ValueError, match="info: found 'all', expected one of agent, full"):
+        gym.make("driftworld/FindObjects-v0", info="all")
