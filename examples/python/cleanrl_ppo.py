@@ -45,7 +45,7 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("--quick", action="store_true", help="a few updates, to see that it runs")
     arguments = parser.parse_args()
     if arguments.quick:
-        arguments.steps, arguments.num_envs, arguments.rollout = 1024, 8, 32
+        arguments.steps, arguments.num_envs, arguments.rollout, arguments.threads = 1024, 8, 32, 1
     return arguments
 
 

@@ -5,10 +5,11 @@ The sky shows which it is, and nothing else tells the learner; one policy could 
 is frozen and evaluated in both before and after each block.
 
     python examples/python/experts_and_sequential_ppo.py               # experts, lifetime, scores and the report
-    python examples/python/experts_and_sequential_ppo.py --results     # what is written down in results/
+    python examples/python/experts_and_sequential_ppo.py --seeds 1 2 3 4 5 --results   # what can be written down in results/
     python examples/python/experts_and_sequential_ppo.py --quick       # does it run?
 
-What `replay_ppo.py` changes is `Learner.learn` alone. Needs PyTorch (`pip install torch`).
+The loop is `Curriculum.run_vector`: it lives the blocks, freezes the learner, checks that evaluations change nothing, and logs.
+What `replay_ppo.py` changes is `Learner.update` alone. Needs PyTorch (`pip install torch`).
 """
 
 from __future__ import annotations
@@ -17,12 +18,11 @@ import argparse
 import json
 import os
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 import driftworld
-import gymnasium as gym
 import numpy as np
 import torch
 from record import Record, Watch, folder_of
@@ -68,44 +68,103 @@ class Rollout:
     def __init__(self, length: int, num_envs: int) -> None:
         self.images = torch.zeros((length + 1, num_envs, 64, 64, 3), dtype=torch.uint8)
         self.values = torch.zeros((length + 1, num_envs))
+        # What the last observation of an episode is worth, where one ended there.
+        self.last_values = torch.zeros((length, num_envs))
         self.log_policy = torch.zeros((length, num_envs, len(ACTIONS)))
         self.actions = torch.zeros((length, num_envs), dtype=torch.long)
         self.rewards = torch.zeros((length, num_envs))
         self.terminated = torch.zeros((length, num_envs), dtype=torch.bool)
         self.ended = torch.zeros((length, num_envs), dtype=torch.bool)
-        # False for the step after an end, which ignores its action, and for environments whose share is done.
+        # False where an environment has no experience: near the end of a block.
         self.counts = torch.zeros((length, num_envs), dtype=torch.bool)
 
     def advantages(self, trace: float = 0.95) -> torch.Tensor:
-        """Generalised advantages; `values[t + 1]` is, under NEXT_STEP, of an episode's true last observation."""
+        """Generalised advantages. What ran out of time is bootstrapped from its last observation, what terminated is not."""
         advantages = torch.zeros_like(self.rewards)
         later = torch.zeros_like(self.rewards[0])
+        following = torch.where(self.ended, self.last_values, self.values[1:])
         for t in reversed(range(len(self.rewards))):
-            surprise = self.rewards[t] + DISCOUNT * self.values[t + 1] * ~self.terminated[t] - self.values[t]
+            surprise = self.rewards[t] + DISCOUNT * following[t] * ~self.terminated[t] - self.values[t]
             later = surprise + DISCOUNT * trace * later * ~self.ended[t]
             advantages[t] = later
         return advantages
 
 
 class Learner:
-    """PPO that goes on from block to block with the same network and optimiser."""
+    """PPO that goes on from block to block with the same network and optimiser: a `driftworld.VectorAgent`.
 
-    def __init__(self, seed: int) -> None:
-        torch.manual_seed(seed)
-        self.network = Network()
+    Actions are drawn from the number that each experience begins with and from the learner's own seed, minibatches from a
+    generator of learning's own. So evaluations take nothing from learning's chance: how often one looks changes nothing that
+    is learned, and a lifetime's first block is the block of its expert.
+
+    Args:
+        seed: Of the network, the actions and the minibatches.
+        num_envs: How many environments it lives in.
+        policy: How it acts in evaluations: `"sampled"` from its policy, or `"greedy"`, the likeliest action.
+        length: Steps of each environment between updates.
+    """
+
+    #: Passes of PPO over a rollout, about four steps of the optimiser each.
+    passes = 4
+
+    def __init__(self, seed: int, num_envs: int, policy: str = "sampled", length: int = 64) -> None:
+        self.seed, self.policy, self.frozen = seed, policy, False
+        with torch.random.fork_rng(devices=[]):
+            torch.manual_seed(seed)
+            self.network = Network()
         self.optimizer = torch.optim.Adam(self.network.parameters(), lr=5e-4, eps=1e-5)
+        self.shuffles = torch.Generator().manual_seed(seed)
+        self.chances = [np.random.default_rng(seed) for _ in range(num_envs)]
+        self.rollout, self.time = Rollout(length, num_envs), 0
+        self.updates = 0
+
+    def begin(self, env: int, label: str | None, seed: int) -> None:
+        """Before an experience: its actions are drawn from its own number."""
+        self.chances[env] = np.random.default_rng([seed, self.seed])
+
+    def freeze(self, frozen: bool) -> None:
+        """Whether it is being evaluated."""
+        self.frozen = frozen
 
     @torch.no_grad()
-    def policy(self, images: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
-        """Actions drawn from the policy, its log-probabilities, and the values."""
-        log_policy, value = self.network(images)
-        return torch.distributions.Categorical(logits=log_policy).sample(), log_policy, value
+    def act(self, observations: Any, infos: dict[str, Any]) -> Any:
+        """Actions for all environments, `(num_envs,)`; in learning they are noted with what led to them."""
+        images = torch.from_numpy(observations)
+        log_policy, values = self.network(images)
+        if self.frozen and self.policy == "greedy":
+            return log_policy.argmax(dim=-1).numpy()
+        drawn = torch.tensor([chance.random() for chance in self.chances])
+        actions = (log_policy.exp().cumsum(dim=-1) < drawn[:, None]).sum(dim=-1).clamp(max=len(ACTIONS) - 1)
+        if not self.frozen:
+            rollout, t = self.rollout, self.time
+            rollout.images[t], rollout.values[t], rollout.log_policy[t] = images, values, log_policy
+            rollout.actions[t] = actions
+        return actions.numpy()
 
-    def learn(self, rollout: Rollout) -> None:
-        """Three passes of PPO over a rollout."""
+    @torch.no_grad()
+    def learn(self, transition: driftworld.VectorTransition) -> None:
+        """Notes a step; when the rollout is full, learns from it. One that is not goes on in the next block of learning."""
+        rollout, t = self.rollout, self.time
+        rollout.rewards[t] = torch.from_numpy(transition.rewards / 100.0)  # an object pays 100, or costs as much
+        rollout.terminated[t] = torch.from_numpy(transition.terminated)
+        rollout.ended[t] = torch.from_numpy(transition.terminated | transition.truncated)
+        rollout.counts[t] = torch.from_numpy(transition.active)
+        images = torch.from_numpy(transition.next_observations)
+        self.time += 1
+        is_full = self.time == len(rollout.rewards)
+        if transition.truncated.any() or is_full:
+            rollout.last_values[t] = self.network(images)[1]
+        if is_full:
+            rollout.images[-1], rollout.values[-1] = images, rollout.last_values[t]
+            with torch.enable_grad():
+                self.update(rollout)
+            self.time = 0
+
+    def update(self, rollout: Rollout) -> None:
+        """Passes of PPO over a rollout."""
         advantages = rollout.advantages()
-        for _ in range(3):
-            for part in minibatches(rollout.counts):
+        for _ in range(self.passes):
+            for part in minibatches(rollout.counts, self.shuffles):
                 self.step(self.loss(rollout, advantages, part))
 
     def loss(self, rollout: Rollout, advantages: torch.Tensor, part: torch.Tensor, clip: float = 0.2) -> torch.Tensor:
@@ -123,13 +182,39 @@ class Learner:
 
     def step(self, loss: torch.Tensor) -> None:
         """One step of the optimiser."""
+        self.updates += 1
         self.optimizer.zero_grad()
         loss.backward()  # type: ignore[no-untyped-call]
         nn.utils.clip_grad_norm_(self.network.parameters(), 0.5)
         self.optimizer.step()
 
+    def kept(self) -> dict[str, Any]:
+        """All that it is, as `save` keeps it."""
+        return {
+            "network": self.network.state_dict(), "optimizer": self.optimizer.state_dict(),
+            "shuffles": self.shuffles.get_state(), "rollout": vars(self.rollout), "time": self.time, "updates": self.updates,
+        }  # fmt: skip
 
-def minibatches(counts: torch.Tensor, size: int = 512) -> Iterator[torch.Tensor]:
+    def save(self, path: Path) -> None:
+        """Keeps it: a lifetime that was interrupted goes on with the same call."""
+        torch.save(self.kept(), path)
+
+    def load(self, path: Path) -> None:
+        """Brings it back."""
+        self.take(torch.load(path))
+
+    def take(self, kept: dict[str, Any]) -> None:
+        """Becomes what was kept."""
+        self.network.load_state_dict(kept["network"])
+        self.optimizer.load_state_dict(kept["optimizer"])
+        self.shuffles.set_state(kept["shuffles"])
+        vars(self.rollout).update(kept["rollout"])
+        self.time, self.updates = kept["time"], kept["updates"]
+
+
+def minibatches(
+    counts: torch.Tensor, chance: torch.Generator | None = None, size: int = 512
+) -> Iterator[torch.Tensor]:
     """The steps that count, by their place in the flattened rollout, shuffled and dealt out in parts of about one size.
 
     None is much smaller than the others: the deviation of a single advantage is no number, and one such step would make the
@@ -137,121 +222,71 @@ def minibatches(counts: torch.Tensor, size: int = 512) -> Iterator[torch.Tensor]
     """
     places = counts.flatten().nonzero().squeeze(-1)
     if len(places) > 1:
-        yield from places[torch.randperm(len(places))].tensor_split(max(1, round(len(places) / size)))
+        yield from places[torch.randperm(len(places), generator=chance)].tensor_split(max(1, round(len(places) / size)))
 
 
-class Lives:
-    """A vector environment in which the experiences of a block are lived: each world of its range, once."""
-
-    def __init__(self, num_envs: int, length: int = 64) -> None:
-        self.envs = gym.make_vec(
-            "driftworld/Task-v0", num_envs, vectorization_mode="vector_entry_point", task=TASK, **OPTIONS
-        )
-        self.num_envs, self.length = num_envs, length
-
-    def live(self, learner: Learner, regime: dict[str, Any], learning: bool) -> Iterator[dict[str, Any]]:
-        """Lives a regime's experiences, each environment a share of them, all at the same time; the numbers of each as it ends."""
-        count, first = regime["count"], regime["first_index"]
-        if count % self.num_envs:
-            raise ValueError(f"count: found {count}, expected a multiple of the {self.num_envs} environments")
-        share = count // self.num_envs
-        observation, info = self.envs.reset(
-            seed=[regime["seed"]] * self.num_envs,
-            options={"variant": regime["variant"], "index": [first + env * share for env in range(self.num_envs)]},
-        )
-        world, left = info["index"].copy(), np.full(self.num_envs, share)
-        reward, steps = np.zeros(self.num_envs), np.zeros(self.num_envs, dtype=np.int64)
-        just_ended = np.zeros(self.num_envs, dtype=bool)
-        image = torch.tensor(observation)
-        while left.any():
-            rollout = Rollout(self.length, self.num_envs)
-            for t in range(self.length):
-                counts = ~just_ended & (left > 0)
-                action, rollout.log_policy[t], rollout.values[t] = learner.policy(image)
-                rollout.images[t], rollout.actions[t], rollout.counts[t] = image, action, torch.tensor(counts)
-                observation, pay, terminated, truncated, info = self.envs.step(action.numpy())
-                image = torch.tensor(observation)
-                rollout.rewards[t] = torch.tensor(pay / 100.0)  # an object pays 100, or costs as much
-                rollout.terminated[t] = torch.tensor(terminated)
-                just_ended = terminated | truncated
-                rollout.ended[t] = torch.tensor(just_ended)
-                reward, steps = reward + pay * counts, steps + counts
-                for env in np.flatnonzero(just_ended & counts):
-                    yield {
-                        "reward": reward[env], "success": float(info["is_success"][env]),
-                        "episode_step_count": int(steps[env]), "truncated": float(truncated[env]), "world_index": int(world[env]),
-                    }  # fmt: skip
-                    reward[env], steps[env] = 0.0, 0
-                    left[env], world[env] = left[env] - 1, world[env] + 1
-                if not left.any():
-                    break
-            if learning:
-                rollout.images[t + 1], rollout.values[t + 1] = image, learner.policy(image)[2]
-                learner.learn(rollout)
-
-
-def scenario(order: tuple[str, ...], seed: int, arguments: argparse.Namespace, evaluate: bool = True) -> dict[str, Any]:
-    """Learning blocks in an order; evaluations of all variants around each, on worlds that are not learned from."""
+def scenario(
+    order: tuple[str, ...], seed: int, arguments: argparse.Namespace, evaluated: tuple[str, ...] = VARIANTS
+) -> dict[str, Any]:
+    """Learning blocks in an order; evaluations around each, on worlds that are not learned from."""
 
     def regime(variant: str, count: int, seed: int, first: int = 0) -> dict[str, Any]:
         return {"task": TASK, "variant": variant, "count": count, "seed": seed, "first_index": first}
 
     evaluation = {
         "type": "evaluation",
-        "regimes": [regime(variant, arguments.evaluate, seed + 1000) for variant in VARIANTS],
+        "regimes": [regime(variant, arguments.evaluate, seed + 1000) for variant in evaluated],
     }
-    blocks: list[dict[str, Any]] = [evaluation] if evaluate else []
+    blocks: list[dict[str, Any]] = [evaluation] if evaluated else []
     for place, variant in enumerate(order):
         # The worlds of a variant go on where its last block left off.
         first = order[:place].count(variant) * arguments.learn
         blocks.append({"type": "learning", "regimes": [regime(variant, arguments.learn, seed, first)]})
-        blocks += [evaluation] if evaluate else []
+        blocks += [evaluation] if evaluated else []
     plan = {"version": 1, "name": "_".join(["two_skies", *order]), "blocks": blocks}
     driftworld.validate(plan, "scenario", check=True)
     return plan
 
 
-COLUMNS = ["reward", "success", "episode_step_count", "truncated", "world_index"]
-
-
 def lifetime(learner: Learner, plan: dict[str, Any], folder: Path, arguments: argparse.Namespace) -> dict[str, Any]:
     """Lives a scenario and logs every experience, or finds it lived; what its blocks came to, and how long they took."""
     agent, kept = folder.name, folder.with_suffix(".json")
+    made_with = {"scenario": plan, "policy": learner.policy, "num_envs": arguments.num_envs}
     if kept.exists() and not arguments.again:
         done: dict[str, Any] = json.loads(kept.read_text(encoding="utf-8"))
-        if done["scenario"] == plan:
+        if done["made_with"] == made_with:
             print(f"{agent}: found in {folder}, not lived again (--again does)")
             return done
     shutil.rmtree(folder, ignore_errors=True)
-    watch, lives = Watch(), Lives(arguments.num_envs)
-    told: list[dict[str, Any]] = []
-    learned = experience = 0
-    info = {"scenario_type": "custom", "agent": agent, "scenario": plan}
-    with driftworld.LogWriter(folder, COLUMNS, scenario_info=info) as log:
-        for number, block in enumerate(plan["blocks"]):
-            learning = block["type"] == "learning"
-            for regime in block["regimes"]:
-                rewards: list[float] = []
-                for numbers in lives.live(learner, regime, learning):
-                    log.write(
-                        block_num=number, exp_num=experience, block_type="train" if learning else "test",
-                        task_name=f"twoskies_{regime['variant']}",
-                        task_params={key: regime[key] for key in ("task", "variant", "seed")}, **numbers,
-                    )  # fmt: skip
-                    experience += 1
-                    rewards.append(numbers["reward"])
-                learned += len(rewards) * learning
-                told.append({
-                    "block": number, "learning": learning, "variant": regime["variant"], "experiences": learned,
-                    "reward": round(float(np.mean(rewards[-200:])), 1),
-                })  # fmt: skip
-                print(
-                    f"{agent}: block {number} {block['type']:10} {regime['variant']}: reward {told[-1]['reward']:6.1f}",
-                    flush=True,
-                )
-    done = {"scenario": plan, "seconds": round(watch.seconds, 1), "load_before": watch.load, "told": told}
+    watch = Watch()
+    learner.name = agent
+    curriculum = driftworld.Curriculum.from_dict(plan)
+    summary = curriculum.run_vector(learner, folder, num_envs=arguments.num_envs, **OPTIONS)
+    told = blocks_of(summary, folder)
+    for row in told:
+        print(f"{agent}: block {row['block']} {row['kind']:10} {row['variant']}: reward {row['reward']:6.1f}", flush=True)
+    done = {
+        "made_with": made_with, "seconds": round(watch.seconds, 1), "load_before": watch.load, "told": told,
+        "optimiser_steps": learner.updates,
+    }  # fmt: skip
     kept.write_text(json.dumps(done, indent=2) + "\n", encoding="utf-8")
     return done
+
+
+def blocks_of(summary: driftworld.Summary, folder: Path) -> list[dict[str, Any]]:
+    """What each regime came to: its mean reward, of learning that of its last 200 experiences, and how many were learned from."""
+    log = driftworld.read_log(folder)
+    told, learned, first = [], 0, 0
+    for regime in summary.regimes:
+        rewards = log["reward"][first : first + regime["experiences"]]
+        first += regime["experiences"]
+        learned += regime["experiences"] * (regime["kind"] == "learning")
+        told.append({
+            "block": regime["block"], "kind": regime["kind"], "variant": regime["variant"].partition("#")[2],
+            "experiences": learned, "reward": round(float(np.mean(rewards[-200:])), 1),
+            "success": round(regime["success_rate"], 3),
+        })  # fmt: skip
+    return told
 
 
 def parse_arguments(program: str, text: str) -> argparse.Namespace:
@@ -263,6 +298,9 @@ def parse_arguments(program: str, text: str) -> argparse.Namespace:
         "--evaluate", type=int, default=128, help="of each variant in an evaluation block (default: 128)"
     )
     parser.add_argument("--num-envs", type=int, default=32)
+    parser.add_argument(
+        "--policy", choices=["sampled", "greedy"], default="sampled", help="how it acts in evaluations (default: sampled)"
+    )
     parser.add_argument("--threads", type=int, default=2, help="of PyTorch")
     parser.add_argument("--logs", type=Path, default=Path("logs/two_skies"), help="where the lifetimes are logged")
     parser.add_argument("--again", action="store_true", help="live also what is in the logs already")
@@ -272,68 +310,59 @@ def parse_arguments(program: str, text: str) -> argparse.Namespace:
     parser.add_argument("--quick", action="store_true", help="a few experiences, to see that it runs")
     arguments = parser.parse_args()
     if arguments.quick:
-        arguments.learn, arguments.evaluate, arguments.num_envs = 16, 8, 8
+        arguments.learn, arguments.evaluate, arguments.num_envs, arguments.threads = 16, 8, 8, 1
     torch.set_num_threads(arguments.threads)
     return arguments
 
 
-def live_experts(arguments: argparse.Namespace) -> dict[Path, dict[str, Any]]:
-    """An expert for each variant and seed, with as much experience as the lifetime's blocks of it; where they are logged."""
+MakeLearner = Callable[[int, int, str], Learner]
+
+
+def live_experts(name: str, make: MakeLearner, arguments: argparse.Namespace) -> dict[Path, dict[str, Any]]:
+    """Experts of the same learner, one for each variant and seed, with as much experience as the lifetime's blocks of it.
+
+    They are evaluated where the lifetime is. Returns where they are logged.
+    """
     lived = {}
     for seed in arguments.seeds:
         for variant in VARIANTS:
-            folder = arguments.logs / f"expert_{variant}_{seed}"
-            lived[folder] = lifetime(
-                Learner(seed),
-                scenario(tuple(block for block in ORDER if block == variant), seed, arguments, evaluate=False),
-                folder,
-                arguments,
-            )
+            folder = arguments.logs / f"expert_{name}_{variant}_{seed}"
+            order = tuple(block for block in ORDER if block == variant)
+            plan = scenario(order, seed, arguments, evaluated=(variant,))
+            lived[folder] = lifetime(make(seed, arguments.num_envs, arguments.policy), plan, folder, arguments)
     return lived
 
 
-def live_lifetimes(
-    name: str, learner: Callable[[int], Learner], arguments: argparse.Namespace
-) -> dict[Path, dict[str, Any]]:
+def live_lifetimes(name: str, make: MakeLearner, arguments: argparse.Namespace) -> dict[Path, dict[str, Any]]:
     """A lifetime over all variants for each seed; where they are logged."""
     lived = {}
     for seed in arguments.seeds:
-        folder = arguments.logs / f"{name}_{seed}"
-        lived[folder] = lifetime(learner(seed), scenario(ORDER, seed, arguments), folder, arguments)
+        folder, plan = arguments.logs / f"{name}_{seed}", scenario(ORDER, seed, arguments)
+        lived[folder] = lifetime(make(seed, arguments.num_envs, arguments.policy), plan, folder, arguments)
     return lived
 
 
-def evaluations(lived: dict[Path, dict[str, Any]], label: str = "") -> list[dict[str, Any]]:
-    """A row for each variant and evaluation: its reward, the mean over lifetimes."""
-    told = [row for done in lived.values() for row in done["told"] if not row["learning"]]
-    places = sorted({(row["variant"], row["experiences"]) for row in told})
+def evaluations(lived: Mapping[Path, dict[str, Any]], label: str = "") -> list[dict[str, Any]]:
+    """A row for each lifetime, variant and evaluation: none is averaged away."""
     return [
         {
-            "run": f"{variant}{label}",
-            "experiences": experiences,
-            "reward": round(
-                float(
-                    np.mean(
-                        [
-                            row["reward"]
-                            for row in told
-                            if (row["variant"], row["experiences"]) == (variant, experiences)
-                        ]
-                    )
-                ),
-                1,
-            ),
+            "run": f"{row['variant']}{label}" + ("" if len(lived) == 1 else f", {folder.name.rpartition('_')[2]}"),
+            "experiences": row["experiences"],
+            "reward": row["reward"],
+            "success": row["success"],
         }
-        for variant, experiences in places
+        for folder, done in lived.items()
+        for row in sorted(done["told"], key=lambda row: row["variant"])
+        if row["kind"] == "evaluation"
     ]
 
 
-def levels(experts: dict[Path, dict[str, Any]]) -> dict[str, float]:
-    """What the experts earned in their last 200 experiences of learning, mean over seeds."""
+def levels(experts: Mapping[Path, dict[str, Any]]) -> dict[str, float]:
+    """What the experts earned when they were last evaluated, mean over seeds."""
     earned: dict[str, list[float]] = {}
     for done in experts.values():
         earned.setdefault(f"expert, {done['told'][-1]['variant']}", []).append(done["told"][-1]["reward"])
-    return {name: round(float(np.mean(rewards)), 1) for name, rewards in earned.items()}
+    return {f"{name} (n = {len(each)})": round(float(np.mean(each)), 1) for name, each in earned.items()}
 
 
 def scores_table(**agents: driftworld.Metrics) -> list[dict[str, Any]]:
@@ -357,7 +386,7 @@ def show(rows: list[dict[str, Any]]) -> None:
 def main() -> None:
     """Experts first, then the lifetimes, then the scores."""
     arguments = parse_arguments(__file__, __doc__ or "")
-    experts = live_experts(arguments)
+    experts = live_experts("sequential", Learner, arguments)
     lived = live_lifetimes("sequential_ppo", Learner, arguments)
     scores = driftworld.metrics(list(lived), ste=list(experts))
     table = scores_table(sequential=scores)
@@ -370,14 +399,23 @@ def main() -> None:
         Record(
             title="Experts, and a sequential PPO",
             text=f"By day blue cubes pay and red ones cost, in the evening it is the other way round. One PPO lives {', '.join(ORDER)}, "
-            f"{arguments.learn} experiences each, and is evaluated in both around each block; experts have the same experience of one variant "
-            "alone, and their levels are what they earned in their last 200. The curve is of the evaluations.",
-            settings={**vars(arguments), **OPTIONS}, variants=[f"{TASK}#{variant}" for variant in VARIANTS], seeds=arguments.seeds,
+            f"{arguments.learn} experiences each, and is evaluated in both around each block ({arguments.evaluate} worlds each, {arguments.policy} "
+            f"policy); experts are the same learner with the same experience of one variant alone, evaluated in the same worlds. "
+            f"{said_of(arguments.seeds)} The curve is of the evaluations.",
+            settings={**vars(arguments), **OPTIONS, "optimiser_steps": [done["optimiser_steps"] for done in lived.values()]},
+            variants=[f"{TASK}#{variant}" for variant in VARIANTS], seeds=arguments.seeds,
             curve=evaluations(lived), lines=levels(experts), table=table, axes=("experiences", "reward"),
-            labels=("experiences learned from", "reward in evaluations, mean over lifetimes"),
+            labels=("experiences learned from", "reward in evaluations, each lifetime"),
             seconds=sum(done["seconds"] for done in everything), load_before=everything[0]["load_before"],
-            files={"curriculum.json": everything[-1]["scenario"], "two_skies.json": driftworld.TaskSpec.load(TASK).to_dict(), "scores.json": scores.lifetimes, "report.html": page},
+            files={"curriculum.json": everything[-1]["made_with"]["scenario"], "two_skies.json": driftworld.TaskSpec.load(TASK).to_dict(), "scores.json": scores.lifetimes, "report.html": page},
         ).write(arguments.results)  # fmt: skip
+
+
+def said_of(seeds: list[int]) -> str:
+    """How many lifetimes there are, and what that carries."""
+    if len(seeds) == 1:
+        return "One lifetime (n = 1): what it shows of this seed need not hold for another, and no difference can be told from luck."
+    return f"n = {len(seeds)} lifetimes, each with worlds and a network of its own."
 
 
 if __name__ == "__main__":

@@ -2,17 +2,20 @@
 
 After Rolnick et al. 2019 (arXiv:1811.11682): a reservoir keeps a fair sample of everything that was ever lived; beside each
 update from new experience stands one from as much of the old, by V-trace, and *cloning* holds policy and values near what they
-were at that time. Nothing tells the learner where one task ends and another begins. Network, worlds, curriculum and counts are
-those of `experts_and_sequential_ppo.py`, whose logs this one is compared with; what is not there yet is lived first.
+were at that time. Nothing tells the learner where one task ends and another begins. Network, worlds, curriculum, counts and
+steps of the optimiser are those of `experts_and_sequential_ppo.py`, whose logs this one is compared with; what is not there yet is
+lived first. Its experts rehearse as well: a comparison with them is about the order of tasks, not about the learner.
 
     python examples/python/replay_ppo.py               # lifetimes, scores and the report that compares
-    python examples/python/replay_ppo.py --results     # what is written down in results/
+    python examples/python/replay_ppo.py --seeds 1 2 3 4 5 --results     # what can be written down in results/
     python examples/python/replay_ppo.py --quick       # does it run?
 
 Needs PyTorch (`pip install torch`).
 """
 
 from __future__ import annotations
+
+from typing import Any
 
 import driftworld
 import numpy as np
@@ -28,7 +31,9 @@ from experts_and_sequential_ppo import (
     levels,
     live_experts,
     live_lifetimes,
+    minibatches,
     parse_arguments,
+    said_of,
     scores_table,
     show,
 )
@@ -64,18 +69,31 @@ class Reservoir:
 
 
 class ReplayLearner(Learner):
-    """PPO on what is new, V-trace and cloning on what is old, half and half."""
+    """PPO on what is new, V-trace and cloning on what is old: three passes over the one, and as many steps as a fourth on the other."""
 
-    def __init__(self, seed: int, capacity: int = 256) -> None:
-        super().__init__(seed)
+    passes = 3
+
+    def __init__(self, seed: int, num_envs: int, policy: str = "sampled", length: int = 64, capacity: int = 256) -> None:
+        super().__init__(seed, num_envs, policy, length)
         self.reservoir = Reservoir(capacity, seed)
 
-    def learn(self, rollout: Rollout) -> None:
-        """As PPO does; then as many steps from the reservoir, in portions of eight stretches."""
-        super().learn(rollout)
+    def update(self, rollout: Rollout) -> None:
+        """As PPO does, with one pass less; in its place steps from the reservoir, each from eight stretches."""
+        super().update(rollout)
         self.reservoir.offer(rollout)
-        for _ in range(rollout.rewards.shape[1] // 8):
+        for _ in minibatches(rollout.counts, self.shuffles):
             self.step(self.replay_loss(self.reservoir.draw(8)))
+
+    def kept(self) -> dict[str, Any]:
+        """With the reservoir."""
+        reservoir = self.reservoir
+        chance = reservoir.chance.bit_generator.state
+        return super().kept() | {"reservoir": (reservoir.offered, reservoir.stretches, chance)}
+
+    def take(self, kept: dict[str, Any]) -> None:
+        """With the reservoir."""
+        super().take(kept)
+        self.reservoir.offered, self.reservoir.stretches, self.reservoir.chance.bit_generator.state = kept["reservoir"]
 
     def replay_loss(
         self, old: dict[str, torch.Tensor], policy_cloning: float = 0.1, value_cloning: float = 0.05
@@ -107,14 +125,16 @@ def v_trace(
     """V-trace targets and policy-gradient advantages (Espeholt et al. 2018, eq. 1), ratios cut off at 1; `(length, count)` each."""
     ratio = log_ratio.exp().clamp(max=1.0)
     goes_on, bootstraps = ~old["ended"], ~old["terminated"]
+    # Of an episode that ran out of time there is no later observation: what its last one was worth then stands in its place.
+    following = torch.where(old["ended"], old["last_values"], values[1:])
     targets, advantages = torch.zeros_like(ratio), torch.zeros_like(ratio)
     later = torch.zeros_like(ratio[0])
     for t in reversed(range(len(ratio))):
-        surprise = ratio[t] * (old["rewards"][t] + DISCOUNT * values[t + 1] * bootstraps[t] - values[t])
+        surprise = ratio[t] * (old["rewards"][t] + DISCOUNT * following[t] * bootstraps[t] - values[t])
         # `later` is how far the next step's target lies above its value; nothing of it crosses the end of an episode.
         carried = later * goes_on[t]
         advantages[t] = ratio[t] * (
-            old["rewards"][t] + DISCOUNT * (values[t + 1] + carried) * bootstraps[t] - values[t]
+            old["rewards"][t] + DISCOUNT * (following[t] + carried) * bootstraps[t] - values[t]
         )
         later = surprise + DISCOUNT * ratio[t] * carried
         targets[t] = values[t] + later
@@ -124,13 +144,13 @@ def v_trace(
 def main() -> None:
     """The lifetimes with replay, and what they are compared with."""
     arguments = parse_arguments(__file__, __doc__ or "")
-    experts = live_experts(arguments)
+    ordinary, experts = live_experts("sequential", Learner, arguments), live_experts("replay", ReplayLearner, arguments)
     without = live_lifetimes("sequential_ppo", Learner, arguments)
     lived = live_lifetimes("replay_ppo", ReplayLearner, arguments)
     compared = driftworld.metrics(list(lived), against=list(without), ste=list(experts))
     table = scores_table(
         replay=driftworld.metrics(list(lived), ste=list(experts)),
-        sequential=driftworld.metrics(list(without), ste=list(experts)),
+        sequential=driftworld.metrics(list(without), ste=list(ordinary)),
     )
     show(table)
     page = driftworld.report(list(lived), against=list(without), ste=list(experts), title="PPO with experience replay")
@@ -138,15 +158,18 @@ def main() -> None:
     print(f"the report is {arguments.logs / 'replay_ppo.html'}")
     if arguments.results:
         runs = list(lived.values())
+        steps = {"replay": [run["optimiser_steps"] for run in runs], "sequential": [run["optimiser_steps"] for run in without.values()]}
         Record(
             title="PPO with experience replay",
             text="The learner, the worlds and the curriculum of `experts_and_sequential_ppo.py`, with a reservoir of 256 stretches of 64 steps "
-            "in the manner of CLEAR. The curve is of the evaluations; the time is that of the lifetimes with replay alone.",
-            settings={**vars(arguments), **OPTIONS}, variants=[f"{TASK}#{variant}" for variant in VARIANTS], seeds=arguments.seeds,
+            "in the manner of CLEAR, and as many steps of the optimiser. Each learner is compared with experts of its own kind. "
+            f"Evaluations by the {arguments.policy} policy. {said_of(arguments.seeds)} The curve is of the evaluations; the time is that of the "
+            "lifetimes with replay alone.",
+            settings={**vars(arguments), **OPTIONS, "optimiser_steps": steps}, variants=[f"{TASK}#{variant}" for variant in VARIANTS], seeds=arguments.seeds,
             curve=evaluations(lived, ", replay") + evaluations(without, ", sequential"), lines=levels(experts), table=table, axes=("experiences", "reward"),
-            labels=("experiences learned from", "reward in evaluations, mean over lifetimes"),
+            labels=("experiences learned from", "reward in evaluations, each lifetime"),
             seconds=sum(done["seconds"] for done in runs), load_before=runs[0]["load_before"],
-            files={"two_skies.json": driftworld.TaskSpec.load(TASK).to_dict(), "curriculum.json": runs[0]["scenario"], "scores.json": compared.lifetimes, "improvement.json": compared.improvement},
+            files={"two_skies.json": driftworld.TaskSpec.load(TASK).to_dict(), "curriculum.json": runs[0]["made_with"]["scenario"], "scores.json": compared.lifetimes, "improvement.json": compared.improvement},
         ).write(arguments.results)  # fmt: skip
 
 

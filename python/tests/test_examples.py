@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import ast
 import importlib.util
 import json
@@ -12,6 +13,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import driftworld
 import gymnasium
 import pytest
 from driftworld import _native
@@ -138,7 +140,8 @@ def test_replay_is_compared_with_the_lifetime_without_and_lives_nothing_twice(tm
     assert "perf_maintenance_mrlep" in first
     assert (tmp_path / "logs" / "two_skies" / "replay_ppo.html").exists()
     second = run(FOLDER / "replay_ppo.py", "--quick", cwd=tmp_path)
-    assert second.count("not lived again") == 4
+    # Two experts of each of the two learners, and the two lifetimes.
+    assert second.count("not lived again") == 6
     assert second.splitlines()[-10:] == first.splitlines()[-10:]
 
 
@@ -168,7 +171,102 @@ def one_environment(**columns: list[Any]) -> dict[str, Any]:
 
 
 @learners
-@pytest.mark.parametrize("name", ["cleanrl_ppo", "experts_and_sequential_ppo"])
+def test_advantages_bootstrap_an_episodes_last_observation() -> None:
+    torch = pytest.importorskip("torch", reason="the learners are networks")
+    module = load("experts_and_sequential_ppo")
+    rollout = module.Rollout(4, 1)
+    # An episode of two steps, the first step of the next, and a step of an environment without an experience.
+    columns = one_environment(
+        rewards=[1.0, 2.0, 4.0, 8.0],
+        values=[10.0, 20.0, 40.0, 50.0, 60.0],
+        last_values=[0.0, 30.0, 0.0, 0.0],
+        ended=[False, True, False, False],
+        terminated=[False, False, False, False],
+    )
+    for column, values in columns.items():
+        setattr(rollout, column, values)
+    discount = module.DISCOUNT
+    last = 2.0 + discount * 30.0 - 20.0  # what the episode's last observation is worth: not 40, which is the next one's first
+    first = 1.0 + discount * 20.0 - 10.0 + discount * 0.5 * last
+    assert rollout.advantages(trace=0.5)[:2].flatten().tolist() == pytest.approx([first, last])
+    rollout.terminated = torch.tensor([[False], [True], [False], [False]])
+    assert rollout.advantages(trace=0.5)[1].item() == pytest.approx(2.0 - 20.0)
+
+
+def arguments_of_a_lifetime(**changes: Any) -> argparse.Namespace:
+    """A few experiences of the examples' curriculum; the second evaluation is of other worlds than the first block."""
+    return argparse.Namespace(**{"learn": 12, "evaluate": 4, "num_envs": 4, "again": True, "policy": "sampled", **changes})
+
+
+def lived(folder: Path, learner: Any, order: tuple[str, ...], **changes: Any) -> tuple[Any, dict[str, list[Any]]]:
+    """A learner through the examples' curriculum: itself, and the rewards and kinds of its log."""
+    module = load("experts_and_sequential_ppo")
+    arguments = arguments_of_a_lifetime(**changes)
+    evaluated = changes.get("evaluated", module.VARIANTS)
+    module.lifetime(learner, module.scenario(order, 1, arguments, evaluated), folder, arguments)
+    log = driftworld.read_log(folder)
+    return learner, {name: log[name].tolist() for name in ("block_type", "task_name", "reward", "episode_step_count")}
+
+
+@learners
+@pytest.mark.parametrize("name", ["Learner", "ReplayLearner"])
+def test_how_often_one_evaluates_changes_nothing_that_is_learned(name: str, tmp_path: Path) -> None:
+    torch = pytest.importorskip("torch", reason="the learners are networks")
+    torch.set_num_threads(1)
+    make = getattr(load("experts_and_sequential_ppo"), name, None) or getattr(load("replay_ppo"), name)
+    ways: dict[str, dict[str, Any]] = {
+        "often": {}, "more": {"evaluate": 9}, "never": {"evaluated": ()}, "greedy": {"policy": "greedy"},
+    }  # fmt: skip
+    learned, networks = [], []
+    for way, changes in ways.items():
+        learner = make(3, 4, changes.get("policy", "sampled"), length=32)
+        learner, log = lived(tmp_path / way, learner, ("day", "evening"), **changes)
+        learned.append([row for kind, row in zip(log["block_type"], log["reward"], strict=True) if kind == "train"])
+        networks.append(torch.cat([parameter.flatten() for parameter in learner.network.parameters()]))
+        assert learner.updates > 0
+    assert len(learned[0]) == 24 and len(set(learned[0])) > 2
+    assert all(rewards == learned[0] for rewards in learned)
+    assert all(torch.equal(network, networks[0]) for network in networks)
+
+
+@learners
+def test_a_lifetime_begins_as_its_expert_does_and_takes_as_many_steps_with_replay(tmp_path: Path) -> None:
+    torch = pytest.importorskip("torch", reason="the learners are networks")
+    torch.set_num_threads(1)
+    sequential, replay = load("experts_and_sequential_ppo").Learner, load("replay_ppo").ReplayLearner
+    expert, first = lived(tmp_path / "expert", sequential(3, 4, length=32), ("day",), evaluated=("day",))
+    lifetime, whole = lived(tmp_path / "lifetime", sequential(3, 4, length=32), ("day", "evening"))
+    rehearsing, _ = lived(tmp_path / "replay", replay(3, 4, length=32), ("day", "evening"))
+
+    def block(log: dict[str, list[Any]]) -> list[Any]:
+        rows = zip(log["block_type"], log["task_name"], log["reward"], log["episode_step_count"], strict=True)
+        return [row for row in rows if row[0] == "train" and row[1].endswith("day")]
+
+    assert block(first) == block(whole) and len(block(first)) == 12
+    assert lifetime.updates == rehearsing.updates > expert.updates > 0
+    # The policy is in the log: it is another run with another one.
+    info = json.loads((tmp_path / "lifetime" / "scenario_info.json").read_text(encoding="utf-8"))
+    assert info["made_from"]["policy"] == "sampled"
+
+
+@learners
+def test_a_learner_that_was_kept_goes_on_as_it_was(tmp_path: Path) -> None:
+    torch = pytest.importorskip("torch", reason="the learners are networks")
+    torch.set_num_threads(1)
+    load("experts_and_sequential_ppo")
+    make = load("replay_ppo").ReplayLearner
+    learner, _ = lived(tmp_path / "log", make(3, 4, length=32), ("day",))
+    learner.save(tmp_path / "kept")
+    again = make(4, 4, length=32)
+    again.load(tmp_path / "kept")
+    assert again.time == learner.time and again.updates == learner.updates
+    for one, other in zip(learner.network.parameters(), again.network.parameters(), strict=True):
+        assert torch.equal(one, other)
+    assert again.reservoir.draw(2)["rewards"].tolist() == learner.reservoir.draw(2)["rewards"].tolist()
+
+
+@learners
+@pytest.mark.parametrize("name", ["cleanrl_ppo"])
 def test_advantages_bootstrap_what_ran_out_of_time_and_nothing_that_terminated(name: str) -> None:
     torch = pytest.importorskip("torch", reason="the learners are networks")
     module = load(name)
@@ -183,8 +281,8 @@ def test_advantages_bootstrap_what_ran_out_of_time_and_nothing_that_terminated(n
     )
     for column, values in columns.items():
         setattr(rollout, column, values)
-    settings = {"discount": 0.5, "trace": 0.5} if name == "cleanrl_ppo" else {"trace": 0.5}
-    discount = settings.get("discount", getattr(module, "DISCOUNT", None))
+    settings = {"discount": 0.5, "trace": 0.5}
+    discount = settings["discount"]
     last = 2.0 + discount * 30.0 - 20.0  # the observation after the end is the episode's last: worth 30
     first = 1.0 + discount * 20.0 - 10.0 + discount * 0.5 * last
     assert rollout.advantages(**settings)[:2].flatten().tolist() == pytest.approx([first, last])
@@ -201,6 +299,7 @@ def test_v_trace_on_the_policy_itself_gives_discounted_returns() -> None:
         rewards=[1.0, 2.0, 0.0, 4.0],
         ended=[False, True, False, False],
         terminated=[False, True, False, False],
+        last_values=[0.0, 6.0, 0.0, 0.0],
     )
     values = torch.tensor([[3.0], [5.0], [7.0], [9.0], [11.0]])
     targets, advantages = module.v_trace(old, values, torch.zeros(4, 1))
