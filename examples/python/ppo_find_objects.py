@@ -3,9 +3,12 @@
 The learner sees what the agent sees and nothing else; beside it stand an agent that acts at random and the scripted expert,
 which knows the map and walks from cube to cube, both in the same environment.
 
-    python examples/python/ppo_find_objects.py                         # one seed
-    python examples/python/ppo_find_objects.py --seeds 1 2 --results   # what is written down in results/ppo_find_objects
-    python examples/python/ppo_find_objects.py --quick                 # does it run?
+    python examples/python/ppo_find_objects.py                               # one seed
+    python examples/python/ppo_find_objects.py --seeds 1 2 3 4 5 --results   # what can be written down in results/
+    python examples/python/ppo_find_objects.py --quick                       # does it run?
+
+Seeds are independent: their environments share no world. All agents are evaluated in the same worlds, by
+`Curriculum.run_vector`, once with actions sampled from the policy and once greedily.
 
 Needs `pip install "driftworld[sb3]"`.
 """
@@ -21,7 +24,7 @@ import gymnasium as gym
 import numpy as np
 import torch
 from driftworld.adapters.sb3 import make_vec_env
-from record import Record, Watch, folder_of
+from record import EVALUATION_SEED, Record, Watch, evaluated, folder_of, held_out
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
@@ -35,8 +38,6 @@ ACTIONS = [[10, 0, 0], [10, 27, 0], [10, -27, 0], [3, 90, 0], [3, -90, 0]]
 OPTIONS: dict[str, Any] = {
     "modalities": "rgb", "size": 64, "actions": ACTIONS, "interact": False, "frame_skip": 5, "max_steps": 60,
 }  # fmt: skip
-# The worlds that nobody learns from.
-EVALUATION_SEED = 1_000_000
 
 
 class SmallCnn(BaseFeaturesExtractor):
@@ -104,31 +105,18 @@ def learn(seed: int, arguments: argparse.Namespace) -> tuple[PPO, list[dict[str,
     return model, curve.rows
 
 
-def evaluate(arguments: argparse.Namespace, model: PPO | None) -> dict[str, float]:
-    """Reward and success on worlds that were never learned from; without a model an agent that acts at random."""
-    envs = make_vec_env(ID, arguments.num_envs, seed=EVALUATION_SEED, variant=arguments.variant, **OPTIONS)
-    envs.action_space.seed(EVALUATION_SEED)
-    observation = envs.reset()
-    # As many of each environment, else short episodes would count more often than long ones.
-    wanted = -(-arguments.episodes // arguments.num_envs)
-    episodes: list[list[tuple[float, bool]]] = [[] for _ in range(arguments.num_envs)]
-    while min(map(len, episodes)) < wanted:
+def evaluate(arguments: argparse.Namespace, model: PPO | None, policy: str, seed: int = 0) -> dict[str, float]:
+    """Reward and success in worlds that were never learned from; without a model of an agent that acts at random."""
+
+    @torch.no_grad()
+    def probabilities(observations: Any) -> Any:
         if model is None:
-            actions = np.array([envs.action_space.sample() for _ in range(arguments.num_envs)])
-        else:
-            actions, _ = model.predict(observation, deterministic=False)  # type: ignore[arg-type]
-        observation, _, ended, infos = envs.step(actions)
-        for env in np.flatnonzero(ended):
-            episodes[env].append((infos[env]["episode"]["r"], infos[env]["is_success"]))
-    envs.close()
-    counted = [episode for row in episodes for episode in row[:wanted]][: arguments.episodes]
-    rewards = np.array([reward for reward, _ in counted])
-    return {
-        "reward": round(float(rewards.mean()), 1),
-        "deviation": round(float(rewards.std()), 1),
-        "success": round(float(np.mean([success for _, success in counted])), 3),
-        "episodes": len(counted),
-    }
+            return np.full((len(observations), len(ACTIONS)), 1.0 / len(ACTIONS))
+        images, _ = model.policy.obs_to_tensor(observations)
+        return model.policy.get_distribution(images).distribution.probs.numpy()  # type: ignore[union-attr, attr-defined]
+
+    worlds = held_out(f"find_objects#{arguments.variant}", arguments.episodes)
+    return evaluated(worlds, probabilities, policy, seed, arguments.num_envs, OPTIONS)
 
 
 def expert(arguments: argparse.Namespace, **changes: Any) -> dict[str, float]:
@@ -167,6 +155,7 @@ def parse_arguments() -> argparse.Namespace:
     arguments = parser.parse_args()
     if arguments.quick:
         arguments.steps, arguments.num_envs, arguments.rollout, arguments.episodes = 1024, 8, 64, 8
+        arguments.threads = 1
     return arguments
 
 
@@ -178,7 +167,7 @@ def main() -> None:
     lines = {
         "scripted expert": expert(arguments)["reward"],
         "scripted expert that acts in every time step": expert(arguments, frame_skip=1, max_steps=300)["reward"],
-        "random": evaluate(arguments, None)["reward"],
+        "random": evaluate(arguments, None, "sampled")["reward"],
     }
     for name, level in lines.items():
         print(f"{name}: reward {level}")
@@ -186,32 +175,69 @@ def main() -> None:
     table = []
     for seed in arguments.seeds:
         model, rows = learn(seed, arguments)
-        scored = evaluate(arguments, model)
-        print(
-            f"seed {seed}: on worlds never learned from, reward {scored['reward']}, found all {scored['success']:.0%}"
-        )
         curve += rows
-        table.append({
-            "seed": seed,
-            "steps": rows[-1]["steps"],
-            "minutes": round(rows[-1]["seconds"] / 60, 1),
-            "reward of the last 100 episodes": rows[-1]["reward"],
-            f"reward in {scored['episodes']} worlds never learned from": scored["reward"],
-            "standard deviation": scored["deviation"],
-            "of them with all cubes found": scored["success"],
-        })  # fmt: skip
-    if arguments.results:
-        Record(
-            title="PPO finds objects",
-            text="Stable-Baselines3's PPO on `driftworld/FindObjects-v0` from 64 × 64 colour pictures. Five cubes pay 100 each, each "
-            "action costs 0.1 and is held for five time steps; 60 actions make an episode. The expert knows the map; one holds its "
-            "actions as long, the other acts anew in each of 300 time steps.",
-            settings={"id": ID, **vars(arguments), **OPTIONS, "evaluation_seed": EVALUATION_SEED},
-            variants=[f"find_objects#{arguments.variant}"],
-            seeds=[*arguments.seeds, EVALUATION_SEED],
-            curve=curve, lines=lines, table=table, seconds=watch.seconds, load_before=watch.load,
-            labels=("steps of learning, each held for five time steps", "reward of an episode, mean of the last 100"),
-        ).write(arguments.results)  # fmt: skip
+        for policy in ("sampled", "greedy"):
+            scored = evaluate(arguments, model, policy, seed)
+            print(
+                f"seed {seed}, {policy}: on worlds never learned from, reward {scored['reward']}, found all {scored['success']:.0%}",
+                flush=True,
+            )
+            table.append({
+                "seed": seed,
+                "policy": policy,
+                "steps": rows[-1]["steps"],
+                "minutes": round(rows[-1]["seconds"] / 60, 1),
+                f"reward in {scored['episodes']} worlds never learned from": scored["reward"],
+                "standard deviation of episodes": scored["deviation"],
+                "of them with all cubes found": scored["success"],
+            })  # fmt: skip
+        if arguments.results:
+            # What there is so far: a run that is broken off leaves the seeds that were done.
+            write_down(arguments, curve, table, lines, watch)
+
+
+#: Student's t for intervals of 95 %, for means of 2, 3, … 10 numbers.
+T_95 = (12.71, 4.30, 3.18, 2.78, 2.57, 2.45, 2.36, 2.31, 2.26)
+
+
+def over_seeds(table: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The table, and below it the means of 2 to 10 seeds with their 95 % intervals."""
+    rows = list(table)
+    for policy in ("sampled", "greedy"):
+        own = [row for row in table if row["policy"] == policy]
+        if not 2 <= len(own) <= len(T_95) + 1:
+            continue
+        mean = {"seed": f"mean of {len(own)}, 95 %", "policy": policy, "steps": own[0]["steps"], "minutes": ""}
+        for name in list(own[0])[len(mean) :]:
+            numbers = np.array([row[name] for row in own])
+            reach = T_95[len(own) - 2] * numbers.std(ddof=1) / len(own) ** 0.5
+            digits = 3 if name.startswith("of them") else 1
+            mean[name] = f"{numbers.mean():.{digits}f} ± {reach:.{digits}f}"
+        rows.append(mean)
+    return rows
+
+
+def write_down(
+    arguments: argparse.Namespace,
+    curve: list[dict[str, Any]],
+    table: list[dict[str, Any]],
+    lines: dict[str, float],
+    watch: Watch,
+) -> None:
+    """Writes the result down, with the seeds that are done."""
+    done = list(dict.fromkeys(row["seed"] for row in table))
+    Record(
+        title="PPO finds objects",
+        text="Stable-Baselines3's PPO on `driftworld/FindObjects-v0` from 64 × 64 colour pictures. Five cubes pay 100 each, each "
+        "action costs 0.1 and is held for five time steps; 60 actions make an episode. The expert knows the map; one holds its "
+        f"actions as long, the other acts anew in each of 300 time steps. n = {len(done)}: seeds of learning, which share no world. All are "
+        "evaluated in the same worlds; an interval is over seeds (95 %), and says nothing of other worlds of evaluation.",
+        settings={"id": ID, **vars(arguments), "seeds": done, **OPTIONS, "evaluation_seed": EVALUATION_SEED},
+        variants=[f"find_objects#{arguments.variant}"],
+        seeds=[*done, EVALUATION_SEED],
+        curve=curve, lines=lines, table=over_seeds(table), seconds=watch.seconds, load_before=watch.load,
+        labels=("steps of learning, each held for five time steps", "reward of an episode, mean of the last 100"),
+    ).write(arguments.results)  # fmt: skip
 
 
 if __name__ == "__main__":

@@ -15,11 +15,15 @@ import os
 import platform
 import sys
 import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+# The worlds that nobody learns from.
+EVALUATION_SEED = 1_000_000
 FOLDER = Path(__file__).parent / "results"
 # Settings that say where and whether things are kept: each reader's own.
 _WHERE = ("logs", "results", "quick", "again", "threads", "address")
@@ -42,6 +46,68 @@ class Watch:
     def seconds(self) -> float:
         """Seconds since."""
         return time.perf_counter() - self._began
+
+
+class Evaluated:
+    """A policy that is evaluated: a `driftworld.VectorAgent` that learns nothing.
+
+    Args:
+        probabilities: The probabilities of the actions, `(num_envs, actions)`, for observations.
+        policy: `"sampled"` from them, or `"greedy"`, the likeliest.
+        seed: Of its actions, beside the number that each experience begins with.
+        num_envs: How many environments it acts in.
+    """
+
+    def __init__(self, probabilities: Callable[[Any], Any], policy: str, seed: int, num_envs: int) -> None:
+        self.probabilities, self.policy, self.seed = probabilities, policy, seed
+        self.chances = [np.random.default_rng(seed) for _ in range(num_envs)]
+
+    def begin(self, env: int, label: str | None, seed: int) -> None:
+        """Before an experience: its actions are drawn from its own number, and from nothing that learning draws from."""
+        self.chances[env] = np.random.default_rng([seed, self.seed])
+
+    def act(self, observations: Any, infos: dict[str, Any]) -> Any:
+        """Actions for all environments, `(num_envs,)`."""
+        probabilities = np.asarray(self.probabilities(observations), dtype=np.float64)
+        if self.policy == "greedy":
+            return probabilities.argmax(axis=1)
+        drawn = np.array([chance.random() for chance in self.chances])
+        return np.minimum((probabilities.cumsum(axis=1) < drawn[:, None]).sum(axis=1), probabilities.shape[1] - 1)
+
+    def learn(self, transition: Any) -> None:
+        """Nothing is learned."""
+
+    def freeze(self, frozen: bool) -> None:
+        """It always is."""
+
+
+def held_out(variant: str, episodes: int) -> Any:
+    """A curriculum of one evaluation, in worlds 0 to `episodes` - 1 under the seed that nobody learns from."""
+    import driftworld
+
+    task, _, name = variant.partition("#")
+    regime = {"task": task, "variant": name, "count": episodes, "seed": EVALUATION_SEED}
+    blocks = [{"type": "evaluation", "regimes": [regime]}]
+    return driftworld.Curriculum.from_dict({"version": 1, "name": "held_out", "blocks": blocks})
+
+
+def evaluated(
+    curriculum: Any, probabilities: Callable[[Any], Any], policy: str, seed: int, num_envs: int, options: dict[str, Any]
+) -> dict[str, float]:
+    """Reward, its standard deviation over episodes, and the share of episodes that were solved."""
+    rewards: list[float] = []
+    summary = curriculum.run_vector(
+        Evaluated(probabilities, policy, seed, num_envs),
+        num_envs=num_envs,
+        watch=lambda experience, reward: rewards.append(reward),
+        **options,
+    )
+    return {
+        "reward": round(float(np.mean(rewards)), 1),
+        "deviation": round(float(np.std(rewards)), 1),
+        "success": round(summary.regimes[0]["success_rate"], 3),
+        "episodes": len(rewards),
+    }
 
 
 @dataclass
