@@ -11,7 +11,8 @@ fn task() -> Arc<TaskSpec> {
     let text = r#"{ "version": 2, "name": "yard", "parameters": {
             "pay": { "role": "variant", "type": "number", "affects": ["R"], "range": [0, 10], "default": 1 } },
         "world": { "max_steps": 3 },
-        "groups": [{ "name": "cubes", "count": 1, "object": { "class": "cube", "touch_reward": "$pay" } }],
+        "groups": [{ "name": "cubes", "count": 1, "object": { "class": "cube" },
+            "placement": { "box": { "low": [10, 10], "high": [18, 18] } } }],
         "variants": { "one": {}, "two": { "pay": 2 }, "three": { "pay": 3 } } }"#;
     TaskSpec::from_json("yard.json", text).unwrap_or_else(|error| panic!("{error}"))
 }
@@ -29,8 +30,8 @@ fn audited(options: Design) -> Vec<AuditRow> {
     };
     let folder = tempfile::tempdir().expect("there is a folder for temporary files");
     let short = AuditOptions {
-        lifetimes: 20,
-        repeats: 10,
+        lifetimes: 10,
+        repeats: 8,
     };
     let rows = audit(&scenario, &mut plan, folder.path(), short).unwrap_or_else(|error| panic!("{error}"));
     let left = std::fs::read_dir(folder.path()).expect("the folder is there").count();
