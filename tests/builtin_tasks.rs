@@ -168,15 +168,24 @@ fn each_task_has_rewards_that_turn_what_is_best_and_show_it_within_an_episode() 
         let found = elements(&request).unwrap_or_else(|error| panic!("{error}"));
         let tried = &found.variants[0];
         assert_eq!(tried.elements(), [Element::R], "{task}: {a} and {b}");
-        let optimum = tried.optimum.unwrap_or_else(|| panic!("{task}: {b} changes the reward"));
-        assert!(optimum.turned && optimum.regret > 50.0, "{task}: {a} and {b}: {optimum:?}");
+        let optimum = tried
+            .optimum
+            .unwrap_or_else(|| panic!("{task}: {b} changes the reward"));
+        assert!(
+            optimum.turned && optimum.regret > 50.0,
+            "{task}: {a} and {b}: {optimum:?}"
+        );
         // Who lives in one as an expert of the other is paid otherwise before half of the tour is over.
         for index in 0..WORLDS {
             let (expected, actions) = replayed(&variant(a), index, None);
             let (paid, _) = replayed(&variant(b), index, Some(&actions));
             let first = expected.iter().zip(&paid).position(|(expected, paid)| expected != paid);
             let first = first.unwrap_or_else(|| panic!("{task}, world {index}: {a} and {b} pay the same"));
-            assert!(first * 2 < expected.len(), "{task}, world {index}: step {first} of {}", expected.len());
+            assert!(
+                first * 2 < expected.len(),
+                "{task}, world {index}: step {first} of {}",
+                expected.len()
+            );
         }
     }
 }

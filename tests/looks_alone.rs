@@ -84,7 +84,12 @@ fn walk(world: &World, seed: u64) -> Vec<Action> {
     // Past the side of a thing, not into its middle alone: there bodies differ most.
     let script: String = tags
         .iter()
-        .map(|tag| format!("near {tag} 2 90\nstep 2 4 {} 0\nstep 6 6 0 0\ntouch {tag} 60\nstep 3 -4 30 0\n", 40 - (seed as i64 % 5) * 20))
+        .map(|tag| {
+            format!(
+                "near {tag} 2 90\nstep 2 4 {} 0\nstep 6 6 0 0\ntouch {tag} 60\nstep 3 -4 30 0\n",
+                40 - (seed as i64 % 5) * 20
+            )
+        })
         .collect();
     let script = format!("{script}repeat\n");
     let mut visitor = ScriptedAgent::parse("visitor", &script).unwrap_or_else(|error| panic!("{error}"));
@@ -145,7 +150,10 @@ fn where_looks_alone_differ_the_same_actions_lead_along_the_same_path() {
         assert!(found.len() >= 3, "{name}: {found:?}");
         for (variant, touched, differ) in found {
             assert_eq!(differ, 0, "{variant}: of {WORLDS} walks {differ} differ");
-            assert!(touched * 2 > WORLDS as usize, "{variant}: only {touched} walks touched anything");
+            assert!(
+                touched * 2 > WORLDS as usize,
+                "{variant}: only {touched} walks touched anything"
+            );
         }
     }
 }

@@ -126,7 +126,10 @@ impl Scene {
         let class_id = self.catalogue.class_number(&class);
         self.highest_class = self.highest_class.max(class_id);
         let asset = self.catalogue.asset(&class, &object.model);
-        let body = object.body_model.as_ref().map(|model| self.catalogue.asset(&class, model));
+        let body = object
+            .body_model
+            .as_ref()
+            .map(|model| self.catalogue.asset(&class, model));
         self.items.push(Item {
             body: body.unwrap_or_else(|| Arc::clone(&asset)),
             asset,

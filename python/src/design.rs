@@ -82,7 +82,9 @@ fn request(tasks: Vec<String>, options: &Options<'_>) -> Result<DesignRequest> {
         tolerance: options.number("tolerance")?,
         steps: options.whole("steps")?,
         lifetimes: options.whole("lifetimes")?,
-        hold_out: options.list("hold_out", "a list of names of variants")?.unwrap_or_default(),
+        hold_out: options
+            .list("hold_out", "a list of names of variants")?
+            .unwrap_or_default(),
         experts: options.flag("experts")?,
         controls: options.path("controls")?.is_some(),
         worlds: options.whole("worlds")?.unwrap_or(usual.worlds),

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use crate::curriculum::{AuditOptions, AuditRow, audit};
 use crate::scenarios::{Missing, ScenarioFile};
 use crate::table::table;
-use driftworld_atomic_files::ScratchFolder;
 use clap::Args;
+use driftworld_atomic_files::ScratchFolder;
 use driftworld_text::ShownPath;
 use serde_json::json;
 
@@ -52,8 +52,10 @@ impl Audit {
         for path in &self.scenarios {
             let file = ScenarioFile::read(path, &mut output::warning)?;
             let folder = ScratchFolder::new(".driftworld-audit-", &std::env::temp_dir())?;
-            let mut plan =
-                |scenario: &_| file.with_scenario(scenario).plan(Missing::StandIn, &mut output::warning);
+            let mut plan = |scenario: &_| {
+                file.with_scenario(scenario)
+                    .plan(Missing::StandIn, &mut output::warning)
+            };
             let rows = audit(&file.scenario, &mut plan, folder.path(), options)?;
             failed += rows.iter().filter(|row| row.passed == Some(false)).count();
             if self.json {

@@ -111,7 +111,15 @@ pub(crate) fn shown(found: &ElementsOutcome) -> String {
         ]
     };
     let headings = [
-        "variant", "declared", "measured", "best changes", "worlds", "episodes", "steps", "looks", "verdict",
+        "variant",
+        "declared",
+        "measured",
+        "best changes",
+        "worlds",
+        "episodes",
+        "steps",
+        "looks",
+        "verdict",
     ];
     let rows = found.variants.iter().map(row).collect();
     format!(

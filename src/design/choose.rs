@@ -154,7 +154,9 @@ impl DesignRequest {
         let mut named = tasks::variants_of(&self.tasks)?;
         let held_out = tasks::variants_of(&self.hold_out)?;
         let is_held_out = |task: &str, variant: &Variant| {
-            held_out.iter().any(|(other, held)| other == task && held.name() == variant.name())
+            held_out
+                .iter()
+                .any(|(other, held)| other == task && held.name() == variant.name())
         };
         named.retain(|(task, variant)| !is_held_out(task, variant));
         if named.is_empty() {

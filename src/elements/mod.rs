@@ -120,7 +120,13 @@ impl Trial {
         outcome.idle = self.idle(base, other, &outcome)?;
         let pays_otherwise = outcome.declared.contains(&Element::R) || outcome.elements().contains(&Element::R);
         if pays_otherwise {
-            outcome.optimum = Some(Optimum::tried(base, other, self.seed, self.num_worlds, &self.experiment.catalogue)?);
+            outcome.optimum = Some(Optimum::tried(
+                base,
+                other,
+                self.seed,
+                self.num_worlds,
+                &self.experiment.catalogue,
+            )?);
         }
         outcome.judge();
         Ok(outcome)

@@ -390,11 +390,25 @@ fn lifetimes_have_their_own_worlds_and_experts_what_their_lifetime_has() {
     let folder = scratch();
     let into = |name: &str| folder.path().join(name);
     let (lifetimes, experts) = (into("lifetimes"), into("experts"));
-    let arguments = ["--hold-out", park("#dusk"), "--learn", "4", "--form", "dispersed", "--lifetimes", "2"];
+    let arguments = [
+        "--hold-out",
+        park("#dusk"),
+        "--learn",
+        "4",
+        "--form",
+        "dispersed",
+        "--lifetimes",
+        "2",
+    ];
     let folders = ["--experts", text(&experts), "-o", text(&lifetimes)];
     let two = [park("#blue"), park("#red"), park("#dusk")];
     let output = curriculum(&[&two[..], &arguments, &folders].concat());
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
     let lives = ["curriculum-1", "curriculum-2"].map(|name| read(&lifetimes.join(format!("{name}.json"))));
     let worlds = |scenario: &Value, kind: &str| -> std::collections::BTreeSet<String> {
         let world = |regime: &&Value| format!("{} {} {}", name(regime), regime["seed"], regime["first_index"]);
@@ -404,12 +418,19 @@ fn lifetimes_have_their_own_worlds_and_experts_what_their_lifetime_has() {
         assert!(worlds(&lives[0], kind).is_disjoint(&worlds(&lives[1], kind)), "{kind}");
     }
     assert!(!learned(&lives[0]).contains(&"dusk".to_owned()));
-    assert!(regimes(&lives[0], "evaluation").iter().any(|regime| name(regime) == "dusk"));
+    assert!(
+        regimes(&lives[0], "evaluation")
+            .iter()
+            .any(|regime| name(regime) == "dusk")
+    );
     let red = read(&experts.join("curriculum-2-red.json"));
     assert_eq!(learned(&red), ["red"; 3]);
     assert!(worlds(&lives[1], "learning").is_superset(&worlds(&red, "learning")));
     assert!(worlds(&lives[1], "evaluation").is_superset(&worlds(&red, "evaluation")));
-    assert!(!experts.join("curriculum-1-dusk.json").exists(), "what is not learned has no expert");
+    assert!(
+        !experts.join("curriculum-1-dusk.json").exists(),
+        "what is not learned has no expert"
+    );
 }
 
 #[test]

@@ -29,7 +29,9 @@ fn normal(what: &str, keys: &[u64]) -> f64 {
         hash.update(key.to_le_bytes());
     }
     let digest = hash.finalize();
-    let even = digest.chunks_exact(2).map(|pair| f64::from(u16::from_le_bytes([pair[0], pair[1]])) / 65_536.0);
+    let even = digest
+        .chunks_exact(2)
+        .map(|pair| f64::from(u16::from_le_bytes([pair[0], pair[1]])) / 65_536.0);
     (even.sum::<f64>() - 8.0) / (16.0_f64 / 12.0).sqrt()
 }
 

@@ -81,7 +81,10 @@ pub fn audit(
 ) -> Result<Vec<AuditRow>, CurriculumError> {
     let lifetime = plan(scenario)?;
     let experts = experts_of(scenario)?;
-    let experts = experts.iter().map(|expert| plan(expert)).collect::<Result<Vec<_>, _>>()?;
+    let experts = experts
+        .iter()
+        .map(|expert| plan(expert))
+        .collect::<Result<Vec<_>, _>>()?;
     let room = Room {
         lifetime: &lifetime,
         experts: &experts,
@@ -197,7 +200,10 @@ impl Room<'_> {
         let pace = pace(self.lifetime);
         let (mut bad, mut good, mut maintained, mut transferred) = (0, 0, 0, 0);
         for run in 0..self.repeats {
-            let scores = scored(&self.log(self.lifetime, &mut Forgets::new(run, pace), "forgets", run)?, &[])?;
+            let scores = scored(
+                &self.log(self.lifetime, &mut Forgets::new(run, pace), "forgets", run)?,
+                &[],
+            )?;
             for (name, reading) in readings(&scores) {
                 match name.as_str() {
                     "perf_maintenance_mrlep" => {

@@ -15,7 +15,10 @@ pub(super) fn balanced_order(count: usize, seed: u64, lifetime: u64) -> Result<V
     let (round, row) = (lifetime / rows as u64, (lifetime % rows as u64) as usize);
     let symbols = permutation(count, seed, 2 * round)?;
     let row = permutation(rows, seed, 2 * round + 1)?[row];
-    Ok(square_row(count, row).into_iter().map(|symbol| symbols[symbol]).collect())
+    Ok(square_row(count, row)
+        .into_iter()
+        .map(|symbol| symbols[symbol])
+        .collect())
 }
 
 /// A row of the square: 0, n − 1, 1, n − 2, … shifted by the number of the row; behind these, for odd n, the same backwards.
@@ -59,7 +62,11 @@ mod tests {
         for item in items {
             *seen.entry(item).or_default() += 1;
         }
-        let least = if seen.len() < all { 0 } else { *seen.values().min().unwrap() };
+        let least = if seen.len() < all {
+            0
+        } else {
+            *seen.values().min().unwrap()
+        };
         (least, *seen.values().max().unwrap())
     }
 
@@ -75,7 +82,9 @@ mod tests {
                 let (least, most) = counts(places, count * count);
                 assert_eq!((least, most), (rows / count, rows / count), "{count} variants, places");
                 if count > 1 {
-                    let pairs = orders.iter().flat_map(|order| order.windows(2).map(|pair| (pair[0], pair[1])));
+                    let pairs = orders
+                        .iter()
+                        .flat_map(|order| order.windows(2).map(|pair| (pair[0], pair[1])));
                     let (least, most) = counts(pairs, count * (count - 1));
                     assert_eq!((least, most), (rows / count, rows / count), "{count} variants, pairs");
                 }

@@ -33,7 +33,10 @@ pub fn experts(variants: &[Choice], options: &Design) -> Result<Vec<Scenario>, C
         let lessons = taken.map(|taken| vec![streams.learning(choice, options.learn, taken)]);
         let before = before_deployment(&variants[0], options, &streams);
         let evaluation = vec![streams.evaluation(choice)];
-        (choice.clone(), scenario(options, before, lessons.collect(), &places, evaluation))
+        (
+            choice.clone(),
+            scenario(options, before, lessons.collect(), &places, evaluation),
+        )
     };
     named(variants.iter().map(alone).collect(), &options.name)
 }
@@ -62,7 +65,12 @@ pub fn experts(variants: &[Choice], options: &Design) -> Result<Vec<Scenario>, C
 pub fn experts_of(lifetime: &Scenario) -> Result<Vec<Scenario>, CurriculumError> {
     let is_learned = |block: &&Block| block.kind == BlockKind::Learning && block.phase == Phase::Deployment;
     let mut variants: Vec<Choice> = Vec::new();
-    for regime in lifetime.blocks.iter().filter(is_learned).flat_map(|block| &block.regimes) {
+    for regime in lifetime
+        .blocks
+        .iter()
+        .filter(is_learned)
+        .flat_map(|block| &block.regimes)
+    {
         for part in parts(regime) {
             let choice = choice(&part);
             if !variants.contains(&choice) {

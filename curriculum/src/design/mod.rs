@@ -259,7 +259,13 @@ fn lessons(
             limit: MAX_BLOCKS,
         });
     }
-    let lessons = drifting::lessons(variants, &own(&path)?, u64::from(num_blocks), (options.learn, streams), drifting)?;
+    let lessons = drifting::lessons(
+        variants,
+        &own(&path)?,
+        u64::from(num_blocks),
+        (options.learn, streams),
+        drifting,
+    )?;
     Ok((path, lessons))
 }
 

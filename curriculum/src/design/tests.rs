@@ -74,7 +74,10 @@ fn worlds<'a>(regimes: impl IntoIterator<Item = &'a Regime>) -> Vec<(String, u64
 }
 
 fn evaluated(scenario: &Scenario) -> Vec<&Regime> {
-    let blocks = scenario.blocks.iter().filter(|block| block.kind == BlockKind::Evaluation);
+    let blocks = scenario
+        .blocks
+        .iter()
+        .filter(|block| block.kind == BlockKind::Evaluation);
     blocks.flat_map(|block| &block.regimes).collect()
 }
 
@@ -200,8 +203,15 @@ fn what_is_held_out_is_evaluated_and_never_learned() {
     let scenario = design(&choices(2), &options).unwrap();
     let is_new = |regime: &&Regime| regime.variant == "new";
     assert!(!learned(&scenario).iter().any(|regime| is_new(&regime)));
-    let evaluations = scenario.blocks.iter().filter(|block| block.kind == BlockKind::Evaluation);
-    assert!(evaluations.into_iter().all(|block| block.regimes.iter().filter(is_new).count() == 1));
+    let evaluations = scenario
+        .blocks
+        .iter()
+        .filter(|block| block.kind == BlockKind::Evaluation);
+    assert!(
+        evaluations
+            .into_iter()
+            .all(|block| block.regimes.iter().filter(is_new).count() == 1)
+    );
     assert_eq!(experts(&choices(2), &options).unwrap().len(), 2);
     let both = Design {
         held_out: vec![Choice::new("t", "v1")],

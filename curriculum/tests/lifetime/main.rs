@@ -200,7 +200,11 @@ fn another_run_seed_is_a_repeat_in_the_same_worlds_and_the_log_says_which() {
     };
     let (own, again, other) = (plan(0), plan(5), plan(6));
     let seeds = |plan: &Plan| {
-        let seed = |number| plan.experience_spec(number).unwrap_or_else(|error| panic!("{error}")).agent_seed;
+        let seed = |number| {
+            plan.experience_spec(number)
+                .unwrap_or_else(|error| panic!("{error}"))
+                .agent_seed
+        };
         (0..plan.num_experiences()).map(seed).collect::<Vec<_>>()
     };
     assert_eq!(seeds(&again), seeds(&plan(5)));

@@ -170,7 +170,8 @@ fn wanted(sim: SimRef) -> Vec<usize> {
             .collect();
     }
     // What ends the episode is left until nothing else pays.
-    let (last, mut before): (Vec<usize>, Vec<usize>) = paying.into_iter().partition(|&index| ends(&world.objects[index]));
+    let (last, mut before): (Vec<usize>, Vec<usize>) =
+        paying.into_iter().partition(|&index| ends(&world.objects[index]));
     if before.is_empty() {
         before = last;
     }
