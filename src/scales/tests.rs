@@ -1,3 +1,5 @@
+//! Floors and ceilings as they are measured, written and read. How they scale rewards is tested in `metrics`.
+
 use super::*;
 
 fn request(worlds: u64) -> ScalesRequest {

@@ -16,9 +16,9 @@ const EPISODE_LUCK: f64 = 20.0;
 /// Standard deviation of what a fixed sequence of actions pays in one layout or another.
 const SEQUENCE_LUCK: f64 = 25.0;
 
-/// What an episode pays an agent of this skill; `chance` is what its luck depends on.
-fn reward(skill: f64, meeting: &Meeting, chance: &[u64]) -> f64 {
-    100.0 * skill + LAYOUT_LUCK * normal("layout", &meeting.layout) + EPISODE_LUCK * normal("episode", chance)
+/// What an episode pays an agent of this skill; `keys` is what its luck depends on.
+fn reward(skill: f64, meeting: &Meeting, keys: &[u64]) -> f64 {
+    100.0 * skill + LAYOUT_LUCK * normal("layout", &meeting.layout) + EPISODE_LUCK * normal("episode", keys)
 }
 
 /// A number that the keys decide, normally distributed over keys: the sum of 16 even ones, scaled.

@@ -294,14 +294,14 @@ fn mean_and_error(values: &[f64]) -> Option<(f64, f64)> {
     Some((mean, (squares / (count - 1.0) / count).sqrt()))
 }
 
-/// The chance of at least `least` hits in `tries` tries of which each hits with `chance`.
-fn tail(least: u32, tries: u32, chance: f64) -> f64 {
+/// The probability of at least `least` hits in `tries` tries of which each hits with `probability`.
+fn tail(least: u32, tries: u32, probability: f64) -> f64 {
     // Of no hit at first; each number of hits follows from the one before.
-    let mut mass = (1.0 - chance).powi(tries.cast_signed());
+    let mut mass = (1.0 - probability).powi(tries.cast_signed());
     let mut below = 0.0;
     for hits in 0..least.min(tries + 1) {
         below += mass;
-        mass *= f64::from(tries - hits) / f64::from(hits + 1) * chance / (1.0 - chance);
+        mass *= f64::from(tries - hits) / f64::from(hits + 1) * probability / (1.0 - probability);
     }
     1.0 - below
 }
@@ -320,7 +320,7 @@ mod tests {
         assert!((tail(0, 10, 0.3) - 1.0).abs() < 1e-12);
         assert!((tail(1, 10, 0.05) - (1.0 - 0.95_f64.powi(10))).abs() < 1e-12);
         // All 8 outcomes of three tries, one by one.
-        let (chance, mut two) = (0.3_f64, 0.0);
+        let (probability, mut two) = (0.3_f64, 0.0);
         for outcome in 0..8_u32 {
             let hits = outcome.count_ones();
             if hits >= 2 {

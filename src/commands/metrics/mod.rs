@@ -52,8 +52,8 @@ pub(crate) struct Metrics {
     against: Vec<PathBuf>,
     /// Say how many lifetimes of each agent show a difference of this much, in each metric's own unit.
     ///
-    /// With a chance of 80 %, by Welch's t test at 5 %, from how much the lifetimes given vary; and the smallest difference that so many
-    /// show.
+    /// With a probability of 80 %, by Welch's t test at 5 %, from how much the lifetimes given vary. Also says the
+    /// smallest difference that so many show.
     #[arg(long, value_name = "DELTA")]
     power: Option<f64>,
     /// Store the logs as experts in --ste-data, and score nothing.
