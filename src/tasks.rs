@@ -168,8 +168,8 @@ mod tests {
         assert_eq!(
             variant("find_objects#rde").unwrap_err().to_string(),
             "find_objects: found variant \"rde\", expected one of blue, red, green, dusk, huddle, penalty, \
-             spheres, clearing, wide, modest, poor, half, interact, near, held, long_held, slim, slow, stiff, \
-             waypoints; did you mean \"red\"?"
+             spheres, clearing, wide, modest, poor, half, turned, interact, near, held, long_held, slim, slow, \
+             stiff and 1 more; did you mean \"red\"?"
         );
     }
 }

@@ -65,9 +65,15 @@ pub enum Switch {
         /// The seed.
         seed: u64,
     },
+    /// By one coin for the whole variant: at fraction t of the drift a world is of the second variant with probability t, drawn under
+    /// this seed, and else of the first. Nothing is between the two, not of numbers either; they may be of two tasks.
+    Task {
+        /// The seed.
+        seed: u64,
+    },
 }
 
-/// The way from one variant of a task to another.
+/// The way from one variant to another: of one task, or of any two where whole variants [switch](Switch::Task).
 ///
 /// Numbers, points, vectors and the numbers of distributions of one family go straight; headings take the shorter way round, or the way through their range;
 /// colours, those of distributions too, go straight in Oklab, so that they change evenly to the eye; distributions of different families are mixed; whatever
@@ -121,6 +127,29 @@ impl Drift {
         }
     }
 
+    /// The way from one variant to another, of any task, that is of worlds of the two alone: of the second with the probability that
+    /// the drift has come to, drawn under a seed.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_generator::Drift;
+    /// use driftworld_spec::TaskSpec;
+    /// let task = |name: &str| TaskSpec::from_json(name, &format!(r#"{{ "name": "{name}" }}"#));
+    /// let (a, b) = (task("a")?.variant("default")?, task("b")?.variant("default")?);
+    /// let drift = Drift::mixing(a, b, 7);
+    /// let of_b = (0..1000).filter(|index| drift.at(0.3, *index).is_ok_and(|variant| variant.id() == "b#default"));
+    /// assert!((250..350).contains(&of_b.count()));
+    /// # Ok::<(), driftworld_spec::SpecError>(())
+    /// ```
+    pub fn mixing(from: Variant, to: Variant, seed: u64) -> Self {
+        Self {
+            from,
+            to,
+            schedule: Schedule::default(),
+            switch: Switch::Task { seed },
+        }
+    }
+
     /// The way that a regime of a scenario declares, from its variant to the one that its drift leads to; mixing switches
     /// draw under the regime's seed.
     ///
@@ -130,6 +159,7 @@ impl Drift {
         let switch = match drift.switch {
             DriftSwitch::AtPoint => Switch::AtPoint,
             DriftSwitch::Mixture => Switch::Mixture { seed },
+            DriftSwitch::Task => return Ok(Self::mixing(from, to, seed).with_schedule(drift.schedule.into())),
         };
         Ok(Self::new(from, to)?
             .with_schedule(drift.schedule.into())
@@ -153,7 +183,8 @@ impl Drift {
     /// The variant when `progress`, 0..=1, has passed, for world number `index`, which only mixing switches look at.
     ///
     /// # Errors
-    /// [`GeneratorError::Between`] if a variant on the way breaks a requirement or cannot be drawn from.
+    /// [`GeneratorError::Between`] if a variant on the way breaks a requirement or cannot be drawn from;
+    /// [`GeneratorError::DifferentTasks`] of two tasks if it does not switch whole variants.
     pub fn at(&self, progress: f64, index: u64) -> Result<Variant, GeneratorError> {
         let t = self.schedule.at(progress);
         if t == 0.0 {
@@ -161,6 +192,16 @@ impl Drift {
         }
         if t == 1.0 {
             return Ok(self.to.clone());
+        }
+        if let Switch::Task { seed } = self.switch {
+            let coin = Stream::new(self.from.task().name(), seed, "drift").at(index, 0, 0).unit();
+            return Ok(if coin < t { self.to.clone() } else { self.from.clone() });
+        }
+        if self.from.task().name() != self.to.task().name() {
+            return Err(GeneratorError::DifferentTasks {
+                from: self.from.id(),
+                to: self.to.id(),
+            });
         }
         let changes = self.from.values().iter().filter_map(|(name, from)| {
             let to = self.to.value(name)?;
@@ -175,7 +216,7 @@ impl Drift {
         let listed = matches!(parameter.domain(), Some(Domain::Choices(_)));
         interpolate(parameter, listed, from, to, t, (&self.from, &self.to)).unwrap_or_else(|| {
             let threshold = match self.switch {
-                Switch::AtPoint => parameter.switch_at.unwrap_or(0.5),
+                Switch::AtPoint | Switch::Task { .. } => parameter.switch_at.unwrap_or(0.5),
                 Switch::Mixture { seed } => Stream::new(self.from.task().name(), seed, &format!("drift/{name}"))
                     .at(index, 0, 0)
                     .unit(),

@@ -8,6 +8,7 @@ use driftworld_curriculum::{Design, Drifting, Evaluate, Split};
 use driftworld_spec::{By, DriftSwitch, Scenario, sound_name};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use serde_json::Value as Json;
 
 use crate::errors::{Result, refused};
 use crate::interruptible::run_detached;
@@ -104,8 +105,15 @@ fn blocks(options: &Options<'_>) -> Result<Design> {
         );
     }
     let schedule = options.read("drift", design::schedule)?;
-    let mixes = options.flag("mix")?;
-    if mixes && schedule.is_none() {
+    let switch = match options.json("mix")? {
+        None | Some(Json::Null | Json::Bool(false)) => DriftSwitch::AtPoint,
+        Some(Json::Bool(true)) => DriftSwitch::Mixture,
+        Some(Json::String(word)) if word == "task" => DriftSwitch::Task,
+        Some(other) => {
+            return Err(options.refuse(format!("mix: found {other}, expected True, False or \"task\"")));
+        }
+    };
+    if switch != DriftSwitch::AtPoint && schedule.is_none() {
         return Err(options.refuse("options: found no drift, expected it beside mix".to_owned()));
     }
     let name = |name: &str| sound_name(name).map(|()| name.to_owned());
@@ -124,11 +132,7 @@ fn blocks(options: &Options<'_>) -> Result<Design> {
         paired_learning: options.flag("paired_learning")?,
         drifting: schedule.map(|schedule| Drifting {
             schedule,
-            switch: if mixes {
-                DriftSwitch::Mixture
-            } else {
-                DriftSwitch::AtPoint
-            },
+            switch,
         }),
         pre_deployment: options.whole("pre_deployment")?.unwrap_or(usual.pre_deployment),
         task_label: options.named("task_label")?.unwrap_or(usual.task_label),

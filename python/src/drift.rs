@@ -12,7 +12,8 @@ use crate::variant::PyVariant;
 /// The way from one variant of a task to another: ``Drift(blue, dusk, schedule="cosine").at(0.25)``.
 ///
 /// ``schedule`` is ``"linear"``, ``"cosine"``, ``{"steps": n}`` or ``{"sawtooth": n}``; ``switch`` says when values with nothing
-/// in between change: ``"at_point"``, or by chance under ``seed``, more likely as the drift goes on, with ``"mixture"``.
+/// in between change: ``"at_point"``, or by chance under ``seed``, more likely as the drift goes on, with ``"mixture"``; with
+/// ``"task"`` the whole variant is one of the two by chance, and they may be of two tasks.
 #[pyclass(name = "Drift", module = "driftworld._native", frozen)]
 pub(crate) struct PyDrift {
     drift: Drift,
@@ -54,14 +55,18 @@ impl PyDrift {
                 })?
             }
         };
-        let switched = match serde_json::from_value(switch.into()) {
-            Ok(DriftSwitch::AtPoint) => Switch::AtPoint,
-            Ok(DriftSwitch::Mixture) => Switch::Mixture { seed: seed.0 },
-            Err(_) => return Err(wrong("switch", &format!("{switch:?}"), "\"at_point\" or \"mixture\"").into()),
+        let (from, end) = (from_.get().0.clone(), to.get().0.clone());
+        let drift = match serde_json::from_value(switch.into()) {
+            Ok(DriftSwitch::AtPoint) => Drift::new(from, end)?,
+            Ok(DriftSwitch::Mixture) => Drift::new(from, end)?.with_switch(Switch::Mixture { seed: seed.0 }),
+            Ok(DriftSwitch::Task) => Drift::mixing(from, end, seed.0),
+            Err(_) => {
+                let expected = "\"at_point\", \"mixture\" or \"task\"";
+                return Err(wrong("switch", &format!("{switch:?}"), expected).into());
+            }
         };
-        let drift = Drift::new(from_.get().0.clone(), to.get().0.clone())?;
         Ok(Self {
-            drift: drift.with_schedule(Schedule::from(schedule)).with_switch(switched),
+            drift: drift.with_schedule(Schedule::from(schedule)),
             made: (
                 from_.get().clone(),
                 to.get().clone(),

@@ -98,19 +98,18 @@ impl PyStream {
             wrong("schedule", schedule, expected)
         })?;
         let switch: DriftSwitch =
-            serde_json::from_str(switch).map_err(|_| wrong("switch", switch, "\"at_point\" or \"mixture\""))?;
+            serde_json::from_str(switch).map_err(|_| wrong("switch", switch, "\"at_point\", \"mixture\" or \"task\""))?;
         if episodes == 0 {
             return Err(wrong("episodes", "0", "at least 1").into());
         }
-        let switch = match switch {
-            DriftSwitch::AtPoint => Switch::AtPoint,
+        let (from, to) = (from_.get().0.clone(), to.get().0.clone());
+        let drift = match switch {
+            DriftSwitch::AtPoint => Drift::new(from, to)?,
             // Under one seed, so that every environment meets a new value in the same episode.
-            DriftSwitch::Mixture => Switch::Mixture { seed: 0 },
+            DriftSwitch::Mixture => Drift::new(from, to)?.with_switch(Switch::Mixture { seed: 0 }),
+            DriftSwitch::Task => Drift::mixing(from, to, 0),
         };
-        let drift = Drift::new(from_.get().0.clone(), to.get().0.clone())?
-            .with_schedule(Schedule::from(schedule))
-            .with_switch(switch);
-        let drift = Arc::new(drift);
+        let drift = Arc::new(drift.with_schedule(Schedule::from(schedule)));
         Ok(Self(Stream::Drift { drift, episodes }))
     }
 

@@ -156,7 +156,7 @@ def test_a_drift_leads_from_one_variant_to_the_other(lamps: TaskSpec) -> None:
     [
         ({"schedule": "cosinus"}, 'found "cosinus", expected "linear"'),
         ({"schedule": {"steps": 0}}, "with n from 1 on"),
-        ({"switch": "sudden"}, 'found "sudden", expected "at_point" or "mixture"'),
+        ({"switch": "sudden"}, 'found "sudden", expected "at_point", "mixture" or "task"'),
     ],
 )
 def test_a_drift_that_is_none_says_what_there_is(lamps: TaskSpec, options: dict[str, Any], message: str) -> None:

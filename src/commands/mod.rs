@@ -18,6 +18,7 @@ mod figures;
 mod interrupt;
 mod logs;
 mod metrics;
+mod mix;
 mod optional;
 mod order;
 mod output;

@@ -16,6 +16,7 @@ use driftworld_text::ShownPath;
 use rayon::prelude::*;
 
 use super::interrupt::Interrupt;
+use super::mix::Mix;
 use crate::{Failure, worlds};
 
 use super::{output, overwrite};
@@ -66,11 +67,12 @@ pub(crate) struct Sample {
     /// Shape of the drift: linear, cosine, step:N or sawtooth:N.
     #[arg(long, value_parser = schedule, default_value = "linear", requires = "drift_to")]
     schedule: Schedule,
-    /// Switch values that cannot be interpolated at random, not at a fixed point.
+    /// Switch at random, not at a fixed point: each value that cannot be interpolated, or the whole variant with `task`.
     ///
-    /// The switch becomes more likely as the drift proceeds.
-    #[arg(long, requires = "drift_to")]
-    mix: bool,
+    /// The switch becomes more likely as the drift proceeds. With `task` each world is of one of the two variants, which may be
+    /// of two tasks.
+    #[arg(long, requires = "drift_to", num_args = 0..=1, require_equals = true, default_missing_value = "parameter", value_name = "WHAT")]
+    mix: Option<Mix>,
     /// Use the layouts in this maps file, or folder of them, instead of the built-in maps.
     #[arg(long, value_name = "PATH")]
     maps: Option<PathBuf>,
@@ -229,22 +231,18 @@ impl Sample {
             }
             return Ok(Source::Variant(Box::new(sampler)));
         };
-        // The other variant is of the same task, and may be named with or without it.
+        // The other variant is of the same task where it is named without one.
         let (_, own) = tasks::split(name);
         let to = match own {
             Some(_) => tasks::variant(name)?,
             None => variant.task().variant(name)?,
         };
-        let switch = if self.mix {
-            Switch::Mixture { seed: self.seed }
-        } else {
-            Switch::AtPoint
+        let drift = match self.mix {
+            None => Drift::new(variant.clone(), to)?,
+            Some(Mix::Parameter) => Drift::new(variant.clone(), to)?.with_switch(Switch::Mixture { seed: self.seed }),
+            Some(Mix::Task) => Drift::mixing(variant.clone(), to, self.seed),
         };
-        let drift = Box::new(
-            Drift::new(variant.clone(), to)?
-                .with_schedule(self.schedule)
-                .with_switch(switch),
-        );
+        let drift = Box::new(drift.with_schedule(self.schedule));
         Ok(Source::Drift {
             drift,
             first: self.index,

@@ -171,7 +171,8 @@ fn learned(file: &Path) -> Result<Vec<Shown>, Failure> {
                 regime,
                 regime.first_index,
             ));
-            if let (Some(end), Some(drift)) = (regime.resolve_end(&task)?, &regime.drift) {
+            let end_task = tasks::task(regime.end_task())?;
+            if let (Some(end), Some(drift)) = (regime.resolve_end(&end_task)?, &regime.drift) {
                 let last = regime.first_index + u64::from(regime.count) - 1;
                 shown.push(Shown::of_regime(end, &drift.values, regime, last));
             }

@@ -187,19 +187,24 @@ fn measure(scenario: &str, tasks: &Tasks) -> Result<Named, String> {
         .flat_map(|block| &block.regimes)
         .filter(|regime| regime.world.is_none())
     {
-        let task = tasks.task(&regime.task).ok_or_else(|| {
-            format!(
-                "the log names the task {:?}, which is not built in; files that a log names are not opened, so give \
-                 it with --task FILE",
-                regime.task
-            )
-        })?;
+        let find = |name: &str| {
+            tasks.task(name).ok_or_else(|| {
+                format!(
+                    "the log names the task {name:?}, which is not built in; files that a log names are not opened, so \
+                     give it with --task FILE"
+                )
+            })
+        };
+        let (task, end_task) = (find(&regime.task)?, find(regime.end_task())?);
         let lost = |name: &str| format!("the task {} has no longer the variant {name} that was run", regime.task);
         let begins = regime.resolve(&task).map_err(|_| lost(regime.variant_name()))?;
-        let ends = regime.resolve_end(&task).map_err(|_| lost("its drift leads to"))?;
+        let ends = regime.resolve_end(&end_task).map_err(|_| lost("its drift leads to"))?;
         // As `driftworld run` names a block in its log.
         let name = match &ends {
             None => log_name(task.name(), begins.name()),
+            Some(ends) if ends.task().name() != task.name() => {
+                log_name(task.name(), &format!("{}to{}", begins.name(), ends.id()))
+            }
             Some(ends) => log_name(task.name(), &format!("{}to{}", begins.name(), ends.name())),
         };
         let first = place(begins);

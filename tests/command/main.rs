@@ -14,6 +14,7 @@ mod hostile_text;
 mod logs;
 mod lost_logs;
 mod metrics;
+mod mix;
 mod modes;
 mod null_bands;
 mod original_scenarios;

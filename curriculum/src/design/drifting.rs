@@ -26,7 +26,8 @@ pub(super) fn lessons(
     drifting: Drifting,
 ) -> Result<Vec<Vec<Regime>>, CurriculumError> {
     let ways = path.len().saturating_sub(1) as u64;
-    let mut taken = vec![0; variants.len()];
+    // Of all ways together: no layout comes twice, whichever variants share their worlds.
+    let mut taken = 0;
     let mut lessons = Vec::new();
     // Lengths are counted in parts of which a way has as many as there are blocks, and a block as many as there are ways.
     for block in 0..num_blocks {
@@ -39,7 +40,8 @@ pub(super) fn lessons(
             let stop = end.min((way + 1) * num_blocks);
             let count = (learned(stop) - learned(here)) as u32;
             let (from, to) = (path[way as usize], path[way as usize + 1]);
-            if variants[from].task != variants[to].task {
+            let is_between_tasks = variants[from].task != variants[to].task;
+            if is_between_tasks && drifting.switch != DriftSwitch::Task {
                 return Err(CurriculumError::DriftBetweenTasks {
                     from: variants[from].id(),
                     to: variants[to].id(),
@@ -48,6 +50,7 @@ pub(super) fn lessons(
             if count > 0 {
                 let progress = |part: u64| (part - way * num_blocks) as f64 / num_blocks as f64;
                 let drift = RegimeDrift {
+                    task: is_between_tasks.then(|| variants[to].task.clone()),
                     values: variants[to].values.clone(),
                     name: variants[to].name.clone(),
                     schedule: drifting.schedule,
@@ -58,9 +61,9 @@ pub(super) fn lessons(
                 };
                 regimes.push(Regime {
                     drift: Some(drift),
-                    ..streams.learning(&variants[from], count, taken[from])
+                    ..streams.learning(&variants[from], count, taken)
                 });
-                taken[from] += u64::from(count);
+                taken += u64::from(count);
             }
             here = stop;
         }
@@ -105,5 +108,43 @@ mod tests {
             2,
             "a>b 0-1 x13, b>c 0-0.5 x7 | b>c 0.5-1 x7, c>a 0-1 x13",
         );
+    }
+
+    #[test]
+    fn world_numbers_go_on_from_way_to_way_also_of_variants_that_share_their_worlds() {
+        let variants = ["a", "b"].map(|name| Choice::new("t", name));
+        let options = Design {
+            learn: 20,
+            paired_learning: true,
+            ..Design::default()
+        };
+        let streams = (options.learn, &Streams::new(&variants, &options));
+        let lessons = lessons(&variants, &[0, 1, 0, 1], 2, streams, Drifting::default()).unwrap();
+        let mut next = 0;
+        for regime in lessons.iter().flatten() {
+            assert_eq!(regime.first_index, next);
+            next += u64::from(regime.count);
+        }
+        assert_eq!(next, 40);
+    }
+
+    #[test]
+    fn only_whole_variants_switch_between_tasks() {
+        let variants = [Choice::new("t", "a"), Choice::new("u", "b"), Choice::new("u", "c")];
+        let options = Design::default();
+        let streams = (options.learn, &Streams::new(&variants, &options));
+        let ways = |switch| {
+            let drifting = Drifting {
+                switch,
+                ..Drifting::default()
+            };
+            lessons(&variants, &[0, 1, 2], 2, streams, drifting)
+        };
+        for switch in [DriftSwitch::AtPoint, DriftSwitch::Mixture] {
+            assert!(matches!(ways(switch), Err(CurriculumError::DriftBetweenTasks { .. })));
+        }
+        let lessons = ways(DriftSwitch::Task).unwrap();
+        let ends: Vec<_> = lessons.iter().flatten().map(|regime| (regime.task.as_str(), regime.end_task())).collect();
+        assert_eq!(ends, [("t", "u"), ("u", "u")]);
     }
 }

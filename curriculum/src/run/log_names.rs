@@ -50,19 +50,26 @@ pub fn same_log_name(
 ) -> Option<CurriculumError> {
     let mut names = LogNames::default();
     let mut tasks: BTreeMap<&str, String> = BTreeMap::new();
+    let mut named = |name| -> String {
+        let own = tasks.entry(name);
+        let own = own.or_insert_with(|| task(name).map_or_else(|| name.to_owned(), |task| task.name().to_owned()));
+        own.clone()
+    };
     for regime in scenario.blocks.iter().flat_map(|block| &block.regimes) {
         // A world from a file is filed under what the scenario calls its task.
         let own = match &regime.world {
-            Some(_) => regime.task.as_str(),
-            None => tasks.entry(&regime.task).or_insert_with(|| {
-                task(&regime.task).map_or_else(|| regime.task.clone(), |task| task.name().to_owned())
-            }),
+            Some(_) => regime.task.clone(),
+            None => named(regime.task.as_str()),
         };
         let variant = match &regime.drift {
+            Some(drift) if regime.end_task() != regime.task => {
+                let end = named(regime.end_task());
+                format!("{}to{end}{}", regime.variant_name(), drift.variant_name())
+            }
             Some(drift) => format!("{}to{}", regime.variant_name(), drift.variant_name()),
             None => regime.variant_name().to_owned(),
         };
-        if let Err(error) = names.claim(regime, &log_name(own, &variant)) {
+        if let Err(error) = names.claim(regime, &log_name(&own, &variant)) {
             return Some(error);
         }
     }
@@ -71,9 +78,10 @@ pub fn same_log_name(
 
 /// What a regime's variant is called in the scenario.
 fn called(regime: &Regime) -> String {
-    let to = regime
-        .drift
-        .as_ref()
-        .map_or_else(String::new, |drift| format!("..{}", drift.variant_name()));
+    let to = match &regime.drift {
+        None => String::new(),
+        Some(drift) if regime.end_task() == regime.task => format!("..{}", drift.variant_name()),
+        Some(drift) => format!("..{}#{}", regime.end_task(), drift.variant_name()),
+    };
     format!("{}#{}{to}", regime.task, regime.variant_name())
 }

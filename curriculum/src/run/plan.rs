@@ -230,8 +230,9 @@ impl Plan {
             Source::Variant(variant) => (variant.id(), log_name(variant.task().name(), variant.name())),
             Source::Drift { from, to, .. } => {
                 let task = from.task().name();
-                let id = format!("{}..{}", from.id(), to.name());
-                (id, log_name(task, &format!("{}to{}", from.name(), to.name())))
+                let end = end_name(from.task().name(), to);
+                let id = format!("{}..{end}", from.id());
+                (id, log_name(task, &format!("{}to{end}", from.name())))
             }
             Source::World { .. } => {
                 let name = regime.variant_name();
@@ -353,11 +354,14 @@ impl Finder<'_, '_> {
             variant: variant.to_owned(),
             reason,
         };
-        if !self.tasks.contains_key(&regime.task) {
-            let task = (self.sources.task)(&regime.task).map_err(|reason| unknown(&regime.variant, reason))?;
-            self.tasks.insert(regime.task.clone(), task);
+        let end = regime.drift.as_ref().map_or(&regime.variant, |drift| &drift.to);
+        for (name, variant) in [(regime.task.as_str(), &regime.variant), (regime.end_task(), end)] {
+            if !self.tasks.contains_key(name) {
+                let task = (self.sources.task)(name).map_err(|reason| unknown(variant, reason))?;
+                self.tasks.insert(name.to_owned(), task);
+            }
         }
-        let task = &self.tasks[&regime.task];
+        let (task, end_task) = (&self.tasks[&regime.task], &self.tasks[regime.end_task()]);
         let from = regime
             .resolve(task)
             .map_err(|error| unknown(&regime.variant, error.to_string()))?;
@@ -365,7 +369,7 @@ impl Finder<'_, '_> {
             return Ok(Source::Variant(from));
         };
         let to = regime
-            .resolve_end(task)
+            .resolve_end(end_task)
             .map_err(|error| unknown(&drift.to, error.to_string()))?
             .expect("a regime with a drift has its end");
         let way = Drift::declared(drift, from.clone(), to.clone(), regime.seed);
@@ -376,6 +380,15 @@ impl Finder<'_, '_> {
             way: Box::new(way),
             drift: Box::new(drift.clone()),
         })
+    }
+}
+
+/// What the end of a drift is called beside its beginning: its name, and the task's before it where that is another.
+fn end_name(task: &str, to: &Variant) -> String {
+    if to.task().name() == task {
+        to.name().to_owned()
+    } else {
+        to.id()
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use driftworld_env::Label;
 use driftworld_generator::{Drift, GeneratorError, Sampler, Schedule};
 use driftworld_metrics::TaskParams;
-use driftworld_spec::{BlockKind, Phase, RegimeDrift, Variant, World};
+use driftworld_spec::{BlockKind, DriftSwitch, Phase, RegimeDrift, Variant, World};
 use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 
@@ -87,7 +87,18 @@ impl Planned {
         let Source::Drift { drift, .. } = &self.source else {
             return true;
         };
+        // Where whole variants switch, an experience is of one of the two.
+        if drift.switch == DriftSwitch::Task
+            && let Ok(Some(variant)) = self.variant_of(number)
+        {
+            return !self.is_end(&variant);
+        }
         Schedule::from(drift.schedule).at(drift.progress((number - self.first) as u32, self.count)) < 0.5
+    }
+
+    /// Whether a variant is the one that it drifts to.
+    fn is_end(&self, variant: &Variant) -> bool {
+        matches!(&self.source, Source::Drift { to, .. } if to.id() == variant.id())
     }
 
     pub(super) fn wrong(&self, number: u64, source: GeneratorError) -> CurriculumError {
@@ -239,7 +250,11 @@ impl Planned {
             Source::Drift { from, to, .. } => {
                 say("task", json!(from.task().name()));
                 say("variant", json!(from.name()));
-                say("to", json!(to.name()));
+                if to.task().name() == from.task().name() {
+                    say("to", json!(to.name()));
+                } else {
+                    say("to", json!(to.id()));
+                }
                 say("seed", json!(self.seed));
             }
             Source::World { path, .. } => {

@@ -28,16 +28,21 @@ pub struct Drift {
 
 impl Drift {
     /// Of a stretch of rows of one task. A drift says its ends in the parameters `variant` and `to`, and is called
-    /// `TASK_VARIANTtoOTHER` for them; anything else is none. Nor is one whose ends are scored as one task.
+    /// `TASK_VARIANTtoOTHER` for them, or `TASK_VARIANTtoTASKOTHER` between tasks; anything else is none. Nor is one whose ends are scored as one task.
     pub(super) fn of(rows: &Rows, stretch: &[usize], params: &TaskParams, options: &Options) -> Option<Self> {
         let first = *stretch.first()?;
         let name = rows.task_names().values()[rows.task_names().ids()[first] as usize].to_lowercase();
         let (head, tail) = name.split_once('_')?;
-        let [from, to] = ENDS.map(|key| params.get(key).and_then(|word| word.as_str()).map(plain));
+        let [from, to] = ENDS.map(|key| params.get(key).and_then(|word| word.as_str()));
         let (from, to) = (from?, to?);
-        let scored = |variant: &str| options.variant_mode.scored_name(&format!("{head}_{variant}"));
-        let ends = (scored(&from), scored(&to));
-        if tail != format!("{from}to{to}") || ends.0 == ends.1 {
+        // An end of another task is said as `task#variant`.
+        let logged = |end: &str| match end.split_once('#') {
+            Some((task, variant)) => format!("{}_{}", plain(task), plain(variant)),
+            None => format!("{head}_{}", plain(end)),
+        };
+        let scored = |end: &str| options.variant_mode.scored_name(&logged(end));
+        let ends = (scored(from), scored(to));
+        if tail != format!("{}to{}", plain(from), plain(to)) || ends.0 == ends.1 {
             return None;
         }
         let progress = rows.metric(PROGRESS);

@@ -169,11 +169,11 @@ class Drift:
 
     Args:
         from_: Where it begins.
-        to: Where it leads: a variant of the same task.
+        to: Where it leads: a variant of the same task, unless whole variants switch.
         schedule: ``"linear"``, ``"cosine"``, ``{"steps": n}`` or ``{"sawtooth": n}``, with n from 1 on.
         switch: When values with nothing in between change: ``"at_point"``, or by chance, more likely as the drift goes on,
-            with ``"mixture"``.
-        seed: What a mixture draws from.
+            with ``"mixture"``. With ``"task"`` the whole variant is one of the two by chance; they may be of two tasks.
+        seed: What chance draws from.
 
     Raises:
         GeneratorError: If the variants are of different tasks.
@@ -186,7 +186,7 @@ class Drift:
         to: Variant,
         *,
         schedule: str | Mapping[str, int] | None = None,
-        switch: Literal["at_point", "mixture"] = "at_point",
+        switch: Literal["at_point", "mixture", "task"] = "at_point",
         seed: int = 0,
     ) -> Drift: ...
     def at(self, progress: float, index: int = 0) -> Variant:

@@ -14,7 +14,7 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import gymnasium
 
@@ -211,7 +211,7 @@ class Curriculum(Sequence[Block]):
         tolerance: float | None = None,
         steps: int | None = None,
         drift: str | None = None,
-        mix: bool = False,
+        mix: bool | Literal["task"] = False,
         task_label: TaskLabel | None = None,
         seed: int | None = None,
         split: WorldSplit | None = None,
@@ -248,7 +248,8 @@ class Curriculum(Sequence[Block]):
             tolerance: How far off each step may be.
             steps: How many steps.
             drift: Learning blocks drift from each variant to the next: ``"linear"``, ``"cosine"``, ``"step:N"`` or ``"sawtooth:N"``.
-            mix: Values with nothing in between switch at random.
+            mix: Values with nothing in between switch at random; with ``"task"`` each experience is of one of the two
+                variants, which may be of two tasks.
             task_label: Whether the learner gets a task label: ``"none"`` (default), ``"info"`` or ``"observation"``.
             seed: What all worlds follow from.
             split: Which worlds it is evaluated in: ``"validation"`` to choose hyperparameters, ``"test"`` (default) for what

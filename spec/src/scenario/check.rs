@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use indexmap::IndexMap;
 
-use super::{Phase, Regime, Scenario};
+use super::{DriftSwitch, Phase, Regime, Scenario};
 use crate::error::{MAX_PROBLEMS, Problem, SpecError, first_of, nearest};
 use crate::names;
 use crate::task::TaskSpec;
@@ -28,6 +28,7 @@ struct Made<'a> {
     pointer: String,
     /// The key that names what it is made of.
     key: &'static str,
+    task: &'a str,
     variant: &'a str,
     values: &'a IndexMap<String, Value>,
     name: Option<&'a str>,
@@ -39,6 +40,7 @@ fn made<'a>(pointer: &str, regime: &'a Regime) -> impl Iterator<Item = Made<'a>>
     let start = Made {
         pointer: pointer.to_owned(),
         key: "variant",
+        task: &regime.task,
         variant: &regime.variant,
         values: &regime.values,
         name: regime.name.as_deref(),
@@ -47,6 +49,7 @@ fn made<'a>(pointer: &str, regime: &'a Regime) -> impl Iterator<Item = Made<'a>>
     let end = regime.drift.as_ref().map(|drift| Made {
         pointer: format!("{pointer}/drift"),
         key: "to",
+        task: regime.end_task(),
         variant: &drift.to,
         values: &drift.values,
         name: drift.name.as_deref(),
@@ -115,6 +118,14 @@ pub(super) fn alone(scenario: &Scenario) -> Vec<Problem> {
             problems.push(problem.advise("a world file is lived as it is: write what is to change into it"));
             continue;
         }
+        if let Some((drift, task)) = regime.drift.as_ref().and_then(|drift| Some((drift, drift.task.as_ref()?)))
+            && drift.switch != DriftSwitch::Task
+        {
+            let pointer = format!("{pointer}/drift/task");
+            let problem = Problem::new("spec/value", pointer, format!("{task:?}"), "\"switch\": \"task\" beside it");
+            problems.push(problem.advise("between two tasks there is nothing: only whole variants can switch"));
+            continue;
+        }
         let mut sound = true;
         for made in made(&pointer, regime) {
             let own = made.name.and_then(|name| names::problem(made.pointer_to_name(), name));
@@ -128,7 +139,7 @@ pub(super) fn alone(scenario: &Scenario) -> Vec<Problem> {
             continue;
         }
         for made in made(&pointer, regime) {
-            let key = (regime.task.as_str(), made.called());
+            let key = (made.task, made.called());
             if let Some(first) = called.get(&key).filter(|first| !made.same(first)) {
                 let found = format!("{:?}, which is another variant at {}", made.called(), first.pointer);
                 let expected = "one variant of a task under each name";
@@ -161,16 +172,16 @@ pub(super) fn against_tasks(scenario: &Scenario, mut find: impl FnMut(&str) -> O
     let mut tasks: BTreeMap<&str, Option<Arc<TaskSpec>>> = BTreeMap::new();
     let mut problems = Vec::new();
     for (pointer, regime) in regimes(scenario).filter(|(_, regime)| regime.world.is_none()) {
-        let task = tasks.entry(&regime.task).or_insert_with(|| find(&regime.task));
-        let Some(task) = task else { continue };
+        let mut found = |name| tasks.entry(name).or_insert_with(|| find(name)).clone();
+        let (task, end_task) = (found(&regime.task), found(regime.end_task()));
         // Each takes time: variants are looked up, and near names looked for.
         if problems.len() > MAX_PROBLEMS {
             break;
         }
-        if let Err(error) = regime.resolve(task) {
+        if let Some(Err(error)) = task.map(|task| regime.resolve(&task)) {
             problems.extend(placed(error, &pointer, "variant"));
         }
-        if let Err(error) = regime.resolve_end(task) {
+        if let Some(Err(error)) = end_task.map(|task| regime.resolve_end(&task)) {
             problems.extend(placed(error, &format!("{pointer}/drift"), "to"));
         }
     }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::value::Value;
 
-/// A drift from a regime's variant to another of the same task.
+/// A drift from a regime's variant to another: of the same task, or, where whole variants switch, of any.
 ///
 /// A drift crosses the border of a block where the next block's regime goes on from the progress at which the one before stopped.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -16,11 +16,16 @@ use crate::value::Value;
     { "to": "dusk" },
     { "to": "dusk", "values": { "light": 1.2 }, "name": "dim" },
     { "to": "dusk", "schedule": { "steps": 4 }, "switch": "mixture", "from": 0, "until": 0.5 },
+    { "to": "plain", "task": "get_to_goal", "switch": "task" },
 ]))]
 pub struct RegimeDrift {
     /// The variant that it leads to.
     #[schemars(length(min = 1, max = 200))]
     pub to: String,
+    /// The task of the variant that it leads to; the regime's if absent. Another only goes with the switch `task`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(length(min = 1, max = 4096))]
+    pub task: Option<String>,
     /// Values laid over those of the variant that it leads to, by parameter.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(schema_with = "super::regime::values_schema")]
@@ -73,6 +78,9 @@ pub enum DriftSwitch {
     AtPoint,
     /// By chance: at fraction t of the drift a world has the new value with probability t, drawn under the regime's seed.
     Mixture,
+    /// By chance, and all at once: at fraction t of the drift a world is one of the variant that the drift leads to with probability
+    /// t, and else one of the variant that it begins at. There is nothing between the two, not of numbers either.
+    Task,
 }
 
 impl RegimeDrift {
@@ -80,6 +88,7 @@ impl RegimeDrift {
     pub fn to(variant: impl Into<String>) -> Self {
         Self {
             to: variant.into(),
+            task: None,
             values: IndexMap::new(),
             name: None,
             schedule: DriftSchedule::default(),

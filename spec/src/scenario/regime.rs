@@ -111,7 +111,13 @@ impl Regime {
         laid_over(task, &self.variant, &self.values, self.variant_name())
     }
 
-    /// The variant that its drift leads to; `None` if it does not drift.
+    /// The task of the variant that its drift leads to, as the scenario calls it; its own if it does not drift.
+    pub fn end_task(&self) -> &str {
+        let of_drift = self.drift.as_ref().and_then(|drift| drift.task.as_deref());
+        of_drift.unwrap_or(&self.task)
+    }
+
+    /// The variant of [`end_task`](Self::end_task) that its drift leads to; `None` if it does not drift.
     ///
     /// # Errors
     /// As [`Regime::resolve`].

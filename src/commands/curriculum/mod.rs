@@ -17,6 +17,7 @@ use clap::{Args, ValueEnum};
 use driftworld_text::ShownPath;
 
 use super::assets::LibraryChoice;
+use super::mix::Mix;
 use super::order::OrderArgs;
 use super::{Failure, output, overwrite};
 pub(crate) use tables::{blocks, choices};
@@ -101,11 +102,12 @@ pub(crate) struct Curriculum {
     /// With --blocks, the whole drift is divided among that many blocks.
     #[arg(long, value_parser = design::schedule, value_name = "SCHEDULE")]
     drift: Option<DriftSchedule>,
-    /// Switch values that cannot be interpolated at random, not at a fixed point.
+    /// Switch at random, not at a fixed point: each value that cannot be interpolated, or the whole variant with `task`.
     ///
-    /// The switch becomes more likely as the drift proceeds.
-    #[arg(long, requires = "drift")]
-    mix: bool,
+    /// The switch becomes more likely as the drift proceeds. With `task` each experience is of one of the two variants, which may
+    /// be of two tasks.
+    #[arg(long, requires = "drift", num_args = 0..=1, require_equals = true, default_missing_value = "parameter", value_name = "WHAT")]
+    mix: Option<Mix>,
     /// Name of the scenario.
     #[arg(long, default_value = "curriculum", value_parser = name)]
     name: String,
@@ -391,10 +393,10 @@ impl Curriculum {
             held_out: Vec::new(),
             drifting: self.drift.map(|schedule| Drifting {
                 schedule,
-                switch: if self.mix {
-                    DriftSwitch::Mixture
-                } else {
-                    DriftSwitch::AtPoint
+                switch: match self.mix {
+                    None => DriftSwitch::AtPoint,
+                    Some(Mix::Parameter) => DriftSwitch::Mixture,
+                    Some(Mix::Task) => DriftSwitch::Task,
                 },
             }),
             pre_deployment: self.pre_deployment,

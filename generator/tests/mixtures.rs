@@ -1,0 +1,90 @@
+//! Drifts that switch whole variants: every world is one of the first variant or of the second, drawn by the same stream, and
+//! the share of the second is how far the drift has come.
+
+use std::sync::Arc;
+
+use driftworld_generator::{Drift, GeneratorError, Sampler, Schedule};
+use driftworld_spec::{DriftSwitch, RegimeDrift, TaskSpec, Variant};
+use proptest::prelude::*;
+
+const TASKS: [&str; 3] = ["find_objects", "get_to_goal", "moving_object"];
+
+/// Worlds that shares are taken of.
+const WORLDS: u64 = 400;
+
+fn variants() -> Vec<Variant> {
+    let read = |name: &str| {
+        let path = format!("{}/../examples/tasks/{name}.json", env!("CARGO_MANIFEST_DIR"));
+        let text = std::fs::read_to_string(path).expect("the example tasks ship with the project");
+        TaskSpec::from_json(name, &text).unwrap_or_else(|error| panic!("{error}"))
+    };
+    TASKS
+        .iter()
+        .flat_map(|name| Arc::clone(&read(name)).all_variants())
+        .collect()
+}
+
+fn hash(variant: &Variant, seed: u64, index: u64) -> String {
+    let world = Sampler::new(variant, seed).world(index);
+    world.unwrap_or_else(|error| panic!("{}: {error}", variant.id())).hash()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn every_world_is_of_one_of_the_two_and_the_share_is_the_progress(
+        a in any::<prop::sample::Index>(),
+        b in any::<prop::sample::Index>(),
+        seed in 0..1_u64 << 53,
+        progress in 0.0..=1.0,
+    ) {
+        let all = variants();
+        let (from, to) = (a.get(&all).clone(), b.get(&all).clone());
+        let declared = RegimeDrift { switch: DriftSwitch::Task, ..RegimeDrift::to(to.name()) };
+        let drift = Drift::declared(&declared, from.clone(), to.clone(), seed).expect("any two are mixed");
+        let mut of_second = 0;
+        for index in 0..WORLDS {
+            let drawn = drift.at(progress, index).expect("one of the two");
+            prop_assert!([from.id(), to.id()].contains(&drawn.id()), "{}", drawn.id());
+            of_second += u64::from(drawn.id() == to.id());
+            if index < 4 {
+                let own = hash(&drawn, seed, index);
+                prop_assert!(own == hash(&from, seed, index) || own == hash(&to, seed, index));
+            }
+        }
+        if from.id() != to.id() {
+            let share = of_second as f64 / WORLDS as f64;
+            let error = (progress * (1.0 - progress) / WORLDS as f64).sqrt();
+            prop_assert!((share - progress).abs() <= 5.0 * error + 0.01, "{share} at {progress}");
+        }
+        for (progress, only) in [(0.0, &from), (1.0, &to)] {
+            prop_assert_eq!(drift.at(progress, seed).expect("an end").id(), only.id());
+        }
+    }
+}
+
+#[test]
+fn the_coin_of_a_world_falls_for_good_as_the_drift_goes_on() {
+    let all = variants();
+    let drift = Drift::mixing(all[0].clone(), all[1].clone(), 5).with_schedule(Schedule::Linear);
+    let is_second = |progress: f64, index: u64| {
+        let drawn = drift.at(progress, index).expect("one of the two");
+        drawn.id() == all[1].id()
+    };
+    for index in 0..50 {
+        let turned = (0..=20).filter(|step| is_second(f64::from(*step) / 20.0, index)).count();
+        let first = (0..=20).position(|step| is_second(f64::from(step) / 20.0, index));
+        assert_eq!(turned, 21 - first.expect("the end is the second"), "world {index}");
+    }
+}
+
+#[test]
+fn between_two_tasks_only_whole_variants_switch() {
+    let all = variants();
+    let other = all.iter().find(|variant| variant.task().name() != all[0].task().name());
+    let other = other.expect("there are several tasks").clone();
+    let drift = Drift::mixing(all[0].clone(), other, 5).with_switch(driftworld_generator::Switch::AtPoint);
+    assert!(matches!(drift.at(0.5, 0), Err(GeneratorError::DifferentTasks { .. })));
+    assert!(drift.at(0.0, 0).is_ok() && drift.at(1.0, 0).is_ok());
+}

@@ -1,0 +1,60 @@
+//! `--mix=task`: drifts whose experiences are of one variant or the other, between two tasks.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::terminal::{fail, scratch, succeed, text};
+
+/// A design that drifts through variants of three tasks.
+fn design<'a>(more: &[&'a str]) -> Vec<&'a str> {
+    let variants = ["find_objects#blue", "get_to_goal#plain", "moving_object#blue", "--by", "worlds"];
+    let counts = ["--drift", "linear", "--learn", "12", "--eval-episodes", "1", "--blocks", "3"];
+    [&["curriculum"], &variants[..], &counts, more].concat()
+}
+
+#[test]
+fn a_mixture_of_two_tasks_is_designed_run_and_logged() {
+    let folder = scratch();
+    let (scenario, logs) = (folder.path().join("mix.json"), folder.path().join("log"));
+    let refused = fail(1, &design(&["-o", text(&scenario)]));
+    assert!(refused.contains("expected two variants of one task"), "{refused}");
+    succeed(&design(&["--mix=task", "-o", text(&scenario)]));
+    let designed: Value = serde_json::from_str(&fs::read_to_string(&scenario).expect("it is written")).expect("JSON");
+    let blocks = designed["blocks"].as_array().expect("blocks");
+    let learning = blocks.iter().filter(|block| block["type"] == "learning");
+    let regimes: Vec<&Value> = learning
+        .flat_map(|block| block["regimes"].as_array().expect("regimes"))
+        .collect();
+    let mut worlds = Vec::new();
+    for regime in &regimes {
+        assert_eq!(regime["drift"]["switch"], "task");
+        assert_ne!(regime["drift"]["task"], regime["task"], "{regime}");
+        let (first, count) = (regime["first_index"].as_u64(), regime["count"].as_u64());
+        let first = first.unwrap_or(0);
+        worlds.extend((first..first + count.expect("a count")).map(|index| (regime["seed"].as_u64(), index)));
+    }
+    let all = worlds.len();
+    worlds.sort_unstable();
+    worlds.dedup();
+    assert_eq!((worlds.len(), all), (36, 36), "no layout comes twice");
+    succeed(&["run", text(&scenario), "--agent", "still", "--logs", text(&logs)]);
+    let info = fs::read_to_string(logs.join("scenario_info.json")).expect("a log has its scenario");
+    assert!(info.contains("get_to_goal#plain") && info.contains("moving_object#blue"), "{info}");
+}
+
+#[test]
+fn worlds_of_a_mixture_are_worlds_of_its_ends() {
+    let worlds = |arguments: &[&str]| {
+        let fixed = ["--seed", "4", "--count", "40", "--jsonl"];
+        let said = succeed(&[&["sample"], arguments, &fixed[..]].concat());
+        said.lines().map(str::to_owned).collect::<Vec<_>>()
+    };
+    let (a, b) = (worlds(&["find_objects#interact"]), worlds(&["get_to_goal#sphere"]));
+    let mixed = worlds(&["find_objects#interact", "--drift-to", "get_to_goal#sphere", "--mix=task"]);
+    let of_second = mixed.iter().zip(&b).filter(|(mixed, own)| mixed == own).count();
+    let of_first = mixed.iter().zip(&a).filter(|(mixed, own)| mixed == own).count();
+    assert_eq!(of_first + of_second, 40);
+    assert!((10..=30).contains(&of_second), "{of_second} of 40");
+    assert_eq!((&mixed[0], &mixed[39]), (&a[0], &b[39]));
+}
