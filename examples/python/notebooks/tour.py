@@ -138,8 +138,9 @@ for block in curriculum:
 class Wanderer:
     """Walks ahead and turns as it pleases; learns nothing."""
 
-    def __init__(self) -> None:
-        self.chance = np.random.default_rng(0)
+    def begin(self, label, seed):
+        # Its own in each experience, so that a frozen agent does the same when an evaluation is run once more.
+        self.chance = np.random.default_rng(seed)
 
     def act(self, observation, info):
         return np.array([1.0, self.chance.uniform(-0.4, 0.4)])
