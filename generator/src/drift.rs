@@ -194,7 +194,9 @@ impl Drift {
             return Ok(self.to.clone());
         }
         if let Switch::Task { seed } = self.switch {
-            let coin = Stream::new(self.from.task().name(), seed, "drift").at(index, 0, 0).unit();
+            let coin = Stream::new(self.from.task().name(), seed, "drift")
+                .at(index, 0, 0)
+                .unit();
             return Ok(if coin < t { self.to.clone() } else { self.from.clone() });
         }
         if self.from.task().name() != self.to.task().name() {

@@ -73,7 +73,9 @@ fn the_coin_of_a_world_falls_for_good_as_the_drift_goes_on() {
         drawn.id() == all[1].id()
     };
     for index in 0..50 {
-        let turned = (0..=20).filter(|step| is_second(f64::from(*step) / 20.0, index)).count();
+        let turned = (0..=20)
+            .filter(|step| is_second(f64::from(*step) / 20.0, index))
+            .count();
         let first = (0..=20).position(|step| is_second(f64::from(step) / 20.0, index));
         assert_eq!(turned, 21 - first.expect("the end is the second"), "world {index}");
     }

@@ -130,10 +130,7 @@ fn blocks(options: &Options<'_>) -> Result<Design> {
             .choice("split", &[("validation", Split::Validation), ("test", Split::Test)])?
             .unwrap_or(usual.split),
         paired_learning: options.flag("paired_learning")?,
-        drifting: schedule.map(|schedule| Drifting {
-            schedule,
-            switch,
-        }),
+        drifting: schedule.map(|schedule| Drifting { schedule, switch }),
         pre_deployment: options.whole("pre_deployment")?.unwrap_or(usual.pre_deployment),
         task_label: options.named("task_label")?.unwrap_or(usual.task_label),
         complexity: options.named("complexity")?,

@@ -97,8 +97,8 @@ impl PyStream {
             let expected = "\"linear\", \"cosine\", {\"steps\": n} or {\"sawtooth\": n}";
             wrong("schedule", schedule, expected)
         })?;
-        let switch: DriftSwitch =
-            serde_json::from_str(switch).map_err(|_| wrong("switch", switch, "\"at_point\", \"mixture\" or \"task\""))?;
+        let switch: DriftSwitch = serde_json::from_str(switch)
+            .map_err(|_| wrong("switch", switch, "\"at_point\", \"mixture\" or \"task\""))?;
         if episodes == 0 {
             return Err(wrong("episodes", "0", "at least 1").into());
         }

@@ -36,8 +36,8 @@ pub use limits::{MAX_BYTES, MAX_DEPTH, MAX_KEY_BYTES, MAX_SCENARIO_VALUES, MAX_V
 pub use names::sound_name;
 pub use oklab::{Oklab, linear_from_srgb};
 pub use scenario::{
-    Block, BlockKind, DriftSchedule, DriftSwitch, MAX_EXPERIENCES, Phase, ProvenVariant, Regime, RegimeDrift, Scenario,
-    ScenarioComplexity, ScenarioDifficulty, ScenarioForm, ScenarioProof, TaskLabel,
+    Block, BlockKind, BlockMix, DriftSchedule, DriftSwitch, MAX_EXPERIENCES, Phase, ProvenVariant, Regime, RegimeDrift,
+    Scenario, ScenarioComplexity, ScenarioDifficulty, ScenarioForm, ScenarioProof, TaskLabel,
 };
 pub use task::{
     By, Compare, Count, DEFAULT_VARIANT, Domain, ElementWeights, Facing, Group, Hole, KeepOut, MeasureName, Parameter,

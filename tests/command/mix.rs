@@ -8,8 +8,23 @@ use crate::terminal::{fail, scratch, succeed, text};
 
 /// A design that drifts through variants of three tasks.
 fn design<'a>(more: &[&'a str]) -> Vec<&'a str> {
-    let variants = ["find_objects#blue", "get_to_goal#plain", "moving_object#blue", "--by", "worlds"];
-    let counts = ["--drift", "linear", "--learn", "12", "--eval-episodes", "1", "--blocks", "3"];
+    let variants = [
+        "find_objects#blue",
+        "get_to_goal#plain",
+        "moving_object#blue",
+        "--by",
+        "worlds",
+    ];
+    let counts = [
+        "--drift",
+        "linear",
+        "--learn",
+        "12",
+        "--eval-episodes",
+        "1",
+        "--blocks",
+        "3",
+    ];
     [&["curriculum"], &variants[..], &counts, more].concat()
 }
 
@@ -40,7 +55,10 @@ fn a_mixture_of_two_tasks_is_designed_run_and_logged() {
     assert_eq!((worlds.len(), all), (36, 36), "no layout comes twice");
     succeed(&["run", text(&scenario), "--agent", "still", "--logs", text(&logs)]);
     let info = fs::read_to_string(logs.join("scenario_info.json")).expect("a log has its scenario");
-    assert!(info.contains("get_to_goal#plain") && info.contains("moving_object#blue"), "{info}");
+    assert!(
+        info.contains("get_to_goal#plain") && info.contains("moving_object#blue"),
+        "{info}"
+    );
 }
 
 #[test]
@@ -51,7 +69,12 @@ fn worlds_of_a_mixture_are_worlds_of_its_ends() {
         said.lines().map(str::to_owned).collect::<Vec<_>>()
     };
     let (a, b) = (worlds(&["find_objects#interact"]), worlds(&["get_to_goal#sphere"]));
-    let mixed = worlds(&["find_objects#interact", "--drift-to", "get_to_goal#sphere", "--mix=task"]);
+    let mixed = worlds(&[
+        "find_objects#interact",
+        "--drift-to",
+        "get_to_goal#sphere",
+        "--mix=task",
+    ]);
     let of_second = mixed.iter().zip(&b).filter(|(mixed, own)| mixed == own).count();
     let of_first = mixed.iter().zip(&a).filter(|(mixed, own)| mixed == own).count();
     assert_eq!(of_first + of_second, 40);

@@ -324,9 +324,9 @@ mod tests {
         for outcome in 0..8_u32 {
             let hits = outcome.count_ones();
             if hits >= 2 {
-                two += chance.powi(hits.cast_signed()) * (1.0 - chance).powi(3 - hits.cast_signed());
+                two += probability.powi(hits.cast_signed()) * (1.0 - probability).powi(3 - hits.cast_signed());
             }
         }
-        assert!((tail(2, 3, chance) - two).abs() < 1e-12);
+        assert!((tail(2, 3, probability) - two).abs() < 1e-12);
     }
 }

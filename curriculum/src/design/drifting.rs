@@ -144,7 +144,11 @@ mod tests {
             assert!(matches!(ways(switch), Err(CurriculumError::DriftBetweenTasks { .. })));
         }
         let lessons = ways(DriftSwitch::Task).unwrap();
-        let ends: Vec<_> = lessons.iter().flatten().map(|regime| (regime.task.as_str(), regime.end_task())).collect();
+        let ends: Vec<_> = lessons
+            .iter()
+            .flatten()
+            .map(|regime| (regime.task.as_str(), regime.end_task()))
+            .collect();
         assert_eq!(ends, [("t", "u"), ("u", "u")]);
     }
 }

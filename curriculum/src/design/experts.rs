@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use driftworld_generator::Schedule;
-use driftworld_spec::{Block, BlockKind, Phase, Regime, Scenario, ScenarioForm};
+use driftworld_spec::{Block, BlockKind, BlockMix, Phase, Regime, Scenario, ScenarioForm};
 
 use super::streams::Streams;
 use super::{Choice, Design, before_deployment, check, design, form, scenario};
@@ -95,6 +95,7 @@ fn alone(lifetime: &Scenario, wanted: &Choice) -> Scenario {
         }
         let regimes = block.regimes.iter().flat_map(parts);
         let own = Block {
+            mix: BlockMix::InOrder,
             regimes: regimes.filter(|regime| choice(regime) == *wanted).collect(),
             ..block.clone()
         };

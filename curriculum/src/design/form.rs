@@ -60,6 +60,18 @@ pub(super) fn sequence(
             }
             blocks
         }
+        Some(ScenarioForm::Joint) => {
+            if let Some(blocks) = blocks {
+                let expected = "no number of blocks: there is one with all variants".to_owned();
+                return Err(CurriculumError::BadForm {
+                    form: "joint",
+                    variants: count,
+                    blocks: Some(blocks),
+                    expected,
+                });
+            }
+            all
+        }
         Some(ScenarioForm::Expert) => {
             if count != 1 {
                 return Err(wrong(

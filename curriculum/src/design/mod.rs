@@ -16,8 +16,8 @@ mod walk;
 use std::collections::BTreeSet;
 
 use driftworld_spec::{
-    Block, BlockKind, MAX_EXPERIENCES, Phase, Regime, Scenario, ScenarioComplexity, ScenarioDifficulty, ScenarioForm,
-    TaskLabel,
+    Block, BlockKind, BlockMix, MAX_EXPERIENCES, Phase, Regime, Scenario, ScenarioComplexity, ScenarioDifficulty,
+    ScenarioForm, TaskLabel,
 };
 
 pub use choice::Choice;
@@ -178,7 +178,14 @@ fn scenario(
         if places.contains(&place) {
             blocks.push(Block::new(BlockKind::Evaluation, evaluation.clone()));
         }
-        blocks.push(Block::new(BlockKind::Learning, regimes));
+        blocks.push(Block {
+            mix: if options.form == Some(ScenarioForm::Joint) {
+                BlockMix::Shuffled
+            } else {
+                BlockMix::InOrder
+            },
+            ..Block::new(BlockKind::Learning, regimes)
+        });
     }
     if places.contains(&last) {
         blocks.push(Block::new(BlockKind::Evaluation, evaluation));
@@ -244,7 +251,10 @@ fn lessons(
             taken[*variant] += u64::from(options.learn);
             vec![regime]
         };
-        let lessons = own(&path)?.iter().map(lesson).collect();
+        let mut lessons: Vec<Vec<Regime>> = own(&path)?.iter().map(lesson).collect();
+        if options.form == Some(ScenarioForm::Joint) {
+            lessons = vec![lessons.into_iter().flatten().collect()];
+        }
         return Ok((path, lessons));
     };
     // The form says which variants the drift leads through; how many blocks it is shared out among is said by `blocks`.

@@ -151,8 +151,7 @@ impl Journal {
         self.writer.write(&record)?;
         let success = f64::from(u8::from(experience.success));
         let steps = u64::from(experience.steps);
-        self.summary
-            .count(planned, number == planned.first, experience.reward, success, steps);
+        self.summary.count(planned, experience.reward, success, steps);
         Ok(self.progress(plan, number, experience.reward))
     }
 
@@ -167,7 +166,7 @@ impl Journal {
             self.learned = Some((index, learned.last()));
         }
         let end = self.learned.as_ref().and_then(|(_, end)| end.as_ref());
-        let before = learned.subject(learned.first + u64::from(learned.count) - 1, end);
+        let before = learned.subject(learned.number(u64::from(learned.count) - 1), end);
         let here = planned.subject(number, between);
         self.gaps.between((&before.0, before.1), (&here.0, here.1))
     }
@@ -237,13 +236,7 @@ fn count_row(plan: &Plan, summary: &mut Summary, number: u64, row: Row<'_>) -> R
         return Ok(());
     }
     let steps = value("episode_step_count") as u64;
-    summary.count(
-        planned,
-        number == planned.first,
-        value("reward"),
-        value("success"),
-        steps,
-    );
+    summary.count(planned, value("reward"), value("success"), steps);
     Ok(())
 }
 
@@ -262,7 +255,7 @@ pub(super) fn scenario_info(plan: &Plan, agent: &str) -> ScenarioInfo {
         Some(ScenarioForm::Permuted) => ScenarioType::Permuted,
         Some(ScenarioForm::Alternating) => ScenarioType::Alternating,
         Some(ScenarioForm::Expert) => ScenarioType::Ste,
-        Some(ScenarioForm::Custom) | None => ScenarioType::Custom,
+        Some(ScenarioForm::Custom | ScenarioForm::Joint) | None => ScenarioType::Custom,
     };
     let complexity = plan.scenario.complexity.map(|complexity| match complexity {
         ScenarioComplexity::Low => Complexity::Low,

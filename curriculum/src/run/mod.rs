@@ -11,6 +11,7 @@ mod log_names;
 mod plan;
 mod planned;
 mod rollout;
+mod shuffle;
 mod simulated;
 mod summary;
 mod undrawable;

@@ -6,11 +6,12 @@ use std::sync::Arc;
 
 use driftworld_env::Label;
 use driftworld_generator::{Drift, Sampler};
-use driftworld_spec::{Block, BlockKind, Regime, Scenario, TaskLabel, TaskSpec, Variant, World};
+use driftworld_spec::{Block, BlockKind, BlockMix, Regime, Scenario, TaskLabel, TaskSpec, Variant, World};
 use serde_json::{Value, json};
 
 use super::log_names::LogNames;
 use super::planned::{Planned, Source};
+use super::shuffle::Shuffle;
 use super::undrawable::Undrawable;
 use crate::CurriculumError;
 
@@ -109,8 +110,16 @@ impl Plan {
         let mut rounds: BTreeMap<(String, u64), u64> = BTreeMap::new();
         let (mut first, mut learned) = (0, None);
         for (b, block) in scenario.blocks.iter().enumerate() {
+            let shuffle = shuffle(b, block, first).map(Arc::new);
+            let learned_before_block = learned;
             for (r, regime) in block.regimes.iter().enumerate() {
-                let mut planned = plan.planned(&mut finder, (b, block), (r, regime), first, learned)?;
+                let before = if shuffle.is_some() {
+                    learned_before_block
+                } else {
+                    learned
+                };
+                let place = (first, shuffle.clone());
+                let mut planned = plan.planned(&mut finder, (b, block), (r, regime), place, before)?;
                 first += u64::from(planned.count);
                 log_names.claim(regime, &planned.log_name)?;
                 if planned.kind == BlockKind::Learning {
@@ -196,7 +205,13 @@ impl Plan {
     /// The index of the regime that an experience belongs to.
     pub(super) fn regime_of(&self, number: u64) -> usize {
         // The first regime begins with experience 0.
-        self.regimes.partition_point(|planned| planned.first <= number) - 1
+        let at = |place: u64| self.regimes.partition_point(|planned| planned.first <= place) - 1;
+        let index = at(number);
+        // All regimes of a block are shuffled alike, so any of them says where the experience is.
+        match &self.regimes[index].shuffle {
+            Some(shuffle) => at(shuffle.place(number)),
+            None => index,
+        }
     }
 
     /// What becomes of experiences whose worlds cannot be drawn.
@@ -222,7 +237,7 @@ impl Plan {
         finder: &mut Finder,
         (b, block): (usize, &Block),
         (r, regime): (usize, &Regime),
-        first: u64,
+        (first, shuffle): (u64, Option<Arc<Shuffle>>),
         learned: Option<usize>,
     ) -> Result<Planned, CurriculumError> {
         let source = finder.source(b, r, regime)?;
@@ -247,6 +262,7 @@ impl Plan {
             id,
             log_name,
             first,
+            shuffle,
             count: regime.count,
             seed: regime.seed,
             first_index: regime.first_index,
@@ -277,7 +293,7 @@ impl Plan {
             let world = match Sampler::new(variant, planned.seed).world(planned.first_index) {
                 Ok(world) => Some(world.hash()),
                 Err(source) if is_first_drawn && undrawable == Undrawable::Refused => {
-                    return Err(planned.wrong(planned.first, source));
+                    return Err(planned.wrong(planned.number(0), source));
                 }
                 Err(_) => None,
             };
@@ -287,7 +303,7 @@ impl Plan {
         match &planned.source {
             Source::Variant(variant) => take(variant, true),
             Source::Drift { from, to, .. } => {
-                take(from, planned.progress(planned.first) == 0.0)?;
+                take(from, planned.progress(planned.number(0)) == 0.0)?;
                 take(to, false)
             }
             Source::World { world, .. } => {
@@ -322,6 +338,14 @@ impl Plan {
             }));
         }
     }
+}
+
+/// The order of a block that is shuffled.
+fn shuffle(number: usize, block: &Block, first: u64) -> Option<Shuffle> {
+    let seed = block.regimes.first().map_or(0, |regime| regime.seed);
+    // Blocks of one seed have orders of their own.
+    let key = seed.wrapping_add((number as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15));
+    (block.mix == BlockMix::Shuffled).then(|| Shuffle::new(first, block.num_experiences(), key))
 }
 
 /// Finds tasks and worlds, each once.

@@ -11,6 +11,7 @@ use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 
 use super::gap::Subject;
+use super::shuffle::Shuffle;
 use crate::CurriculumError;
 
 /// A regime of a plan.
@@ -22,8 +23,10 @@ pub(super) struct Planned {
     /// Its name in tables: `task#variant`.
     pub(super) id: String,
     pub(super) log_name: String,
-    /// The number of its first experience over the whole lifetime.
+    /// The number of its first experience over the whole lifetime; its first place, where its block is shuffled.
     pub(super) first: u64,
+    /// Which experience of its block is run when, where the block is shuffled.
+    pub(super) shuffle: Option<Arc<Shuffle>>,
     pub(super) count: u32,
     pub(super) seed: u64,
     pub(super) first_index: u64,
@@ -93,7 +96,7 @@ impl Planned {
         {
             return !self.is_end(&variant);
         }
-        Schedule::from(drift.schedule).at(drift.progress((number - self.first) as u32, self.count)) < 0.5
+        Schedule::from(drift.schedule).at(drift.progress(self.offset(number) as u32, self.count)) < 0.5
     }
 
     /// Whether a variant is the one that it drifts to.
@@ -125,9 +128,21 @@ impl Planned {
         }
     }
 
+    /// The place of an experience in the regime, from 0.
+    fn offset(&self, number: u64) -> u64 {
+        let place = self.shuffle.as_ref().map_or(number, |shuffle| shuffle.place(number));
+        place - self.first
+    }
+
+    /// The number over the whole lifetime of the experience at a place in the regime.
+    pub(super) fn number(&self, offset: u64) -> u64 {
+        let place = self.first + offset;
+        self.shuffle.as_ref().map_or(place, |shuffle| shuffle.number(place))
+    }
+
     /// The number of an experience's world under its seed.
     pub(super) fn index_of(&self, number: u64) -> u64 {
-        self.first_index + (number - self.first)
+        self.first_index + self.offset(number)
     }
 
     /// The sampler of its worlds, where they are all drawn from one variant.
@@ -193,7 +208,7 @@ impl Planned {
         let Source::Drift { way, drift, .. } = &self.source else {
             return Ok(None);
         };
-        let experience = (number - self.first) as u32;
+        let experience = self.offset(number) as u32;
         way.at(drift.progress(experience, self.count), self.index_of(number))
             .map(Some)
     }
@@ -216,8 +231,8 @@ impl Planned {
 
     /// The variant of its last experience that has one, where it drifts: on the way of a drift the task may forbid some.
     pub(super) fn last(&self) -> Option<Variant> {
-        let mut numbers = (self.first..self.first + u64::from(self.count)).rev();
-        numbers.find_map(|number| self.variant_of(number).transpose()?.ok())
+        let mut offsets = (0..u64::from(self.count)).rev();
+        offsets.find_map(|offset| self.variant_of(self.number(offset)).transpose()?.ok())
     }
 
     /// The number of an experience's world among those of its variant and seed; NaN for a world from a file.
@@ -231,7 +246,7 @@ impl Planned {
     /// How far on its way a drift is in an experience, 0..=1; 0 where nothing drifts.
     pub(super) fn progress(&self, number: u64) -> f64 {
         match &self.source {
-            Source::Drift { drift, .. } => drift.progress((number - self.first) as u32, self.count),
+            Source::Drift { drift, .. } => drift.progress(self.offset(number) as u32, self.count),
             Source::Variant(_) | Source::World { .. } => 0.0,
         }
     }
@@ -263,6 +278,9 @@ impl Planned {
                 say("variant", json!(variant));
                 say("world", json!(path));
             }
+        }
+        if self.shuffle.is_some() {
+            say("mix", json!("shuffled"));
         }
         if let Some(max_steps) = self.max_steps {
             say("max_steps", json!(max_steps));

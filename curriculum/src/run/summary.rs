@@ -59,6 +59,9 @@ pub struct LeftOut {
 pub struct RegimeSummary {
     /// The block, from 0.
     pub block: usize,
+    /// The regime in its block, from 0.
+    #[serde(skip)]
+    pub regime: usize,
     /// Whether the agent learned.
     pub kind: BlockKind,
     /// The variant, as `task#variant`.
@@ -82,11 +85,11 @@ impl Summary {
         self.experiences + self.skipped
     }
 
-    /// Takes the next experience into account; `first` says that its regime begins with it.
-    pub(super) fn count(&mut self, planned: &Planned, first: bool, reward: f64, success: f64, steps: u64) {
+    /// Takes the next experience into account.
+    pub(super) fn count(&mut self, planned: &Planned, reward: f64, success: f64, steps: u64) {
         self.experiences += 1;
         self.steps += steps;
-        let row = self.row(planned, first);
+        let row = self.row(planned);
         let before = f64::from(row.experiences);
         row.experiences += 1;
         let mean = |old: f64, new: f64| (old * before + new) / (before + 1.0);
@@ -97,7 +100,7 @@ impl Summary {
     /// Takes into account that the next experience, `number`, is left out.
     pub(super) fn leave_out(&mut self, planned: &Planned, number: u64, reason: &str) {
         self.skipped += 1;
-        self.row(planned, number == planned.first).skipped += 1;
+        self.row(planned).skipped += 1;
         if self.left_out.len() < MOST_NAMED {
             self.left_out.push(LeftOut {
                 experience: number,
@@ -109,10 +112,19 @@ impl Summary {
         }
     }
 
-    fn row(&mut self, planned: &Planned, first: bool) -> &mut RegimeSummary {
-        if first || self.regimes.is_empty() {
+    fn row(&mut self, planned: &Planned) -> &mut RegimeSummary {
+        // A block that is shuffled comes back to its regimes.
+        let of_block = self.regimes.iter().rev().take_while(|row| row.block == planned.block);
+        let before = of_block.take_while(|row| row.regime != planned.regime).count();
+        let known = self.regimes.len().checked_sub(before + 1);
+        let known = known.filter(|index| {
+            let row = &self.regimes[*index];
+            (row.block, row.regime) == (planned.block, planned.regime)
+        });
+        let index = known.unwrap_or_else(|| {
             self.regimes.push(RegimeSummary {
                 block: planned.block,
+                regime: planned.regime,
                 kind: planned.kind,
                 variant: planned.id.clone(),
                 experiences: 0,
@@ -120,7 +132,8 @@ impl Summary {
                 mean_reward: 0.0,
                 success_rate: 0.0,
             });
-        }
-        self.regimes.last_mut().expect("there is one, or one was pushed above")
+            self.regimes.len() - 1
+        });
+        &mut self.regimes[index]
     }
 }

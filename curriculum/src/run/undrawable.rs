@@ -151,7 +151,7 @@ impl Planned {
             None => evenly(self.count, MOST_ON_THE_WAY).collect(),
         };
         for step in drawn.union(&looked) {
-            let number = self.first + u64::from(*step);
+            let number = self.number(u64::from(*step));
             let result = if drawn.contains(step) {
                 self.draw(number, sampler.as_ref()).map(drop)
             } else {

@@ -18,7 +18,8 @@ use driftworld_env::{Action, Agent, Catalogue, Environment, Label, OnRailsAgent,
 use driftworld_metrics::{MaintenanceMethod, Options, Record, Row, Timestamp, read_log, score};
 use driftworld_similarity::{Weights, variant_distance};
 use driftworld_spec::{
-    Block, BlockKind, Element, Phase, Regime, RegimeDrift, Scenario, TaskLabel, TaskSpec, Value, World,
+    Block, BlockKind, BlockMix, Element, Phase, Regime, RegimeDrift, Scenario, ScenarioForm, TaskLabel, TaskSpec,
+    Value, World,
 };
 
 fn task() -> Arc<TaskSpec> {
@@ -213,6 +214,53 @@ fn another_run_seed_is_a_repeat_in_the_same_worlds_and_the_log_says_which() {
         let world = |plan: &Plan, number| plan.world(number).unwrap_or_else(|error| panic!("{error}"));
         assert!((0..own.num_experiences()).all(|number| world(a, number) == world(b, number)));
     }
+}
+
+#[test]
+fn a_joint_block_runs_every_world_once_among_the_others_and_is_one_regime_a_task() {
+    let choices = ["red", "dusk"].map(|name| Choice::new("find_objects", name));
+    let options = Design {
+        name: "joint".to_owned(),
+        form: Some(ScenarioForm::Joint),
+        learn: 8,
+        evaluate: 2,
+        seed: 5,
+        ..Design::default()
+    };
+    let scenario = design(&choices, &options).expect("the design is sound");
+    let shuffled = plan(&scenario).unwrap_or_else(|error| panic!("{error}"));
+    let mut in_order = scenario.clone();
+    for block in &mut in_order.blocks {
+        block.mix = BlockMix::InOrder;
+    }
+    let in_order = plan(&in_order).unwrap_or_else(|error| panic!("{error}"));
+    let specs = |plan: &Plan| {
+        let spec = |number| {
+            let spec = plan.experience_spec(number).unwrap_or_else(|error| panic!("{error}"));
+            (spec.block, spec.variant.to_owned(), spec.seed, spec.index)
+        };
+        (0..plan.num_experiences()).map(spec).collect::<Vec<_>>()
+    };
+    let (mut found, mut expected) = (specs(&shuffled), specs(&in_order));
+    assert_ne!(found, expected);
+    let learned: Vec<&str> = found[4..20].iter().map(|spec| spec.1.as_str()).collect();
+    assert!(learned.chunk_by(|a, b| a == b).count() > 4, "{learned:?}");
+    found.sort();
+    expected.sort();
+    assert_eq!(found, expected);
+
+    let (whole, cut) = (scratch(), scratch());
+    let (whole, cut) = (whole.path().join("log"), cut.path().join("log"));
+    live(&scenario, &mut RandomAgent::new(0), &whole, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
+    live(&scenario, &mut RandomAgent::new(0), &cut, 11).unwrap_or_else(|error| panic!("{error}"));
+    let again = Living { resume: true, ..WHOLE };
+    let summary = live_by(&scenario, &mut RandomAgent::new(0), &cut, &again).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(everything(&whole), everything(&cut));
+    assert_eq!(summary.regimes.len(), 6);
+    assert!(summary.regimes[2..4].iter().all(|regime| regime.experiences == 8));
+    let log = read_log(&whole).unwrap_or_else(|error| panic!("{error}"));
+    let scores = score(&log, &[], &Options::default()).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(scores.regimes.len(), 6);
 }
 
 /// `DRIFTWORLD_UPDATE_GOLDEN=1` rewrites the file.

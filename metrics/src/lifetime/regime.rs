@@ -14,10 +14,16 @@ use crate::{BlockSubtype, BlockType, Definitions, MetricsError, Options};
 /// Most regimes a lifetime may have; the Theil–Sen slope looks at every pair of a task's.
 pub const MAX_REGIMES: usize = 10_000;
 
+/// Parameter of a task by which a row says that its block is shuffled.
+const MIX: (&str, &str) = ("mix", "shuffled");
+
 /// A maximal run of rows with the same block number, block type, subtype and task.
 ///
 /// QUIRK: task parameters do not split regimes. A block that changes only a task's parameters is one regime, and
 /// stands in tables with the parameters of its first row. Under the published definitions they do split.
+///
+/// Rows whose parameters say `"mix": "shuffled"` are of a block in which tasks are learnt among each other: the rows of one task
+/// are one regime there, which the reference counts as many.
 #[derive(Debug, Clone, PartialEq)]
 #[expect(
     clippy::struct_field_names,
@@ -126,8 +132,12 @@ pub(crate) fn form(run_id: &str, usable: &Usable<'_>, options: &Options) -> Resu
             rows.task_params().ids()[a] == rows.task_params().ids()[b] || params_of(a) == params_of(b)
         }
     };
-    let stretches = usable.indices.chunk_by(|&a, &b| key(a) == key(b) && same_params(a, b));
-    let mut steps = cumulated_steps(usable).map(Vec::into_iter);
+    let is_shuffled = |row: usize| params_of(row).get(MIX.0).is_some_and(|mix| mix == MIX.1);
+    let order = unshuffled(&usable.indices, |row| is_shuffled(row).then(|| key(row)));
+    let indices: Vec<usize> = order.iter().map(|&place| usable.indices[place]).collect();
+    let stretches = indices.chunk_by(|&a, &b| key(a) == key(b) && same_params(a, b));
+    let steps = cumulated_steps(usable);
+    let mut steps = steps.map(|steps| order.iter().map(|&place| steps[place]).collect::<Vec<_>>().into_iter());
     let mut regimes = Vec::new();
     for (regime_num, stretch) in stretches.enumerate() {
         if regime_num == MAX_REGIMES {
@@ -156,6 +166,26 @@ pub(crate) fn form(run_id: &str, usable: &Usable<'_>, options: &Options) -> Resu
         });
     }
     Ok(regimes)
+}
+
+/// Places of rows in an order in which, of each block that is shuffled, the rows of one task stand together, in the order of the
+/// tasks' first rows. `key` says block and task of a row in such a block.
+fn unshuffled<B: PartialEq>(rows: &[usize], key: impl Fn(usize) -> Option<(B, usize)>) -> Vec<usize> {
+    let keys: Vec<_> = rows.iter().map(|&row| key(row)).collect();
+    let places: Vec<usize> = (0..rows.len()).collect();
+    let block = |place: usize| keys[place].as_ref().map(|(block, _)| block);
+    let blocks = places.chunk_by(|&a, &b| block(a) == block(b));
+    let grouped = blocks.flat_map(|block| {
+        let mut tasks = IndexSet::new();
+        let task = |place: &usize| keys[*place].as_ref().map(|(_, task)| *task);
+        let mut numbered: Vec<_> = block
+            .iter()
+            .map(|place| (tasks.insert_full(task(place)).0, *place))
+            .collect();
+        numbered.sort_unstable();
+        numbered.into_iter().map(|(_, place)| place)
+    });
+    grouped.collect()
 }
 
 /// Steps of the environment up to the end of each row that counts, one after the other.
@@ -192,6 +222,41 @@ mod tests {
 
     fn record(block_num: u64, block_type: BlockType, task: &str) -> Record {
         Record::new(block_num, 0, block_type, task, "20200101T000000.0".parse().unwrap())
+    }
+
+    #[test]
+    fn tasks_of_a_shuffled_block_are_one_regime_each() {
+        let params = serde_json::Map::from_iter([("mix".to_owned(), "shuffled".into())]);
+        let row = |number: u64, block: u64, task: &str, params: Option<&serde_json::Map<String, serde_json::Value>>| {
+            let stamp = "20200101T000000.0".parse().unwrap();
+            let record = Record::new(block, number, BlockType::Train, task, stamp)
+                .with_metric("episode_step_count", 10.0_f64.powi(number.try_into().unwrap()));
+            match params {
+                Some(params) => record.with_task_params(params.clone()),
+                None => record,
+            }
+        };
+        let mixed = Some(&params);
+        let records = [
+            row(0, 0, "b_x", mixed),
+            row(1, 0, "a_x", mixed),
+            row(2, 0, "b_x", mixed),
+            row(3, 1, "a_x", mixed),
+            row(4, 2, "b_x", None),
+            row(5, 2, "a_x", None),
+            row(6, 2, "b_x", None),
+        ];
+        let rows = Rows::from_records(&records);
+        let usable = Usable {
+            rows: &rows,
+            indices: (0..records.len()).collect(),
+            performance: &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0],
+        };
+        let regimes = form("run", &usable, &Options::default()).unwrap();
+        let numbers: Vec<&[u64]> = regimes.iter().map(|regime| regime.exp_nums.as_slice()).collect();
+        assert_eq!(numbers, [&[0, 2][..], &[1], &[3], &[4], &[5], &[6]]);
+        let steps = regimes[0].steps.as_deref().unwrap();
+        assert_eq!(steps, [1.0, 111.0], "steps are counted over all rows before");
     }
 
     #[test]

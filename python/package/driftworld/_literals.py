@@ -72,7 +72,7 @@ OrderMethod: TypeAlias = Literal[
 ]
 
 # -- curricula ---------------------------------------------------------------------------------------------------------
-Form: TypeAlias = Literal["condensed", "dispersed", "permuted", "alternating", "custom"]
+Form: TypeAlias = Literal["condensed", "dispersed", "permuted", "alternating", "joint", "custom"]
 Evaluate: TypeAlias = Literal["every", "ends"]
 DesignOrder: TypeAlias = Literal["gradual", "outward", "abrupt", "path", "farthest", "named"]
 Probe: TypeAlias = Literal["state", "action", "transition", "reward", "observation"]

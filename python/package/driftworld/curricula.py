@@ -232,7 +232,7 @@ class Curriculum(Sequence[Block]):
             evaluate: When the agent is evaluated, frozen, in all variants: ``"every"`` block (default) or at the ``"ends"``.
             evaluate_after: After so many learning blocks each instead; 0 is before the first.
             pre_deployment: Experiences of the first variant in a block before deployment.
-            form: ``"condensed"``, ``"dispersed"``, ``"permuted"``, ``"alternating"`` or ``"custom"``.
+            form: ``"condensed"``, ``"dispersed"``, ``"permuted"``, ``"alternating"``, ``"joint"`` or ``"custom"``.
             blocks: How many learning blocks; as many as the form has of itself if not given.
             method: The method of the order, as for :func:`driftworld.order`.
             start: The variant that comes first; if not given, the one that is named first.

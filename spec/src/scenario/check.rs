@@ -118,11 +118,19 @@ pub(super) fn alone(scenario: &Scenario) -> Vec<Problem> {
             problems.push(problem.advise("a world file is lived as it is: write what is to change into it"));
             continue;
         }
-        if let Some((drift, task)) = regime.drift.as_ref().and_then(|drift| Some((drift, drift.task.as_ref()?)))
+        if let Some((drift, task)) = regime
+            .drift
+            .as_ref()
+            .and_then(|drift| Some((drift, drift.task.as_ref()?)))
             && drift.switch != DriftSwitch::Task
         {
             let pointer = format!("{pointer}/drift/task");
-            let problem = Problem::new("spec/value", pointer, format!("{task:?}"), "\"switch\": \"task\" beside it");
+            let problem = Problem::new(
+                "spec/value",
+                pointer,
+                format!("{task:?}"),
+                "\"switch\": \"task\" beside it",
+            );
             problems.push(problem.advise("between two tasks there is nothing: only whole variants can switch"));
             continue;
         }

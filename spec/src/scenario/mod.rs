@@ -86,6 +86,8 @@ pub enum ScenarioForm {
     Alternating,
     /// One task alone, to compare a lifelong learner with; `ste` in a log.
     Expert,
+    /// All tasks at once, among each other: joint training, an upper bound for a lifelong learner; `custom` in a log.
+    Joint,
     /// Anything else.
     Custom,
 }
@@ -151,9 +153,31 @@ pub struct Block {
     /// Whether it belongs to the time before deployment, whose blocks come before all others.
     #[serde(default, skip_serializing_if = "Phase::is_deployment")]
     pub phase: Phase,
-    /// Stretches of experiences of one variant each, in order.
+    /// In which order its experiences are run; one regime after the other if absent.
+    #[serde(default, skip_serializing_if = "BlockMix::is_in_order")]
+    pub mix: BlockMix,
+    /// Stretches of experiences of one variant each.
     #[schemars(length(min = 1, max = 100_000))]
     pub regimes: Vec<Regime>,
+}
+
+/// In which order the experiences of a block are run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum BlockMix {
+    /// One regime after the other.
+    #[default]
+    InOrder,
+    /// All regimes among each other, in an order drawn by the seed of the first: joint training. Within a regime too, the
+    /// worlds come in that order.
+    Shuffled,
+}
+
+impl BlockMix {
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
+    fn is_in_order(&self) -> bool {
+        *self == Self::InOrder
+    }
 }
 
 /// Whether the agent may learn in a block.
@@ -190,6 +214,7 @@ impl Block {
         Self {
             kind,
             phase: Phase::default(),
+            mix: BlockMix::default(),
             regimes,
         }
     }

@@ -213,6 +213,8 @@ enum Form {
     Alternating,
     /// Single-task experts: one scenario per variant, which learns it alone.
     Expert,
+    /// All variants in one block, shuffled: joint training, an upper bound for lifelong learners.
+    Joint,
     /// One variant after the other, starting over if there are more blocks.
     Custom,
 }
@@ -379,6 +381,7 @@ impl Curriculum {
                 Form::Permuted => ScenarioForm::Permuted,
                 Form::Alternating => ScenarioForm::Alternating,
                 Form::Expert => ScenarioForm::Expert,
+                Form::Joint => ScenarioForm::Joint,
                 Form::Custom => ScenarioForm::Custom,
             }),
             blocks: self.blocks,

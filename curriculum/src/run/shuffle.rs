@@ -1,0 +1,108 @@
+//! [`Shuffle`]: the order in which the experiences of a shuffled block are run.
+
+use sha2::{Digest, Sha256};
+
+/// Rounds of the network; four make a good permutation of a good function (Luby and Rackoff 1988).
+const ROUNDS: u64 = 4;
+
+/// A permutation of a range of numbers that is drawn by a key and takes no memory: a Feistel network over the least even
+/// number of bits that holds the range, walked on until it is back in the range.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Shuffle {
+    first: u64,
+    count: u64,
+    key: u64,
+    half_bits: u32,
+}
+
+impl Shuffle {
+    /// Of `first..first + count`.
+    pub(super) fn new(first: u64, count: u64, key: u64) -> Self {
+        let bits = u64::BITS - count.saturating_sub(1).leading_zeros();
+        Self {
+            first,
+            count,
+            key,
+            half_bits: bits.div_ceil(2).max(1),
+        }
+    }
+
+    /// The place in the list of regimes of the experience that is run at this number.
+    pub(super) fn place(&self, number: u64) -> u64 {
+        self.walk(number, |shuffle, x| {
+            (0..ROUNDS).fold(x, |x, round| shuffle.mix(x, round))
+        })
+    }
+
+    /// The number at which the experience at this place in the list of regimes is run.
+    pub(super) fn number(&self, place: u64) -> u64 {
+        self.walk(place, |shuffle, x| {
+            (0..ROUNDS).rev().fold(x, |x, round| shuffle.unmix(x, round))
+        })
+    }
+
+    fn walk(&self, from: u64, step: impl Fn(&Self, u64) -> u64) -> u64 {
+        let mut x = step(self, from - self.first);
+        // A permutation comes back to where it started, which is in the range.
+        while x >= self.count {
+            x = step(self, x);
+        }
+        self.first + x
+    }
+
+    fn mix(&self, x: u64, round: u64) -> u64 {
+        let (left, right) = (x >> self.half_bits, x & self.mask());
+        right << self.half_bits | (left ^ self.hash(right, round))
+    }
+
+    fn unmix(&self, x: u64, round: u64) -> u64 {
+        let (right, mixed) = (x >> self.half_bits, x & self.mask());
+        (mixed ^ self.hash(right, round)) << self.half_bits | right
+    }
+
+    fn hash(&self, half: u64, round: u64) -> u64 {
+        let mut hash = Sha256::new();
+        for number in [self.key, round, half] {
+            hash.update(number.to_le_bytes());
+        }
+        let digest = hash.finalize();
+        digest.iter().take(8).fold(0, |bits, byte| bits << 8 | u64::from(*byte)) & self.mask()
+    }
+
+    fn mask(&self) -> u64 {
+        (1 << self.half_bits) - 1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn every_experience_comes_once(first in 0..1_000_000_u64, count in 1..300_u64, key in any::<u64>()) {
+            let shuffle = Shuffle::new(first, count, key);
+            let mut places: Vec<u64> = (first..first + count).map(|number| shuffle.place(number)).collect();
+            for (number, place) in (first..).zip(&places) {
+                prop_assert_eq!(shuffle.number(*place), number);
+            }
+            places.sort_unstable();
+            prop_assert!(places.into_iter().eq(first..first + count));
+        }
+    }
+
+    #[test]
+    fn every_order_of_three_comes_about_equally_often() {
+        let mut counts = std::collections::BTreeMap::new();
+        for key in 0..6000 {
+            let order: Vec<u64> = (0..3).map(|number| Shuffle::new(0, 3, key).place(number)).collect();
+            *counts.entry(order).or_insert(0) += 1;
+        }
+        // Four standard deviations of a count of 6,000 · 1/6.
+        assert!(
+            counts.len() == 6 && counts.values().all(|count: &i32| (count - 1000).abs() < 116),
+            "{counts:?}"
+        );
+    }
+}
