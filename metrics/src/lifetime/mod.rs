@@ -2,6 +2,7 @@
 //!
 //! Not here: reading files (`log`), changing the numbers (`preprocess`), and judging them (`score`).
 
+mod budget;
 mod drift;
 mod prepare;
 mod regime;
@@ -11,6 +12,7 @@ mod worlds;
 
 use indexmap::IndexMap;
 
+pub(crate) use budget::{Budget, budgets, present};
 pub use drift::Drift;
 pub(crate) use regime::mean_per_experience;
 pub use regime::{MAX_REGIMES, Regime};

@@ -7,9 +7,11 @@ use std::sync::Arc;
 
 use indexmap::{IndexMap, IndexSet};
 
+use super::budget::Budget;
 use super::regime::{self, Regime};
 use super::usable::{complete_rows, is_deployed};
 use crate::log::{Log, read_log};
+use crate::results::agent_of;
 use crate::{BlockType, MetricsError, Options, VariantMode};
 
 /// The log of a single-task expert: exactly one task is trained in it, but for what comes before deployment. A clone shares the log.
@@ -92,6 +94,12 @@ pub fn read_ste_log(dir: impl AsRef<Path>) -> Result<SteLog, MetricsError> {
 /// One run of an expert, as regimes of its own.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct SteRun {
+    /// What messages call its log.
+    pub(crate) name: String,
+    /// Who learned, as the log says.
+    pub(crate) agent: Option<String>,
+    /// What it learned from.
+    pub(crate) budget: Budget,
     pub(crate) regimes: Vec<Regime>,
 }
 
@@ -189,5 +197,10 @@ fn run_of(expert: &SteLog, task: &str, options: &Options) -> Result<SteRun, Metr
         }
     }
     regimes.retain(|regime| !regime.is_empty());
-    Ok(SteRun { regimes })
+    Ok(SteRun {
+        name: expert.log.run_id.clone(),
+        agent: agent_of(&expert.log),
+        budget: Budget::of_expert(&expert.log),
+        regimes,
+    })
 }

@@ -8,10 +8,10 @@ use indexmap::IndexSet;
 
 use super::usable::usable_rows;
 use super::{Lifetime, Regime};
-use crate::{Log, MetricsError, Options};
+use crate::{Log, MetricsError, Options, TaskParams};
 
 /// Column with the number of a row's world among those of its variant and seed.
-const INDEX: &str = "world_index";
+pub(super) const INDEX: &str = "world_index";
 
 /// Parameter of a task with the seed of its worlds.
 const SEED: &str = "seed";
@@ -23,6 +23,11 @@ pub(crate) struct World {
     pub(crate) task: u32,
     /// Number of seed and index, the same for all tasks.
     pub(crate) number: u32,
+}
+
+/// The seed of the worlds of rows with these parameters, as it is written; empty without one.
+pub(super) fn seed_of(params: &TaskParams) -> String {
+    params.get(SEED).map(ToString::to_string).unwrap_or_default()
 }
 
 /// The world of each row of each regime, in their order; `None` where the log does not say. `log` and `options` are those that the
@@ -39,7 +44,6 @@ pub(crate) fn worlds(
     let rows = usable.rows;
     let params = rows.task_params();
     let mut seeds: IndexSet<String> = IndexSet::new();
-    let seed_of = |params: &crate::TaskParams| params.get(SEED).map(ToString::to_string).unwrap_or_default();
     let seeds: Vec<usize> = (params.values().iter())
         .map(|params| seeds.insert_full(seed_of(params)).0)
         .collect();

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Reached;
 use crate::BlockType;
-use crate::lifetime::{Lifetime, Regime};
+use crate::lifetime::{Lifetime, present};
 use crate::statistics::mean;
 
 /// A point of an evaluation curve.
@@ -99,14 +99,6 @@ impl<'a> Timeline<'a> {
         }
         found
     }
-}
-
-/// The task that is learned in a row: in a drift the nearer one.
-fn present(regime: &Regime, row: usize) -> &str {
-    regime
-        .drift
-        .as_ref()
-        .map_or(&regime.task_name, |drift| drift.nearer(row))
 }
 
 /// Points in ascending order, at least one, none above another.

@@ -8,7 +8,9 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::rounding::ten_decimals;
-use super::{AsLogged, Direction, EvaluationCurve, Headline, NullBand, Reached, RegimeMetrics, Value, Values};
+use super::{
+    AsLogged, Direction, EvaluationCurve, ExpertFit, Headline, NullBand, Reached, RegimeMetrics, Value, Values,
+};
 use crate::{DataRange, Definitions};
 
 /// Everything that scoring one lifetime gives. Serialises to the reference's `NAME_metrics.json`; regimes have a
@@ -59,6 +61,13 @@ pub struct LifetimeMetrics {
     /// reference's fields.
     #[serde(default)]
     pub curves: IndexMap<String, EvaluationCurve>,
+    /// What a reader must be told of tasks that were never learned, and of experts that are not like for like. Not in the JSON, which has the
+    /// reference's fields.
+    #[serde(default)]
+    pub cautions: Vec<String>,
+    /// What experts learned from, beside the lifetime, by task. Not in the JSON, which has the reference's fields.
+    #[serde(default, rename = "experts")]
+    pub expert_fits: IndexMap<String, Vec<ExpertFit>>,
     /// The values of each task, by first learning block: headlines, then the lists behind them.
     pub task_metrics: IndexMap<String, Values>,
     /// The values of each regime, in order; not in the JSON.

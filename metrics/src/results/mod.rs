@@ -4,6 +4,7 @@
 
 mod as_logged;
 mod curves;
+mod expert_fit;
 mod files;
 mod headline;
 mod lifetime_metrics;
@@ -21,6 +22,8 @@ pub use as_logged::AsLogged;
 pub(crate) use as_logged::as_logged;
 pub(crate) use curves::curves;
 pub use curves::{CurvePoint, EvaluationCurve};
+pub use expert_fit::{BesideExpert, ExpertFit};
+pub(crate) use expert_fit::{agent_of, expert_fits, unlike_experts};
 pub use files::{SavedFiles, SavedTables, Settings, save_all};
 pub use headline::{Direction, Headline};
 pub use lifetime_metrics::{LifetimeMetrics, SummaryRow};

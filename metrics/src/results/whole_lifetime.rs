@@ -5,10 +5,11 @@
 use indexmap::IndexMap;
 use serde::Serialize;
 
-use super::{EvaluationCurve, LifetimeMetrics, NullBand, Reached};
+use super::{EvaluationCurve, ExpertFit, LifetimeMetrics, NullBand, Reached};
 
 /// A lifetime as JSON: the fields of [`LifetimeMetrics`], then `null`, the null band of each metric that has one,
-/// `reached`, what each task came to, and `curves`, what each evaluation curve says.
+/// `reached`, what each task came to, `curves`, what each evaluation curve
+/// says, and with experts `experts`, whether they are like for like.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct WholeLifetime<'a> {
     #[serde(flatten)]
@@ -16,6 +17,10 @@ pub struct WholeLifetime<'a> {
     null: &'a IndexMap<String, NullBand>,
     reached: &'a IndexMap<String, Reached>,
     curves: &'a IndexMap<String, EvaluationCurve>,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    cautions: &'a [String],
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    experts: &'a IndexMap<String, Vec<ExpertFit>>,
 }
 
 impl LifetimeMetrics {
@@ -26,6 +31,8 @@ impl LifetimeMetrics {
             null: &self.null_bands,
             reached: &self.reached,
             curves: &self.curves,
+            cautions: &self.cautions,
+            experts: &self.expert_fits,
         }
     }
 }

@@ -9,8 +9,8 @@ use super::null_bands::null_bands;
 use super::{Assessment, Metric, all_asked, built_in, built_in_headlines};
 use crate::lifetime::{Lifetime, Regime, SteLog};
 use crate::results::{
-    Headline, LEARNED_SHARE, LifetimeMetrics, Reached, RegimeMetrics, Value, Values, as_logged, curves,
-    is_regime_column, reached,
+    Headline, LEARNED_SHARE, LifetimeMetrics, Reached, RegimeMetrics, Value, Values, as_logged, curves, expert_fits,
+    is_regime_column, reached, unlike_experts,
 };
 use crate::{BlockType, Log, MetricsError, Options};
 
@@ -97,7 +97,7 @@ impl Scorer {
                 headlines.push(headline);
             }
         }
-        let mut notes: Vec<String> = super::transfer::caution(&assessment).into_iter().collect();
+        let notes = super::transfer::caution(&assessment).into_iter().collect();
         let null_bands = null_bands(log, lifetime, options, &assessment.term_perfs())?;
         let (regimes, tasks, found) = assessment.into_values();
         check_names(&found, "the lifetime", |name| TAKEN.contains(&name))?;
@@ -115,7 +115,9 @@ impl Scorer {
         let regimes = lifetime.regimes().iter().zip(regimes);
         let (min, max) = extent(lifetime.regimes().iter());
         let reached = reached(log, lifetime, options)?;
-        notes.extend(never_learned(&reached, &tasks, options));
+        let expert_fits = expert_fits(log, lifetime, options)?;
+        let mut cautions: Vec<String> = never_learned(&reached, &tasks, options).into_iter().collect();
+        cautions.extend(unlike_experts(&expert_fits));
         let info = &log.scenario_info;
         Ok(LifetimeMetrics {
             lifetime: in_order(&found),
@@ -135,6 +137,8 @@ impl Scorer {
             null_bands,
             curves: curves(lifetime, &reached),
             reached,
+            cautions,
+            expert_fits,
             task_metrics: tasks.into_iter().map(finish).collect::<IndexMap<_, _>>(),
             regimes: regimes
                 .map(|(regime, values)| RegimeMetrics::new(regime, values))
@@ -181,7 +185,7 @@ fn never_learned(
 }
 
 /// Fields of the results that no headline and no value of a lifetime may have as its name.
-const TAKEN: [&str; 18] = [
+const TAKEN: [&str; 20] = [
     "run_id",
     "complexity",
     "difficulty",
@@ -199,6 +203,8 @@ const TAKEN: [&str; 18] = [
     "null",
     "reached",
     "curves",
+    "experts",
+    "cautions",
     "task_metrics",
 ];
 

@@ -61,7 +61,7 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
                 (NULL_PERMUTATIONS) " times, as if the agent never changed. No effect is named inside it. “no null”: decided by learning, too."
             }
         }
-        @for note in &metrics.notes { p.note { strong { "Note: " } (shown(note)) "." } }
+        @for note in metrics.notes.iter().chain(&metrics.cautions) { p.note { strong { "Note: " } (shown(note)) "." } }
         @if scaled {
             p.note {
                 "Tasks are scaled to 1…101, by default by this lifetime’s own worst and best. Such values cannot be compared between lifetimes: a random agent may score "

@@ -94,9 +94,12 @@ pub(super) fn reached_by_several(agent: &str, lifetimes: &[LifetimeMetrics]) -> 
             if values.is_empty() { String::new() } else { show(mean) }
         };
         let is_scaled = found.iter().all(|task| task.is_scaled());
-        let level = |of: fn(&Reached) -> Option<&EvaluationCell>| match is_scaled {
-            true => mean(&|task| of(task)?.score, percent),
-            false => mean(&|task| Some(of(task)?.mean), number),
+        let level = |of: fn(&Reached) -> Option<&EvaluationCell>| {
+            if is_scaled {
+                mean(&|task| of(task)?.score, percent)
+            } else {
+                mean(&|task| Some(of(task)?.mean), number)
+            }
         };
         let known = found.iter().filter_map(|task| task.is_never_learned());
         let (not, all) = known.fold((0, 0), |(not, all), is_not| (not + usize::from(is_not), all + 1));

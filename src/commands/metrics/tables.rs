@@ -58,7 +58,7 @@ pub(crate) fn summary(scores: &LifetimeMetrics) -> String {
         metrics.push('\n');
         metrics.push_str(&what_bands_are(scores));
     }
-    for note in &scores.notes {
+    for note in scores.notes.iter().chain(&scores.cautions) {
         metrics.push_str("\nnote: ");
         metrics.push_str(&printable(note));
     }
@@ -178,7 +178,7 @@ fn several(scores: &Scores, together: &Comparison) -> String {
     let notes: BTreeSet<&str> = lifetimes
         .iter()
         .chain(others)
-        .flat_map(|life| &life.notes)
+        .flat_map(|life| life.notes.iter().chain(&life.cautions))
         .map(String::as_str)
         .collect();
     parts.extend(notes.into_iter().map(|note| format!("note: {}", one_line(note))));

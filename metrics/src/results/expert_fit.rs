@@ -1,0 +1,146 @@
+//! Whether experts are like for like: the agent, what it learned from, and in which worlds, beside the lifetime's.
+//!
+//! Not here: the comparison of performances, see `score::ste_relative_performance` and `score::sample_efficiency`.
+
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+
+use crate::lifetime::{Budget, Lifetime, budgets};
+use crate::{Log, MetricsError, Options, VariantMode};
+
+/// One number of a lifetime and of an expert.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct BesideExpert<T> {
+    /// Of the lifetime.
+    pub lifetime: T,
+    /// Of the expert.
+    pub expert: T,
+}
+
+/// What an expert of a task learned from, beside the lifetime.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ExpertFit {
+    /// The expert's log.
+    pub run: String,
+    /// Who learned, as logs say in `scenario_info.json` under `agent`; `None` where one does not say.
+    pub agent: Option<BesideExpert<String>>,
+    /// Learning experiences of the task; in a drift those that are nearer to it.
+    pub learned: BesideExpert<usize>,
+    /// Learning experiences of the task before deployment.
+    pub before_deployment: BesideExpert<usize>,
+    /// Different worlds of the learning, by seed and index; `None` where one of the logs does not say them.
+    pub worlds: Option<BesideExpert<usize>>,
+    /// Worlds that both learned in.
+    pub shared_worlds: Option<usize>,
+    /// What is not alike, each in words; empty for an expert that is like for like as far as the logs say.
+    pub differences: Vec<String>,
+}
+
+/// Every expert that each task is compared with. Where variants do not count, an expert is of one variant and the task of all:
+/// nothing is said.
+pub(crate) fn expert_fits(
+    log: &Log,
+    lifetime: &Lifetime,
+    options: &Options,
+) -> Result<IndexMap<String, Vec<ExpertFit>>, MetricsError> {
+    if options.variant_mode == VariantMode::Agnostic {
+        return Ok(IndexMap::new());
+    }
+    let budgets = budgets(log, lifetime, options)?;
+    let nothing = Budget::default();
+    let agent = agent_of(log);
+    let of_task = |task: &String| {
+        let own = budgets.get(task).unwrap_or(&nothing);
+        let runs = lifetime.experts_of(task).iter();
+        let fits = runs.map(|run| fit(&run.name, [agent.as_deref(), run.agent.as_deref()], own, &run.budget));
+        let fits: Vec<ExpertFit> = fits.collect();
+        // A task that is only evaluated is not learned in the lifetime: there is nothing to compare.
+        (!fits.is_empty() && own.learned > 0).then(|| (task.clone(), fits))
+    };
+    Ok(lifetime.tasks().iter().filter_map(of_task).collect())
+}
+
+/// Who learned, as a log says.
+pub(crate) fn agent_of(log: &Log) -> Option<String> {
+    Some(log.scenario_info.extra.get("agent")?.as_str()?.to_owned())
+}
+
+fn fit(run: &str, [own_agent, agent]: [Option<&str>; 2], own: &Budget, expert: &Budget) -> ExpertFit {
+    let worlds = own.worlds.as_ref().zip(expert.worlds.as_ref());
+    let shared = worlds.map(|(own, expert)| own.intersection(expert).count());
+    let found = ExpertFit {
+        run: run.to_owned(),
+        agent: own_agent.zip(agent).map(|(lifetime, expert)| BesideExpert {
+            lifetime: lifetime.to_owned(),
+            expert: expert.to_owned(),
+        }),
+        learned: BesideExpert {
+            lifetime: own.learned,
+            expert: expert.learned,
+        },
+        before_deployment: BesideExpert {
+            lifetime: own.before,
+            expert: expert.before,
+        },
+        worlds: worlds.map(|(own, expert)| BesideExpert {
+            lifetime: own.len(),
+            expert: expert.len(),
+        }),
+        shared_worlds: shared,
+        differences: Vec::new(),
+    };
+    ExpertFit {
+        differences: differences(&found),
+        ..found
+    }
+}
+
+fn differences(fit: &ExpertFit) -> Vec<String> {
+    let mut found = Vec::new();
+    let counts = [
+        ("learning experiences", fit.learned),
+        ("learning experiences before deployment", fit.before_deployment),
+    ];
+    for (what, counts) in counts {
+        if counts.lifetime != counts.expert {
+            found.push(format!(
+                "it had {} {what}, the lifetime {}",
+                counts.expert, counts.lifetime
+            ));
+        }
+    }
+    if let (Some(worlds), Some(shared)) = (fit.worlds, fit.shared_worlds)
+        && (shared != worlds.lifetime || shared != worlds.expert)
+    {
+        found.push(format!(
+            "{shared} of its {} worlds are among the lifetime's {}",
+            worlds.expert, worlds.lifetime
+        ));
+    }
+    if let Some(agents) = &fit.agent
+        && agents.lifetime != agents.expert
+    {
+        found.push(format!(
+            "its agent is {:?}, the lifetime's {:?}",
+            agents.expert, agents.lifetime
+        ));
+    }
+    found
+}
+
+/// A sentence for each expert that is not like for like.
+pub(crate) fn unlike_experts(fits: &IndexMap<String, Vec<ExpertFit>>) -> Vec<String> {
+    let all = fits
+        .iter()
+        .flat_map(|(task, fits)| fits.iter().map(move |fit| (task, fit)));
+    let unlike = all.filter(|(_, fit)| !fit.differences.is_empty());
+    unlike
+        .map(|(task, fit)| {
+            format!(
+                "the expert {} of {task} is not like for like: {}",
+                fit.run,
+                fit.differences.join("; ")
+            )
+        })
+        .collect()
+}
