@@ -8,11 +8,13 @@ mod scored_log;
 mod scores;
 mod settings;
 mod setup;
+mod varied;
 
 pub use comparison::Comparison;
 pub use request::{ScoringRequest, ScoringSettings};
 pub use scores::{Scores, score};
 pub use settings::data_ranges;
+pub use varied::Varied;
 
 pub(crate) use experts::Experts;
 pub(crate) use scored_log::{ScoredLog, score_logs};

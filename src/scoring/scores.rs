@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use driftworld_metrics::{LifetimeMetrics, Options, Settings, WholeLifetime, save_all};
 use serde::{Serialize, Serializer};
 
+use super::varied::{Makeup, Varied};
 use super::{Comparison, ScoredLog, ScoringRequest, Setup, score_logs};
 use crate::{Failure, Warn, argument, output_file};
 
@@ -23,6 +24,8 @@ pub struct Scores {
     pub lifetimes_against: Vec<LifetimeMetrics>,
     /// What they say together; `None` for one lifetime alone.
     pub comparison: Option<Comparison>,
+    /// What differs between them; `None` for one alone.
+    pub varied: Option<Varied>,
     /// What they were scored by.
     pub options: Options,
     /// The folders that were asked for.
@@ -46,11 +49,14 @@ pub(crate) fn score_looking(
     look: impl Fn(&ScoredLog) -> Result<(), Failure> + Sync,
 ) -> Result<Scores, Failure> {
     let setup = Setup::new(request.folders()?, request)?;
-    let lifetimes = setup.each(warn, |log| {
+    let scored = setup.each(warn, |log| {
         look(&log)?;
-        Ok(log.metrics)
+        Ok((Makeup::of(&log.log), log.metrics))
     })?;
-    Scores::new(request, setup, lifetimes, warn)
+    let (makeups, lifetimes): (Vec<_>, Vec<_>) = scored.into_iter().unzip();
+    let varied = Varied::between(&makeups);
+    let scores = Scores::new(request, setup, lifetimes, warn)?;
+    Ok(Scores { varied, ..scores })
 }
 
 impl Scores {
@@ -69,6 +75,7 @@ impl Scores {
             lifetimes,
             lifetimes_against: others,
             comparison: comparison.transpose()?,
+            varied: None,
             options: setup.options,
             asked: request.logs.clone(),
             recursive: request.recursive,
@@ -115,6 +122,8 @@ impl Serialize for Scores {
         struct ComparedLifetimes<'a> {
             #[serde(flatten)]
             comparison: &'a Comparison,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            varied: Option<Varied>,
             lifetimes: Vec<WholeLifetime<'a>>,
             #[serde(skip_serializing_if = "Vec::is_empty")]
             lifetimes_against: Vec<WholeLifetime<'a>>,
@@ -124,6 +133,7 @@ impl Serialize for Scores {
             (None, lifetimes) => whole(lifetimes).serialize(serializer),
             (Some(comparison), lifetimes) => ComparedLifetimes {
                 comparison,
+                varied: self.varied,
                 lifetimes: whole(lifetimes),
                 lifetimes_against: whole(&self.lifetimes_against),
             }

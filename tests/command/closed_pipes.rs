@@ -5,7 +5,7 @@ use std::process::Stdio;
 use crate::terminal::{driftworld_in, root, scratch, succeed, succeed_in};
 
 /// Every subcommand, as it prints something: results, messages, or both.
-const COMMANDS: [&str; 34] = [
+const COMMANDS: [&str; 36] = [
     "--help",
     "run --help",
     "nonsense",
@@ -29,6 +29,8 @@ const COMMANDS: [&str; 34] = [
     "order find_objects",
     "curriculum find_objects",
     "run scenario.json --agent random --logs new",
+    "audit scenario.json --lifetimes 1 --repeats 2",
+    "scales find_objects#red --worlds 2",
     "logs validate log",
     "logs aggregate log --format csv -o -",
     "metrics log",

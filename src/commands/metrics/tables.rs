@@ -165,6 +165,7 @@ fn several(scores: &Scores, together: &Comparison) -> String {
         lifetimes.iter().map(|life| life.num_ex).sum::<usize>(),
         one_line(lifetimes.first().map_or("", |life| &life.metrics_column)),
     )];
+    parts.extend(scores.varied.map(|varied| varied.sentence()));
     parts.extend(reached_by_several("", lifetimes));
     parts.extend(reached_by_several(" by the other agent", others));
     parts.extend([

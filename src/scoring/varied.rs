@@ -1,0 +1,162 @@
+//! [`Varied`]: what differs between lifetimes that are summed up together, so that an interval says what it is over.
+
+use std::collections::BTreeSet;
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+use driftworld_metrics::{BlockType, Log};
+use serde::Serialize;
+
+/// What of a lifetime other lifetimes may have, too.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Makeup {
+    order: Vec<String>,
+    /// Of tasks, seeds and numbers of worlds, in whichever order; nothing where the log does not say them.
+    learned: Option<u64>,
+    evaluated: Option<u64>,
+    agent: String,
+    run_seed: String,
+}
+
+/// What differs between lifetimes. `None` where the logs do not say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Varied {
+    /// The order in which tasks are learned.
+    pub order: bool,
+    /// The worlds that are learned in.
+    pub learning_worlds: Option<bool>,
+    /// The worlds that are evaluated in. Where they are the same, an interval does not cover other worlds.
+    pub evaluation_worlds: Option<bool>,
+    /// The agent, as logs name it.
+    pub agent: bool,
+    /// The seed of the run, from which the agent's own random numbers come.
+    pub run_seed: bool,
+}
+
+impl Makeup {
+    pub(super) fn of(log: &Log) -> Self {
+        let rows = &log.rows;
+        let mut order: Vec<String> = Vec::new();
+        for (kind, task) in rows.block_types().iter().zip(rows.task_names().ids()) {
+            let task = &rows.task_names().values()[*task as usize];
+            if *kind == BlockType::Train && order.last() != Some(task) {
+                order.push(task.clone());
+            }
+        }
+        let said = |key: &str| log.scenario_info.extra.get(key);
+        let text = |value: Option<&serde_json::Value>| value.map_or_else(String::new, ToString::to_string);
+        Self {
+            order,
+            learned: worlds(log, BlockType::Train),
+            evaluated: worlds(log, BlockType::Test),
+            agent: text(said("agent")),
+            run_seed: text(said("made_from").and_then(|made_from| made_from.get("run_seed"))),
+        }
+    }
+}
+
+/// The worlds of one kind of block, as one number.
+fn worlds(log: &Log, kind: BlockType) -> Option<u64> {
+    let rows = &log.rows;
+    let indices = rows.metric("world_index")?;
+    let params = rows.task_params();
+    let sources: Option<Vec<String>> = params
+        .values()
+        .iter()
+        .map(|params| {
+            let source = params.get("seed").or_else(|| params.get("world"))?;
+            Some(source.to_string())
+        })
+        .collect();
+    let sources = sources?;
+    let mut found = BTreeSet::new();
+    for (row, own) in rows.block_types().iter().enumerate() {
+        if *own == kind {
+            found.insert((&sources[params.ids()[row] as usize], indices[row].to_bits()));
+        }
+    }
+    let mut hash = DefaultHasher::new();
+    found.hash(&mut hash);
+    Some(hash.finish())
+}
+
+impl Varied {
+    /// Between at least two lifetimes.
+    pub(super) fn between(lifetimes: &[Makeup]) -> Option<Self> {
+        let [first, others @ ..] = lifetimes else { return None };
+        if others.is_empty() {
+            return None;
+        }
+        let differs = |is_same: &dyn Fn(&Makeup) -> bool| !others.iter().all(is_same);
+        let worlds = |of: &dyn Fn(&Makeup) -> Option<u64>| {
+            let is_said = lifetimes.iter().all(|lifetime| of(lifetime).is_some());
+            is_said.then(|| differs(&|other| of(other) == of(first)))
+        };
+        Some(Self {
+            order: differs(&|other| other.order == first.order),
+            learning_worlds: worlds(&|lifetime| lifetime.learned),
+            evaluation_worlds: worlds(&|lifetime| lifetime.evaluated),
+            agent: differs(&|other| other.agent == first.agent),
+            run_seed: differs(&|other| other.run_seed == first.run_seed),
+        })
+    }
+
+    /// The same in a sentence or two.
+    pub fn sentence(&self) -> String {
+        let all = [
+            ("order", Some(self.order)),
+            ("learning worlds", self.learning_worlds),
+            ("evaluation worlds", self.evaluation_worlds),
+            ("agent", Some(self.agent)),
+            ("run seed", Some(self.run_seed)),
+        ];
+        let of = |wanted: Option<bool>| {
+            let names = all.iter().filter(|(_, differs)| *differs == wanted).map(|(name, _)| *name);
+            names.collect::<Vec<_>>().join(", ")
+        };
+        let mut parts = Vec::new();
+        for (what, names) in [
+            ("differ between lifetimes", of(Some(true))),
+            ("are fixed", of(Some(false))),
+            ("are not in the logs", of(None)),
+        ] {
+            if !names.is_empty() {
+                parts.push(format!("{what}: {names}"));
+            }
+        }
+        format!("What intervals are over: {}.", parts.join("; "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn makeup(order: &[&str], learned: u64, evaluated: Option<u64>) -> Makeup {
+        Makeup {
+            order: order.iter().map(|task| (*task).to_owned()).collect(),
+            learned: Some(learned),
+            evaluated,
+            agent: "random".to_owned(),
+            run_seed: String::new(),
+        }
+    }
+
+    #[test]
+    fn what_differs_in_one_lifetime_differs() {
+        let lifetimes = [
+            makeup(&["a", "b"], 1, Some(5)),
+            makeup(&["a", "b"], 1, Some(5)),
+            makeup(&["b", "a"], 2, Some(5)),
+        ];
+        let varied = Varied::between(&lifetimes).expect("there are several");
+        assert_eq!(
+            varied.sentence(),
+            "What intervals are over: differ between lifetimes: order, learning worlds; are fixed: evaluation worlds, \
+             agent, run seed."
+        );
+        assert_eq!(Varied::between(&lifetimes[..1]), None);
+        let silent = [makeup(&["a"], 1, None), makeup(&["a"], 1, Some(5))];
+        let said = Varied::between(&silent).expect("there are several").sentence();
+        assert!(said.ends_with("are not in the logs: evaluation worlds."), "{said}");
+    }
+}
