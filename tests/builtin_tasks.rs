@@ -145,8 +145,8 @@ fn replayed(variant: &Variant, index: u64, actions: Option<&[Action]>) -> (Vec<f
     let mut expert = OnRailsAgent::new();
     let (mut paid, mut taken) = (Vec::new(), Vec::new());
     while !environment.ended() && actions.is_none_or(|actions| taken.len() < actions.len()) {
-        let action = actions.map_or_else(|| expert.act(&environment), |actions| actions[taken.len()].clone());
-        taken.push(action.clone());
+        let action = actions.map_or_else(|| expert.act(&environment), |actions| actions[taken.len()]);
+        taken.push(action);
         let step = environment.step(action).unwrap_or_else(|error| panic!("{error}"));
         paid.push(step.reward);
     }

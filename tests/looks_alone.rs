@@ -55,9 +55,7 @@ fn path(world: World, actions: &[Action]) -> (Vec<Vec<u64>>, usize) {
         if environment.ended() {
             break;
         }
-        let step = environment
-            .step(action.clone())
-            .unwrap_or_else(|error| panic!("{error}"));
+        let step = environment.step(*action).unwrap_or_else(|error| panic!("{error}"));
         touches += usize::from(!step.events.is_empty());
         let agent = environment.agent();
         let mut bits: Vec<u64> = [agent.position[0], agent.position[1], agent.heading_deg]
@@ -82,16 +80,12 @@ fn walk(world: &World, seed: u64) -> Vec<Action> {
         .filter_map(|object| object.tag.as_deref())
         .collect();
     // Past the side of a thing, not into its middle alone: there bodies differ most.
-    let script: String = tags
-        .iter()
-        .map(|tag| {
-            format!(
-                "near {tag} 2 90\nstep 2 4 {} 0\nstep 6 6 0 0\ntouch {tag} 60\nstep 3 -4 30 0\n",
-                40 - (seed as i64 % 5) * 20
-            )
-        })
-        .collect();
-    let script = format!("{script}repeat\n");
+    let turn = 40 - (seed as i64 % 5) * 20;
+    let visit = |tag: &&str| {
+        format!("near {tag} 2 90\nstep 2 4 {turn} 0\nstep 6 6 0 0\ntouch {tag} 60\nstep 3 -4 30 0\n")
+    };
+    let visits: Vec<String> = tags.iter().map(visit).collect();
+    let script = format!("{}repeat\n", visits.concat());
     let mut visitor = ScriptedAgent::parse("visitor", &script).unwrap_or_else(|error| panic!("{error}"));
     let mut random = RandomAgent::new(seed);
     let mut environment = Environment::new(world.clone());
@@ -103,7 +97,7 @@ fn walk(world: &World, seed: u64) -> Vec<Action> {
         } else {
             visitor.act(&environment)
         };
-        actions.push(action.clone());
+        actions.push(action);
         environment.step(action).unwrap_or_else(|error| panic!("{error}"));
     }
     actions

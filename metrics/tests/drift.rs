@@ -39,7 +39,7 @@ fn learning(variant: &'static str, to: Option<&'static str>, rewards: &[f64]) ->
     }
 }
 
-/// Writes each stretch as a block of the task f, as Driftworld does; `has_progress` says whether the log has that column.
+/// Writes each stretch as a block of the task f, or of another that its variant names (`g#x`), as Driftworld does; `has_progress` says whether the log has that column.
 fn log_of(stretches: &[Stretch], has_progress: bool) -> Log {
     let base = tempfile::tempdir().unwrap();
     let dir = base.path().join("drifting");
@@ -54,8 +54,11 @@ fn log_of(stretches: &[Stretch], has_progress: bool) -> Log {
         let mut params = serde_json::Map::from_iter([("variant".to_owned(), stretch.variant.into())]);
         params.extend(stretch.to.map(|to| ("to".to_owned(), to.into())));
         let name = match stretch.to {
-            Some(to) => format!("f_{}to{to}", stretch.variant),
-            None => format!("f_{}", stretch.variant),
+            Some(to) => format!("f_{}to{}", stretch.variant, to.replace('#', "")),
+            None => match stretch.variant.split_once('#') {
+                Some((task, variant)) => format!("{task}_{variant}"),
+                None => format!("f_{}", stretch.variant),
+            },
         };
         for (place, reward) in stretch.rewards.iter().enumerate() {
             let when = Timestamp::from_unix_micros(number as i64).unwrap();
@@ -131,6 +134,25 @@ fn what_a_drift_leaves_behind_is_forgotten_and_never_transferred_forward() {
         // The end of a drift is on the drift's own scale: nothing is held against it.
         assert_eq!(scores.lifetime.number("perf_maintenance_mrtlp"), None);
     }
+}
+
+#[test]
+fn a_drift_between_tasks_is_learning_of_both() {
+    let evaluate = |a: f64, x: f64| [evaluation("a", &[a, a]), evaluation("g#x", &[x, x])];
+    let mut life = evaluate(0.0, 0.0).to_vec();
+    life.push(learning("a", Some("g#x"), &[10.0, 20.0, 60.0, 90.0]));
+    life.extend(evaluate(30.0, 90.0));
+    life.push(learning("a", None, &[50.0, 60.0, 70.0, 80.0]));
+    life.extend(evaluate(80.0, 10.0));
+    let plain = Options {
+        normalization_method: NormalizationMethod::Off,
+        ..options()
+    };
+    let scores = score(&log_of(&life, true), &[], &plain).unwrap();
+    let maintenance = |task: &str| scores.task_metrics[task].number("perf_maintenance_mrlep");
+    assert_eq!(maintenance("g_x"), Some(-80.0));
+    let backward = pairs(&scores, "f_a", "backward_transfer_contrast");
+    assert_eq!(backward.get("g_x"), Some(&vec![-80.0 / 100.0]));
 }
 
 #[test]

@@ -28,7 +28,8 @@ pub struct Drift {
 
 impl Drift {
     /// Of a stretch of rows of one task. A drift says its ends in the parameters `variant` and `to`, and is called
-    /// `TASK_VARIANTtoOTHER` for them, or `TASK_VARIANTtoTASKOTHER` between tasks; anything else is none. Nor is one whose ends are scored as one task.
+    /// `TASK_VARIANTtoOTHER` for them, or `TASK_VARIANTtoTASKOTHER` between tasks; anything else is none. Nor is one whose ends
+    /// are scored as one task.
     pub(super) fn of(rows: &Rows, stretch: &[usize], params: &TaskParams, options: &Options) -> Option<Self> {
         let first = *stretch.first()?;
         let name = rows.task_names().values()[rows.task_names().ids()[first] as usize].to_lowercase();

@@ -300,6 +300,15 @@ mod tests {
             &drift(r#""to": "day", "values": { "light": 1 }, "name": "day""#),
             "(/blocks/0/regimes/0/drift/name): found \"day\", which is another variant at /blocks/0/regimes/0",
         );
+        check(
+            &drift(r#""to": "day", "task": "u""#),
+            "(/blocks/0/regimes/0/drift/task): found \"u\", expected \"switch\": \"task\" beside it; between two tasks",
+        );
+        // A name is of a task, not of all.
+        check(
+            &drift(r#""to": "day", "values": { "light": 1 }, "name": "day", "task": "u", "switch": "task""#),
+            "",
+        );
         let lived = r#"{ "task": "t", "variant": "day", "values": { "light": 1 }, "name": "dim", "count": 1 }"#;
         check(&format!("{dim}, {lived}"), "");
         check(
