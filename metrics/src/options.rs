@@ -224,8 +224,8 @@ pub struct Options {
     pub clamp_outliers: bool,
     /// Known range per task, lower-case name; default none: taken from the data. When given, every task needs one.
     pub data_range: Option<DataRanges>,
-    /// Floor and ceiling per task, lower-case name; default none. A task without one, or with a ceiling that is not above its floor,
-    /// is scaled by its own range. Ranges in `data_range` come before.
+    /// Floor and ceiling per task, lower-case name; default none. A task without one, or with a ceiling that is not
+    /// above its floor, is scaled by its own range. Ranges in `data_range` come before.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scales: Option<Scales>,
     /// Normal noise on the lifetime's performances, not on the experts'; default none.

@@ -12,7 +12,8 @@ use driftworld_metrics::{
 };
 use proptest::prelude::*;
 
-/// A block: its type, its task, the seed and first index of its worlds, its length, and whether it is before deployment.
+/// A block: its type, its task, the seed and first index of its worlds, its length, and whether it is before
+/// deployment.
 #[derive(Debug, Clone)]
 struct Block {
     block_type: BlockType,

@@ -13,9 +13,9 @@ use super::{Failure, output};
 
 /// Measure what agents that know nothing earn in each variant, and one that knows the map.
 ///
-/// Three agents run in the same worlds: one that acts at random, one that stands still, one that knows the map. The better
-/// of the first two is the floor of a variant, the third its ceiling. `driftworld metrics --scales FILE` scales performance by
-/// them: 0 at the floor, 1 at the ceiling.
+/// Three agents run in the same worlds: one that acts at random, one that stands still, one that knows the map. The
+/// better of the first two is the floor of a variant, the third its ceiling. `driftworld metrics --scales FILE` scales
+/// performance by them: 0 at the floor, 1 at the ceiling.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld scales find_objects#red find_objects#blue

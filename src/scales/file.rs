@@ -55,7 +55,8 @@ pub struct AgentLevel {
 }
 
 impl AgentLevel {
-    /// Of episodes, at least two: what each paid, and whether it succeeded. Rounded to six decimals, as files have them.
+    /// Of episodes, at least two: what each paid, and whether it succeeded. Rounded to six decimals, as files have
+    /// them.
     pub(super) fn of(episodes: &[(f64, bool)]) -> Self {
         let num = episodes.len() as f64;
         let mean = episodes.iter().map(|episode| episode.0).sum::<f64>() / num;

@@ -42,11 +42,13 @@ pub struct ScalesRequest {
     pub libraries: Vec<PathBuf>,
 }
 
-/// Runs three agents in the same worlds of each variant: one that acts at random, one that stands still, one that knows the
-/// map. The better of the first two is the floor, the third the ceiling. `progress` is told of each variant that is done.
+/// Runs three agents in the same worlds of each variant: one that acts at random, one that stands still, one that knows
+/// the map. The better of the first two is the floor, the third the ceiling. `progress` is told of each variant that is
+/// done.
 ///
 /// # Errors
-/// [`Failure`] where a task or variant is nowhere or wrong, a world cannot be drawn, or the number of worlds is out of range.
+/// [`Failure`] where a task or variant is nowhere or wrong, a world cannot be drawn, or the number of worlds is out of
+/// range.
 pub fn scales(request: &ScalesRequest, progress: &(dyn Fn() + Sync)) -> Result<ScalesFile, Failure> {
     if !(2..=MAX_SCALES_WORLDS).contains(&request.worlds) {
         return Err(Failure::usage(format!(

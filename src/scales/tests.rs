@@ -1,4 +1,4 @@
-//! Floors and ceilings as they are measured, written and read. How they scale rewards is tested in `metrics`.
+//! Scales: which agent makes which end, files, and standard errors. Agents are tested where they live.
 
 use super::*;
 

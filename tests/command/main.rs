@@ -24,6 +24,7 @@ mod pipes;
 mod report;
 mod run;
 mod run_files;
+mod scales;
 mod signals;
 mod special_files;
 mod terminal;

@@ -6,12 +6,12 @@ use crate::terminal::{scratch, succeed_in};
 use driftworld::metrics::{BlockType, LogWriter, LoggerInfo, Record, ScenarioInfo, Timestamp};
 use serde_json::Value;
 
-fn parsed(text: &str) -> Value {
+pub(crate) fn parsed(text: &str) -> Value {
     serde_json::from_str(text).expect("JSON")
 }
 
 /// Writes a log: a row for each block, type, task, number of the world and reward.
-fn write(folder: &Path, rows: &[(u64, BlockType, &str, u32, f64)]) {
+pub(crate) fn write(folder: &Path, rows: &[(u64, BlockType, &str, u32, f64)]) {
     let info = LoggerInfo::new(["reward", "world_index"]).expect("two columns");
     let mut log = LogWriter::create(folder, &info, &ScenarioInfo::default()).expect("the folder is new");
     for (number, (block, block_type, task, world, reward)) in (0..).zip(rows) {

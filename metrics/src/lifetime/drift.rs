@@ -21,8 +21,8 @@ pub struct Drift {
     pub from: String,
     /// The task that it leads to, under the name that it is scored by.
     pub to: String,
-    /// For each row whether the second end is nearer: the column `progress` is at least 0.5, or without such a column the row
-    /// lies in the second half of the regime.
+    /// For each row whether the second end is nearer: the column `progress` is at least 0.5, or without such a column
+    /// the row lies in the second half of the regime.
     pub is_nearer_to: Vec<bool>,
 }
 
@@ -83,9 +83,9 @@ fn plain(variant: &str) -> String {
     }
 }
 
-/// Says of each regime of learning which tasks it counts as learning of: its own; a drift, those of its ends that it comes near
-/// to and that the lifetime has otherwise. Where it goes from one that was learnt before to another, it is learning of the other
-/// alone: what becomes of the first is what learning the other does to it.
+/// Says of each regime of learning which tasks it counts as learning of: its own; a drift, those of its ends that it
+/// comes near to and that the lifetime has otherwise. Where it goes from one that was learnt before to another, it is
+/// learning of the other alone: what becomes of the first is what learning the other does to it.
 pub(super) fn set_learnt(regimes: &mut [Regime], tasks: &[String]) {
     let tasks: IndexSet<&str> = tasks.iter().map(String::as_str).collect();
     let mut known: IndexSet<String> = IndexSet::new();

@@ -44,8 +44,8 @@ pub struct Regime {
     pub task_params: TaskParams,
     /// Its ends, where the variant changes bit by bit.
     pub drift: Option<Drift>,
-    /// The tasks that it counts as learning of, for maintenance and transfer: its own, or in a drift those that it passes. Empty for
-    /// an evaluation.
+    /// The tasks that it counts as learning of, for maintenance and transfer: its own, or in a drift those that it
+    /// passes. Empty for an evaluation.
     pub learns: Vec<String>,
     /// Experience number of each row, ascending.
     pub exp_nums: Vec<u64>,

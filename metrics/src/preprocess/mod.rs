@@ -16,8 +16,9 @@ pub(crate) use smoothing::{smooth, smoothed};
 use crate::lifetime::Lifetime;
 use crate::{Anchors, DataRange, MetricsError, Options, VariantMode};
 
-/// The floor and ceiling of a task, under the name it is scored by; `None` where they are not known, or the ceiling is not above the
-/// floor: then nothing can be learned. Where variants do not count, the lowest floor and the highest ceiling of its variants.
+/// The floor and ceiling of a task, under the name it is scored by; `None` where they are not known, or the ceiling is
+/// not above the floor: then nothing can be learned. Where variants do not count, the lowest floor and the highest
+/// ceiling of its variants.
 pub(crate) fn anchors(task: &str, options: &Options) -> Option<Anchors> {
     let scales = options.scales.iter().flatten();
     let of_task = scales.filter(|(name, _)| options.variant_mode.scored_name(name) == task);
@@ -29,8 +30,8 @@ pub(crate) fn anchors(task: &str, options: &Options) -> Option<Anchors> {
     found.filter(|anchors| anchors.ceiling > anchors.floor)
 }
 
-/// The range a user gave for a task, under the name it is scored by: its own range, or else its floor and ceiling; `None` when
-/// nothing was given, or no floor and ceiling of this task.
+/// The range a user gave for a task, under the name it is scored by: its own range, or else its floor and ceiling;
+/// `None` when nothing was given, or no floor and ceiling of this task.
 ///
 /// Where variants do not count, the range of a task is the hull of its variants' ranges.
 pub(crate) fn given_range(

@@ -1,4 +1,5 @@
-//! Power: how probably Welch's test tells two agents apart, how many lifetimes that takes, and which effect some can show.
+//! Power: how probably Welch's test tells two agents apart, how many lifetimes that takes, and which effect some can
+//! show.
 //!
 //! Not here: the test of agents that were run, see `improvement`.
 
@@ -19,9 +20,9 @@ const NUM_POINTS: usize = 48;
 /// Points between which quantiles of Student's t are taken as straight in one over the degrees of freedom.
 const NUM_QUANTILES: usize = 64;
 
-/// The chance, 0..=1, that Welch's t test of two sides at 5 % calls two agents different, whose lifetimes are independent and
-/// normally distributed with these standard deviations and with means that differ by `effect`. `lifetimes` are those of each
-/// agent. `None` for fewer than two lifetimes of one, or without any deviation.
+/// The chance, 0..=1, that Welch's t test of two sides at 5 % calls two agents different, whose lifetimes are
+/// independent and normally distributed with these standard deviations and with means that differ by `effect`.
+/// `lifetimes` are those of each agent. `None` for fewer than two lifetimes of one, or without any deviation.
 ///
 /// The difference of means is normal and independent of the two sample variances; given these, the chance is a normal
 /// distribution's, and it is integrated over their chi-squared distributions.
@@ -95,7 +96,8 @@ fn normal(value: f64) -> f64 {
     0.5 * libm::erfc(-value / std::f64::consts::SQRT_2)
 }
 
-/// Values of a chi-squared variable over its degrees of freedom, with weights that add up to 1: evenly in its logarithm.
+/// Values of a chi-squared variable over its degrees of freedom, with weights that add up to 1: evenly in its
+/// logarithm.
 fn chi_squared(freedom: f64) -> Vec<(f64, f64)> {
     // The logarithm of the density of ln(x / freedom), but for a constant: 0 at its highest.
     let log_density = |u: f64| freedom / 2.0 * (u - (libm::exp(u) - 1.0));

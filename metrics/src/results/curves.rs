@@ -23,27 +23,28 @@ pub struct CurvePoint {
     pub standard_error: Option<f64>,
 }
 
-/// What a task's evaluation curve says. Performance is in the log's unit; where the task has a floor and a ceiling, it is the part
-/// of the way from floor to ceiling, usually 0..=1.
+/// What a task's evaluation curve says. Performance is in the log's unit; where the task has a floor and a ceiling, it
+/// is the part of the way from floor to ceiling, usually 0..=1.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EvaluationCurve {
     /// Whether performance is the part of the way from floor to ceiling.
     pub is_scaled: bool,
     /// The curve: straight between its points, by learning experiences; at least one.
     pub points: Vec<CurvePoint>,
-    /// Area under the curve, over its width: the mean performance while anything was learned, between the lowest and the
-    /// highest point. Of one point its mean.
+    /// Area under the curve, over its width: the mean performance while anything was learned, between the lowest and
+    /// the highest point. Of one point its mean.
     pub area: f64,
     /// The highest point less the last: 0 or above, and 0 for a curve that never falls.
     pub forgetting: f64,
-    /// Standard error of `forgetting`, its two points taken as independent; `None` where they are one, or an error is not known.
+    /// Standard error of `forgetting`, its two points taken as independent; `None` where they are one, or an error is
+    /// not known.
     pub forgetting_error: Option<f64>,
-    /// Learning experiences from where the task is first learned, or else from the first point, until the curve is half-way
-    /// from its height there to the highest point after; 0 or above. `None` where it never rises.
+    /// Learning experiences from where the task is first learned, or else from the first point, until the curve is
+    /// half-way from its height there to the highest point after; 0 or above. `None` where it never rises.
     pub lag: Option<f64>,
-    /// The expert's level less the curve, in the mean over the learning experiences in which the task was present: its own, and
-    /// those of a drift to which it was nearer. Outside its points the curve goes on level. `None` without an expert, or if the
-    /// task was never present.
+    /// The expert's level less the curve, in the mean over the learning experiences in which the task was present: its
+    /// own, and those of a drift to which it was nearer. Outside its points the curve goes on level. `None` without an
+    /// expert, or if the task was never present.
     pub regret: Option<f64>,
     /// Learning experiences in which the task was present.
     pub num_present: usize,

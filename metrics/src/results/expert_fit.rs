@@ -36,8 +36,8 @@ pub struct ExpertFit {
     pub differences: Vec<String>,
 }
 
-/// Every expert that each task is compared with. Where variants do not count, an expert is of one variant and the task of all:
-/// nothing is said.
+/// Every expert that each task is compared with. Where variants do not count, an expert is of one variant and the task
+/// of all: nothing is said.
 pub(crate) fn expert_fits(
     log: &Log,
     lifetime: &Lifetime,

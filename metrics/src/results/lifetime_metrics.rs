@@ -57,12 +57,12 @@ pub struct LifetimeMetrics {
     /// What each task came to in evaluations, in the log's unit. Not in the JSON, which has the reference's fields.
     #[serde(default)]
     pub reached: IndexMap<String, Reached>,
-    /// What the evaluation curve of each task says, without regard to borders between tasks. Not in the JSON, which has the
-    /// reference's fields.
+    /// What the evaluation curve of each task says, without regard to borders between tasks. Not in the JSON, which has
+    /// the reference's fields.
     #[serde(default)]
     pub curves: IndexMap<String, EvaluationCurve>,
-    /// What a reader must be told of tasks that were never learned, and of experts that are not like for like. Not in the JSON, which has the
-    /// reference's fields.
+    /// What a reader must be told of tasks that were never learned, and of experts that are not like for like. Not in
+    /// the JSON, which has the reference's fields.
     #[serde(default)]
     pub cautions: Vec<String>,
     /// What experts learned from, beside the lifetime, by task. Not in the JSON, which has the reference's fields.

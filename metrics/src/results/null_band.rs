@@ -32,8 +32,9 @@ pub struct NullBand {
     pub p: f64,
     /// How evaluations were permuted.
     pub exchanged: Exchanged,
-    /// Standard error of the value, from those of its evaluations over worlds, taken as independent: an agent in other worlds would
-    /// earn something else. `None` where one of them is not known, or there are more than 2,000 evaluations.
+    /// Standard error of the value, from those of its evaluations over worlds, taken as independent: an agent in other
+    /// worlds would earn something else. `None` where one of them is not known, or there are more than 2,000
+    /// evaluations.
     #[serde(default)]
     pub standard_error: Option<f64>,
 }

@@ -15,7 +15,8 @@ pub struct MetricPower {
     /// Which metric.
     #[serde(flatten)]
     pub headline: Headline,
-    /// Standard deviation of the metric between the lifetimes of each agent, in its own unit; of one agent alone, twice its own.
+    /// Standard deviation of the metric between the lifetimes of each agent, in its own unit; of one agent alone, twice
+    /// its own.
     pub deviations: [f64; 2],
     /// Lifetimes of each agent that have a value.
     pub lifetimes: [usize; 2],
@@ -29,8 +30,8 @@ pub struct MetricPower {
     pub smallest_effect: Option<f64>,
 }
 
-/// Of every metric of which at least two lifetimes of each agent have values that differ. Without another agent, `others` empty, it is
-/// taken to be one whose lifetimes vary as much and are as many.
+/// Of every metric of which at least two lifetimes of each agent have values that differ. Without another agent,
+/// `others` empty, it is taken to be one whose lifetimes vary as much and are as many.
 pub fn metric_power(lifetimes: &[LifetimeMetrics], others: &[LifetimeMetrics], effect: f64) -> Vec<MetricPower> {
     let others = if others.is_empty() { lifetimes } else { others };
     let of_headline = |headline: Headline| {

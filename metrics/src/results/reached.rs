@@ -43,11 +43,11 @@ pub struct Reached {
     /// The expert's level, the mean over its runs: of its last evaluation of the task, or else of the last tenth of its
     /// learning; without an expert the task's ceiling. `None` where neither is known.
     pub expert: Option<f64>,
-    /// The best evaluation's part of the expert's level: both from the task's floor, or else the lower end of the given range, or
-    /// else 0. `None` where one is missing, or the expert is not above that end.
+    /// The best evaluation's part of the expert's level: both from the task's floor, or else the lower end of the given
+    /// range, or else 0. `None` where one is missing, or the expert is not above that end.
     pub share: Option<f64>,
-    /// The same of the first evaluation after each learning of the task, in order: what it could still learn. Empty where there are
-    /// no such parts.
+    /// The same of the first evaluation after each learning of the task, in order: what it could still learn. Empty
+    /// where there are no such parts.
     #[serde(default)]
     pub shares: Vec<f64>,
     /// What an agent earns that knows nothing of the task, if that is known.
@@ -98,8 +98,9 @@ impl Reached {
         self.floor.is_some() && self.ceiling.is_some()
     }
 
-    /// How much of the expert's level the agent came to when it first learned the task, less what it came to when it last
-    /// did; above 0 where it lost the ability to learn. `None` for a task that was learned and evaluated fewer than two times.
+    /// How much of the expert's level the agent came to when it first learned the task, less what it came to when it
+    /// last did; above 0 where it lost the ability to learn. `None` for a task that was learned and evaluated fewer
+    /// than two times.
     pub fn plasticity_loss(&self) -> Option<f64> {
         match self.shares.as_slice() {
             [first, .., last] => Some(first - last),

@@ -24,7 +24,8 @@ pub struct WholeLifetime<'a> {
 }
 
 impl LifetimeMetrics {
-    /// This lifetime to be serialised with its null bands, what its tasks reached and their curves, which the saved file leaves out.
+    /// This lifetime to be serialised with its null bands, what its tasks reached and their curves, which the saved
+    /// file leaves out.
     pub fn whole(&self) -> WholeLifetime<'_> {
         WholeLifetime {
             metrics: self,

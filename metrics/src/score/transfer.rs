@@ -176,8 +176,8 @@ fn above(places: &[usize], limit: usize) -> usize {
     places.partition_point(|place| *place <= limit)
 }
 
-/// Regime numbers of each task's learning and evaluation, ascending; tasks in order of appearance. Drifts count as learning of the
-/// tasks that they pass.
+/// Regime numbers of each task's learning and evaluation, ascending; tasks in order of appearance. Drifts count as
+/// learning of the tasks that they pass.
 struct Places<'a> {
     tasks: IndexMap<&'a str, (Vec<usize>, Vec<usize>)>,
     /// Regime numbers of drifts.

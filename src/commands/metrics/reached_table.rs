@@ -1,5 +1,5 @@
-//! What each task came to beside its expert, and what its evaluation curve says: the first tables that people see. The numbers are
-//! `metrics`'.
+//! What each task came to beside its expert, and what its evaluation curve says: the first tables that people see. The
+//! numbers are `metrics`'.
 
 use std::collections::BTreeMap;
 
@@ -78,8 +78,8 @@ pub(super) fn reached(scores: &LifetimeMetrics) -> Option<String> {
     Some(format!("{}\n{}", wide_table(headings, rows, &numbers), notes.join(" ")))
 }
 
-/// A row per task that some of these lifetimes evaluate after learning: means over lifetimes, and in how many it was never learned.
-/// `None` without any. `agent` is put behind the heading.
+/// A row per task that some of these lifetimes evaluate after learning: means over lifetimes, and in how many it was
+/// never learned. `None` without any. `agent` is put behind the heading.
 pub(super) fn reached_by_several(agent: &str, lifetimes: &[LifetimeMetrics]) -> Option<String> {
     let mut tasks: BTreeMap<&str, Vec<&Reached>> = BTreeMap::new();
     for (name, task) in lifetimes.iter().flat_map(|lifetime| &lifetime.reached) {

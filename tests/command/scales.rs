@@ -1,0 +1,120 @@
+//! `driftworld scales`, and `driftworld metrics` with what it measured, and with `--power`. The numbers are the
+//! libraries'.
+
+use std::path::Path;
+
+use crate::null_bands::{parsed, write};
+use crate::terminal::{scratch, succeed_in};
+use driftworld::metrics::BlockType;
+
+/// Evaluates two variants before and after each is learned; `level` is earned in the worlds of the first by then.
+fn live(folder: &Path, level: f64) {
+    let tasks = ["findobjects_red", "findobjects_penalty"];
+    let mut rows = Vec::new();
+    for block in 0..5 {
+        if block % 2 == 1 {
+            let task = tasks[block as usize / 2];
+            rows.extend((0..6).map(|world| (block, BlockType::Train, task, world, 10.0)));
+            continue;
+        }
+        for task in tasks {
+            let earned = if task == tasks[0] && block > 0 { level } else { -30.0 };
+            rows.extend((0..6).map(|world| (block, BlockType::Test, task, world, earned + f64::from(world))));
+        }
+    }
+    write(folder, &rows);
+}
+
+#[test]
+fn what_scales_measures_is_what_metrics_scale_by() {
+    let folder = scratch();
+    let tasks = ["find_objects#red", "find_objects#penalty"];
+    let shown = succeed_in(
+        folder.path(),
+        &[
+            "scales",
+            tasks[0],
+            tasks[1],
+            "--worlds",
+            "2",
+            "--seed",
+            "3",
+            "-o",
+            "scales.json",
+        ],
+    );
+    let penalty = shown.lines().find(|line| line.contains("penalty")).expect("a row");
+    assert!(penalty.ends_with("nothing to learn"), "{shown}");
+    let file = std::fs::read_to_string(folder.path().join("scales.json")).expect("a file");
+    let red = &parsed(&file)["scales"]["findobjects_red"];
+    let (floor, ceiling) = (
+        red["floor"].as_f64().expect("a floor"),
+        red["ceiling"].as_f64().expect("a ceiling"),
+    );
+
+    // Half-way from floor to ceiling in the mean of the worlds' 0 to 5.
+    live(&folder.path().join("life"), f64::midpoint(floor, ceiling) - 2.5);
+    let shown = succeed_in(folder.path(), &["metrics", "life", "--scales", "scales.json"]);
+    let red = shown
+        .lines()
+        .find(|line| line.starts_with("findobjects_red"))
+        .expect("a row");
+    assert!(red.contains("50% ± "), "{shown}");
+    assert!(
+        shown.contains("from its floor to its ceiling, to 1..101: findobjects_red."),
+        "{shown}"
+    );
+    assert!(
+        shown.contains("scaled by this lifetime's own range: findobjects_penalty."),
+        "{shown}"
+    );
+    let json = parsed(&succeed_in(
+        folder.path(),
+        &["metrics", "life", "--scales", "scales.json", "--json"],
+    ));
+    let reached = &json["reached"]["findobjects_red"];
+    assert_eq!(reached["scaled_by"], "anchors", "{json}");
+    let score = reached["evaluations"][1]["score"].as_f64().expect("a score");
+    assert!((score - 0.5).abs() < 1e-9, "{json}");
+    assert_eq!(json["reached"]["findobjects_penalty"]["scaled_by"], "own", "{json}");
+    let curve = &json["curves"]["findobjects_red"];
+    assert!(curve["is_scaled"] == true && curve["forgetting"] == 0.0, "{json}");
+    // Points of the metrics are hundredths of the way.
+    let range = &json["normalization_data_range"]["findobjects_red"];
+    assert_eq!(
+        (range["min"].as_f64(), range["max"].as_f64()),
+        (Some(floor), Some(ceiling)),
+        "{json}"
+    );
+}
+
+#[test]
+fn power_says_what_lifetimes_can_show() {
+    let folder = scratch();
+    for (number, level) in [20.0, 60.0, 35.0, 50.0].into_iter().enumerate() {
+        live(&folder.path().join(format!("runs/{number}")), level);
+    }
+    let shown = succeed_in(folder.path(), &["metrics", "-R", "runs", "-n", "none", "--power", "10"]);
+    assert!(
+        shown.contains("lifetimes for 10") && shown.contains("smallest effect"),
+        "{shown}"
+    );
+    assert!(shown.lines().any(|line| line.starts_with("findobjects_red")), "{shown}");
+    let json = parsed(&succeed_in(
+        folder.path(),
+        &["metrics", "-R", "runs", "-n", "none", "--power", "10", "--json"],
+    ));
+    let rows = json["power"].as_array().expect("a list");
+    let row = rows
+        .iter()
+        .find(|row| row["name"] == "avg_eval_perf")
+        .expect("a metric that varies");
+    // Of the evaluations of red, two in three vary; of all tasks' means, half of that.
+    let deviation = row["deviations"][0].as_f64().expect("a deviation");
+    assert!((deviation - 17.5 / 3.0).abs() < 0.5, "{row}");
+    assert_eq!(row["lifetimes"], serde_json::json!([4, 4]), "{row}");
+    let power = row["power"].as_f64().expect("a chance");
+    assert!(0.05 < power && power < 0.8, "{row}");
+    assert!(row["lifetimes_needed"].as_u64().expect("a number") > 4, "{row}");
+    assert!(row["smallest_effect"].as_f64().expect("an effect") > 10.0, "{row}");
+}
