@@ -281,6 +281,7 @@ mod tests {
                 high: low + 0.3,
                 p: 0.5,
                 exchanged: Exchanged::Worlds,
+                standard_error: None,
             };
             let above = Direction::HigherThan(1.0);
             let found = of("forward_transfer_ratio", band.value, above, true).expect("there is a neutral value");
