@@ -1,7 +1,6 @@
 //! The power of Welch's test, against published numbers and against tests of drawn lifetimes.
 
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
-#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
 use driftworld_metrics::{lifetimes_for, smallest_effect, welch_power};
 use proptest::prelude::*;
