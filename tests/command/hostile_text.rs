@@ -242,6 +242,7 @@ fn documents(stage: &mut Stage) {
         "0.5",
     ]);
     stage.succeed(&["elements", &task, "--worlds", "1"]);
+    stage.run(&["scales", &task, "--worlds", "2"]);
     stage.succeed(&["distance", &format!("{task}#a"), &format!("{task}#b")]);
     stage.succeed(&["sheet", &task, "--size", "32"]);
     stage.succeed(&["order", &task]);
@@ -334,6 +335,7 @@ fn lives(stage: &mut Stage) {
         stage.run(&["validate", &file, "--worlds", "2"]);
         let logs = format!("logs-{file}");
         stage.run(&["run", &file, "--agent", "random", "--logs", &logs]);
+        stage.run(&["audit", &file, "--lifetimes", "1", "--repeats", "2"]);
         stage.run(&[
             "run",
             &file,

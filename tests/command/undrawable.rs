@@ -68,6 +68,8 @@ fn a_drift_across_a_forbidden_value_is_found_before_it_is_run() {
         "linear",
         "--learn",
         "41",
+        "--eval-episodes",
+        "5",
         "-o",
         "s.json",
     ];
@@ -127,6 +129,8 @@ fn a_first_world_that_cannot_be_drawn_begins_no_log_unless_it_may_be_left_out() 
         "0",
         "--learn",
         "12",
+        "--eval-episodes",
+        "5",
         "-o",
         "s.json",
         "--seed",

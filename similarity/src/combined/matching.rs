@@ -7,7 +7,6 @@ use std::cmp::Ordering;
 use crate::assignment::Assignment;
 use crate::combined::parts::{length, turn};
 use crate::combined::sketch::ObjectFeatures;
-use crate::scalar::relative_difference;
 
 /// Objects this far apart, in metres, count 1.
 pub(super) const UNIT_OF_PLACE: f64 = 10.0;
@@ -43,7 +42,8 @@ impl ObjectFeatures {
     fn cost_of_place(&self, other: &Self) -> f64 {
         self.metres(other) * (1.0 / UNIT_OF_PLACE)
             + turn(self.heading, other.heading) * (1.0 / 180.0)
-            + relative_difference(self.scale, other.scale)
+            // The relative difference of scales, which are above 0.
+            + (self.scale - other.scale).abs() * self.per_scale.min(other.per_scale)
     }
 
     /// The same for all objects of two kinds.

@@ -59,6 +59,8 @@ pub(super) struct ObjectFeatures {
     pub(super) place: [f64; 2],
     pub(super) heading: f64,
     pub(super) scale: f64,
+    /// 1 over the scale, which saves a division for each pair of objects.
+    pub(super) per_scale: f64,
     pub(super) reward: f64,
     pub(super) odds: f64,
     pub(super) color: Option<Oklab>,
@@ -131,6 +133,8 @@ impl Sketcher {
             place: object.coordinates,
             heading: object.heading.rem_euclid(360.0),
             scale: object.scale,
+            // Finite, so that two objects without any size are no size apart.
+            per_scale: (1.0 / object.scale.abs()).min(f64::MAX),
             reward: object.reward,
             odds: object.reward_probability,
             color: object.color.map(Oklab::from),
