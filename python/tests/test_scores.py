@@ -60,6 +60,33 @@ def test_one_lifetime_has_the_commands_scores(logs: list[Path]) -> None:
         if name in expected:
             assert band["value"] == pytest.approx(expected[name], abs=1e-9)
     assert set(found.reached) == set(TASKS)
+    assert found.curves == expected["curves"]
+    assert all(curve["forgetting"] >= 0 and not curve["is_scaled"] for curve in found.curves.values())
+
+
+def test_floor_and_ceiling_are_a_file_or_a_dictionary(logs: list[Path], tmp_path: Path) -> None:
+    task, other = sorted(TASKS)[:2]
+    scales = {task: {"floor": -5.0, "ceiling": 45.0}}
+    file = tmp_path / "scales.json"
+    file.write_text(json.dumps({"scales": scales}), encoding="utf-8")
+    found = metrics(logs[0], scales=scales)
+    assert found == metrics(logs[0], scales=file)
+    assert found.lifetimes == [commanded("metrics", logs[0], "--scales", file)]
+    assert found.reached[task]["scaled_by"] == "anchors" and found.reached[other]["scaled_by"] == "own"
+    for cell in found.reached[task]["evaluations"]:
+        assert cell["score"] == pytest.approx((cell["mean"] + 5.0) / 50.0)
+    with pytest.raises(MetricsError, match="scales"):
+        metrics(logs[0], scales={task: {"floor": 0.0}})
+    with pytest.raises(MetricsError, match="expected one of the two"):
+        metrics(logs[0], scales=scales, data_range={name: {"min": 0, "max": 1} for name in TASKS})
+
+
+def test_power_is_the_commands(logs: list[Path]) -> None:
+    found = metrics(logs, power=10.0)
+    assert found.power == commanded("metrics", *logs, "--power", "10")["power"]
+    assert found.power and all(0 <= row["power"] <= 1 and row["lifetimes"] == [3, 3] for row in found.power)
+    with pytest.raises(MetricsError, match="at least two"):
+        metrics(logs[0], power=10.0)
 
 
 def test_options_do_what_they_do_for_the_command(logs: list[Path], tmp_path: Path) -> None:
