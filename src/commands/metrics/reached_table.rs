@@ -169,8 +169,10 @@ pub(super) fn curves(scores: &LifetimeMetrics) -> Option<String> {
     ))
 }
 
+/// In whole percent; what rounds to nothing has no sign.
 fn percent(share: f64) -> String {
-    format!("{:.0}%", 100.0 * share)
+    let shown = format!("{:.0}%", 100.0 * share);
+    if shown == "-0%" { "0%".to_owned() } else { shown }
 }
 
 /// Mean and standard error of an evaluation, as the part of the way from floor to ceiling where these are known.
