@@ -81,9 +81,8 @@ fn walk(world: &World, seed: u64) -> Vec<Action> {
         .collect();
     // Past the side of a thing, not into its middle alone: there bodies differ most.
     let turn = 40 - (seed as i64 % 5) * 20;
-    let visit = |tag: &&str| {
-        format!("near {tag} 2 90\nstep 2 4 {turn} 0\nstep 6 6 0 0\ntouch {tag} 60\nstep 3 -4 30 0\n")
-    };
+    let visit =
+        |tag: &&str| format!("near {tag} 2 90\nstep 2 4 {turn} 0\nstep 6 6 0 0\ntouch {tag} 60\nstep 3 -4 30 0\n");
     let visits: Vec<String> = tags.iter().map(visit).collect();
     let script = format!("{}repeat\n", visits.concat());
     let mut visitor = ScriptedAgent::parse("visitor", &script).unwrap_or_else(|error| panic!("{error}"));
