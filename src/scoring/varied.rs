@@ -110,7 +110,10 @@ impl Varied {
             ("run seed", Some(self.run_seed)),
         ];
         let of = |wanted: Option<bool>| {
-            let names = all.iter().filter(|(_, differs)| *differs == wanted).map(|(name, _)| *name);
+            let names = all
+                .iter()
+                .filter(|(_, differs)| *differs == wanted)
+                .map(|(name, _)| *name);
             names.collect::<Vec<_>>().join(", ")
         };
         let mut parts = Vec::new();
