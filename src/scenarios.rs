@@ -70,6 +70,7 @@ impl ScenarioFile {
     }
 
     /// Another scenario, as if it stood in the same file.
+    #[must_use]
     pub fn with_scenario(&self, scenario: &Scenario) -> Self {
         Self {
             scenario: scenario.clone(),

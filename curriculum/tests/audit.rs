@@ -17,9 +17,9 @@ fn task() -> Arc<TaskSpec> {
     TaskSpec::from_json("yard.json", text).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn audited(options: Design) -> Vec<AuditRow> {
+fn audited(options: &Design) -> Vec<AuditRow> {
     let variants = ["one", "two", "three"].map(|variant| Choice::new("yard", variant));
-    let scenario = design(&variants, &options).expect("the design is sound");
+    let scenario = design(&variants, options).expect("the design is sound");
     let task = task();
     let mut plan = |scenario: &Scenario| -> Result<Plan, CurriculumError> {
         let mut sources = Sources {
@@ -49,7 +49,7 @@ fn sized(options: Design) -> Design {
 
 #[track_caller]
 fn check(options: Design, expected: [Option<bool>; 5]) {
-    let rows = audited(sized(options));
+    let rows = audited(&sized(options));
     let found: Vec<Option<bool>> = rows.iter().map(|row| row.passed).collect();
     assert_eq!(found, expected, "{rows:#?}");
 }
@@ -91,6 +91,6 @@ fn a_drift_that_forgets_shows_it() {
         drifting: Some(Drifting::default()),
         ..Design::default()
     };
-    let rows = audited(sized(drifting));
+    let rows = audited(&sized(drifting));
     assert_eq!(rows[4].passed, Some(true), "{rows:#?}");
 }

@@ -101,7 +101,7 @@ impl Varied {
     }
 
     /// The same in a sentence or two.
-    pub fn sentence(&self) -> String {
+    pub fn sentence(self) -> String {
         let all = [
             ("order", Some(self.order)),
             ("learning worlds", self.learning_worlds),

@@ -122,7 +122,7 @@ impl OwnExpert {
 impl Simulated for OwnExpert {
     fn earn(&mut self, meeting: &Meeting) -> f64 {
         let learned = self.learned.entry(meeting.variant.clone()).or_default();
-        let skill = 1.0 - (1.0 - START) * (-f64::from(*learned) / self.pace).exp();
+        let skill = 1.0 - (1.0 - START) * libm::exp(-f64::from(*learned) / self.pace);
         *learned += u32::from(meeting.learning);
         reward(skill, meeting, &[self.run, self.whose, meeting.number])
     }

@@ -83,7 +83,7 @@ pub fn audit(
     let experts = experts_of(scenario)?;
     let experts = experts
         .iter()
-        .map(|expert| plan(expert))
+        .map(plan)
         .collect::<Result<Vec<_>, _>>()?;
     let room = Room {
         lifetime: &lifetime,
@@ -142,7 +142,7 @@ impl Room<'_> {
                 (format!("refused at experience {experience}"), Some(true))
             }
             Err(error) => return Err(error),
-            Ok(num_evaluated) if num_evaluated == 0 => ("nothing is evaluated".to_owned(), None),
+            Ok(0) => ("nothing is evaluated".to_owned(), None),
             Ok(num_evaluated) => (format!("not noticed in {num_evaluated} evaluations"), Some(false)),
         };
         remove(&folder);

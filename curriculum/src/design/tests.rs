@@ -202,7 +202,7 @@ fn what_is_held_out_is_evaluated_and_never_learned() {
     };
     let scenario = design(&choices(2), &options).unwrap();
     let is_new = |regime: &&Regime| regime.variant == "new";
-    assert!(!learned(&scenario).iter().any(|regime| is_new(&regime)));
+    assert!(!learned(&scenario).iter().any(is_new));
     let evaluations = scenario
         .blocks
         .iter()

@@ -113,7 +113,7 @@ pub(crate) struct Curriculum {
     name: String,
     /// Experiences per learning block.
     ///
-    /// By default, as many as a PPO learner took to reach 80 % of the expert's reward in find_objects.
+    /// By default, as many as a PPO learner took to reach 80 % of the expert's reward in `find_objects`.
     #[arg(long, default_value_t = LEARN, value_name = "N")]
     learn: u32,
     /// Experiences of the first variant before deployment.

@@ -10,7 +10,7 @@ use crate::metrics::{
 use driftworld_text::{one_line, printable};
 
 use super::reached_table::{curves, reached, reached_by_several};
-use crate::scoring::{Comparison, Scores, own_scale};
+use crate::scoring::{Comparison, Scores, Varied, own_scale};
 use crate::table::{table, wide_table};
 
 /// The scores of one lifetime, or of several with what they say together.
@@ -165,7 +165,7 @@ fn several(scores: &Scores, together: &Comparison) -> String {
         lifetimes.iter().map(|life| life.num_ex).sum::<usize>(),
         one_line(lifetimes.first().map_or("", |life| &life.metrics_column)),
     )];
-    parts.extend(scores.varied.map(|varied| varied.sentence()));
+    parts.extend(scores.varied.map(Varied::sentence));
     parts.extend(reached_by_several("", lifetimes));
     parts.extend(reached_by_several(" by the other agent", others));
     parts.extend([
