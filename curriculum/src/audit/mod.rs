@@ -81,10 +81,7 @@ pub fn audit(
 ) -> Result<Vec<AuditRow>, CurriculumError> {
     let lifetime = plan(scenario)?;
     let experts = experts_of(scenario)?;
-    let experts = experts
-        .iter()
-        .map(plan)
-        .collect::<Result<Vec<_>, _>>()?;
+    let experts = experts.iter().map(plan).collect::<Result<Vec<_>, _>>()?;
     let room = Room {
         lifetime: &lifetime,
         experts: &experts,
