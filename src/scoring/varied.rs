@@ -49,7 +49,7 @@ impl Makeup {
             learned: worlds(log, BlockType::Train),
             evaluated: worlds(log, BlockType::Test),
             agent: text(said("agent")),
-            run_seed: text(said("made_from").and_then(|made_from| made_from.get("run_seed"))),
+            run_seed: text(said("made_from").and_then(|fingerprints| fingerprints.get("run_seed"))),
         }
     }
 }
