@@ -126,6 +126,7 @@ fn parts(regime: &Regime) -> Vec<Regime> {
         ..regime.clone()
     };
     let to = Regime {
+        task: drift.task.clone().unwrap_or_else(|| regime.task.clone()),
         variant: drift.to.clone(),
         values: drift.values.clone(),
         name: drift.name.clone(),

@@ -14,9 +14,6 @@ use crate::{BlockSubtype, BlockType, Definitions, MetricsError, Options};
 /// Most regimes a lifetime may have; the Theil–Sen slope looks at every pair of a task's.
 pub const MAX_REGIMES: usize = 10_000;
 
-/// Parameter of a task by which a row says that its block is shuffled.
-const MIX: (&str, &str) = ("mix", "shuffled");
-
 /// A maximal run of rows with the same block number, block type, subtype and task.
 ///
 /// QUIRK: task parameters do not split regimes. A block that changes only a task's parameters is one regime, and
@@ -132,12 +129,8 @@ pub(crate) fn form(run_id: &str, usable: &Usable<'_>, options: &Options) -> Resu
             rows.task_params().ids()[a] == rows.task_params().ids()[b] || params_of(a) == params_of(b)
         }
     };
-    let is_shuffled = |row: usize| params_of(row).get(MIX.0).is_some_and(|mix| mix == MIX.1);
-    let order = unshuffled(&usable.indices, |row| is_shuffled(row).then(|| key(row)));
-    let indices: Vec<usize> = order.iter().map(|&place| usable.indices[place]).collect();
-    let stretches = indices.chunk_by(|&a, &b| key(a) == key(b) && same_params(a, b));
-    let steps = cumulated_steps(usable);
-    let mut steps = steps.map(|steps| order.iter().map(|&place| steps[place]).collect::<Vec<_>>().into_iter());
+    let stretches = usable.indices.chunk_by(|&a, &b| key(a) == key(b) && same_params(a, b));
+    let mut steps = cumulated_steps(usable).map(Vec::into_iter);
     let mut regimes = Vec::new();
     for (regime_num, stretch) in stretches.enumerate() {
         if regime_num == MAX_REGIMES {
@@ -168,36 +161,22 @@ pub(crate) fn form(run_id: &str, usable: &Usable<'_>, options: &Options) -> Resu
     Ok(regimes)
 }
 
-/// Places of rows in an order in which, of each block that is shuffled, the rows of one task stand together, in the order of the
-/// tasks' first rows. `key` says block and task of a row in such a block.
-fn unshuffled<B: PartialEq>(rows: &[usize], key: impl Fn(usize) -> Option<(B, usize)>) -> Vec<usize> {
-    let keys: Vec<_> = rows.iter().map(|&row| key(row)).collect();
-    let places: Vec<usize> = (0..rows.len()).collect();
-    let block = |place: usize| keys[place].as_ref().map(|(block, _)| block);
-    let blocks = places.chunk_by(|&a, &b| block(a) == block(b));
-    let grouped = blocks.flat_map(|block| {
-        let mut tasks = IndexSet::new();
-        let task = |place: &usize| keys[*place].as_ref().map(|(_, task)| *task);
-        let mut numbered: Vec<_> = block
-            .iter()
-            .map(|place| (tasks.insert_full(task(place)).0, *place))
-            .collect();
-        numbered.sort_unstable();
-        numbered.into_iter().map(|(_, place)| place)
-    });
-    grouped.collect()
-}
-
-/// Steps of the environment up to the end of each row that counts, one after the other.
+/// Steps of the environment up to the end of each row that counts, in the order of the rows; a shuffled block has them in
+/// another order than its regimes.
 fn cumulated_steps(usable: &Usable<'_>) -> Option<Vec<f64>> {
     let steps = usable.rows.metric("episode_step_count")?;
-    let mut sum = 0.0;
-    let up_to = |&row: &usize| {
-        let known = steps[row].is_finite() && steps[row] >= 0.0;
-        sum += steps[row];
-        known.then_some(sum)
-    };
-    usable.indices.iter().map(up_to).collect()
+    let mut places: Vec<usize> = (0..usable.indices.len()).collect();
+    places.sort_unstable_by_key(|&place| usable.indices[place]);
+    let (mut sum, mut sums) = (0.0, vec![0.0; places.len()]);
+    for place in places {
+        let own = steps[usable.indices[place]];
+        if !(own.is_finite() && own >= 0.0) {
+            return None;
+        }
+        sum += own;
+        sums[place] = sum;
+    }
+    Some(sums)
 }
 
 /// The names under which tasks are scored, and which of them each logged name has.
@@ -217,6 +196,7 @@ impl ScoredTasks {
 
 #[cfg(test)]
 mod tests {
+    use super::super::usable::unshuffled;
     use super::*;
     use crate::{Record, Rows, VariantMode};
 
@@ -249,7 +229,7 @@ mod tests {
         let rows = Rows::from_records(&records);
         let usable = Usable {
             rows: &rows,
-            indices: (0..records.len()).collect(),
+            indices: unshuffled(&rows, (0..records.len()).collect()),
             performance: &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0],
         };
         let regimes = form("run", &usable, &Options::default()).unwrap();

@@ -2,16 +2,21 @@
 //!
 //! Not here: what is made of them, see `regime`.
 
+use indexmap::IndexSet;
+
 use crate::MetricsError;
 use crate::log::{ExpStatus, Log, Rows, TaskParams};
 
 /// Parameter of a task by which a row says which part of the life it belongs to, and the part that is not scored.
 const PHASE: (&str, &str) = ("phase", "pre_deployment");
 
+/// Parameter of a task by which a row says that its block is shuffled.
+const MIX: (&str, &str) = ("mix", "shuffled");
+
 /// The rows of a log that count, and the column of their performance.
 pub(crate) struct Usable<'a> {
     pub(crate) rows: &'a Rows,
-    /// Which rows count, in order.
+    /// Which rows count, in order; those of a shuffled block task by task.
     pub(crate) indices: Vec<usize>,
     /// Performance of every row of the log.
     pub(crate) performance: &'a [f64],
@@ -55,7 +60,35 @@ pub(crate) fn complete_rows<'a>(log: &'a Log, name: &str, column: &str) -> Resul
     }
     Ok(Usable {
         rows,
-        indices,
+        indices: unshuffled(rows, indices),
         performance,
     })
+}
+
+/// Rows in an order in which, of each block that is shuffled, those of one task stand together, in the order of the tasks' first
+/// rows.
+pub(super) fn unshuffled(rows: &Rows, indices: Vec<usize>) -> Vec<usize> {
+    let (params, names) = (rows.task_params(), rows.task_names());
+    let is_shuffled = |params: &TaskParams| params.get(MIX.0).is_some_and(|mix| mix == MIX.1);
+    let shuffled: Vec<bool> = params.values().iter().map(is_shuffled).collect();
+    if !shuffled.contains(&true) {
+        return indices;
+    }
+    let block = |row: usize| {
+        let kind = (rows.block_types()[row], rows.block_subtypes()[row]);
+        shuffled[params.ids()[row] as usize].then(|| (rows.block_nums()[row], kind))
+    };
+    let blocks = indices.chunk_by(|&a, &b| block(a) == block(b));
+    let grouped = blocks.flat_map(|rows_of_block| {
+        if rows_of_block.first().is_none_or(|row| block(*row).is_none()) {
+            return rows_of_block.to_vec();
+        }
+        let mut tasks = IndexSet::new();
+        let name = |row: usize| &names.values()[names.ids()[row] as usize];
+        let number = |row: &usize| (tasks.insert_full(name(*row)).0, *row);
+        let mut numbered: Vec<_> = rows_of_block.iter().map(number).collect();
+        numbered.sort_unstable();
+        numbered.into_iter().map(|(_, row)| row).collect()
+    });
+    grouped.collect()
 }

@@ -67,6 +67,8 @@ class Metrics:
         power: With ``power``, of each metric the standard ``deviations`` between lifetimes, the ``power`` of Welch's test at 5 % for the
             ``effect`` asked about, the ``lifetimes_needed`` of each agent for a power of 80 %, and the ``smallest_effect`` that the
             lifetimes at hand show.
+        varied: Of several lifetimes whether ``order``, ``learning_worlds``, ``evaluation_worlds``, ``agent`` and ``run_seed``
+            differ between them, so that one knows what intervals are over; ``None`` where the logs do not say.
     """
 
     lifetimes: list[dict[str, Any]]
@@ -76,6 +78,7 @@ class Metrics:
     repeats_against: list[dict[str, Any]] = field(default_factory=list, repr=False)
     intervals: dict[str, Any] = field(default_factory=dict, repr=False)
     power: list[dict[str, Any]] = field(default_factory=list, repr=False)
+    varied: dict[str, bool | None] = field(default_factory=dict, repr=False)
     _asked: tuple[list[str], dict[str, Any]] = field(default=([], {}), repr=False, compare=False)
     _scores: _native.Scores | None = field(default=None, repr=False, compare=False)
 

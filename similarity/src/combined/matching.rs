@@ -5,6 +5,9 @@ use std::cell::RefCell;
 use std::cmp::Ordering;
 
 use crate::assignment::Assignment;
+#[cfg(test)]
+use crate::combined::kinds::KindsApart;
+use crate::combined::kinds::Kinds;
 use crate::combined::parts::{length, turn};
 use crate::combined::sketch::ObjectFeatures;
 
@@ -13,9 +16,6 @@ pub(super) const UNIT_OF_PLACE: f64 = 10.0;
 
 /// So many points of reward count 1.
 pub(super) const UNIT_OF_REWARD: f64 = 100.0;
-
-/// How much what objects pay counts when they are matched.
-const TIE_BREAK: f64 = 1e-9;
 
 impl ObjectFeatures {
     pub(super) fn metres(&self, other: &Self) -> f64 {
@@ -36,7 +36,7 @@ impl ObjectFeatures {
     /// decides between matches that are equally cheap else. A metric.
     #[cfg(test)]
     fn cost(&self, other: &Self) -> f64 {
-        self.cost_of_place(other) + self.cost_of_kind(other)
+        self.cost_of_place(other) + KindsApart::between(self, other).cost
     }
 
     fn cost_of_place(&self, other: &Self) -> f64 {
@@ -44,43 +44,6 @@ impl ObjectFeatures {
             + turn(self.heading, other.heading) * (1.0 / 180.0)
             // The relative difference of scales, which are above 0.
             + (self.scale - other.scale).abs() * self.per_scale.min(other.per_scale)
-    }
-
-    /// The same for all objects of two kinds.
-    fn cost_of_kind(&self, other: &Self) -> f64 {
-        if self.kind == other.kind {
-            return 0.0;
-        }
-        let pays = (self.reward - other.reward).abs() / UNIT_OF_REWARD + (self.odds - other.odds).abs();
-        self.motion.distance(&other.motion)
-            + self.body.distance(&other.body)
-            + self.paid_for.distance(&other.paid_for)
-            + self.color_distance(other)
-            + self.model.distance(&other.model)
-            + TIE_BREAK * pays.min(1.0)
-    }
-}
-
-/// How many pairs of kinds are remembered while two sets are matched.
-const REMEMBERED: usize = 64;
-
-/// What pairs of kinds cost, each worked out when it is met first: worlds have many objects of few kinds.
-struct Kinds([(u32, u32, f64); REMEMBERED]);
-
-impl Kinds {
-    fn new() -> Self {
-        // No kind has the number that stands for none.
-        Self([(u32::MAX, u32::MAX, 0.0); REMEMBERED])
-    }
-
-    #[inline]
-    fn cost(&mut self, one: &ObjectFeatures, other: &ObjectFeatures) -> f64 {
-        let place = one.kind.wrapping_mul(31).wrapping_add(other.kind) as usize % REMEMBERED;
-        let known = &mut self.0[place];
-        if (known.0, known.1) != (one.kind, other.kind) {
-            *known = (one.kind, other.kind, one.cost_of_kind(other));
-        }
-        known.2
     }
 }
 
@@ -131,13 +94,12 @@ pub(super) fn each_match<'a>(
                     costs.extend(more.iter().map(|other| one.cost_of_place(other)));
                 }
             } else {
-                let mut kinds = Kinds::new();
-                for one in fewer {
-                    let costs_of_one = more
-                        .iter()
-                        .map(|other| one.cost_of_place(other) + kinds.cost(one, other));
-                    costs.extend(costs_of_one);
-                }
+                Kinds::with(|kinds| {
+                    for one in fewer {
+                        let cost = |other| one.cost_of_place(other) + kinds.apart(one, other).cost;
+                        costs.extend(more.iter().map(cost));
+                    }
+                });
             }
             // All are finite and within the limits of an assignment; more objects than it takes are compared in their order.
             let is_solved = assignment.solve(costs, fewer.len(), more.len()).is_ok();

@@ -1,6 +1,7 @@
 //! Distances of whole variants and whole worlds, made of many parts. The measures that the parts are made of are in their own folders.
 
 mod drawn;
+mod kinds;
 mod leaves;
 mod matching;
 mod parts;

@@ -3,6 +3,7 @@
 
 use driftworld_spec::Comparison;
 
+use crate::combined::kinds::Kinds;
 use crate::combined::matching::{UNIT_OF_PLACE, UNIT_OF_REWARD, each_match};
 use crate::combined::sketch::{ObjectFeatures, Sketch};
 use crate::combined::weighted_distance::{Part, Weights};
@@ -95,13 +96,14 @@ impl Objects {
         if a.kind == b.kind {
             return;
         }
-        self.motion += a.motion.distance(&b.motion);
-        self.body += a.body.distance(&b.body);
-        self.reward += (a.reward - b.reward).abs();
-        self.paid_for += a.paid_for.distance(&b.paid_for);
-        self.odds += (a.odds - b.odds).abs();
-        self.color += a.color_distance(b);
-        self.model += a.model.distance(&b.model);
+        let apart = Kinds::with(|kinds| *kinds.apart(a, b));
+        self.motion += apart.motion;
+        self.body += apart.body;
+        self.reward += apart.reward;
+        self.paid_for += apart.paid_for;
+        self.odds += apart.odds;
+        self.color += apart.color;
+        self.model += apart.model;
     }
 }
 

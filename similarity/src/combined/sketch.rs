@@ -4,6 +4,7 @@
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::sync::atomic::{self, AtomicU64};
 
 use driftworld_spec::{Comparison, LeafTexts, Object, World};
 
@@ -11,12 +12,15 @@ use crate::Oklab;
 use crate::combined::leaves::{LeafReader, Leaves};
 use crate::combined::read::as_read;
 
+/// The number of the next kind that is met. 0 is none.
+static NEXT_KIND: AtomicU64 = AtomicU64::new(1);
+
 /// Reduces worlds alike: only sketches of one sketcher can be compared.
 #[derive(Debug, Default)]
 pub(super) struct Sketcher {
     texts: LeafTexts,
     reader: LeafReader,
-    kinds: BTreeMap<[u64; 10], u32>,
+    kinds: BTreeMap<[u64; 10], u64>,
 }
 
 /// A world as it is compared.
@@ -69,7 +73,7 @@ pub(super) struct ObjectFeatures {
     pub(super) paid_for: Arc<Leaves>,
     pub(super) model: Arc<Leaves>,
     /// The same number for objects that are alike in all but their places, headings and sizes.
-    pub(super) kind: u32,
+    pub(super) kind: u64,
 }
 
 impl Sketcher {
@@ -149,7 +153,7 @@ impl Sketcher {
     }
 
     /// A number for all of an object but its place, heading and size.
-    fn kind(&mut self, object: &ObjectFeatures) -> u32 {
+    fn kind(&mut self, object: &ObjectFeatures) -> u64 {
         let [l, a, b] = object.color.map_or([0.0; 3], |color| color.0);
         let numbers = [object.reward, object.odds, l, a, b].map(f64::to_bits);
         // Equal leaves are one, which the reader keeps.
@@ -158,8 +162,8 @@ impl Sketcher {
         let mut key = [u64::from(object.color.is_some()); 10];
         key[1..6].copy_from_slice(&numbers);
         key[6..].copy_from_slice(&leaves);
-        let next = u32::try_from(self.kinds.len()).unwrap_or(u32::MAX);
-        *self.kinds.entry(key).or_insert(next)
+        // Sketchers share the numbers, so that two kinds of one number are one kind wherever they come from.
+        *self.kinds.entry(key).or_insert_with(|| NEXT_KIND.fetch_add(1, atomic::Ordering::Relaxed))
     }
 
     /// The leaves of a comparison in the world or object that was read last.
