@@ -98,15 +98,22 @@ fn what_differs_is_told() {
         learning("f_b", 1, 0, 12),
         learning("f_a", 1, 12, 12),
     ];
-    let expert_before = Block { task: "f_a", ..before };
-    // One block where the lifetime has two, other worlds, time before deployment in its own variant, another agent.
+    // The same block before deployment is like for like, whatever its task.
+    let same = [before.clone(), learning("f_a", 1, 0, 24)];
+    assert!(fit(&life, None, &same, None).0.differences.is_empty());
+    let expert_before = Block {
+        task: "f_a",
+        count: 3,
+        ..before
+    };
+    // One block where the lifetime has two, other worlds, less time before deployment, another agent.
     let expert = [expert_before, learning("f_a", 1, 6, 12)];
     let (found, notes) = fit(&life, Some("replay"), &expert, Some("ppo"));
     assert_eq!(
         found.differences,
         [
             "it had 12 learning experiences, the lifetime 24",
-            "it had 5 learning experiences before deployment, the lifetime 0",
+            "it had 3 learning experiences before deployment, the lifetime 5",
             "12 of its 12 worlds are among the lifetime's 24",
             "its agent is \"ppo\", the lifetime's \"replay\"",
         ]

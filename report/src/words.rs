@@ -5,9 +5,21 @@ use driftworld_text::printable;
 /// Letters of a name that are shown.
 const LONGEST: usize = 48;
 
+/// Letters of a sentence that are shown.
+const LONGEST_SENTENCE: usize = 1000;
+
 /// A name as it is shown: in one line, cut to a readable length, with characters escaped that break a page, hide in it
 /// or turn its direction around.
 pub(crate) fn shown(name: &str) -> String {
+    cut(name, LONGEST)
+}
+
+/// A sentence with names in it as it is shown: the same, but longer.
+pub(crate) fn note_shown(text: &str) -> String {
+    cut(text.trim_end_matches('.'), LONGEST_SENTENCE)
+}
+
+fn cut(name: &str, longest: usize) -> String {
     // What XML has no character for.
     let calm = |letter: char| match letter {
         '\u{fffe}' | '\u{ffff}' => '\u{fffd}',
@@ -15,7 +27,7 @@ pub(crate) fn shown(name: &str) -> String {
     };
     let name = printable(name);
     let mut letters = name.chars().map(calm);
-    let mut text: String = letters.by_ref().take(LONGEST).collect();
+    let mut text: String = letters.by_ref().take(longest).collect();
     if letters.next().is_some() {
         text.push('…');
     }

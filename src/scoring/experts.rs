@@ -86,7 +86,7 @@ impl Experts {
                 Err(text) => return Err(Failure::input(text.clone())),
             }
         }
-        Ok(experts)
+        Ok(of_the_lifetime(log, experts))
     }
 
     /// The tasks that experts trained: of those that were named, then of those that are stored.
@@ -94,6 +94,27 @@ impl Experts {
         let stored = self.stored.iter().map(|stored| stored.task.task_name.as_str());
         self.named.iter().map(SteLog::task_name).chain(stored)
     }
+}
+
+/// Of the experts of each task those that were designed with the lifetime, by the name of its scenario, where there are any: several
+/// lifetimes may be scored with the experts of all.
+fn of_the_lifetime(log: &Log, experts: Vec<SteLog>) -> Vec<SteLog> {
+    let Some(own) = scenario_name(log).map(|name| format!("{name}-")) else {
+        return experts;
+    };
+    let is_own = |expert: &SteLog| scenario_name(expert.log()).is_some_and(|name| name.starts_with(&own));
+    let with_own: BTreeSet<String> = experts
+        .iter()
+        .filter(|expert| is_own(expert))
+        .map(|expert| expert.task_name().to_owned())
+        .collect();
+    let serves = |expert: &SteLog| is_own(expert) || !with_own.contains(expert.task_name());
+    experts.into_iter().filter(serves).collect()
+}
+
+/// The name of the scenario that a log was run from, where it says.
+fn scenario_name(log: &Log) -> Option<&str> {
+    log.scenario_info.extra.get("scenario")?.get("name")?.as_str()
 }
 
 /// Positions of the experts that serve some of the tasks.

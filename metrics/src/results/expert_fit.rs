@@ -26,7 +26,7 @@ pub struct ExpertFit {
     pub agent: Option<BesideExpert<String>>,
     /// Learning experiences of the task; in a drift those that are nearer to it.
     pub learned: BesideExpert<usize>,
-    /// Learning experiences of the task before deployment.
+    /// Learning experiences before deployment, of whichever task: what comes before is the same for a lifetime and its experts.
     pub before_deployment: BesideExpert<usize>,
     /// Different worlds of the learning, by seed and index; `None` where one of the logs does not say them.
     pub worlds: Option<BesideExpert<usize>>,
@@ -48,11 +48,15 @@ pub(crate) fn expert_fits(
     }
     let budgets = budgets(log, lifetime, options)?;
     let nothing = Budget::default();
+    let before = budgets.values().map(|own| own.before).sum();
     let agent = agent_of(log);
     let of_task = |task: &String| {
         let own = budgets.get(task).unwrap_or(&nothing);
         let runs = lifetime.experts_of(task).iter();
-        let fits = runs.map(|run| fit(&run.name, [agent.as_deref(), run.agent.as_deref()], own, &run.budget));
+        let fits = runs.map(|run| {
+            let agents = [agent.as_deref(), run.agent.as_deref()];
+            fit(&run.name, agents, (own, before), &run.budget)
+        });
         let fits: Vec<ExpertFit> = fits.collect();
         // A task that is only evaluated is not learned in the lifetime: there is nothing to compare.
         (!fits.is_empty() && own.learned > 0).then(|| (task.clone(), fits))
@@ -65,7 +69,12 @@ pub(crate) fn agent_of(log: &Log) -> Option<String> {
     Some(log.scenario_info.extra.get("agent")?.as_str()?.to_owned())
 }
 
-fn fit(run: &str, [own_agent, agent]: [Option<&str>; 2], own: &Budget, expert: &Budget) -> ExpertFit {
+fn fit(
+    run: &str,
+    [own_agent, agent]: [Option<&str>; 2],
+    (own, before): (&Budget, usize),
+    expert: &Budget,
+) -> ExpertFit {
     let worlds = own.worlds.as_ref().zip(expert.worlds.as_ref());
     let shared = worlds.map(|(own, expert)| own.intersection(expert).count());
     let found = ExpertFit {
@@ -79,7 +88,7 @@ fn fit(run: &str, [own_agent, agent]: [Option<&str>; 2], own: &Budget, expert: &
             expert: expert.learned,
         },
         before_deployment: BesideExpert {
-            lifetime: own.before,
+            lifetime: before,
             expert: expert.before,
         },
         worlds: worlds.map(|(own, expert)| BesideExpert {

@@ -6,7 +6,7 @@ use maud::{Markup, html};
 use super::{described, number, verdict};
 use crate::ReportError;
 use crate::figure::{strip, thinned_count};
-use crate::words::shown;
+use crate::words::{note_shown, shown};
 
 pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Markup, ReportError> {
     let scaled = lifetime.normalization_data_range().is_some();
@@ -61,7 +61,7 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
                 (NULL_PERMUTATIONS) " times, as if the agent never changed. No effect is named inside it. “no null”: decided by learning, too."
             }
         }
-        @for note in metrics.notes.iter().chain(&metrics.cautions) { p.note { strong { "Note: " } (shown(note)) "." } }
+        @for note in metrics.notes.iter().chain(&metrics.cautions) { p.note { strong { "Note: " } (note_shown(note)) "." } }
         @if scaled {
             p.note {
                 "Tasks are scaled to 1…101, by default by this lifetime’s own worst and best. Such values cannot be compared between lifetimes: a random agent may score "

@@ -46,12 +46,7 @@ impl KindsApart {
         };
         let pays = apart.reward / super::matching::UNIT_OF_REWARD + apart.odds;
         Self {
-            cost: apart.motion
-                + apart.body
-                + apart.paid_for
-                + apart.color
-                + apart.model
-                + TIE_BREAK * pays.min(1.0),
+            cost: apart.motion + apart.body + apart.paid_for + apart.color + apart.model + TIE_BREAK * pays.min(1.0),
             ..apart
         }
     }

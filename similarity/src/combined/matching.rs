@@ -5,9 +5,9 @@ use std::cell::RefCell;
 use std::cmp::Ordering;
 
 use crate::assignment::Assignment;
+use crate::combined::kinds::Kinds;
 #[cfg(test)]
 use crate::combined::kinds::KindsApart;
-use crate::combined::kinds::Kinds;
 use crate::combined::parts::{length, turn};
 use crate::combined::sketch::ObjectFeatures;
 

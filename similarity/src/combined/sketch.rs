@@ -163,7 +163,10 @@ impl Sketcher {
         key[1..6].copy_from_slice(&numbers);
         key[6..].copy_from_slice(&leaves);
         // Sketchers share the numbers, so that two kinds of one number are one kind wherever they come from.
-        *self.kinds.entry(key).or_insert_with(|| NEXT_KIND.fetch_add(1, atomic::Ordering::Relaxed))
+        *self
+            .kinds
+            .entry(key)
+            .or_insert_with(|| NEXT_KIND.fetch_add(1, atomic::Ordering::Relaxed))
     }
 
     /// The leaves of a comparison in the world or object that was read last.
