@@ -40,6 +40,8 @@ RANGES = {
 COLOURS = ("blue", "red", "green")
 ELEMENTS = ("S", "A", "T", "R", "O")
 BINS = 20
+# A distance is a sum: a parameter over its whole range counts 1, and there are the ranges and the colour.
+MOST = float(len(RANGES) + 1)
 
 
 def variant_of(task: driftworld.TaskSpec, seed: int, number: int) -> driftworld.Variant:
@@ -74,7 +76,7 @@ def measure(batch: dict[str, np.ndarray], seed: int, shard_size: int, variants: 
             "most": max(totals),
             "elements": np.sum(elements, axis=0),
             "objects": int(np.sum(objects)),
-            "histogram": np.histogram(totals, bins=BINS, range=(0.0, 1.0))[0],
+            "histogram": np.histogram(np.minimum(totals, MOST), bins=BINS, range=(0.0, MOST))[0],
             "digest": digest.hexdigest(),
         })  # fmt: skip
     return {name: [row[name] for row in rows] for name in rows[0]}
@@ -159,8 +161,8 @@ def main() -> None:
             settings={**vars(arguments), "ranges": RANGES, "answer": answer},
             variants=[f"{TASK}#blue"], seeds=[arguments.seed],
             # Beyond the farthest there is nothing to draw.
-            curve=[{"distance": (bin + 0.5) / BINS, "variants": count} for bin, count in enumerate(histogram) if count],
-            seconds=watch.seconds, load_before=watch.load, axes=("distance", "variants"), labels=("distance from blue", "variants in 0.05 of distance"),
+            curve=[{"distance": MOST * (bin + 0.5) / BINS, "variants": count} for bin, count in enumerate(histogram) if count],
+            seconds=watch.seconds, load_before=watch.load, axes=("distance", "variants"), labels=("distance from blue", f"variants in {MOST / BINS:.1f} of distance"),
             table=[{
                 "variants": answer["variants"], "seconds": round(seconds, 1), "variants a second": round(answer["variants"] / seconds),
                 "mean distance": round(answer["distance"]["mean"], 4), "least": round(answer["distance"]["least"], 4),
