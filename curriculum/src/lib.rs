@@ -1,7 +1,7 @@
 //! Curricula: variants in an order made into learning and evaluation blocks, and lived by an agent into a log.
 //!
 //! [`probe`] and [`steps`] find the variants that a hypothesis is about, [`arrange`] puts them into its order, [`design`] makes a
-//! [`Scenario`](driftworld_spec::Scenario) of them, [`run`] lives it, [`audit`] says what its scores
+//! [`Scenario`](driftworld_spec::Scenario) of them, [`run`] runs it, [`audit`] says what its scores
 //! are worth. Distances are measured elsewhere; files and the clock are
 //! handed in.
 

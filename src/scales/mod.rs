@@ -43,7 +43,7 @@ pub struct ScalesRequest {
 }
 
 /// Runs three agents in the same worlds of each variant: one that acts at random, one that stands still, one that knows
-/// the map. The better of the first two is the floor, the third the ceiling. `progress` is told of each variant that is
+/// the map. The better of the first two is the floor, the third the ceiling. `progress` gets each variant that is
 /// done.
 ///
 /// # Errors

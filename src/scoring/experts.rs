@@ -133,3 +133,42 @@ fn tasks(log: &Log, options: &Options) -> Vec<String> {
     };
     log.rows.task_names().values().iter().map(scored).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use driftworld_metrics::{BlockType, LogWriter, LoggerInfo, Record, ScenarioInfo, Timestamp, read_log};
+
+    fn log_of(scenario: &str, task: &str) -> Log {
+        let base = tempfile::tempdir().expect("there is a folder for temporary files");
+        let folder = base.path().join(scenario);
+        let mut info = ScenarioInfo::default();
+        info.extra
+            .insert("scenario".to_owned(), serde_json::json!({ "name": scenario }));
+        let columns = LoggerInfo::new(["reward"]).expect("one column");
+        let mut writer = LogWriter::create(&folder, &columns, &info).expect("the folder is new");
+        let when = Timestamp::from_unix_micros(0).expect("1970");
+        let record = Record::new(0, 0, BlockType::Train, task, when).with_metric("reward", 1.0);
+        writer.write(&record).expect("there is room");
+        writer.finish().expect("there is room");
+        read_log(&folder).expect("it was written")
+    }
+
+    #[test]
+    fn each_lifetime_has_its_own_experts_and_others_where_it_has_none() {
+        let expert = |scenario, task| SteLog::new(log_of(scenario, task)).expect("one task");
+        let experts = vec![
+            expert("c-1-red", "f_red"),
+            expert("c-11-red", "f_red"),
+            expert("c-2-red", "f_red"),
+            expert("c-2-blue", "f_blue"),
+        ];
+        let of = |lifetime| -> Vec<String> {
+            let own = of_the_lifetime(&log_of(lifetime, "f_red"), experts.clone());
+            own.iter().map(|expert| expert.log().run_id.clone()).collect()
+        };
+        assert_eq!(of("c-1"), ["c-1-red", "c-2-blue"]);
+        assert_eq!(of("c-2"), ["c-2-red", "c-2-blue"]);
+        assert_eq!(of("another").len(), 4);
+    }
+}

@@ -1,7 +1,7 @@
 //! [`audit`]: what a scenario's scores say of agents of which the answer is known beforehand.
 //!
-//! The agents are simulated, so that a scenario of any length is audited in seconds: what they earn is in `agents.rs`, how their
-//! logs are written in `simulation.rs`. Experts and metrics are those of any other lifetime.
+//! The agents are simulated, so that no world is run: what they earn is in `agents.rs`, how their logs are written in
+//! `simulation.rs`. Experts and metrics are those of any other lifetime.
 
 mod agents;
 mod simulation;

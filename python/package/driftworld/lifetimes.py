@@ -154,7 +154,7 @@ class Lifetime:
         self._whose = ""
 
     def live(self, made_with: Mapping[str, Any], rollout: Callable[[Callable[[int], None]], Rollout]) -> Summary:
-        """Lives it from the first experience that is not in the log to the last.
+        """Runs it from the first experience that is not in the log to the last.
 
         Args:
             made_with: What the lifetime depends on beside the plan, by name; a log is taken up only with the same.
