@@ -1,9 +1,12 @@
 //! What the table of fields says of each place of a world holds: a parameter can set it, and arrives in the drawn world;
 //! worlds that differ in it alone differ in the comparisons that it names, and in no other.
 
-use driftworld::generator::Sampler;
-use driftworld::similarity::{Weights, world_distance};
-use driftworld::spec::{Compared, FieldPlace, ParameterType, TaskSpec, World};
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use driftworld::generator::{Sampler, drift};
+use driftworld::similarity::{Weights, variant_distance, world_distance};
+use driftworld::spec::{Compared, Element, FieldPlace, ParameterType, TaskSpec, World};
 use serde_json::{Value as Json, json};
 
 /// A world in which there is something at every place, as the documents for the schemas have it.
@@ -56,6 +59,33 @@ fn other(place: &FieldPlace, now: &Json) -> Json {
             _ => "word",
         }),
         ParameterType::Distribution => unreachable!("no place of a world holds a distribution"),
+        ParameterType::Json => other_whole(&place.pointer, now),
+    }
+}
+
+/// Another value for a place that takes parameters as JSON alone.
+fn other_whole(pointer: &str, now: &Json) -> Json {
+    let triangle = json!([[30.0, 30.0], [32.0, 30.0], [31.0, 33.0]]);
+    match pointer {
+        "/environment_params/map_regions" => json!([triangle]),
+        "/environment_params/map_regions/*" | "/environment_params/walls/*/polygon" => triangle,
+        "/environment_params/walls" => {
+            json!([{ "polygon": triangle }, { "polygon": [[-30.0, 3.0], [-32.0, 3.0], [-31.0, 6.0]] }])
+        }
+        "/environment_params/walls/*" => json!({ "polygon": triangle, "height": 3.0 }),
+        "/agent_params/modalities" => json!(["rgb", "instance"]),
+        "/agent_params/state_features" => json!(["heading", "counts"]),
+        "/image_params" => json!({ "zoom": 5.0 }),
+        "/rules" => json!({ "step_reward": -0.25, "success": ["all_collected"] }),
+        "/rules/shaping" => json!({ "scale": 2.0 }),
+        "/rules/success" | "/rules/failure" => json!([{ "return_at_least": 77.0 }]),
+        "/rules/success/*" | "/rules/failure/*" => json!({ "return_at_most": -77.0 }),
+        "/objects/*/pushable" => json!({ "mass": 9.0, "friction": 0.25 }),
+        "/objects/*/waypoints" => json!([[1.0, 2.0], [3.0, 4.0], [5.0, 7.0]]),
+        "/objects/*/respawn" => json!({ "delay": 9.0 }),
+        stimuli if stimuli.ends_with("_stimulus") && *now == json!(["AgentInRange"]) => json!(["AgentInteract"]),
+        stimuli if stimuli.ends_with("_stimulus") => json!(["AgentInRange"]),
+        unknown => panic!("give this test a value for {unknown}"),
     }
 }
 
@@ -108,6 +138,130 @@ fn every_place_takes_a_parameter_and_what_it_says_arrives_there_and_nowhere_else
         *at(&mut template, &pointer) = json!({ "param": "tried" });
         assert_eq!(drawn(&place.pointer, &template, &tried), expected, "{}", place.pointer);
         assert_ne!(expected, drawn(&place.pointer, &full, &tried), "{}", place.pointer);
+    }
+}
+
+/// A task in which variants give a place of the world one of two values.
+fn task_of_two(place: &FieldPlace, pointer: &str, full: &Json, values: [Json; 2]) -> Arc<TaskSpec> {
+    let mut template = full.clone();
+    *at(&mut template, pointer) = json!({ "param": "tried" });
+    let comparisons = place.field.compared.comparisons().iter();
+    let affects: BTreeSet<&str> = comparisons.map(|comparison| comparison.element().letter()).collect();
+    let [first, second] = &values;
+    let task = json!({ "name": "t", "world": template, "parameters": { "tried": {
+        "role": "variant", "type": "json", "affects": affects, "choices": values, "default": first } },
+        "variants": { "first": {}, "second": { "tried": second } } });
+    let read = |text: &str| TaskSpec::from_json(pointer, text).unwrap_or_else(|error| panic!("{error}"));
+    let task = read(&task.to_string());
+    // What it is written as is the same task.
+    read(&task.to_json())
+}
+
+fn world_of(task: &Arc<TaskSpec>, variant: &str) -> World {
+    let variant = task.variant(variant).unwrap_or_else(|error| panic!("{error}"));
+    let world = Sampler::new(&variant, 3).world(0);
+    world.unwrap_or_else(|error| panic!("{}: {error}", variant.id()))
+}
+
+#[test]
+fn every_place_takes_json_whose_variants_differ_by_its_elements_and_carry_their_values() {
+    let full = full();
+    for place in World::places().iter().filter(|place| place.kind.is_some()) {
+        let pointer = first(place, &full);
+        let mut template = full.clone();
+        let now = at(&mut template, &pointer).clone();
+        let second = other(place, &now);
+        let task = task_of_two(place, &pointer, &full, [now, second.clone()]);
+        let plain = |template: &Json| {
+            drawn(
+                &pointer,
+                template,
+                &json!({ "role": "fixed", "type": "number", "value": 1 }),
+            )
+        };
+        assert_eq!(world_of(&task, "first"), plain(&template), "{pointer}");
+        *at(&mut template, &pointer) = second;
+        assert_eq!(world_of(&task, "second"), plain(&template), "{pointer}");
+        let [first, second] = ["first", "second"].map(|name| task.variant(name).expect("it is declared"));
+        let distance = variant_distance(&first, &second, &Weights::default()).expect("they are of one task");
+        let of_row: BTreeSet<Element> = place
+            .field
+            .compared
+            .comparisons()
+            .iter()
+            .map(|part| part.element())
+            .collect();
+        for element in Element::ALL.iter().filter(|element| **element == element.coarse()) {
+            let apart = distance.element(*element).unwrap_or(0.0);
+            assert_eq!(
+                apart > 0.0,
+                of_row.contains(element),
+                "{pointer} in {}",
+                element.letter()
+            );
+        }
+        // Half-way it switches, and nothing lies between.
+        for (t, expected) in [(0.25, &first), (0.75, &second)] {
+            let between = drift(&first, &second, t).unwrap_or_else(|error| panic!("{pointer}: {error}"));
+            assert_eq!(between.value("tried"), expected.value("tried"), "{pointer}");
+        }
+    }
+}
+
+#[test]
+fn what_may_be_absent_is_absent_where_a_parameter_is_null() {
+    let full = full();
+    let mut count = 0;
+    for place in World::places()
+        .iter()
+        .filter(|place| place.kind.is_some() && place.is_key)
+    {
+        let pointer = first(place, &full);
+        let mut template = full.clone();
+        let now = at(&mut template, &pointer).take();
+        if World::from_json("absent", &template.to_string()).is_err() {
+            continue;
+        }
+        count += 1;
+        let expected = drawn(
+            &pointer,
+            &template,
+            &json!({ "role": "fixed", "type": "number", "value": 1 }),
+        );
+        let task = task_of_two(place, &pointer, &full, [now, Json::Null]);
+        assert_eq!(world_of(&task, "second"), expected, "{pointer}");
+        assert_ne!(world_of(&task, "first"), expected, "{pointer}");
+    }
+    assert!(count >= 15, "{count} keys that may be absent");
+}
+
+#[test]
+fn every_place_takes_a_draw_from_a_list() {
+    let full = full();
+    for place in World::places().iter().filter(|place| place.kind.is_some()) {
+        let pointer = first(place, &full);
+        let mut template = full.clone();
+        let now = at(&mut template, &pointer).clone();
+        let listed = [now.clone(), other(place, &now)];
+        let fixed = json!({ "role": "fixed", "type": "number", "value": 1 });
+        let either = listed.clone().map(|value| {
+            *at(&mut template, &pointer) = value;
+            drawn(&pointer, &template, &fixed)
+        });
+        *at(&mut template, &pointer) = json!({ "choice": { "values": listed } });
+        let task = json!({ "name": "t", "world": template });
+        let task = TaskSpec::from_json(&pointer, &task.to_string()).unwrap_or_else(|error| panic!("{error}"));
+        let sampler = Sampler::new(&task.variant("default").expect("it is always there"), 3);
+        let mut seen = [false; 2];
+        for index in 0..40 {
+            let world = sampler
+                .world(index)
+                .unwrap_or_else(|error| panic!("{pointer}: {error}"));
+            let unseeded = |world: &World| world.clone().edit(|world| world.seed = None).expect("it stays sound");
+            let which = either.iter().position(|either| unseeded(either) == unseeded(&world));
+            seen[which.unwrap_or_else(|| panic!("{pointer}: neither of the two"))] = true;
+        }
+        assert_eq!(seen, [true; 2], "{pointer}");
     }
 }
 

@@ -30,6 +30,9 @@ pub enum ParameterType {
     Vector,
     /// A distribution: what is drawn, or where objects stand, is itself a parameter.
     Distribution,
+    /// Whatever may stand where it is used, in JSON: a list, an object, a word, a number, or `null` for what may be
+    /// absent. Its values are checked by the schema of each place where it stands.
+    Json,
 }
 
 impl ParameterType {
@@ -57,10 +60,7 @@ impl ParameterType {
 ///
 /// Reads any JSON that can be a value; [`Value::cast`] then gives it the parameter's type.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(
-    untagged,
-    expecting = "a number, true or false, text, a list of numbers, or a distribution"
-)]
+#[serde(untagged, expecting = "any JSON")]
 pub enum Value {
     /// True or false.
     Boolean(bool),
@@ -78,11 +78,14 @@ pub enum Value {
     Vector(#[schemars(length(min = 1, max = 100))] Vec<f64>),
     /// A distribution whose numbers may refer to parameters.
     Distribution(Box<Distribution<Number>>),
+    /// Any other JSON, and any at all once it is cast to [`ParameterType::Json`].
+    #[schemars(skip)]
+    Json(#[serde(deserialize_with = "canonical_json")] Box<serde_json::Value>),
 }
 
 impl Value {
-    /// This value as one of the given type, if it can be one: whole numbers are numbers, CSS names are colours, and a heading
-    /// of any size is turned into 0..360.
+    /// This value as one of the given type, if it can be one: whole numbers are numbers, CSS names are colours, a heading of
+    /// any size is turned into 0..360, and everything is JSON.
     pub fn cast(&self, kind: ParameterType) -> Option<Self> {
         use ParameterType as P;
         match (kind, self) {
@@ -100,8 +103,14 @@ impl Value {
             }
             (P::Color, Self::Text(name)) => Color::from_name(name).map(Self::Color),
             (P::Vector, _) => self.as_vector().map(|vector| Self::Vector(vector.to_vec())),
+            (P::Json, _) => Some(Self::Json(Box::new(canonical(self.to_json())))),
             _ => None,
         }
+    }
+
+    /// Whether only a place that takes it as JSON can hold it: a list of words or of lists, an object, or nothing.
+    pub(crate) fn is_json(&self) -> bool {
+        matches!(self, Self::Json(_))
     }
 
     /// The number, if the value is a real or whole one.
@@ -142,8 +151,39 @@ impl Value {
 
     /// The value in JSON.
     pub fn to_json(&self) -> serde_json::Value {
-        serde_json::to_value(self)
-            .expect("values are numbers, texts and lists and maps of them, which always serialise")
+        match self {
+            Self::Json(json) => (**json).clone(),
+            other => serde_json::to_value(other)
+                .expect("values are numbers, texts and lists and maps of them, which always serialise"),
+        }
+    }
+}
+
+fn canonical_json<'de, D: serde::Deserializer<'de>>(json: D) -> Result<Box<serde_json::Value>, D::Error> {
+    serde_json::Value::deserialize(json).map(|json| Box::new(canonical(json)))
+}
+
+/// JSON in the one way of writing it in which equal values have equal texts: keys in order, whole numbers without a point.
+fn canonical(json: serde_json::Value) -> serde_json::Value {
+    use serde_json::Value as Json;
+    /// Up to here every whole number has a double of its own.
+    const MOST_WHOLE: f64 = 9_007_199_254_740_992.0;
+    match json {
+        Json::Number(number) => {
+            let whole = number
+                .as_f64()
+                .filter(|_| number.is_f64())
+                .filter(|real| real.fract() == 0.0 && real.abs() <= MOST_WHOLE);
+            whole.map_or(Json::Number(number), |real| Json::from(real as i64))
+        }
+        Json::Array(list) => list.into_iter().map(canonical).collect(),
+        Json::Object(map) => {
+            let mut entries: Vec<(String, Json)> =
+                map.into_iter().map(|(key, child)| (key, canonical(child))).collect();
+            entries.sort_by(|a, b| a.0.cmp(&b.0));
+            Json::Object(entries.into_iter().collect())
+        }
+        other => other,
     }
 }
 
@@ -202,6 +242,32 @@ mod tests {
             Some(Value::Vector(vec![7.0, 8.0, 9.0, 10.0])),
         );
         check("[7, 8, 9, 10]", ParameterType::Point, None);
+    }
+
+    #[test]
+    fn equal_json_has_one_text_and_reads_back_as_itself() {
+        let json = |text: &str| {
+            serde_json::from_str::<Value>(text)
+                .unwrap()
+                .cast(ParameterType::Json)
+                .unwrap()
+        };
+        for (text, expected) in [
+            ("null", "null"),
+            ("[1.0, 2, 2.5]", "[1,2,2.5]"),
+            (r#"["rgb", "depth"]"#, r#"["rgb","depth"]"#),
+            (
+                r#"{"b": [[1, 0, 0]], "a": {"d": null, "c": -3.0}}"#,
+                r#"{"a":{"c":-3,"d":null},"b":[[1,0,0]]}"#,
+            ),
+            ("\"red\"", "\"red\""),
+            ("[]", "[]"),
+        ] {
+            assert_eq!(json(text).to_string(), expected);
+            assert_eq!(json(expected), json(text));
+        }
+        check("null", ParameterType::Number, None);
+        check("[[1, 2], [3, 4]]", ParameterType::Vector, None);
     }
 
     #[test]

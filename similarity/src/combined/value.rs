@@ -77,7 +77,9 @@ impl ValueMeasure {
                 widest: widest_turn(parameter),
             },
             ParameterType::Color => color(parameter, "oklab / widest choice", ColorMeasure::Oklab),
-            ParameterType::Boolean | ParameterType::String | ParameterType::Distribution => Self::SameOrNot,
+            ParameterType::Boolean | ParameterType::String | ParameterType::Distribution | ParameterType::Json => {
+                Self::SameOrNot
+            }
         }
     }
 

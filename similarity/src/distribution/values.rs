@@ -113,11 +113,13 @@ fn compare(a: &Value, b: &Value) -> Ordering {
         Value::Text(_) => 2,
         Value::Point(_) => 3,
         Value::Color(_) => 4,
-        _ => 5,
+        Value::Vector(_) | Value::Distribution(_) => 5,
+        Value::Json(_) => 6,
     };
     match (a, b) {
         (Value::Boolean(a), Value::Boolean(b)) => a.cmp(b),
         (Value::Text(a), Value::Text(b)) => a.cmp(b),
+        (Value::Json(a), Value::Json(b)) => a.to_string().cmp(&b.to_string()),
         _ => match (a.as_number(), b.as_number()) {
             (Some(a), Some(b)) => (a + 0.0).total_cmp(&(b + 0.0)),
             _ => rank(a).cmp(&rank(b)).then_with(|| {

@@ -61,12 +61,13 @@ pub enum Distribution<N = f64> {
     /// Always the same value, of any type.
     Constant {
         /// The value.
+        #[schemars(with = "serde_json::Value")]
         value: Value,
     },
     /// One of a list, by weight.
     Choice {
         /// What may be chosen.
-        #[schemars(length(min = 1, max = 10_000))]
+        #[schemars(length(min = 1, max = 10_000), with = "Vec<serde_json::Value>")]
         values: Vec<Value>,
         /// Weight of each value, at least 0, not all 0; all alike if absent.
         #[serde(skip_serializing_if = "Option::is_none")]

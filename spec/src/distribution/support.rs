@@ -7,9 +7,12 @@ impl<N> Distribution<N> {
     /// Whether all it draws can stand where this type is wanted.
     pub fn yields(&self, kind: ParameterType) -> bool {
         match self {
+            // Only what is listed can be checked where it stands.
+            Self::Constant { .. } | Self::Choice { .. } if kind == ParameterType::Json => true,
             Self::Constant { value } => value.cast(kind).is_some(),
             Self::Choice { values, .. } => values.iter().all(|value| value.cast(kind).is_some()),
             Self::Mixture { parts, .. } => parts.iter().all(|part| part.yields(kind)),
+            _ if kind == ParameterType::Json => false,
             Self::Bernoulli { .. } => kind == ParameterType::Boolean,
             Self::IntegerUniform { .. } | Self::Binomial { .. } | Self::Poisson { .. } | Self::Geometric { .. } => {
                 ParameterType::Integer.fits(kind)

@@ -26,7 +26,8 @@ impl DocumentSchema {
         Self::new(of_type::<T>(id, title))
     }
 
-    fn new(json: Value) -> Self {
+    /// A schema that is JSON already.
+    pub(crate) fn new(json: Value) -> Self {
         let validator = jsonschema::validator_for(&json).expect("the schema is made from our own types and is tested");
         Self {
             json,

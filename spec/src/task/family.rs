@@ -251,6 +251,7 @@ fn word(value: &Value, index: usize) -> String {
         Value::Point(point) => numbers(point),
         Value::Vector(vector) => numbers(vector),
         Value::Number(number) => number.to_string(),
+        Value::Json(json) => word_of_json(json, index),
         other => {
             let plain = |c: char| {
                 if c.is_alphanumeric() || matches!(c, '.' | '+' | '_') {
@@ -260,6 +261,25 @@ fn word(value: &Value, index: usize) -> String {
                 }
             };
             other.to_string().chars().map(plain).take(40).collect()
+        }
+    }
+}
+
+/// JSON as part of a name: a word, a number or a list of words as it is, anything else by its first key and its number.
+fn word_of_json(json: &serde_json::Value, index: usize) -> String {
+    use serde_json::Value as Json;
+    match json {
+        Json::Null => "none".to_owned(),
+        Json::String(text) => word(&Value::Text(text.clone()), index),
+        Json::Bool(_) | Json::Number(_) => json.to_string(),
+        Json::Array(list) if !list.is_empty() && list.iter().all(Json::is_string) && list.len() <= 4 => {
+            let words: Vec<String> = list.iter().map(|item| word_of_json(item, index)).collect();
+            words.join("_")
+        }
+        Json::Array(_) => format!("list{index}"),
+        Json::Object(map) => {
+            let key = map.keys().next().map_or("object", String::as_str);
+            format!("{}{index}", word(&Value::Text(key.to_owned()), index))
         }
     }
 }

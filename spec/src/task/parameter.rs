@@ -1,7 +1,7 @@
 //! One declared parameter: its role, type and domain. The values that variants give it are in `variant.rs`.
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::json;
 
 use super::compare::Compare;
@@ -51,17 +51,19 @@ pub struct Parameter {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
     /// Fixed only: its value.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schemars(schema_with = "any_value")]
     pub value: Option<Value>,
     /// Variant only: the values it may have.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(length(min = 1, max = 10_000))]
+    #[schemars(length(min = 1, max = 10_000), with = "Option<Vec<serde_json::Value>>")]
     pub choices: Option<Vec<Value>>,
     /// Variant only: the least and greatest number it may have.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub range: Option<[f64; 2]>,
     /// Variant only: its value in variants that do not set it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[schemars(schema_with = "any_value")]
     pub default: Option<Value>,
     /// Variant only, for values that do not interpolate: at which fraction (0..1) of a drift it switches; a half if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -87,6 +89,16 @@ pub enum Domain {
     Choices(Vec<Value>),
     /// Any number from the first to the second, both included.
     Range([f64; 2]),
+}
+
+/// A value that is there may be `null`, which JSON takes for what is absent.
+fn given<'de, D: Deserializer<'de>>(value: D) -> Result<Option<Value>, D::Error> {
+    Value::deserialize(value).map(Some)
+}
+
+/// Any JSON: which of it, hangs on the type of a parameter.
+fn any_value(_: &mut SchemaGenerator) -> Schema {
+    Schema::from(true)
 }
 
 /// `if` this role or type, `then` these keys: what an editor that knows JSON Schema reports while the author types.
@@ -147,6 +159,7 @@ fn require_what_the_role_needs(schema: &mut schemars::Schema) {
             true,
         ),
         kind(&["distribution"], json!({ "$ref": "#/$defs/Distribution" }), false),
+        kind(&["json"], json!(true), false),
     ];
     schema.insert("allOf".to_owned(), json!(rules));
 }
@@ -173,7 +186,7 @@ impl Parameter {
 
     /// The value with the parameter's type if it lies in the domain; else what was expected.
     pub(crate) fn accept(&self, value: &Value) -> Result<Value, String> {
-        let typed = self.accept_between(value)?;
+        let typed = self.accept_typed(value)?;
         match self.domain() {
             Some(Domain::Choices(choices)) if !choices.contains(&typed) => {
                 let shown: Vec<String> = choices.iter().take(20).map(|choice| cut(&choice.to_string())).collect();
@@ -187,8 +200,15 @@ impl Parameter {
         }
     }
 
-    /// As [`Parameter::accept`], but a value may lie between the choices.
+    /// As [`Parameter::accept`], but a value may lie between the choices, where there is anything between two.
     pub(crate) fn accept_between(&self, value: &Value) -> Result<Value, String> {
+        match self.kind {
+            ParameterType::Json => self.accept(value),
+            _ => self.accept_typed(value),
+        }
+    }
+
+    fn accept_typed(&self, value: &Value) -> Result<Value, String> {
         let typed = value
             .cast(self.kind)
             .ok_or_else(|| format!("a value of type {}", self.kind.name()))?;

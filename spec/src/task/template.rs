@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value as Json, json};
 
 use crate::distribution::{Distribution, Number, ParamRef};
-use crate::schema::document::of_type;
+use crate::error::Problem;
+use crate::schema::document::{DocumentSchema, of_type};
 use crate::schema::part;
 use crate::value::{ParameterType, Value};
 use crate::world::{FieldPlace, Object, Place, Setter, World, WorldDraft, places_of};
@@ -46,6 +47,8 @@ pub struct Hole<T> {
     pub kind: ParameterType,
     /// The numbers that may stand there, both ends included.
     pub range: [f64; 2],
+    /// The schema of what may stand there, without its definitions.
+    schema: Option<&'static Json>,
     /// The way to it in a `T`.
     steps: Vec<usize>,
     set: Setter<T>,
@@ -69,6 +72,14 @@ impl<T> std::fmt::Debug for Hole<T> {
 }
 
 impl<T> Hole<T> {
+    /// What keeps a value from standing there, as the schema of the place has it; places are within the value.
+    pub(crate) fn problems(&self, value: &Value) -> Vec<Problem> {
+        let Some(schema) = self.schema else { return Vec::new() };
+        let mut own = schema.clone();
+        own["$defs"] = World::schema().json()["$defs"].clone();
+        DocumentSchema::new(own).problems(&value.to_json()).problems
+    }
+
     /// Puts a value there. `None` if a value of its type cannot stand there, as a text that names nothing.
     pub fn fill(&self, target: &mut T, value: &Value) -> Option<()> {
         (self.set)(target, &self.steps, value)
@@ -131,7 +142,7 @@ impl Template<Object> {
 }
 
 /// The hole at a pointer into a `T`, whose schema this is.
-fn hole<T: Place>((pointer, source): &Opening, schema: &Json) -> Option<Hole<T>> {
+fn hole<T: Place>((pointer, source): &Opening, schema: &'static Json) -> Option<Hole<T>> {
     let words: Vec<&str> = pointer.split('/').skip(1).collect();
     let mut steps = Vec::new();
     let kind = T::find(&words, &mut steps)?;
@@ -141,6 +152,7 @@ fn hole<T: Place>((pointer, source): &Opening, schema: &Json) -> Option<Hole<T>>
         source: source.clone(),
         kind,
         range: range_at(schema, pointer),
+        schema: part::property(World::schema().json(), schema, pointer),
         steps,
         set,
     })

@@ -2,6 +2,7 @@
 //! variants of a checked task are in `variant.rs`, families in `family.rs`.
 
 use std::collections::BTreeSet;
+use std::sync::LazyLock;
 
 use driftworld_text::IDENTIFIER_PATTERN;
 use indexmap::IndexMap;
@@ -12,8 +13,10 @@ use super::DEFAULT_VARIANT;
 use super::family::{Sweep, Variants};
 use super::parameter::{Parameter, Role};
 use crate::describe::escape;
+use crate::distribution::{Distribution, Number};
 use crate::error::{MAX_PROBLEMS, Problem, first_of, nearest};
-use crate::value::Value;
+use crate::schema::document::DocumentSchema;
+use crate::value::{ParameterType, Value};
 
 /// A variant, or a family of them, as a document declares it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -34,7 +37,7 @@ pub struct VariantSpec {
     /// Makes it a family: for each parameter the values that it takes; one variant for every combination, named after the
     /// family and its values, as `look-red-0.5`.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
-    #[schemars(length(min = 1, max = 20), inner(length(min = 1, max = 1000)))]
+    #[schemars(schema_with = "grid_schema")]
     pub grid: IndexMap<String, Vec<Value>>,
     /// Makes it a family: for each parameter evenly spaced values; combined with those of the grid and of each other.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
@@ -42,6 +45,7 @@ pub struct VariantSpec {
     pub sweep: IndexMap<String, Sweep>,
     /// Values of variant parameters.
     #[serde(flatten)]
+    #[schemars(with = "IndexMap<String, serde_json::Value>")]
     pub values: IndexMap<String, Value>,
 }
 
@@ -53,19 +57,23 @@ fn values_of_parameters(schema: &mut schemars::Schema) {
         "propertyNames".to_owned(),
         serde_json::json!({ "pattern": IDENTIFIER_PATTERN, "maxLength": 100 }),
     );
-    for key in ["grid", "sweep"] {
-        if let Some(map) = schema
-            .pointer_mut(&format!("/properties/{key}"))
-            .and_then(serde_json::Value::as_object_mut)
-        {
-            map.insert("minProperties".to_owned(), serde_json::json!(1));
-            map.insert("maxProperties".to_owned(), serde_json::json!(20));
-            if key == "grid" {
-                map["additionalProperties"]["minItems"] = serde_json::json!(1);
-                map["additionalProperties"]["maxItems"] = serde_json::json!(1000);
-            }
-        }
+    if let Some(map) = schema
+        .pointer_mut("/properties/sweep")
+        .and_then(serde_json::Value::as_object_mut)
+    {
+        map.insert("minProperties".to_owned(), serde_json::json!(1));
+        map.insert("maxProperties".to_owned(), serde_json::json!(20));
     }
+}
+
+/// For each parameter a list of values, of any kind: which, is its type's to say.
+fn grid_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+    schemars::json_schema!({
+        "type": "object",
+        "additionalProperties": { "type": "array", "items": true, "minItems": 1, "maxItems": 1000 },
+        "minProperties": 1,
+        "maxProperties": 20
+    })
 }
 
 /// The most variants that extend each other in a row.
@@ -184,6 +192,18 @@ pub(crate) fn problems(
     problems
 }
 
+/// Why a value is no distribution, where the parameter is one and the value may have been meant to be.
+fn distribution_problem(parameter: &Parameter, pointer: &str, value: &Value) -> Option<Problem> {
+    static SCHEMA: LazyLock<DocumentSchema> =
+        LazyLock::new(|| DocumentSchema::of::<Distribution<Number>>("distribution", "Distribution"));
+    if parameter.kind != ParameterType::Distribution || !matches!(value, Value::Json(_)) {
+        return None;
+    }
+    let mut problem = SCHEMA.problems(&value.to_json()).problems.into_iter().next()?;
+    problem.pointer.insert_str(0, pointer);
+    Some(problem)
+}
+
 fn problem_of(parameters: &IndexMap<String, Parameter>, pointer: &str, name: &str, value: &Value) -> Option<Problem> {
     let Some(parameter) = parameters.get(name) else {
         let known: Vec<&String> = parameters
@@ -211,6 +231,9 @@ fn problem_of(parameters: &IndexMap<String, Parameter>, pointer: &str, name: &st
         return Some(problem.advise(format!("give {name:?} the role variant, or leave it out here")));
     }
     let expected = parameter.accept(value).err()?;
+    if let Some(problem) = distribution_problem(parameter, pointer, value) {
+        return Some(problem);
+    }
     let word = if let Value::Text(word) = value {
         word.as_str()
     } else {

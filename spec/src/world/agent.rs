@@ -174,7 +174,7 @@ pub enum ActionSpace {
 }
 
 impl Place for ActionSpace {
-    const KIND: Option<ParameterType> = Some(ParameterType::String);
+    const KIND: ParameterType = ParameterType::String;
 
     fn from_value(value: &Value) -> Option<Self> {
         serde_json::from_value(value.to_json()).ok()
@@ -191,8 +191,7 @@ impl Place for ActionSpace {
         let (Self::Discrete(table), [row, number]) = (self, steps) else {
             return None;
         };
-        *table.get_mut(*row)?.get_mut(*number)? = value.as_number()?;
-        Some(())
+        table.get_mut(*row)?.get_mut(*number)?.set(&[], value)
     }
 
     fn list_inside(pointer: &str, field: &Field, found: &mut Vec<FieldPlace>) {

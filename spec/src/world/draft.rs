@@ -54,9 +54,11 @@ fields! {
         #[schemars(range(min = 0.0, max = 1e9))]
         pub max_seconds: f64 = 0.0 => Field::ours(Measured(&[Limit])).unit("s"),
         /// The arena and its light.
-        pub environment_params: EnvironmentParams = EnvironmentParams::default() => Field::original(AsPart),
+        pub environment_params: EnvironmentParams = EnvironmentParams::default() => Field::original(AsPart)
+                .in_parts("its keys take parameters of their own"),
         /// The agent.
-        pub agent_params: AgentParams = AgentParams::default() => Field::original(AsPart),
+        pub agent_params: AgentParams = AgentParams::default() => Field::original(AsPart)
+                .in_parts("its keys take parameters of their own"),
         /// How objects are photographed in `collect_images`.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub image_params: Option<ImageParams> = None
@@ -66,7 +68,8 @@ fields! {
         /// What stands in the world.
         #[schemars(length(max = 100_000))]
         pub objects: Vec<Object> = Vec::new()
-            => Field::original(Measured(&[Unmatched, Rewards, UnmatchedLooks])),
+            => Field::original(Measured(&[Unmatched, Rewards, UnmatchedLooks]))
+                .in_parts("how many objects there are is the count of their group"),
         /// How far it has come, for a world that was written down while it ran.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub progress: Option<Progress> = None

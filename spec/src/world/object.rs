@@ -278,7 +278,7 @@ word!(Stimulus);
 word!(MotionModel);
 
 impl Place for Model {
-    const KIND: Option<ParameterType> = Some(ParameterType::String);
+    const KIND: ParameterType = ParameterType::String;
 
     fn from_value(value: &Value) -> Option<Self> {
         String::from_value(value).map(Self)

@@ -90,9 +90,11 @@ pub enum EndCondition {
     ReturnAtMost(f64),
 }
 
-/// Which condition it is, is the task's to say; what it waits for can be a parameter.
+/// As a whole, or by what it waits for.
 impl Place for EndCondition {
-    fn find_inside(words: &[&str], _: &mut Vec<usize>) -> Option<ParameterType> {
+    fn find_inside(words: &[&str], steps: &mut Vec<usize>) -> Option<ParameterType> {
+        // There is one thing in it.
+        steps.push(0);
         match words {
             ["touch"] => Some(ParameterType::String),
             ["return_at_least" | "return_at_most"] => Some(ParameterType::Number),
@@ -100,7 +102,7 @@ impl Place for EndCondition {
         }
     }
 
-    fn set(&mut self, _: &[usize], value: &Value) -> Option<()> {
+    fn set_inside(&mut self, _: &[usize], value: &Value) -> Option<()> {
         match self {
             Self::AllCollected => None,
             Self::Touch(tag) => tag.set(&[], value),

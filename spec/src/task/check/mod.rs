@@ -2,6 +2,7 @@
 
 mod drawn;
 mod groups;
+mod json;
 pub(super) mod partial;
 mod sources;
 mod templates;
@@ -325,7 +326,7 @@ impl<'a> Check<'a> {
                 self.unknown_parameter(pointer, name);
                 continue;
             };
-            if parameter.kind == ParameterType::Distribution {
+            if matches!(parameter.kind, ParameterType::Distribution | ParameterType::Json) {
                 let found = format!("the parameter {name:?} of type {}", parameter.kind.name());
                 let expected = "numbers, headings, true or false, texts, colours, or one number of a vector or point";
                 self.report(Problem::new("spec/type", pointer, found, expected));

@@ -82,6 +82,12 @@ impl Check<'_> {
             };
             if self.is_unsound(&hole.source) {
                 is_known = false;
+            } else if self.is_json(&hole.source, hole.kind) {
+                let candidates = self.json_candidates(&pointer, &hole);
+                if let (Some(value), Some(place)) = (candidates.first(), example.pointer_mut(&opening.0)) {
+                    *place = value.to_json();
+                    holes.push((hole, candidates));
+                }
             } else if self.source(&pointer, &hole.source, hole.kind) {
                 let candidates = self.candidates(&hole.source, hole.kind);
                 if self.in_range(&pointer, &candidates, hole.range)

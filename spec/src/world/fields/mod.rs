@@ -7,6 +7,7 @@ mod comparison;
 mod place;
 
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 use crate::value::ParameterType;
 pub use comparison::Comparison;
@@ -25,6 +26,8 @@ pub struct Field {
     pub compared: Compared,
     /// Why no parameter can set it; `None` if one can, or what is in it.
     pub fixed: Option<&'static str>,
+    /// Why no parameter can set the whole of it, though one can set what is in it.
+    pub in_parts: Option<&'static str>,
     is_heading: bool,
 }
 
@@ -61,6 +64,7 @@ impl Field {
             is_original: false,
             compared,
             fixed: None,
+            in_parts: None,
             is_heading: false,
         }
     }
@@ -92,6 +96,14 @@ impl Field {
     pub(crate) const fn fixed(self, reason: &'static str) -> Self {
         Self {
             fixed: Some(reason),
+            ..self
+        }
+    }
+
+    /// No parameter can set the whole of it, for this reason; what is in it takes some.
+    pub(crate) const fn in_parts(self, reason: &'static str) -> Self {
+        Self {
+            in_parts: Some(reason),
             ..self
         }
     }
@@ -138,7 +150,7 @@ pub(crate) struct Row<T> {
 }
 
 /// A part of a world whose fields are in the table.
-pub(crate) trait Fields: Sized + 'static {
+pub(crate) trait Fields: DeserializeOwned + 'static {
     /// In the order of the declaration.
     const ROWS: &'static [Row<Self>];
 }

@@ -1,6 +1,10 @@
 //! [`Place`]: where in a world a value may stand, by the types of its fields. Which fields there are is said beside the
 //! fields themselves.
 
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value as Json;
+
 use super::{Field, FieldPlace, Fields};
 use crate::color::Color;
 use crate::value::{ParameterType, Value};
@@ -8,14 +12,22 @@ use crate::value::{ParameterType, Value};
 /// Puts a value at the place in a `T` that steps lead to. `None` if the value cannot stand there.
 pub(crate) type Setter<T> = fn(&mut T, &[usize], &Value) -> Option<()>;
 
-/// What stands at a place of a world: it can be set from the value of a parameter, or what is in it can.
-pub(crate) trait Place: Sized {
-    /// The type of parameter that the whole of it can be; `None` if only what is in it can.
-    const KIND: Option<ParameterType> = None;
+/// What stands at a place of a world: it can be set from the value of a parameter, as a whole or in parts.
+pub(crate) trait Place: DeserializeOwned {
+    /// The type of parameter that the whole of it is; JSON, which fits every place, if there is none for it alone.
+    const KIND: ParameterType = ParameterType::Json;
 
     /// The whole of it from a value of that type. `None` if the value cannot stand here.
-    fn from_value(_: &Value) -> Option<Self> {
-        None
+    fn from_value(value: &Value) -> Option<Self> {
+        match value.cast(ParameterType::Json)? {
+            Value::Json(json) => Self::from_json(&json),
+            _ => None,
+        }
+    }
+
+    /// The whole of it from JSON that the schema of the place allows.
+    fn from_json(json: &Json) -> Option<Self> {
+        Self::deserialize(json).ok()
     }
 
     /// The type of value that goes to a place in it; adds the steps that lead there. `None` if nothing can vary there.
@@ -33,7 +45,7 @@ pub(crate) trait Place: Sized {
 
     fn find(words: &[&str], steps: &mut Vec<usize>) -> Option<ParameterType> {
         if words.is_empty() {
-            Self::KIND
+            Some(Self::KIND)
         } else {
             Self::find_inside(words, steps)
         }
@@ -44,7 +56,10 @@ pub(crate) trait Place: Sized {
         if !steps.is_empty() {
             return self.set_inside(steps, value);
         }
-        *self = Self::from_value(value)?;
+        *self = match value {
+            Value::Json(json) => Self::from_json(json)?,
+            _ => Self::from_value(value)?,
+        };
         Some(())
     }
 
@@ -54,10 +69,10 @@ pub(crate) trait Place: Sized {
     }
 
     fn list(pointer: String, field: &Field, is_key: bool, found: &mut Vec<FieldPlace>) {
-        let kind = Self::KIND.filter(|_| field.fixed.is_none());
+        let is_open = field.fixed.is_none() && field.in_parts.is_none();
         found.push(FieldPlace {
             pointer: pointer.clone(),
-            kind: kind.map(|kind| field.kind(kind)),
+            kind: is_open.then(|| field.kind(Self::KIND)),
             field: *field,
             is_key,
         });
@@ -65,14 +80,15 @@ pub(crate) trait Place: Sized {
     }
 }
 
-/// A part of a world whose fields are in the table.
+/// A part of a world whose fields are in the table: whole, as JSON, or key by key.
 impl<T: Fields> Place for T {
     fn find_inside(words: &[&str], steps: &mut Vec<usize>) -> Option<ParameterType> {
         let (word, rest) = words.split_first()?;
         let number = T::ROWS.iter().position(|row| row.field.key == *word)?;
         let row = &T::ROWS[number];
         steps.push(number);
-        let kind = (row.find)(rest, steps).filter(|_| row.field.fixed.is_none())?;
+        let is_whole = rest.is_empty() && row.field.in_parts.is_some();
+        let kind = (row.find)(rest, steps).filter(|_| row.field.fixed.is_none() && !is_whole)?;
         Some(row.field.kind(kind))
     }
 
@@ -83,7 +99,7 @@ impl<T: Fields> Place for T {
     }
 
     fn setter(mut steps: Vec<usize>) -> (Setter<Self>, Vec<usize>) {
-        // There is one: a part of a world is no place that a value fills as a whole.
+        // There is one: a world or an object is no place that a value fills as a whole.
         (T::ROWS[steps.remove(0)].set, steps)
     }
 
@@ -95,6 +111,7 @@ impl<T: Fields> Place for T {
     }
 }
 
+/// A list: whole, as JSON, or item by item.
 impl<T: Place> Place for Vec<T> {
     fn find_inside(words: &[&str], steps: &mut Vec<usize>) -> Option<ParameterType> {
         let (index, rest) = words.split_first()?;
@@ -113,10 +130,17 @@ impl<T: Place> Place for Vec<T> {
 }
 
 impl<T: Place> Place for Option<T> {
-    const KIND: Option<ParameterType> = T::KIND;
+    const KIND: ParameterType = T::KIND;
 
     fn from_value(value: &Value) -> Option<Self> {
         T::from_value(value).map(Some)
+    }
+
+    fn from_json(json: &Json) -> Option<Self> {
+        if json.is_null() {
+            return Some(None);
+        }
+        T::from_json(json).map(Some)
     }
 
     fn find_inside(words: &[&str], steps: &mut Vec<usize>) -> Option<ParameterType> {
@@ -136,10 +160,14 @@ impl<T: Place> Place for Option<T> {
 macro_rules! numbers {
     ($length:literal, $kind:ident, $is_sound:expr) => {
         impl Place for [f64; $length] {
-            const KIND: Option<ParameterType> = Some(ParameterType::$kind);
+            const KIND: ParameterType = ParameterType::$kind;
 
             fn from_value(value: &Value) -> Option<Self> {
                 value.as_vector()?.try_into().ok().filter($is_sound)
+            }
+
+            fn from_json(json: &Json) -> Option<Self> {
+                Self::deserialize(json).ok().filter($is_sound)
             }
 
             fn find_inside(words: &[&str], steps: &mut Vec<usize>) -> Option<ParameterType> {
@@ -149,9 +177,8 @@ macro_rules! numbers {
             }
 
             fn set_inside(&mut self, steps: &[usize], value: &Value) -> Option<()> {
-                let [index] = steps else { return None };
-                *self.get_mut(*index)? = value.as_number()?;
-                Some(())
+                let (index, rest) = steps.split_first()?;
+                self.get_mut(*index)?.set(rest, value)
             }
 
             fn list_inside(pointer: &str, field: &Field, found: &mut Vec<FieldPlace>) {
@@ -169,7 +196,7 @@ numbers!(3, Vector, |direction| *direction != [0.0; 3]);
 macro_rules! leaf {
     ($type:ty, $kind:ident, $read:expr) => {
         impl Place for $type {
-            const KIND: Option<ParameterType> = Some(ParameterType::$kind);
+            const KIND: ParameterType = ParameterType::$kind;
 
             #[inline]
             fn from_value(value: &Value) -> Option<Self> {
@@ -183,7 +210,7 @@ macro_rules! leaf {
 macro_rules! word {
     ($type:ty) => {
         impl $crate::world::fields::Place for $type {
-            const KIND: Option<$crate::value::ParameterType> = Some($crate::value::ParameterType::String);
+            const KIND: $crate::value::ParameterType = $crate::value::ParameterType::String;
 
             fn from_value(value: &$crate::value::Value) -> Option<Self> {
                 serde_json::from_value(value.to_json()).ok()

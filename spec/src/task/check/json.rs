@@ -1,0 +1,114 @@
+//! Values that only the schema of the place where they stand can judge: parameters of type JSON, and draws from lists with
+//! objects, lists or `null` in them.
+
+use super::super::template::{Hole, Source};
+use super::Check;
+use crate::describe::escape;
+use crate::distribution::{Distribution, Number};
+use crate::value::{ParameterType, Value};
+
+impl Check<'_> {
+    /// Whether what a source gives is for the schema of its place to judge.
+    pub(super) fn is_json(&self, source: &Source, place: ParameterType) -> bool {
+        match source {
+            Source::Param(reference) => {
+                let parameter = self.parameters.get(&reference.param);
+                reference.index.is_none()
+                    && parameter.is_some_and(|parameter| match parameter.kind {
+                        ParameterType::Json => true,
+                        ParameterType::Distribution => {
+                            let all = self.distributions_of(source);
+                            !all.is_empty() && all.iter().all(|own| is_for_schema(own, place))
+                        }
+                        _ => false,
+                    })
+            }
+            Source::Distribution(distribution) => is_for_schema(distribution, place),
+        }
+    }
+
+    /// Every value that such a source can give; reports those that cannot stand at the place.
+    pub(super) fn json_candidates<T>(&mut self, place: &str, hole: &Hole<T>) -> Vec<Value> {
+        let mut candidates = Vec::new();
+        for (pointer, value) in self.json_values(place, &hole.source) {
+            let Some(value) = value.cast(ParameterType::Json) else {
+                continue;
+            };
+            let found = hole.problems(&value);
+            for mut problem in found {
+                problem.pointer.insert_str(0, &pointer);
+                if !pointer.starts_with(&format!("{place}/")) {
+                    let where_used = format!("the parameter stands at {place}");
+                    let advice = problem.advice.take();
+                    problem.advice = Some(advice.map_or(where_used.clone(), |advice| format!("{advice} {where_used}")));
+                }
+                self.report(problem);
+            }
+            candidates.push(value);
+        }
+        candidates
+    }
+
+    /// The values that a source can give, with the places in the document where they are written.
+    fn json_values(&self, place: &str, source: &Source) -> Vec<(String, Value)> {
+        let mut found = Vec::new();
+        match source {
+            Source::Distribution(distribution) => listed(distribution, place, &mut found),
+            Source::Param(reference) => {
+                let Some(parameter) = self.parameters.get(&reference.param) else {
+                    return found;
+                };
+                let pointer = format!("/parameters/{}", escape(&reference.param));
+                let choices = parameter.choices.iter().flatten().enumerate();
+                let choices = choices.map(|(index, choice)| (format!("{pointer}/choices/{index}"), choice));
+                let alone = [("value", &parameter.value), ("default", &parameter.default)];
+                let alone = alone
+                    .into_iter()
+                    .filter_map(|(key, value)| Some((format!("{pointer}/{key}"), value.as_ref()?)));
+                for (pointer, value) in choices.chain(alone) {
+                    match value {
+                        Value::Distribution(own) if parameter.kind == ParameterType::Distribution => {
+                            listed(own, &pointer, &mut found);
+                        }
+                        // A default is one of the choices.
+                        _ if found.iter().any(|(_, known): &(String, Value)| known == value) => {}
+                        _ => found.push((pointer, value.clone())),
+                    }
+                }
+                let drawn = format!("{pointer}/distribution");
+                match &parameter.distribution {
+                    Some(own @ Source::Param(_)) => found.extend(self.json_values(&drawn, own)),
+                    Some(Source::Distribution(own)) => listed(own, &drawn, &mut found),
+                    None => {}
+                }
+            }
+        }
+        found
+    }
+}
+
+/// Whether only the schema of a place can judge what a distribution draws: what is listed, where that is no plain value, or
+/// the place takes no plain ones.
+fn is_for_schema(distribution: &Distribution<Number>, place: ParameterType) -> bool {
+    let mut values = Vec::new();
+    listed(distribution, "", &mut values);
+    distribution.yields(ParameterType::Json)
+        && (place == ParameterType::Json || values.iter().any(|(_, value)| value.is_json()))
+}
+
+/// The values that a distribution lists, with their places.
+fn listed(distribution: &Distribution<Number>, pointer: &str, found: &mut Vec<(String, Value)>) {
+    match distribution {
+        Distribution::Constant { value } => found.push((format!("{pointer}/constant/value"), value.clone())),
+        Distribution::Choice { values, .. } => {
+            let values = values.iter().enumerate();
+            found.extend(values.map(|(index, value)| (format!("{pointer}/choice/values/{index}"), value.clone())));
+        }
+        Distribution::Mixture { parts, .. } => {
+            for (index, part) in parts.iter().enumerate() {
+                listed(part, &format!("{pointer}/mixture/parts/{index}"), found);
+            }
+        }
+        _ => {}
+    }
+}
