@@ -22,6 +22,8 @@ fn one(json: &Json) -> String {
             let index = map.get("index").map_or_else(String::new, |index| format!("[{index}]"));
             format!("{}{index}", map["param"].as_str().unwrap_or_default())
         }
+        // What a distribution of JSON lists.
+        Json::Object(map) if map.len() != 1 || !map.values().all(Json::is_object) => json.to_string(),
         Json::Object(map) => {
             let forms = map.iter().map(|(name, fields)| {
                 let fields = fields.as_object().into_iter().flatten();
@@ -49,6 +51,12 @@ mod tests {
         assert_eq!(
             distribution.to_string(),
             "gaussian(mean [0, 0], std spread, correlation 0.5)"
+        );
+        let text = r#"{ "choice": { "values": [null, [], { "delay": 5, "radius": 0.5 }, { "touch": "goal" }] } }"#;
+        let distribution: Distribution<Number> = serde_json::from_str(text).unwrap();
+        assert_eq!(
+            distribution.to_string(),
+            r#"choice(values [null, [], {"delay":5,"radius":0.5}, {"touch":"goal"}])"#
         );
     }
 }
