@@ -4,7 +4,7 @@
 use driftworld_env::{Action, Agent, EnvError, Environment, RandomAgent};
 use driftworld_spec::{
     ActionModel, ActionSpace, EndCondition, MotionModel, Object, ObjectProgress, Progress, Pushable, Respawn, Shaping,
-    StateFeature, Stimulus, Wall, World, WorldDraft,
+    StateFeature, Stimulus, Wall, World, WorldDraft, Zone,
 };
 use proptest::prelude::*;
 
@@ -55,6 +55,11 @@ fn world(action_model: ActionModel, frame_skip: u32) -> World {
         height: None,
         color: None,
     }];
+    let mut door = Zone::disc([-5.0, -5.0], 1.5);
+    (door.teleport, door.reward_on_entering) = (Some([5.0, 0.0]), 0.25);
+    let mut mud = Zone::polygon(vec![[-2.0, 0.5], [3.0, 0.5], [3.0, 6.0]]);
+    (mud.speed_factor, mud.reward_per_second, mud.reward_on_entering) = (0.7, -0.3, -0.5);
+    world.environment_params.zones = vec![door, mud];
     let agent = &mut world.agent_params;
     (agent.action_model, agent.frame_skip, agent.observation_size) = (action_model, frame_skip, 24);
     agent.actions = ActionSpace::Continuous;

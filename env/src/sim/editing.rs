@@ -84,7 +84,7 @@ impl Environment {
 
     /// Puts the agent somewhere else, looking along a heading in degrees clockwise from +y; any number of turns.
     ///
-    /// It arrives at rest. What it touches there, or is near to, is no news: only what it meets by its own motion pays.
+    /// It arrives at rest. What it touches there, is near to or in, is no news: only what it meets by its own motion pays.
     ///
     /// # Errors
     /// [`EnvError::NoRoom`] for places outside the arena, in walls, in regions that cannot be entered and in solid
@@ -102,6 +102,7 @@ impl Environment {
         agent.heading_deg = wrapped(heading_deg.rem_euclid(360.0) as f32);
         agent.velocity = [0.0; 2];
         init_contacts(&self.world, &mut self.state, &mut self.views);
+        self.views.zones.locate(&mut self.state);
         Ok(())
     }
 }

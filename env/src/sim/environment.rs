@@ -119,6 +119,7 @@ impl Environment {
         let seed = Seed::of(&world, resume.as_ref().and_then(ResumeState::seed));
         let mut identities = Identities::default();
         let mut state = SimState::new(&world, &seed, &mut identities);
+        views.zones.resume(&[], &mut state);
         let mut rails = (world.agent_params.action_model == ActionModel::OnRails).then(RailsPolicy::default);
         if let Some(resume) = resume.filter(ResumeState::has_begun) {
             resume.apply(&world, &mut state, &mut views);

@@ -224,7 +224,7 @@ fn is_range(sim: SimRef, index: usize, squared: f64, reach: f64) -> bool {
 }
 
 /// The square of the distance of a point from a straight way.
-fn squared_distance(point: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
+pub(super) fn squared_distance(point: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
     let way = [to[0] - from[0], to[1] - from[1]];
     let off = [point[0] - from[0], point[1] - from[1]];
     let length = way[0] * way[0] + way[1] * way[1];

@@ -41,6 +41,7 @@ mod transplant;
 mod views;
 mod walls;
 mod warning;
+mod zones;
 
 pub use action::Action;
 pub(crate) use action::Intent;

@@ -48,6 +48,7 @@ pub(super) fn to_world(sim: SimRef, seed: &Seed, rails: Option<RailsProgress>) -
         ended: state.ended,
         velocity: agent.velocity.map(f64::from),
         origin,
+        zones: sim.views.zones.entered(state),
         former_draws: None,
         rails,
         objects,
@@ -194,6 +195,7 @@ impl ResumeState {
         (state.earned, state.unshaped) = (progress.episode_return, progress.unshaped_return);
         (state.last_reward, state.last_event) = (progress.last_reward, progress.last_event);
         state.ended = progress.ended;
+        views.zones.resume(&progress.zones, state);
         for (index, own) in progress.objects.iter().enumerate().take(world.objects.len()) {
             self.apply_to_object(index, own, state);
         }

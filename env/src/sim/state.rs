@@ -92,6 +92,8 @@ pub(crate) struct SimState {
     pub(super) returning: Vec<(usize, u64)>,
     /// Whose turn it is, where objects have one.
     pub(super) sequence: Sequence,
+    /// For each of the views' zones, whether the agent has entered it and is in it.
+    pub(super) inside: Vec<bool>,
 }
 
 impl SimState {
@@ -118,6 +120,7 @@ impl SimState {
             pushed: Vec::new(),
             returning: Vec::new(),
             sequence: Sequence::of(&world.objects),
+            inside: Vec::new(),
         };
         for object in &world.objects {
             state.add_object(object, seed, identities);

@@ -1,7 +1,7 @@
 //! One step of a world: the action, its time steps, what the rules make of them. What touching things does is in
 //! `interactions.rs`, endings are in `termination.rs`.
 
-use driftworld_spec::{ActionModel, LastEvent};
+use driftworld_spec::{ActionModel, LastEvent, ZoneEnd};
 
 use super::action::{Action, Intent};
 use super::agent_motion::apply_action;
@@ -12,6 +12,7 @@ use super::motion::move_objects;
 use super::respawn::respawn;
 use super::sim_ref::SimRef;
 use super::termination::{check_termination, potential};
+use super::zones::{apply_zones, slowed};
 use crate::EnvError;
 
 impl Environment {
@@ -45,8 +46,8 @@ impl Environment {
         let max_ticks = self.world.max_ticks().unwrap_or(u64::MAX);
         for _ in 0..self.world.agent_params.frame_skip.max(1) {
             step.reward += pay;
-            self.tick(intent, step);
-            check_termination(&self.world, &self.state, self.had_targets, step);
+            let zone = self.tick(intent, step);
+            check_termination(&self.world, &self.state, self.had_targets, zone, step);
             if step.terminated || self.state.ticks >= max_ticks {
                 break;
             }
@@ -105,8 +106,8 @@ impl Environment {
         }
     }
 
-    /// One time step.
-    fn tick(&mut self, intent: Intent, step: &mut Step) {
+    /// One time step; hands back how a zone ends the episode.
+    fn tick(&mut self, intent: Intent, step: &mut Step) -> Option<ZoneEnd> {
         let Self {
             world,
             state,
@@ -117,6 +118,7 @@ impl Environment {
         } = self;
         state.ticks += 1;
         encounters.clear();
+        let intent = slowed(intent, state, &views.zones);
         apply_action(world, state, views, intent, encounters);
         respawn(world, state, views, encounters);
         move_objects(world, state, views, encounters);
@@ -125,5 +127,6 @@ impl Environment {
             tags: &self.tags,
         };
         apply_stimuli(objects, state, views, intent, encounters, stimuli, step);
+        apply_zones(world, state, views, step)
     }
 }

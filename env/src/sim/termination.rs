@@ -1,7 +1,7 @@
 //! What the world's rules make of where things stand: the potential of its shaping, and what ends an episode. What
 //! objects pay is in `interactions.rs`.
 
-use driftworld_spec::{EndCondition, Object, Stimulus, World};
+use driftworld_spec::{EndCondition, Object, Stimulus, World, ZoneEnd};
 
 use super::event::Step;
 use super::state::{ObjectState, SimState};
@@ -21,8 +21,15 @@ pub(super) fn potential(world: &World, state: &SimState) -> f64 {
     })
 }
 
-/// Notes whether the step so far ended the episode by itself, and how. `had_targets`: whether there ever was a target.
-pub(super) fn check_termination(world: &World, state: &SimState, had_targets: bool, step: &mut Step) {
+/// Notes whether the step so far ended the episode by itself, and how. `had_targets`: whether there ever was a target; `zone`: how a
+/// zone ends it.
+pub(super) fn check_termination(
+    world: &World,
+    state: &SimState,
+    had_targets: bool,
+    zone: Option<ZoneEnd>,
+    step: &mut Step,
+) {
     let earned = state.unshaped + step.reward;
     let holds = |condition: &EndCondition| match condition {
         EndCondition::AllCollected => {
@@ -36,8 +43,8 @@ pub(super) fn check_termination(world: &World, state: &SimState, had_targets: bo
         EndCondition::ReturnAtLeast(bound) => earned >= *bound,
         EndCondition::ReturnAtMost(bound) => earned <= *bound,
     };
-    let success = world.rules.success.iter().any(holds);
-    let failed = !success && world.rules.failure.iter().any(holds);
+    let success = world.rules.success.iter().any(holds) || zone == Some(ZoneEnd::Success);
+    let failed = !success && (zone.is_some() || world.rules.failure.iter().any(holds));
     (step.success, step.terminated) = (success, success || failed);
 }
 

@@ -77,6 +77,7 @@ impl Environment {
             object.reward = reward;
         }
         own.contacts.clone_from(&theirs.contacts);
+        self.views.zones.resume(&other.views.zones.entered(theirs), own);
         own.returning.clear();
         own.returning
             .extend(theirs.returning.iter().map(|(index, tick)| (*index, ticks(*tick))));
@@ -166,6 +167,10 @@ impl Environment {
         .or_else(|| Unlike::of("the seconds gone by", &self.seconds(), &other.seconds()))
         .or_else(|| (0..own.objects.len()).find_map(|index| self.object_unlike(other, index)))
         .or_else(|| Unlike::of("the objects that the agent touches", &own.contacts, &their.contacts))
+        .or_else(|| {
+            let [own, their] = [self, other].map(|one| one.views.zones.entered(&one.state));
+            Unlike::of("the zones that the agent is in", &own, &their)
+        })
         .or_else(|| Unlike::of("how what was pushed moves", &own.pushed, &their.pushed))
         .or_else(|| Unlike::of("when objects come back", &self.returns(), &other.returns()))
     }

@@ -5,6 +5,7 @@ use driftworld_spec::{Object, World};
 
 use super::collision_world::CollisionWorld;
 use super::state::{ObjectState, SimState};
+use super::zones::Zones;
 use crate::assets::Catalogue;
 use crate::scene::Scene;
 
@@ -12,6 +13,7 @@ use crate::scene::Scene;
 pub(crate) struct Views {
     pub(crate) scene: Scene,
     pub(super) bodies: CollisionWorld,
+    pub(crate) zones: Zones,
 }
 
 impl Views {
@@ -19,7 +21,11 @@ impl Views {
     pub(super) fn new(world: &World, catalogue: &Catalogue) -> Self {
         let scene = Scene::from_world_with(world, catalogue);
         let bodies = CollisionWorld::new(world, &scene);
-        Self { scene, bodies }
+        Self {
+            scene,
+            bodies,
+            zones: Zones::new(world),
+        }
     }
 
     /// Brings an object's item and body up to date with its state. Whoever changes a state calls this, and nothing

@@ -151,6 +151,7 @@ fn transition(a: &Sketch, b: &Sketch, objects: &Objects, sink: &mut impl Sink) {
         (raw + (a - b).abs(), normalised + relative_difference(*a, *b))
     });
     sink.add(Comparison::ArenaSize, raw, normalised);
+    as_it_is(Comparison::Zones, a.zones[0].distance(&b.zones[0]), sink);
 }
 
 fn reward(a: &Sketch, b: &Sketch, objects: &Objects, sink: &mut impl Sink) {
@@ -160,6 +161,7 @@ fn reward(a: &Sketch, b: &Sketch, objects: &Objects, sink: &mut impl Sink) {
     as_it_is(Comparison::RewardProbabilities, objects.odds, sink);
     as_it_is(Comparison::StepReward, (a.step_reward - b.step_reward).abs(), sink);
     as_it_is(Comparison::ShapingAndEndings, a.rules.distance(&b.rules), sink);
+    as_it_is(Comparison::ZonePay, a.zones[1].distance(&b.zones[1]), sink);
     let limits = match (a.limit, b.limit) {
         (Some(a), Some(b)) => relative_difference(a, b),
         (None, None) => 0.0,
@@ -176,6 +178,7 @@ fn observation(a: &Sketch, b: &Sketch, objects: &Objects, sink: &mut impl Sink) 
     relative(Comparison::Light, a.light, b.light, sink);
     let apart = a.surroundings.iter().zip(&b.surroundings).map(|(a, b)| a.distance(*b));
     as_it_is(Comparison::ColorsOfSurroundings, apart.sum(), sink);
+    as_it_is(Comparison::ZoneLooks, a.zones[2].distance(&b.zones[2]), sink);
     let picture: f64 = a
         .picture
         .iter()

@@ -42,6 +42,8 @@ pub(super) struct Sketch {
     pub(super) map: u8,
     pub(super) walls: Arc<Leaves>,
     pub(super) arena: [f64; 2],
+    /// Zones that act on motion, that pay, and that are seen.
+    pub(super) zones: [Arc<Leaves>; 3],
     /// What time pays, in a second.
     pub(super) step_reward: f64,
     pub(super) rules: Arc<Leaves>,
@@ -109,6 +111,7 @@ impl Sketcher {
             map: around.predefined_map,
             walls: self.leaves(Comparison::MapAndWalls),
             arena: around.arena_size(),
+            zones: [Comparison::Zones, Comparison::ZonePay, Comparison::ZoneLooks].map(|part| self.leaves(part)),
             step_reward: rules.step_reward / step_seconds + rules.reward_per_second,
             rules: self.leaves(Comparison::ShapingAndEndings),
             // To the microsecond: 100 steps of 0.3 s are 300 of 0.1 s.

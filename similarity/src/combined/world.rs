@@ -158,7 +158,7 @@ fn total(a: &Sketch, b: &Sketch, weights: &Weights) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use driftworld_spec::{Color, Element, Object, Stimulus, WorldDraft};
+    use driftworld_spec::{Color, Disc, Element, Object, Stimulus, WorldDraft, Zone, ZoneEnd};
     use proptest::prelude::*;
 
     fn world(color: &str, reward: f64) -> World {
@@ -224,6 +224,45 @@ mod tests {
         let paid_the_other_way = world(vec![cube("red", -10.0, 10.0), cube("blue", 10.0, -10.0)]);
         let paid = world_distance(&north, &paid_the_other_way, &Weights::default());
         assert_eq!((paid.differs_in(), paid.total), (vec![Element::R], 0.4));
+    }
+
+    #[test]
+    fn a_zone_counts_in_the_elements_that_it_is_part_of_and_its_place_in_the_list_does_not() {
+        let plain = || {
+            let mut zone = Zone::disc([3.0, 0.0], 2.0);
+            zone.visible = false;
+            zone
+        };
+        let world = |zones: Vec<Zone>| {
+            World::default()
+                .edit(|world| world.environment_params.zones = zones)
+                .unwrap()
+        };
+        let apart = |a: Vec<Zone>, b: Vec<Zone>| world_distance(&world(a), &world(b), &Weights::default());
+        let changes: [(Element, fn(&mut Zone)); 5] = [
+            (Element::T, |zone| zone.speed_factor = 0.5),
+            (Element::T, |zone| zone.teleport = Some([9.0, 9.0])),
+            (Element::R, |zone| zone.reward_per_second = 1.0),
+            (Element::R, |zone| zone.ends = Some(ZoneEnd::Failure)),
+            (Element::O, |zone| {
+                (zone.visible, zone.color) = (true, Color::from_name("red"))
+            }),
+        ];
+        assert_eq!(apart(vec![plain()], vec![]).total, 0.0, "it does nothing");
+        for (element, change) in changes {
+            let mut zone = plain();
+            change(&mut zone);
+            assert_eq!(apart(vec![zone.clone()], vec![plain()]).differs_in(), [element]);
+            let mut moved = zone.clone();
+            moved.disc = Some(Disc {
+                center: [4.0, 0.0],
+                radius: 2.0,
+            });
+            let distance = apart(vec![zone.clone()], vec![moved.clone()]);
+            assert_eq!(distance.differs_in(), [element]);
+            assert!((distance.total - 0.1).abs() < 1e-9, "a metre");
+            assert_eq!(apart(vec![zone.clone(), moved.clone()], vec![moved, zone]).total, 0.0);
+        }
     }
 
     fn worlds() -> impl Strategy<Value = World> {

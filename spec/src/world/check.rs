@@ -5,8 +5,8 @@ use std::sync::LazyLock;
 
 use serde::Serialize;
 
-use super::progress;
 use super::{ActionModel, ActionSpace, MAX_OBJECTS, MAX_POINTS, Object, World, WorldDraft};
+use super::{progress, zone};
 use crate::document::Document;
 use crate::error::{Problem, SpecError};
 use crate::limits::MAX_VALUES;
@@ -132,6 +132,7 @@ impl WorldDraft {
                 "a table, such as {\"discrete\": [[3, 4, 0], [-3, 4, 0]]}",
             ));
         }
+        problems.extend(zone::problems(self));
         problems.extend(progress::problems(self));
         problems.extend(duplicate_names(&self.objects));
         problems

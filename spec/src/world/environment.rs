@@ -5,6 +5,7 @@ use std::fmt;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::Zone;
 use super::fields::{Field, FieldPlace, Place, fields};
 use crate::value::{ParameterType, Value};
 use crate::{Color, maps};
@@ -57,6 +58,10 @@ fields! {
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0.1, max = 10_000.0))]
         pub fog_distance: Option<f64> = None => Field::ours(Leaves(CameraAndWeather)).unit("m"),
+        /// Parts of the ground that do something to the agent that is in them: they pay, slow, end the episode or put it elsewhere.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        #[schemars(length(max = 1000))]
+        pub zones: Vec<Zone> = Vec::new() => Field::ours(Measured(&[Zones, ZonePay, ZoneLooks])),
     }
 }
 
@@ -112,7 +117,7 @@ impl EnvironmentParams {
 }
 
 /// Whether a point lies within a polygon, by the even-odd rule.
-fn encloses(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
+pub(super) fn encloses(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     let edges = corners.iter().zip(corners.iter().cycle().skip(1));
     let crossed = edges.filter(|(a, b)| {
         let is_across = (a[1] > y) != (b[1] > y);

@@ -13,6 +13,7 @@ mod progress;
 mod remarks;
 mod rules;
 mod table;
+mod zone;
 
 use std::ops::Deref;
 use std::sync::LazyLock;
@@ -30,6 +31,7 @@ pub use object::{Model, MotionModel, Object, Pushable, Respawn, Stimulus};
 pub use progress::{LastEvent, ObjectProgress, Origin, Progress, RailsProgress};
 pub use rules::{EndCondition, Rules, Shaping};
 pub use table::LeafTexts;
+pub use zone::{Disc, Zone, ZoneEnd};
 
 use crate::classes::Classes;
 use crate::document::Document;

@@ -59,6 +59,10 @@ pub struct Progress {
     /// What an agent on rails is about to do.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rails: Option<RailsProgress>,
+    /// Places in the list of the zones that the agent has entered and is in, rising.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 1000), inner(range(min = 0, max = 999)))]
+    pub zones: Vec<u32>,
     /// One for each object, in order.
     #[schemars(length(max = 100_000))]
     pub objects: Vec<ObjectProgress>,
@@ -251,6 +255,15 @@ pub(super) fn problems(world: &WorldDraft) -> Vec<Problem> {
                 format!("one of {} waypoints, counted from 0", object.waypoints.len()),
             ));
         }
+    }
+    let zones = world.environment_params.zones.len();
+    if let Some(index) = progress.zones.iter().find(|index| **index as usize >= zones) {
+        problems.push(Problem::new(
+            "spec/progress",
+            "/progress/zones",
+            format!("zone {index}"),
+            format!("one of {zones} zones, counted from 0"),
+        ));
     }
     let rails = progress.rails.iter();
     let named = rails.flat_map(|rails| rails.target.iter().chain(&rails.avoided).chain(&rails.given_up));

@@ -29,6 +29,17 @@ impl World {
     /// ```
     pub fn remarks(&self, name: &str, text: &str) -> Vec<Warning> {
         let mut remarks = Remarks::default();
+        let arena = &self.environment_params;
+        let [width, depth] = arena.arena_size();
+        for (index, _) in arena
+            .zones
+            .iter()
+            .enumerate()
+            .filter(|(_, zone)| zone.is_outside(arena))
+        {
+            let text = format!("the zone lies outside the {width} × {depth} m arena; it is kept, out of reach");
+            remarks.push(format!("/environment_params/zones/{index}"), text);
+        }
         for (index, object) in self.objects.iter().enumerate() {
             if let Some(place) = self.out_of_reach(object) {
                 remarks.push(format!("/objects/{index}/coordinates"), place);

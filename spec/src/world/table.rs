@@ -3,8 +3,11 @@
 
 use std::sync::LazyLock;
 
-use super::fields::{Compared, Comparison, FieldPlace, Fields, places_of};
-use super::{Object, World, WorldDraft};
+use serde::Serialize;
+
+use super::fields::{self, Compared, Comparison, FieldPlace, Fields, places_of};
+use super::{Disc, Object, World, WorldDraft, Zone, ZoneEnd};
+use crate::Color;
 
 impl World {
     /// Every place of a world, in the order of the table; those of its objects once.
@@ -34,6 +37,7 @@ impl LeafTexts {
         self.add(&world.environment_params);
         self.add(&world.agent_params);
         self.add(&world.rules);
+        self.add_zones(&world.environment_params.zones);
     }
 
     /// The texts of an object in place of those before.
@@ -52,8 +56,82 @@ impl LeafTexts {
         }
     }
 
+    /// Zones as each element of the decision process has them: where those are that are part of it, and by what.
+    fn add_zones(&mut self, zones: &[Zone]) {
+        fn shape(zone: &Zone) -> Shape<'_> {
+            let disc = zone.disc.as_ref();
+            Shape {
+                corners: zone
+                    .polygon
+                    .as_deref()
+                    .or_else(|| disc.map(|Disc { center, .. }| std::slice::from_ref(center))),
+                radius: disc.map(|disc| disc.radius),
+            }
+        }
+        let moving = zones
+            .iter()
+            .filter(|zone| zone.speed_factor != 1.0 || zone.teleport.is_some());
+        let moving = moving.map(|zone| Moving {
+            shape: shape(zone),
+            speed_factor: zone.speed_factor,
+            teleport: zone.teleport.as_slice(),
+        });
+        self.add_things(Comparison::Zones, moving);
+        let pays = |zone: &&Zone| zone.is_wanted() || zone.is_costly();
+        let paying = zones.iter().filter(pays).map(|zone| Paying {
+            shape: shape(zone),
+            reward_per_second: zone.reward_per_second,
+            reward_on_entering: zone.reward_on_entering,
+            ends: zone.ends,
+        });
+        self.add_things(Comparison::ZonePay, paying);
+        let seen = zones.iter().filter(|zone| zone.visible).map(|zone| Seen {
+            shape: shape(zone),
+            color: zone.ground_color(),
+        });
+        self.add_things(Comparison::ZoneLooks, seen);
+    }
+
+    fn add_things(&mut self, comparison: Comparison, things: impl Iterator<Item = impl Serialize>) {
+        let things: Vec<_> = things.collect();
+        if !things.is_empty() {
+            fields::write(&things, &mut self.0[comparison as usize]);
+        }
+    }
+
     /// The text of a comparison.
     pub fn of(&self, comparison: Comparison) -> &[u8] {
         &self.0[comparison as usize]
     }
+}
+
+/// The ground of a zone: the corners of a polygon, or the middle of a disc.
+#[derive(Serialize)]
+struct Shape<'a> {
+    corners: Option<&'a [[f64; 2]]>,
+    radius: Option<f64>,
+}
+
+/// A zone that acts on how the agent moves.
+#[derive(Serialize)]
+struct Moving<'a> {
+    shape: Shape<'a>,
+    speed_factor: f64,
+    teleport: &'a [[f64; 2]],
+}
+
+/// A zone that pays, or ends an episode.
+#[derive(Serialize)]
+struct Paying<'a> {
+    shape: Shape<'a>,
+    reward_per_second: f64,
+    reward_on_entering: f64,
+    ends: Option<ZoneEnd>,
+}
+
+/// A zone that is seen.
+#[derive(Serialize)]
+struct Seen<'a> {
+    shape: Shape<'a>,
+    color: Color,
 }

@@ -72,6 +72,8 @@ comparisons! {
     MapAndWalls: T, "map and walls", "the larger one, or another word",
     /// The sides of the arena.
     ArenaSize: T, "sides of the arena", "the larger one",
+    /// Where zones are that act on how the agent moves, and how.
+    Zones: T, "zones", "10 m, the larger one, or a zone",
     /// What objects pay.
     Rewards: R, "rewards of objects", "100 points",
     /// For what objects pay.
@@ -82,6 +84,8 @@ comparisons! {
     StepReward: R, "step reward", "1 point a second",
     /// Shaping, and what ends an episode.
     ShapingAndEndings: R, "shaping and endings", "the larger one, or another word",
+    /// Where zones are that pay or end an episode, and what.
+    ZonePay: R, "pay and endings of zones", "10 m, the larger one, or a zone",
     /// How long an episode may last.
     Limit: R, "limit of steps", "the larger one, or none",
     /// The colours of objects.
@@ -96,6 +100,8 @@ comparisons! {
     Light: O, "light", "the larger one",
     /// The colours of walls, sky, ground and sunlight.
     ColorsOfSurroundings: O, "colours of surroundings", "black to white in Oklab",
+    /// Where zones are that are seen, and their colours.
+    ZoneLooks: O, "looks of zones", "10 m, the larger one, or a zone",
     /// What else decides what the agent sees.
     CameraAndWeather: O, "camera and weather", "the larger one, or another word",
 }

@@ -1,0 +1,215 @@
+//! What zones do to the agent in a time step: what they pay, how they slow it, whether they end the episode or put it elsewhere.
+//! Which zones there are is the world's to say; how they are drawn is in `render`.
+
+use driftworld_spec::{World, Zone, ZoneEnd};
+
+use super::action::Intent;
+use super::event::Step;
+use super::footprint::Point;
+use super::interactions::squared_distance;
+use super::sim_ref::SimRef;
+use super::state::SimState;
+use super::views::Views;
+use super::walls::agent_obstacle;
+
+/// The zones of a world, in an order that does not depend on that of the list: sums and products over them come out the same to
+/// the last bit.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Zones(Vec<Area>);
+
+/// One zone.
+#[derive(Clone, Debug)]
+pub(crate) struct Area {
+    pub(crate) zone: Zone,
+    /// Least and largest x and y in metres.
+    bounds: [Point; 2],
+    /// Its place in the world's list.
+    index: usize,
+}
+
+impl Zones {
+    /// The zones of a world.
+    pub(super) fn new(world: &World) -> Self {
+        let zones = world.environment_params.zones.iter().enumerate();
+        let mut areas: Vec<Area> = zones
+            .filter_map(|(index, zone)| {
+                let bounds = zone.bounds()?;
+                let zone = zone.clone();
+                Some(Area { zone, bounds, index })
+            })
+            .collect();
+        let numbers = |area: &Area| {
+            let zone = &area.zone;
+            [zone.reward_per_second, zone.reward_on_entering, zone.speed_factor]
+        };
+        areas.sort_by(|a, b| {
+            let pairs = numbers(a).into_iter().zip(numbers(b));
+            let mut orders = pairs.map(|(a, b)| a.total_cmp(&b));
+            orders.find(|order| order.is_ne()).unwrap_or(a.index.cmp(&b.index))
+        });
+        Self(areas)
+    }
+
+    /// Notes the zones that the agent is in, as no news.
+    pub(super) fn locate(&self, state: &mut SimState) {
+        let here = state.agent.position.map(f64::from);
+        state.inside.clear();
+        state.inside.extend(self.0.iter().map(|area| area.contains(here)));
+    }
+
+    /// The places in the world's list of the zones that the agent has entered and is in, rising.
+    pub(super) fn entered(&self, state: &SimState) -> Vec<u32> {
+        let areas = self.0.iter().zip(&state.inside);
+        let entered = areas.filter(|(_, inside)| **inside);
+        let mut entered: Vec<u32> = entered.map(|(area, _)| area.index as u32).collect();
+        entered.sort_unstable();
+        entered
+    }
+
+    /// Goes on from where [`Self::entered`] was written.
+    pub(super) fn resume(&self, entered: &[u32], state: &mut SimState) {
+        state.inside.clear();
+        let is_entered = |area: &Area| entered.contains(&(area.index as u32));
+        state.inside.extend(self.0.iter().map(is_entered));
+    }
+
+    /// The zones that a place is in.
+    pub(super) fn around(&self, point: Point) -> impl Iterator<Item = &Zone> {
+        let areas = self.0.iter().filter(move |area| area.contains(point));
+        areas.map(|area| &area.zone)
+    }
+}
+
+impl Area {
+    /// Whether a place is in it.
+    pub(crate) fn contains(&self, point: Point) -> bool {
+        let [low, high] = self.bounds;
+        (0..2).all(|axis| low[axis] <= point[axis] && point[axis] <= high[axis]) && self.zone.contains(point)
+    }
+
+    /// Whether any point of a way is in it.
+    fn is_crossed(&self, path: &[Point]) -> bool {
+        let [low, high] = self.bounds;
+        path.windows(2).any(|ends| {
+            let is_past = |axis: usize| {
+                let [from, to] = [ends[0][axis], ends[1][axis]];
+                from.max(to) < low[axis] || from.min(to) > high[axis]
+            };
+            !is_past(0) && !is_past(1) && (self.zone.contains(ends[0]) || self.is_cut(ends[0], ends[1]))
+        })
+    }
+
+    /// Whether a straight way between two places goes over its border.
+    fn is_cut(&self, from: Point, to: Point) -> bool {
+        if let Some(disc) = &self.zone.disc {
+            return squared_distance(disc.center, from, to) < disc.radius * disc.radius;
+        }
+        let Some(corners) = &self.zone.polygon else {
+            return false;
+        };
+        let mut edges = corners.iter().zip(corners.iter().cycle().skip(1));
+        edges.any(|(a, b)| side(from, to, *a) != side(from, to, *b) && side(*a, *b, from) != side(*a, *b, to))
+    }
+}
+
+/// Whether a point is to the left of a line.
+fn side(from: Point, to: Point, point: Point) -> bool {
+    (to[0] - from[0]) * (point[1] - from[1]) > (to[1] - from[1]) * (point[0] - from[0])
+}
+
+/// A command of the body as the zones let it be carried out where the agent is.
+pub(super) fn slowed(intent: Intent, state: &SimState, zones: &Zones) -> Intent {
+    if zones.0.is_empty() {
+        return intent;
+    }
+    let here = state.agent.position.map(f64::from);
+    let factor: f64 = zones.around(here).map(|zone| zone.speed_factor).product();
+    let factor = factor as f32;
+    Intent {
+        ahead: intent.ahead * factor,
+        towards: intent.towards.map(|(point, reach)| (point, reach * factor)),
+        ..intent
+    }
+}
+
+/// Pays for the zones that the agent is in and that it entered in this time step, and puts it elsewhere if one says so. Hands
+/// back how they end the episode.
+pub(super) fn apply_zones(world: &World, state: &mut SimState, views: &Views, step: &mut Step) -> Option<ZoneEnd> {
+    let zones = &views.zones;
+    if zones.0.is_empty() {
+        return None;
+    }
+    let here = state.agent.position.map(f64::from);
+    let path = views.bodies.path();
+    let mut end = None;
+    let mut teleport: Option<(usize, Point)> = None;
+    for (area, inside) in zones.0.iter().zip(&mut state.inside) {
+        let zone = &area.zone;
+        let was_inside = std::mem::replace(inside, area.contains(here));
+        let enters = !was_inside && (*inside || area.is_crossed(path));
+        if *inside {
+            step.reward += zone.reward_per_second * world.agent_params.time_step;
+        }
+        if enters {
+            step.reward += zone.reward_on_entering;
+            let is_first = teleport.is_none_or(|(index, _)| area.index < index);
+            teleport = zone
+                .teleport
+                .filter(|_| is_first)
+                .map(|to| (area.index, to))
+                .or(teleport);
+        }
+        if enters || *inside {
+            end = first_of(end, zone.ends);
+        }
+    }
+    let Some((_, to)) = teleport.filter(|_| end.is_none()) else {
+        return end;
+    };
+    let sim = SimRef { world, state, views };
+    let Some(place) = free_place(sim, to) else { return None };
+    let agent = &mut state.agent;
+    agent.position = place.map(|metres| metres as f32);
+    agent.velocity = [0.0; 2];
+    let here = agent.position.map(f64::from);
+    for (area, inside) in zones.0.iter().zip(&mut state.inside) {
+        let was_inside = std::mem::replace(inside, area.contains(here));
+        if *inside && !was_inside {
+            step.reward += area.zone.reward_on_entering;
+            end = first_of(end, area.zone.ends);
+        }
+    }
+    end
+}
+
+/// Of two ends in one time step, a success if there is one.
+fn first_of(a: Option<ZoneEnd>, b: Option<ZoneEnd>) -> Option<ZoneEnd> {
+    match (a, b) {
+        (Some(ZoneEnd::Success), _) | (_, Some(ZoneEnd::Success)) => Some(ZoneEnd::Success),
+        (a, b) => a.or(b),
+    }
+}
+
+/// The place nearest to this one, of some on rings around it, where the agent's body has room; `None` if none has.
+fn free_place(sim: SimRef, wanted: Point) -> Option<Point> {
+    /// Rings, each half the agent's width wider.
+    const RINGS: u32 = 8;
+    const DIAGONAL: f64 = std::f64::consts::FRAC_1_SQRT_2;
+    const DIRECTIONS: [Point; 8] = [
+        [0.0, 1.0],
+        [DIAGONAL, DIAGONAL],
+        [1.0, 0.0],
+        [DIAGONAL, -DIAGONAL],
+        [0.0, -1.0],
+        [-DIAGONAL, -DIAGONAL],
+        [-1.0, 0.0],
+        [-DIAGONAL, DIAGONAL],
+    ];
+    let step = sim.world.agent_params.agent_width / 2.0;
+    let around = (1..=RINGS).flat_map(|ring| {
+        let by = f64::from(ring) * step;
+        DIRECTIONS.map(|[x, y]| [wanted[0] + by * x, wanted[1] + by * y])
+    });
+    let mut places = std::iter::once(wanted).chain(around);
+    places.find(|place| agent_obstacle(sim, *place).is_none())
+}

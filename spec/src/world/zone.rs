@@ -1,0 +1,284 @@
+//! [`Zone`]: a part of the ground that does something to the agent that is in it. What it does while a world runs is in `env`;
+//! what ends an episode beside it is in `rules.rs`.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::WorldDraft;
+use super::defaults::{is_default, is_one, is_true, one, yes};
+use super::environment::{EnvironmentParams, encloses};
+use super::fields::{fields, word};
+use crate::Color;
+use crate::error::Problem;
+
+fields! {
+    /// A part of the ground, either a `disc` or a `polygon`. It acts on the agent while the agent's centre is in it, from the
+    /// first time step on: who starts in it has entered it. Nothing else notices it.
+    ///
+    /// Zones may overlap: what they pay is added, their factors on the speed are multiplied. If several end the episode in one
+    /// time step, success comes before failure; an end comes before a teleport; of several teleports the first in the list counts.
+    /// No zone is jumped over: who crosses one within a time step has entered it.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(deny_unknown_fields)]
+    #[schemars(extend("examples" = [
+        { "disc": { "center": [5, 0], "radius": 3 }, "name": "lava", "ends": "failure", "color": "orangered" },
+        { "polygon": [[0, 0], [8, 0], [8, 4]], "reward_per_second": -1, "speed_factor": 0.5 },
+    ]))]
+    pub struct Zone {
+        /// Its ground, if that is a disc.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub disc: Option<Disc> => Field::ours(Measured(&[Zones, ZonePay, ZoneLooks])),
+        /// Its ground, if that is a polygon: corners in metres, in order; the last joins the first.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(length(min = 3, max = 1000), inner(inner(range(min = -1e4, max = 1e4))))]
+        pub polygon: Option<Vec<[f64; 2]>> => Field::ours(Measured(&[Zones, ZonePay, ZoneLooks])).unit("m"),
+        /// A free word that logs and people refer to.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(length(min = 1, max = 100))]
+        pub name: Option<String> => Field::ours(Not("it is a name")),
+        /// Paid for every second in it, in each time step at whose end the agent is in it.
+        #[serde(default, skip_serializing_if = "is_default")]
+        #[schemars(range(min = -1e9, max = 1e9))]
+        pub reward_per_second: f64 => Field::ours(Measured(&[ZonePay])),
+        /// Paid whenever the agent enters it, by its own motion or by a teleport.
+        #[serde(default, skip_serializing_if = "is_default")]
+        #[schemars(range(min = -1e9, max = 1e9))]
+        pub reward_on_entering: f64 => Field::ours(Measured(&[ZonePay])),
+        /// Factor on how fast the agent goes, by where it is at the beginning of a time step.
+        #[serde(default = "one", skip_serializing_if = "is_one")]
+        #[schemars(range(min = 0.0, max = 100.0))]
+        pub speed_factor: f64 => Field::ours(Measured(&[Zones])),
+        /// How the episode ends when the agent enters it; it goes on if absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub ends: Option<ZoneEnd> => Field::ours(Measured(&[ZonePay])),
+        /// Where the agent that enters it is put at the end of the time step, in metres; at rest, and beside what stands there.
+        /// What it enters by that neither moves it on nor back.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(inner(inner(range(min = -300.0, max = 300.0))))]
+        pub teleport: Option<[f64; 2]> => Field::ours(Measured(&[Zones])).unit("m"),
+        /// Colour of its ground; if absent, that of what it does, as `docs/zones.md` lists them.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub color: Option<Color> => Field::ours(Measured(&[ZoneLooks])),
+        /// Whether its ground has its colour.
+        #[serde(default = "yes", skip_serializing_if = "is_true")]
+        pub visible: bool => Field::ours(Measured(&[ZoneLooks])),
+    }
+}
+
+fields! {
+    /// A disc on the ground.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(deny_unknown_fields)]
+    #[schemars(extend("examples" = [{ "center": [5, 0], "radius": 3 }]))]
+    pub struct Disc {
+        /// Its middle in metres.
+        #[schemars(inner(range(min = -1e4, max = 1e4)))]
+        pub center: [f64; 2] => Field::ours(AsPart).unit("m"),
+        /// Its radius in metres.
+        #[schemars(range(min = 0.001, max = 1e4))]
+        pub radius: f64 => Field::ours(AsPart).unit("m"),
+    }
+}
+
+/// How a zone ends an episode.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ZoneEnd {
+    /// As a success.
+    Success,
+    /// As a failure.
+    Failure,
+}
+
+word!(ZoneEnd);
+
+impl Zone {
+    /// A round zone that does nothing; all else is at its default.
+    pub fn disc(center: [f64; 2], radius: f64) -> Self {
+        Self {
+            disc: Some(Disc { center, radius }),
+            polygon: None,
+            name: None,
+            reward_per_second: 0.0,
+            reward_on_entering: 0.0,
+            speed_factor: 1.0,
+            ends: None,
+            teleport: None,
+            color: None,
+            visible: true,
+        }
+    }
+
+    /// A zone of these corners that does nothing; all else is at its default.
+    pub fn polygon(corners: Vec<[f64; 2]>) -> Self {
+        Self {
+            disc: None,
+            polygon: Some(corners),
+            ..Self::disc([0.0; 2], 1.0)
+        }
+    }
+
+    /// Whether a point in metres is in it: nearer to the middle than the radius, or within the corners by the even-odd rule.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_spec::Zone;
+    /// let pond = Zone::disc([5.0, 0.0], 3.0);
+    /// assert!(pond.contains([7.0, 1.0]) && !pond.contains([1.0, 0.0]));
+    /// ```
+    pub fn contains(&self, point: [f64; 2]) -> bool {
+        match (&self.disc, &self.polygon) {
+            (Some(disc), _) => {
+                let [x, y] = [0, 1].map(|axis| point[axis] - disc.center[axis]);
+                x * x + y * y < disc.radius * disc.radius
+            }
+            (None, Some(corners)) => encloses(corners, point),
+            (None, None) => false,
+        }
+    }
+
+    /// Whether being in it costs: it pays less than nothing, or ends the episode as a failure.
+    pub fn is_costly(&self) -> bool {
+        self.reward_per_second < 0.0 || self.reward_on_entering < 0.0 || self.ends == Some(ZoneEnd::Failure)
+    }
+
+    /// Whether being in it is worth while: it pays, or ends the episode as a success, and costs nothing.
+    pub fn is_wanted(&self) -> bool {
+        let pays = self.reward_per_second > 0.0 || self.reward_on_entering > 0.0 || self.ends == Some(ZoneEnd::Success);
+        pays && !self.is_costly()
+    }
+
+    /// Its colour on the ground: its own, or that of what it does. Red for what fails or costs, green for what succeeds or pays,
+    /// violet for a teleport, brown for what slows, blue for what hastens, grey for the rest.
+    pub fn ground_color(&self) -> Color {
+        self.color.unwrap_or_else(|| {
+            Color(if self.is_costly() {
+                [0.78, 0.2, 0.12]
+            } else if self.is_wanted() {
+                [0.25, 0.7, 0.3]
+            } else if self.teleport.is_some() {
+                [0.5, 0.3, 0.75]
+            } else if self.speed_factor < 1.0 {
+                [0.42, 0.31, 0.2]
+            } else if self.speed_factor > 1.0 {
+                [0.3, 0.55, 0.8]
+            } else {
+                [0.6, 0.6, 0.6]
+            })
+        })
+    }
+
+    /// The box around it, least and largest x and y in metres; `None` for one without ground.
+    pub fn bounds(&self) -> Option<[[f64; 2]; 2]> {
+        if let Some(Disc { center: [x, y], radius }) = self.disc {
+            return Some([[x - radius, y - radius], [x + radius, y + radius]]);
+        }
+        let mut corners = self.polygon.iter().flatten();
+        let first = *corners.next()?;
+        Some(corners.fold([first, first], |[low, high], corner| {
+            [
+                [low[0].min(corner[0]), low[1].min(corner[1])],
+                [high[0].max(corner[0]), high[1].max(corner[1])],
+            ]
+        }))
+    }
+
+    /// Whether no point of its box is in the arena: nobody comes to it.
+    pub(super) fn is_outside(&self, arena: &EnvironmentParams) -> bool {
+        let sides = arena.arena_size();
+        self.bounds().is_some_and(|[low, high]| {
+            (0..2).any(|axis| low[axis] >= sides[axis] / 2.0 || high[axis] <= -sides[axis] / 2.0)
+        })
+    }
+}
+
+/// What of a world's zones no field can say by itself.
+pub(super) fn problems(world: &WorldDraft) -> Vec<Problem> {
+    let arena = &world.environment_params;
+    let mut problems = Vec::new();
+    for (index, zone) in arena.zones.iter().enumerate() {
+        let pointer = format!("/environment_params/zones/{index}");
+        let found = match (&zone.disc, &zone.polygon) {
+            (Some(_), Some(_)) => Some("both a disc and a polygon"),
+            (None, None) => Some("neither a disc nor a polygon"),
+            _ => None,
+        };
+        if let Some(found) = found {
+            let advice = "such as \"disc\": { \"center\": [0, 0], \"radius\": 3 }";
+            problems.push(Problem::new("spec/zone", pointer.clone(), found, "one of the two").advise(advice));
+        }
+        let Some([x, y]) = zone.teleport else { continue };
+        let found = if !arena.contains([x, y]) {
+            let [width, depth] = arena.arena_size();
+            Some(format!("({x}, {y}), outside the {width} × {depth} m arena"))
+        } else {
+            arena
+                .enclosure([x, y])
+                .map(|enclosure| format!("({x}, {y}), inside {enclosure}"))
+        };
+        if let Some(found) = found {
+            problems.push(Problem::new(
+                "spec/zone",
+                format!("{pointer}/teleport"),
+                found,
+                "a place on free ground",
+            ));
+        }
+    }
+    problems
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::World;
+
+    fn check(zone: &str, expected: &str) {
+        let text = format!(
+            r#"{{ "environment_params": {{ "map_size": [20, 20], "zones": [{zone}],
+               "walls": [{{ "polygon": [[5, 5], [8, 5], [8, 8]] }}] }} }}"#
+        );
+        let said = World::from_json("w.json", &text).map_or_else(
+            |error| error.to_string(),
+            |world| world.remarks("w.json", &text).iter().map(ToString::to_string).collect(),
+        );
+        assert!(
+            said.contains(expected) && said.is_empty() == expected.is_empty(),
+            "{said}"
+        );
+    }
+
+    #[test]
+    fn what_is_wrong_with_a_zone_is_said_with_its_place() {
+        let disc = r#""disc": { "center": [0, 0], "radius": 3 }"#;
+        check(&format!("{{ {disc} }}"), "");
+        check(
+            "{ }",
+            "(/environment_params/zones/0): found neither a disc nor a polygon",
+        );
+        check(
+            &format!(r#"{{ {disc}, "polygon": [[0, 0], [1, 0], [0, 1]] }}"#),
+            "(/environment_params/zones/0): found both a disc and a polygon",
+        );
+        check(
+            r#"{ "polygon": [[0, 0], [1, 0]] }"#,
+            "(/environment_params/zones/0/polygon)",
+        );
+        check(
+            r#"{ "disc": { "center": [0, 0], "radius": 0 } }"#,
+            "(/environment_params/zones/0/disc/radius)",
+        );
+        check(
+            &format!(r#"{{ {disc}, "teleport": [11, 0] }}"#),
+            "(/environment_params/zones/0/teleport): found (11, 0), outside the 20 × 20 m arena",
+        );
+        check(
+            &format!(r#"{{ {disc}, "teleport": [7.5, 6] }}"#),
+            "(/environment_params/zones/0/teleport): found (7.5, 6), inside the wall /environment_params/walls/0",
+        );
+        check(
+            r#"{ "disc": { "center": [0, 14], "radius": 3 } }"#,
+            "the zone lies outside the 20 × 20 m arena",
+        );
+    }
+}
