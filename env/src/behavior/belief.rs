@@ -4,7 +4,7 @@ use driftworld_spec::{Object, Stimulus, World};
 
 use crate::EnvError;
 use crate::assets::Catalogue;
-use crate::sim::{Environment, Step};
+use crate::sim::{Action, Environment, Step};
 
 /// A world as an expert from elsewhere believes it to be, kept in the state of the true one.
 pub(super) struct Belief {
@@ -53,6 +53,11 @@ impl Belief {
             }
         }
         &self.environment
+    }
+
+    /// What would come of an action in the believed world, which [`Belief::at`] has put into the state of the true one.
+    pub(super) fn foresee(&mut self, action: Action, step: &mut Step) -> Result<(), EnvError> {
+        self.environment.step_into(action, step)
     }
 
     /// Takes note of what a step of the true world set off.

@@ -1,6 +1,7 @@
 //! What experts earn in worlds that are not theirs. Drawing the worlds, and what the numbers mean for tasks, is for others.
 
 mod belief;
+mod finding_out;
 #[cfg(test)]
 mod tests;
 

@@ -125,3 +125,39 @@ proptest! {
         prop_assert_eq!(expertise.abroad(&world, &world), expertise.at_home(&world));
     }
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn who_finds_out_is_the_expert_with_one_home_and_wrong_once_with_two(
+        places in prop::collection::vec((-12_i8..=12, 3_i8..=12), 4),
+        is_first in any::<bool>(),
+    ) {
+        let draft = |paying: Color, other: Color| {
+            let mut draft = world(paying, other);
+            for (object, (x, y)) in draft.objects.iter_mut().zip(&places) {
+                object.coordinates = [f64::from(*x), f64::from(*y)];
+            }
+            draft
+        };
+        let (red, mut blue) = (draft(RED, BLUE), draft(BLUE, RED));
+        // The same things stand in the same places, and pay the other way round.
+        for (own, other) in blue.objects.iter_mut().zip(&red.objects) {
+            (own.color, own.reward) = (other.color.clone(), -other.reward / 2.0 - 1.0);
+        }
+        let (red, blue) = (sound(red), sound(blue));
+        let expertise = Expertise::default();
+        prop_assert_eq!(expertise.finding_out(&[&red], &blue), expertise.abroad(&red, &blue));
+        prop_assert_eq!(expertise.finding_out(&[], &blue), expertise.at_home(&blue));
+        let homes = if is_first { [&red, &blue] } else { [&blue, &red] };
+        let own = expertise.at_home(homes[1]).expect("it runs");
+        let found = expertise.finding_out(&homes, homes[1]).expect("it runs");
+        let fixed = expertise.abroad(homes[0], homes[1]).expect("it runs");
+        // The right home is never dropped: what it costs to find out is the first thing that was touched in vain.
+        prop_assert!(found.earned >= fixed.earned, "{found:?} {fixed:?}");
+        prop_assert!(found.earned <= own.earned, "{found:?} {own:?}");
+        let known = expertise.finding_out(&[homes[1], homes[0]], homes[1]).expect("it runs");
+        prop_assert_eq!(known, own);
+    }
+}

@@ -1,0 +1,95 @@
+//! An agent that knows the map, and of what pays only that it is as in one of several worlds: it has to find out. Which
+//! worlds look alike is for others to say.
+
+use driftworld_spec::World;
+
+use super::belief::Belief;
+use super::{ExpertRun, Expertise, MAX_EXPERT_STEPS};
+use crate::EnvError;
+use crate::agents::{RailsPolicy, in_space};
+use crate::sim::{Environment, Step};
+
+/// Rewards that differ by no more than this are the same.
+const SAME_REWARD: f64 = 1e-9;
+
+impl Expertise {
+    /// An agent in the world `abroad` that knows that it pays there as in one of `homes`, and not as in which.
+    ///
+    /// It does as the expert of the first home does [`abroad`](Self::abroad). After each step it drops the homes in
+    /// which that step would have paid something else, or ended otherwise, and follows the first that is left. If none
+    /// is left it keeps to the last that it followed. What pays by chance is told apart by the draws of this very
+    /// world, so there the agent finds out sooner than a learner can.
+    ///
+    /// With one home it is the expert of that home abroad, to the bit; with none, that of the world itself.
+    ///
+    /// # Errors
+    /// Those of [`Expertise::abroad`].
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_env::Expertise;
+    /// use driftworld_spec::{Color, Object, Stimulus, WorldDraft};
+    /// let mut draft = WorldDraft { max_steps: 200, ..WorldDraft::default() };
+    /// for (place, blue, reward) in [([0.0, 6.0], 0.0, 10.0), ([6.0, 0.0], 1.0, -10.0)] {
+    ///     let mut cube = Object::new("geometric", place);
+    ///     (cube.color, cube.reward) = (Some(Color([1.0, 0.0, blue])), reward);
+    ///     cube.reward_once_stimulus = vec![Stimulus::AgentCollide];
+    ///     draft.objects.push(cube);
+    /// }
+    /// let red = draft.check().expect("it is sound");
+    /// let purple = red.clone().edit(|world| {
+    ///     for object in &mut world.objects {
+    ///         object.reward = -object.reward;
+    ///     }
+    /// }).expect("it is sound");
+    /// // It pays 10 to know, costs 10 to be wrong, and 10 less to be wrong first.
+    /// let expertise = Expertise::default();
+    /// assert_eq!(expertise.at_home(&purple)?.earned, 10.0);
+    /// assert_eq!(expertise.abroad(&red, &purple)?.earned, -10.0);
+    /// assert_eq!(expertise.finding_out(&[&red, &purple], &purple)?.earned, 0.0);
+    /// # Ok::<(), driftworld_env::EnvError>(())
+    /// ```
+    pub fn finding_out(&self, homes: &[&World], abroad: &World) -> Result<ExpertRun, EnvError> {
+        if homes.is_empty() {
+            return self.at_home(abroad);
+        }
+        let beliefs = homes.iter().map(|home| Belief::new(home, abroad, &self.catalogue));
+        let mut beliefs: Vec<Belief> = beliefs.collect::<Result<_, _>>()?;
+        let mut truth = Environment::with_catalogue(abroad.clone(), self.catalogue.clone());
+        let (mut policy, mut run) = (RailsPolicy::default(), ExpertRun::default());
+        let (mut step, mut foreseen) = (Step::default(), Step::default());
+        while !truth.ended() && run.steps < self.steps.min(MAX_EXPERT_STEPS) {
+            let action = in_space(policy.steer(beliefs[0].at(&truth).sim()), truth.sim());
+            let mut agrees = vec![true; beliefs.len()];
+            if beliefs.len() > 1 {
+                for belief in &mut beliefs {
+                    belief.at(&truth);
+                }
+            }
+            truth.step_into(action, &mut step)?;
+            if beliefs.len() > 1 {
+                for (belief, agrees) in beliefs.iter_mut().zip(&mut agrees) {
+                    belief.foresee(action, &mut foreseen)?;
+                    *agrees = (foreseen.reward - step.reward).abs() <= SAME_REWARD
+                        && (foreseen.success, foreseen.terminated) == (step.success, step.terminated);
+                }
+            }
+            if agrees.contains(&true) {
+                if !agrees[0] {
+                    policy = RailsPolicy::default();
+                }
+                let mut kept = agrees.into_iter();
+                beliefs.retain(|_| kept.next() == Some(true));
+            } else {
+                beliefs.truncate(1);
+            }
+            for belief in &mut beliefs {
+                belief.note(&step);
+            }
+            run.earned += step.reward;
+            run.success |= step.success;
+            run.steps += 1;
+        }
+        Ok(run)
+    }
+}
