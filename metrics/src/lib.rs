@@ -52,7 +52,7 @@ pub use log::{
 };
 pub use options::{
     AggregationMethod, Anchors, DataRange, DataRanges, Definitions, MAX_WINDOW_LENGTH, MaintenanceMethod, Noise,
-    NormalizationMethod, Options, Scales, SmoothingMethod, SteAveragingMethod, TransferMethod, VariantMode,
+    NormalizationMethod, Options, Scales, SmoothingMethod, SteAveragingMethod, TransferMethod, Unlabelled, VariantMode,
 };
 pub use repeats::{
     Aggregate, BootstrapOptions, Estimate, FEW_RUNS, Improvement, Interval, MAX_POWER_LIFETIMES, MAX_RESAMPLES,

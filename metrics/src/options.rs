@@ -185,12 +185,29 @@ pub struct DataRange {
 pub type DataRanges = IndexMap<String, DataRange>;
 
 /// What agents earn in a task that know nothing of it, and all, in the log's unit.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Anchors {
     /// The best of agents that know nothing, such as one that acts at random and one that stands still: scaled to 1.
     pub floor: f64,
     /// An expert's: scaled to 101.
     pub ceiling: f64,
+    /// What agents earn that cannot tell the task from others that look alike, for each set of such tasks.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub unlabelled: Vec<Unlabelled>,
+}
+
+/// What the best known agents earn in a task that they cannot tell from others, in the log's unit. They are the best in
+/// the mean over all of these tasks, and may be bad in this one.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Unlabelled {
+    /// The tasks that look alike, this one included: lower-case names as logs have them.
+    pub among: Vec<String>,
+    /// One that does the same in all of them.
+    pub fixed: f64,
+    /// One that may find out within an episode which it is.
+    pub finds_out: f64,
 }
 
 /// Floors and ceilings by task, lower-case names as logs have them.

@@ -324,7 +324,7 @@ proptest! {
     #[test]
     fn scaled_curves_are_curves_in_other_units(life in lifetimes(), floor in -60.0..40.0_f64, width in 10.0..200.0_f64) {
         let plain = with_experts(&life, floor + width);
-        let anchors = Anchors { floor, ceiling: floor + width };
+        let anchors = Anchors { floor, ceiling: floor + width, unlabelled: Vec::new() };
         let scaled = Options {
             scales: Some([("f_a".to_owned(), anchors)].into()),
             ..options()

@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::scales::{DEFAULT_SCALES_WORLDS, MAX_SCALES_WORLDS, ScalesFile, ScalesRequest, num_variants, scales};
+use crate::scales::{
+    BestAgent, DEFAULT_SCALES_WORLDS, MAX_SCALES_WORLDS, ScalesFile, ScalesRequest, num_variants, scales,
+};
 use crate::table::table;
 use crate::tasks::built_in_names;
 
@@ -20,6 +22,7 @@ use super::{Failure, output};
 #[command(after_help = "Examples:
   driftworld scales find_objects#red find_objects#blue
   driftworld scales --worlds 50 --seed 77 -o scales.json
+  driftworld scales find_objects#blue find_objects#turned --unlabelled
   driftworld metrics LOG --scales scales.json")]
 pub(crate) struct Scales {
     /// Variants, or tasks, which stand for all their variants [default: the built-in tasks].
@@ -32,6 +35,14 @@ pub(crate) struct Scales {
     /// Seed of the worlds.
     #[arg(long, default_value_t = 0)]
     seed: u64,
+    /// Also the ceiling of agents that cannot tell variants apart which look alike at the start.
+    ///
+    /// Of each set of the variants above that look alike, or of the set named; may be given several times. It is what
+    /// the best of some scripted agents earns in the mean over the set: one that stands still, one that acts at random,
+    /// the expert of each variant, and that expert until a reward shows another variant. Without the last, it is the
+    /// ceiling of agents without memory.
+    #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "", value_name = "VARIANT,…")]
+    unlabelled: Vec<String>,
     #[command(flatten)]
     libraries: LibraryChoice,
     /// JSON file to write.
@@ -50,6 +61,7 @@ impl Scales {
             worlds: self.worlds,
             seed: self.seed,
             libraries: self.libraries.paths().to_vec(),
+            unlabelled: self.unlabelled.iter().map(|set| names(set)).collect(),
         };
         let bar = output::progress(num_variants(&request)? as u64, "measuring");
         let found = scales(&request, &|| bar.inc(1))?;
@@ -65,6 +77,42 @@ impl Scales {
         }
         output::line(shown(&found))
     }
+}
+
+/// Names between commas; none in an empty text.
+fn names(set: &str) -> Vec<String> {
+    set.split(',')
+        .filter(|name| !name.is_empty())
+        .map(str::to_owned)
+        .collect()
+}
+
+/// A row per variant of each set that looks alike; nothing where nobody asked for one.
+fn unlabelled(found: &ScalesFile) -> Option<String> {
+    let mut rows = Vec::new();
+    for set in &found.unlabelled {
+        for (place, name) in set.among.iter().enumerate() {
+            let level = |best: &BestAgent| {
+                let level = best.levels.get(name);
+                level.map_or_else(String::new, |level| {
+                    format!("{:.1} ± {:.1}", level.mean, level.standard_error)
+                })
+            };
+            let agent = |best: &BestAgent| if place == 0 { best.agent.clone() } else { String::new() };
+            let scale = found.scales.get(name);
+            rows.push([
+                scale.map_or_else(|| name.clone(), |scale| scale.variant.clone()),
+                scale.map_or_else(String::new, |scale| format!("{:.1}", scale.ceiling)),
+                level(&set.finds_out),
+                agent(&set.finds_out),
+                level(&set.fixed),
+                agent(&set.fixed),
+            ]);
+        }
+    }
+    let headings = ["look alike", "ceiling", "finds out", "", "does the same in all", ""];
+    let what = "Best in the mean over those that look alike, of agents that cannot know which they are in.";
+    (!rows.is_empty()).then(|| format!("{}\n{what}", table(headings, rows, &[1, 2, 4])))
 }
 
 fn shown(found: &ScalesFile) -> String {
@@ -91,8 +139,9 @@ fn shown(found: &ScalesFile) -> String {
         ]
     });
     let headings = ["variant", "random", "still", "onrails", "floor", "ceiling", ""];
+    let unlabelled = unlabelled(found).map_or_else(String::new, |shown| format!("\n\n{shown}"));
     format!(
-        "{}\nReward of an episode, ± the standard error over {} worlds of seed {}.",
+        "{}\nReward of an episode, ± the standard error over {} worlds of seed {}.{unlabelled}",
         table(headings, rows.collect(), &[1, 2, 3, 4, 5]),
         found.worlds,
         found.seed

@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use driftworld_metrics::{Anchors, Scales};
+use driftworld_metrics::{Anchors, Scales, Unlabelled};
 use driftworld_text::{ShownPath, one_line};
 use serde::{Deserialize, Serialize};
 
+use super::{BestAgent, UnlabelledCeiling};
 use crate::{Failure, documents};
 
 /// Floors and ceilings of variants, and how they were measured. A file made by hand needs `scales` alone.
@@ -24,6 +25,9 @@ pub struct ScalesFile {
     pub seed: u64,
     /// The variants by their names in logs, such as `findobjects_red`.
     pub scales: BTreeMap<String, VariantScale>,
+    /// Ceilings of agents that cannot tell the variants of a set apart.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub unlabelled: Vec<UnlabelledCeiling>,
 }
 
 /// The floor and ceiling of a variant, in units of reward for an episode.
@@ -83,13 +87,30 @@ impl ScalesFile {
 
     /// The floors and ceilings alone, by lower-case names.
     pub fn anchors(&self) -> Scales {
-        let anchors = |scale: &VariantScale| Anchors {
-            floor: scale.floor,
-            ceiling: scale.ceiling,
+        let unlabelled = |name: &str| {
+            let of_set = |set: &UnlabelledCeiling| {
+                let level = |best: &BestAgent| {
+                    let mut levels = best.levels.iter();
+                    let own = levels.find(|(variant, _)| variant.to_lowercase() == name);
+                    own.map(|(_, level)| level.mean)
+                };
+                Some(Unlabelled {
+                    among: set.among.iter().map(|variant| variant.to_lowercase()).collect(),
+                    fixed: level(&set.fixed)?,
+                    finds_out: level(&set.finds_out)?,
+                })
+            };
+            self.unlabelled.iter().filter_map(of_set).collect()
         };
-        let scales = self.scales.iter();
-        scales
-            .map(|(name, scale)| (name.to_lowercase(), anchors(scale)))
-            .collect()
+        let anchors = |(name, scale): (&String, &VariantScale)| {
+            let name = name.to_lowercase();
+            let anchors = Anchors {
+                floor: scale.floor,
+                ceiling: scale.ceiling,
+                unlabelled: unlabelled(&name),
+            };
+            (name, anchors)
+        };
+        self.scales.iter().map(anchors).collect()
     }
 }

@@ -3,6 +3,7 @@
 //! Not here: what metrics do with them, see `driftworld-metrics`.
 
 mod file;
+mod unlabelled;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -14,6 +15,7 @@ use driftworld_spec::{Variant, World};
 use rayon::prelude::*;
 
 pub use file::{AgentLevel, ScalesFile, VariantScale};
+pub use unlabelled::{BestAgent, UnlabelledCeiling};
 
 use crate::{Failure, libraries, tasks};
 
@@ -40,11 +42,19 @@ pub struct ScalesRequest {
     pub seed: u64,
     /// Asset libraries whose classes the tasks use.
     pub libraries: Vec<PathBuf>,
+    /// Sets of variants that an agent without a label cannot tell apart, and whose ceilings it is to have; an empty one
+    /// stands for all sets of the measured variants that look alike.
+    pub unlabelled: Vec<Vec<String>>,
 }
 
 /// Runs three agents in the same worlds of each variant: one that acts at random, one that stands still, one that knows
 /// the map. The better of the first two is the floor, the third the ceiling. `progress` gets each variant that is
 /// done.
+///
+/// For each set of variants in `unlabelled` these agents run in all of them: one that stands still, one that acts at
+/// random, the expert of each variant held fixed, and that expert until a reward shows that it is in another variant of
+/// the set. The ceilings are those that earn most in the mean over the set: of the agents that do the same in all
+/// variants, and of all. No better agent is known here; that there is none is not shown.
 ///
 /// # Errors
 /// [`Failure`] where a task or variant is nowhere or wrong, a world cannot be drawn, or the number of worlds is out of
@@ -63,12 +73,17 @@ pub fn scales(request: &ScalesRequest, progress: &(dyn Fn() + Sync)) -> Result<S
         progress();
         Ok((log_name(variant.task().name(), variant.name()), found))
     };
+    let sets = unlabelled::sets_of(&variants, request, &catalogue)?;
     let measured: Result<Vec<_>, Failure> = variants.par_iter().map(measure).collect();
+    let unlabelled: Result<Vec<_>, Failure> = (sets.iter())
+        .map(|set| unlabelled::ceiling(set, request, &catalogue))
+        .collect();
     Ok(ScalesFile {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         worlds: request.worlds,
         seed: request.seed,
         scales: measured?.into_iter().collect(),
+        unlabelled: unlabelled?,
     })
 }
 
@@ -88,8 +103,7 @@ fn of_variant(variant: &Variant, request: &ScalesRequest, catalogue: &Catalogue)
     for (name, mut agent) in agents_of_scales() {
         let mut episodes = Vec::new();
         for (index, world) in (0..).zip(&worlds) {
-            // The same chance in every variant, and another in every world.
-            agent.begin(request.seed.rotate_left(32) ^ index);
+            agent.begin(chance(request, index));
             episodes.push(episode(agent.as_mut(), world, catalogue)?);
         }
         agents.insert(name.to_owned(), AgentLevel::of(&episodes));
@@ -101,6 +115,11 @@ fn of_variant(variant: &Variant, request: &ScalesRequest, catalogue: &Catalogue)
         ceiling: level(CEILING),
         agents,
     })
+}
+
+/// What an agent draws its own random numbers from: the same in every variant, and another in every world.
+fn chance(request: &ScalesRequest, index: u64) -> u64 {
+    request.seed.rotate_left(32) ^ index
 }
 
 fn agents_of_scales() -> [(&'static str, Box<dyn Agent>); 3] {

@@ -8,6 +8,7 @@ fn request(worlds: u64) -> ScalesRequest {
         worlds,
         seed: 7,
         libraries: Vec::new(),
+        unlabelled: Vec::new(),
     }
 }
 
@@ -65,4 +66,89 @@ fn a_standard_error_is_of_the_mean_over_worlds() {
 fn one_world_is_refused() {
     let said = scales(&request(1), &|| ()).unwrap_err().to_string();
     assert_eq!(said, "worlds: found 1, expected 2 to 10000");
+}
+
+fn unlabelled(tasks: &[&str], sets: &[&[&str]], worlds: u64) -> Result<ScalesFile, Failure> {
+    let names = |set: &&[&str]| set.iter().map(|name| (*name).to_owned()).collect();
+    scales(
+        &ScalesRequest {
+            tasks: names(&tasks),
+            unlabelled: sets.iter().map(names).collect(),
+            ..request(worlds)
+        },
+        &|| (),
+    )
+}
+
+#[test]
+fn whoever_cannot_know_what_pays_earns_less_than_the_expert() {
+    let tasks = ["select_object#green", "select_object#red", "select_object#dusk"];
+    let found = unlabelled(&tasks, &[&[]], 4).unwrap();
+    // At dusk it looks otherwise.
+    let [set] = found.unlabelled.as_slice() else {
+        panic!("{found:?}")
+    };
+    assert_eq!(set.among, ["selectobject_green", "selectobject_red"]);
+    // It costs to be wrong, and episodes go on until 50 points are made or lost.
+    let expert = set.among.iter().map(|name| found.scales[name].ceiling).sum::<f64>() / 2.0;
+    let floor = set.among.iter().map(|name| found.scales[name].floor).sum::<f64>() / 2.0;
+    assert!(
+        set.fixed.mean() <= expert - 40.0 && set.fixed.mean() >= floor,
+        "{set:?}"
+    );
+    assert!(
+        set.finds_out.mean() > expert - 10.0 && set.finds_out.mean() <= expert,
+        "{set:?}"
+    );
+    // Metrics get it by the names of logs, and nothing where no set was asked for.
+    let anchors = found.anchors();
+    let of_red = &anchors["selectobject_red"].unlabelled;
+    assert_eq!(
+        (of_red.len(), of_red[0].fixed),
+        (1, set.fixed.levels["selectobject_red"].mean)
+    );
+    assert_eq!(anchors["selectobject_dusk"].unlabelled, []);
+    assert_eq!(unlabelled(&tasks, &[], 2).unwrap().unlabelled, []);
+    // Named sets are the same sets.
+    let same = unlabelled(&tasks, &[&tasks[..2]], 4).unwrap();
+    assert_eq!(same.unlabelled, found.unlabelled);
+}
+
+#[test]
+fn whoever_can_try_comes_near_the_expert() {
+    let tasks = ["find_objects#blue", "find_objects#turned"];
+    let found = unlabelled(&tasks, &[&[]], 3).unwrap();
+    let set = &found.unlabelled[0];
+    assert!(set.finds_out.agent.ends_with("until a reward shows another"), "{set:?}");
+    assert!(set.finds_out.mean() > set.fixed.mean(), "{set:?}");
+    for (name, level) in &set.finds_out.levels {
+        let scale = &found.scales[name];
+        let is_between = level.mean <= scale.ceiling + 1e-9 && level.mean > scale.floor;
+        assert!(is_between, "{name} {level:?} {scale:?}");
+    }
+}
+
+#[test]
+fn sets_that_can_be_told_apart_are_refused() {
+    let check = |sets: &[&[&str]], expected: &str| {
+        let tasks = ["select_object#green", "select_object#dusk", "select_object#slow"];
+        let said = unlabelled(&tasks, sets, 2).unwrap_err().to_string();
+        assert_eq!(said, expected);
+    };
+    let advice = "expected variants that look alike at the start; the ceiling of those that can be told apart is the \
+                  expert's";
+    check(
+        &[&["select_object#green", "select_object#dusk"]],
+        &format!(
+            "unlabelled: found select_object#green and select_object#dusk, which differ in more than what pays, {advice}"
+        ),
+    );
+    check(
+        &[&["select_object#green"]],
+        "unlabelled: found select_object#green alone, expected two variants or more",
+    );
+    check(
+        &[&["select_object#green", "select_object#red"]],
+        "unlabelled: found select_object#red, expected variants that are measured: name it as a TASK, too",
+    );
 }

@@ -4,9 +4,7 @@
 use std::collections::BTreeMap;
 
 use driftworld_curriculum::{MOST_STEPS, log_name};
-use driftworld_env::{
-    Agent, Catalogue, Environment, Expertise, RandomAgent, StillAgent, UNKNOWN_CLASS,
-};
+use driftworld_env::{Agent, Catalogue, Environment, Expertise, RandomAgent, StillAgent};
 use driftworld_generator::Sampler;
 use driftworld_spec::{Modality, Object, Rules, Variant, World};
 use rayon::prelude::*;
@@ -16,19 +14,36 @@ use super::{AgentLevel, ScalesRequest, episode};
 use crate::{Failure, argument, tasks};
 
 /// In how many worlds the first pictures are compared.
-const PICTURES: usize = 5;
+const PICTURES: u64 = 5;
 
-/// What the best of some agents earns that cannot know which of these variants it is in.
+/// What agents earn at best that cannot know which of these variants they are in, as far as it is known.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct UnlabelledCeiling {
     /// The variants, each as likely as the others, by their names in logs.
     pub among: Vec<String>,
-    /// Which agent it is.
+    /// The best agent that does the same in all of them, such as one without memory.
+    pub fixed: BestAgent,
+    /// The best agent that may also find out within an episode, from what it is paid.
+    pub finds_out: BestAgent,
+}
+
+/// The agent that earns most in the mean over a set of variants.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BestAgent {
+    /// Which agent it is, in words.
     #[serde(default)]
     pub agent: String,
-    /// What that agent earns in each of them.
-    pub ceilings: BTreeMap<String, AgentLevel>,
+    /// What it earns in each of the variants.
+    pub levels: BTreeMap<String, AgentLevel>,
+}
+
+impl BestAgent {
+    /// What it earns in the mean over the variants.
+    pub fn mean(&self) -> f64 {
+        self.levels.values().map(|level| level.mean).sum::<f64>() / self.levels.len().max(1) as f64
+    }
 }
 
 /// One agent that is tried.
@@ -48,6 +63,10 @@ impl Ignorant {
     fn all(num_variants: usize) -> impl Iterator<Item = Self> {
         let experts = (0..num_variants).flat_map(|own| [Self::Fixed(own), Self::FindsOut(own)]);
         [Self::Still, Self::Random].into_iter().chain(experts)
+    }
+
+    fn is_fixed(self) -> bool {
+        !matches!(self, Self::FindsOut(_))
     }
 
     fn name(self, variants: &[&Variant]) -> String {
@@ -79,68 +98,199 @@ impl Ignorant {
     }
 }
 
-/// The sets that a request asks for: those that it names, or all of its variants that look alike.
+/// The sets that a request asks for: those that it names, or all of the measured variants that look alike.
+///
+/// # Errors
+/// [`Failure`] where a named variant is not measured, stands alone, or does not look like the others.
 pub(super) fn sets_of<'a>(
     variants: &'a [(String, Variant)],
     request: &ScalesRequest,
     catalogue: &Catalogue,
 ) -> Result<Vec<Vec<&'a Variant>>, Failure> {
     let mut sets: Vec<Vec<&Variant>> = Vec::new();
-    for asked in &request.unlabelled {
-        if asked.is_empty() {
-            let mut classes: Vec<Vec<&Variant>> = Vec::new();
-            for (_, variant) in variants {
-                let mut of_these = None;
-                for (place, class) in classes.iter().enumerate() {
-                    if class[0].task().name() == variant.task().name()
-                        && unlike(class[0], variant, request, catalogue)?.is_none()
-                    {
-                        of_these = Some(place);
-                        break;
-                    }
-                }
-                match of_these {
-                    Some(place) => classes[place].push(variant),
-                    None => classes.push(vec![variant]),
-                }
+    for names in &request.unlabelled {
+        let found = if names.is_empty() {
+            alike(variants, request, catalogue)?
+        } else {
+            vec![named(names, variants, request, catalogue)?]
+        };
+        let ids = |set: &[&Variant]| set.iter().map(|variant| variant.id()).collect::<Vec<_>>();
+        for set in found {
+            if sets.iter().all(|known| ids(known) != ids(&set)) {
+                sets.push(set);
             }
-            sets.extend(classes.into_iter().filter(|class| class.len() > 1));
-            continue;
         }
-        let named = tasks::variants_of(asked)?;
-        let mut set = Vec::new();
-        for (_, variant) in &named {
-            let known = variants.iter().map(|(_, known)| known);
-            let Some(known) = known.into_iter().find(|known| known.id() == variant.id()) else {
-                return Err(Failure::usage(format!(
-                    "{}: found {}, expected variants that are measured",
-                    argument("unlabelled"),
-                    variant.id()
-                )));
-            };
-            set.push(known);
+    }
+    Ok(sets)
+}
+
+/// All sets of two variants or more that look alike.
+fn alike<'a>(
+    variants: &'a [(String, Variant)],
+    request: &ScalesRequest,
+    catalogue: &Catalogue,
+) -> Result<Vec<Vec<&'a Variant>>, Failure> {
+    let mut sets: Vec<Vec<&Variant>> = Vec::new();
+    for (_, variant) in variants {
+        let mut own = None;
+        for (place, set) in sets.iter().enumerate() {
+            let is_of_task = set[0].task().name() == variant.task().name();
+            if is_of_task && unlike(set[0], variant, request, catalogue)?.is_none() {
+                own = Some(place);
+                break;
+            }
         }
-        let [first, others @ ..] = set.as_slice() else { continue };
-        if others.is_empty() {
-            return Err(Failure::usage(format!(
-                "{}: found {} alone, expected two variants or more",
-                argument("unlabelled"),
-                first.id()
+        match own {
+            Some(place) => sets[place].push(variant),
+            None => sets.push(vec![variant]),
+        }
+    }
+    sets.retain(|set| set.len() > 1);
+    Ok(sets)
+}
+
+/// The set of these names, which must look alike.
+fn named<'a>(
+    names: &[String],
+    variants: &'a [(String, Variant)],
+    request: &ScalesRequest,
+    catalogue: &Catalogue,
+) -> Result<Vec<&'a Variant>, Failure> {
+    let wrong = |text: String| Failure::usage(format!("{}: {text}", argument("unlabelled")));
+    let mut set: Vec<&Variant> = Vec::new();
+    for (_, variant) in tasks::variants_of(names)? {
+        let known = variants.iter().find(|(_, known)| known.id() == variant.id());
+        let (_, known) = known.ok_or_else(|| {
+            wrong(format!(
+                "found {}, expected variants that are measured: name it as a TASK, too",
+                variant.id()
+            ))
+        })?;
+        if let Some(first) = set.first()
+            && let Some(what) = unlike(first, known, request, catalogue)?
+        {
+            return Err(wrong(format!(
+                "found {} and {}, which {what}, expected variants that look alike at the start; the ceiling of those \
+                 that can be told apart is the expert's",
+                first.id(),
+                known.id()
             )));
         }
-        for other in others {
-            if let Some(what) = unlike(first, other, request, catalogue)? {
-                return Err(Failure::input(format!(
-                    "{}: found {} and {}, which {what}, expected variants that look alike at the start; a learner can \
-                     tell these, so their ceiling is the expert's",
-                    argument("unlabelled"),
-                    first.id(),
-                    other.id()
-                )));
-            }
-        }
-        sets.push(set);
+        set.push(known);
     }
-    sets.dedup();
-    Ok(sets)
+    if set.len() < 2 {
+        return Err(wrong(format!(
+            "found {} alone, expected two variants or more",
+            names.join(", ")
+        )));
+    }
+    Ok(set)
+}
+
+/// By what two variants can be told apart before anything was paid; `None` if nothing shows it.
+fn unlike(
+    a: &Variant,
+    b: &Variant,
+    request: &ScalesRequest,
+    catalogue: &Catalogue,
+) -> Result<Option<&'static str>, Failure> {
+    let (of_a, of_b) = (Sampler::new(a, request.seed), Sampler::new(b, request.seed));
+    for index in 0..request.worlds {
+        let (a, b) = (of_a.world(index)?, of_b.world(index)?);
+        if unpaid(&a)? != unpaid(&b)? {
+            return Ok(Some("differ in more than what pays"));
+        }
+        if index < PICTURES && first_picture(&a, catalogue) != first_picture(&b, catalogue) {
+            return Ok(Some("have other first pictures"));
+        }
+    }
+    Ok(None)
+}
+
+/// A world without what says what pays, when, and what ends an episode.
+fn unpaid(world: &World) -> Result<World, Failure> {
+    let bare = world.clone().edit(|world| {
+        world.rules = Rules::default();
+        for object in &mut world.objects {
+            let plain = Object::new(object.class.clone(), object.coordinates);
+            object.reward = plain.reward;
+            object.reward_probability = plain.reward_probability;
+            object.reward_stimulus = plain.reward_stimulus;
+            object.reward_once_stimulus = plain.reward_once_stimulus;
+            object.range_stimulus_distance = plain.range_stimulus_distance;
+            object.order = plain.order;
+            object.tag = plain.tag;
+        }
+    });
+    Ok(bare?)
+}
+
+/// What the agent sees at first, in the images that the world asks for.
+fn first_picture(world: &World, catalogue: &Catalogue) -> (Vec<u8>, Vec<u8>) {
+    let shows_pay = world.agent_params.modalities.contains(&Modality::Segmentation);
+    let mut environment = Environment::with_catalogue(world.clone(), catalogue.clone());
+    let frame = environment.observe();
+    let pay = if shows_pay { frame.category.clone() } else { Vec::new() };
+    (frame.rgb.clone(), pay)
+}
+
+/// Lets every agent run in the same worlds of each variant of a set, and takes those that earn most in the mean over
+/// variants.
+///
+/// # Errors
+/// [`Failure`] where a world cannot be drawn.
+pub(super) fn ceiling(
+    set: &[&Variant],
+    request: &ScalesRequest,
+    catalogue: &Catalogue,
+) -> Result<UnlabelledCeiling, Failure> {
+    let expertise = Expertise {
+        steps: MOST_STEPS,
+        catalogue: catalogue.clone(),
+    };
+    let samplers: Vec<Sampler> = set.iter().map(|variant| Sampler::new(variant, request.seed)).collect();
+    let in_worlds = |index: u64| -> Result<Vec<Vec<(f64, bool)>>, Failure> {
+        let worlds: Vec<World> = samplers
+            .iter()
+            .map(|sampler| sampler.world(index))
+            .collect::<Result<_, _>>()?;
+        let of_agent = |agent: Ignorant| {
+            let of_variant = |place| agent.run(&worlds, place, super::chance(request, index), &expertise);
+            (0..set.len()).map(of_variant).collect()
+        };
+        Ignorant::all(set.len()).map(of_agent).collect()
+    };
+    let of_worlds: Vec<_> = (0..request.worlds)
+        .into_par_iter()
+        .map(in_worlds)
+        .collect::<Result<_, _>>()?;
+    let among: Vec<String> = (set.iter())
+        .map(|variant| log_name(variant.task().name(), variant.name()))
+        .collect();
+    let of_agent = |(number, agent): (usize, Ignorant)| {
+        let level = |place: usize| {
+            let episodes: Vec<_> = of_worlds.iter().map(|world| world[number][place]).collect();
+            AgentLevel::of(&episodes)
+        };
+        BestAgent {
+            agent: agent.name(set),
+            levels: among.iter().cloned().zip((0..set.len()).map(level)).collect(),
+        }
+    };
+    let best = |is_one: &dyn Fn(Ignorant) -> bool| {
+        let agents = Ignorant::all(set.len()).enumerate().filter(|(_, agent)| is_one(*agent));
+        // Of equals the first, which knows least.
+        let better = |best: BestAgent, other: BestAgent| if other.mean() > best.mean() { other } else { best };
+        agents.map(of_agent).reduce(better)
+    };
+    match (best(&Ignorant::is_fixed), best(&|_| true)) {
+        (Some(fixed), Some(finds_out)) => Ok(UnlabelledCeiling {
+            among,
+            fixed,
+            finds_out,
+        }),
+        _ => Err(Failure::usage(
+            "found no agent, expected one that stands still at least",
+        )),
+    }
 }

@@ -123,15 +123,18 @@ fn serving(tasks: &[String], trained: &[&str]) -> BTreeSet<usize> {
 }
 
 /// The names under which a lifetime's tasks are scored.
-fn tasks(log: &Log, options: &Options) -> Vec<String> {
-    let scored = |task: &String| {
-        let task = task.to_lowercase();
-        match (options.variant_mode, task.split_once('_')) {
-            (VariantMode::Agnostic, Some((task, _))) => task.to_owned(),
-            _ => task,
-        }
-    };
-    log.rows.task_names().values().iter().map(scored).collect()
+pub(super) fn tasks(log: &Log, options: &Options) -> Vec<String> {
+    let names = log.rows.task_names().values().iter();
+    names.map(|task| scored_name(task, options)).collect()
+}
+
+/// The name under which a task is scored.
+pub(super) fn scored_name(task: &str, options: &Options) -> String {
+    let task = task.to_lowercase();
+    match (options.variant_mode, task.split_once('_')) {
+        (VariantMode::Agnostic, Some((task, _))) => task.to_owned(),
+        _ => task,
+    }
 }
 
 #[cfg(test)]

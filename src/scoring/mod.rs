@@ -4,6 +4,7 @@
 mod comparison;
 mod experts;
 mod request;
+mod scales_fit;
 mod scored_log;
 mod scores;
 mod settings;

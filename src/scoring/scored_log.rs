@@ -8,6 +8,7 @@ use driftworld_text::ShownPath;
 use rayon::prelude::*;
 
 use super::Experts;
+use super::scales_fit::unfit_scales;
 use crate::{Failure, Warn, argument, log_folders};
 
 /// One lifetime with everything that is known of it.
@@ -35,6 +36,7 @@ impl ScoredLog {
         let mut warnings: Vec<String> = log.warnings.iter().map(ToString::to_string).collect();
         warnings.extend(missing_numbers(&log, &options.perf_measure));
         warnings.extend(experts.left_aside(&log, options));
+        warnings.extend(unfit_scales(&log, options));
         for warning in &warnings {
             warn(format!("{}: {warning}", folder.shown()));
         }

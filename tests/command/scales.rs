@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use crate::null_bands::{parsed, write};
-use crate::terminal::{scratch, succeed_in};
+use crate::terminal::{driftworld_in, output, scratch, succeed_in};
 use driftworld::metrics::BlockType;
 
 /// Evaluates two variants before and after each is learned; `level` is earned in the worlds of the first by then.
@@ -117,4 +117,84 @@ fn power_says_what_lifetimes_can_show() {
     assert!(0.05 < power && power < 0.8, "{row}");
     assert!(row["lifetimes_needed"].as_u64().expect("a number") > 4, "{row}");
     assert!(row["smallest_effect"].as_f64().expect("an effect") > 10.0, "{row}");
+}
+
+#[test]
+fn what_looks_alike_has_a_ceiling_of_its_own() {
+    let folder = scratch();
+    let mut measure = vec!["scales", "select_object#green", "select_object#red", "--worlds", "3"];
+    measure.extend(["--unlabelled", "-o", "scales.json"]);
+    let shown = succeed_in(folder.path(), &measure);
+    assert!(
+        shown.contains("look alike") && shown.contains("does the same in all"),
+        "{shown}"
+    );
+    let tasks = ["selectobject_green", "selectobject_red"];
+    let live = |name: &str, tasks: &[&'static str]| {
+        let mut rows = Vec::new();
+        for block in 0..3 {
+            let kind = if block == 1 { BlockType::Train } else { BlockType::Test };
+            let own = if block == 1 { &tasks[..1] } else { tasks };
+            rows.extend(
+                own.iter()
+                    .flat_map(|task| (0..4).map(move |world| (block, kind, *task, world, f64::from(world)))),
+            );
+        }
+        write(&folder.path().join(name), &rows);
+    };
+    live("life", &tasks);
+    let shown = succeed_in(folder.path(), &["metrics", "life", "--scales", "scales.json"]);
+    let line = "selectobject_green, selectobject_red look alike. Without a label the best known agent has ";
+    assert!(shown.contains(line), "{shown}");
+    let json = parsed(&succeed_in(
+        folder.path(),
+        &["metrics", "life", "--scales", "scales.json", "--json"],
+    ));
+    let file = parsed(&std::fs::read_to_string(folder.path().join("scales.json")).expect("a file"));
+    let set = &file["unlabelled"][0];
+    for task in tasks {
+        let shown = &json["reached"][task]["unlabelled"];
+        assert_eq!(shown["fixed"], set["fixed"]["levels"][task]["mean"], "{json}");
+        assert_eq!(shown["finds_out"], set["finds_out"]["levels"][task]["mean"], "{json}");
+        assert_eq!(shown["among"], serde_json::json!(tasks), "{json}");
+    }
+    // Alone, a task looks like no other of the lifetime.
+    live("alone", &tasks[..1]);
+    let json = parsed(&succeed_in(
+        folder.path(),
+        &["metrics", "alone", "--scales", "scales.json", "--json"],
+    ));
+    assert!(json["reached"][tasks[0]]["unlabelled"].is_null(), "{json}");
+}
+
+#[test]
+fn scales_that_fit_no_task_are_said() {
+    let folder = scratch();
+    live(&folder.path().join("life"), 20.0);
+    let file = folder.path().join("scales.json");
+    let warned = |text: &str| {
+        std::fs::write(&file, text).expect("a file");
+        let run = output(&mut driftworld_in(
+            folder.path(),
+            &["metrics", "life", "--scales", "scales.json"],
+        ));
+        assert!(run.status.success());
+        String::from_utf8(run.stderr).expect("text")
+    };
+    let said = warned(r#"{"scales": {"findobject_red": {"floor": 0, "ceiling": 10}}}"#);
+    assert!(
+        said.contains(
+            "found no floor and ceiling of a task of this log, expected findobjects_red, findobjects_penalty"
+        ) && said.contains("did you mean \"findobject_red\"?"),
+        "{said}"
+    );
+    let said = warned(
+        r#"{"scales": {"findobjects_red": {"floor": 0, "ceiling": 10}, "findobjects_penalt": {"floor": 0, "ceiling": 1}}}"#,
+    );
+    assert!(
+        said.contains("of findobjects_penalty; did you mean \"findobjects_penalt\"?"),
+        "{said}"
+    );
+    let said = warned(r#"{"scales": {"findobjects_red": {"floor": 0, "ceiling": 10}}}"#);
+    assert!(!said.contains("scales:"), "{said}");
 }

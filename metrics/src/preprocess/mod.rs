@@ -25,8 +25,9 @@ pub(crate) fn anchors(task: &str, options: &Options) -> Option<Anchors> {
     let hull = |a: Anchors, b: Anchors| Anchors {
         floor: a.floor.min(b.floor),
         ceiling: a.ceiling.max(b.ceiling),
+        unlabelled: Vec::new(),
     };
-    let found = of_task.map(|(_, anchors)| *anchors).reduce(hull);
+    let found = of_task.map(|(_, anchors)| anchors.clone()).reduce(hull);
     found.filter(|anchors| anchors.ceiling > anchors.floor)
 }
 

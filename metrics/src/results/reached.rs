@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::lifetime::{Lifetime, Regime, SteRun, World, worlds};
 use crate::preprocess::{anchors, given_range};
 use crate::statistics::mean;
-use crate::{BlockType, Log, MetricsError, NormalizationMethod, Options};
+use crate::{Anchors, BlockType, Log, MetricsError, NormalizationMethod, Options, Unlabelled};
 
 /// Part of its expert's level below which a task was never learned.
 pub const LEARNED_SHARE: f64 = 0.2;
@@ -56,6 +56,10 @@ pub struct Reached {
     /// What an agent earns that knows the task, if that is known, and above the floor.
     #[serde(default)]
     pub ceiling: Option<f64>,
+    /// What the best known agents earn that cannot tell the task from others of the lifetime that look alike, if that is
+    /// known: of the largest set of such tasks that the lifetime has all of.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unlabelled: Option<Unlabelled>,
     /// What the task's performances were scaled by for the metrics.
     #[serde(default)]
     pub scaled_by: ScaledBy,
@@ -150,10 +154,11 @@ pub(crate) fn reached(
             .filter_map(|run| level(run, task))
             .collect();
         let anchors = anchors(task, options);
-        let expert = mean(&levels).or(anchors.map(|anchors| anchors.ceiling));
+        let ceiling = anchors.as_ref().map(|anchors| anchors.ceiling);
+        let expert = mean(&levels).or(ceiling);
         // Ranges that lack a task are refused where they are used.
         let range = given_range(task, lifetime, options).ok().flatten();
-        let floor = anchors.map_or(range.map_or(0.0, |range| range.min), |anchors| anchors.floor);
+        let floor = (anchors.as_ref()).map_or(range.map_or(0.0, |range| range.min), |anchors| anchors.floor);
         let part = |level: f64| {
             let expert = expert.filter(|expert| *expert > floor)?;
             Some((level - floor) / (expert - floor)).filter(|part| part.is_finite())
@@ -163,8 +168,9 @@ pub(crate) fn reached(
             expert,
             share: best.and_then(|(_, highest)| part(highest)),
             shares: after_learning.into_iter().filter_map(part).collect(),
-            floor: anchors.map(|anchors| anchors.floor),
-            ceiling: anchors.map(|anchors| anchors.ceiling),
+            floor: anchors.as_ref().map(|anchors| anchors.floor),
+            ceiling,
+            unlabelled: anchors.as_ref().and_then(|anchors| unlabelled(anchors, lifetime)),
             scaled_by: scaled_by(task, lifetime, options),
             evaluations: Vec::new(),
         };
@@ -175,6 +181,13 @@ pub(crate) fn reached(
         found.insert(task.clone(), reached);
     }
     Ok(found)
+}
+
+/// The largest set of tasks that look alike, of those that the lifetime has all of.
+fn unlabelled(anchors: &Anchors, lifetime: &Lifetime) -> Option<Unlabelled> {
+    let is_met = |set: &&Unlabelled| set.among.iter().all(|task| lifetime.tasks().contains(task));
+    let met = anchors.unlabelled.iter().filter(is_met);
+    met.max_by_key(|set| set.among.len()).cloned()
 }
 
 /// Mean and standard error of an evaluation: each world counts once, by the mean of its rows.

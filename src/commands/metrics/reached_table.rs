@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::metrics::{EvaluationCell, LEARNED_SHARE, LifetimeMetrics, Reached};
+use crate::metrics::{EvaluationCell, LEARNED_SHARE, LifetimeMetrics, Reached, Unlabelled};
 
 use super::tables::number;
 use crate::table::wide_table;
@@ -33,7 +33,7 @@ pub(super) fn reached(scores: &LifetimeMetrics) -> Option<String> {
             cells.push(scale(task));
         }
         if has_expert {
-            cells.push(task.expert.map_or_else(String::new, number));
+            cells.push(task.expert.map_or_else(String::new, |level| in_units_of(task, level)));
             cells.push(task.share.map_or_else(String::new, percent));
             if relearns {
                 cells.push(task.shares.iter().copied().map(percent).collect::<Vec<_>>().join(", "));
@@ -75,15 +75,46 @@ pub(super) fn reached(scores: &LifetimeMetrics) -> Option<String> {
         ));
     }
     let headings = headings.into_iter().map(str::to_owned).collect();
-    Some(format!("{}\n{}", wide_table(headings, rows, &numbers), notes.join(" ")))
+    let mut lines = vec![wide_table(headings, rows, &numbers), notes.join(" ")];
+    lines.extend(unlabelled(scores));
+    Some(lines.join("\n"))
 }
 
-/// A row per task that some of these lifetimes evaluate after learning: means over lifetimes, and in how many it was
-/// never learned. `None` without any. `agent` is put behind the heading.
+/// What those earn that cannot tell the tasks apart that look alike: a line for each set of them.
+fn unlabelled(scores: &LifetimeMetrics) -> Vec<String> {
+    let tasks = &scores.reached;
+    let mut sets: Vec<&Vec<String>> = Vec::new();
+    for set in tasks.values().filter_map(|task| task.unlabelled.as_ref()) {
+        if !sets.contains(&&set.among) {
+            sets.push(&set.among);
+        }
+    }
+    let line = |among: &Vec<String>| {
+        let mean = |of: fn(&Unlabelled) -> f64| {
+            let scores = among.iter().map(|name| {
+                let task = tasks.get(name)?;
+                task.score(of(task.unlabelled.as_ref()?))
+            });
+            let scores: Option<Vec<f64>> = scores.collect();
+            scores.map(|scores| scores.iter().sum::<f64>() / scores.len().max(1) as f64)
+        };
+        Some(format!(
+            "{} look alike. Without a label the best known agent has {} of the way in their mean, and one that does the \
+             same in all, as without memory, {}.",
+            driftworld_text::one_line(among.join(", ")),
+            percent(mean(|set| set.finds_out)?),
+            percent(mean(|set| set.fixed)?)
+        ))
+    };
+    sets.into_iter().filter_map(line).collect()
+}
+
+/// A row per task that some of these lifetimes evaluate: means over lifetimes, and in how many it was never learned.
+/// `None` without any. `agent` is put behind the heading.
 pub(super) fn reached_by_several(agent: &str, lifetimes: &[LifetimeMetrics]) -> Option<String> {
     let mut tasks: BTreeMap<&str, Vec<&Reached>> = BTreeMap::new();
     for (name, task) in lifetimes.iter().flat_map(|lifetime| &lifetime.reached) {
-        if task.best.is_some() {
+        if !task.evaluations.is_empty() {
             tasks.entry(name).or_default().push(task);
         }
     }
@@ -107,7 +138,11 @@ pub(super) fn reached_by_several(agent: &str, lifetimes: &[LifetimeMetrics]) -> 
             (*name).to_owned(),
             level(Reached::best),
             level(Reached::last),
-            mean(&|task| task.expert, number),
+            if is_scaled {
+                mean(&|task| task.score(task.expert?), percent)
+            } else {
+                mean(&|task| task.expert, number)
+            },
             mean(&|task| task.share, percent),
             if not == 0 {
                 String::new()
@@ -126,8 +161,13 @@ pub(super) fn reached_by_several(agent: &str, lifetimes: &[LifetimeMetrics]) -> 
         "",
     ];
     let headings = headings.into_iter().map(str::to_owned).collect();
-    (!rows.is_empty()).then(|| wide_table(headings, rows, &[1, 2, 3, 4]))
+    let is_scaled = tasks.values().flatten().any(|task| task.is_scaled());
+    let unit = if is_scaled { UNITS } else { "" };
+    (!rows.is_empty()).then(|| wide_table(headings, rows, &[1, 2, 3, 4]) + unit)
 }
+
+/// What numbers with and without % are.
+const UNITS: &str = "\nIn % of the way from floor to ceiling where these are known, else in the log's unit.";
 
 /// A row per evaluated task: what its curve says. `None` unless a task is evaluated more than once.
 pub(super) fn curves(scores: &LifetimeMetrics) -> Option<String> {
@@ -188,6 +228,11 @@ fn cell(task: &Reached, found: &EvaluationCell) -> String {
         Some(error) => format!("{mean} ± {error}"),
         None => mean,
     }
+}
+
+/// A level in the unit that the evaluations of its task are shown in.
+fn in_units_of(task: &Reached, level: f64) -> String {
+    task.score(level).map_or_else(|| number(level), percent)
 }
 
 /// What 0 % and 100 % are.

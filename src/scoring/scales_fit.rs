@@ -1,0 +1,76 @@
+//! What is said of scales that do not fit a log: that none does, that a name is nearly one, and that a set of tasks that
+//! look alike was measured with others alone. What is scaled by them is `metrics`'.
+
+use driftworld_metrics::{Log, Options, Scales};
+use driftworld_spec::did_you_mean;
+
+use super::experts::{scored_name, tasks};
+
+/// The most names that are listed.
+const MOST_NAMES: usize = 5;
+
+/// What a reader must know of the scales of this log.
+pub(super) fn unfit_scales(log: &Log, options: &Options) -> Vec<String> {
+    let Some(scales) = &options.scales else {
+        return Vec::new();
+    };
+    let mut tasks = tasks(log, options);
+    tasks.dedup();
+    let scored: Vec<String> = scales.keys().map(|name| scored_name(name, options)).collect();
+    let missing: Vec<&String> = tasks.iter().filter(|task| !scored.contains(task)).collect();
+    let near = |task: &str| did_you_mean(task, scored.iter().map(String::as_str));
+    let is_alone = |task: &&&String| !near(task).is_empty();
+    let mut found = Vec::new();
+    if missing.len() == tasks.len() {
+        let hint = tasks.first().map_or_else(String::new, |task| near(task));
+        found.push(format!(
+            "scales: found no floor and ceiling of a task of this log, expected {}{hint}; every task is scaled by \
+             its own range",
+            listed(&tasks)
+        ));
+    } else {
+        for task in missing.iter().filter(is_alone) {
+            found.push(format!(
+                "scales: found no floor and ceiling of {task}{}; it is scaled by its own range",
+                near(task)
+            ));
+        }
+    }
+    found.extend(alike_with_others(scales, &tasks));
+    found
+}
+
+/// Says so where tasks of a log are known to look alike, but were measured with others alone.
+fn alike_with_others(scales: &Scales, tasks: &[String]) -> Option<String> {
+    let mut alone: Vec<&str> = Vec::new();
+    for (name, anchors) in scales.iter().filter(|(name, _)| tasks.contains(name)) {
+        let in_log = |set: &[String]| set.iter().filter(|member| tasks.contains(member)).count();
+        let is_met = anchors
+            .unlabelled
+            .iter()
+            .any(|set| in_log(&set.among) == set.among.len());
+        if !is_met && anchors.unlabelled.iter().any(|set| in_log(&set.among) > 1) {
+            alone.push(name);
+        }
+    }
+    (!alone.is_empty()).then(|| {
+        format!(
+            "scales: {} look alike, and their ceiling without a label is known among more tasks only; `driftworld scales \
+             --unlabelled` of these alone measures it",
+            alone.join(", ")
+        )
+    })
+}
+
+fn listed(names: &[String]) -> String {
+    let shown = names
+        .iter()
+        .take(MOST_NAMES)
+        .map(String::as_str)
+        .collect::<Vec<_>>()
+        .join(", ");
+    match names.len().saturating_sub(MOST_NAMES) {
+        0 => shown,
+        more => format!("{shown} and {more} more"),
+    }
+}
