@@ -7,7 +7,6 @@ mod draw;
 mod drift;
 mod error;
 mod interpolation;
-mod philox;
 mod placement;
 mod sampler;
 mod sequence;

@@ -2,11 +2,10 @@
 
 use std::convert::Infallible;
 
-use driftworld_spec::MAX_SEED;
+use driftworld_spec::{MAX_SEED, philox};
 use rand::TryRng;
 use sha2::{Digest, Sha256};
 
-use crate::philox::philox;
 
 /// One named stream of a task under a seed.
 ///

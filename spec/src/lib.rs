@@ -11,10 +11,12 @@ mod document;
 mod element;
 mod error;
 mod l2explorer;
+mod layout;
 mod limits;
 pub mod maps;
 mod names;
 mod oklab;
+mod philox;
 pub mod reference;
 mod scenario;
 pub mod schema;
@@ -32,9 +34,14 @@ pub use distribution::{
 };
 pub use element::Element;
 pub use error::{MAX_PROBLEMS, Problem, SpecError, did_you_mean, nearest};
+pub use layout::{
+    Circle, Doorway, Layout, LayoutWall, Legend, MAX_CELLS, MAX_LAYOUT_SIDE, Maze, Plan, PlanCell, PlanWall, RoomDoors,
+    Rooms,
+};
 pub use limits::{MAX_BYTES, MAX_DEPTH, MAX_KEY_BYTES, MAX_SCENARIO_VALUES, MAX_VALUES, MAX_WORLD_VALUES};
 pub use names::sound_name;
 pub use oklab::{Oklab, linear_from_srgb};
+pub use philox::philox;
 pub use scenario::{
     Block, BlockKind, BlockMix, DriftSchedule, DriftSwitch, MAX_EXPERIENCES, Phase, ProvenVariant, Regime, RegimeDrift,
     Scenario, ScenarioComplexity, ScenarioDifficulty, ScenarioForm, ScenarioProof, TaskLabel,

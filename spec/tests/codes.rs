@@ -8,6 +8,10 @@ fn world(text: &str) -> SpecError {
     World::from_json("w.json", text).expect_err("the world is broken on purpose")
 }
 
+fn layout(text: &str) -> SpecError {
+    world(&format!("{{ \"environment_params\": {{ \"layout\": {text} }} }}"))
+}
+
 fn task(body: &str) -> SpecError {
     let text = format!("{{ \"name\": \"t\", {body} }}");
     TaskSpec::from_json("t.json", &text).expect_err("the task is broken on purpose")
@@ -47,6 +51,22 @@ fn cases() -> Vec<SpecError> {
         world(
             r#"{ "objects": [{ "class": "tree", "coordinates": [1, 1], "unique_name": "a" },
                              { "class": "tree", "coordinates": [2, 2], "unique_name": "a" }] }"#,
+        ),
+        layout("{}"),
+        layout(r#"{ "maze": {}, "rooms": {} }"#),
+        layout(r#"{ "maze": {}, "legend": { "G": "wall" } }"#),
+        world(r#"{ "environment_params": { "predefined_map": 1, "layout": { "maze": {} } } }"#),
+        layout(r#"{ "maze": { "cells": [1000, 1000], "cell": 0.2, "wall": 0.1 } }"#),
+        layout(r#"{ "maze": { "cells": [100, 100], "cell": 4 } }"#),
+        layout(r#"{ "maze": { "wall": 3 } }"#),
+        layout(r#"{ "rooms": { "room": [1, 8] } }"#),
+        layout(r#"{ "text": ["*****", "*.GX*", "*****"] }"#),
+        layout(r#"{ "text": ["*****", "*..*", "*****"] }"#),
+        layout(r#"{ "text": ["***"] }"#),
+        layout(r#"{ "text": ["*.*"], "legend": { "ab": "wall" } }"#),
+        layout(
+            r#"{ "walls": [{ "height": 2 }, { "from": [0, 0] }, { "from": [1, 1], "to": [1, 1] },
+                               { "circle": { "center": [0, 0], "radius": 1 }, "thickness": 1 }] }"#,
         ),
         task(&format!(r#"{number}, "variants": {{ "a": {{ "extends": "b" }} }}"#)),
         task(&format!(r#"{number}, "variants": {{ "a": {{ "extends": "a" }} }}"#)),

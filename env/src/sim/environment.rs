@@ -213,7 +213,7 @@ impl Environment {
     pub(crate) fn warnings_of(&self, index: usize) -> Vec<Warning> {
         let mut warnings = Vec::new();
         let (object, item) = (&self.world.objects[index], &self.views.scene.items[index]);
-        if let Some(enclosure) = self.world.environment_params.enclosure(object.coordinates) {
+        if let Some(enclosure) = self.world.enclosure(object.coordinates) {
             warnings.push(Warning::StandsInWall {
                 object: index,
                 enclosure,

@@ -146,6 +146,7 @@ fn transition(a: &Sketch, b: &Sketch, objects: &Objects, sink: &mut impl Sink) {
     relative(Comparison::Width, a.agent_width, b.agent_width, sink);
     let map = f64::from(u8::from(a.map != b.map));
     as_it_is(Comparison::MapAndWalls, map + a.walls.distance(&b.walls), sink);
+    as_it_is(Comparison::Layouts, a.layout.distance(&b.layout), sink);
     let sides = a.arena.iter().zip(&b.arena);
     let (raw, normalised) = sides.fold((0.0, 0.0), |(raw, normalised), (a, b)| {
         (raw + (a - b).abs(), normalised + relative_difference(*a, *b))

@@ -41,6 +41,8 @@ pub(super) struct Sketch {
     pub(super) agent_width: f64,
     pub(super) map: u8,
     pub(super) walls: Arc<Leaves>,
+    /// What divides the arena.
+    pub(super) layout: Arc<Leaves>,
     pub(super) arena: [f64; 2],
     /// Zones that act on motion, that pay, and that are seen.
     pub(super) zones: [Arc<Leaves>; 3],
@@ -110,6 +112,7 @@ impl Sketcher {
             agent_width: agent.agent_width,
             map: around.predefined_map,
             walls: self.leaves(Comparison::MapAndWalls),
+            layout: self.leaves(Comparison::Layouts),
             arena: around.arena_size(),
             zones: [Comparison::Zones, Comparison::ZonePay, Comparison::ZoneLooks].map(|part| self.leaves(part)),
             step_reward: rules.step_reward / step_seconds + rules.reward_per_second,

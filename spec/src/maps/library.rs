@@ -128,7 +128,7 @@ impl MapLibrary {
     /// Writes the layout of the world's predefined map into the world, if there is one: the world then needs no library.
     pub fn apply(&self, world: &mut WorldDraft) {
         let environment = &mut world.environment_params;
-        if let Some(map) = self.maps.get(&environment.predefined_map) {
+        if let Some(map) = self.maps.get(&environment.map()) {
             environment.map_regions = Some(map.excluded_regions.clone());
         }
     }

@@ -1,7 +1,7 @@
 //! What makes a [`World`] of a [`WorldDraft`]: checks of values by the rules of documents. Objects are checked and read without a
 //! world, too. Reading worlds is in `mod.rs`.
 
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 use serde::Serialize;
 
@@ -9,6 +9,7 @@ use super::{ActionModel, ActionSpace, MAX_OBJECTS, MAX_POINTS, Object, World, Wo
 use super::{progress, zone};
 use crate::document::Document;
 use crate::error::{Problem, SpecError};
+use crate::layout::{self, Plan};
 use crate::limits::MAX_VALUES;
 use crate::maps::MapLibrary;
 use crate::schema::document::DocumentSchema;
@@ -66,7 +67,7 @@ impl WorldDraft {
     /// ```
     pub fn check(self) -> Result<World, SpecError> {
         check("world", &self, World::schema(), self.problems())?;
-        Ok(World(self))
+        Ok(World::planned(self))
     }
 
     /// As [`WorldDraft::check`] of fields whose values are each known to be in range: only what no field can say by itself is
@@ -78,14 +79,50 @@ impl WorldDraft {
     /// # Panics
     /// With debug assertions, where a value is out of its range.
     pub fn check_in_range(self) -> Result<World, SpecError> {
+        let plan = self.layout_problems().is_empty().then(|| self.plan()).flatten();
+        self.check_in_range_with(plan)
+    }
+
+    /// As [`WorldDraft::check_in_range`], with the plan of the layout that was made before, by [`WorldDraft::plan`].
+    ///
+    /// # Errors
+    /// As [`WorldDraft::check`].
+    ///
+    /// # Panics
+    /// With debug assertions, where a value is out of its range, or the plan is another.
+    pub fn check_in_range_with(self, plan: Option<Arc<Plan>>) -> Result<World, SpecError> {
         let problems = self.problems();
         if !problems.is_empty() {
             return Err(SpecError::of_document("world", problems));
         }
         if cfg!(debug_assertions) {
             check("world", &self, World::schema(), problems).expect("each value is in range, as the caller knows");
+            assert_eq!(plan, self.plan(), "the plan is that of the layout, as the caller knows");
         }
-        Ok(World(self))
+        Ok(World { draft: self, plan })
+    }
+
+    /// What the layout comes to, drawn with its own seed or else with that of the world; `None` without one.
+    ///
+    /// The layout must be sound, as [`WorldDraft::layout_problems`] says.
+    pub fn plan(&self) -> Option<Arc<Plan>> {
+        let layout = self.environment_params.layout.as_ref()?;
+        Some(Arc::new(layout.plan(self.seed.unwrap_or(0))))
+    }
+
+    /// What is wrong with the layout, beside values out of their ranges.
+    pub fn layout_problems(&self) -> Vec<Problem> {
+        let environment = &self.environment_params;
+        let Some(layout) = &environment.layout else {
+            return Vec::new();
+        };
+        let mut problems = layout.problems();
+        if environment.predefined_map != 0 {
+            let found = format!("a layout beside map {}", environment.predefined_map);
+            let problem = Problem::new("spec/layout-kind", layout::POINTER, found, "one of the two");
+            problems.push(problem.advise("remove \"predefined_map\", or the layout"));
+        }
+        problems
     }
 
     /// What the schema cannot say: checks that look at several values at once.
@@ -99,7 +136,7 @@ impl WorldDraft {
                 "a direction, such as [0.4, -0.3, 0.8]",
             ));
         }
-        if self.environment_params.predefined_map == 0 && self.environment_params.map_size.contains(&0.0) {
+        if self.environment_params.arena_size().contains(&0.0) {
             problems.push(
                 Problem::new(
                     "spec/empty-arena",
@@ -133,6 +170,7 @@ impl WorldDraft {
             ));
         }
         problems.extend(zone::problems(self));
+        problems.extend(self.layout_problems());
         problems.extend(progress::problems(self));
         problems.extend(duplicate_names(&self.objects));
         problems
@@ -140,9 +178,15 @@ impl WorldDraft {
 }
 
 impl World {
+    /// The world of sound fields.
+    pub(super) fn planned(draft: WorldDraft) -> Self {
+        let plan = draft.plan();
+        Self { draft, plan }
+    }
+
     /// Its fields, to be changed.
     pub fn into_draft(self) -> WorldDraft {
-        self.0
+        self.draft
     }
 
     /// The world after a change, if it obeys the rules of documents then.
@@ -167,7 +211,7 @@ impl World {
     #[must_use]
     pub fn with_maps(mut self, maps: &MapLibrary) -> Self {
         // Layouts obey the rules of a world's own regions, on which no other rule depends.
-        maps.apply(&mut self.0);
+        maps.apply(&mut self.draft);
         self
     }
 
@@ -192,7 +236,7 @@ impl World {
             ));
         }
         check("object", &object, Object::schema(), more)?;
-        self.0.objects.push(object);
+        self.draft.objects.push(object);
         Ok(())
     }
 }

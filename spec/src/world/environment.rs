@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Zone;
 use super::fields::{Field, FieldPlace, Place, fields};
+use crate::layout::{Layout, Plan};
 use crate::value::{ParameterType, Value};
 use crate::{Color, maps};
 
@@ -62,25 +63,43 @@ fields! {
         #[serde(skip_serializing_if = "Vec::is_empty")]
         #[schemars(length(max = 1000))]
         pub zones: Vec<Zone> = Vec::new() => Field::ours(Measured(&[Zones, ZonePay, ZoneLooks])),
+        /// What divides the arena: a maze, rooms, a map drawn with letters, a predefined map, or walls. All but walls say how
+        /// large the arena is, in place of `map_size`. Not beside a `predefined_map`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub layout: Option<Layout> = None => Field::ours(Leaves(Layouts)),
     }
 }
 
 impl EnvironmentParams {
-    /// Side lengths of the arena in metres: `map_size`, or 200 × 200 for a predefined map.
+    /// Side lengths of the arena in metres: those of the layout where it has some, else `map_size`, or 200 × 200 for a
+    /// predefined map.
     pub fn arena_size(&self) -> [f64; 2] {
-        if self.predefined_map == 0 {
+        if let Some(size) = self.layout.as_ref().and_then(Layout::size) {
+            size
+        } else if self.predefined_map == 0 {
             self.map_size
         } else {
             [200.0, 200.0]
         }
     }
 
-    /// The regions of the map that cannot be entered: those of a maps file, else of the built-in layout. `walls` come on top.
+    /// The number of the predefined map: `predefined_map`, or that of a layout which is one.
+    pub fn map(&self) -> u8 {
+        let own = self.layout.as_ref().and_then(|layout| layout.predefined);
+        own.unwrap_or(self.predefined_map)
+    }
+
+    /// The regions of the map that cannot be entered: those of a maps file, else of the built-in layout. `walls` come on top,
+    /// and the walls of a maze, of rooms and the like, which the plan of a checked [`World`](crate::World) has.
     pub fn regions(&self) -> Vec<&[[f64; 2]]> {
-        match &self.map_regions {
+        let mut all: Vec<&[[f64; 2]]> = match &self.map_regions {
             Some(regions) => regions.iter().map(|region| region.0.as_slice()).collect(),
-            None => maps::excluded_regions(self.predefined_map).to_vec(),
+            None => maps::excluded_regions(self.map()).to_vec(),
+        };
+        if let Some(layout) = self.layout.as_ref().filter(|layout| layout.predefined.is_some()) {
+            layout.keep_standing(&mut all);
         }
+        all
     }
 
     /// Whether a point lies within the outer walls.
@@ -90,16 +109,17 @@ impl EnvironmentParams {
     }
 
     /// The wall or region of the map that a point in metres lies in, by the even-odd rule; `None` on free ground.
+    /// `plan` is that of the layout, if there is one: [`World::enclosure`](crate::World::enclosure) knows it.
     ///
     /// # Example
     /// ```
     /// use driftworld_spec::EnvironmentParams;
     /// let village = EnvironmentParams { predefined_map: 2, ..EnvironmentParams::default() };
-    /// let house = village.enclosure([-70.0, 60.0]).expect("a house stands there");
+    /// let house = village.enclosure([-70.0, 60.0], None).expect("a house stands there");
     /// assert_eq!(house.to_string(), "region 1 of 12 of map 2 (village)");
-    /// assert!(village.enclosure([0.0, 0.0]).is_none());
+    /// assert!(village.enclosure([0.0, 0.0], None).is_none());
     /// ```
-    pub fn enclosure(&self, point: [f64; 2]) -> Option<Enclosure> {
+    pub fn enclosure(&self, point: [f64; 2], plan: Option<&Plan>) -> Option<Enclosure> {
         let regions = self.regions();
         if let Some(index) = regions.iter().position(|corners| encloses(corners, point)) {
             return Some(match &self.map_regions {
@@ -107,12 +127,19 @@ impl EnvironmentParams {
                 None => Enclosure::Region {
                     index,
                     count: regions.len(),
-                    map: self.predefined_map,
+                    map: self.map(),
                 },
             });
         }
-        let index = self.walls.iter().position(|wall| encloses(&wall.polygon, point))?;
-        Some(Enclosure::Wall { index })
+        if let Some(index) = self.walls.iter().position(|wall| encloses(&wall.polygon, point)) {
+            return Some(Enclosure::Wall { index });
+        }
+        let walls = plan.map_or(&[][..], |plan| plan.walls.as_slice());
+        let index = walls.iter().position(|wall| encloses(&wall.polygon, point))?;
+        Some(Enclosure::LayoutWall {
+            index,
+            count: walls.len(),
+        })
     }
 }
 
@@ -148,6 +175,13 @@ pub enum Enclosure {
         /// Its index in `walls`.
         index: usize,
     },
+    /// A wall of the layout.
+    LayoutWall {
+        /// Its index in the walls of the plan.
+        index: usize,
+        /// How many the plan has.
+        count: usize,
+    },
 }
 
 impl fmt::Display for Enclosure {
@@ -158,6 +192,7 @@ impl fmt::Display for Enclosure {
             }
             Self::OwnRegion { index } => write!(f, "the region /environment_params/map_regions/{index}"),
             Self::Wall { index } => write!(f, "the wall /environment_params/walls/{index}"),
+            Self::LayoutWall { index, count } => write!(f, "wall {} of {count} of the layout", index + 1),
         }
     }
 }

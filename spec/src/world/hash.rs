@@ -44,11 +44,8 @@ impl World {
         };
         let arena = &self.environment_params;
         take(&mut [arena.arena_size()].into_iter());
-        for region in arena.regions() {
-            take(&mut region.iter().copied());
-        }
-        for wall in &arena.walls {
-            take(&mut wall.polygon.iter().copied());
+        for corners in self.obstacles() {
+            take(&mut corners.iter().copied());
         }
         take(&mut [self.agent_params.coordinates].into_iter());
         let mut places: Vec<[f64; 2]> = self.objects.iter().map(|object| object.coordinates).collect();

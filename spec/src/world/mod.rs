@@ -6,7 +6,7 @@ mod defaults;
 mod draft;
 mod environment;
 mod features;
-mod fields;
+pub(crate) mod fields;
 mod hash;
 mod object;
 mod progress;
@@ -16,7 +16,7 @@ mod table;
 mod zone;
 
 use std::ops::Deref;
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -36,6 +36,7 @@ pub use zone::{Disc, Zone, ZoneEnd};
 use crate::classes::Classes;
 use crate::document::Document;
 use crate::error::{Problem, SpecError};
+use crate::layout::Plan;
 use crate::limits::MAX_WORLD_VALUES;
 use crate::schema::document::DocumentSchema;
 use crate::version;
@@ -61,16 +62,28 @@ pub const MAX_POINTS: u64 = 1 << 26;
 /// assert_eq!(world.objects[0].coordinates, [3.0, 4.0]);
 /// # Ok::<(), driftworld_spec::SpecError>(())
 /// ```
-#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Default, Serialize, JsonSchema)]
 #[serde(transparent)]
-pub struct World(WorldDraft);
+pub struct World {
+    draft: WorldDraft,
+    /// What its layout comes to.
+    #[serde(skip)]
+    plan: Option<Arc<Plan>>,
+}
+
+/// The same fields make the same plan.
+impl PartialEq for World {
+    fn eq(&self, other: &Self) -> bool {
+        self.draft == other.draft
+    }
+}
 
 /// Its fields are read as those of a [`WorldDraft`], and only changed by way of one: whoever holds a world holds a checked one.
 impl Deref for World {
     type Target = WorldDraft;
 
     fn deref(&self) -> &WorldDraft {
-        &self.0
+        &self.draft
     }
 }
 
@@ -98,11 +111,11 @@ impl World {
         let mut document = Document::parse(name, text, MAX_WORLD_VALUES)?;
         document.upgrade(&version::WORLD)?;
         document.fail_on(World::schema().problems(&document.value))?;
-        let world = Self(document.deserialize()?);
-        let mut problems = world.problems();
-        problems.extend(classes.into_iter().flat_map(|classes| world.unknown_classes(classes)));
+        let draft: WorldDraft = document.deserialize()?;
+        let mut problems = draft.problems();
+        problems.extend(classes.into_iter().flat_map(|classes| draft.unknown_classes(classes)));
         document.fail_on(problems)?;
-        Ok(world)
+        Ok(Self::planned(draft))
     }
 
     /// The world as one line of JSON: the same world gives the same bytes on every platform.
@@ -118,6 +131,28 @@ impl World {
         text
     }
 
+    /// What its layout comes to: walls, free cells, doorways. `None` for a world without a layout.
+    pub fn plan(&self) -> Option<&Plan> {
+        self.plan.as_deref()
+    }
+
+    /// The ground that cannot be entered: the regions of the map, the walls, and those of the layout, each as a polygon in
+    /// metres, in this order.
+    pub fn obstacles(&self) -> impl Iterator<Item = &[[f64; 2]]> {
+        let environment = &self.environment_params;
+        let walls = environment.walls.iter().map(|wall| wall.polygon.as_slice());
+        let planned = self.plan().into_iter().flat_map(|plan| &plan.walls);
+        let regions = environment.regions().into_iter();
+        regions.chain(walls).chain(planned.map(|wall| wall.polygon.as_slice()))
+    }
+
+    /// The wall or region that a point in metres lies in, as [`EnvironmentParams::enclosure`].
+    pub fn enclosure(&self, point: [f64; 2]) -> Option<Enclosure> {
+        self.environment_params.enclosure(point, self.plan())
+    }
+}
+
+impl WorldDraft {
     /// Every object whose class is none of these.
     pub fn unknown_classes(&self, classes: &Classes) -> Vec<Problem> {
         let objects = self.objects.iter().enumerate();

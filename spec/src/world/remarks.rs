@@ -2,6 +2,7 @@
 //! one is said by the schema and in `mod.rs`.
 
 use super::{MotionModel, Object, World};
+use crate::layout::{self, Layout};
 use crate::warning::{Remarks, Warning};
 
 impl Object {
@@ -40,6 +41,9 @@ impl World {
             let text = format!("the zone lies outside the {width} × {depth} m arena; it is kept, out of reach");
             remarks.push(format!("/environment_params/zones/{index}"), text);
         }
+        if let Some(odd) = self.plan().and_then(Layout::remark) {
+            remarks.push(layout::POINTER.to_owned(), odd);
+        }
         for (index, object) in self.objects.iter().enumerate() {
             if let Some(place) = self.out_of_reach(object) {
                 remarks.push(format!("/objects/{index}/coordinates"), place);
@@ -64,7 +68,7 @@ impl World {
         let arena = &self.environment_params;
         let [width, depth] = arena.arena_size();
         let place = if arena.contains(object.coordinates) {
-            format!("inside {}", arena.enclosure(object.coordinates)?)
+            format!("inside {}", self.enclosure(object.coordinates)?)
         } else {
             format!("outside the {width} × {depth} m arena")
         };

@@ -70,6 +70,8 @@ comparisons! {
     Width: T, "agent's width", "the larger one",
     /// The map and its walls.
     MapAndWalls: T, "map and walls", "the larger one, or another word",
+    /// What divides the arena: mazes, rooms and walls.
+    Layouts: T, "layouts", "the larger one, or another word",
     /// The sides of the arena.
     ArenaSize: T, "sides of the arena", "the larger one",
     /// Where zones are that act on how the agent moves, and how.

@@ -192,6 +192,25 @@ numbers!(2, Point, |_| true);
 // A direction of no length is none.
 numbers!(3, Vector, |direction| *direction != [0.0; 3]);
 
+/// Counts along x and y, number by number.
+impl Place for [u32; 2] {
+    fn find_inside(words: &[&str], steps: &mut Vec<usize>) -> Option<ParameterType> {
+        let [index] = words else { return None };
+        steps.push(index.parse().ok()?);
+        Some(ParameterType::Integer)
+    }
+
+    fn set_inside(&mut self, steps: &[usize], value: &Value) -> Option<()> {
+        let [index] = steps else { return None };
+        *self.get_mut(*index)? = whole(value)?;
+        Some(())
+    }
+
+    fn list_inside(pointer: &str, field: &Field, found: &mut Vec<FieldPlace>) {
+        u32::list(format!("{pointer}/*"), field, false, found);
+    }
+}
+
 /// A type that is a value as a whole, and how it is read.
 macro_rules! leaf {
     ($type:ty, $kind:ident, $read:expr) => {

@@ -1,10 +1,18 @@
-//! Philox4x64-10: a counter-based generator, four numbers of 64 bits for each counter. What is drawn from it is in `stream.rs`.
+//! Philox4x64-10: a counter-based generator, four numbers of 64 bits for each counter. What is drawn from it is in
+//! `layout/draws.rs`, and in `generator`'s `stream.rs`.
 //!
 //! Source: Salmon et al. 2011, «Parallel random numbers: as easy as 1, 2, 3». Written here because no maintained crate has it
 //! and it is one screen; it gives the published test vectors.
 
-/// The numbers of one counter under a key.
-pub(crate) fn philox([mut k0, mut k1]: [u64; 2], [mut c0, mut c1, mut c2, mut c3]: [u64; 4]) -> [u64; 4] {
+/// The numbers of one counter under a key: Philox4x64-10.
+///
+/// # Example
+/// ```
+/// let numbers = driftworld_spec::philox([1, 2], [0; 4]);
+/// assert_eq!(numbers, driftworld_spec::philox([1, 2], [0; 4]));
+/// assert_ne!(numbers, driftworld_spec::philox([1, 2], [1, 0, 0, 0]));
+/// ```
+pub fn philox([mut k0, mut k1]: [u64; 2], [mut c0, mut c1, mut c2, mut c3]: [u64; 4]) -> [u64; 4] {
     for _ in 0..10 {
         let first = u128::from(c0) * 0xD2E7_470E_E14C_6C93;
         let second = u128::from(c2) * 0xCA5A_8263_9512_1157;

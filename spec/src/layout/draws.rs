@@ -1,0 +1,91 @@
+//! [`Draws`]: the random numbers of a layout, a stream for each purpose. Philox itself is in `philox.rs`.
+
+use crate::philox::philox;
+
+/// What the key of a layout's seed is filled up with.
+const DOMAIN: u64 = 0x6c61_796f_7574_2031;
+
+/// What a layout draws for.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Purpose {
+    /// The way through a maze, or which rooms are joined.
+    Tree = 1,
+    /// Which dead ends are opened, and where; which further walls of rooms have doorways.
+    Loops = 2,
+    /// Where in its wall a doorway is.
+    Doorways = 3,
+    /// The order in which walls are taken away.
+    Standing = 4,
+}
+
+/// One stream of whole numbers.
+pub(super) struct Draws {
+    key: [u64; 2],
+    counter: [u64; 4],
+    numbers: [u64; 4],
+    /// How many halves of `numbers` are used.
+    used: usize,
+}
+
+impl Draws {
+    pub(super) fn new(seed: u64, purpose: Purpose) -> Self {
+        Self {
+            key: [seed, DOMAIN],
+            counter: [0, purpose as u64, 0, 0],
+            numbers: [0; 4],
+            used: 8,
+        }
+    }
+
+    /// A whole number below `bound`, by the high half of a product: biased by less than `bound / 2³²`.
+    pub(super) fn below(&mut self, bound: usize) -> usize {
+        if self.used == 8 {
+            self.numbers = philox(self.key, self.counter);
+            self.counter[0] += 1;
+            self.used = 0;
+        }
+        let half = (self.numbers[self.used / 2] >> (32 * (self.used % 2))) & 0xffff_ffff;
+        self.used += 1;
+        ((half * bound as u64) >> 32) as usize
+    }
+
+    /// Puts items into a random order (Fisher and Yates).
+    pub(super) fn shuffle<T>(&mut self, items: &mut [T]) {
+        for last in (1..items.len()).rev() {
+            items.swap(last, self.below(last + 1));
+        }
+    }
+}
+
+/// How many of `all` a share in 0..1 is, to the nearest.
+pub(super) fn share_of(share: f64, all: usize) -> usize {
+    ((share * all as f64).round() as usize).min(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_draw_stays_below_its_bound_and_reaches_all() {
+        let mut draws = Draws::new(7, Purpose::Tree);
+        let mut seen = [0_u32; 5];
+        for _ in 0..5000 {
+            seen[draws.below(5)] += 1;
+        }
+        assert!(seen.iter().all(|count| (900..1100).contains(count)), "{seen:?}");
+    }
+
+    #[test]
+    fn seeds_and_purposes_have_numbers_of_their_own() {
+        let first = |seed, purpose| Draws::new(seed, purpose).below(1 << 31);
+        let all = [
+            first(1, Purpose::Tree),
+            first(2, Purpose::Tree),
+            first(1, Purpose::Loops),
+            first(1, Purpose::Standing),
+        ];
+        let different: std::collections::BTreeSet<usize> = all.into_iter().collect();
+        assert_eq!(different.len(), all.len());
+    }
+}

@@ -1,0 +1,91 @@
+//! [`Maze`]: cells between walls, with one way from each to each, or more where dead ends are opened.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::draws::{Draws, Purpose, share_of};
+use super::grid::{Grid, Scale, Side, SideOf};
+use super::plan::Plan;
+use crate::world::MAX_SEED;
+use crate::world::fields::fields;
+
+fields! {
+    /// A maze of square cells, drawn depth first: from every cell there is one way to each other one.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(default, deny_unknown_fields)]
+    #[schemars(extend("examples" = [{ "cells": [8, 8], "cell": 3, "braid": 0.2 }]))]
+    pub struct Maze {
+        /// How many cells it has along x and y; at most 10,000 in all.
+        #[schemars(inner(range(min = 1, max = 1000)))]
+        pub cells: [u32; 2] = [8, 8] => Field::ours(AsPart),
+        /// Side of a cell in metres, from the middle of a wall to that of the next.
+        #[schemars(range(min = 0.1, max = 100.0))]
+        pub cell: f64 = 3.0 => Field::ours(AsPart).unit("m"),
+        /// Thickness of its walls in metres; less than a cell.
+        #[schemars(range(min = 0.01, max = 50.0))]
+        pub wall: f64 = 0.3 => Field::ours(AsPart).unit("m"),
+        /// Height of its walls in metres; the arena's `wall_height` if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0.0, max = 50.0))]
+        pub height: Option<f64> = None => Field::ours(AsPart).unit("m"),
+        /// Share of the dead ends that are opened, 0..1: 0 leaves one way from each cell to each other, 1 no dead end.
+        #[schemars(range(min = 0.0, max = 1.0))]
+        pub braid: f64 = 0.0 => Field::ours(AsPart),
+        /// What it is drawn with. Without it the world's `seed` decides, or 0 where that is absent, too; a sampled world has
+        /// one of its own.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0, max = MAX_SEED))]
+        pub seed: Option<u64> = None => Field::ours(AsPart),
+    }
+}
+
+impl Maze {
+    pub(super) fn size(&self) -> [f64; 2] {
+        self.cells.map(|count| f64::from(count) * self.cell)
+    }
+
+    pub(super) fn plan(&self, standing: f64, seed: u64) -> Plan {
+        let mut grid = Grid::new(self.cells.map(|count| count as usize), Side::Wall);
+        grid.open_tree(Side::Open, &mut Draws::new(seed, Purpose::Tree));
+        self.open_dead_ends(&mut grid, seed);
+        grid.let_stand(standing, seed);
+        let scale = Scale {
+            size: self.size(),
+            wall: self.wall,
+            doorway: 0.0,
+            height: self.height,
+        };
+        grid.plan(&scale, seed, |_| 0)
+    }
+
+    fn open_dead_ends(&self, grid: &mut Grid, seed: u64) {
+        if self.braid <= 0.0 {
+            return;
+        }
+        let closed = |grid: &mut Grid, cell: usize| -> ([SideOf; 4], usize, usize) {
+            let (mut closed, mut number, mut open) = ([(0, false); 4], 0, 0);
+            for (_, side) in grid.beside(cell) {
+                if *grid.side(side) == Side::Wall {
+                    closed[number] = side;
+                    number += 1;
+                } else {
+                    open += 1;
+                }
+            }
+            (closed, number, open)
+        };
+        let mut draws = Draws::new(seed, Purpose::Loops);
+        let mut ends: Vec<usize> = (0..grid.columns * grid.rows)
+            .filter(|cell| closed(grid, *cell).2 == 1)
+            .collect();
+        draws.shuffle(&mut ends);
+        for cell in &ends[..share_of(self.braid, ends.len())] {
+            let (sides, number, open) = closed(grid, *cell);
+            // The number is drawn for each, so that which walls fall does not depend on the share.
+            let choice = draws.below(number.max(1));
+            if open == 1 && number > 0 {
+                *grid.side(sides[choice]) = Side::Open;
+            }
+        }
+    }
+}

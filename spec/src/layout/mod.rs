@@ -1,0 +1,201 @@
+//! [`Layout`]: rooms, mazes and walls of an arena as a value, and the [`Plan`] that it is drawn out to. What is wrong with
+//! one is said in `check.rs`. Who walks, looks and is placed in it is not known here.
+
+mod check;
+mod draws;
+mod grid;
+mod maze;
+mod plan;
+mod rooms;
+mod text;
+mod walls;
+
+pub(crate) use check::POINTER;
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+pub use maze::Maze;
+pub use plan::{Doorway, Plan, PlanCell, PlanWall};
+pub use rooms::{RoomDoors, Rooms};
+pub use text::Legend;
+pub use walls::{Circle, LayoutWall};
+
+use crate::world::fields::{Place, fields};
+use text::TextMap;
+
+/// The most cells of a layout, those of walls included.
+pub const MAX_CELLS: usize = 10_000;
+
+/// The longest side of a layout in metres, which is that of an arena.
+pub const MAX_LAYOUT_SIDE: f64 = 300.0;
+
+/// The side of a cell of a text without a word about it, in metres.
+const TEXT_CELL: f64 = 2.0;
+
+fields! {
+    /// What divides the arena: a maze, rooms, a text, a predefined map, or walls one by one. Exactly one of the five.
+    ///
+    /// All but walls say how large the arena is.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(default, deny_unknown_fields)]
+    #[schemars(extend("examples" = [
+        { "maze": { "cells": [8, 8], "cell": 3, "braid": 0.2 } },
+        { "rooms": { "grid": [2, 2], "room": [8, 8], "doorway": 1.5 } },
+        { "text": ["########", "#A..D.G#", "########"], "cell": 2, "legend": { "G": { "group": "goal" } } },
+        { "predefined": 3 },
+        { "walls": [{ "from": [0, 0], "to": [5, 0], "thickness": 0.3, "height": 2 }] },
+    ]))]
+    pub struct Layout {
+        /// A maze.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub maze: Option<Maze> = None => Field::ours(AsPart),
+        /// Rooms with doorways between them.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub rooms: Option<Rooms> = None => Field::ours(AsPart),
+        /// Lines of letters, the northernmost first, all as long: `#` and `*` are walls, a space, `.` and `_` floor, `A` and
+        /// `P` where the agent may start, `D` a doorway; the legend says what others are.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(length(min = 1, max = 1000), inner(length(min = 1, max = 1000)))]
+        pub text: Option<Vec<String>> = None
+            => Field::ours(AsPart).fixed("its letters belong together; the layout as a whole can vary"),
+        /// A predefined map, as `predefined_map` has it.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 1, max = 4))]
+        pub predefined: Option<u8> = None => Field::ours(AsPart),
+        /// Walls one by one, in an arena of `map_size`. They may overlap.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(length(max = 1000))]
+        pub walls: Option<Vec<LayoutWall>> = None => Field::ours(AsPart),
+        /// Side of a letter's cell in metres; 2 if absent. Only beside `text`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0.1, max = 100.0))]
+        pub cell: Option<f64> = None => Field::ours(AsPart).unit("m"),
+        /// Height of a text's walls in metres; the arena's `wall_height` if absent. Only beside `text`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0.0, max = 50.0))]
+        pub height: Option<f64> = None => Field::ours(AsPart).unit("m"),
+        /// What letters of a text stand for, in place of their plain meaning. Only beside `text`.
+        #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+        #[schemars(extend("maxProperties" = 1000))]
+        pub legend: BTreeMap<String, Legend> = BTreeMap::new()
+            => Field::ours(AsPart).fixed("it belongs to the text; the layout as a whole can vary"),
+        /// Share of the inner walls that stand, 0..1. They are taken away in an order of the layout's own, so that the walls
+        /// of a smaller share are among those of a larger one, and what could be reached still can.
+        #[schemars(range(min = 0.0, max = 1.0))]
+        pub standing: f64 = 1.0 => Field::ours(AsPart),
+    }
+}
+
+impl Place for BTreeMap<String, Legend> {}
+
+/// The kind of a layout.
+enum Kind<'a> {
+    Maze(&'a Maze),
+    Rooms(&'a Rooms),
+    Text(TextMap<'a>),
+    Predefined,
+    Walls(&'a [LayoutWall]),
+}
+
+impl Layout {
+    /// Which kind it is: the first that is there.
+    fn kind(&self) -> Option<Kind<'_>> {
+        if let Some(maze) = &self.maze {
+            return Some(Kind::Maze(maze));
+        }
+        if let Some(rooms) = &self.rooms {
+            return Some(Kind::Rooms(rooms));
+        }
+        if let Some(rows) = &self.text {
+            return Some(Kind::Text(TextMap {
+                rows,
+                legend: &self.legend,
+                cell: self.cell.unwrap_or(TEXT_CELL),
+                height: self.height,
+            }));
+        }
+        if self.predefined.is_some() {
+            return Some(Kind::Predefined);
+        }
+        self.walls.as_deref().map(Kind::Walls)
+    }
+
+    /// Side lengths of the arena in metres; `None` for walls one by one, which leave them to the world.
+    pub fn size(&self) -> Option<[f64; 2]> {
+        match self.kind()? {
+            Kind::Maze(maze) => Some(maze.size()),
+            Kind::Rooms(rooms) => Some(rooms.size()),
+            Kind::Text(text) => Some(text.size()),
+            Kind::Predefined => Some([200.0; 2]),
+            Kind::Walls(_) => None,
+        }
+    }
+
+    /// Whether it is drawn, and has no seed of its own.
+    pub fn is_drawn(&self) -> bool {
+        match self.kind() {
+            Some(Kind::Maze(maze)) => maze.seed.is_none(),
+            Some(Kind::Rooms(rooms)) => rooms.seed.is_none(),
+            _ => false,
+        }
+    }
+
+    /// The layout with this seed, if it is drawn and has none of its own.
+    pub fn set_seed(&mut self, seed: u64) {
+        if let Some(maze) = &mut self.maze {
+            maze.seed.get_or_insert(seed);
+        }
+        if let Some(rooms) = &mut self.rooms {
+            rooms.seed.get_or_insert(seed);
+        }
+    }
+
+    /// The seed of its own, if it has one.
+    pub fn seed(&self) -> Option<u64> {
+        self.maze
+            .as_ref()
+            .and_then(|maze| maze.seed)
+            .or_else(|| self.rooms.as_ref().and_then(|rooms| rooms.seed))
+    }
+
+    /// Keeps of the regions of a predefined map the share that stands: the first of them.
+    pub(crate) fn keep_standing<T>(&self, regions: &mut Vec<T>) {
+        regions.truncate(draws::share_of(self.standing, regions.len()));
+    }
+
+    /// What a letter of its text stands for; `None` for a letter that has no meaning, and in a layout that is no text.
+    pub fn meaning(&self, letter: char) -> Option<Legend> {
+        match self.kind()? {
+            Kind::Text(text) => text.meaning(letter),
+            _ => None,
+        }
+    }
+
+    /// Draws the layout out. `seed` counts where the layout has none of its own: that of the world.
+    ///
+    /// The same layout and seed give the same plan, to the last bit, on every machine. The walls of a predefined map are
+    /// not in it, but in [`EnvironmentParams::regions`](crate::EnvironmentParams::regions).
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_spec::{Layout, Maze};
+    /// let layout = Layout { maze: Some(Maze::default()), ..Layout::default() };
+    /// let plan = layout.plan(7);
+    /// assert_eq!(plan, layout.plan(7));
+    /// assert_eq!((plan.size, plan.cells.len()), ([24.0, 24.0], 64));
+    /// ```
+    pub fn plan(&self, seed: u64) -> Plan {
+        let seed = self.seed().unwrap_or(seed);
+        match self.kind() {
+            Some(Kind::Maze(maze)) => maze.plan(self.standing, seed),
+            Some(Kind::Rooms(rooms)) => rooms.plan(self.standing, seed),
+            // A text is not drawn: the order in which its walls are taken away is always the same.
+            Some(Kind::Text(text)) => text.plan(self.standing, 0),
+            Some(Kind::Walls(walls)) => walls::plan(walls, self.standing, 0),
+            Some(Kind::Predefined) | None => Plan::of_cells(self.size().unwrap_or_default(), [0, 0], 0, |_, _| None),
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! [`Rooms`]: rooms in rows and columns, with doorways in the walls between them.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::draws::{Draws, Purpose, share_of};
+use super::grid::{Grid, Scale, Side, SideOf};
+use super::plan::Plan;
+use crate::world::MAX_SEED;
+use crate::world::fields::{fields, word};
+
+fields! {
+    /// Rooms in rows and columns. A wall between two rooms has at most one doorway, somewhere along it; from every room
+    /// there is a way to each other one.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(default, deny_unknown_fields)]
+    #[schemars(extend("examples" = [{ "grid": [2, 2], "room": [8, 8], "doorway": 1.5 }]))]
+    pub struct Rooms {
+        /// How many rooms there are along x and y.
+        #[schemars(inner(range(min = 1, max = 100)))]
+        pub grid: [u32; 2] = [2, 2] => Field::ours(AsPart),
+        /// Sides of a room along x and y in metres, from the middle of a wall to that of the next.
+        #[schemars(inner(range(min = 0.1, max = 300.0)))]
+        pub room: [f64; 2] = [8.0, 8.0] => Field::ours(AsPart).unit("m"),
+        /// Width of the doorways in metres; with a wall's thickness at most a room's side.
+        #[schemars(range(min = 0.1, max = 100.0))]
+        pub doorway: f64 = 1.5 => Field::ours(AsPart).unit("m"),
+        /// Thickness of the walls in metres.
+        #[schemars(range(min = 0.01, max = 50.0))]
+        pub wall: f64 = 0.3 => Field::ours(AsPart).unit("m"),
+        /// Height of the walls in metres; the arena's `wall_height` if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0.0, max = 50.0))]
+        pub height: Option<f64> = None => Field::ours(AsPart).unit("m"),
+        /// Of the walls that no way between two rooms needs, the share that have a doorway, too, 0..1: 0 leaves one way from
+        /// each room to each other, with 1 every wall between two rooms has a doorway.
+        #[schemars(range(min = 0.0, max = 1.0))]
+        pub loops: f64 = 1.0 => Field::ours(AsPart),
+        /// What stands in the doorways.
+        pub doors: RoomDoors = RoomDoors::None => Field::ours(AsPart),
+        /// What it is drawn with. Without it the world's `seed` decides, or 0 where that is absent, too; a sampled world has
+        /// one of its own.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0, max = MAX_SEED))]
+        pub seed: Option<u64> = None => Field::ours(AsPart),
+    }
+}
+
+/// What stands in the doorways of rooms.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RoomDoors {
+    /// Nothing.
+    #[default]
+    None,
+    /// A door that stands open.
+    Open,
+    /// A door that is shut.
+    Closed,
+    /// A door that is shut and wants its key.
+    Keyed,
+}
+
+word!(RoomDoors);
+
+impl Rooms {
+    pub(super) fn size(&self) -> [f64; 2] {
+        [0, 1].map(|axis| f64::from(self.grid[axis]) * self.room[axis])
+    }
+
+    /// How many cells a room has along x and y: each leaves room for a doorway between two walls.
+    fn cells_of_room(&self) -> [usize; 2] {
+        self.room
+            .map(|side| ((side / (self.doorway + self.wall) + 1e-9) as usize).max(1))
+    }
+
+    /// Columns and rows of cells in all.
+    pub(super) fn lattice(&self) -> [usize; 2] {
+        let cells = self.cells_of_room();
+        [0, 1].map(|axis| self.grid[axis] as usize * cells[axis])
+    }
+
+    pub(super) fn plan(&self, standing: f64, seed: u64) -> Plan {
+        let joined = self.joined(seed);
+        let (cells, lattice) = (self.cells_of_room(), self.lattice());
+        let mut grid = Grid::new(lattice, Side::Open);
+        let mut draws = Draws::new(seed, Purpose::Doorways);
+        // Where the doorway of a wall is does not depend on which walls have one.
+        for (room, to_the_north) in joined.sides() {
+            let [column, row] = [room % joined.columns, room / joined.columns];
+            let has_doorway = if to_the_north {
+                joined.north[room]
+            } else {
+                joined.east[room]
+            } == Side::Doorway;
+            let along = cells[usize::from(!to_the_north)];
+            let doorway = draws.below(along);
+            for at in 0..along {
+                let [x, y] = if to_the_north {
+                    [at, cells[1] - 1]
+                } else {
+                    [cells[0] - 1, at]
+                };
+                let cell = (row * cells[1] + y) * lattice[0] + column * cells[0] + x;
+                *grid.side((cell, to_the_north)) = if has_doorway && at == doorway {
+                    Side::Doorway
+                } else {
+                    Side::Wall
+                };
+            }
+        }
+        grid.let_stand(standing, seed);
+        let scale = Scale {
+            size: self.size(),
+            wall: self.wall,
+            doorway: self.doorway,
+            height: self.height,
+        };
+        let columns = self.grid[0];
+        grid.plan(&scale, seed, |[column, row]| {
+            (row / cells[1]) as u32 * columns + (column / cells[0]) as u32
+        })
+    }
+
+    /// The rooms as cells, with doorways between those that are joined.
+    fn joined(&self, seed: u64) -> Grid {
+        let mut joined = Grid::new(self.grid.map(|count| count as usize), Side::Wall);
+        joined.open_tree(Side::Doorway, &mut Draws::new(seed, Purpose::Tree));
+        let mut others: Vec<SideOf> = joined.sides().collect();
+        others.retain(|side| *joined.side(*side) == Side::Wall);
+        Draws::new(seed, Purpose::Loops).shuffle(&mut others);
+        for side in &others[..share_of(self.loops, others.len())] {
+            *joined.side(*side) = Side::Doorway;
+        }
+        joined
+    }
+}

@@ -1,0 +1,246 @@
+//! A layout drawn with letters: each is a cell, a wall as thick as it or a place that one can be in.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::draws::{Draws, Purpose, share_of};
+use super::plan::{Doorway, EAST, NORTH, Plan, PlanCell, PlanWall, SOUTH, WEST};
+
+/// What a letter of a text stands for.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(extend("examples" = ["wall", "floor", { "group": "goal" }]))]
+pub enum Legend {
+    /// A wall that fills the cell.
+    Wall,
+    /// Floor without anything.
+    Floor,
+    /// Floor on which the agent may start.
+    Start,
+    /// Floor in a gap between two walls: on either side of it is another room.
+    Doorway,
+    /// Floor on which objects of the group of this name stand.
+    Group(#[schemars(length(min = 1, max = 100))] String),
+}
+
+impl Legend {
+    /// What a letter stands for where the legend does not say it: `#` and `*` a wall, a space, `.` and `_` floor, `A` and
+    /// `P` a start, `D` a doorway.
+    pub fn of_letter(letter: char) -> Option<Self> {
+        match letter {
+            '#' | '*' => Some(Self::Wall),
+            ' ' | '.' | '_' => Some(Self::Floor),
+            'A' | 'P' => Some(Self::Start),
+            'D' => Some(Self::Doorway),
+            _ => None,
+        }
+    }
+}
+
+/// A text with its legend.
+pub(super) struct TextMap<'a> {
+    pub(super) rows: &'a [String],
+    pub(super) legend: &'a BTreeMap<String, Legend>,
+    /// Side of a cell in metres.
+    pub(super) cell: f64,
+    pub(super) height: Option<f64>,
+}
+
+/// What is in a cell of a text.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Square {
+    Wall,
+    Floor,
+    Doorway,
+}
+
+impl TextMap<'_> {
+    /// Columns and rows; the first row decides how long all are.
+    pub(super) fn lattice(&self) -> [usize; 2] {
+        let columns = self.rows.first().map_or(0, |row| row.chars().count());
+        [columns, self.rows.len()]
+    }
+
+    pub(super) fn size(&self) -> [f64; 2] {
+        self.lattice().map(|count| count as f64 * self.cell)
+    }
+
+    /// What a letter stands for.
+    pub(super) fn meaning(&self, letter: char) -> Option<Legend> {
+        let mut buffer = [0; 4];
+        let own = self.legend.get(&*letter.encode_utf8(&mut buffer));
+        own.cloned().or_else(|| Legend::of_letter(letter))
+    }
+
+    pub(super) fn plan(&self, standing: f64, seed: u64) -> Plan {
+        let [columns, rows] = self.lattice();
+        // The first line is the northernmost.
+        let letters: Vec<char> = self.rows.iter().rev().flat_map(|row| row.chars()).collect();
+        let mut squares: Vec<Square> = letters
+            .iter()
+            .map(|letter| match self.meaning(*letter) {
+                Some(Legend::Wall) | None => Square::Wall,
+                Some(Legend::Doorway) => Square::Doorway,
+                Some(Legend::Floor | Legend::Start | Legend::Group(_)) => Square::Floor,
+            })
+            .collect();
+        let_stand(&mut squares, [columns, rows], standing, seed);
+        let rooms = rooms(&squares, columns);
+        let mut plan = Plan::of_cells(self.size(), [columns, rows], seed, |place, center| {
+            (squares[place] != Square::Wall).then(|| PlanCell {
+                center,
+                room: rooms[place],
+                sides: sides(&squares, columns, place),
+                letter: (!matches!(self.meaning(letters[place]), Some(Legend::Floor | Legend::Wall)))
+                    .then_some(letters[place]),
+            })
+        });
+        let half = plan.size.map(|side| side / 2.0);
+        let at = |index: usize, axis: usize| index as f64 * self.cell - half[axis];
+        plan.walls = rectangles(&squares, [columns, rows])
+            .into_iter()
+            .map(|[west, south, east, north]| {
+                let ([x0, x1], [y0, y1]) = ([at(west, 0), at(east, 0)], [at(south, 1), at(north, 1)]);
+                PlanWall {
+                    polygon: vec![[x0, y0], [x1, y0], [x1, y1], [x0, y1]],
+                    height: self.height,
+                    color: None,
+                }
+            })
+            .collect();
+        plan.doorways = doorways(&squares, columns, &rooms, &plan, self.cell);
+        plan
+    }
+}
+
+/// The places beside one: to the east, north, west and south, as far as they lie in the text.
+fn beside(place: usize, columns: usize, count: usize) -> [Option<usize>; 4] {
+    let (column, row) = (place % columns, place / columns);
+    [
+        (column + 1 < columns).then(|| place + 1),
+        (place + columns < count).then(|| place + columns),
+        (column > 0).then(|| place - 1),
+        (row > 0).then(|| place - columns),
+    ]
+}
+
+/// The sides by which a place can be left.
+fn sides(squares: &[Square], columns: usize, place: usize) -> u8 {
+    let ways = beside(place, columns, squares.len());
+    ways.into_iter()
+        .zip([EAST, NORTH, WEST, SOUTH])
+        .filter(|(next, _)| next.is_some_and(|next| squares[next] != Square::Wall))
+        .fold(0, |all, (_, side)| all | side)
+}
+
+/// Takes walls away so that a share of those within the outermost ring stands.
+fn let_stand(squares: &mut [Square], [columns, rows]: [usize; 2], share: f64, seed: u64) {
+    if share >= 1.0 {
+        return;
+    }
+    let is_inner = |place: usize| {
+        let (column, row) = (place % columns, place / columns);
+        column > 0 && row > 0 && column + 1 < columns && row + 1 < rows
+    };
+    let mut walls: Vec<usize> = (0..squares.len())
+        .filter(|place| squares[*place] == Square::Wall && is_inner(*place))
+        .collect();
+    Draws::new(seed, Purpose::Standing).shuffle(&mut walls);
+    for place in walls.drain(share_of(share, walls.len())..) {
+        squares[place] = Square::Floor;
+    }
+}
+
+/// The rooms of places: what hangs together without passing a doorway. A doorway belongs to the first room beside it.
+fn rooms(squares: &[Square], columns: usize) -> Vec<u32> {
+    const NONE: u32 = u32::MAX;
+    let mut rooms = vec![NONE; squares.len()];
+    let mut count = 0;
+    for first in 0..squares.len() {
+        if squares[first] != Square::Floor || rooms[first] != NONE {
+            continue;
+        }
+        rooms[first] = count;
+        let mut open = vec![first];
+        while let Some(place) = open.pop() {
+            for next in beside(place, columns, squares.len()).into_iter().flatten() {
+                if squares[next] == Square::Floor && rooms[next] == NONE {
+                    rooms[next] = count;
+                    open.push(next);
+                }
+            }
+        }
+        count += 1;
+    }
+    for place in (0..squares.len()).filter(|place| squares[*place] == Square::Doorway) {
+        let near = beside(place, columns, squares.len()).into_iter().flatten();
+        let near = near.filter(|next| squares[*next] == Square::Floor);
+        rooms[place] = near.map(|next| rooms[next]).min().unwrap_or_else(|| {
+            count += 1;
+            count - 1
+        });
+    }
+    rooms
+}
+
+fn doorways(squares: &[Square], columns: usize, rooms: &[u32], plan: &Plan, cell: f64) -> Vec<Doorway> {
+    let places = plan.cells.iter().enumerate().map(|(number, found)| {
+        let [column, row] = plan.column_and_row(number);
+        (row * columns + column, found.center)
+    });
+    places
+        .filter(|(place, _)| squares[*place] == Square::Doorway)
+        .map(|(place, center)| {
+            let [east, north, west, south] = beside(place, columns, squares.len());
+            let is_floor = |next: &Option<usize>| next.is_some_and(|next| squares[next] != Square::Wall);
+            // Passed along the axis on which more of its neighbours are floor; to the north where both have as many.
+            let count = |pair: [Option<usize>; 2]| pair.iter().filter(|next| is_floor(next)).count();
+            let along_x = count([west, east]) > count([south, north]);
+            let [before, beyond] = if along_x { [west, east] } else { [south, north] };
+            let room = |next: Option<usize>| {
+                next.filter(|next| is_floor(&Some(*next)))
+                    .map_or(rooms[place], |next| rooms[next])
+            };
+            Doorway {
+                center,
+                heading: if along_x { 90.0 } else { 0.0 },
+                width: cell,
+                depth: cell,
+                rooms: [room(before), room(beyond)],
+            }
+        })
+        .collect()
+}
+
+/// The walls as few rectangles that do not overlap, `[west, south, east, north]` in cells: straight runs from west to
+/// east, and those that lie above each other as one.
+fn rectangles(squares: &[Square], [columns, rows]: [usize; 2]) -> Vec<[usize; 4]> {
+    let mut done: Vec<[usize; 4]> = Vec::new();
+    let mut open: Vec<[usize; 4]> = Vec::new();
+    for row in 0..rows {
+        let mut runs = Vec::new();
+        let mut column = 0;
+        while column < columns {
+            let start = column;
+            while column < columns && squares[row * columns + column] == Square::Wall {
+                column += 1;
+            }
+            if column > start {
+                runs.push([start, row, column, row + 1]);
+            }
+            column += 1;
+        }
+        for run in &mut runs {
+            if let Some(below) = open.iter().position(|below| [below[0], below[2]] == [run[0], run[2]]) {
+                run[1] = open.swap_remove(below)[1];
+            }
+        }
+        done.append(&mut open);
+        open = runs;
+    }
+    done.append(&mut open);
+    done.sort_unstable_by_key(|[west, south, ..]| [*south, *west]);
+    done
+}

@@ -1,0 +1,124 @@
+//! [`LayoutWall`]: walls one by one, as segments, circles and polygons.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::draws::{Draws, Purpose, share_of};
+use super::plan::{Plan, PlanWall};
+use crate::Color;
+use crate::world::fields::fields;
+
+/// How thick a segment is without a word about it, in metres.
+const THICKNESS: f64 = 0.3;
+
+/// Corners of a circle.
+const CORNERS: usize = 24;
+
+fields! {
+    /// One wall: a segment (`from` and `to`), a `circle`, or a `polygon`.
+    #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(default, deny_unknown_fields)]
+    #[schemars(extend("examples" = [
+        { "from": [0, 0], "to": [5, 0], "thickness": 0.3, "height": 2 },
+        { "circle": { "center": [0, 0], "radius": 2 } },
+        { "polygon": [[0, 0], [2, 0], [1, 2]] },
+    ]))]
+    pub struct LayoutWall {
+        /// One end of a segment in metres.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(inner(range(min = -1e4, max = 1e4)))]
+        pub from: Option<[f64; 2]> => Field::ours(AsPart).unit("m"),
+        /// Its other end in metres.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(inner(range(min = -1e4, max = 1e4)))]
+        pub to: Option<[f64; 2]> => Field::ours(AsPart).unit("m"),
+        /// Thickness of a segment in metres; 0.3 if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0.01, max = 50.0))]
+        pub thickness: Option<f64> => Field::ours(AsPart).unit("m"),
+        /// A round wall; it stands as a polygon of 24 corners on the circle.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub circle: Option<Circle> => Field::ours(AsPart),
+        /// Corners in metres, in order; the last joins the first.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(length(min = 3, max = 1000), inner(inner(range(min = -1e4, max = 1e4))))]
+        pub polygon: Option<Vec<[f64; 2]>> => Field::ours(AsPart).unit("m"),
+        /// Height in metres; the arena's `wall_height` if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0.0, max = 50.0))]
+        pub height: Option<f64> => Field::ours(AsPart).unit("m"),
+        /// Colour; the arena's `bounding_wall_color` if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub color: Option<Color> => Field::ours(AsPart),
+    }
+}
+
+fields! {
+    /// A circle on the ground.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(deny_unknown_fields)]
+    #[schemars(extend("examples" = [{ "center": [0, 0], "radius": 2 }]))]
+    pub struct Circle {
+        /// Its middle in metres.
+        #[schemars(inner(range(min = -1e4, max = 1e4)))]
+        pub center: [f64; 2] => Field::ours(AsPart).unit("m"),
+        /// Its radius in metres.
+        #[schemars(range(min = 0.01, max = 300.0))]
+        pub radius: f64 => Field::ours(AsPart).unit("m"),
+    }
+}
+
+impl LayoutWall {
+    /// Which forms it has, by their keys.
+    pub(super) fn forms(&self) -> Vec<&'static str> {
+        let forms = [
+            ("from", self.from.is_some() || self.to.is_some()),
+            ("circle", self.circle.is_some()),
+            ("polygon", self.polygon.is_some()),
+        ];
+        forms
+            .into_iter()
+            .filter(|(_, has)| *has)
+            .map(|(form, _)| form)
+            .collect()
+    }
+
+    /// Its corners, counterclockwise for a segment and a circle.
+    fn corners(&self) -> Vec<[f64; 2]> {
+        if let (Some(from), Some(to)) = (self.from, self.to) {
+            let way = [to[0] - from[0], to[1] - from[1]];
+            let length = libm::hypot(way[0], way[1]).max(f64::MIN_POSITIVE);
+            let half = self.thickness.unwrap_or(THICKNESS) / 2.0 / length;
+            let right = [way[1] * half, -way[0] * half];
+            let beside = |end: [f64; 2], side: f64| [end[0] + side * right[0], end[1] + side * right[1]];
+            return vec![beside(from, 1.0), beside(to, 1.0), beside(to, -1.0), beside(from, -1.0)];
+        }
+        if let Some(circle) = self.circle {
+            let corner = |number: usize| {
+                let angle = std::f64::consts::TAU * number as f64 / CORNERS as f64;
+                [
+                    circle.center[0] + circle.radius * libm::cos(angle),
+                    circle.center[1] + circle.radius * libm::sin(angle),
+                ]
+            };
+            return (0..CORNERS).map(corner).collect();
+        }
+        self.polygon.clone().unwrap_or_default()
+    }
+}
+
+/// The plan of walls of which a share stands; the order in which they are taken away is that of seed 0.
+pub(super) fn plan(walls: &[LayoutWall], standing: f64, seed: u64) -> Plan {
+    let mut order: Vec<usize> = (0..walls.len()).collect();
+    Draws::new(0, Purpose::Standing).shuffle(&mut order);
+    order.truncate(share_of(standing, walls.len()));
+    order.sort_unstable();
+    let wall = |index: &usize| PlanWall {
+        polygon: walls[*index].corners(),
+        height: walls[*index].height,
+        color: walls[*index].color,
+    };
+    let mut plan = Plan::of_cells([0.0; 2], [0, 0], seed, |_, _| None);
+    plan.walls = order.iter().map(wall).collect();
+    plan
+}
