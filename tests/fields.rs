@@ -55,7 +55,8 @@ fn other(place: &FieldPlace, now: &Json) -> Json {
             "actions" => "normalized",
             "motion_model" => "prey",
             "model" => "3",
-            key if key.ends_with("stimulus") => "AgentInteract",
+            key if key.ends_with("stimulus") || ["on", "opens_on", "closes_on"].contains(&key) => "AgentInteract",
+            "action" => "close",
             _ => "word",
         }),
         ParameterType::Distribution => unreachable!("no place of a world holds a distribution"),
@@ -111,7 +112,9 @@ fn first(place: &FieldPlace, full: &Json) -> String {
         .pointer(list)
         .and_then(Json::as_array)
         .expect("there are conditions");
-    let index = conditions.iter().position(|condition| condition.get(key).is_some());
+    let index = conditions
+        .iter()
+        .position(|condition| condition.pointer(&format!("/{key}")).is_some());
     format!("{list}/{}/{key}", index.expect("there is a condition of each kind"))
 }
 

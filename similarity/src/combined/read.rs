@@ -16,7 +16,15 @@ pub(super) fn as_read(object: &Object) -> Object {
         &read.reward_once_stimulus,
         &read.destroy_stimulus,
     ];
-    if !stimuli.iter().any(|list| list.contains(&Stimulus::AgentInRange)) {
+    let moves = [
+        read.door.as_ref().map(|door| &door.opens_on),
+        read.door.as_ref().map(|door| &door.closes_on),
+        read.switch.as_ref().map(|switch| &switch.on),
+        read.portable.as_ref().map(|portable| &portable.on),
+    ];
+    let mut lists = stimuli.into_iter().chain(moves.into_iter().flatten());
+    let has_range = lists.any(|list| list.contains(&Stimulus::AgentInRange));
+    if !has_range {
         read.range_stimulus_distance = plain.range_stimulus_distance;
     }
     if read.destroy_stimulus.is_empty() {

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::StateFeature;
-use super::defaults::{is_classic, is_one, is_true};
+use super::defaults::{is_classic, is_default, is_one, is_true};
 use super::fields::{Field, FieldPlace, Place, fields, word};
 use crate::value::{ParameterType, Value};
 
@@ -72,6 +72,10 @@ fields! {
         /// actions has no row for it.
         #[serde(skip_serializing_if = "is_true")]
         pub interact: bool = true => Field::ours(Leaves(SpaceOfActions)),
+        /// How many things the agent can carry at once; 0 is none.
+        #[serde(skip_serializing_if = "is_default")]
+        #[schemars(range(min = 0, max = 100))]
+        pub carry_limit: u32 = 0 => Field::ours(Leaves(SpaceOfActions)),
     }
 }
 
@@ -145,7 +149,7 @@ pub enum Modality {
     Depth,
     /// Reward category per pixel, `(size, size)` bytes.
     Segmentation,
-    /// Object class per pixel, `(size, size)` numbers that are the same in every world: built-in classes have 1 to 23, unknown ones
+    /// Object class per pixel, `(size, size)` numbers that are the same in every world: built-in classes have 1 to 26, unknown ones
     /// 31, those of libraries follow from 32 on in the order of their names; 0 where there is no object.
     Class,
     /// Object per pixel, `(size, size)` numbers: its index in the world plus 1; 0 where there is no object.

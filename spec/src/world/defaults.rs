@@ -6,6 +6,14 @@ pub(super) fn one() -> f64 {
     1.0
 }
 
+pub(super) fn two() -> f64 {
+    2.0
+}
+
+pub(super) fn is_two<T: From<u8> + PartialEq>(value: &T) -> bool {
+    *value == T::from(2)
+}
+
 pub(super) fn half() -> f64 {
     0.5
 }

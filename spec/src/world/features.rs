@@ -35,6 +35,9 @@ pub enum StateFeature {
     LastEvent,
     /// Share of the steps that are left, 1 to 0; always 1 without a limit.
     StepsLeft,
+    /// How many things the agent carries; then of the one that was picked up last the number of its class, and its index in the
+    /// world plus 1, as in pictures of classes and instances.
+    Carrying,
 }
 
 impl StateFeature {
@@ -46,7 +49,7 @@ impl StateFeature {
         match self {
             Self::Heading | Self::LastReward | Self::StepsLeft => 1,
             Self::Position | Self::Velocity | Self::Direction | Self::OwnVelocity | Self::Counts => 2,
-            Self::Goal | Self::NearestTarget | Self::LastEvent => 3,
+            Self::Goal | Self::NearestTarget | Self::LastEvent | Self::Carrying => 3,
         }
     }
 }

@@ -14,6 +14,8 @@ mod remarks;
 mod rules;
 mod table;
 mod zone;
+mod thing_remarks;
+mod things;
 
 use std::ops::Deref;
 use std::sync::{Arc, LazyLock};
@@ -29,9 +31,10 @@ pub use fields::{Compared, Comparison, Field, FieldPlace};
 pub(crate) use fields::{Fields, Place, Setter, places_of};
 pub use object::{Model, MotionModel, Object, Pushable, Respawn, Stimulus};
 pub use progress::{LastEvent, ObjectProgress, Origin, Progress, RailsProgress};
-pub use rules::{EndCondition, Rules, Shaping};
+pub use rules::{Delivery, EndCondition, Rules, Shaping};
 pub use table::LeafTexts;
 pub use zone::{Disc, Zone, ZoneEnd};
+pub use things::{Door, Portable, Switch, SwitchAction};
 
 use crate::classes::Classes;
 use crate::document::Document;

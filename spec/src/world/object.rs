@@ -5,9 +5,9 @@ use std::borrow::Cow;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::MAX_SEED;
 use super::defaults::{half, is_default, is_one, one, yes};
 use super::fields::{Place, fields, word};
+use super::{Door, MAX_SEED, Portable, Switch};
 use crate::Color;
 use crate::value::{ParameterType, Value};
 
@@ -118,6 +118,15 @@ fields! {
         #[schemars(length(min = 1, max = 100))]
         pub unique_name: Option<String> => Field::original(Not("it is a name"))
                 .fixed("no two objects of a world may have the same; objects are named together by their tag"),
+        /// Makes it a door.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub door: Option<Door> => Field::ours(Leaves(Bodies)),
+        /// Makes it a switch of doors.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub switch: Option<Switch> => Field::ours(Leaves(Bodies)),
+        /// Makes it a thing that the agent can carry, such as a key.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub portable: Option<Portable> => Field::ours(Leaves(Bodies)),
     }
 }
 
@@ -150,12 +159,20 @@ impl Object {
             seed: None,
             tag: None,
             unique_name: None,
+            door: None,
+            switch: None,
+            portable: None,
         }
     }
 
     /// Whether the agent can earn something by this object: a positive reward and a stimulus that pays it.
     pub fn is_target(&self) -> bool {
         self.reward > 0.0 && !(self.reward_stimulus.is_empty() && self.reward_once_stimulus.is_empty())
+    }
+
+    /// Whether it is more than a body: a door, a switch, or a thing that is carried.
+    pub fn is_used(&self) -> bool {
+        self.door.is_some() || self.switch.is_some() || self.portable.is_some()
     }
 
     /// Whether chance has a part in what becomes of it: it wanders, pays now and then, or comes back somewhere.

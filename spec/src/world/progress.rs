@@ -66,6 +66,10 @@ pub struct Progress {
     /// One for each object, in order.
     #[schemars(length(max = 100_000))]
     pub objects: Vec<ObjectProgress>,
+    /// Indices of the objects that the agent carries, in the order in which it picked them up.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 100_000), inner(range(min = 0, max = 99_999)))]
+    pub carried: Vec<u32>,
 }
 
 /// No parameter sets it.
@@ -116,7 +120,7 @@ pub struct Origin {
 #[serde(default, deny_unknown_fields)]
 #[expect(
     clippy::struct_excessive_bools,
-    reason = "four facts that have nothing to do with each other"
+    reason = "facts that have nothing to do with each other"
 )]
 #[schemars(extend("examples" = [{ "present": false, "collected": true, "returns_at": 99 }]))]
 pub struct ObjectProgress {
@@ -175,6 +179,16 @@ pub struct ObjectProgress {
     #[serde(skip_serializing_if = "is_default")]
     #[schemars(range(min = -1e9, max = 1e9))]
     pub spin: f64,
+    /// Whether a door is open; as at the start if absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub open: Option<bool>,
+    /// Whether a door was unlocked by its key.
+    #[serde(skip_serializing_if = "is_default")]
+    pub unlocked: bool,
+    /// The time step from which on an open door closes, as soon as nobody stands in it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0, max = MOST))]
+    pub closes_at: Option<u64>,
 }
 
 impl Default for ObjectProgress {
@@ -195,6 +209,9 @@ impl Default for ObjectProgress {
             former_draws: None,
             velocity: None,
             spin: 0.0,
+            open: None,
+            unlocked: false,
+            closes_at: None,
         }
     }
 }
@@ -265,6 +282,7 @@ pub(super) fn problems(world: &WorldDraft) -> Vec<Problem> {
             format!("one of {zones} zones, counted from 0"),
         ));
     }
+    problems.extend(carried_problems(world, progress));
     let rails = progress.rails.iter();
     let named = rails.flat_map(|rails| rails.target.iter().chain(&rails.avoided).chain(&rails.given_up));
     if let Some(index) = named.copied().find(|index| *index as usize >= expected) {
@@ -274,6 +292,51 @@ pub(super) fn problems(world: &WorldDraft) -> Vec<Problem> {
             format!("object {index}"),
             format!("one of {expected} objects, counted from 0"),
         ));
+    }
+    problems
+}
+
+/// What of the things that a world says are carried does not fit it.
+fn carried_problems(world: &WorldDraft, progress: &Progress) -> Vec<Problem> {
+    let carried = &progress.carried;
+    let mut problems = Vec::new();
+    let is_carried = |index: u32| {
+        let index = index as usize;
+        let is_portable = world.objects.get(index).is_some_and(|object| object.portable.is_some());
+        is_portable
+            && progress
+                .objects
+                .get(index)
+                .is_some_and(|own| !own.present && own.returns_at.is_none())
+    };
+    let mut place = 0..carried.len();
+    if let Some(place) = place.find(|&place| !is_carried(carried[place]) || carried[..place].contains(&carried[place]))
+    {
+        problems.push(Problem::new(
+            "spec/progress",
+            format!("/progress/carried/{place}"),
+            format!("object {}", carried[place]),
+            "a portable object, once, that is not present and does not return",
+        ));
+    }
+    let limit = world.agent_params.carry_limit;
+    if carried.len() > limit as usize {
+        problems.push(Problem::new(
+            "spec/progress",
+            "/progress/carried",
+            format!("{} things", carried.len()),
+            format!("at most {limit}, the agent's carry_limit"),
+        ));
+    }
+    for (index, (object, own)) in world.objects.iter().zip(&progress.objects).enumerate() {
+        if object.door.is_none() && (own.open.is_some() || own.unlocked || own.closes_at.is_some()) {
+            problems.push(Problem::new(
+                "spec/progress",
+                format!("/progress/objects/{index}"),
+                "the progress of a door",
+                "none, for it is not a door",
+            ));
+        }
     }
     problems
 }

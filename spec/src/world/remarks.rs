@@ -1,6 +1,7 @@
 //! What is odd about a sound world: what means to move and stands still, and what stands where nobody comes. What is wrong with
 //! one is said by the schema and in `mod.rs`.
 
+use super::thing_remarks::thing_remarks;
 use super::{MotionModel, Object, World};
 use crate::layout::{self, Layout};
 use crate::warning::{Remarks, Warning};
@@ -59,6 +60,9 @@ impl World {
                 let text = format!("the {class} is to move as {model} and stands still: {lack}");
                 remarks.push(format!("/objects/{index}/motion_model"), text);
             }
+        }
+        for (pointer, text) in thing_remarks(self) {
+            remarks.push(pointer, text);
         }
         remarks.in_text(name, text)
     }

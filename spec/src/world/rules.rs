@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::defaults::{is_default, is_one, one};
+use super::defaults::{is_default, is_one, is_two, one, two};
 use super::fields::{Field, FieldPlace, Place, fields};
 use crate::value::{ParameterType, Value};
 
@@ -78,6 +78,8 @@ fields! {
     "all_collected",
     { "touch": "goal" },
     { "return_at_least": 500 },
+    { "opened": "gate" },
+    { "delivered": { "tag": "ball", "to": "box" } },
 ]))]
 pub enum EndCondition {
     /// No object is left that pays a positive reward.
@@ -88,6 +90,31 @@ pub enum EndCondition {
     ReturnAtLeast(f64),
     /// The return of the episode, without shaping, falls to this.
     ReturnAtMost(f64),
+    /// A door of this tag is open.
+    Opened(#[schemars(length(min = 1, max = 100))] String),
+    /// The agent carries a thing of this tag.
+    Carried(#[schemars(length(min = 1, max = 100))] String),
+    /// Every thing of a tag lies near an object of another.
+    Delivered(Delivery),
+}
+
+fields! {
+    /// Which things are to lie where.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(deny_unknown_fields)]
+    #[schemars(extend("examples" = [{ "tag": "ball", "to": "box", "within": 2 }]))]
+    pub struct Delivery {
+        /// Tag of the things. All that are left must lie there, and one at least; what is carried does not lie.
+        #[schemars(length(min = 1, max = 100))]
+        pub tag: String => Field::ours(AsPart),
+        /// Tag of the objects that they are to lie near.
+        #[schemars(length(min = 1, max = 100))]
+        pub to: String => Field::ours(AsPart),
+        /// How near in metres, from middle to middle.
+        #[serde(default = "two", skip_serializing_if = "is_two")]
+        #[schemars(range(min = 0.0, max = 1000.0))]
+        pub within: f64 => Field::ours(AsPart).unit("m"),
+    }
 }
 
 /// As a whole, or by what it waits for.
@@ -96,16 +123,18 @@ impl Place for EndCondition {
         // There is one thing in it.
         steps.push(0);
         match words {
-            ["touch"] => Some(ParameterType::String),
+            ["touch" | "opened" | "carried"] => Some(ParameterType::String),
+            ["delivered", rest @ ..] => Delivery::find_inside(rest, steps),
             ["return_at_least" | "return_at_most"] => Some(ParameterType::Number),
             _ => None,
         }
     }
 
-    fn set_inside(&mut self, _: &[usize], value: &Value) -> Option<()> {
+    fn set_inside(&mut self, steps: &[usize], value: &Value) -> Option<()> {
         match self {
             Self::AllCollected => None,
-            Self::Touch(tag) => tag.set(&[], value),
+            Self::Touch(tag) | Self::Opened(tag) | Self::Carried(tag) => tag.set(&[], value),
+            Self::Delivered(delivery) => delivery.set_inside(steps.get(1..)?, value),
             Self::ReturnAtLeast(reward) | Self::ReturnAtMost(reward) => reward.set(&[], value),
         }
     }
@@ -114,5 +143,8 @@ impl Place for EndCondition {
         String::list(format!("{pointer}/touch"), field, true, found);
         f64::list(format!("{pointer}/return_at_least"), field, true, found);
         f64::list(format!("{pointer}/return_at_most"), field, true, found);
+        String::list(format!("{pointer}/opened"), field, true, found);
+        String::list(format!("{pointer}/carried"), field, true, found);
+        Delivery::list_inside(&format!("{pointer}/delivered"), field, found);
     }
 }

@@ -1,0 +1,204 @@
+//! What is odd about the doors, switches and portable things of a sound world: what can never open, move or be carried. What
+//! else is odd is in `remarks.rs`.
+
+use super::{ActionModel, EndCondition, Object, Stimulus, World};
+
+/// What is odd, each with the pointer to it.
+pub(super) fn thing_remarks(world: &World) -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    for (index, object) in world.objects.iter().enumerate() {
+        let at = |key: &str| format!("/objects/{index}/{key}");
+        found.extend(door(world, object).map(|(key, text)| (at(key), text)));
+        if let Some(switch) = &object.switch {
+            if !has(world, &switch.target, |object| object.door.is_some()) {
+                let text = format!("no door has the tag {:?}; the switch moves nothing", switch.target);
+                found.push((at("switch/target"), text));
+            }
+            found.extend(unheard(world, object, &switch.on).map(|text| (at("switch/on"), text)));
+        }
+        if let Some(portable) = &object.portable {
+            if world.agent_params.carry_limit == 0 {
+                let text = format!(
+                    "the {} can be carried, and the agent carries nothing; set /agent_params/carry_limit to 1 or more",
+                    object.class
+                );
+                found.push((at("portable"), text));
+            }
+            found.extend(unheard(world, object, &portable.on).map(|text| (at("portable/on"), text)));
+        }
+    }
+    let conditions = |key: &'static str| {
+        let rules = &world.rules;
+        let list = if key == "success" {
+            &rules.success
+        } else {
+            &rules.failure
+        };
+        list.iter()
+            .enumerate()
+            .map(move |(place, condition)| (format!("/rules/{key}/{place}"), condition))
+    };
+    for (pointer, condition) in conditions("success").chain(conditions("failure")) {
+        found.extend(ending(world, condition).map(|text| (pointer, text)));
+    }
+    found
+}
+
+/// What is odd about a door: what opens it is never there. With the key that it is about.
+fn door(world: &World, object: &Object) -> Option<(&'static str, String)> {
+    let door = object.door.as_ref()?;
+    let key = |tag: &String| has(world, tag, |object| object.portable.is_some());
+    if let Some(tag) = door.key.as_ref().filter(|tag| !key(tag)) {
+        return Some((
+            "door/key",
+            format!("no portable object has the tag {tag:?}; nothing unlocks the door"),
+        ));
+    }
+    let by_switch = world.objects.iter().filter_map(|object| object.switch.as_ref());
+    let mut by_switch = by_switch.filter(|switch| Some(&switch.target) == object.tag.as_ref());
+    if door.opens_on.is_empty() && door.period.is_none() && !door.open && by_switch.next().is_none() {
+        let text =
+            "nothing opens the door: it has no stimulus in opens_on, no period, and no switch has its tag as target";
+        return Some(("door/opens_on", text.to_owned()));
+    }
+    unheard(world, object, &door.opens_on).map(|text| ("door/opens_on", text))
+}
+
+/// Why none of the stimuli of a list can ever be.
+fn unheard(world: &World, object: &Object, stimuli: &[Stimulus]) -> Option<String> {
+    let agent = &world.agent_params;
+    let interacts = agent.interact && agent.action_model != ActionModel::ByWaypoint;
+    let is_heard = |stimulus: &Stimulus| match stimulus {
+        Stimulus::AgentCollide => true,
+        Stimulus::AgentInteract => interacts,
+        Stimulus::AgentInRange => object.range_stimulus_distance > 0.0,
+    };
+    if stimuli.is_empty() || stimuli.iter().any(is_heard) {
+        return None;
+    }
+    Some(if stimuli.contains(&Stimulus::AgentInRange) {
+        "AgentInRange needs a range_stimulus_distance above 0".to_owned()
+    } else {
+        "the agent cannot interact: add \"AgentCollide\", or let it interact".to_owned()
+    })
+}
+
+/// Why a condition can never hold.
+fn ending(world: &World, condition: &EndCondition) -> Option<String> {
+    let portable = |tag: &String| has(world, tag, |object| object.portable.is_some());
+    let text = |tag: &String, what: &str| Some(format!("no {what} has the tag {tag:?}; this never ends the episode"));
+    match condition {
+        EndCondition::Opened(tag) if !has(world, tag, |object| object.door.is_some()) => text(tag, "door"),
+        EndCondition::Carried(tag) if !portable(tag) => text(tag, "portable object"),
+        EndCondition::Delivered(delivery) if !has(world, &delivery.tag, |_| true) => text(&delivery.tag, "object"),
+        EndCondition::Delivered(delivery) if !has(world, &delivery.to, |_| true) => text(&delivery.to, "object"),
+        _ => None,
+    }
+}
+
+/// Whether an object of a tag is one of these.
+fn has(world: &World, tag: &str, is_one: impl Fn(&Object) -> bool) -> bool {
+    let mut tagged = world.objects.iter().filter(|object| object.tag.as_deref() == Some(tag));
+    tagged.any(is_one)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{AgentParams, Delivery, Door, Portable, Rules, Switch, WorldDraft};
+
+    fn check(change: impl FnOnce(&mut WorldDraft), expected: &[&str]) {
+        let mut objects: Vec<Object> = ["door", "key", "switch"]
+            .map(|class| Object::new(class, [3.0, 4.0]))
+            .into();
+        for object in &mut objects {
+            object.tag = Some(object.class.clone());
+        }
+        objects[0].door = Some(Door {
+            key: Some("key".into()),
+            ..Door::default()
+        });
+        objects[1].portable = Some(Portable::default());
+        objects[2].switch = Some(Switch::of("door"));
+        let mut world = WorldDraft {
+            objects,
+            agent_params: AgentParams {
+                carry_limit: 1,
+                ..AgentParams::default()
+            },
+            ..WorldDraft::default()
+        };
+        change(&mut world);
+        let world = world.check().expect("what is odd is not wrong");
+        let said: Vec<String> = thing_remarks(&world)
+            .into_iter()
+            .map(|(at, text)| format!("{at}: {text}"))
+            .collect();
+        assert_eq!(said.len(), expected.len(), "{said:?}");
+        for (said, expected) in said.iter().zip(expected) {
+            assert!(said.contains(expected), "{said}");
+        }
+    }
+
+    #[test]
+    fn what_can_never_open_or_be_carried_is_said_with_its_place() {
+        check(|_| {}, &[]);
+        let door =
+            |change: fn(&mut Door)| move |world: &mut WorldDraft| change(world.objects[0].door.as_mut().unwrap());
+        check(
+            door(|door| door.key = Some("kay".into())),
+            &["/objects/0/door/key: no portable object has the tag \"kay\""],
+        );
+        check(door(|door| door.opens_on.clear()), &[]);
+        check(
+            |world| {
+                world.objects[0].door.as_mut().unwrap().opens_on.clear();
+                world.objects[2].switch = None;
+            },
+            &["/objects/0/door/opens_on: nothing opens the door"],
+        );
+        check(
+            door(|door| door.opens_on = vec![Stimulus::AgentInRange]),
+            &["/objects/0/door/opens_on: AgentInRange needs a range_stimulus_distance"],
+        );
+        check(
+            |world| world.agent_params.interact = false,
+            &[
+                "/objects/0/door/opens_on: the agent cannot",
+                "/objects/1/portable/on",
+                "/objects/2/switch/on",
+            ],
+        );
+        check(
+            |world| world.objects[2].switch.as_mut().unwrap().target = "dore".into(),
+            &["/objects/2/switch/target: no door has the tag \"dore\""],
+        );
+        check(
+            |world| world.agent_params.carry_limit = 0,
+            &["/objects/1/portable: the key can be carried, and the agent carries nothing"],
+        );
+        check(
+            |world| {
+                let delivery = Delivery {
+                    tag: "key".into(),
+                    to: "box".into(),
+                    within: 2.0,
+                };
+                let opened = EndCondition::Opened("key".into());
+                let success = vec![
+                    opened,
+                    EndCondition::Delivered(delivery),
+                    EndCondition::Carried("key".into()),
+                ];
+                world.rules = Rules {
+                    success,
+                    ..Rules::default()
+                };
+            },
+            &[
+                "/rules/success/0: no door has the tag \"key\"",
+                "/rules/success/1: no object has the tag \"box\"",
+            ],
+        );
+    }
+}

@@ -1,0 +1,145 @@
+//! What an object can be beside a body: a door, a switch, a thing that is carried. What each does when is in
+//! `docs/things.md`; doing it is `env`'s.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Stimulus;
+use super::defaults::is_default;
+use super::fields::{fields, word};
+
+/// What a person does with a handle.
+fn by_interaction() -> Vec<Stimulus> {
+    vec![Stimulus::AgentInteract]
+}
+
+fn is_by_interaction(stimuli: &[Stimulus]) -> bool {
+    stimuli == [Stimulus::AgentInteract]
+}
+
+fields! {
+    /// Makes an object a door: a body that stops nobody while it is open.
+    ///
+    /// It never closes on who stands in it: it closes in the first time step in which nobody does.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(deny_unknown_fields)]
+    #[schemars(extend("examples" = [
+        { "key": "red_key" },
+        { "opens_on": ["AgentCollide"], "closes_after": 5 },
+        { "opens_on": [], "period": 8 },
+    ]))]
+    pub struct Door {
+        /// Stimuli that open it; none for a door that only a switch or its clock opens.
+        #[serde(default = "by_interaction", skip_serializing_if = "is_by_interaction")]
+        #[schemars(length(max = 3))]
+        pub opens_on: Vec<Stimulus> => Field::ours(AsPart),
+        /// Stimuli that close it when it is open.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        #[schemars(length(max = 3))]
+        pub closes_on: Vec<Stimulus> => Field::ours(AsPart),
+        /// Tag of the things that unlock it: `opens_on` opens it only if the agent carries one. Once unlocked it stays so. Not
+        /// locked if absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(length(min = 1, max = 100))]
+        pub key: Option<String> => Field::ours(AsPart),
+        /// Whether it is open at the start.
+        #[serde(default, skip_serializing_if = "is_default")]
+        pub open: bool => Field::ours(AsPart),
+        /// Seconds from its opening until it closes by itself; never if absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0.0, max = 1e6))]
+        pub closes_after: Option<f64> => Field::ours(AsPart).unit("s"),
+        /// Seconds of one round of its clock: half of it as at the start, half of it the other way. No clock if absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0.001, max = 1e6))]
+        pub period: Option<f64> => Field::ours(AsPart).unit("s"),
+    }
+}
+
+fields! {
+    /// Makes an object a switch of doors, locked ones too.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(deny_unknown_fields)]
+    #[schemars(extend("examples" = [
+        { "target": "gate" },
+        { "on": ["AgentCollide"], "target": "gate", "action": "open" },
+    ]))]
+    pub struct Switch {
+        /// Stimuli that set it off.
+        #[serde(default = "by_interaction", skip_serializing_if = "is_by_interaction")]
+        #[schemars(length(max = 3))]
+        pub on: Vec<Stimulus> => Field::ours(AsPart),
+        /// Tag of the doors that it moves, all of them.
+        #[schemars(length(min = 1, max = 100))]
+        pub target: String => Field::ours(AsPart),
+        /// What it does to each of them.
+        #[serde(default, skip_serializing_if = "is_default")]
+        pub action: SwitchAction => Field::ours(AsPart),
+    }
+}
+
+fields! {
+    /// Makes an object a thing that the agent can carry, and a key of the doors whose `key` is its tag.
+    ///
+    /// What is carried has no body and is no target until it is put down.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(deny_unknown_fields)]
+    #[schemars(extend("examples" = [{}, { "on": ["AgentCollide"], "consumed": true }]))]
+    pub struct Portable {
+        /// Stimuli that pick it up, if the agent carries fewer than its `carry_limit`.
+        #[serde(default = "by_interaction", skip_serializing_if = "is_by_interaction")]
+        #[schemars(length(max = 3))]
+        pub on: Vec<Stimulus> => Field::ours(AsPart),
+        /// Whether it is gone once it has unlocked a door.
+        #[serde(default, skip_serializing_if = "is_default")]
+        pub consumed: bool => Field::ours(AsPart),
+    }
+}
+
+/// What a switch does to a door.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SwitchAction {
+    /// Opens it if it is closed, closes it if it is open.
+    #[default]
+    Toggle,
+    /// Opens it.
+    Open,
+    /// Closes it.
+    Close,
+}
+
+word!(SwitchAction);
+
+impl Default for Door {
+    fn default() -> Self {
+        Self {
+            opens_on: by_interaction(),
+            closes_on: Vec::new(),
+            key: None,
+            open: false,
+            closes_after: None,
+            period: None,
+        }
+    }
+}
+
+impl Switch {
+    /// A switch that an interaction sets off, and that opens and closes the doors of this tag.
+    pub fn of(target: impl Into<String>) -> Self {
+        Self {
+            on: by_interaction(),
+            target: target.into(),
+            action: SwitchAction::Toggle,
+        }
+    }
+}
+
+impl Default for Portable {
+    fn default() -> Self {
+        Self {
+            on: by_interaction(),
+            consumed: false,
+        }
+    }
+}
