@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use driftworld_spec::{Object, World};
 
-use crate::assets::{Asset, Block, Catalogue, Material, Mesh, Paint, Part};
+use crate::assets::{Asset, Block, Catalogue, ColliderShape, Material, Mesh, Paint, Part};
 
 /// Everything that a picture of a world depends on, but for the camera.
 #[derive(Clone, Debug)]
@@ -64,6 +64,24 @@ pub struct Item {
     pub visible: bool,
 }
 
+impl Item {
+    /// Draws a door that was closed as it is when open: turned by 90 degrees around its left end; not at all if its body is no
+    /// box.
+    pub(crate) fn swing(&mut self) {
+        let ColliderShape::Box { half: [half_width, ..] } = self.body.collider else {
+            self.visible = false;
+            return;
+        };
+        let by = half_width * self.scale;
+        let heading = self.heading_deg.to_radians();
+        let (sine, cosine) = (libm::sinf(heading), libm::cosf(heading));
+        // Back from the middle to the left end, and from there back along the leaf.
+        self.position[0] -= by * (cosine + sine);
+        self.position[1] -= by * (cosine - sine);
+        self.heading_deg = (self.heading_deg + 90.0).rem_euclid(360.0);
+    }
+}
+
 /// The light of a scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Light {
@@ -97,10 +115,16 @@ pub struct WallPanel {
 impl Scene {
     /// The scene of a world at its start, of built-in assets.
     pub fn from_world(world: &World) -> Self {
-        Self::from_world_with(world, &Catalogue::default())
+        let mut scene = Self::from_world_with(world, &Catalogue::default());
+        for (item, object) in scene.items.iter_mut().zip(&world.objects) {
+            if object.door.as_ref().is_some_and(|door| door.open) {
+                item.swing();
+            }
+        }
+        scene
     }
 
-    /// The scene of a world at its start, of the assets of a catalogue.
+    /// The scene of a world at its start, of the assets of a catalogue. Doors are drawn closed: an environment opens them.
     pub fn from_world_with(world: &World, catalogue: &Catalogue) -> Self {
         let environment = &world.environment_params;
         let mut scene = Self {

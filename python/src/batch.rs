@@ -7,7 +7,7 @@ use std::str::FromStr;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 
 use driftworld_env::{
-    Action, Batch, BatchOptions, Catalogue, EnvError, Event, GoOn, Library, RendererKind, WorldSource, top_down,
+    Action, Batch, BatchOptions, Catalogue, Effect, EnvError, Event, GoOn, Library, RendererKind, WorldSource, top_down,
 };
 use driftworld_spec::World;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
@@ -386,6 +386,7 @@ fn to_py<'py>(py: Python<'py>, event: &Event) -> PyResult<Bound<'py, PyDict>> {
     dictionary.set_item("stimulus", stimulus.as_str())?;
     dictionary.set_item("reward", event.reward)?;
     dictionary.set_item("destroyed", event.destroyed)?;
+    dictionary.set_item("effect", event.effect.map(Effect::name))?;
     Ok(dictionary)
 }
 

@@ -174,9 +174,13 @@ impl<'a> Session<'a> {
         let event = |event: &Event| {
             let (object, reward) = (&world.objects[event.object], amount(event.reward));
             let gone = if event.destroyed { ", destroyed" } else { "" };
+            let effect = event
+                .effect
+                .map(|effect| format!(", {}", effect.name().replace('_', " ")));
+            let effect = effect.unwrap_or_default();
             let (class, stimulus) = (&object.class, event.stimulus);
             format!(
-                "step {number}: {stimulus:?} object {} ({class}), reward {reward}{gone}",
+                "step {number}: {stimulus:?} object {} ({class}), reward {reward}{gone}{effect}",
                 event.object
             )
         };

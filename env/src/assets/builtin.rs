@@ -1,8 +1,8 @@
 //! Which classes are built in, how many models each has, and who makes them.
 
-use super::{Asset, Builder, Mesh, furniture, nature, structures, trees};
+use super::{Asset, Builder, Mesh, furniture, nature, structures, things, trees};
 
-/// Every class with its number of models, in alphabetical order.
+/// Every class of the original with its number of models, in alphabetical order.
 pub(crate) const CLASSES: &[(&str, u32)] = &[
     ("bag", 6),
     ("barrel", 5),
@@ -29,19 +29,26 @@ pub(crate) const CLASSES: &[(&str, u32)] = &[
     ("tree", 49),
 ];
 
-/// The number of a built-in class in class segmentation. All are the original's and have 1 to 23, in alphabetical
-/// order. One of ours would have the next number up to 30, in a list behind this one: what was stored stays right.
+/// Classes of ours, in the order in which they came: a new one goes behind the others, up to the seventh.
+pub(crate) const OWN_CLASSES: &[(&str, u32)] = &[("door", 2), ("key", 1), ("switch", 1)];
+
+/// All built-in classes with their numbers of models, in the order of their numbers in class segmentation.
+pub(crate) fn classes() -> impl Iterator<Item = (&'static str, u32)> {
+    CLASSES.iter().chain(OWN_CLASSES).copied()
+}
+
+/// The number of a built-in class in class segmentation. Those of the original have 1 to 23, in alphabetical order; ours have
+/// the next numbers up to 30, in the order of their list: what was stored stays right.
 pub(crate) fn class_number(class: &str) -> Option<u16> {
-    let place = CLASSES.binary_search_by_key(&class, |(name, _)| name).ok()?;
+    let originals = CLASSES.binary_search_by_key(&class, |(name, _)| name).ok();
+    let own = || OWN_CLASSES.iter().position(|(name, _)| *name == class);
+    let place = originals.or_else(|| Some(CLASSES.len() + own()?))?;
     u16::try_from(place + 1).ok()
 }
 
 /// How many models a class has, if it is known.
 pub(crate) fn models(class: &str) -> Option<u32> {
-    CLASSES
-        .iter()
-        .find(|(name, _)| *name == class)
-        .map(|(_, models)| *models)
+    classes().find(|(name, _)| *name == class).map(|(_, models)| models)
 }
 
 /// Makes an asset; what is not known is the placeholder.
@@ -68,6 +75,9 @@ pub(crate) fn make(class: &str, model: u32) -> Asset {
         "roadblock" => structures::roadblock(),
         "streetsign" => structures::street_sign(),
         "tent" => structures::tent(model),
+        "door" => things::door(model),
+        "key" => things::key(),
+        "switch" => things::switch(),
         _ => placeholder(),
     }
 }

@@ -71,7 +71,7 @@ impl Catalogue {
 
     /// The number of a class in class segmentation, the same in every world; capitals do not matter.
     ///
-    /// Built-in classes have 1 to 23, those of libraries follow each other from [`FIRST_LIBRARY_CLASS`] on in the order
+    /// Built-in classes have 1 to 26, those of libraries follow each other from [`FIRST_LIBRARY_CLASS`] on in the order
     /// of their names, and whatever is not known has [`UNKNOWN_CLASS`]. A library's models of a built-in class have
     /// that class's number. 0 is where there is no object.
     ///
@@ -99,7 +99,7 @@ impl Catalogue {
 
     /// All classes that it knows with their numbers in class segmentation, in rising order of the numbers.
     pub fn class_numbers(&self) -> impl Iterator<Item = (&str, u16)> {
-        let built_in = builtin::CLASSES.iter().map(|(class, _)| *class);
+        let built_in = builtin::classes().map(|(class, _)| class);
         built_in
             .chain(self.own_classes.iter().map(String::as_str))
             .map(|class| (class, self.class_number(class)))
@@ -163,7 +163,7 @@ mod tests {
             numbers.join(", "),
             "1 bag, 2 barrel, 3 bed, 4 bench, 5 building, 6 car, 7 castleruin, 8 chair, 9 cube, 10 fence, 11 geometric, \
              12 icosphere, 13 mushroom, 14 nature, 15 pot, 16 roadblock, 17 rock, 18 shelf, 19 shrub, 20 streetsign, 21 table, \
-             22 tent, 23 tree"
+             22 tent, 23 tree, 24 door, 25 key, 26 switch"
         );
     }
 
@@ -187,7 +187,7 @@ mod tests {
             .map(|(class, number)| (class.to_owned(), number))
             .collect();
         assert_eq!(
-            all[23..],
+            all[26..],
             [
                 ("buoy".to_owned(), 32),
                 ("kiosk".to_owned(), 33),

@@ -11,6 +11,7 @@ mod library;
 mod mesh;
 mod nature;
 mod structures;
+mod things;
 mod trees;
 
 use std::collections::HashMap;
@@ -196,9 +197,9 @@ pub fn asset(class: &str, model: &Model) -> Arc<Asset> {
     asset
 }
 
-/// The classes that are known, and how many models each has, in alphabetical order.
+/// The built-in classes, and how many models each has, in the order of their numbers in class segmentation.
 pub fn classes() -> impl Iterator<Item = (&'static str, u32)> {
-    builtin::CLASSES.iter().copied()
+    builtin::classes()
 }
 
 /// Parts on their way to an asset.

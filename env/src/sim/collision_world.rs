@@ -69,6 +69,8 @@ pub(super) struct Scratch {
     pub(super) places: Vec<u32>,
     /// The body of an object that moves, turned.
     pub(super) body: Footprint,
+    /// Where bodies would overlap with a door.
+    pub(super) doorway: Footprint,
     /// Footprints widened by it.
     pub(super) widened: Vec<Footprint>,
 }
@@ -209,10 +211,24 @@ impl CollisionWorld {
     pub(super) fn sync_object(&mut self, index: u32, item: &Item, solid: bool) {
         let body = self.handles.get(index as usize).copied().flatten();
         match (body, item.visible) {
-            (Some(handle), true) => self.put(handle, item.position, item.heading_deg),
+            (Some(handle), true) => {
+                self.set_solid(handle, solid);
+                self.put(handle, item.position, item.heading_deg);
+            }
             (Some(_), false) => self.remove(index),
             (None, true) => self.add_object(index, item, solid),
             (None, false) => {}
+        }
+    }
+
+    /// Lets a body stop others from now on, or none.
+    fn set_solid(&mut self, handle: ColliderHandle, solid: bool) {
+        let group = if solid { SOLID } else { GHOST };
+        let groups = self.colliders[handle].collision_groups();
+        if groups.memberships != group {
+            self.places.remove(groups.memberships, slot(handle) as u32);
+            let groups = InteractionGroups::new(group, Group::ALL, InteractionTestMode::And);
+            self.colliders[handle].set_collision_groups(groups);
         }
     }
 
@@ -341,6 +357,26 @@ impl CollisionWorld {
         let num_corners = is_whole.then(|| corners().sum());
         self.scratch.numbers = numbers;
         num_corners
+    }
+
+    /// How far a point is from an object's body up to the agent's height, in metres; `None` while it is not there.
+    pub(super) fn distance_of(&self, object: u32, at: Point) -> Option<f64> {
+        self.handles[object as usize].map(|handle| self.low[slot(handle)].gap(at).distance)
+    }
+
+    /// Whether a round body comes straight from one place to another without meeting a wall or a solid object.
+    pub(super) fn is_way_free(&self, from: [f32; 2], to: [f32; 2], radius: f64) -> bool {
+        let reach = radius as f32 + 0.01;
+        let area = [
+            [0, 1].map(|axis| from[axis].min(to[axis]) - reach),
+            [0, 1].map(|axis| from[axis].max(to[axis]) + reach),
+        ];
+        let (start, by) = (
+            from.map(f64::from),
+            [0, 1].map(|axis| f64::from(to[axis]) - f64::from(from[axis])),
+        );
+        let mut around = self.around(SOLID | WALL, None, area);
+        !around.any(|handle| self.whole[slot(handle)].time_within(start, by, radius).is_some())
     }
 
     /// The outline of an object, while it is there.

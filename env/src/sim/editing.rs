@@ -70,9 +70,12 @@ impl Environment {
         }
         let comes_back = |(index, _): &(usize, u64)| *index == object;
         let state = &mut self.state;
-        if !state.objects[object].present && !state.returning.iter().any(comes_back) {
+        let is_carried = state.objects[object].carried;
+        if !state.objects[object].present && !is_carried && !state.returning.iter().any(comes_back) {
             return Err(EnvError::AlreadyGone { object });
         }
+        state.carried.retain(|carried| *carried as usize != object);
+        state.objects[object].carried = false;
         state.returning.retain(|pending| !comes_back(pending));
         (state.objects[object].present, state.objects[object].collected) = (false, true);
         state.advance_sequence();

@@ -121,6 +121,11 @@ impl Environment {
         let mut state = SimState::new(&world, &seed, &mut identities);
         views.zones.resume(&[], &mut state);
         let mut rails = (world.agent_params.action_model == ActionModel::OnRails).then(RailsPolicy::default);
+        for door in &state.doors {
+            if state.objects[door.object].open {
+                views.sync_object(door.object, &world.objects[door.object], &state.objects[door.object]);
+            }
+        }
         if let Some(resume) = resume.filter(ResumeState::has_begun) {
             resume.apply(&world, &mut state, &mut views);
             if let (Some(policy), Some(progress)) = (&mut rails, resume.rails()) {

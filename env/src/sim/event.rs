@@ -17,6 +17,38 @@ pub struct Event {
     pub reward: f64,
     /// Whether it destroyed the object.
     pub destroyed: bool,
+    /// What the object did, if it is a door, a switch or a thing that is carried.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub effect: Option<Effect>,
+}
+
+/// What a door, a switch or a thing that is carried did at a stimulus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Effect {
+    /// The door opened.
+    Opened,
+    /// The door was set to close: it does at the end of the time step, or when nobody stands in it.
+    Closed,
+    /// The switch moved its doors.
+    Switched,
+    /// The agent picked the thing up.
+    PickedUp,
+    /// The agent put the thing down.
+    PutDown,
+}
+
+impl Effect {
+    /// Its name, as events are written.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Opened => "opened",
+            Self::Closed => "closed",
+            Self::Switched => "switched",
+            Self::PickedUp => "picked_up",
+            Self::PutDown => "put_down",
+        }
+    }
 }
 
 /// What a step led to.

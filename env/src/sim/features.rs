@@ -31,7 +31,13 @@ impl Environment {
     fn fill_state(&self, state: &mut [f32]) {
         let mut rest = state;
         for feature in &self.world.agent_params.state_features {
-            let (numbers, length) = values(&self.world, &self.state, *feature);
+            let (mut numbers, length) = values(&self.world, &self.state, *feature);
+            if *feature == StateFeature::Carrying {
+                // Numbers of classes are those of the scene.
+                let last = self.state.carried.last().map(|index| *index as usize);
+                let class = last.map_or(0, |index| self.views.scene.items[index].class_id);
+                numbers[1] = f32::from(class);
+            }
             let (own, others) = rest.split_at_mut(length);
             own.copy_from_slice(&numbers[..length]);
             rest = others;
@@ -76,6 +82,10 @@ fn values(world: &World, state: &SimState, feature: StateFeature) -> ([f32; 3], 
             };
             [number, event.reward as f32, f32::from(u8::from(event.destroyed))]
         }),
+        StateFeature::Carrying => {
+            let last = state.carried.last().map_or(0, |index| index + 1);
+            [state.carried.len() as f32, 0.0, last as f32]
+        }
         StateFeature::StepsLeft => {
             let most = world.step_limit().unwrap_or(0);
             let left = f64::from(most.saturating_sub(state.steps)) / f64::from(most.max(1));

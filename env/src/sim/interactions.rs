@@ -1,4 +1,5 @@
-//! What motion sets off: stimuli, what they pay, what they destroy. Endings are in `termination.rs`.
+//! What motion sets off: stimuli, what they pay, what they destroy. What doors and things do is in `things.rs`, endings are in
+//! `termination.rs`.
 
 use std::sync::Arc;
 
@@ -6,11 +7,13 @@ use driftworld_spec::{Stimulus, World};
 
 use super::action::Intent;
 use super::contact::RELEASE;
+use super::doors::advance_doors;
 use super::encounters::Encounters;
-use super::event::{Event, Step};
+use super::event::{Effect, Event, Step};
 use super::rng::ObjectRng;
 use super::sim_ref::SimRef;
 use super::state::SimState;
+use super::things::{answering, carry_out, effect_of, follow, listens, put_down, put_down_place};
 use super::views::Views;
 
 /// Lists that each time step uses again.
@@ -49,6 +52,20 @@ pub(super) fn apply_stimuli(
             .in_reach(state.agent.position, state.agent.forward(), reached);
         triggered.extend(reached.iter().map(|index| (*index, Stimulus::AgentInteract)));
     }
+    // An interaction moves one thing: what is in front, or else what is carried.
+    let mut put_down_now = None;
+    let hand = (intent.interact && state.has_things)
+        .then(|| {
+            let sim = SimRef {
+                world: objects.world,
+                state,
+                views,
+            };
+            let answers = answering(sim, reached);
+            put_down_now = answers.is_none().then(|| put_down_place(sim)).flatten();
+            answers
+        })
+        .flatten();
     for (index, object) in objects.world.objects.iter().enumerate() {
         let reach = object.range_stimulus_distance;
         if reach <= 0.0 {
@@ -71,10 +88,32 @@ pub(super) fn apply_stimuli(
     triggered.dedup();
     let num_returning = state.returning.len();
     for &(index, stimulus) in triggered.iter() {
-        if let Some(event) = trigger(objects, state, views, index as usize, stimulus) {
+        if let Some(event) = trigger(objects, state, views, (index as usize, hand), stimulus) {
             step.reward += event.reward;
             step.events.push(event);
         }
+    }
+    if state.has_things {
+        if let Some((index, place)) = put_down_now {
+            put_down(objects.world, state, views, index, place);
+            let sim = SimRef {
+                world: objects.world,
+                state,
+                views,
+            };
+            // That it is near to where it is put is no news.
+            state.objects[index as usize].in_range = is_in_range(sim, index as usize);
+            step.events.push(Event {
+                object: index as usize,
+                tag: objects.tags[index as usize].clone(),
+                stimulus: Stimulus::AgentInteract,
+                reward: 0.0,
+                destroyed: false,
+                effect: Some(Effect::PutDown),
+            });
+        }
+        follow(state);
+        advance_doors(objects.world, state, views);
     }
     if state.returning.len() > num_returning {
         state.returning.sort_unstable_by_key(|(index, _)| *index);
@@ -151,12 +190,13 @@ fn comes_near(sim: SimRef, index: usize, encounters: &Encounters) -> bool {
     is_range(sim, index, nearest, sim.world.objects[index].range_stimulus_distance)
 }
 
-/// One stimulus on one object: what it pays, whether it destroys. No event where the object is gone.
+/// One stimulus on one object: what it pays, whether it destroys. No event where the object is gone. `hand` is the object that
+/// an interaction moves.
 fn trigger(
     objects: Objects,
     state: &mut SimState,
     views: &mut Views,
-    index: usize,
+    (index, hand): (usize, Option<u32>),
     stimulus: Stimulus,
 ) -> Option<Event> {
     let (world, object) = (objects.world, &objects.world.objects[index]);
@@ -168,6 +208,13 @@ fn trigger(
     // Out of its turn an object neither pays nor goes: the sequence could not be finished otherwise.
     let due = state.is_due(object.order);
     let destroyed = due && object.destroy_stimulus.contains(&stimulus);
+    let is_hand = stimulus != Stimulus::AgentInteract || hand == Some(index as u32);
+    let effect = (object.is_used() && !destroyed && is_hand)
+        .then(|| effect_of(world, state, index, stimulus))
+        .flatten();
+    // What a stimulus is to move pays for it only if it moves, and a door not for being closed.
+    let is_moved = effect.is_some_and(|effect| effect != Effect::Closed);
+    let would_pay = would_pay && (is_moved || destroyed || !due || !listens(object, stimulus));
     let odds = object.reward_probability;
     // An arm that always pays draws nothing.
     let pull = |rng: &mut ObjectRng| rng.pull(odds);
@@ -180,7 +227,8 @@ fn trigger(
     } else {
         0.0
     };
-    own.collected |= pays || destroyed;
+    // What pays nothing has its turn in a sequence when it moves.
+    own.collected |= pays || destroyed || (is_moved && object.order.is_some());
     own.present = !destroyed;
     if pays && once {
         own.reward = 0.0;
@@ -189,6 +237,9 @@ fn trigger(
         views.sync_object(index, object, own);
     }
     state.advance_sequence();
+    if let Some(effect) = effect {
+        carry_out(world, state, views, index, effect);
+    }
     if let (true, Some(respawn)) = (destroyed, &object.respawn) {
         let ticks = (respawn.delay / world.agent_params.time_step).ceil() as u64;
         state.returning.push((index, state.ticks + ticks.max(1)));
@@ -199,6 +250,7 @@ fn trigger(
         stimulus,
         reward,
         destroyed,
+        effect,
     })
 }
 

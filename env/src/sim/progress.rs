@@ -52,6 +52,7 @@ pub(super) fn to_world(sim: SimRef, seed: &Seed, rails: Option<RailsProgress>) -
         former_draws: None,
         rails,
         objects,
+        carried: state.carried.clone(),
     });
     world
         .check_in_range()
@@ -130,6 +131,13 @@ fn note_object(sim: SimRef, index: usize, object: &mut Object) -> ObjectProgress
             .filter(|body| body.velocity != [0.0; 2])
             .map(|body| body.velocity.map(f64::from)),
         spin: pushed.map_or(0.0, |body| f64::from(body.spin_deg)),
+        open: object
+            .door
+            .as_ref()
+            .filter(|door| door.open != own.open)
+            .map(|_| own.open),
+        unlocked: state.door_of(index).is_some_and(|door| door.unlocked),
+        closes_at: state.door_of(index).and_then(|door| door.closes_at),
     }
 }
 
@@ -199,6 +207,10 @@ impl ResumeState {
         for (index, own) in progress.objects.iter().enumerate().take(world.objects.len()) {
             self.apply_to_object(index, own, state);
         }
+        state.carried.extend(&progress.carried);
+        for index in &progress.carried {
+            state.objects[*index as usize].carried = true;
+        }
         state.advance_sequence();
         views.sync_objects(world, state);
     }
@@ -207,6 +219,10 @@ impl ResumeState {
         let object = &mut state.objects[index];
         (object.position, object.heading_deg, object.reward) = self.objects[index];
         (object.present, object.collected, object.in_range) = (own.present, own.collected, own.in_range);
+        object.open = own.open.unwrap_or(object.open);
+        if let Some(door) = state.doors.iter_mut().find(|door| door.object == index) {
+            (door.unlocked, door.closes_at) = (own.unlocked, own.closes_at);
+        }
         if own.touched {
             state.contacts.push(index as u32);
         }

@@ -35,5 +35,5 @@ impl Pushed {
 
 /// Whether an object can be pushed: it says so, is solid, and does not move by itself.
 pub(super) fn is_pushed(object: &Object) -> bool {
-    object.pushable.is_some() && object.solid && object.motion_model == MotionModel::Stationary
+    object.pushable.is_some() && object.door.is_none() && object.solid && object.motion_model == MotionModel::Stationary
 }

@@ -3,6 +3,7 @@
 
 use driftworld_spec::{LastEvent, Object, World};
 
+use super::doors::DoorState;
 use super::mover::Mover;
 use super::pushed::Pushed;
 use super::rng::{Identities, ObjectRng, Seed};
@@ -40,6 +41,10 @@ pub struct ObjectState {
     pub present: bool,
     /// Whether it has paid, or was destroyed: places in a sequence count on it.
     pub collected: bool,
+    /// Whether it is a door that is open: a body that stops nobody.
+    pub open: bool,
+    /// Whether the agent carries it: it is not there then, and its position is the agent's.
+    pub carried: bool,
     pub(super) in_range: bool,
 }
 
@@ -52,6 +57,8 @@ impl ObjectState {
             reward: object.reward,
             present: true,
             collected: false,
+            open: object.door.as_ref().is_some_and(|door| door.open),
+            carried: false,
             in_range: false,
         }
     }
@@ -94,6 +101,14 @@ pub(crate) struct SimState {
     pub(super) sequence: Sequence,
     /// For each of the views' zones, whether the agent has entered it and is in it.
     pub(super) inside: Vec<bool>,
+    /// The objects that are doors, in rising order.
+    pub(super) doors: Vec<DoorState>,
+    /// The objects that the agent carries, in the order in which it picked them up.
+    pub(super) carried: Vec<u32>,
+    /// Whether any object is a door, a switch or a thing that is carried.
+    pub(crate) has_things: bool,
+    /// Seconds of a time step.
+    time_step: f64,
 }
 
 impl SimState {
@@ -121,9 +136,17 @@ impl SimState {
             returning: Vec::new(),
             sequence: Sequence::of(&world.objects),
             inside: Vec::new(),
+            doors: Vec::new(),
+            carried: Vec::new(),
+            has_things: false,
+            time_step: start.time_step,
         };
         for object in &world.objects {
             state.add_object(object, seed, identities);
+        }
+        if state.has_things {
+            // Room for all that is picked up, so that no step takes memory.
+            state.carried.reserve_exact(start.carry_limit as usize);
         }
         state
     }
@@ -141,6 +164,16 @@ impl SimState {
         self.movers.extend(Mover::new(index, object, seed, identity));
         self.rngs.extend(ObjectRng::new(index, object, seed, identity));
         self.pushed.extend(Pushed::new(index, object));
+        let door = object.door.as_ref();
+        self.doors
+            .extend(door.map(|door| DoorState::new(index, door, self.time_step)));
+        self.has_things |= object.is_used();
+    }
+
+    /// What a door has beside being open or not.
+    pub(super) fn door_of(&self, object: usize) -> Option<&DoorState> {
+        let found = self.doors.binary_search_by_key(&object, |door| door.object).ok()?;
+        self.doors.get(found)
     }
 
     /// The motion of an object that is pushed.

@@ -1,9 +1,9 @@
 //! What the world's rules make of where things stand: the potential of its shaping, and what ends an episode. What
 //! objects pay is in `interactions.rs`.
 
-use driftworld_spec::{EndCondition, Object, Stimulus, World, ZoneEnd};
+use driftworld_spec::{Delivery, EndCondition, Object, Stimulus, World, ZoneEnd};
 
-use super::event::Step;
+use super::event::{Effect, Event, Step};
 use super::state::{ObjectState, SimState};
 
 /// The potential that the world's shaping gives to this moment; 0 without shaping and where nothing draws the agent.
@@ -39,13 +39,53 @@ pub(super) fn check_termination(
         EndCondition::Touch(tag) => step
             .events
             .iter()
-            .any(|event| event.stimulus != Stimulus::AgentInRange && event.tag.as_deref() == Some(tag.as_str())),
+            .any(|event| is_touch(event) && event.tag.as_deref() == Some(tag.as_str())),
         EndCondition::ReturnAtLeast(bound) => earned >= *bound,
         EndCondition::ReturnAtMost(bound) => earned <= *bound,
+        EndCondition::Opened(tag) => state.doors.iter().any(|door| {
+            let (object, own) = (&world.objects[door.object], &state.objects[door.object]);
+            own.present && own.open && object.tag.as_ref() == Some(tag)
+        }),
+        EndCondition::Carried(tag) => {
+            let mut carried = state.carried.iter().map(|index| &world.objects[*index as usize]);
+            carried.any(|object| object.tag.as_ref() == Some(tag))
+        }
+        EndCondition::Delivered(delivery) => is_delivered(world, state, delivery),
     };
     let success = world.rules.success.iter().any(holds) || zone == Some(ZoneEnd::Success);
     let failed = !success && (zone.is_some() || world.rules.failure.iter().any(holds));
     (step.success, step.terminated) = (success, success || failed);
+}
+
+/// Whether the agent met the event's object, or used it.
+fn is_touch(event: &Event) -> bool {
+    event.stimulus != Stimulus::AgentInRange && event.effect != Some(Effect::PutDown)
+}
+
+/// The objects of a tag, as they are now.
+fn of_tag<'a>(world: &'a World, state: &'a SimState, tag: &'a str) -> impl Iterator<Item = &'a ObjectState> {
+    let objects = world.objects.iter().zip(&state.objects);
+    objects
+        .filter(move |(object, _)| object.tag.as_deref() == Some(tag))
+        .map(|(_, own)| own)
+}
+
+/// Whether all that is to be delivered lies where it should.
+fn is_delivered(world: &World, state: &SimState, delivery: &Delivery) -> bool {
+    let mut count = 0;
+    let lies_there = |own: &ObjectState| {
+        let near = |other: &ObjectState| {
+            let way = [0, 1].map(|axis| f64::from(own.position[axis]) - f64::from(other.position[axis]));
+            other.present && way[0] * way[0] + way[1] * way[1] <= delivery.within * delivery.within
+        };
+        own.present && of_tag(world, state, &delivery.to).any(near)
+    };
+    let mut left = of_tag(world, state, &delivery.tag).filter(|own| own.present || own.carried);
+    let all = left.all(|own| {
+        count += 1;
+        lies_there(own)
+    });
+    all && count > 0
 }
 
 /// Whether an object is a target that is there and still pays.

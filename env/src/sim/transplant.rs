@@ -75,6 +75,14 @@ impl Environment {
             };
             object.clone_from(their);
             object.reward = reward;
+            object.open &= self.world.objects[index].door.is_some();
+        }
+        own.carried.clone_from(&theirs.carried);
+        for door in &mut own.doors {
+            if let Some(their) = theirs.door_of(door.object) {
+                door.unlocked = their.unlocked;
+                door.closes_at = their.closes_at.map(ticks);
+            }
         }
         own.contacts.clone_from(&theirs.contacts);
         self.views.zones.resume(&other.views.zones.entered(theirs), own);
@@ -171,6 +179,7 @@ impl Environment {
             let [own, their] = [self, other].map(|one| one.views.zones.entered(&one.state));
             Unlike::of("the zones that the agent is in", &own, &their)
         })
+        .or_else(|| Unlike::of("what the agent carries", &own.carried, &their.carried))
         .or_else(|| Unlike::of("how what was pushed moves", &own.pushed, &their.pushed))
         .or_else(|| Unlike::of("when objects come back", &self.returns(), &other.returns()))
     }
@@ -192,6 +201,7 @@ impl Environment {
             place.ok().map(|place| Mover::progress(&state.movers[place]))
         };
         Unlike::of(of("the presence"), &own.present, &their.present)
+            .or_else(|| Unlike::of(of("whether it is open"), &own.open, &their.open))
             .or_else(|| Unlike::of(of("the position in metres"), &own.position, &their.position))
             .or_else(|| Unlike::of(of("the heading in degrees"), &own.heading_deg, &their.heading_deg))
             .or_else(|| {

@@ -34,7 +34,10 @@ impl Views {
         let item = &mut self.scene.items[index];
         (item.position, item.heading_deg) = (state.position, state.heading_deg);
         (item.reward, item.visible) = (state.reward as f32, state.present);
-        self.bodies.sync_object(index as u32, item, object.solid);
+        self.bodies.sync_object(index as u32, item, object.solid && !state.open);
+        if state.open {
+            item.swing();
+        }
     }
 
     /// Brings all objects up to date.

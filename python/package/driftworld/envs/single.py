@@ -132,7 +132,8 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
 
         Returns:
             Observation, reward, terminated, truncated, and the info: ``events``, a tuple of dictionaries with ``object``, ``tag``,
-            ``stimulus``, ``reward`` and ``destroyed``; ``is_success``, whether the episode has ended well.
+            ``stimulus``, ``reward``, ``destroyed`` and ``effect`` (None, or what a door, switch or thing did: ``opened``, ``closed``,
+            ``switched``, ``picked_up``, ``put_down``); ``is_success``, whether the episode has ended well.
 
         Raises:
             EnvError: After the end of an episode, or for an action that is none.

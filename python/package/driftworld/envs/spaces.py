@@ -27,6 +27,7 @@ _FEATURES: dict[str, list[tuple[float, float]]] = {
     "last_reward": [(-_LARGE, _LARGE)],
     "last_event": [(0.0, 3.0), (-_LARGE, _LARGE), (0.0, 1.0)],
     "steps_left": [(0.0, 1.0)],
+    "carrying": [(0.0, 100.0), (0.0, 65535.0), (0.0, 100_000.0)],
 }
 
 

@@ -1,0 +1,162 @@
+//! Doors: how they open, what their clocks do, and when they close. Who sets them going is in `things.rs`.
+
+use driftworld_spec::{Door, MotionModel, World};
+
+use super::collision_world::slot;
+use super::groups::{GHOST, SOLID};
+use super::state::SimState;
+use super::views::Views;
+
+/// How deep bodies must be in each other to count as one standing in the other, in metres.
+const INSIDE: f64 = 1e-6;
+
+/// What a door has beside being open or not.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct DoorState {
+    /// Index of its object.
+    pub(super) object: usize,
+    /// Whether its key was used.
+    pub(super) unlocked: bool,
+    /// The time step from which on it closes as soon as nobody stands in it.
+    pub(super) closes_at: Option<u64>,
+}
+
+impl DoorState {
+    pub(super) fn new(index: usize, door: &Door, time_step: f64) -> Self {
+        Self {
+            object: index,
+            unlocked: false,
+            closes_at: door
+                .closes_after
+                .filter(|_| door.open)
+                .map(|seconds| ticks_of(seconds, time_step)),
+        }
+    }
+}
+
+/// Time steps that have passed when so many seconds have: at least one.
+fn ticks_of(seconds: f64, time_step: f64) -> u64 {
+    // A little less, so that 60 s are 600 time steps of 0.1 s, which is no number of binary digits.
+    ((seconds / time_step - 1e-6).ceil() as u64).max(1)
+}
+
+/// Opens a closed door.
+pub(super) fn open(world: &World, state: &mut SimState, views: &mut Views, index: usize) {
+    let object = &world.objects[index];
+    let after = object.door.as_ref().and_then(|door| door.closes_after);
+    let closes_at = after.map(|seconds| state.ticks + ticks_of(seconds, world.agent_params.time_step));
+    if let Some(door) = state.doors.iter_mut().find(|door| door.object == index) {
+        door.closes_at = closes_at;
+    }
+    state.objects[index].open = true;
+    views.sync_object(index, object, &state.objects[index]);
+}
+
+/// Lets an open door close at the end of this time step, or as soon as nobody stands in it.
+pub(super) fn close_soon(state: &mut SimState, index: usize) {
+    let now = state.ticks;
+    if let Some(door) = state.doors.iter_mut().find(|door| door.object == index) {
+        door.closes_at = Some(door.closes_at.map_or(now, |tick| tick.min(now)));
+    }
+}
+
+/// The end of a time step: clocks first, then what is to close and can.
+pub(super) fn advance_doors(world: &World, state: &mut SimState, views: &mut Views) {
+    for place in 0..state.doors.len() {
+        let index = state.doors[place].object;
+        let Some(door) = world.objects[index]
+            .door
+            .as_ref()
+            .filter(|_| state.objects[index].present)
+        else {
+            continue;
+        };
+        if let Some(should_be_open) = clock(door, state.ticks, world.agent_params.time_step) {
+            match (should_be_open, state.objects[index].open) {
+                (true, false) => open(world, state, views, index),
+                (false, true) => close_soon(state, index),
+                _ => {}
+            }
+        }
+        let is_due = state.doors[place].closes_at.is_some_and(|tick| tick <= state.ticks);
+        if is_due && !is_stood_in(world, state, views, index) {
+            state.doors[place].closes_at = None;
+            state.objects[index].open = false;
+            views.sync_object(index, &world.objects[index], &state.objects[index]);
+        }
+    }
+}
+
+/// Whether a door is to be open, in the time steps in which its clock turns it.
+fn clock(door: &Door, ticks: u64, time_step: f64) -> Option<bool> {
+    let half = door.period? / 2.0;
+    let halves = |ticks: u64| (ticks as f64 * time_step / half + 1e-6).floor() as u64;
+    let now = halves(ticks);
+    (now != halves(ticks.saturating_sub(1))).then_some(door.open == (now % 2 == 0))
+}
+
+/// Whether the agent stands in a door, or a body that can move.
+fn is_stood_in(world: &World, state: &SimState, views: &mut Views, index: usize) -> bool {
+    if !world.objects[index].solid {
+        return false;
+    }
+    let bodies = &mut views.bodies;
+    let Some(handle) = bodies.handles[index] else {
+        return false;
+    };
+    let own = slot(handle);
+    let agent = state.agent.position.map(f64::from);
+    if bodies.low[own].gap(agent).distance < bodies.radius - INSIDE {
+        return true;
+    }
+    let mut overlap = std::mem::take(&mut bodies.scratch.doorway);
+    let moves = |other: usize| {
+        let object = &world.objects[other];
+        let by_itself = object.motion_model != MotionModel::Stationary;
+        object.door.is_none() && (by_itself || object.pushable.is_some() || object.portable.is_some())
+    };
+    let corners = bodies.whole[own].corners();
+    let side = |axis: usize, sign: f64| {
+        let far = corners
+            .iter()
+            .map(|corner| corner[axis] * sign)
+            .fold(f64::NEG_INFINITY, f64::max);
+        ((far + bodies.whole[own].rounding()) * sign) as f32
+    };
+    let area = [-1.0, 1.0].map(|sign| [side(0, sign), side(1, sign)]);
+    let is_stood_in = bodies.around(SOLID | GHOST, Some(handle), area).any(|other| {
+        let number = slot(other);
+        let moves = bodies.standing[number]
+            .object
+            .is_some_and(|object| moves(object as usize));
+        moves && {
+            bodies.whole[own].widened_into(&bodies.whole[number], &mut overlap);
+            overlap.gap([0.0; 2]).distance < -INSIDE
+        }
+    });
+    bodies.scratch.doorway = overlap;
+    is_stood_in
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_clock_turns_its_door_each_half_round() {
+        for (is_open, time_step) in [(false, 0.1), (true, 0.1), (false, 0.3)] {
+            let door = Door {
+                period: Some(2.0),
+                open: is_open,
+                ..Door::default()
+            };
+            let mut now = is_open;
+            for tick in 1..1000_u64 {
+                now = clock(&door, tick, time_step).unwrap_or(now);
+                let halves = (tick as f64 * time_step + 1e-6).floor() as u64;
+                assert_eq!(now, is_open == (halves % 2 == 0), "tick {tick}");
+            }
+        }
+        assert_eq!(clock(&Door::default(), 7, 0.1), None);
+    }
+}

@@ -1,0 +1,188 @@
+//! Doors, switches, and things that the agent carries: which of them answers a stimulus, and what it does then. When stimuli
+//! are, and what they pay, is in `interactions.rs`; clocks and doors that close are in `doors.rs`.
+
+use driftworld_spec::{Object, Stimulus, SwitchAction, World};
+
+use super::doors::{close_soon, open};
+use super::event::Effect;
+use super::sim_ref::SimRef;
+use super::state::SimState;
+use super::views::Views;
+
+/// Between the agent's body and that of a thing that it puts down, in metres: less than its reach, more than a touch.
+const APART: f32 = 0.1;
+
+/// Whether an object is moved by a stimulus at all: it opens, closes, sets doors going, or is picked up.
+pub(super) fn listens(object: &Object, stimulus: Stimulus) -> bool {
+    let door = object.door.as_ref();
+    let door = door.is_some_and(|door| door.opens_on.contains(&stimulus) || door.closes_on.contains(&stimulus));
+    let switch = object
+        .switch
+        .as_ref()
+        .is_some_and(|switch| switch.on.contains(&stimulus));
+    let portable = object
+        .portable
+        .as_ref()
+        .is_some_and(|portable| portable.on.contains(&stimulus));
+    door || switch || portable
+}
+
+/// What an object does at a stimulus as things are; `None` if nothing.
+pub(crate) fn effect_of(world: &World, state: &SimState, index: usize, stimulus: Stimulus) -> Option<Effect> {
+    let (object, own) = (&world.objects[index], &state.objects[index]);
+    if !own.present || !state.is_due(object.order) {
+        return None;
+    }
+    if let Some(door) = &object.door {
+        if !own.open && door.opens_on.contains(&stimulus) && !is_locked(world, state, index) {
+            return Some(Effect::Opened);
+        }
+        // One that waits to close does so by itself.
+        let waits = || {
+            state
+                .door_of(index)
+                .is_some_and(|door| door.closes_at.is_some_and(|tick| tick <= state.ticks))
+        };
+        if own.open && door.closes_on.contains(&stimulus) && !waits() {
+            return Some(Effect::Closed);
+        }
+    }
+    if object
+        .switch
+        .as_ref()
+        .is_some_and(|switch| switch.on.contains(&stimulus))
+    {
+        return Some(Effect::Switched);
+    }
+    let has_room = state.carried.len() < world.agent_params.carry_limit as usize;
+    let is_picked_up = object
+        .portable
+        .as_ref()
+        .is_some_and(|portable| portable.on.contains(&stimulus));
+    (is_picked_up && has_room).then_some(Effect::PickedUp)
+}
+
+/// Whether a door is locked to who carries what the agent carries.
+fn is_locked(world: &World, state: &SimState, index: usize) -> bool {
+    let key = world.objects[index].door.as_ref().and_then(|door| door.key.as_ref());
+    key.is_some_and(|key| {
+        let is_unlocked = state.door_of(index).is_some_and(|door| door.unlocked);
+        !is_unlocked && carried_of_tag(world, state, key).is_none()
+    })
+}
+
+/// The place among what is carried of the first thing of a tag.
+fn carried_of_tag(world: &World, state: &SimState, tag: &str) -> Option<usize> {
+    let tag_of = |index: u32| world.objects[index as usize].tag.as_deref();
+    state.carried.iter().position(|index| tag_of(*index) == Some(tag))
+}
+
+/// Which of the objects in reach answers an interaction by doing something: that whose body is nearest to the point of the
+/// agent's rim where it looks; the first of equals.
+pub(crate) fn answering(sim: SimRef, reached: &[u32]) -> Option<u32> {
+    let agent = sim.agent();
+    let (radius, [east, north]) = (sim.world.agent_params.agent_width / 2.0, agent.forward());
+    let front = [
+        f64::from(agent.position[0]) + radius * f64::from(east),
+        f64::from(agent.position[1]) + radius * f64::from(north),
+    ];
+    let answers = |index: &&u32| effect_of(sim.world, sim.state, **index as usize, Stimulus::AgentInteract).is_some();
+    let distance = |index: u32| sim.views.bodies.distance_of(index, front).unwrap_or(f64::INFINITY);
+    let of_all = reached.iter().filter(answers).map(|index| (*index, distance(*index)));
+    of_all.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(index, _)| index)
+}
+
+/// Which thing an interaction that nothing answers puts down, and where: the last that was picked up, right in front of the
+/// agent. `None` if nothing is carried or there is no room.
+pub(crate) fn put_down_place(sim: SimRef) -> Option<(u32, [f32; 2])> {
+    let index = *sim.state.carried.last()?;
+    let agent = sim.agent();
+    let radius = sim.body_radius(index as usize);
+    let ahead = sim.world.agent_params.agent_width as f32 / 2.0 + radius + APART;
+    let [east, north] = agent.forward();
+    let place = [agent.position[0] + east * ahead, agent.position[1] + north * ahead];
+    let is_free = sim.views.bodies.is_way_free(agent.position, place, f64::from(radius));
+    is_free.then_some((index, place))
+}
+
+/// Does what an object does.
+pub(super) fn carry_out(world: &World, state: &mut SimState, views: &mut Views, index: usize, effect: Effect) {
+    let object = &world.objects[index];
+    match effect {
+        Effect::Opened => {
+            unlock(world, state, index);
+            open(world, state, views, index);
+        }
+        Effect::Closed => close_soon(state, index),
+        Effect::Switched => {
+            if let Some(switch) = &object.switch {
+                for place in 0..state.doors.len() {
+                    let door = state.doors[place].object;
+                    if world.objects[door].tag.as_ref() == Some(&switch.target) && state.objects[door].present {
+                        set_going(world, state, views, door, switch.action);
+                    }
+                }
+            }
+        }
+        Effect::PickedUp => {
+            let own = &mut state.objects[index];
+            (own.present, own.carried, own.in_range) = (false, true, false);
+            views.sync_object(index, object, own);
+            state.carried.push(index as u32);
+        }
+        // Nothing puts itself down.
+        Effect::PutDown => {}
+    }
+}
+
+fn set_going(world: &World, state: &mut SimState, views: &mut Views, door: usize, action: SwitchAction) {
+    let is_open = state.objects[door].open;
+    match action {
+        SwitchAction::Open | SwitchAction::Toggle if !is_open => open(world, state, views, door),
+        SwitchAction::Close | SwitchAction::Toggle if is_open => close_soon(state, door),
+        _ => {}
+    }
+}
+
+/// Uses the key that a door wants, if it wants one.
+fn unlock(world: &World, state: &mut SimState, index: usize) {
+    let key = world.objects[index].door.as_ref().and_then(|door| door.key.as_deref());
+    let (Some(key), Some(door)) = (key, state.doors.iter().position(|door| door.object == index)) else {
+        return;
+    };
+    if state.doors[door].unlocked {
+        return;
+    }
+    state.doors[door].unlocked = true;
+    let Some(place) = carried_of_tag(world, state, key) else {
+        return;
+    };
+    let thing = state.carried[place] as usize;
+    if world.objects[thing]
+        .portable
+        .as_ref()
+        .is_some_and(|portable| portable.consumed)
+    {
+        state.carried.remove(place);
+        (state.objects[thing].carried, state.objects[thing].collected) = (false, true);
+    }
+}
+
+/// Puts a thing down that is carried.
+pub(super) fn put_down(world: &World, state: &mut SimState, views: &mut Views, index: u32, place: [f32; 2]) {
+    state.carried.retain(|carried| *carried != index);
+    let index = index as usize;
+    let own = &mut state.objects[index];
+    (own.position, own.present, own.carried) = (place, true, false);
+    views.sync_object(index, &world.objects[index], own);
+    if let Some(body) = state.pushed_of(index) {
+        body.stop();
+    }
+}
+
+/// What is carried is where the agent is.
+pub(super) fn follow(state: &mut SimState) {
+    for index in &state.carried {
+        state.objects[*index as usize].position = state.agent.position;
+    }
+}

@@ -1,0 +1,495 @@
+//! Doors, switches and things that are carried: what opens when, what is put down where, and that a written world goes on.
+
+use driftworld_env::{Action, Effect, Environment, Event};
+use driftworld_spec::{
+    Delivery, Door, EndCondition, Object, Portable, Pushable, StateFeature, Stimulus, Switch, SwitchAction, Wall,
+    World, WorldDraft,
+};
+use proptest::prelude::*;
+
+const AHEAD: Action = Action::Continuous([2.0, 0.0, 0.0]);
+const USE: Action = Action::Continuous([0.0, 0.0, 1.0]);
+const WAIT: Action = Action::Continuous([0.0, 0.0, 0.0]);
+
+/// A door 2 m wide in a wall from west to east through the arena, 4 m north of the agent, which looks at it.
+fn draft(door: Door) -> WorldDraft {
+    let mut world = WorldDraft::default();
+    world.environment_params.map_size = [20.0, 20.0];
+    let wall = |from: f64, to: f64| Wall {
+        polygon: vec![[from, 3.9], [to, 3.9], [to, 4.1], [from, 4.1]],
+        height: None,
+        color: None,
+    };
+    world.environment_params.walls = vec![wall(-10.0, -1.0), wall(1.0, 10.0)];
+    world.agent_params.carry_limit = 1;
+    let mut leaf = thing("door", "gate", [0.0, 4.0]);
+    leaf.scale = 2.0;
+    leaf.door = Some(door);
+    world.objects = vec![leaf];
+    world
+}
+
+fn thing(class: &str, tag: &str, at: [f64; 2]) -> Object {
+    let mut object = Object::new(class, at);
+    object.tag = Some(tag.to_owned());
+    object
+}
+
+fn key(tag: &str, at: [f64; 2]) -> Object {
+    let mut key = thing("key", tag, at);
+    key.portable = Some(Portable::default());
+    key
+}
+
+fn start(world: WorldDraft) -> Environment {
+    Environment::new(world.check().expect("the world is sound"))
+}
+
+fn steps(environment: &mut Environment, action: Action, count: usize) -> Vec<Event> {
+    let mut events = Vec::new();
+    for _ in 0..count {
+        events.extend(environment.step(action).expect("the episode goes on").events);
+    }
+    events
+}
+
+/// What the events say that objects did.
+fn effects(events: &[Event]) -> Vec<(usize, Effect)> {
+    events
+        .iter()
+        .filter_map(|event| Some((event.object, event.effect?)))
+        .collect()
+}
+
+fn north(environment: &Environment) -> f32 {
+    environment.agent().position[1]
+}
+
+#[test]
+fn a_closed_door_stops_the_agent_and_an_interaction_opens_it() {
+    let mut environment = start(draft(Door::default()));
+    steps(&mut environment, AHEAD, 40);
+    assert!(
+        (3.0..3.41).contains(&north(&environment)),
+        "it is stopped: {}",
+        north(&environment)
+    );
+    assert_eq!(effects(&steps(&mut environment, USE, 1)), [(0, Effect::Opened)]);
+    assert!(environment.objects()[0].open);
+    assert_eq!(
+        effects(&steps(&mut environment, USE, 1)),
+        [],
+        "an open door has no more to do"
+    );
+    steps(&mut environment, AHEAD, 20);
+    assert!(north(&environment) > 6.0, "nobody stops it: {}", north(&environment));
+}
+
+#[test]
+fn a_touch_opens_a_door_that_opens_on_touch_and_it_closes_after_its_time_behind_the_agent() {
+    let door = Door {
+        opens_on: vec![Stimulus::AgentCollide],
+        closes_after: Some(1.0),
+        ..Door::default()
+    };
+    let mut environment = start(draft(door));
+    let events = steps(&mut environment, AHEAD, 17);
+    assert_eq!(effects(&events), [(0, Effect::Opened)]);
+    // It stands in the doorway for longer than the door would stay open.
+    steps(&mut environment, AHEAD, 4);
+    steps(&mut environment, WAIT, 30);
+    let stands = environment.agent();
+    assert!(environment.objects()[0].open && (3.0..5.0).contains(&stands.position[1]));
+    steps(&mut environment, AHEAD, 20);
+    assert!(
+        !environment.objects()[0].open,
+        "it closed as soon as nobody stood in it"
+    );
+    assert!(north(&environment) > 6.0);
+}
+
+#[test]
+fn a_door_that_closes_on_a_stimulus_is_a_toggle() {
+    let stimuli = || vec![Stimulus::AgentInteract];
+    let door = Door {
+        opens_on: stimuli(),
+        closes_on: stimuli(),
+        ..Door::default()
+    };
+    let mut world = draft(door);
+    world.agent_params.coordinates = [0.0, 3.2];
+    world.objects[0].reward = 1.0;
+    world.objects[0].reward_stimulus = stimuli();
+    let mut environment = start(world);
+    let events = steps(&mut environment, USE, 3);
+    let effects = effects(&events);
+    assert_eq!(effects, [(0, Effect::Opened), (0, Effect::Closed), (0, Effect::Opened)]);
+    let rewards: Vec<f64> = events.iter().map(|event| event.reward).collect();
+    assert_eq!(rewards, [1.0, 0.0, 1.0], "it pays for being opened");
+}
+
+#[test]
+fn a_key_is_picked_up_unlocks_its_door_and_is_gone_if_it_is_consumed() {
+    for consumed in [false, true] {
+        let mut world = draft(Door {
+            key: Some("red".to_owned()),
+            ..Door::default()
+        });
+        world.agent_params.state_features = vec![StateFeature::Carrying];
+        world.agent_params.coordinates = [0.0, 3.2];
+        world.objects[0].reward = 5.0;
+        world.objects[0].reward_once_stimulus = vec![Stimulus::AgentInteract];
+        let mut red = key("red", [0.0, 2.0]);
+        red.portable = Some(Portable {
+            consumed,
+            ..Portable::default()
+        });
+        world.objects.extend([key("blue", [0.0, -9.0]), red]);
+        let mut environment = start(world);
+        let events = steps(&mut environment, USE, 1);
+        assert_eq!(
+            (effects(&events), events[0].reward),
+            (vec![], 0.0),
+            "locked doors pay nothing"
+        );
+        // Around, to the key behind it.
+        steps(&mut environment, Action::Continuous([0.0, 90.0, 0.0]), 20);
+        assert_eq!(effects(&steps(&mut environment, USE, 1)), [(2, Effect::PickedUp)]);
+        assert_eq!(environment.state_vector(), [1.0, 25.0, 3.0]);
+        let own = &environment.objects()[2];
+        assert!(own.carried && !own.present && !environment.scene().items[2].visible);
+        steps(&mut environment, Action::Continuous([0.0, 90.0, 0.0]), 20);
+        let events = steps(&mut environment, USE, 1);
+        assert_eq!((effects(&events), events[0].reward), (vec![(0, Effect::Opened)], 5.0));
+        assert_eq!(environment.state_vector()[0], if consumed { 0.0 } else { 1.0 });
+        steps(&mut environment, AHEAD, 20);
+        assert!(north(&environment) > 6.0);
+        let put = effects(&steps(&mut environment, USE, 1));
+        let expected: &[_] = if consumed { &[] } else { &[(2, Effect::PutDown)] };
+        assert_eq!(put, expected);
+        let own = &environment.objects()[2];
+        assert_eq!((own.present, own.carried), (!consumed, false));
+        if !consumed {
+            let ahead = own.position[1] - north(&environment);
+            assert!((0.7..0.8).contains(&ahead), "it lies right in front: {ahead}");
+        }
+    }
+}
+
+#[test]
+fn what_the_agent_may_not_carry_stays_and_only_one_thing_answers_an_interaction() {
+    let mut world = draft(Door::default());
+    world.objects = vec![key("a", [0.2, 1.2]), key("b", [-0.1, 1.0]), key("c", [0.0, -3.0])];
+    world.agent_params.carry_limit = 0;
+    assert_eq!(effects(&steps(&mut start(world.clone()), USE, 1)), []);
+    world.agent_params.carry_limit = 2;
+    let mut environment = start(world);
+    assert_eq!(
+        effects(&steps(&mut environment, USE, 1)),
+        [(1, Effect::PickedUp)],
+        "the nearer one"
+    );
+    assert_eq!(effects(&steps(&mut environment, USE, 1)), [(0, Effect::PickedUp)]);
+    assert_eq!(
+        effects(&steps(&mut environment, USE, 2)),
+        [(0, Effect::PutDown), (0, Effect::PickedUp)],
+        "the last one"
+    );
+}
+
+#[test]
+fn switches_move_all_doors_of_their_target_locked_ones_too() {
+    for (action, open, expected) in [
+        (SwitchAction::Toggle, [false, true], [true, false]),
+        (SwitchAction::Open, [false, true], [true, true]),
+        (SwitchAction::Close, [false, true], [false, false]),
+    ] {
+        let mut world = draft(Door {
+            opens_on: Vec::new(),
+            key: Some("none".to_owned()),
+            open: open[0],
+            ..Door::default()
+        });
+        let mut other = thing("door", "gate", [8.0, -8.0]);
+        other.door = Some(Door {
+            open: open[1],
+            ..Door::default()
+        });
+        let mut lever = thing("switch", "lever", [0.0, 1.2]);
+        lever.switch = Some(Switch {
+            action,
+            ..Switch::of("gate")
+        });
+        world.objects.extend([other, lever]);
+        let mut environment = start(world);
+        assert_eq!(effects(&steps(&mut environment, USE, 1)), [(2, Effect::Switched)]);
+        assert_eq!(
+            [0, 1].map(|door: usize| environment.objects()[door].open),
+            expected,
+            "{action:?}"
+        );
+    }
+}
+
+#[test]
+fn a_held_action_interacts_once_and_rules_end_episodes() {
+    let mut world = draft(Door {
+        closes_on: vec![Stimulus::AgentInteract],
+        ..Door::default()
+    });
+    world.agent_params.frame_skip = 4;
+    world.agent_params.coordinates = [0.0, 3.2];
+    let mut environment = start(world.clone());
+    steps(&mut environment, USE, 1);
+    assert!(environment.objects()[0].open, "not toggled four times");
+    let ends = |world: &WorldDraft, success: EndCondition| {
+        let mut world = world.clone();
+        world.rules.success = vec![success];
+        start(world).step(USE).expect("it is sound").success
+    };
+    assert!(ends(&world, EndCondition::Opened("gate".to_owned())));
+    assert!(!ends(&world, EndCondition::Opened("other".to_owned())));
+    world.objects.push(key("red", [0.0, 3.9]));
+    world.objects.remove(0);
+    assert!(ends(&world, EndCondition::Carried("red".to_owned())));
+    assert!(!ends(&world, EndCondition::Carried("blue".to_owned())));
+}
+
+#[test]
+fn a_delivery_is_done_when_all_of_the_tag_lie_there() {
+    let mut world = draft(Door::default());
+    world.objects = vec![
+        key("ball", [0.0, 1.0]),
+        thing("cube", "box", [0.0, -3.0]),
+        key("ball", [0.5, -2.0]),
+    ];
+    world.rules.success = vec![EndCondition::Delivered(Delivery {
+        tag: "ball".to_owned(),
+        to: "box".to_owned(),
+        within: 2.5,
+    })];
+    let mut environment = start(world);
+    steps(&mut environment, USE, 1);
+    steps(&mut environment, Action::Continuous([0.0, 90.0, 0.0]), 20);
+    assert!(!environment.ended(), "what is carried is not there yet");
+    assert!(environment.step(USE).expect("it goes on").success);
+}
+
+#[test]
+fn a_carried_target_is_none_until_it_is_put_down() {
+    let mut world = draft(Door::default());
+    let mut coin = key("coin", [0.0, 1.0]);
+    coin.reward = 2.0;
+    coin.reward_stimulus = vec![Stimulus::AgentInteract];
+    world.objects = vec![coin];
+    world.agent_params.state_features = vec![StateFeature::Counts];
+    let mut environment = start(world);
+    assert_eq!(environment.state_vector()[0], 1.0);
+    let step = environment.step(USE).expect("it is sound");
+    assert_eq!(
+        (step.reward, environment.state_vector()[0]),
+        (2.0, 0.0),
+        "it pays for being picked up"
+    );
+    let step = environment.step(USE).expect("it is sound");
+    assert_eq!(
+        (step.reward, environment.state_vector()[0]),
+        (0.0, 1.0),
+        "and not for being put down"
+    );
+}
+
+/// A house of four rooms with doors of all kinds, keys, a switch, a box that is pushed and somebody who wanders.
+fn house() -> WorldDraft {
+    let mut world = WorldDraft::default();
+    world.environment_params.map_size = [16.0, 16.0];
+    let wall = |x: [f64; 2], y: [f64; 2]| Wall {
+        polygon: vec![[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]],
+        height: None,
+        color: None,
+    };
+    world.environment_params.walls = vec![
+        wall([-8.0, -4.75], [-0.15, 0.15]),
+        wall([-3.25, 3.25], [-0.15, 0.15]),
+        wall([4.75, 8.0], [-0.15, 0.15]),
+        wall([-0.15, 0.15], [-8.0, -4.75]),
+        wall([-0.15, 0.15], [-3.25, 3.25]),
+        wall([-0.15, 0.15], [4.75, 8.0]),
+    ];
+    let leaf = |at: [f64; 2], heading: f64, door: Door| {
+        let mut leaf = thing("door", "door", at);
+        (leaf.scale, leaf.heading, leaf.door) = (1.5, heading, Some(door));
+        leaf
+    };
+    let both = || vec![Stimulus::AgentCollide, Stimulus::AgentInteract];
+    let interact = || vec![Stimulus::AgentInteract];
+    let mut lever = thing("switch", "lever", [-6.0, -6.0]);
+    lever.switch = Some(Switch::of("door"));
+    let mut crate_ = thing("cube", "box", [2.0, -2.0]);
+    crate_.pushable = Some(Pushable {
+        mass: 10.0,
+        friction: 0.3,
+    });
+    let mut guest = thing("barrel", "guest", [5.0, 5.0]);
+    (guest.motion_model, guest.speed) = (driftworld_spec::MotionModel::RandomWaypoint, 3.0);
+    let mut soft = key("door_key", [-5.0, 5.0]);
+    soft.solid = false;
+    soft.portable = Some(Portable {
+        on: both(),
+        consumed: false,
+    });
+    world.objects = vec![
+        leaf(
+            [-4.0, 0.0],
+            0.0,
+            Door {
+                opens_on: both(),
+                closes_on: interact(),
+                ..Door::default()
+            },
+        ),
+        leaf(
+            [0.0, 4.0],
+            90.0,
+            Door {
+                key: Some("door_key".to_owned()),
+                closes_after: Some(0.7),
+                ..Door::default()
+            },
+        ),
+        leaf(
+            [4.0, 0.0],
+            180.0,
+            Door {
+                opens_on: Vec::new(),
+                period: Some(1.3),
+                ..Door::default()
+            },
+        ),
+        leaf(
+            [0.0, -4.0],
+            270.0,
+            Door {
+                opens_on: both(),
+                open: true,
+                closes_after: Some(2.0),
+                ..Door::default()
+            },
+        ),
+        lever,
+        crate_,
+        guest,
+        soft,
+        key("stone", [-2.0, -2.0]),
+        key("stone", [-3.0, -5.0]),
+    ];
+    (world.agent_params.coordinates, world.agent_params.agent_width) = ([-4.0, -3.0], 0.6);
+    world.agent_params.carry_limit = 2;
+    world.agent_params.max_linear_speed = 4.0;
+    world.agent_params.state_features = vec![StateFeature::Position, StateFeature::Carrying];
+    world.seed = Some(7);
+    world
+}
+
+/// Mostly ahead, with turns and a hand that is never still.
+fn action() -> impl Strategy<Value = Action> {
+    (-1.0..4.0_f64, -90.0..90.0_f64, 0..3_u8)
+        .prop_map(|(speed, turn, hand)| Action::Continuous([speed, turn, f64::from(u8::from(hand == 0))]))
+}
+
+/// How far a point is from the nearest wall of the house, negative inside.
+fn room_at(world: &World, [x, y]: [f32; 2]) -> f64 {
+    let (x, y) = (f64::from(x), f64::from(y));
+    let walls = world.environment_params.walls.iter().map(|wall| {
+        let (low, high) = (wall.polygon[0], wall.polygon[2]);
+        let out = |at: f64, axis: usize| (low[axis] - at).max(at - high[axis]);
+        let (dx, dy) = (out(x, 0), out(y, 1));
+        if dx <= 0.0 && dy <= 0.0 {
+            dx.max(dy)
+        } else {
+            libm::hypot(dx.max(0.0), dy.max(0.0))
+        }
+    });
+    walls.fold((8.0 - x.abs()).min(8.0 - y.abs()), f64::min)
+}
+
+/// How far the agent's middle is from a door's leaf as it is when closed.
+fn to_leaf(world: &World, environment: &Environment, door: usize) -> f64 {
+    let [x, y] = environment.agent().position.map(f64::from);
+    let [dx, dy] = [
+        x - world.objects[door].coordinates[0],
+        y - world.objects[door].coordinates[1],
+    ]
+    .map(f64::abs);
+    let (along, across) = if door % 2 == 0 { (dx, dy) } else { (dy, dx) };
+    libm::hypot((along - 0.75).max(0.0), (across - 0.15).max(0.0))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn nothing_is_lost_nor_put_into_walls_and_no_door_closes_on_the_agent(actions in prop::collection::vec(action(), 200..500)) {
+        let world = house().check().expect("it is sound");
+        let mut environment = Environment::new(world.clone());
+        for action in actions {
+            let before: Vec<bool> = environment.objects().iter().map(|own| own.open).collect();
+            let step = environment.step(action).expect("it has no end");
+            for (index, own) in environment.objects().iter().enumerate() {
+                if world.objects[index].portable.is_some() {
+                    prop_assert!(own.present != own.carried, "{index} is lost, or twice");
+                }
+                if own.carried {
+                    prop_assert_eq!(own.position, environment.agent().position);
+                }
+                if world.objects[index].door.is_some() && !own.open {
+                    let apart = to_leaf(&world, &environment, index);
+                    prop_assert!(apart > 0.3 - 1e-3, "the agent is {apart} from closed door {index}, before {:?}", before[index]);
+                }
+            }
+            for event in step.events.iter().filter(|event| event.effect == Some(Effect::PutDown)) {
+                let own = &environment.objects()[event.object];
+                prop_assert!(room_at(&world, own.position) > 0.14, "{:?}", own.position);
+                let lies = |other: &usize| *other != event.object && environment.objects()[*other].present;
+                for other in (4..10).filter(lies) {
+                    let there = environment.objects()[other].position;
+                    let apart = libm::hypotf(there[0] - own.position[0], there[1] - own.position[1]);
+                    prop_assert!(apart > 0.14 || !world.objects[other].solid, "in object {other}");
+                }
+            }
+            let carried = environment.objects().iter().filter(|own| own.carried).count();
+            prop_assert!(carried <= 2 && environment.state_vector()[2] == carried as f32);
+        }
+    }
+
+    #[test]
+    fn a_written_house_goes_on_to_the_last_bit(
+        actions in prop::collection::vec(action(), 50..300),
+        share in 0.0..1.0_f64,
+    ) {
+        let mut environment = Environment::new(house().check().expect("it is sound"));
+        let written_at = (actions.len() as f64 * share) as usize;
+        let mut other = None;
+        for (number, action) in actions.into_iter().enumerate() {
+            if number == written_at {
+                let text = environment.state().to_json();
+                let read = World::from_json("state", &text).expect("a state is a sound world");
+                let went_on = Environment::new(read);
+                prop_assert_eq!(went_on.state().to_json(), text);
+                other = Some((went_on, environment.snapshot()));
+            }
+            let step = environment.step(action).expect("it has no end");
+            if let Some((other, _)) = &mut other {
+                prop_assert_eq!(other.step(action).expect("it has no end"), step);
+                prop_assert_eq!(other.state().to_json(), environment.state().to_json());
+                prop_assert_eq!(other.observe().rgb.clone(), environment.observe().rgb.clone());
+            }
+        }
+        if let Some((mut other, moment)) = other {
+            other.restore(&moment);
+            let state = other.state();
+            environment.restore(&moment);
+            prop_assert_eq!(state, environment.state());
+        }
+    }
+}
