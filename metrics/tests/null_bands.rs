@@ -11,8 +11,8 @@ use std::fs;
 
 use driftworld_metrics::BlockType::{Test, Train};
 use driftworld_metrics::{
-    BlockType, Direction, Exchanged, LifetimeMetrics, Log, MaintenanceMethod, Options, Reading, SteLog, Timestamp,
-    TransferMethod, read_log, score,
+    BlockType, BootstrapOptions, Direction, Exchanged, LifetimeMetrics, Log, MaintenanceMethod, NullBand, Options,
+    Reading, RepeatedMetric, SteLog, Timestamp, TransferMethod, over_repeats, read_log, score,
 };
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -142,6 +142,74 @@ fn check_calibration(lifetimes: &[LifetimeMetrics], exchanged: Exchanged) {
         assert!(called_good * 100 <= lifetimes.len() * 8, "{counts}");
         assert!(called_bad * 100 <= lifetimes.len() * 8, "{counts}");
     }
+}
+
+/// What groups of lifetimes say together.
+fn together(lifetimes: &[LifetimeMetrics], size: usize) -> Vec<Vec<RepeatedMetric>> {
+    let options = BootstrapOptions {
+        resamples: 40,
+        ..BootstrapOptions::default()
+    };
+    let groups = lifetimes.chunks(size);
+    groups.map(|group| over_repeats(group, &options).unwrap()).collect()
+}
+
+#[test]
+fn several_lifetimes_of_an_agent_that_never_changes_are_called_good_no_more_often() {
+    let groups = together(&random_lifetimes(250, |row| row), 5);
+    for (name, good) in directions() {
+        let bands: Vec<NullBand> = (groups.iter())
+            .filter_map(|group| group.iter().find(|row| row.headline.name == name)?.null)
+            .collect();
+        assert_eq!(bands.len(), groups.len());
+        let count = |reading: Reading| bands.iter().filter(|band| band.reading(good) == reading).count();
+        let counts = format!(
+            "{name}: {} good, {} bad of 50",
+            count(Reading::Good),
+            count(Reading::Bad)
+        );
+        // 2.5 of 100 each are expected; six of 50 come in 1 of 1,000 tries.
+        assert!(count(Reading::Good) < 6 && count(Reading::Bad) < 6, "{counts}");
+    }
+}
+
+#[test]
+fn copies_of_a_lifetime_have_the_band_of_one() {
+    let one = random_lifetimes(1, |row| row).remove(0);
+    let several = [one.clone(), one.clone(), one.clone()];
+    for (name, _) in directions() {
+        let (own, found) = (one.null_bands[name], NullBand::over_lifetimes(name, &several).unwrap());
+        for (own, found) in [(own.value, found.value), (own.low, found.low), (own.high, found.high)] {
+            assert!((own - found).abs() < 1e-9, "{name} {own} {found}");
+        }
+        assert_eq!(own.p, found.p, "{name}");
+    }
+}
+
+#[test]
+fn what_one_lifetime_leaves_open_several_show() {
+    // What was learnt is lost bit by bit, and luck covers it.
+    let lifetimes: Vec<LifetimeMetrics> = (0..12_u64)
+        .map(|seed| {
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let rows = lifetime(15, |learnt, kind, number, world| {
+                let kept = if learnt > number {
+                    20.0 - 6.0 * (learnt - number) as f64
+                } else {
+                    0.0
+                };
+                by_luck(&mut rng, world) + if kind == Test { kept } else { 0.0 }
+            });
+            scored(&rows)
+        })
+        .collect();
+    let good = Direction::HigherThan(0.0);
+    let name = "perf_maintenance_mrlep";
+    let readings = lifetimes.iter().map(|life| life.null_bands[name].reading(good));
+    assert!(readings.filter(|reading| *reading == Reading::Bad).count() < 8);
+    let found = NullBand::over_lifetimes(name, &lifetimes).unwrap();
+    assert_eq!(found.reading(good), Reading::Bad, "{found:?}");
+    assert_eq!(NullBand::over_lifetimes("avg_eval_perf", &lifetimes), None);
 }
 
 #[test]

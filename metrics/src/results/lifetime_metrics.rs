@@ -54,6 +54,11 @@ pub struct LifetimeMetrics {
     /// transfer are there even where only ratios were asked for. Not in the JSON, which has the reference's fields.
     #[serde(default, rename = "null")]
     pub null_bands: IndexMap<String, NullBand>,
+    /// What each null band was made of: a value of each of [`NULL_PERMUTATIONS`](crate::NULL_PERMUTATIONS) permutations,
+    /// in an order that all lifetimes share, infinite where there was none. Not in the JSON; empty where a lifetime was
+    /// read back.
+    #[serde(skip)]
+    pub null_draws: IndexMap<String, Vec<f64>>,
     /// What each task came to in evaluations, in the log's unit. Not in the JSON, which has the reference's fields.
     #[serde(default)]
     pub reached: IndexMap<String, Reached>,

@@ -22,7 +22,8 @@ pub struct MetricPower {
     pub lifetimes: [usize; 2],
     /// The difference of means that is asked about, in the metric's unit.
     pub effect: f64,
-    /// The chance that the lifetimes at hand show that difference, 0..=1.
+    /// The chance that the lifetimes at hand show that difference, 0..=1; `None` where no lifetime differs from
+    /// another: then no test can be made, and the next two are `None`, too.
     pub power: Option<f64>,
     /// How many lifetimes of each agent show it with a chance of 80 %; `None` for more than 100,000.
     pub lifetimes_needed: Option<usize>,
@@ -30,7 +31,7 @@ pub struct MetricPower {
     pub smallest_effect: Option<f64>,
 }
 
-/// Of every metric of which at least two lifetimes of each agent have values that differ. Without another agent,
+/// Of every metric of which at least two lifetimes of each agent have values. Without another agent,
 /// `others` empty, it is taken to be one whose lifetimes vary as much and are as many.
 pub fn metric_power(lifetimes: &[LifetimeMetrics], others: &[LifetimeMetrics], effect: f64) -> Vec<MetricPower> {
     let others = if others.is_empty() { lifetimes } else { others };
@@ -41,12 +42,11 @@ pub fn metric_power(lifetimes: &[LifetimeMetrics], others: &[LifetimeMetrics], e
         });
         let [a, b] = [deviation(&values[0])?, deviation(&values[1])?];
         let (nums, deviations) = ([values[0].len(), values[1].len()], [a, b]);
-        let power = welch_power(nums, deviations, effect)?;
         Some(MetricPower {
             deviations,
             lifetimes: nums,
             effect,
-            power: Some(power),
+            power: welch_power(nums, deviations, effect),
             lifetimes_needed: lifetimes_for(deviations, effect),
             smallest_effect: smallest_effect(nums, deviations),
             headline,

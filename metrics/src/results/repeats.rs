@@ -4,7 +4,7 @@
 
 use serde::Serialize;
 
-use super::{Direction, Headline, LifetimeMetrics, Value};
+use super::{Direction, Headline, LifetimeMetrics, NullBand, Value};
 use crate::MetricsError;
 use crate::repeats::{
     Aggregate, BootstrapOptions, Estimate, Improvement, ScoreTable, estimate, probability_of_improvement,
@@ -26,6 +26,10 @@ pub struct RepeatedMetric {
     pub num_runs: usize,
     /// Tasks that have a value; for transfer, pairs of tasks.
     pub num_strata: usize,
+    /// The mean over lifetimes of the metric's value beside its null band; `None` for a metric that learning decides,
+    /// too. It differs from `mean` where lifetimes lack some tasks.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub null: Option<NullBand>,
     /// What a reader of the intervals must be told.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub caution: Option<String>,
@@ -59,6 +63,7 @@ pub fn over_repeats(
         };
         let [iqm, mean, median] = estimate(&table, [Aggregate::Iqm, Aggregate::Mean, Aggregate::Median], options)?;
         found.push(RepeatedMetric {
+            null: NullBand::over_lifetimes(&headline.name, lifetimes),
             headline,
             iqm,
             mean,

@@ -19,6 +19,14 @@ pub const NULL_PERMUTATIONS: usize = 1000;
 /// What permutations are drawn from: a lifetime has the same bands wherever it is scored.
 const SEED: u64 = 0;
 
+/// The null bands of a lifetime, and the values that they were made of.
+#[derive(Default)]
+pub(super) struct NullBands {
+    pub(super) bands: IndexMap<String, NullBand>,
+    /// Of each metric the value of each permutation, in order; infinite where there was none.
+    pub(super) drawn: IndexMap<String, Vec<f64>>,
+}
+
 /// The null band of each metric that evaluations decide, by name: maintenance as far as it is asked for, transfer as a
 /// contrast, and as a ratio where it is asked for. `term_perfs` are the lifetime's, by regime number.
 ///
@@ -31,7 +39,7 @@ pub(super) fn null_bands(
     lifetime: &Lifetime,
     options: &Options,
     term_perfs: &[f64],
-) -> Result<IndexMap<String, NullBand>, MetricsError> {
+) -> Result<NullBands, MetricsError> {
     let mut statistics = performance_maintenance::statistics(lifetime, options);
     statistics.extend(transfer::statistics(lifetime, options));
     let mut found: Vec<_> = (statistics.into_iter())
@@ -44,7 +52,7 @@ pub(super) fn null_bands(
         })
         .collect();
     if options.smooth_eval_data || found.is_empty() {
-        return Ok(IndexMap::new());
+        return Ok(NullBands::default());
     }
     let mut evaluations = Evaluations::of(log, lifetime, options)?;
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);
@@ -53,17 +61,21 @@ pub(super) fn null_bands(
         evaluations.permute(&mut rng);
         evaluations.set_term_perfs(&mut permuted);
         for (_, statistic, drawn) in &mut found {
-            drawn.extend(statistic.of(&permuted));
+            drawn.push(statistic.of(&permuted).unwrap_or(f64::INFINITY));
         }
     }
     let exchanged = evaluations.exchanged;
     let errors = errors(log, lifetime, options)?;
-    let bands = found.into_iter().filter_map(|(value, statistic, drawn)| {
-        let mut band = NullBand::new(value, &drawn, exchanged)?;
-        band.standard_error = standard_error(&statistic, term_perfs, &errors);
-        Some((statistic.name.to_owned(), band))
-    });
-    Ok(bands.collect())
+    let mut bands = NullBands::default();
+    for (value, statistic, drawn) in found {
+        let finite: Vec<f64> = drawn.iter().copied().filter(|value| value.is_finite()).collect();
+        if let Some(mut band) = NullBand::new(value, &finite, exchanged) {
+            band.standard_error = standard_error(&statistic, term_perfs, &errors);
+            bands.bands.insert(statistic.name.to_owned(), band);
+            bands.drawn.insert(statistic.name.to_owned(), drawn);
+        }
+    }
+    Ok(bands)
 }
 
 /// The standard error of each evaluation that counts, by its regime number, as far as it is known.

@@ -118,6 +118,7 @@ impl Scorer {
         let expert_fits = expert_fits(log, lifetime, options)?;
         let mut cautions: Vec<String> = never_learned(&reached, &tasks, options).into_iter().collect();
         cautions.extend(unlike_experts(&expert_fits));
+        cautions.extend(super::ste_relative_performance::caution(lifetime));
         let info = &log.scenario_info;
         Ok(LifetimeMetrics {
             lifetime: in_order(&found),
@@ -134,7 +135,8 @@ impl Scorer {
             normalization_data_range: lifetime.normalization_data_range().cloned(),
             as_logged: as_logged(log, options)?,
             notes,
-            null_bands,
+            null_bands: null_bands.bands,
+            null_draws: null_bands.drawn,
             curves: curves(lifetime, &reached),
             reached,
             cautions,

@@ -6,7 +6,7 @@
 use super::{Assessment, Metric};
 use crate::lifetime::{Lifetime, SteRun};
 use crate::results::{Direction, Headline};
-use crate::statistics::mean_of_known;
+use crate::statistics::{mean, mean_of_known};
 use crate::{MetricsError, Options, SteAveragingMethod};
 
 /// `ste_rel_perf` of every task, the mean of its `ste_rel_perf_vals`.
@@ -36,6 +36,33 @@ impl Metric for SteRelativePerformance {
         assessment.set_lifetime_of(NAME, of_tasks);
         Ok(())
     }
+}
+
+/// What a reader must be told of tasks in which the lifetime or an expert gathered nothing or less: a ratio says nothing
+/// there, and of two losses the larger one looks better. The difference of the means does say something.
+pub(super) fn caution(lifetime: &Lifetime) -> Option<String> {
+    let mut found = Vec::new();
+    for task in lifetime.tasks() {
+        let (_, learning) = lifetime.training_of(task);
+        let runs = lifetime.experts_of(task).iter().map(SteRun::training_performance);
+        // As in the ratio, as long as the shorter one.
+        let both = runs.filter_map(|run| {
+            let num = run.len().min(learning.len());
+            Some((mean(&learning[..num])?, mean(&run[..num])?))
+        });
+        let both: Vec<(f64, f64)> = both.collect();
+        if both.iter().any(|(own, expert)| *own <= 0.0 || *expert <= 0.0) {
+            let differences: Vec<f64> = both.iter().map(|(own, expert)| own - expert).collect();
+            found.extend(mean(&differences).map(|difference| format!("{task} {difference:.3}")));
+        }
+    }
+    (!found.is_empty()).then(|| {
+        format!(
+            "performances that add up to 0 or less: ste_rel_perf and sample_efficiency say nothing of these tasks, and of \
+             two losses the larger looks better; lifetime less expert in the mean: {}",
+            found.join(", ")
+        )
+    })
 }
 
 /// One value per run of the task's expert (`metrics`), or one against their average (`time`).
@@ -75,4 +102,46 @@ pub(super) fn average_over_time(runs: &[SteRun]) -> Option<Vec<f64>> {
     let shortest = runs.iter().map(Vec::len).min()?;
     let mean_at = |index: usize| runs.iter().map(|run| run[index]).sum::<f64>() / runs.len() as f64;
     Some((0..shortest).map(mean_at).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Log, LogWriter, LoggerInfo, NormalizationMethod, Record, ScenarioInfo, SteLog, Timestamp, read_log};
+
+    fn log_of(name: &str, rewards: &[f64]) -> Log {
+        let base = tempfile::tempdir().expect("a folder");
+        let dir = base.path().join(name);
+        let info = LoggerInfo::new(["reward"]).expect("one column");
+        let mut writer = LogWriter::create(&dir, &info, &ScenarioInfo::default()).expect("a new log");
+        for (number, reward) in (0..).zip(rewards) {
+            let when = Timestamp::from_unix_micros(number as i64).expect("a time");
+            let record = Record::new(0, number, crate::BlockType::Train, "a_1", when);
+            writer.write(&record.with_metric("reward", *reward)).expect("a row");
+        }
+        drop(writer);
+        read_log(&dir).expect("a log")
+    }
+
+    #[test]
+    fn losses_are_said_with_their_difference() {
+        let check = |own: f64, expert: f64, expected: Option<&str>| {
+            let options = Options {
+                normalization_method: NormalizationMethod::Off,
+                ..Options::default()
+            };
+            let experts = [SteLog::new(log_of("expert", &[expert; 4])).expect("one task")];
+            let found = crate::score(&log_of("life", &[own; 4]), &experts, &options).expect("scores");
+            let said = found.cautions.iter().find(|text| text.contains("ste_rel_perf"));
+            match expected {
+                None => assert_eq!(said, None),
+                Some(end) => assert!(said.is_some_and(|said| said.ends_with(end)), "{said:?}"),
+            }
+        };
+        // -20 over -10 is 2: twice the loss, and above 1.
+        check(-20.0, -10.0, Some("in the mean: a_1 -10.000"));
+        check(20.0, -10.0, Some("in the mean: a_1 30.000"));
+        check(-20.0, 10.0, Some("in the mean: a_1 -30.000"));
+        check(20.0, 10.0, None);
+    }
 }

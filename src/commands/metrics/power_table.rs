@@ -23,9 +23,13 @@ pub(super) fn power(found: &[MetricPower]) -> Option<String> {
             } else {
                 format!("{num_a}, {num_b}")
             },
-            row.power.map_or_else(String::new, |power| format!("{power:.2}")),
-            row.lifetimes_needed
-                .map_or_else(|| format!("over {MAX_POWER_LIFETIMES}"), |num| num.to_string()),
+            row.power
+                .map_or_else(|| "does not vary".to_owned(), |power| format!("{power:.2}")),
+            match (row.power, row.lifetimes_needed) {
+                (None, _) => String::new(),
+                (_, None) => format!("over {MAX_POWER_LIFETIMES}"),
+                (_, Some(num)) => num.to_string(),
+            },
             row.smallest_effect.map_or_else(String::new, number),
         ]
     });
@@ -35,7 +39,8 @@ pub(super) fn power(found: &[MetricPower]) -> Option<String> {
     Some(format!(
         "{}\nFor a difference of {effect} in the metric's own unit between two agents, by Welch's t test at 5%: its power with the \
          lifetimes at hand; how many lifetimes of each agent have a power of 80%; and the smallest difference that those at hand \
-         show with 80%. One agent alone is compared with one that varies as much.",
+         show with 80%. One agent alone is compared with one that varies as much. Of a metric that does not vary between these lifetimes nothing \
+         can be said.",
         table(headings, rows.collect(), &[1, 2, 3, 4, 5])
     ))
 }

@@ -176,13 +176,8 @@ fn several(scores: &Scores, together: &Comparison) -> String {
         }),
         repeats(&together.repeats, &share),
     ]);
-    let notes: BTreeSet<&str> = lifetimes
-        .iter()
-        .chain(others)
-        .flat_map(|life| life.notes.iter().chain(&life.cautions))
-        .map(String::as_str)
-        .collect();
-    parts.extend(notes.into_iter().map(|note| format!("note: {}", one_line(note))));
+    parts.extend(notes("note", lifetimes));
+    parts.extend(notes("note on the other agent", others));
     if let Some(own) = own_scale(options) {
         parts.push(own);
     } else if options.scales.is_some() && options.data_range.is_none() {
@@ -208,6 +203,17 @@ fn several(scores: &Scores, together: &Comparison) -> String {
     }
     parts.extend(super::power_table::power(&together.power));
     parts.join("\n\n")
+}
+
+/// What must be known of an agent's lifetimes, each note once.
+fn notes(label: &str, lifetimes: &[LifetimeMetrics]) -> Vec<String> {
+    let all = lifetimes
+        .iter()
+        .flat_map(|life| life.notes.iter().chain(&life.cautions));
+    let once: BTreeSet<&str> = all.map(String::as_str).collect();
+    once.into_iter()
+        .map(|note| format!("{label}: {}", one_line(note)))
+        .collect()
 }
 
 fn improvements(together: &Comparison, share: &str) -> String {
@@ -258,6 +264,7 @@ fn repeats(metrics: &[RepeatedMetric], share: &str) -> String {
         if few {
             cells.push(interval(row.mean.t_interval));
         }
+        cells.extend(beside_null(row.null, row.headline.good));
         cells.push(format!("{} x {}", row.num_runs, row.num_strata));
         cells.push(good(row.headline.good));
         cells
@@ -267,11 +274,18 @@ fn repeats(metrics: &[RepeatedMetric], share: &str) -> String {
     headings.extend(few.then_some(t.as_str()));
     headings.push("mean");
     headings.extend(few.then_some(t.as_str()));
-    headings.extend(["runs x tasks", "better"]);
-    let numbers = if few { [1, 4] } else { [1, 3] };
+    headings.extend(["null band", "p", "reading", "runs x tasks", "better"]);
+    let numbers = if few { [1, 4, 7] } else { [1, 3, 5] };
     let headings = headings.into_iter().map(str::to_owned).collect();
     let cautions: BTreeSet<&str> = metrics.iter().filter_map(|row| row.caution.as_deref()).collect();
     let mut lines = vec![wide_table(headings, rows.collect(), &numbers)];
+    if metrics.iter().any(|row| row.null.is_some()) {
+        lines.push(format!(
+            "Null band: the central 95% of means over lifetimes when the rows of each world are permuted across evaluations \
+             {NULL_PERMUTATIONS} times, in all lifetimes alike, as if the agent never changed. Good or bad is said of the \
+             mean, outside the band only. no null: decided by learning, too."
+        ));
+    }
     lines.extend(cautions.into_iter().map(|caution| format!("note: {caution}")));
     if few {
         lines.push(format!("note: {FEW}"));
