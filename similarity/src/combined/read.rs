@@ -22,8 +22,10 @@ pub(super) fn as_read(object: &Object) -> Object {
         read.switch.as_ref().map(|switch| &switch.on),
         read.portable.as_ref().map(|portable| &portable.on),
     ];
-    let mut lists = stimuli.into_iter().chain(moves.into_iter().flatten());
-    let has_range = lists.any(|list| list.contains(&Stimulus::AgentInRange));
+    let has_range = stimuli
+        .into_iter()
+        .chain(moves.into_iter().flatten())
+        .any(|list| list.contains(&Stimulus::AgentInRange));
     if !has_range {
         read.range_stimulus_distance = plain.range_stimulus_distance;
     }

@@ -79,8 +79,13 @@ impl WorldDraft {
     /// # Panics
     /// With debug assertions, where a value is out of its range.
     pub fn check_in_range(self) -> Result<World, SpecError> {
-        let plan = self.layout_problems().is_empty().then(|| self.plan()).flatten();
+        let plan = self.sound_plan();
         self.check_in_range_with(plan)
+    }
+
+    /// The plan of its layout, if it has one that can be drawn out.
+    pub(super) fn sound_plan(&self) -> Option<Arc<Plan>> {
+        self.layout_problems().is_empty().then(|| self.plan()).flatten()
     }
 
     /// As [`WorldDraft::check_in_range`], with the plan of the layout that was made before, by [`WorldDraft::plan`].

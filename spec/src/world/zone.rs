@@ -196,6 +196,8 @@ impl Zone {
 pub(super) fn problems(world: &WorldDraft) -> Vec<Problem> {
     let arena = &world.environment_params;
     let mut problems = Vec::new();
+    let teleports = arena.zones.iter().any(|zone| zone.teleport.is_some());
+    let plan = teleports.then(|| world.sound_plan()).flatten();
     for (index, zone) in arena.zones.iter().enumerate() {
         let pointer = format!("/environment_params/zones/{index}");
         let found = match (&zone.disc, &zone.polygon) {
@@ -213,7 +215,7 @@ pub(super) fn problems(world: &WorldDraft) -> Vec<Problem> {
             Some(format!("({x}, {y}), outside the {width} × {depth} m arena"))
         } else {
             arena
-                .enclosure([x, y])
+                .enclosure([x, y], plan.as_deref())
                 .map(|enclosure| format!("({x}, {y}), inside {enclosure}"))
         };
         if let Some(found) = found {
