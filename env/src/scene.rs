@@ -209,6 +209,11 @@ impl Scene {
                 wall.color.map_or(color, driftworld_spec::Color::to_f32),
             );
         }
+        for wall in world.plan().into_iter().flat_map(|plan| &plan.walls) {
+            let height = wall.height.map_or(height, |metres| metres as f32);
+            let color = wall.color.map_or(color, driftworld_spec::Color::to_f32);
+            self.add_region(&wall.polygon, height, color);
+        }
     }
 
     /// A region is seen from outside: its corners are put counter-clockwise.

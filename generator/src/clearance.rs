@@ -1,12 +1,16 @@
 //! [`FreeSpace`]: the clearance of a place, its distance to walls and regions. Where objects are placed is decided in `placement.rs`.
 
-use driftworld_spec::EnvironmentParams;
+use std::sync::Arc;
+
+use driftworld_spec::{Plan, WorldDraft};
 
 /// The free space of an arena, as far as walls and regions go.
 #[derive(Debug)]
 pub(crate) struct FreeSpace {
     half: [f64; 2],
     regions: Vec<Region>,
+    /// What the layout comes to.
+    pub(crate) plan: Option<Arc<Plan>>,
 }
 
 #[derive(Debug)]
@@ -17,12 +21,21 @@ struct Region {
 }
 
 impl FreeSpace {
-    pub(crate) fn new(environment: &EnvironmentParams) -> Self {
+    pub(crate) fn new(world: &WorldDraft) -> Self {
+        let environment = &world.environment_params;
+        // A layout that cannot be drawn out is refused when the world is checked.
+        let plan = world.layout_problems().is_empty().then(|| world.plan()).flatten();
         let map = environment.regions().into_iter().map(<[[f64; 2]]>::to_vec);
         let walls = environment.walls.iter().map(|wall| wall.polygon.clone());
+        let planned: Vec<Vec<[f64; 2]>> = plan
+            .iter()
+            .flat_map(|plan| &plan.walls)
+            .map(|wall| wall.polygon.clone())
+            .collect();
         Self {
             half: environment.arena_size().map(|side| side / 2.0),
-            regions: map.chain(walls).map(Region::new).collect(),
+            regions: map.chain(walls).chain(planned).map(Region::new).collect(),
+            plan,
         }
     }
 

@@ -46,6 +46,11 @@ impl Stream {
         philox(self.key, [number, 0, 0, 0])[0] & MAX_SEED
     }
 
+    /// As [`Stream::seed`], of a world that was drawn again `attempt` times.
+    pub(crate) fn seed_at(&self, number: u64, attempt: u32) -> u64 {
+        philox(self.key, [number, 0, 0, u64::from(attempt)])[0] & MAX_SEED
+    }
+
     /// A number that is the same for all worlds of the stream.
     pub(crate) fn constant(&self, number: u64) -> u64 {
         philox(self.key, [number, 0, 0, u64::MAX])[0]

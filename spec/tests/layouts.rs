@@ -292,11 +292,19 @@ fn a_map_of_minigrid_and_one_of_deepmind_lab_are_read() {
 fn a_predefined_layout_is_the_map_of_its_number() {
     let layout = world(r#"{ "predefined": 2 }"#);
     let map = World::from_json("w.json", r#"{ "environment_params": { "predefined_map": 2 } }"#).expect("it is sound");
-    let [layout, map] = [&layout, &map].map(|world| &world.environment_params);
-    assert_eq!(
-        (layout.regions(), layout.arena_size()),
-        (map.regions(), map.arena_size())
-    );
+    let shapes = |world: &World| {
+        let corners: Vec<Vec<[f64; 2]>> = world.obstacles().map(<[_]>::to_vec).collect();
+        (corners, world.environment_params.arena_size())
+    };
+    assert_eq!(shapes(&layout), shapes(&map));
+    let small = world(r#"{ "predefined": 2, "size": [100, 50] }"#);
+    let ((large, _), (corners, size)) = (shapes(&map), shapes(&small));
+    assert_eq!((size, corners.len()), ([100.0, 50.0], large.len()));
+    for (small, large) in corners.iter().flatten().zip(large.iter().flatten()) {
+        assert_eq!(*small, [large[0] / 2.0, large[1] / 4.0]);
+    }
+    let half = world(r#"{ "predefined": 2, "standing": 0.5 }"#);
+    assert_eq!(shapes(&half).0, large[..large.len() / 2]);
 }
 
 #[test]

@@ -6,6 +6,10 @@ const MOST_CELLS: usize = 256;
 /// Least side of a cell in metres.
 const LEAST_SIDE: f32 = 0.5;
 
+/// The same of a grid for narrow corridors.
+const MOST_FINE_CELLS: usize = 1024;
+const LEAST_FINE_SIDE: f32 = 0.1;
+
 /// Cells over the arena, row by row, with a rim of one cell around them that is never walked on: every cell of the
 /// arena has eight neighbours.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -20,8 +24,16 @@ pub(super) struct Grid {
 
 impl Grid {
     /// Cells over an arena of these sides in metres.
-    pub(super) fn over([width, depth]: [f32; 2]) -> Self {
-        let side = (width.max(depth) / MOST_CELLS as f32).max(LEAST_SIDE);
+    #[cfg(test)]
+    pub(super) fn over(size: [f32; 2]) -> Self {
+        Self::fine(size, f32::INFINITY)
+    }
+
+    /// Cells over an arena of these sides in metres, as small as `wanted` where that is less than they would be.
+    pub(super) fn fine([width, depth]: [f32; 2], wanted: f32) -> Self {
+        let long = width.max(depth);
+        let plain = (long / MOST_CELLS as f32).max(LEAST_SIDE);
+        let side = plain.min(wanted.max(long / MOST_FINE_CELLS as f32).max(LEAST_FINE_SIDE));
         let [columns, rows] = [width, depth].map(|metres| ((metres / side).ceil() as usize).max(1));
         Self {
             columns,

@@ -11,6 +11,12 @@ use crate::scene::Scene;
 /// How far ways keep from walls and objects, in metres beside half the agent's width.
 const CLEARANCE: f32 = 0.15;
 
+/// How far ways keep from walls and objects where corridors are this wide, in metres beside half the agent's width: less
+/// where there is little room.
+fn clearance(corridor: f32, body: f32) -> f32 {
+    CLEARANCE.min((corridor / 2.0 - body) / 2.0).max(0.0)
+}
+
 /// How often each cell is taken: by walls once, and once by each object that is led around. What did not change since
 /// the last way is kept.
 #[derive(Clone, Debug, Default)]
@@ -28,6 +34,8 @@ struct Walls {
     arena_size: [f32; 2],
     /// Half the agent's width in metres.
     body: f32,
+    /// The least width between walls of the layout, in metres.
+    corridor: f32,
     regions: Vec<Vec<[f64; 2]>>,
 }
 
@@ -103,7 +111,7 @@ impl OccupancyGrid {
     /// Blocks the walls of a world, and these of its objects where they stand at its start; opens all else.
     pub(super) fn block(&mut self, world: &World, scene: &Scene, avoided: &[u32]) {
         self.block_walls(world, scene);
-        let margin = self.walls.body + CLEARANCE;
+        let margin = self.walls.body + clearance(self.walls.corridor, self.walls.body);
         let mut discs: Vec<Disc> = avoided
             .iter()
             .map(|&object| {
@@ -169,21 +177,18 @@ impl OccupancyGrid {
     }
 
     fn block_walls(&mut self, world: &World, scene: &Scene) {
-        let environment = &world.environment_params;
         let (arena_size, body) = (scene.arena_size(), world.agent_params.agent_width as f32 / 2.0);
-        let inner = environment.regions();
-        let regions = || {
-            let walls = environment.walls.iter().map(|wall| wall.polygon.as_slice());
-            inner.iter().copied().chain(walls)
-        };
+        let corridor = world.plan().map_or(f32::INFINITY, |plan| plan.corridor as f32);
         let known = &self.walls;
         if !self.taken.is_empty()
-            && (known.arena_size, known.body) == (arena_size, body)
-            && known.regions.iter().map(Vec::as_slice).eq(regions())
+            && (known.arena_size, known.body, known.corridor) == (arena_size, body, corridor)
+            && known.regions.iter().map(Vec::as_slice).eq(world.obstacles())
         {
             return;
         }
-        let grid = Grid::over(arena_size);
+        let margin = body + clearance(corridor, body);
+        // Between two walls there are cells whose middles are free, be the corridor narrow.
+        let grid = Grid::fine(arena_size, (corridor / 2.0 - margin).max(0.0));
         self.grid = grid;
         self.discs.clear();
         self.taken.clear();
@@ -194,8 +199,7 @@ impl OccupancyGrid {
             let is_near = |axis: usize| half[axis] - at[axis].abs() < body;
             self.taken[cell] = u32::from(is_near(0) || is_near(1));
         }
-        let margin = body + CLEARANCE;
-        for corners in regions() {
+        for corners in world.obstacles() {
             let bound = |axis: usize, sign: f32| {
                 let reach = corners
                     .iter()
@@ -211,10 +215,11 @@ impl OccupancyGrid {
                 }
             }
         }
-        let regions = regions().map(<[[f64; 2]]>::to_vec).collect();
+        let regions = world.obstacles().map(<[[f64; 2]]>::to_vec).collect();
         self.walls = Walls {
             arena_size,
             body,
+            corridor,
             regions,
         };
     }

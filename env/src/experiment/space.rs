@@ -70,8 +70,8 @@ impl StateSpace {
 pub(super) fn ground_unlike(a: &World, b: &World) -> Option<Unlike> {
     let (own, other) = (&a.environment_params, &b.environment_params);
     let walls = |world: &World| -> Vec<Vec<[f64; 2]>> {
-        let walls = world.environment_params.walls.iter();
-        walls.map(|wall| wall.polygon.clone()).collect()
+        let regions = world.environment_params.regions().len();
+        world.obstacles().skip(regions).map(<[_]>::to_vec).collect()
     };
     Unlike::of(
         "the size of the arena in metres",

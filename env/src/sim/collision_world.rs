@@ -105,12 +105,8 @@ impl CollisionWorld {
         bodies.low.reserve(count);
         bodies.whole.reserve(count);
         bodies.add_arena(scene.arena_size());
-        let environment = &world.environment_params;
-        for region in environment.regions() {
-            bodies.add_region(region);
-        }
-        for wall in &environment.walls {
-            bodies.add_region(&wall.polygon);
+        for corners in world.obstacles() {
+            bodies.add_region(corners);
         }
         for (index, (item, object)) in scene.items.iter().zip(&world.objects).enumerate() {
             bodies.add_object(index as u32, item, object.solid);

@@ -33,9 +33,7 @@ pub(super) fn respawn(world: &World, state: &mut SimState, views: &mut Views, en
 
 /// How many corners the walls of the world have.
 fn num_wall_corners(world: &World) -> usize {
-    let environment = &world.environment_params;
-    let regions: usize = environment.regions().into_iter().map(<[_]>::len).sum();
-    regions + environment.walls.iter().map(|wall| wall.polygon.len()).sum::<usize>()
+    world.obstacles().map(<[_]>::len).sum()
 }
 
 /// Puts an object back at a free place; false if none is found in this step. Each place that is tried takes

@@ -14,10 +14,8 @@ pub(super) fn obstacle(world: &World, position: [f64; 2], radius: f64) -> Option
     }
     let arena = environment.arena_size();
     let beyond = (0..2).any(|axis| position[axis].abs() > arena[axis] / 2.0 - radius);
-    let regions = environment.regions().into_iter();
-    let own = environment.walls.iter().map(|wall| wall.polygon.as_slice());
     let inside = |corners: &[[f64; 2]]| is_near_or_inside(corners.iter().copied(), position, radius);
-    (beyond || regions.chain(own).any(inside)).then_some(Obstacle::Wall)
+    (beyond || world.obstacles().any(inside)).then_some(Obstacle::Wall)
 }
 
 /// What is in the way of the agent's body at a place: of the arena and its walls, or a solid object.

@@ -5,7 +5,7 @@ mod groups;
 use std::sync::Arc;
 
 use driftworld_spec::maps::MapLibrary;
-use driftworld_spec::{ParameterType, Requirement, Value, Variant, World, WorldDraft};
+use driftworld_spec::{Layout, ParameterType, Requirement, Value, Variant, World, WorldDraft};
 
 use crate::GeneratorError;
 use crate::clearance::FreeSpace;
@@ -45,6 +45,8 @@ pub struct Sampler {
     sequence_stream: Stream,
     /// Where worlds have their seeds from.
     seeds: Stream,
+    /// Where layouts that have none have their seeds from.
+    layouts: Stream,
     maps: Option<Arc<MapLibrary>>,
     /// The free space, where it is the same in every world.
     free_space: Option<FreeSpace>,
@@ -77,6 +79,7 @@ impl Sampler {
             sequence: Sequence::Independent,
             sequence_stream: Stream::new(variant.task().name(), seed, "coverage"),
             seeds: Stream::new(variant.task().name(), seed, "seed"),
+            layouts: Stream::new(variant.task().name(), seed, "layout"),
             maps: None,
             free_space: None,
             start_varies: false,
@@ -102,9 +105,11 @@ impl Sampler {
 
     /// Prepares the map and the free space once, if no world can have another.
     fn settle_free_space(&mut self) {
-        let shapes =
-            ["predefined_map", "map_size", "map_regions", "walls"].map(|key| format!("/environment_params/{key}"));
-        let varies = self
+        let keys = ["predefined_map", "map_size", "map_regions", "walls", "layout"];
+        let shapes = keys.map(|key| format!("/environment_params/{key}"));
+        let layout = &self.compiled.world.base.environment_params.layout;
+        let is_drawn = layout.as_ref().is_some_and(Layout::is_drawn);
+        let varies = is_drawn || self
             .compiled
             .world
             .holes
@@ -121,7 +126,7 @@ impl Sampler {
             if let Some(maps) = &self.maps {
                 maps.apply(&mut self.compiled.world.base);
             }
-            self.free_space = Some(FreeSpace::new(&self.compiled.world.base.environment_params));
+            self.free_space = Some(FreeSpace::new(&self.compiled.world.base));
         }
     }
 
@@ -208,7 +213,12 @@ impl Sampler {
                 if let Some(maps) = &self.maps {
                     maps.apply(&mut world);
                 }
-                own_free_space = Some(FreeSpace::new(&world.environment_params));
+                if let Some(layout) = &mut world.environment_params.layout
+                    && layout.is_drawn()
+                {
+                    layout.set_seed(self.layouts.seed_at(index, attempt));
+                }
+                own_free_space = Some(FreeSpace::new(&world));
             }
             let free_space = self
                 .free_space
@@ -290,7 +300,7 @@ impl Sampler {
             ranges.push(first..world.objects.len());
         }
         // Loading the task and `fill` hold each value in its range; whether values go together is seen here alone.
-        world.check_in_range().map_err(|source| GeneratorError::Clash {
+        world.check_in_range_with(free_space.plan.clone()).map_err(|source| GeneratorError::Clash {
             variant: self.variant.id(),
             seed: self.seed,
             index,

@@ -20,13 +20,14 @@ impl Layout {
             return vec![Problem::new("spec/layout-kind", POINTER, found, expected)];
         };
         let mut problems = Vec::new();
-        if *kind != "text" {
-            let keys = [
-                ("cell", self.cell.is_some()),
-                ("height", self.height.is_some()),
-                ("legend", !self.legend.is_empty()),
-            ];
-            for (key, _) in keys.into_iter().filter(|(_, stands)| *stands) {
+        let keys = [
+            ("size", "predefined", self.size.is_some()),
+            ("cell", "text", self.cell.is_some()),
+            ("height", "text", self.height.is_some()),
+            ("legend", "text", !self.legend.is_empty()),
+        ];
+        {
+            for (key, ..) in keys.into_iter().filter(|(_, owner, stands)| *stands && owner != kind) {
                 let expected = "no such key beside ".to_owned() + kind;
                 let problem = Problem::new(
                     "spec/layout-kind",

@@ -152,6 +152,10 @@ impl Grid {
                 letter: None,
             })
         });
+        plan.corridor = plan.cell[0].min(plan.cell[1]) - scale.wall;
+        if self.east.iter().chain(&self.north).any(|side| *side == Side::Doorway) {
+            plan.corridor = plan.corridor.min(scale.doorway);
+        }
         let (half, side) = (plan.size.map(|side| side / 2.0), plan.cell);
         // Lines from south to north, then from west to east.
         for (across, along) in [(0, 1), (1, 0)] {

@@ -23,6 +23,7 @@ pub use rooms::{RoomDoors, Rooms};
 pub use text::Legend;
 pub use walls::{Circle, LayoutWall};
 
+use crate::maps;
 use crate::world::fields::{Place, fields};
 use text::TextMap;
 
@@ -31,6 +32,9 @@ pub const MAX_CELLS: usize = 10_000;
 
 /// The longest side of a layout in metres, which is that of an arena.
 pub const MAX_LAYOUT_SIDE: f64 = 300.0;
+
+/// The side of a predefined map in metres.
+const MAP_SIDE: f64 = 200.0;
 
 /// The side of a cell of a text without a word about it, in metres.
 const TEXT_CELL: f64 = 2.0;
@@ -65,6 +69,11 @@ fields! {
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 1, max = 4))]
         pub predefined: Option<u8> = None => Field::ours(AsPart),
+        /// Sides of the arena that a predefined map is stretched or shrunk to, in metres; 200 × 200 if absent. Only beside
+        /// `predefined`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(inner(range(min = 1.0, max = 300.0)))]
+        pub size: Option<[f64; 2]> = None => Field::ours(AsPart).unit("m"),
         /// Walls one by one, in an arena of `map_size`. They may overlap.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(length(max = 1000))]
@@ -129,7 +138,7 @@ impl Layout {
             Kind::Maze(maze) => Some(maze.size()),
             Kind::Rooms(rooms) => Some(rooms.size()),
             Kind::Text(text) => Some(text.size()),
-            Kind::Predefined => Some([200.0; 2]),
+            Kind::Predefined => Some(self.size.unwrap_or([MAP_SIDE; 2])),
             Kind::Walls(_) => None,
         }
     }
@@ -161,9 +170,21 @@ impl Layout {
             .or_else(|| self.rooms.as_ref().and_then(|rooms| rooms.seed))
     }
 
-    /// Keeps of the regions of a predefined map the share that stands: the first of them.
-    pub(crate) fn keep_standing<T>(&self, regions: &mut Vec<T>) {
-        regions.truncate(draws::share_of(self.standing, regions.len()));
+    /// The regions of a predefined map as walls of the arena that it is fitted to; of a share the first ones stand.
+    fn map_plan(&self, regions: &[impl AsRef<[[f64; 2]]>]) -> Plan {
+        let size = self.size.unwrap_or([MAP_SIDE; 2]);
+        let factor = size.map(|side| side / MAP_SIDE);
+        let mut plan = Plan::of_cells(size, [0, 0], 0, |_, _| None);
+        let standing = &regions[..draws::share_of(self.standing, regions.len())];
+        plan.walls.extend(standing.iter().map(|corners| {
+            let corners = corners.as_ref().iter();
+            PlanWall {
+                polygon: corners.map(|[x, y]| [x * factor[0], y * factor[1]]).collect(),
+                height: None,
+                color: None,
+            }
+        }));
+        plan
     }
 
     /// What a letter of its text stands for; `None` for a letter that has no meaning, and in a layout that is no text.
@@ -176,8 +197,7 @@ impl Layout {
 
     /// Draws the layout out. `seed` counts where the layout has none of its own: that of the world.
     ///
-    /// The same layout and seed give the same plan, to the last bit, on every machine. The walls of a predefined map are
-    /// not in it, but in [`EnvironmentParams::regions`](crate::EnvironmentParams::regions).
+    /// The same layout and seed give the same plan, to the last bit, on every machine.
     ///
     /// # Example
     /// ```
@@ -188,6 +208,11 @@ impl Layout {
     /// assert_eq!((plan.size, plan.cells.len()), ([24.0, 24.0], 64));
     /// ```
     pub fn plan(&self, seed: u64) -> Plan {
+        self.plan_with(seed, maps::excluded_regions(self.predefined.unwrap_or(0)))
+    }
+
+    /// As [`Layout::plan`], with these regions as those of its predefined map.
+    pub(crate) fn plan_with(&self, seed: u64, regions: &[impl AsRef<[[f64; 2]]>]) -> Plan {
         let seed = self.seed().unwrap_or(seed);
         match self.kind() {
             Some(Kind::Maze(maze)) => maze.plan(self.standing, seed),
@@ -195,7 +220,8 @@ impl Layout {
             // A text is not drawn: the order in which its walls are taken away is always the same.
             Some(Kind::Text(text)) => text.plan(self.standing, 0),
             Some(Kind::Walls(walls)) => walls::plan(walls, self.standing, 0),
-            Some(Kind::Predefined) | None => Plan::of_cells(self.size().unwrap_or_default(), [0, 0], 0, |_, _| None),
+            Some(Kind::Predefined) => self.map_plan(regions),
+            None => Plan::default(),
         }
     }
 }

@@ -27,7 +27,7 @@ const NONE: u32 = u32::MAX;
 /// assert!(metres.iter().all(|metres| metres.is_finite()));
 /// # Ok::<(), driftworld_spec::SpecError>(())
 /// ```
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// Side lengths of the arena along x and y in metres; `[0, 0]` for a layout that leaves them to the world: one of walls.
     pub size: [f64; 2],
@@ -37,6 +37,8 @@ pub struct Plan {
     pub walls: Vec<PlanWall>,
     /// The cells that one can be in, row by row from the south-west; none for a predefined map and for walls.
     pub cells: Vec<PlanCell>,
+    /// The least width between two of its walls in metres: of corridors and doorways; infinite where that is not known.
+    pub corridor: f64,
     /// Where one passes from room to room, in the order of their walls.
     pub doorways: Vec<Doorway>,
     /// Columns and rows of the lattice that the cells lie in; `[0, 0]` without cells.
@@ -93,6 +95,12 @@ pub struct Doorway {
     pub rooms: [u32; 2],
 }
 
+impl Default for Plan {
+    fn default() -> Self {
+        Self::of_cells([0.0; 2], [0, 0], 0, |_, _| None)
+    }
+}
+
 impl Plan {
     /// A plan without walls of an arena of these sides whose cells lie in a lattice: `cell_at` says of each place of it,
     /// row by row from the south-west, what is there.
@@ -126,7 +134,9 @@ impl Plan {
             lattice,
             cell,
             index,
-            ..Self::default()
+            walls: Vec::new(),
+            doorways: Vec::new(),
+            corridor: f64::INFINITY,
         }
     }
 

@@ -97,6 +97,7 @@ impl TextMap<'_> {
                     .then_some(letters[place]),
             })
         });
+        plan.corridor = self.cell;
         let half = plan.size.map(|side| side / 2.0);
         let at = |index: usize, axis: usize| index as f64 * self.cell - half[axis];
         plan.walls = rectangles(&squares, [columns, rows])

@@ -111,8 +111,12 @@ impl WorldDraft {
     ///
     /// The layout must be sound, as [`WorldDraft::layout_problems`] says.
     pub fn plan(&self) -> Option<Arc<Plan>> {
-        let layout = self.environment_params.layout.as_ref()?;
-        Some(Arc::new(layout.plan(self.seed.unwrap_or(0))))
+        let environment = &self.environment_params;
+        let (layout, seed) = (environment.layout.as_ref()?, self.seed.unwrap_or(0));
+        Some(Arc::new(match &environment.map_regions {
+            Some(regions) if layout.predefined.is_some() => layout.plan_with(seed, regions),
+            _ => layout.plan(seed),
+        }))
     }
 
     /// What is wrong with the layout, beside values out of their ranges.
@@ -217,6 +221,7 @@ impl World {
     pub fn with_maps(mut self, maps: &MapLibrary) -> Self {
         // Layouts obey the rules of a world's own regions, on which no other rule depends.
         maps.apply(&mut self.draft);
+        self.plan = self.draft.plan();
         self
     }
 
