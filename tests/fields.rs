@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use driftworld::generator::{Sampler, drift};
 use driftworld::similarity::{Weights, variant_distance, world_distance};
-use driftworld::spec::{Compared, Element, FieldPlace, ParameterType, TaskSpec, World};
+use driftworld::spec::{Compared, Comparison, Element, FieldPlace, ParameterType, TaskSpec, World};
 use serde_json::{Value as Json, json};
 
 /// A world in which there is something at every place, as the documents for the schemas have it.
@@ -30,6 +30,36 @@ fn full() -> Json {
     world
 }
 
+/// The same with a layout that has what a place of a layout is in; of each kind there is one.
+fn full_with(place: &FieldPlace) -> Json {
+    let mut world = full();
+    let Some(inside) = place.pointer.strip_prefix("/environment_params/layout") else {
+        return world;
+    };
+    let words: Vec<&str> = inside.split('/').skip(1).collect();
+    world["environment_params"]["predefined_map"] = json!(0);
+    world["agent_params"]["coordinates"] = json!([0.25, 0.25]);
+    let wall = |form: Json| json!({ "walls": [form] });
+    world["environment_params"]["layout"] = match words.as_slice() {
+        ["rooms", ..] => json!({ "rooms": {
+            "grid": [1, 3], "room": [7.0, 6.0], "doorway": 1.0, "wall": 0.25, "height": 3.0, "loops": 0.25, "doors": "none", "seed": 4 } }),
+        ["text" | "cell" | "height" | "legend", ..] => json!({
+            "text": ["#####", "#D  #", "#   #", "#####"], "cell": 1.0, "height": 2.0, "legend": { "D": "wall" } }),
+        ["predefined"] => json!({ "predefined": 1 }),
+        ["walls", "*", "circle", ..] => {
+            wall(json!({ "circle": { "center": [20.0, 9.0], "radius": 2.0 }, "height": 3.0 }))
+        }
+        ["walls", "*", "polygon", ..] => {
+            wall(json!({ "polygon": [[20.0, 9.0], [22.0, 9.0], [21.0, 13.0]], "color": "grey" }))
+        }
+        ["walls", ..] => wall(json!({
+            "from": [20.0, 9.0], "to": [22.0, 9.0], "thickness": 0.25, "height": 3.0, "color": "grey" })),
+        _ => json!({ "maze": {
+            "cells": [4, 4], "cell": 2.0, "wall": 0.25, "height": 3.0, "braid": 0.25, "seed": 4 }, "standing": 0.75 }),
+    };
+    world
+}
+
 /// Another value than the one that stands at a place.
 fn other(place: &FieldPlace, now: &Json) -> Json {
     let words: Vec<&str> = place.pointer.split('/').collect();
@@ -40,12 +70,16 @@ fn other(place: &FieldPlace, now: &Json) -> Json {
     match place.kind.expect("it can be a parameter") {
         ParameterType::Number if ["map_size", "field_of_view"].contains(key) => json!(62.5),
         ParameterType::Point if *key == "map_size" => json!([62.5, 61.5]),
+        ParameterType::Number if *key == "room" => json!(6.5),
+        ParameterType::Point if *key == "room" => json!([6.5, 7.5]),
         ParameterType::Number | ParameterType::Heading if *now == 0.5 => json!(0.75),
         ParameterType::Number | ParameterType::Heading => json!(0.5),
+        ParameterType::Integer if *key == "predefined" => json!(2),
         ParameterType::Integer => json!(if *now == 3 { 2 } else { 3 }),
         ParameterType::Boolean => json!(!now.as_bool().expect("it is true or false")),
         ParameterType::Color => json!([0.125, 0.25, 0.5]),
         ParameterType::Point => json!([11.5, 12.5]),
+        ParameterType::Vector if ["cells", "grid"].contains(key) => json!([5, 3]),
         ParameterType::Vector => json!([0.5, 0.25, 2.0]),
         ParameterType::String => json!(match *key {
             "game_mode" => "collect_images",
@@ -54,12 +88,14 @@ fn other(place: &FieldPlace, now: &Json) -> Json {
             "state_features" => "steps_left",
             "actions" => "normalized",
             "motion_model" => "prey",
+            "doors" => "closed",
             "model" => "3",
             key if key.ends_with("stimulus") || ["on", "opens_on", "closes_on"].contains(&key) => "AgentInteract",
             "action" => "close",
             _ => "word",
         }),
         ParameterType::Distribution => unreachable!("no place of a world holds a distribution"),
+        ParameterType::Layout => json!({ "maze": { "cells": [3, 5], "seed": 9 } }),
         ParameterType::Json => other_whole(&place.pointer, now),
     }
 }
@@ -76,6 +112,14 @@ fn other_whole(pointer: &str, now: &Json) -> Json {
         "/environment_params/walls/*" => json!({ "polygon": triangle, "height": 3.0 }),
         "/agent_params/modalities" => json!(["rgb", "instance"]),
         "/agent_params/state_features" => json!(["heading", "counts"]),
+        "/environment_params/layout/maze" => json!({ "cells": [3, 5], "seed": 9 }),
+        "/environment_params/layout/rooms" => json!({ "grid": [3, 1], "seed": 9 }),
+        "/environment_params/layout/text" => json!(["#####", "#   #", "#####"]),
+        "/environment_params/layout/legend" => json!({ "x": "floor" }),
+        "/environment_params/layout/walls" => json!([{ "circle": { "center": [30.0, 0.0], "radius": 1.0 } }]),
+        "/environment_params/layout/walls/*" => json!({ "from": [30.0, 0.0], "to": [33.0, 0.0] }),
+        "/environment_params/layout/walls/*/circle" => json!({ "center": [30.0, 0.0], "radius": 1.0 }),
+        "/environment_params/layout/walls/*/polygon" => triangle,
         "/image_params" => json!({ "zoom": 5.0 }),
         "/rules" => json!({ "step_reward": -0.25, "success": ["all_collected"] }),
         "/rules/shaping" => json!({ "scale": 2.0 }),
@@ -129,9 +173,9 @@ fn drawn(name: &str, template: &Json, tried: &Json) -> World {
 
 #[test]
 fn every_place_takes_a_parameter_and_what_it_says_arrives_there_and_nowhere_else() {
-    let full = full();
     for place in World::places() {
         let Some(kind) = place.kind else { continue };
+        let full = full_with(place);
         let pointer = first(place, &full);
         let mut template = full.clone();
         let value = other(place, at(&mut template, &pointer));
@@ -163,13 +207,13 @@ fn task_of_two(place: &FieldPlace, pointer: &str, full: &Json, values: [Json; 2]
 fn world_of(task: &Arc<TaskSpec>, variant: &str) -> World {
     let variant = task.variant(variant).unwrap_or_else(|error| panic!("{error}"));
     let world = Sampler::new(&variant, 3).world(0);
-    world.unwrap_or_else(|error| panic!("{}: {error}", variant.id()))
+    world.unwrap_or_else(|error| panic!("{}: {error}: {:?}", variant.id(), variant.values()))
 }
 
 #[test]
 fn every_place_takes_json_whose_variants_differ_by_its_elements_and_carry_their_values() {
-    let full = full();
     for place in World::places().iter().filter(|place| place.kind.is_some()) {
+        let full = full_with(place);
         let pointer = first(place, &full);
         let mut template = full.clone();
         let now = at(&mut template, &pointer).clone();
@@ -213,12 +257,12 @@ fn every_place_takes_json_whose_variants_differ_by_its_elements_and_carry_their_
 
 #[test]
 fn what_may_be_absent_is_absent_where_a_parameter_is_null() {
-    let full = full();
     let mut count = 0;
     for place in World::places()
         .iter()
         .filter(|place| place.kind.is_some() && place.is_key)
     {
+        let full = full_with(place);
         let pointer = first(place, &full);
         let mut template = full.clone();
         let now = at(&mut template, &pointer).take();
@@ -240,8 +284,8 @@ fn what_may_be_absent_is_absent_where_a_parameter_is_null() {
 
 #[test]
 fn every_place_takes_a_draw_from_a_list() {
-    let full = full();
     for place in World::places().iter().filter(|place| place.kind.is_some()) {
+        let full = full_with(place);
         let pointer = first(place, &full);
         let mut template = full.clone();
         let now = at(&mut template, &pointer).clone();
@@ -294,6 +338,8 @@ fn change(world: &mut Json, place: &FieldPlace, full: &Json) -> bool {
     let pointer = first(place, full);
     match place.pointer.as_str() {
         "/$schema" | "/version" | "/objects/*" | "/environment_params/walls/*/polygon" => return false,
+        // Without it there is no layout.
+        "/environment_params/layout/text" => return false,
         "/seed" => world["seed"] = json!(5),
         "/progress" => world["progress"] = json!({ "steps": 3, "objects": [{}] }),
         "/objects/*/unique_name" => world["objects"][0]["unique_name"] = json!("another"),
@@ -313,9 +359,9 @@ fn change(world: &mut Json, place: &FieldPlace, full: &Json) -> bool {
 }
 
 /// A world whose object moves in a way in which what stands at a place is read.
-fn read_by(pointer: &str) -> Json {
-    let mut full = full();
-    let motion = match pointer.split('/').nth(3) {
+fn read_by(place: &FieldPlace) -> Json {
+    let mut full = full_with(place);
+    let motion = match place.pointer.split('/').nth(3) {
         Some("pushable") => "stationary",
         Some("sight_range") => "predator",
         _ => return full,
@@ -361,7 +407,7 @@ fn worlds_that_differ_in_one_place_differ_in_the_comparisons_that_it_names_and_i
         .iter()
         .filter(|place| place.field.compared != Compared::AsPart)
     {
-        let full = read_by(&place.pointer);
+        let full = read_by(place);
         let world = read("full", &full);
         assert_eq!(world_distance(&world, &world, &Weights::default()).total, 0.0);
         let mut changed = full.clone();
@@ -370,6 +416,9 @@ fn worlds_that_differ_in_one_place_differ_in_the_comparisons_that_it_names_and_i
         }
         let distance = world_distance(&world, &read(&place.pointer, &changed), &Weights::default());
         let differs = distance.parts.iter().filter(|part| part.normalised > 0.0);
+        // A layout says how large the arena is, too.
+        let of_layout = place.pointer.starts_with("/environment_params/layout");
+        let differs = differs.filter(|part| !of_layout || part.name != Comparison::ArenaSize.name());
         let mut differs: Vec<&str> = differs.map(|part| part.name.as_str()).collect();
         let mut expected: Vec<&str> = place
             .field

@@ -26,6 +26,7 @@ pub(crate) fn interpolate(
             between_distributions(&a.settle(from), &b.settle(to), t)
                 .map(|between| Value::Distribution(Box::new(literal(&between))))
         }
+        (Value::Layout(from), Value::Layout(to)) => Some(Value::Layout(Box::new(from.toward(to, t)))),
         _ if listed => None,
         (Value::Number(from), Value::Number(to)) if parameter.kind == ParameterType::Heading => {
             if let Some([low, high]) = parameter.range.filter(|[low, high]| high - low < 360.0) {

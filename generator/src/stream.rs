@@ -6,7 +6,6 @@ use driftworld_spec::{MAX_SEED, philox};
 use rand::TryRng;
 use sha2::{Digest, Sha256};
 
-
 /// One named stream of a task under a seed.
 ///
 /// The numbers are Philox's under a key from the SHA-256 of task, seed and name; world, object and attempt are its counter.

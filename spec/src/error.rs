@@ -58,6 +58,12 @@ impl Problem {
         }
     }
 
+    /// The same of a value that stands at a place.
+    pub(crate) fn within(mut self, place: &str) -> Self {
+        self.pointer.insert_str(0, place);
+        self
+    }
+
     /// Adds what to do about it.
     pub(crate) fn advise(mut self, advice: impl Into<String>) -> Self {
         self.advice = Some(advice.into());

@@ -3,9 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::Color;
 use crate::describe::plain_number;
 use crate::distribution::{Distribution, Number};
+use crate::{Color, Layout};
 
 /// The type of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema, strum::IntoStaticStr)]
@@ -30,6 +30,8 @@ pub enum ParameterType {
     Vector,
     /// A distribution: what is drawn, or where objects stand, is itself a parameter.
     Distribution,
+    /// What divides the arena: a maze, rooms, a text, a predefined map, or walls.
+    Layout,
     /// Whatever may stand where it is used, in JSON: a list, an object, a word, a number, or `null` for what may be
     /// absent. Its values are checked by the schema of each place where it stands.
     Json,
@@ -78,6 +80,10 @@ pub enum Value {
     Vector(#[schemars(length(min = 1, max = 100))] Vec<f64>),
     /// A distribution whose numbers may refer to parameters.
     Distribution(Box<Distribution<Number>>),
+    /// A layout. Before it is cast it is any JSON.
+    #[schemars(skip)]
+    #[serde(skip_deserializing)]
+    Layout(Box<Layout>),
     /// Any other JSON, and any at all once it is cast to [`ParameterType::Json`].
     #[schemars(skip)]
     Json(#[serde(deserialize_with = "canonical_json")] Box<serde_json::Value>),
@@ -103,6 +109,10 @@ impl Value {
             }
             (P::Color, Self::Text(name)) => Color::from_name(name).map(Self::Color),
             (P::Vector, _) => self.as_vector().map(|vector| Self::Vector(vector.to_vec())),
+            (P::Layout, Self::Layout(_)) => Some(self.clone()),
+            (P::Layout, Self::Json(json)) => Layout::deserialize(&**json)
+                .ok()
+                .map(|layout| Self::Layout(Box::new(layout))),
             (P::Json, _) => Some(Self::Json(Box::new(canonical(self.to_json())))),
             _ => None,
         }

@@ -2,6 +2,7 @@
 
 use driftworld_spec::{Domain, MeasureName, Parameter, ParameterType, Value};
 
+use crate::combined::leaves::LeafReader;
 use crate::scalar::{CostTable, choice_mismatch, circular_difference, relative_difference};
 use crate::{ColorMeasure, MetricProperties};
 
@@ -22,6 +23,8 @@ pub(super) enum ValueMeasure {
         of: ColorMeasure,
         widest: f64,
     },
+    /// What differs of two layouts, number by number and word by word, over that of the widest pair of choices.
+    Layout { widest: f64 },
     /// A table of costs, by the words for the choices, over the largest of them.
     Costs(CostTable),
     /// 0 or 1.
@@ -77,6 +80,9 @@ impl ValueMeasure {
                 widest: widest_turn(parameter),
             },
             ParameterType::Color => color(parameter, "oklab / widest choice", ColorMeasure::Oklab),
+            ParameterType::Layout => Self::Layout {
+                widest: widest_pair(parameter, |value| Some(value.clone()), layouts_apart),
+            },
             ParameterType::Boolean | ParameterType::String | ParameterType::Distribution | ParameterType::Json => {
                 Self::SameOrNot
             }
@@ -90,6 +96,7 @@ impl ValueMeasure {
             Self::LogRatio { .. } => "log ratio / range",
             Self::Relative { .. } => "relative difference / widest",
             Self::Turn { .. } => "turn / widest",
+            Self::Layout { .. } => "layout / widest choice",
             Self::Costs(_) => "cost / largest",
             Self::SameOrNot => "same or not",
         }
@@ -134,6 +141,10 @@ impl ValueMeasure {
                 }
                 _ => same_or_not(),
             },
+            Self::Layout { widest } => {
+                let raw = layouts_apart(a, b);
+                (raw, share(raw, *widest))
+            }
             // What lies between the choices, as on the way of a drift, is the same or not.
             Self::Costs(table) => table
                 .between(&a.to_string(), &b.to_string())
@@ -141,6 +152,13 @@ impl ValueMeasure {
             Self::SameOrNot => same_or_not(),
         }
     }
+}
+
+/// How far two layouts are apart: of numbers the difference over the larger, of words 1, summed over all that either has.
+fn layouts_apart(a: &Value, b: &Value) -> f64 {
+    let mut reader = LeafReader::default();
+    let [a, b] = [a, b].map(|layout| reader.read(layout.to_json().to_string().as_bytes()));
+    a.distance(&b)
 }
 
 /// The numbers that a value consists of.

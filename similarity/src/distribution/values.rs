@@ -114,7 +114,7 @@ fn compare(a: &Value, b: &Value) -> Ordering {
         Value::Point(_) => 3,
         Value::Color(_) => 4,
         Value::Vector(_) | Value::Distribution(_) => 5,
-        Value::Json(_) => 6,
+        Value::Layout(_) | Value::Json(_) => 6,
     };
     match (a, b) {
         (Value::Boolean(a), Value::Boolean(b)) => a.cmp(b),

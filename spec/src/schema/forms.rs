@@ -257,8 +257,16 @@ fn meant_object<'f, 'a, 'e>(
         .keys()
         .filter_map(|key| Some((key.as_str(), tagged(key)?)))
         .collect();
+    // A key of a plain object can also be the tag of another form, as `grid` is.
+    let plain = |key: &str| {
+        let plain = forms
+            .iter()
+            .filter(|form| form.has_type("object") && form.tag().is_none());
+        let mut plain = plain.filter(|form| form.properties().is_some_and(|known| known.contains_key(key)));
+        plain.next()
+    };
     match &present[..] {
-        [(_, form)] => Ok(Some(form)),
+        [(key, form)] => Ok(Some(plain(key).unwrap_or(form))),
         [] => {
             let mut structs = forms
                 .iter()

@@ -252,6 +252,7 @@ fn word(value: &Value, index: usize) -> String {
         Value::Vector(vector) => numbers(vector),
         Value::Number(number) => number.to_string(),
         Value::Json(json) => word_of_json(json, index),
+        Value::Layout(_) => word_of_json(&value.to_json(), index),
         other => {
             let plain = |c: char| {
                 if c.is_alphanumeric() || matches!(c, '.' | '+' | '_') {

@@ -9,6 +9,7 @@ mod ends;
 mod expression;
 mod family;
 mod group;
+mod layouts;
 mod parameter;
 mod read;
 mod require;

@@ -5,6 +5,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::json;
 
 use super::compare::Compare;
+use super::layouts;
 use super::template::Source;
 use crate::describe::escape;
 use crate::element::Element;
@@ -159,6 +160,7 @@ fn require_what_the_role_needs(schema: &mut schemars::Schema) {
             true,
         ),
         kind(&["distribution"], json!({ "$ref": "#/$defs/Distribution" }), false),
+        kind(&["layout"], json!({ "$ref": "#/$defs/Layout" }), false),
         kind(&["json"], json!(true), false),
     ];
     schema.insert("allOf".to_owned(), json!(rules));
@@ -212,6 +214,9 @@ impl Parameter {
         let typed = value
             .cast(self.kind)
             .ok_or_else(|| format!("a value of type {}", self.kind.name()))?;
+        if let Value::Layout(layout) = &typed {
+            layout.check().map_err(|error| format!("a sound layout; {error}"))?;
+        }
         let length = |value: &Value| value.as_vector().map(<[f64]>::len);
         if self.kind == ParameterType::Vector
             && let Some(expected) = self.vector_length()
@@ -281,6 +286,17 @@ impl Parameter {
                 choice.to_string(),
                 format!("a value of type {kind}"),
             ));
+        }
+        let choices = self.choices.iter().flatten().enumerate();
+        let choices = choices.map(|(index, choice)| (at(&format!("choices/{index}")), choice));
+        for (pointer, value) in choices.chain(self.value.iter().map(|value| (at("value"), value))) {
+            if let (ParameterType::Layout, Some(Value::Layout(layout))) = (self.kind, value.cast(self.kind)) {
+                problems.extend(
+                    layouts::beyond_schema(&layout)
+                        .into_iter()
+                        .map(|problem| problem.within(&pointer)),
+                );
+            }
         }
         problems.extend(self.range_problem(&at("range")));
         if let Some(compare) = &self.compare {

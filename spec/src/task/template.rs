@@ -6,6 +6,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value as Json, json};
 
+use super::layouts;
 use crate::distribution::{Distribution, Number, ParamRef};
 use crate::error::Problem;
 use crate::schema::document::{DocumentSchema, of_type};
@@ -72,12 +73,26 @@ impl<T> std::fmt::Debug for Hole<T> {
 }
 
 impl<T> Hole<T> {
+    /// A value as it is written there: counts are whole.
+    pub(crate) fn written(&self, value: &Value) -> Json {
+        let counts = self.schema.is_some_and(|schema| schema["items"]["type"] == "integer");
+        match value.as_vector().filter(|_| counts) {
+            Some(numbers) => numbers.iter().map(|number| Json::from(number.round() as i64)).collect(),
+            None => value.to_json(),
+        }
+    }
+
     /// What keeps a value from standing there, as the schema of the place has it; places are within the value.
     pub(crate) fn problems(&self, value: &Value) -> Vec<Problem> {
         let Some(schema) = self.schema else { return Vec::new() };
         let mut own = schema.clone();
         own["$defs"] = World::schema().json()["$defs"].clone();
-        DocumentSchema::new(own).problems(&value.to_json()).problems
+        let json = value.to_json();
+        let found = DocumentSchema::new(own).problems(&json).problems;
+        match self.kind {
+            ParameterType::Layout if found.is_empty() && !json.is_null() => layouts::problems(&json),
+            _ => found,
+        }
     }
 
     /// Puts a value there. `None` if a value of its type cannot stand there, as a text that names nothing.

@@ -1,6 +1,7 @@
 //! Values that only the schema of the place where they stand can judge: parameters of type JSON, and draws from lists with
 //! objects, lists or `null` in them.
 
+use super::super::layouts;
 use super::super::template::{Hole, Source};
 use super::Check;
 use crate::describe::escape;
@@ -35,8 +36,7 @@ impl Check<'_> {
                 continue;
             };
             let found = hole.problems(&value);
-            for mut problem in found {
-                problem.pointer.insert_str(0, &pointer);
+            for mut problem in found.into_iter().map(|problem| problem.within(&pointer)) {
                 if !pointer.starts_with(&format!("{place}/")) {
                     let where_used = format!("the parameter stands at {place}");
                     let advice = problem.advice.take();
@@ -47,6 +47,15 @@ impl Check<'_> {
             candidates.push(value);
         }
         candidates
+    }
+
+    /// Reports what is wrong with layouts that a source draws.
+    pub(super) fn drawn_layouts(&mut self, place: &str, source: &Source) {
+        for (pointer, value) in self.json_values(place, source) {
+            let found = layouts::problems(&value.to_json());
+            self.problems
+                .extend(found.into_iter().map(|problem| problem.within(&pointer)));
+        }
     }
 
     /// The values that a source can give, with the places in the document where they are written.

@@ -241,6 +241,9 @@ impl<'a> Check<'a> {
                 return self.report(Problem::new("spec/type", pointer, found, expected));
             }
         }
+        if parameter.kind == ParameterType::Layout {
+            self.drawn_layouts(pointer, source);
+        }
         if !self.is_unsound(source)
             && self.source(pointer, source, parameter.kind)
             && matches!(source, Source::Param(_))
@@ -326,7 +329,7 @@ impl<'a> Check<'a> {
                 self.unknown_parameter(pointer, name);
                 continue;
             };
-            if matches!(parameter.kind, ParameterType::Distribution | ParameterType::Json) {
+            if Kind::of(parameter).is_none() {
                 let found = format!("the parameter {name:?} of type {}", parameter.kind.name());
                 let expected = "numbers, headings, true or false, texts, colours, or one number of a vector or point";
                 self.report(Problem::new("spec/type", pointer, found, expected));

@@ -85,7 +85,7 @@ impl Check<'_> {
             } else if self.is_json(&hole.source, hole.kind) {
                 let candidates = self.json_candidates(&pointer, &hole);
                 if let (Some(value), Some(place)) = (candidates.first(), example.pointer_mut(&opening.0)) {
-                    *place = value.to_json();
+                    *place = hole.written(value);
                     holes.push((hole, candidates));
                 }
             } else if self.source(&pointer, &hole.source, hole.kind) {
@@ -93,7 +93,7 @@ impl Check<'_> {
                 if self.in_range(&pointer, &candidates, hole.range)
                     && let (Some(value), Some(place)) = (candidates.first(), example.pointer_mut(&opening.0))
                 {
-                    *place = value.to_json();
+                    *place = hole.written(value);
                     holes.push((hole, candidates));
                 }
             }

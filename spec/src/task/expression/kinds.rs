@@ -19,7 +19,7 @@ pub(in crate::task) enum Kind {
 }
 
 impl Kind {
-    /// What a parameter stands for; `None` for distributions and JSON.
+    /// What a parameter stands for; `None` for distributions, layouts and JSON.
     pub(in crate::task) fn of(parameter: &Parameter) -> Option<Self> {
         let texts = || {
             let choices = parameter.choices.as_ref().filter(|_| parameter.role == Role::Variant)?;
@@ -36,7 +36,7 @@ impl Kind {
             ParameterType::Color => Some(Self::Color),
             ParameterType::Point => Some(Self::List("a point", Some(2))),
             ParameterType::Vector => Some(Self::List("a vector", parameter.vector_length())),
-            ParameterType::Distribution | ParameterType::Json => None,
+            ParameterType::Distribution | ParameterType::Layout | ParameterType::Json => None,
         }
     }
 

@@ -28,6 +28,8 @@ pub struct Field {
     pub fixed: Option<&'static str>,
     /// Why no parameter can set the whole of it, though one can set what is in it.
     pub in_parts: Option<&'static str>,
+    /// The type of parameter that sets the whole of it, where it has one of its own.
+    typed: Option<ParameterType>,
     is_heading: bool,
 }
 
@@ -65,6 +67,7 @@ impl Field {
             compared,
             fixed: None,
             in_parts: None,
+            typed: None,
             is_heading: false,
         }
     }
@@ -100,6 +103,14 @@ impl Field {
         }
     }
 
+    /// The whole of it is a layout.
+    pub(crate) const fn layout(self) -> Self {
+        Self {
+            typed: Some(ParameterType::Layout),
+            ..self
+        }
+    }
+
     /// No parameter can set the whole of it, for this reason; what is in it takes some.
     pub(crate) const fn in_parts(self, reason: &'static str) -> Self {
         Self {
@@ -115,6 +126,11 @@ impl Field {
     /// The name of the Rust field, unless it was given another.
     pub(crate) const fn or_named(self, key: &'static str) -> Self {
         if self.key.is_empty() { self.named(key) } else { self }
+    }
+
+    /// The type of parameter that the whole of it takes, given that of its Rust type.
+    fn whole_kind(&self, kind: ParameterType) -> ParameterType {
+        self.typed.unwrap_or(self.kind(kind))
     }
 
     /// The type of parameter that a place of the field takes, given that of its Rust type.

@@ -72,7 +72,7 @@ pub(crate) trait Place: DeserializeOwned {
         let is_open = field.fixed.is_none() && field.in_parts.is_none();
         found.push(FieldPlace {
             pointer: pointer.clone(),
-            kind: is_open.then(|| field.kind(Self::KIND)),
+            kind: is_open.then(|| field.whole_kind(Self::KIND)),
             field: *field,
             is_key,
         });
@@ -89,7 +89,11 @@ impl<T: Fields> Place for T {
         steps.push(number);
         let is_whole = rest.is_empty() && row.field.in_parts.is_some();
         let kind = (row.find)(rest, steps).filter(|_| row.field.fixed.is_none() && !is_whole)?;
-        Some(row.field.kind(kind))
+        Some(if rest.is_empty() {
+            row.field.whole_kind(kind)
+        } else {
+            row.field.kind(kind)
+        })
     }
 
     #[inline]
@@ -192,8 +196,16 @@ numbers!(2, Point, |_| true);
 // A direction of no length is none.
 numbers!(3, Vector, |direction| *direction != [0.0; 3]);
 
-/// Counts along x and y, number by number.
+/// Counts along x and y: whole, rounded, or number by number.
 impl Place for [u32; 2] {
+    const KIND: ParameterType = ParameterType::Vector;
+
+    fn from_value(value: &Value) -> Option<Self> {
+        let [x, y] = *value.as_vector()? else { return None };
+        let is_count = |number: f64| (0.0..=f64::from(u32::MAX)).contains(&number.round());
+        (is_count(x) && is_count(y)).then(|| [x.round() as u32, y.round() as u32])
+    }
+
     fn find_inside(words: &[&str], steps: &mut Vec<usize>) -> Option<ParameterType> {
         let [index] = words else { return None };
         steps.push(index.parse().ok()?);
@@ -201,9 +213,8 @@ impl Place for [u32; 2] {
     }
 
     fn set_inside(&mut self, steps: &[usize], value: &Value) -> Option<()> {
-        let [index] = steps else { return None };
-        *self.get_mut(*index)? = whole(value)?;
-        Some(())
+        let (index, rest) = steps.split_first()?;
+        self.get_mut(*index)?.set(rest, value)
     }
 
     fn list_inside(pointer: &str, field: &Field, found: &mut Vec<FieldPlace>) {

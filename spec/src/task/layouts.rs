@@ -1,0 +1,117 @@
+//! Layouts as values of parameters: what is wrong with one, and what lies between two.
+
+use std::sync::LazyLock;
+
+use serde_json::{Map, Value as Json};
+
+use crate::error::Problem;
+use crate::layout::POINTER;
+use crate::schema::document::DocumentSchema;
+use crate::{Layout, SpecError};
+
+/// What is wrong with JSON that is to be a layout; places are within it.
+pub(super) fn problems(json: &Json) -> Vec<Problem> {
+    static SCHEMA: LazyLock<DocumentSchema> = LazyLock::new(|| DocumentSchema::of::<Layout>("layout", "Layout"));
+    let refused = SCHEMA.problems(json).problems;
+    if !refused.is_empty() {
+        return refused;
+    }
+    serde_json::from_value::<Layout>(json.clone()).map_or_else(|_| Vec::new(), |layout| beyond_schema(&layout))
+}
+
+/// What is wrong with a layout that the schema cannot say; places are within it.
+pub(super) fn beyond_schema(layout: &Layout) -> Vec<Problem> {
+    let mut problems = layout.problems();
+    for problem in &mut problems {
+        problem.pointer = problem.pointer.trim_start_matches(POINTER).to_owned();
+    }
+    problems
+}
+
+impl Layout {
+    /// Checks a layout that was built in code by the rules that layouts of a document obey.
+    ///
+    /// # Errors
+    /// [`SpecError::Document`] under the name `layout`, with every problem.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_spec::{Layout, Maze};
+    /// let maze = |wall| Layout { maze: Some(Maze { wall, ..Maze::default() }), ..Layout::default() };
+    /// assert!(maze(0.5).check().is_ok());
+    /// assert!(maze(5.0).check().is_err(), "walls are thicker than the cells");
+    /// ```
+    pub fn check(&self) -> Result<(), SpecError> {
+        let json = serde_json::to_value(self).expect("a layout serialises");
+        match problems(&json) {
+            found if found.is_empty() => Ok(()),
+            found => Err(SpecError::of_document("layout", found)),
+        }
+    }
+
+    /// The layout at fraction `t`, 0..=1, of the way to another.
+    ///
+    /// Between two of one kind that differ in numbers alone, numbers go straight, and whole ones are rounded. Between others
+    /// the walls of the first fall one by one up to the half, and then those of the second rise, so that the way stays open.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_spec::{Layout, Maze};
+    /// let maze = |count| Layout { maze: Some(Maze { cells: [count, 4], ..Maze::default() }), ..Layout::default() };
+    /// assert_eq!(maze(4).toward(&maze(9), 0.5), maze(7));
+    /// let open = Layout { walls: Some(Vec::new()), ..Layout::default() };
+    /// assert_eq!(open.toward(&maze(4), 0.75), Layout { standing: 0.5, ..maze(4) });
+    /// ```
+    #[must_use]
+    pub fn toward(&self, other: &Self, t: f64) -> Self {
+        let [mine, theirs] = [self, other].map(|layout| serde_json::to_value(layout).expect("a layout serialises"));
+        let straight = between(&mine, &theirs, t).and_then(|json| serde_json::from_value::<Self>(json).ok());
+        // Two numbers that are sound at both ends can be too large together in between.
+        if let Some(straight) = straight.filter(|layout| layout.problems().is_empty()) {
+            return straight;
+        }
+        let (near, share) = if t < 0.5 {
+            (self, 1.0 - 2.0 * t)
+        } else {
+            (other, 2.0 * t - 1.0)
+        };
+        Self {
+            standing: near.standing * share,
+            ..near.clone()
+        }
+    }
+}
+
+/// The JSON between two that differ in numbers alone, but for seeds and the numbers of maps.
+fn between(from: &Json, to: &Json, t: f64) -> Option<Json> {
+    match (from, to) {
+        (Json::Object(from), Json::Object(to)) if from.len() == to.len() => {
+            let entries = from.iter().map(|(key, child)| {
+                let other = to.get(key)?;
+                let is_name = ["seed", "predefined"].contains(&key.as_str());
+                let child = if is_name {
+                    (child == other).then(|| child.clone())
+                } else {
+                    between(child, other, t)
+                };
+                Some((key.clone(), child?))
+            });
+            entries.collect::<Option<Map<String, Json>>>().map(Json::Object)
+        }
+        (Json::Array(from), Json::Array(to)) if from.len() == to.len() => {
+            let items = from.iter().zip(to).map(|(from, to)| between(from, to, t));
+            items.collect::<Option<Vec<Json>>>().map(Json::Array)
+        }
+        (Json::Number(from), Json::Number(to)) => {
+            let is_whole = from.is_u64() && to.is_u64();
+            let (from, to) = (from.as_f64()?, to.as_f64()?);
+            let number = from + (to - from) * t;
+            Some(if is_whole {
+                Json::from(number.round() as u64)
+            } else {
+                Json::from(number)
+            })
+        }
+        _ => (from == to).then(|| from.clone()),
+    }
+}
