@@ -21,6 +21,7 @@ pub mod reference;
 mod scenario;
 pub mod schema;
 mod task;
+mod text_maps;
 mod value;
 mod version;
 mod warning;

@@ -1,9 +1,9 @@
-//! `driftworld convert`: a world or a scenario from one dialect to the other. Both are read and written by the spec.
+//! `driftworld convert`: a world or a scenario from one dialect to another. All are read and written by the spec.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use crate::spec::Scenario;
+use crate::spec::{MAX_BYTES, Scenario, World};
 use clap::{Args, ValueEnum};
 use driftworld_text::ShownPath;
 
@@ -12,7 +12,7 @@ use super::world_choice::WorldChoice;
 use super::{Failure, output, overwrite};
 use crate::scenarios::{Missing, ScenarioFile};
 
-/// Convert a world or a scenario to or from L2Explorer's format.
+/// Convert a world or a scenario to or from L2Explorer's format, or a world from a map of letters.
 ///
 /// Warnings on standard error name everything that the other format cannot express. L2Explorer's scenarios use map
 /// files only, so the worlds that a scenario draws are written as maps into a folder beside the output.
@@ -21,10 +21,14 @@ use crate::scenarios::{Missing, ScenarioFile};
   driftworld convert map.json --l2explorer -o world.json
   driftworld convert find_objects#red --seed 7 --to l2explorer -o reset.json
   driftworld convert scenario_findobjects.json -o scenario.json
-  driftworld convert scenario.json --to l2explorer -o original/scenario.json")]
+  driftworld convert scenario.json --to l2explorer -o original/scenario.json
+  driftworld convert level.txt --from dmlab-text -o world.json")]
 pub(crate) struct Convert {
     #[command(flatten)]
     choice: WorldChoice,
+    /// Read a map of letters: the world is the path of a text file.
+    #[arg(long, value_enum, conflicts_with_all = ["seed", "index", "l2explorer", "maps"])]
+    from: Option<Letters>,
     /// The format to write.
     #[arg(long, value_enum, default_value_t = Form::World)]
     to: Form,
@@ -43,14 +47,42 @@ enum Form {
     L2explorer,
 }
 
+/// A map of letters.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Letters {
+    /// The entity layer of a text level of DeepMind Lab.
+    DmlabText,
+    /// A grid of MiniGrid, two characters for each cell, as `str(env)` prints it.
+    MinigridText,
+}
+
+impl Letters {
+    /// Reads the world, with warnings to standard error.
+    fn world(self, path: &Path) -> Result<World, Failure> {
+        let text = driftworld_files::text(path, MAX_BYTES as u64)?;
+        let name = path.display().to_string();
+        let (world, warnings) = match self {
+            Self::DmlabText => World::from_dmlab_text(&name, &text),
+            Self::MinigridText => World::from_minigrid_text(&name, &text),
+        }?;
+        for warning in warnings {
+            output::note(format!("warning: {warning}"));
+        }
+        Ok(world)
+    }
+}
+
 impl Convert {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let path = Path::new(self.choice.name());
         overwrite::refuse_inputs(&self.output, [self.choice.name()])?;
-        if ScenarioFile::is_one(path) {
+        if self.from.is_none() && ScenarioFile::is_one(path) {
             return self.scenario(&ScenarioFile::read(path, &mut output::warning)?);
         }
-        let world = self.choice.world()?;
+        let world = match self.from {
+            Some(letters) => letters.world(path)?,
+            None => self.choice.world()?,
+        };
         if self.to == Form::World {
             return output::write_or_print(&self.output, &world.to_json_pretty());
         }

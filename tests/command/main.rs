@@ -28,6 +28,7 @@ mod scales;
 mod signals;
 mod special_files;
 mod terminal;
+mod text_maps;
 mod transfer_report;
 mod undrawable;
 mod unity;

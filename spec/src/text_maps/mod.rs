@@ -1,0 +1,160 @@
+//! Maps drawn with letters by other programs, read as worlds with a text layout: DeepMind Lab's text levels in `dmlab.rs`,
+//! MiniGrid's grids in `minigrid.rs`. What is not known is left out, with a warning.
+
+mod dmlab;
+mod minigrid;
+
+use std::collections::BTreeMap;
+
+use crate::layout::{Layout, Legend};
+use crate::warning::Warning;
+use crate::world::{EndCondition, Object, Stimulus, World, WorldDraft};
+use crate::{Color, SpecError};
+
+/// What stands for a cell that was not understood: floor.
+const FLOOR: char = ' ';
+
+/// A map as it is read: letters of a layout, and what stands on them.
+struct Reader<'a> {
+    name: &'a str,
+    /// Side of a cell in metres.
+    cell: f64,
+    rows: Vec<Vec<char>>,
+    legend: BTreeMap<String, Legend>,
+    /// Objects, with the column and row of their cells.
+    objects: Vec<(Object, [usize; 2])>,
+    /// Where the agent may start: column, row, and heading in degrees.
+    starts: Vec<([usize; 2], f64)>,
+    warnings: Vec<Warning>,
+}
+
+impl<'a> Reader<'a> {
+    fn new(name: &'a str, cell: f64) -> Self {
+        Self {
+            name,
+            cell,
+            rows: Vec::new(),
+            legend: BTreeMap::new(),
+            objects: Vec::new(),
+            starts: Vec::new(),
+            warnings: Vec::new(),
+        }
+    }
+
+    /// Says what did not pass; `line` and `column` count from 1, and are 0 where it is about the whole.
+    fn warn(&mut self, [line, column]: [usize; 2], text: impl Into<String>) {
+        self.warnings.push(Warning {
+            name: self.name.to_owned(),
+            pointer: "/environment_params/layout/text".to_owned(),
+            line,
+            column,
+            text: text.into(),
+        });
+    }
+
+    /// An object of a group at a cell, for which a letter stands.
+    fn put(&mut self, letter: char, object: Object, at: [usize; 2]) {
+        let group = object.tag.clone().unwrap_or_default();
+        self.legend.insert(letter.to_string(), Legend::Group(group));
+        self.objects.push((object, at));
+    }
+
+    /// The middle of a cell in metres.
+    fn place(&self, [column, row]: [usize; 2]) -> [f64; 2] {
+        let columns = self.rows.first().map_or(0, Vec::len) as f64;
+        let rows = self.rows.len() as f64;
+        [
+            (column as f64 + 0.5 - columns / 2.0) * self.cell,
+            (rows / 2.0 - 0.5 - row as f64) * self.cell,
+        ]
+    }
+
+    /// The world of what was read; lines that are too short are filled up with walls.
+    fn world(mut self) -> Result<(World, Vec<Warning>), SpecError> {
+        let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
+        self.rows.iter_mut().for_each(|row| row.resize(columns, '#'));
+        if self.starts.is_empty() {
+            self.warn(
+                [0, 0],
+                "nothing says where the agent starts; it starts in the first free cell",
+            );
+            let taken = |at: [usize; 2]| self.objects.iter().any(|(_, place)| *place == at);
+            let cells = self.rows.iter().enumerate();
+            let cells = cells.flat_map(|(row, letters)| {
+                letters
+                    .iter()
+                    .enumerate()
+                    .map(move |(column, letter)| ([column, row], *letter))
+            });
+            let free = cells
+                .filter(|(at, letter)| !['#', '*'].contains(letter) && !taken(*at))
+                .map(|(at, _)| at)
+                .next();
+            self.starts.extend(free.map(|at| (at, 0.0)));
+        } else if self.starts.len() > 1 {
+            let count = self.starts.len();
+            self.warn(
+                [0, 0],
+                format!("of {count} places where the agent may start, it starts in the first"),
+            );
+        }
+        let mut draft = WorldDraft::default();
+        let used: Vec<char> = self.rows.iter().flatten().copied().collect();
+        let legend = self.legend.clone();
+        draft.environment_params.layout = Some(Layout {
+            text: Some(self.rows.iter().map(|row| row.iter().collect()).collect()),
+            cell: Some(self.cell),
+            height: Some(self.cell.min(4.0)),
+            legend: legend
+                .into_iter()
+                .filter(|(letter, _)| used.iter().any(|other| letter.chars().eq([*other])))
+                .collect(),
+            ..Layout::default()
+        });
+        // What fits through a cell in the other program fits here.
+        draft.agent_params.agent_width = (self.cell / 3.0).min(1.0);
+        if let Some((start, heading)) = self.starts.first() {
+            draft.agent_params.coordinates = self.place(*start);
+            draft.agent_params.heading = *heading;
+        }
+        let has = |tag: &str| {
+            self.objects
+                .iter()
+                .any(|(object, _)| object.tag.as_deref() == Some(tag))
+        };
+        if has("goal") {
+            draft.rules.success = vec![EndCondition::Touch("goal".to_owned())];
+        }
+        if has("lava") {
+            draft.rules.failure = vec![EndCondition::Touch("lava".to_owned())];
+        }
+        for (object, at) in &self.objects {
+            let coordinates = self.place(*at);
+            draft.objects.push(Object {
+                coordinates,
+                ..object.clone()
+            });
+        }
+        Ok((draft.check()?, self.warnings))
+    }
+}
+
+/// An object of a class and colour that the agent passes through, of a group.
+fn thing(class: &str, color: &str, group: &str) -> Object {
+    Object {
+        color: Color::from_name(color),
+        solid: false,
+        tag: Some(group.to_owned()),
+        ..Object::new(class, [0.0, 0.0])
+    }
+}
+
+/// The same, which pays once when the agent comes to it, and is gone then.
+fn pays(object: Object, reward: f64) -> Object {
+    Object {
+        reward,
+        reward_once_stimulus: vec![Stimulus::AgentCollide],
+        destroy_stimulus: vec![Stimulus::AgentCollide],
+        ..object
+    }
+}

@@ -1,0 +1,26 @@
+//! `driftworld convert --from`: maps of letters of other programs.
+
+use std::fs;
+
+use crate::terminal::{driftworld, fail, output, scratch, succeed, text};
+
+#[test]
+fn a_map_of_letters_becomes_a_world_with_warnings_on_standard_error() {
+    let folder = scratch();
+    let level = folder.path().join("level.txt");
+    let path = text(&level);
+    fs::write(&level, "*****\n*PQG*\n*****\n").expect("the folder is there");
+    let done = output(&mut driftworld(&["convert", path, "--from", "dmlab-text"]));
+    assert!(done.status.success());
+    let world = driftworld::spec::World::from_json("written", &String::from_utf8_lossy(&done.stdout));
+    assert_eq!(world.expect("it is a world").objects.len(), 1);
+    let said = String::from_utf8_lossy(&done.stderr).into_owned();
+    let expected = ":2:3 (/environment_params/layout/text): the letter 'Q' is not known";
+    assert!(said.contains(expected), "{said}");
+    fs::write(&level, "WGWGWG\nWG>>WG\nWGWGWG\n").expect("the folder is there");
+    assert!(succeed(&["convert", path, "--from", "minigrid-text"]).contains("\"#A#\""));
+    fs::write(&level, "***\n").expect("the folder is there");
+    let said = fail(1, &["convert", path, "--from", "dmlab-text"]);
+    assert!(said.contains("a letter that is floor"), "{said}");
+    fail(2, &["convert", path, "--from", "dmlab-text", "--seed", "3"]);
+}
