@@ -26,14 +26,25 @@ impl Grid {
     /// Cells over an arena of these sides in metres.
     #[cfg(test)]
     pub(super) fn over(size: [f32; 2]) -> Self {
-        Self::fine(size, f32::INFINITY)
+        Self::of_side(size, LEAST_SIDE)
     }
 
     /// Cells over an arena of these sides in metres, as small as `wanted` where that is less than they would be.
-    pub(super) fn fine([width, depth]: [f32; 2], wanted: f32) -> Self {
-        let long = width.max(depth);
+    pub(super) fn fine(size: [f32; 2], wanted: f32) -> Self {
+        let long = size[0].max(size[1]);
         let plain = (long / MOST_CELLS as f32).max(LEAST_SIDE);
-        let side = plain.min(wanted.max(long / MOST_FINE_CELLS as f32).max(LEAST_FINE_SIDE));
+        Self::exact(
+            size,
+            plain.min(wanted.max(long / MOST_FINE_CELLS as f32).max(LEAST_FINE_SIDE)),
+        )
+    }
+
+    /// Cells of this side in metres over an arena; of a larger one where they would be too many.
+    pub(super) fn of_side(size: [f32; 2], least: f32) -> Self {
+        Self::exact(size, (size[0].max(size[1]) / MOST_CELLS as f32).max(least))
+    }
+
+    fn exact([width, depth]: [f32; 2], side: f32) -> Self {
         let [columns, rows] = [width, depth].map(|metres| ((metres / side).ceil() as usize).max(1));
         Self {
             columns,

@@ -1,6 +1,7 @@
 //! Agents that come with the environment: one acts at random, one knows the map, one follows a script. None learns.
 
 mod agent;
+mod errands;
 mod flood;
 mod grid;
 mod marks;

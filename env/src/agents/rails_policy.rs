@@ -3,6 +3,7 @@
 
 use driftworld_spec::{EndCondition, Object, RailsProgress, Stimulus, World};
 
+use super::errands::Errands;
 use super::nearest::Goal;
 use super::route::Route;
 use super::steering::{Purpose, Target, avoided, distance};
@@ -23,12 +24,23 @@ pub(crate) struct RailsPolicy {
     given_up: Vec<usize>,
     /// Leads to the target. Boxed: agents are moved about, and this is large.
     route: Box<Route>,
+    /// Plans in worlds with doors and things, in place of the tour.
+    errands: Box<Errands>,
 }
 
 impl RailsPolicy {
     /// What it is about to do, to be written down.
     pub(crate) fn progress(&self) -> RailsProgress {
         let target = self.target.as_ref();
+        let errands = &self.errands;
+        if errands.target.is_some() || !errands.given_up.is_empty() {
+            return RailsProgress {
+                target: errands.target,
+                steps_on_target: errands.steps_on_target,
+                given_up: errands.given_up.clone(),
+                ..RailsProgress::default()
+            };
+        }
         RailsProgress {
             target: target.map(|target| target.object as u32),
             goal: target.map_or([0.0; 2], |target| target.goal.map(f64::from)),
@@ -41,6 +53,13 @@ impl RailsPolicy {
     /// Goes on from what was written down. A checked world names none but its own objects.
     pub(crate) fn resumed(progress: &RailsProgress, world: &World, scene: &Scene) -> Self {
         let known = |index: &u32| (*index as usize) < world.objects.len();
+        if world.objects.iter().any(Object::is_used) {
+            let mut errands = Box::<Errands>::default();
+            errands.target = progress.target.filter(known);
+            errands.steps_on_target = progress.steps_on_target;
+            errands.given_up = progress.given_up.iter().copied().filter(known).collect();
+            return Self { errands, ..Self::default() };
+        }
         let mut route = Box::<Route>::default();
         let target = progress.target.filter(known).map(|object| {
             let goal = progress.goal.map(|metres| metres as f32);
@@ -57,20 +76,27 @@ impl RailsPolicy {
             steps_on_target: progress.steps_on_target,
             given_up: progress.given_up.iter().map(|index| *index as usize).collect(),
             route,
+            errands: Box::default(),
         }
     }
 
     /// Begins the tour anew. What the route knows of the ground it looks at again before it uses it.
     pub(super) fn begin(&mut self) {
         let route = std::mem::take(&mut self.route);
+        let mut errands = std::mem::take(&mut self.errands);
+        errands.begin();
         *self = Self {
             route,
+            errands,
             ..Self::default()
         };
     }
 
     /// Whether nothing is worth going to.
     pub(crate) fn is_done(sim: SimRef) -> bool {
+        if sim.state.has_things {
+            return Errands::is_done(sim);
+        }
         wanted(sim).is_empty()
     }
 
@@ -122,6 +148,9 @@ impl RailsPolicy {
 impl RailsPolicy {
     /// What it does next, as speed, turn rate and interaction, whatever actions the world takes.
     pub(crate) fn steer(&mut self, sim: SimRef) -> [f64; 3] {
+        if sim.state.has_things {
+            return self.errands.steer(sim);
+        }
         self.steps_on_target = self.steps_on_target.saturating_add(1);
         let wanted = wanted(sim);
         let stale = self
@@ -145,7 +174,7 @@ impl RailsPolicy {
 
 /// The objects worth going to, by index: those that pay now, without those whose touch is a success as long as others pay; if
 /// nothing pays, those whose touch is a success.
-fn wanted(sim: SimRef) -> Vec<usize> {
+pub(super) fn wanted(sim: SimRef) -> Vec<usize> {
     let world = sim.world;
     let states = sim.objects();
     // In a sequence only what comes first of what is left pays.

@@ -53,6 +53,6 @@ pub use obstacle::Obstacle;
 pub(crate) use sim_ref::SimRef;
 pub use snapshot::Snapshot;
 pub use state::{AgentState, ObjectState};
-pub(crate) use things::{answering, effect_of, put_down_place};
+pub(crate) use things::{answering, put_down_place};
 pub(crate) use transplant::Unlike;
 pub use warning::Warning;

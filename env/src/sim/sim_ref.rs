@@ -31,6 +31,12 @@ impl<'a> SimRef<'a> {
         &self.views.scene
     }
 
+    /// Finds the objects that an interaction would reach now, by index in rising order.
+    pub(crate) fn reached_by_hand(self, found: &mut Vec<u32>) {
+        let agent = self.agent();
+        self.views.bodies.in_reach(agent.position, agent.forward(), found);
+    }
+
     /// The radius of an object's body in metres.
     pub(crate) fn body_radius(self, index: usize) -> f32 {
         let item = &self.views.scene.items[index];

@@ -176,6 +176,21 @@ impl SimState {
         self.doors.get(found)
     }
 
+    /// What the agent carries, in the order in which it picked it up.
+    pub(crate) fn carried(&self) -> &[u32] {
+        &self.carried
+    }
+
+    /// Whether a door was unlocked by its key.
+    pub(crate) fn is_unlocked(&self, object: usize) -> bool {
+        self.door_of(object).is_some_and(|door| door.unlocked)
+    }
+
+    /// For each door whether it was unlocked by its key.
+    pub(crate) fn unlocked(&self) -> impl Iterator<Item = bool> {
+        self.doors.iter().map(|door| door.unlocked)
+    }
+
     /// The motion of an object that is pushed.
     pub(super) fn pushed_of(&mut self, object: usize) -> Option<&mut Pushed> {
         let found = self.pushed.binary_search_by_key(&object, |body| body.object).ok()?;
@@ -194,7 +209,7 @@ impl SimState {
     }
 
     /// Whether all objects with a lower place in the sequence have been collected.
-    pub(super) fn is_due(&self, order: Option<u32>) -> bool {
+    pub(crate) fn is_due(&self, order: Option<u32>) -> bool {
         self.sequence.is_due(order)
     }
 

@@ -1,0 +1,189 @@
+//! How one thing is done: walking to an object, and there touching it, using it, waiting at it or putting something down. What
+//! is to be done is decided in `plan.rs`.
+
+use driftworld_spec::Stimulus;
+
+use super::floor::{Floor, Leaf, Room};
+use super::plan::can_interact;
+use super::wishes::moving_stimulus;
+use crate::sim::{SimRef, answering, put_down_place};
+
+/// Degrees off which an agent goes on looking at what it means to use, rather than walking to it.
+const OFF: f32 = 8.0;
+
+/// How near to a thing the agent puts down what it carries in its place, in metres.
+const BESIDE: f32 = 1.8;
+
+/// What is done at an object.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Deed {
+    /// It is touched.
+    Touch,
+    /// It is interacted with.
+    Use,
+    /// It is opened, set off or picked up.
+    Move,
+    /// It opens by itself, and the agent stands before it.
+    Wait,
+    /// This thing is put down near it.
+    Bring {
+        /// Its index.
+        thing: u32,
+    },
+}
+
+/// A deed, and where it is done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Task {
+    pub(super) object: u32,
+    pub(super) room: Room,
+    pub(super) deed: Deed,
+}
+
+impl Task {
+    /// The next step, as speed, turn rate and interaction.
+    pub(super) fn act(self, sim: SimRef, floor: &mut Floor) -> [f64; 3] {
+        match self.deed {
+            Deed::Bring { thing } => self.bring(sim, floor, thing),
+            Deed::Touch | Deed::Use | Deed::Move | Deed::Wait => self.meet(sim, floor),
+        }
+    }
+
+    fn meet(self, sim: SimRef, floor: &mut Floor) -> [f64; 3] {
+        let stimulus = match self.deed {
+            Deed::Use => Some(Stimulus::AgentInteract),
+            Deed::Move => moving_stimulus(sim, self.object),
+            _ => None,
+        };
+        let away = length(sim.agent().position, sim.objects()[self.object as usize].position);
+        if self.deed == Deed::Move && is_too_much(sim, self.object) && away < BESIDE {
+            return self.put_down(sim);
+        }
+        let by_hand = stimulus == Some(Stimulus::AgentInteract) && can_interact(sim.world);
+        if by_hand && self.is_at_hand(sim) {
+            return [0.0, 0.0, 1.0];
+        }
+        // A contact counts when it begins: what wants to be touched again is left first.
+        let counts = self.deed == Deed::Touch || stimulus == Some(Stimulus::AgentCollide);
+        if counts && sim.state.touches(self.object as usize) {
+            return [-sim.world.agent_params.max_linear_speed / 2.0, 0.0, 0.0];
+        }
+        floor.lead(floor.cells_beside(sim, self.object, self.room));
+        if let Some(point) = floor.next(sim.agent().position) {
+            return walk(sim, point, 0.3);
+        }
+        let at = sim.objects()[self.object as usize].position;
+        let gap = Leaf::of(sim, self.object as usize).distance(sim.agent().position)
+            - sim.world.agent_params.agent_width as f32 / 2.0;
+        if self.deed == Deed::Wait && gap < 0.4 || by_hand && gap < 0.15 && off(sim, at).abs() > OFF {
+            return [0.0, turn(sim, at), 0.0];
+        }
+        walk(sim, at, if by_hand { 0.1 } else { 0.5 })
+    }
+
+    /// Whether an interaction now is answered by this object.
+    fn is_at_hand(self, sim: SimRef) -> bool {
+        let reached = reached(sim);
+        match self.deed {
+            Deed::Use => reached.contains(&self.object),
+            _ => answering(sim, &reached) == Some(self.object),
+        }
+    }
+
+    /// Turns until there is room in front.
+    fn put_down(self, sim: SimRef) -> [f64; 3] {
+        let is_free = answering(sim, &reached(sim)).is_none() && put_down_place(sim).is_some();
+        if is_free {
+            return [0.0, 0.0, 1.0];
+        }
+        [0.0, sim.world.agent_params.max_angular_speed, 0.0]
+    }
+
+    fn bring(self, sim: SimRef, floor: &mut Floor, thing: u32) -> [f64; 3] {
+        let to = sim.objects()[self.object as usize].position;
+        let within = self.within(sim, thing);
+        let place = put_down_place(sim).filter(|(index, _)| *index == thing || self.is_last_useless(sim, thing));
+        if let Some((index, place)) = place
+            && answering(sim, &reached(sim)).is_none()
+            && (index != thing || length(place, to) < within - 0.02)
+        {
+            return [0.0, 0.0, 1.0];
+        }
+        let radius = sim.body_radius(thing as usize);
+        let ahead = sim.world.agent_params.agent_width as f32 / 2.0 + radius + 0.1;
+        let least = Leaf::of(sim, self.object as usize).own_radius() + radius + 0.1;
+        let most = (within - 0.1).max(least.min(within)) + ahead;
+        let least = (least + ahead).min(most - 0.05);
+        floor.lead(floor.cells_around(to, [least, most], self.room));
+        match floor.next(sim.agent().position) {
+            Some(point) => walk(sim, point, 0.2),
+            None if off(sim, to).abs() > 2.0 => [0.0, turn(sim, to), 0.0],
+            // It looks there, and there is no room: elsewhere around it there may be.
+            None if length(sim.agent().position, to) < least => [-0.5, 0.0, 0.0],
+            None => walk(sim, to, 0.0),
+        }
+    }
+
+    /// Whether what would be put down now is not what is to be brought.
+    fn is_last_useless(self, sim: SimRef, thing: u32) -> bool {
+        sim.state.carried().last() != Some(&thing)
+    }
+
+    fn within(self, sim: SimRef, thing: u32) -> f32 {
+        let world = sim.world;
+        let tags = [thing, self.object].map(|index| world.objects[index as usize].tag.as_deref());
+        let deliveries = world.rules.success.iter().filter_map(|condition| match condition {
+            driftworld_spec::EndCondition::Delivered(delivery) => Some(delivery),
+            _ => None,
+        });
+        let is_ours = |delivery: &&driftworld_spec::Delivery| {
+            tags == [Some(delivery.tag.as_str()), Some(delivery.to.as_str())]
+        };
+        deliveries.filter(is_ours).map(|delivery| delivery.within as f32).fold(f32::INFINITY, f32::min).min(1000.0)
+    }
+}
+
+/// Whether an object can be picked up, and the agent's hands are full.
+fn is_too_much(sim: SimRef, object: u32) -> bool {
+    let object = &sim.world.objects[object as usize];
+    let is_thing = object.portable.is_some() && object.door.is_none() && object.switch.is_none();
+    is_thing && sim.state.carried().len() >= sim.world.agent_params.carry_limit as usize
+}
+
+/// The objects that an interaction reaches now.
+fn reached(sim: SimRef) -> Vec<u32> {
+    let mut reached = Vec::new();
+    sim.reached_by_hand(&mut reached);
+    reached
+}
+
+/// How far a point is to the right of where the agent looks, in degrees.
+fn off(sim: SimRef, point: [f32; 2]) -> f32 {
+    let agent = sim.agent();
+    let way = [point[0] - agent.position[0], point[1] - agent.position[1]];
+    let wanted = libm::atan2f(way[0], way[1]).to_degrees();
+    (wanted - agent.heading_deg + 540.0).rem_euclid(360.0) - 180.0
+}
+
+/// The turn rate that brings the agent to look at a point in one step, if it can turn so fast.
+fn turn(sim: SimRef, point: [f32; 2]) -> f64 {
+    f64::from(off(sim, point) / seconds(sim))
+}
+
+fn seconds(sim: SimRef) -> f32 {
+    sim.world.agent_params.time_step as f32 * sim.world.agent_params.frame_skip as f32
+}
+
+/// A step towards a point, and so many metres past it: not at full speed into a turn.
+fn walk(sim: SimRef, point: [f32; 2], past: f32) -> [f64; 3] {
+    let agent = &sim.world.agent_params;
+    let (off, seconds) = (off(sim, point), seconds(sim));
+    let reach = (length(sim.agent().position, point) + past) / seconds;
+    let after_turn = (off.abs() - agent.max_angular_speed as f32 * seconds).max(0.0);
+    let speed = if after_turn > 20.0 { 0.0 } else { reach.min(agent.max_linear_speed as f32) };
+    [f64::from(speed), f64::from(off / seconds), 0.0]
+}
+
+fn length(a: [f32; 2], b: [f32; 2]) -> f32 {
+    ((a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)).sqrt()
+}

@@ -1,0 +1,135 @@
+//! Planning in worlds with doors, keys, switches and things that are carried. It knows the map and the rules, and does nothing
+//! that an episode does not allow.
+//!
+//! What it wants is in `wishes.rs`, what it does first for it in `plan.rs`, how it does it in `deed.rs`, where it walks in
+//! `floor.rs`. What it does next follows from where things are and from the one object that it has set its mind on, so that
+//! a world that was written down goes on as it would have.
+
+mod deed;
+mod floor;
+mod plan;
+mod wishes;
+
+use deed::{Deed, Task};
+use floor::Floor;
+use plan::Plan;
+use wishes::{Wish, wishes};
+
+use crate::sim::SimRef;
+
+/// Steps after which a wish that did not come true is left for later.
+const PATIENCE: u32 = 3000;
+
+/// The errands of an agent.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Errands {
+    /// The object that the agent has set its mind on.
+    pub(super) target: Option<u32>,
+    pub(super) steps_on_target: u32,
+    pub(super) given_up: Vec<u32>,
+    floor: Floor,
+    /// What was to be done first when all was as it says.
+    known: Option<(Situation, Option<Task>)>,
+}
+
+/// All that a plan follows from.
+#[derive(Clone, Debug, PartialEq)]
+struct Situation {
+    version: u64,
+    room: Option<u32>,
+    target: u32,
+    /// For each door whether it is unlocked, and what is carried.
+    unlocked: Vec<bool>,
+    carried: Vec<u32>,
+    /// Where portable things and switches are that may be walked through.
+    things: Vec<[u32; 2]>,
+    is_due: Vec<bool>,
+}
+
+impl Errands {
+    /// Begins anew. What is known of the ground is looked at again before it is used.
+    pub(super) fn begin(&mut self) {
+        (self.target, self.steps_on_target, self.known) = (None, 0, None);
+        self.given_up.clear();
+    }
+
+    /// Whether nothing is left to be done.
+    pub(super) fn is_done(sim: SimRef) -> bool {
+        wishes(sim).iter().all(Vec::is_empty)
+    }
+
+    /// What is done next, as speed, turn rate and interaction.
+    pub(super) fn steer(&mut self, sim: SimRef) -> [f64; 3] {
+        self.floor.update(sim);
+        let wishes = wishes(sim);
+        let find = |target: u32| wishes.iter().flatten().copied().find(|wish| wish.object() == target);
+        let mut wish = self.target.and_then(find);
+        let mut task = wish.and_then(|wish| self.first(sim, wish));
+        let is_waiting = task.is_some_and(|task| task.deed == Deed::Wait);
+        self.steps_on_target = self.steps_on_target.saturating_add(u32::from(!is_waiting));
+        let is_tired = self.steps_on_target > PATIENCE;
+        if is_tired {
+            self.given_up.extend(self.target);
+        }
+        if task.is_none() || is_tired {
+            wish = self.choose(sim, &wishes);
+            self.target = wish.map(Wish::object);
+            self.steps_on_target = 0;
+            task = wish.and_then(|wish| self.first(sim, wish));
+        }
+        task.map_or([0.0; 3], |task| task.act(sim, &mut self.floor))
+    }
+
+    /// The cheapest wish that can come true, of those that come first.
+    fn choose<'a>(&mut self, sim: SimRef, wishes: &[Vec<Wish<'a>>; 2]) -> Option<Wish<'a>> {
+        let plan = Plan::new(sim, &self.floor)?;
+        let can_be = |wish: &&Wish| plan.first(**wish).is_some();
+        let possible = wishes.iter().map(|list| list.iter().filter(can_be).copied().collect::<Vec<_>>());
+        let mut possible = possible.filter(|list| !list.is_empty());
+        let mut list = possible.next()?;
+        if list.iter().all(|wish| self.given_up.contains(&wish.object())) {
+            self.given_up.clear();
+        }
+        list.retain(|wish| !self.given_up.contains(&wish.object()));
+        // First the doors on the way, then the way as the crow flies over how likely it pays.
+        let here = sim.agent().position;
+        let cost = |wish: &Wish| {
+            let index = wish.object() as usize;
+            let [x, y] = sim.objects()[index].position;
+            let far = ((x - here[0]).powi(2) + (y - here[1]).powi(2)).sqrt();
+            let odds = sim.world.objects[index].reward_probability.max(0.01) as f32;
+            let doors = plan.takes_doors(wish.object()).unwrap_or(0);
+            (doors, far / odds)
+        };
+        list.into_iter().min_by(|a, b| {
+            let (a, b) = (cost(a), cost(b));
+            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+        })
+    }
+
+    /// What is done first for a wish. Only looked for where something is other than it was.
+    fn first(&mut self, sim: SimRef, wish: Wish) -> Option<Task> {
+        let situation = self.situation(sim, wish.object());
+        if let Some((known, task)) = &self.known
+            && *known == situation
+        {
+            return *task;
+        }
+        let task = Plan::new(sim, &self.floor).and_then(|plan| plan.first(wish));
+        self.known = Some((situation, task));
+        task
+    }
+
+    fn situation(&self, sim: SimRef, target: u32) -> Situation {
+        let used = sim.world.objects.iter().zip(sim.objects()).filter(|(object, _)| object.is_used());
+        Situation {
+            version: self.floor.version,
+            room: self.floor.room_at(sim.agent().position),
+            target,
+            unlocked: sim.state.unlocked().collect(),
+            carried: sim.state.carried().to_vec(),
+            things: used.clone().filter(|(_, own)| own.present).map(|(_, own)| own.position.map(f32::to_bits)).collect(),
+            is_due: used.map(|(object, _)| sim.state.is_due(object.order)).collect(),
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! What is done first to get somewhere or to get something: which door is opened, and before it which key is fetched or which
+//! switch set off. How it is done is in `deed.rs`, where it is in `floor.rs`.
+
+use driftworld_spec::{ActionModel, ActionSpace, Stimulus, SwitchAction, World};
+
+use super::deed::{Deed, Task};
+use super::floor::{Floor, Room};
+use super::wishes::Wish;
+use crate::sim::SimRef;
+
+/// How a closed door can be got open.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Means {
+    /// By its stimuli.
+    Hand,
+    /// By its stimuli, once this object has been fetched.
+    Key(u32),
+    /// By setting off this object.
+    Switch(u32),
+    /// By waiting for its clock.
+    Clock,
+}
+
+/// A door that can be got open: what leads to it is known before it.
+#[derive(Clone, Copy, Debug)]
+struct Way {
+    door: u32,
+    /// The room from which it is opened, or passed.
+    from: Room,
+    means: Means,
+}
+
+/// What can be reached from where the agent is, door by door.
+pub(super) struct Plan<'a> {
+    sim: SimRef<'a>,
+    floor: &'a Floor,
+    here: Room,
+    /// For each room that can be got to beyond this one, the door that leads there.
+    entered: Vec<(Room, usize)>,
+    ways: Vec<Way>,
+}
+
+impl<'a> Plan<'a> {
+    /// What can be reached, in rounds: each door is opened with what can be had without it.
+    pub(super) fn new(sim: SimRef<'a>, floor: &'a Floor) -> Option<Self> {
+        let here = floor.room_at(sim.agent().position)?;
+        let mut plan = Self { sim, floor, here, entered: Vec::new(), ways: Vec::new() };
+        loop {
+            let found: Vec<Way> = floor.doors.iter().filter_map(|door| plan.way_through(door.object, door.rooms)).collect();
+            if found.is_empty() {
+                return Some(plan);
+            }
+            for way in found {
+                let number = plan.ways.len();
+                plan.ways.push(way);
+                let rooms = floor.doors.iter().find(|door| door.object == way.door).map_or([None; 2], |door| door.rooms);
+                for room in rooms.into_iter().flatten() {
+                    if !plan.can_reach(room) {
+                        plan.entered.push((room, number));
+                    }
+                }
+            }
+        }
+    }
+
+    fn can_reach(&self, room: Room) -> bool {
+        room == self.here || self.entered.iter().any(|(other, _)| *other == room)
+    }
+
+    fn can_reach_object(&self, object: u32) -> bool {
+        self.floor.room_of(self.sim, object).is_some_and(|room| self.can_reach(room))
+    }
+
+    /// How a door that cannot be passed yet can be got open with what can be reached.
+    fn way_through(&self, door: u32, rooms: [Option<Room>; 2]) -> Option<Way> {
+        if self.ways.iter().any(|way| way.door == door) {
+            return None;
+        }
+        let from = rooms.into_iter().flatten().find(|room| self.can_reach(*room))?;
+        let means = self.means(door)?;
+        Some(Way { door, from, means })
+    }
+
+    fn means(&self, door: u32) -> Option<Means> {
+        let SimRef { world, state, .. } = self.sim;
+        let object = &world.objects[door as usize];
+        let own = object.door.as_ref()?;
+        let is_due = state.is_due(object.order);
+        if is_due && usable(world, door, &own.opens_on).is_some() {
+            let Some(tag) = own.key.as_ref().filter(|_| !state.is_unlocked(door as usize)) else {
+                return Some(Means::Hand);
+            };
+            let has_tag = |index: &u32| world.objects[*index as usize].tag.as_ref() == Some(tag);
+            if state.carried().iter().any(has_tag) {
+                return Some(Means::Hand);
+            }
+            let mut keys = (0..world.objects.len() as u32).filter(has_tag);
+            if let Some(key) = keys.find(|key| self.can_pick_up(*key)) {
+                return Some(Means::Key(key));
+            }
+        }
+        let opens = |index: &u32| {
+            let object_of = &world.objects[*index as usize];
+            object_of.switch.as_ref().is_some_and(|switch| {
+                let moves = Some(&switch.target) == object.tag.as_ref() && switch.action != SwitchAction::Close;
+                let is_there = self.sim.objects()[*index as usize].present && state.is_due(object_of.order);
+                moves && is_there && usable(world, *index, &switch.on).is_some()
+            })
+        };
+        let mut switches = (0..world.objects.len() as u32).filter(opens);
+        if let Some(switch) = switches.find(|switch| self.can_reach_object(*switch)) {
+            return Some(Means::Switch(switch));
+        }
+        own.period.is_some().then_some(Means::Clock)
+    }
+
+    /// Whether a thing lies where it can be reached, and can be picked up there.
+    fn can_pick_up(&self, index: u32) -> bool {
+        let SimRef { world, state, .. } = self.sim;
+        let object = &world.objects[index as usize];
+        let Some(portable) = &object.portable else { return false };
+        self.sim.objects()[index as usize].present
+            && world.agent_params.carry_limit > 0
+            && state.is_due(object.order)
+            && usable(world, index, &portable.on).is_some()
+            && self.can_reach_object(index)
+    }
+
+    /// The rooms that can be got to, and whether each takes a door.
+    pub(super) fn takes_doors(&self, object: u32) -> Option<usize> {
+        let room = self.floor.room_of(self.sim, object)?;
+        let mut doors = 0;
+        let mut now = room;
+        while now != self.here {
+            let (_, number) = self.entered.iter().find(|(other, _)| *other == now)?;
+            now = self.ways[*number].from;
+            doors += 1;
+        }
+        Some(doors)
+    }
+
+    /// What is done first for the sake of a wish; `None` where it cannot be had.
+    pub(super) fn first(&self, wish: Wish) -> Option<Task> {
+        match wish {
+            Wish::Touch(object) => self.at(object, Deed::Touch),
+            Wish::Use(object) => self.at(object, Deed::Use),
+            Wish::Move(object) => self.moved(object),
+            Wish::Bring { thing, tag } => {
+                if !self.sim.state.carried().contains(&thing) {
+                    return self.picked_up(thing);
+                }
+                let world = self.sim.world;
+                let objects = 0..world.objects.len() as u32;
+                let mut places = objects.filter(|index| {
+                    let is_there = self.sim.objects()[*index as usize].present;
+                    is_there && world.objects[*index as usize].tag.as_deref() == Some(tag) && self.can_reach_object(*index)
+                });
+                self.at(places.next()?, Deed::Bring { thing })
+            }
+        }
+    }
+
+    /// A deed at an object, or what is to be done before the agent gets there.
+    fn at(&self, object: u32, deed: Deed) -> Option<Task> {
+        let room = self.floor.room_of(self.sim, object)?;
+        self.got_to(room, Task { object, room, deed })
+    }
+
+    /// A task in a room, or what is to be done before the agent gets there. It ends: doors are opened with what was reached
+    /// before them.
+    fn got_to(&self, room: Room, task: Task) -> Option<Task> {
+        if room == self.here {
+            return Some(task);
+        }
+        let (_, number) = self.entered.iter().find(|(other, _)| *other == room)?;
+        self.opened(self.ways[*number])
+    }
+
+    fn opened(&self, way: Way) -> Option<Task> {
+        let at_door = |deed| self.got_to(way.from, Task { object: way.door, room: way.from, deed });
+        match way.means {
+            Means::Hand => at_door(Deed::Move),
+            Means::Clock => at_door(Deed::Wait),
+            Means::Key(key) => self.picked_up(key),
+            Means::Switch(switch) => self.at(switch, Deed::Move),
+        }
+    }
+
+    /// A door is opened, a switch set off, a thing picked up.
+    fn moved(&self, object: u32) -> Option<Task> {
+        let parts = &self.sim.world.objects[object as usize];
+        if parts.door.is_some() && !self.sim.objects()[object as usize].open {
+            let way = self.ways.iter().find(|way| way.door == object)?;
+            return self.opened(*way);
+        }
+        if parts.portable.is_some() && parts.switch.is_none() {
+            return self.picked_up(object);
+        }
+        self.at(object, Deed::Move)
+    }
+
+    fn picked_up(&self, thing: u32) -> Option<Task> {
+        if !self.can_pick_up(thing) {
+            return None;
+        }
+        let task = self.at(thing, Deed::Move)?;
+        let hands_are_full = self.sim.state.carried().len() >= self.sim.world.agent_params.carry_limit as usize;
+        // What is carried is put down where the thing is, for what is on the way to it may need it.
+        let can_be_emptied = !hands_are_full || can_interact(self.sim.world);
+        can_be_emptied.then_some(task)
+    }
+}
+
+/// Whether the agent can interact at all.
+pub(super) fn can_interact(world: &World) -> bool {
+    let agent = &world.agent_params;
+    let has_row = match &agent.actions {
+        ActionSpace::Discrete(table) => agent.action_model == ActionModel::OnRails || table.iter().any(|row| row[2] > 0.5),
+        _ => true,
+    };
+    agent.interact && agent.action_model != ActionModel::ByWaypoint && has_row
+}
+
+/// Which of some stimuli of an object the agent can bring about; an interaction if it can.
+pub(super) fn usable(world: &World, object: u32, stimuli: &[Stimulus]) -> Option<Stimulus> {
+    let has_range = world.objects[object as usize].range_stimulus_distance > 0.0;
+    let can = |stimulus: &Stimulus| match stimulus {
+        Stimulus::AgentInteract => can_interact(world),
+        Stimulus::AgentCollide => true,
+        Stimulus::AgentInRange => has_range,
+    };
+    let known = [Stimulus::AgentInteract, Stimulus::AgentCollide, Stimulus::AgentInRange];
+    known.into_iter().find(|stimulus| stimuli.contains(stimulus) && can(stimulus))
+}
