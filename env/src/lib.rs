@@ -52,4 +52,4 @@ pub use render::{
 #[cfg(feature = "gpu")]
 pub use render::{GpuChoice, GpuRenderer};
 pub use scene::{Item, Light, Scene, WallPanel};
-pub use sim::{Action, AgentState, Effect, Environment, Event, ObjectState, Obstacle, Snapshot, Step, Warning};
+pub use sim::{Action, AgentState, Effect, EndedBy, Environment, Event, ObjectState, Obstacle, Snapshot, Step, Warning};

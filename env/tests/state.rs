@@ -3,8 +3,8 @@
 
 use driftworld_env::{Action, Agent, EnvError, Environment, RandomAgent};
 use driftworld_spec::{
-    ActionModel, ActionSpace, EndCondition, MotionModel, Object, ObjectProgress, Progress, Pushable, Respawn, Shaping,
-    StateFeature, Stimulus, Wall, World, WorldDraft, Zone,
+    ActionModel, ActionSpace, EndCondition, Energy, MotionModel, Object, ObjectProgress, Progress, Pushable, Respawn,
+    Shaping, StateFeature, Stimulus, Trigger, Wall, World, WorldDraft, Zone,
 };
 use proptest::prelude::*;
 
@@ -60,6 +60,13 @@ fn world(action_model: ActionModel, frame_skip: u32) -> World {
     let mut mud = Zone::polygon(vec![[-2.0, 0.5], [3.0, 0.5], [3.0, 6.0]]);
     (mud.speed_factor, mud.reward_per_second, mud.reward_on_entering) = (0.7, -0.3, -0.5);
     world.environment_params.zones = vec![door, mud];
+    (world.objects[0].energy, world.objects[1].range_trigger) = (0.5, Trigger::Level);
+    world.agent_params.energy = Some(Energy {
+        start: 2.0,
+        per_second: -0.1,
+        per_metre: -0.05,
+        most: 3.0,
+    });
     let agent = &mut world.agent_params;
     (agent.action_model, agent.frame_skip, agent.observation_size) = (action_model, frame_skip, 24);
     agent.actions = ActionSpace::Continuous;

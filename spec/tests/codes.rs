@@ -47,6 +47,7 @@ fn cases() -> Vec<SpecError> {
         world(r#"{ "agent_params": { "observation_size": 4096, "supersampling": 3 } }"#),
         world(r#"{ "agent_params": { "action_model": "bywaypoint", "actions": "default_discrete" } }"#),
         world(r#"{ "progress": { "objects": [{}] } }"#),
+        world(r#"{ "agent_params": { "energy": { "start": 101 } } }"#),
         world(r#"{ "environment_params": { "zones": [{ "speed_factor": 0.5 }] } }"#),
         world(
             r#"{ "objects": [{ "class": "tree", "coordinates": [1, 1], "unique_name": "a" },

@@ -9,7 +9,7 @@ use super::outputs::OutputsMut;
 use crate::EnvError;
 use crate::assets::Catalogue;
 use crate::render::CpuRenderer;
-use crate::sim::{Action, Environment, Step};
+use crate::sim::{Action, EndedBy, Environment, Step};
 
 pub(super) struct Slot {
     env: usize,
@@ -138,7 +138,10 @@ impl Slot {
         }
         self.environment.step_into(action, &mut self.step)?;
         self.steps = self.steps.saturating_add(1);
-        self.step.truncated |= self.limit.is_some_and(|limit| self.steps >= limit.get());
+        if self.limit.is_some_and(|limit| self.steps >= limit.get()) {
+            self.step.truncated = true;
+            self.step.ended_by.get_or_insert(EndedBy::Steps);
+        }
         outputs.note(index, &self.step);
         self.is_over = self.step.ended();
         if let (true, Autoreset::SameStep, Some(finals)) = (self.is_over, autoreset, finals) {

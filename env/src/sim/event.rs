@@ -51,6 +51,65 @@ impl Effect {
     }
 }
 
+/// Why an episode ended. Whether that was a success is said beside it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum EndedBy {
+    /// No object is left that pays a positive reward.
+    AllCollected,
+    /// The agent touched, or interacted with, an object that ends the episode.
+    Touch,
+    /// A door was opened.
+    Opened,
+    /// The agent carried a thing that ends the episode.
+    Carried,
+    /// All that was to be delivered lay where it should.
+    Delivered,
+    /// The return reached a bound.
+    Return,
+    /// The agent's energy was used up.
+    Energy,
+    /// A zone ended it.
+    Zone,
+    /// So many steps were over.
+    Steps,
+    /// So much of the world's own time was over.
+    Time,
+}
+
+impl EndedBy {
+    /// All of them.
+    pub const ALL: [Self; 10] = [
+        Self::AllCollected,
+        Self::Touch,
+        Self::Opened,
+        Self::Carried,
+        Self::Delivered,
+        Self::Return,
+        Self::Energy,
+        Self::Zone,
+        Self::Steps,
+        Self::Time,
+    ];
+
+    /// The word that logs have for it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::AllCollected => "all_collected",
+            Self::Touch => "touch",
+            Self::Opened => "opened",
+            Self::Carried => "carried",
+            Self::Delivered => "delivered",
+            Self::Return => "return",
+            Self::Energy => "energy",
+            Self::Zone => "zone",
+            Self::Steps => "steps",
+            Self::Time => "time",
+        }
+    }
+}
+
 /// What a step led to.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Step {
@@ -62,6 +121,8 @@ pub struct Step {
     pub truncated: bool,
     /// Whether it ended as a success.
     pub success: bool,
+    /// Why the episode ended, if it did.
+    pub ended_by: Option<EndedBy>,
     /// What happened, in the order of objects.
     pub events: Vec<Event>,
 }
@@ -76,5 +137,6 @@ impl Step {
     pub(crate) fn clear(&mut self) {
         self.events.clear();
         (self.reward, self.terminated, self.truncated, self.success) = (0.0, false, false, false);
+        self.ended_by = None;
     }
 }

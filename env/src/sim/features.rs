@@ -5,6 +5,7 @@ use driftworld_spec::{EndCondition, Object, StateFeature, Stimulus, World};
 use super::environment::Environment;
 use super::state::{ObjectState, SimState};
 use super::termination::pays_now;
+use super::zones::Zones;
 
 impl Environment {
     /// The numbers of the features that the world asks for, in its order: by default position, heading, velocity.
@@ -31,7 +32,7 @@ impl Environment {
     fn fill_state(&self, state: &mut [f32]) {
         let mut rest = state;
         for feature in &self.world.agent_params.state_features {
-            let (mut numbers, length) = values(&self.world, &self.state, *feature);
+            let (mut numbers, length) = values(&self.world, &self.state, &self.views.zones, *feature);
             if *feature == StateFeature::Carrying {
                 // Numbers of classes are those of the scene.
                 let last = self.state.carried.last().map(|index| *index as usize);
@@ -46,7 +47,7 @@ impl Environment {
 }
 
 /// The numbers of one feature, and how many of the three are in use.
-fn values(world: &World, state: &SimState, feature: StateFeature) -> ([f32; 3], usize) {
+fn values(world: &World, state: &SimState, zones: &Zones, feature: StateFeature) -> ([f32; 3], usize) {
     let agent = &state.agent;
     let [x, y] = agent.position;
     let [vx, vy] = agent.velocity;
@@ -85,6 +86,12 @@ fn values(world: &World, state: &SimState, feature: StateFeature) -> ([f32; 3], 
         StateFeature::Carrying => {
             let last = state.carried.last().map_or(0, |index| index + 1);
             [state.carried.len() as f32, 0.0, last as f32]
+        }
+        StateFeature::Energy => [state.energy as f32, 0.0, 0.0],
+        StateFeature::Zone => {
+            let zones = || zones.around(agent.position.map(f64::from));
+            let rate: f64 = zones().map(|zone| zone.reward_per_second).sum();
+            [zones().count() as f32, rate as f32, 0.0]
         }
         StateFeature::StepsLeft => {
             let most = world.step_limit().unwrap_or(0);

@@ -3,13 +3,14 @@
 
 use std::sync::Arc;
 
-use driftworld_spec::{Stimulus, World};
+use driftworld_spec::{Stimulus, Trigger, World};
 
 use super::action::Intent;
 use super::contact::RELEASE;
 use super::doors::advance_doors;
 use super::encounters::Encounters;
 use super::event::{Effect, Event, Step};
+use super::energy::give_energy;
 use super::rng::ObjectRng;
 use super::sim_ref::SimRef;
 use super::state::SimState;
@@ -45,7 +46,7 @@ pub(super) fn apply_stimuli(
     triggered.reserve(32);
     encounters.moved.sort_unstable_by_key(|(index, _)| *index);
     encounters.returned.sort_unstable();
-    update_contacts(state, views, encounters, triggered);
+    update_contacts(objects.world, state, views, encounters, triggered);
     if intent.interact {
         views
             .bodies
@@ -77,7 +78,8 @@ pub(super) fn apply_stimuli(
             views,
         };
         let was = state.objects[index].in_range;
-        let enters = !was && comes_near(sim, index, encounters);
+        let is_level = object.range_trigger == Trigger::Level;
+        let enters = (!was || is_level) && comes_near(sim, index, encounters);
         if enters {
             triggered.push((index as u32, Stimulus::AgentInRange));
         }
@@ -134,6 +136,7 @@ pub(super) fn init_contacts(world: &World, state: &mut SimState, views: &mut Vie
 
 /// Contacts that begin and that end.
 fn update_contacts(
+    world: &World,
     state: &mut SimState,
     views: &mut Views,
     encounters: &mut Encounters,
@@ -151,6 +154,8 @@ fn update_contacts(
         if contacts[..known].binary_search(&index).is_err() {
             triggered.push((index, Stimulus::AgentCollide));
             contacts.push(index);
+        } else if world.objects[index as usize].contact_trigger == Trigger::Level {
+            triggered.push((index, Stimulus::AgentCollide));
         }
     }
     contacts.sort_unstable();
@@ -227,6 +232,7 @@ fn trigger(
     } else {
         0.0
     };
+    let gives_energy = destroyed || pays && !(once && own.collected);
     // What pays nothing has its turn in a sequence when it moves.
     own.collected |= pays || destroyed || (is_moved && object.order.is_some());
     own.present = !destroyed;
@@ -235,6 +241,9 @@ fn trigger(
     }
     if destroyed || (pays && once) {
         views.sync_object(index, object, own);
+    }
+    if gives_energy {
+        give_energy(world, state, object.energy);
     }
     state.advance_sequence();
     if let Some(effect) = effect {

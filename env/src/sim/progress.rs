@@ -49,6 +49,7 @@ pub(super) fn to_world(sim: SimRef, seed: &Seed, rails: Option<RailsProgress>) -
         velocity: agent.velocity.map(f64::from),
         origin,
         zones: sim.views.zones.entered(state),
+        energy: sim.world.agent_params.energy.map(|_| state.energy),
         former_draws: None,
         rails,
         objects,
@@ -204,6 +205,7 @@ impl ResumeState {
         (state.last_reward, state.last_event) = (progress.last_reward, progress.last_event);
         state.ended = progress.ended;
         views.zones.resume(&progress.zones, state);
+        state.energy = progress.energy.unwrap_or(state.energy);
         for (index, own) in progress.objects.iter().enumerate().take(world.objects.len()) {
             self.apply_to_object(index, own, state);
         }

@@ -109,6 +109,8 @@ pub(crate) struct SimState {
     pub(crate) has_things: bool,
     /// Seconds of a time step.
     time_step: f64,
+    /// The agent's energy; 0 in a world without.
+    pub(super) energy: f64,
 }
 
 impl SimState {
@@ -140,6 +142,7 @@ impl SimState {
             carried: Vec::new(),
             has_things: false,
             time_step: start.time_step,
+            energy: start.energy.map_or(0.0, |energy| energy.start),
         };
         for object in &world.objects {
             state.add_object(object, seed, identities);

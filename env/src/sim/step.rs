@@ -5,8 +5,9 @@ use driftworld_spec::{ActionModel, LastEvent, ZoneEnd};
 
 use super::action::{Action, Intent};
 use super::agent_motion::apply_action;
+use super::energy::use_energy;
 use super::environment::Environment;
-use super::event::Step;
+use super::event::{EndedBy, Step};
 use super::interactions::{Objects, apply_stimuli};
 use super::motion::move_objects;
 use super::respawn::respawn;
@@ -58,6 +59,10 @@ impl Environment {
         state.unshaped += step.reward;
         let steps_are_over = self.world.max_steps > 0 && state.steps >= self.world.max_steps;
         step.truncated = !step.terminated && (steps_are_over || state.ticks >= max_ticks);
+        if step.truncated {
+            let limit = if steps_are_over { EndedBy::Steps } else { EndedBy::Time };
+            step.ended_by = Some(limit);
+        }
         if let Some(shaping) = &self.world.rules.shaping {
             let after = if step.terminated {
                 0.0
@@ -120,6 +125,7 @@ impl Environment {
         encounters.clear();
         let intent = slowed(intent, state, &views.zones);
         apply_action(world, state, views, intent, encounters);
+        use_energy(world, state, views);
         respawn(world, state, views, encounters);
         move_objects(world, state, views, encounters);
         let objects = Objects {

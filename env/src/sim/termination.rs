@@ -3,7 +3,7 @@
 
 use driftworld_spec::{Delivery, EndCondition, Object, Stimulus, World, ZoneEnd};
 
-use super::event::{Effect, Event, Step};
+use super::event::{Effect, EndedBy, Event, Step};
 use super::state::{ObjectState, SimState};
 
 /// The potential that the world's shaping gives to this moment; 0 without shaping and where nothing draws the agent.
@@ -51,10 +51,27 @@ pub(super) fn check_termination(
             carried.any(|object| object.tag.as_ref() == Some(tag))
         }
         EndCondition::Delivered(delivery) => is_delivered(world, state, delivery),
+        EndCondition::OutOfEnergy => world.agent_params.energy.is_some() && state.energy <= 0.0,
     };
-    let success = world.rules.success.iter().any(holds) || zone == Some(ZoneEnd::Success);
-    let failed = !success && (zone.is_some() || world.rules.failure.iter().any(holds));
-    (step.success, step.terminated) = (success, success || failed);
+    let first = |conditions: &[EndCondition]| conditions.iter().find(|one| holds(one)).map(reason);
+    let by_zone = |end: ZoneEnd| (zone == Some(end)).then_some(EndedBy::Zone);
+    let success = first(&world.rules.success).or_else(|| by_zone(ZoneEnd::Success));
+    let failure = || first(&world.rules.failure).or_else(|| by_zone(ZoneEnd::Failure));
+    step.ended_by = success.or_else(failure);
+    (step.success, step.terminated) = (success.is_some(), step.ended_by.is_some());
+}
+
+/// What an end condition is called as the reason of an end.
+fn reason(condition: &EndCondition) -> EndedBy {
+    match condition {
+        EndCondition::AllCollected => EndedBy::AllCollected,
+        EndCondition::Touch(_) => EndedBy::Touch,
+        EndCondition::Opened(_) => EndedBy::Opened,
+        EndCondition::Carried(_) => EndedBy::Carried,
+        EndCondition::Delivered(_) => EndedBy::Delivered,
+        EndCondition::ReturnAtLeast(_) | EndCondition::ReturnAtMost(_) => EndedBy::Return,
+        EndCondition::OutOfEnergy => EndedBy::Energy,
+    }
 }
 
 /// Whether the agent met the event's object, or used it.

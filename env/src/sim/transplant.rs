@@ -84,6 +84,7 @@ impl Environment {
                 door.closes_at = their.closes_at.map(ticks);
             }
         }
+        own.energy = theirs.energy;
         own.contacts.clone_from(&theirs.contacts);
         self.views.zones.resume(&other.views.zones.entered(theirs), own);
         own.returning.clear();
@@ -180,6 +181,7 @@ impl Environment {
             Unlike::of("the zones that the agent is in", &own, &their)
         })
         .or_else(|| Unlike::of("what the agent carries", &own.carried, &their.carried))
+        .or_else(|| Unlike::of("the agent's energy", &own.energy, &their.energy))
         .or_else(|| Unlike::of("how what was pushed moves", &own.pushed, &their.pushed))
         .or_else(|| Unlike::of("when objects come back", &self.returns(), &other.returns()))
     }

@@ -76,6 +76,32 @@ fields! {
         #[serde(skip_serializing_if = "is_default")]
         #[schemars(range(min = 0, max = 100))]
         pub carry_limit: u32 = 0 => Field::ours(Leaves(SpaceOfActions)),
+        /// The agent's energy, which falls and rises; without it there is none. What comes of it is said by an end condition and by the
+        /// state feature `energy`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub energy: Option<Energy> = None => Field::ours(Leaves(ShapingAndEndings)),
+    }
+}
+
+fields! {
+    /// How the agent's energy changes. It is never less than 0 and never more than `most`. Objects give it by their `energy`.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(default, deny_unknown_fields)]
+    #[schemars(extend("examples" = [{ "start": 100, "per_second": -1, "per_metre": -0.1, "most": 100 }]))]
+    pub struct Energy {
+        /// What the agent has at the start.
+        #[schemars(range(min = 0.0, max = 1e9))]
+        pub start: f64 = 100.0 => Field::ours(AsPart),
+        /// What every second of the world's own time adds; less than 0 to use it up.
+        #[schemars(range(min = -1e9, max = 1e9))]
+        pub per_second: f64 = -1.0 => Field::ours(AsPart).unit("1/s"),
+        /// What every metre adds that the agent goes.
+        #[serde(skip_serializing_if = "is_default")]
+        #[schemars(range(min = -1e9, max = 1e9))]
+        pub per_metre: f64 = 0.0 => Field::ours(AsPart).unit("1/m"),
+        /// The most that it can have.
+        #[schemars(range(min = 0.0, max = 1e9))]
+        pub most: f64 = 100.0 => Field::ours(AsPart),
     }
 }
 

@@ -178,6 +178,14 @@ impl WorldDraft {
                 "a table, such as {\"discrete\": [[3, 4, 0], [-3, 4, 0]]}",
             ));
         }
+        if let Some(energy) = self.agent_params.energy.filter(|energy| energy.start > energy.most) {
+            problems.push(Problem::new(
+                "spec/energy",
+                "/agent_params/energy/start",
+                energy.start.to_string(),
+                format!("at most {}, the most that the agent can have", energy.most),
+            ));
+        }
         problems.extend(zone::problems(self));
         problems.extend(self.layout_problems());
         problems.extend(progress::problems(self));

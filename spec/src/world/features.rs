@@ -38,6 +38,10 @@ pub enum StateFeature {
     /// How many things the agent carries; then of the one that was picked up last the number of its class, and its index in the
     /// world plus 1, as in pictures of classes and instances.
     Carrying,
+    /// The agent's energy; 0 where it has none to use.
+    Energy,
+    /// How many zones the agent is in; then what a second in them pays.
+    Zone,
 }
 
 impl StateFeature {
@@ -47,8 +51,8 @@ impl StateFeature {
     /// How many numbers the feature is.
     pub fn num_values(self) -> usize {
         match self {
-            Self::Heading | Self::LastReward | Self::StepsLeft => 1,
-            Self::Position | Self::Velocity | Self::Direction | Self::OwnVelocity | Self::Counts => 2,
+            Self::Heading | Self::LastReward | Self::StepsLeft | Self::Energy => 1,
+            Self::Position | Self::Velocity | Self::Direction | Self::OwnVelocity | Self::Counts | Self::Zone => 2,
             Self::Goal | Self::NearestTarget | Self::LastEvent | Self::Carrying => 3,
         }
     }

@@ -23,13 +23,13 @@ use std::sync::{Arc, LazyLock};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-pub use agent::{ActionModel, ActionSpace, AgentParams, Modality};
+pub use agent::{ActionModel, ActionSpace, AgentParams, Energy, Modality};
 pub use draft::{GameMode, ImageParams, WorldDraft};
 pub use environment::{Enclosure, EnvironmentParams, Region, Wall};
 pub use features::StateFeature;
 pub use fields::{Compared, Comparison, Field, FieldPlace};
 pub(crate) use fields::{Fields, Place, Setter, places_of};
-pub use object::{Model, MotionModel, Object, Pushable, Respawn, Stimulus};
+pub use object::{Model, MotionModel, Object, Pushable, Respawn, Stimulus, Trigger};
 pub use progress::{LastEvent, ObjectProgress, Origin, Progress, RailsProgress};
 pub use rules::{Delivery, EndCondition, Rules, Shaping};
 pub use table::LeafTexts;

@@ -127,6 +127,18 @@ fields! {
         /// Makes it a thing that the agent can carry, such as a key.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub portable: Option<Portable> => Field::ours(Leaves(Bodies)),
+        /// Energy that the agent gains when a triggering pays its reward, be that 0, or destroys it; once for what pays once.
+        #[serde(default, skip_serializing_if = "is_default")]
+        #[schemars(range(min = -1e9, max = 1e9))]
+        pub energy: f64 => Field::ours(Leaves(PaidFor)),
+        /// How often `AgentInRange` holds: when the agent comes into range, or at every time step in it. An agent that starts within
+        /// range comes into it in the first time step.
+        #[serde(default, skip_serializing_if = "is_default")]
+        pub range_trigger: Trigger => Field::ours(Leaves(PaidFor)),
+        /// How often `AgentCollide` holds: when the bodies meet, or at every time step in which they touch. An agent that starts in
+        /// touch meets it in the first time step.
+        #[serde(default, skip_serializing_if = "is_default")]
+        pub contact_trigger: Trigger => Field::ours(Leaves(PaidFor)),
     }
 }
 
@@ -162,6 +174,9 @@ impl Object {
             door: None,
             switch: None,
             portable: None,
+            energy: 0.0,
+            range_trigger: Trigger::Edge,
+            contact_trigger: Trigger::Edge,
         }
     }
 
@@ -242,6 +257,17 @@ pub enum Stimulus {
     AgentInRange,
 }
 
+/// How often a stimulus sets an object off while it lasts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Trigger {
+    /// Once, when it begins.
+    #[default]
+    Edge,
+    /// At every time step.
+    Level,
+}
+
 /// How an object moves by itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -293,6 +319,7 @@ fields! {
 
 word!(Stimulus);
 word!(MotionModel);
+word!(Trigger);
 
 impl Place for Model {
     const KIND: ParameterType = ParameterType::String;

@@ -63,6 +63,10 @@ pub struct Progress {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 1000), inner(range(min = 0, max = 999)))]
     pub zones: Vec<u32>,
+    /// The agent's energy; absent if it has none to use.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0, max = 1e9))]
+    pub energy: Option<f64>,
     /// One for each object, in order.
     #[schemars(length(max = 100_000))]
     pub objects: Vec<ObjectProgress>,

@@ -2,7 +2,7 @@
 //! one is said by the schema and in `mod.rs`.
 
 use super::thing_remarks::thing_remarks;
-use super::{MotionModel, Object, World};
+use super::{EndCondition, MotionModel, Object, World};
 use crate::layout::{self, Layout};
 use crate::warning::{Remarks, Warning};
 
@@ -44,6 +44,13 @@ impl World {
         }
         if let Some(odd) = self.plan().and_then(Layout::remark) {
             remarks.push(layout::POINTER.to_owned(), odd);
+        }
+        let lists = [("success", &self.rules.success), ("failure", &self.rules.failure)];
+        for (list, conditions) in lists.into_iter().filter(|_| self.agent_params.energy.is_none()) {
+            if let Some(index) = conditions.iter().position(|one| *one == EndCondition::OutOfEnergy) {
+                let text = "out_of_energy never holds: the agent has no energy to use; set \"energy\" of agent_params";
+                remarks.push(format!("/rules/{list}/{index}"), text.to_owned());
+            }
         }
         for (index, object) in self.objects.iter().enumerate() {
             if let Some(place) = self.out_of_reach(object) {

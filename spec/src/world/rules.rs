@@ -96,6 +96,8 @@ pub enum EndCondition {
     Carried(#[schemars(length(min = 1, max = 100))] String),
     /// Every thing of a tag lies near an object of another.
     Delivered(Delivery),
+    /// The agent's energy is used up; never where it has none to use.
+    OutOfEnergy,
 }
 
 fields! {
@@ -132,7 +134,7 @@ impl Place for EndCondition {
 
     fn set_inside(&mut self, steps: &[usize], value: &Value) -> Option<()> {
         match self {
-            Self::AllCollected => None,
+            Self::AllCollected | Self::OutOfEnergy => None,
             Self::Touch(tag) | Self::Opened(tag) | Self::Carried(tag) => tag.set(&[], value),
             Self::Delivered(delivery) => delivery.set_inside(steps.get(1..)?, value),
             Self::ReturnAtLeast(reward) | Self::ReturnAtMost(reward) => reward.set(&[], value),

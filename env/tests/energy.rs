@@ -1,0 +1,208 @@
+//! The agent's energy: what uses it up, what gives it back, and the end that it brings. What sets objects off at every time step.
+
+use driftworld_env::{Action, Agent, EndedBy, Environment, RandomAgent, Step};
+use driftworld_spec::{EndCondition, Energy, Object, StateFeature, Stimulus, Trigger, WorldDraft, Zone, ZoneEnd};
+use proptest::prelude::*;
+
+const REST: Action = Action::Continuous([0.0; 3]);
+
+fn energy(start: f64, per_second: f64, per_metre: f64, most: f64) -> Option<Energy> {
+    Some(Energy {
+        start,
+        per_second,
+        per_metre,
+        most,
+    })
+}
+
+fn start(change: impl FnOnce(&mut WorldDraft)) -> Environment {
+    let mut world = WorldDraft::default();
+    world.agent_params.state_features = vec![StateFeature::Energy, StateFeature::Zone];
+    world.rules.failure = vec![EndCondition::OutOfEnergy];
+    change(&mut world);
+    Environment::new(world.check().expect("the world is sound"))
+}
+
+fn step(environment: &mut Environment, action: Action) -> Step {
+    environment.step(action).expect("the episode goes on")
+}
+
+fn has(environment: &Environment) -> f32 {
+    environment.state_vector()[0]
+}
+
+/// A thing of 1 m that is no obstacle.
+fn thing(at: [f64; 2]) -> Object {
+    let mut thing = Object::new("cube", at);
+    thing.solid = false;
+    thing
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// It falls by what the seconds and the metres take, however time is cut, and ends the episode at the same time.
+    #[test]
+    fn energy_falls_with_time_and_way_and_ends_the_episode(
+        begin in 1.0..50.0f64,
+        per_second in -9.0..-1.0f64,
+        per_metre in -2.0..0.0f64,
+        speed in 0.0..8.0f64,
+        time_step in prop::sample::select(vec![0.02, 0.05, 0.1, 0.25]),
+        frame_skip in 1u32..5,
+    ) {
+        let mut environment = start(|world| {
+            world.environment_params.map_size = [300.0, 300.0];
+            let agent = &mut world.agent_params;
+            agent.coordinates = [0.0, -140.0];
+            (agent.energy, agent.time_step, agent.frame_skip) =
+                (energy(begin, per_second, per_metre, 60.0), time_step, frame_skip);
+        });
+        let used = -(per_second + per_metre * speed);
+        loop {
+            let step = step(&mut environment, Action::Continuous([speed, 0.0, 0.0]));
+            let expected = (begin - used * environment.seconds()).max(0.0);
+            prop_assert!((f64::from(has(&environment)) - expected).abs() < 1e-2);
+            if step.ended() {
+                prop_assert_eq!((step.terminated, step.success, step.ended_by), (true, false, Some(EndedBy::Energy)));
+                break;
+            }
+        }
+        prop_assert!((environment.seconds() - begin / used).abs() <= time_step + 1e-2);
+    }
+
+    /// Whatever the agent does and finds, it has no less than nothing and no more than it can hold.
+    #[test]
+    fn energy_is_never_more_than_the_most(
+        most in 1.0..20.0f64,
+        gains in prop::collection::vec((-30.0..30.0f64, prop::array::uniform2(-6.0..6.0f64), any::<bool>()), 0..8),
+        rates in prop::array::uniform2(-4.0..4.0f64),
+        seed in any::<u64>(),
+    ) {
+        let mut environment = start(|world| {
+            world.rules.failure.clear();
+            world.environment_params.map_size = [16.0, 16.0];
+            world.agent_params.energy = energy(most / 2.0, rates[0], rates[1], most);
+            for (gain, at, is_level) in gains {
+                let mut thing = thing(at);
+                (thing.energy, thing.reward_stimulus) = (gain, vec![Stimulus::AgentCollide]);
+                thing.contact_trigger = if is_level { Trigger::Level } else { Trigger::Edge };
+                world.objects.push(thing);
+            }
+        });
+        let mut agent = RandomAgent::new(seed);
+        for _ in 0..60 {
+            let action = agent.act(&environment);
+            step(&mut environment, action);
+            prop_assert!((0.0..=most as f32).contains(&has(&environment)));
+        }
+    }
+
+    /// At a level a stimulus sets an object off in each time step, at an edge in the first; who starts in range comes into it then.
+    #[test]
+    fn a_level_sets_off_at_every_time_step_and_an_edge_once(
+        is_range in any::<bool>(),
+        frame_skip in 1u32..5,
+        steps in 1usize..9,
+    ) {
+        let earned = |trigger: Trigger| {
+            let mut environment = start(|world| {
+                world.agent_params.frame_skip = frame_skip;
+                let mut thing = thing([0.0, 0.5]);
+                (thing.reward, thing.range_stimulus_distance) = (1.0, 3.0);
+                let stimulus = if is_range { Stimulus::AgentInRange } else { Stimulus::AgentCollide };
+                thing.reward_stimulus = vec![stimulus];
+                (thing.range_trigger, thing.contact_trigger) = (trigger, trigger);
+                world.objects.push(thing);
+            });
+            (0..steps).map(|_| step(&mut environment, REST).reward).sum::<f64>()
+        };
+        prop_assert_eq!(earned(Trigger::Edge), 1.0);
+        prop_assert_eq!(earned(Trigger::Level), steps as f64 * f64::from(frame_skip));
+    }
+}
+
+#[test]
+fn what_pays_gives_its_energy_and_what_pays_once_gives_it_once() {
+    let gained = |change: fn(&mut Object)| {
+        let mut environment = start(|world| {
+            world.agent_params.energy = energy(10.0, 0.0, 0.0, 100.0);
+            let mut thing = thing([0.0, 3.0]);
+            thing.energy = 20.0;
+            change(&mut thing);
+            world.objects.push(thing);
+        });
+        for speed in [10.0, -10.0, 10.0] {
+            for _ in 0..6 {
+                step(&mut environment, Action::Continuous([speed, 0.0, 0.0]));
+            }
+        }
+        has(&environment) - 10.0
+    };
+    assert_eq!(
+        gained(|thing| thing.reward_stimulus = vec![Stimulus::AgentCollide]),
+        60.0
+    );
+    assert_eq!(
+        gained(|thing| thing.reward_once_stimulus = vec![Stimulus::AgentCollide]),
+        20.0
+    );
+    assert_eq!(
+        gained(|thing| thing.destroy_stimulus = vec![Stimulus::AgentCollide]),
+        20.0
+    );
+    assert_eq!(gained(|_| ()), 0.0);
+}
+
+#[test]
+fn what_ended_an_episode_is_said() {
+    let ended_by = |change: fn(&mut WorldDraft)| {
+        let mut environment = start(change);
+        loop {
+            let step = step(&mut environment, Action::Continuous([10.0, 0.0, 0.0]));
+            if let Some(end) = step.ended_by {
+                assert!(step.ended());
+                return end.word();
+            }
+            assert!(!step.ended());
+        }
+    };
+    let coin = |world: &mut WorldDraft| {
+        let mut coin = thing([0.0, 5.0]);
+        (coin.reward, coin.reward_once_stimulus) = (1.0, vec![Stimulus::AgentCollide]);
+        coin.tag = Some("coin".to_owned());
+        world.objects.push(coin);
+    };
+    assert_eq!(ended_by(|world| world.max_steps = 3), "steps");
+    assert_eq!(ended_by(|world| world.max_seconds = 0.3), "time");
+    assert_eq!(
+        ended_by(|world| world.agent_params.energy = energy(1.0, -9.0, 0.0, 1.0)),
+        "energy"
+    );
+    let zone = |world: &mut WorldDraft| {
+        let mut zone = Zone::disc([0.0, 5.0], 1.0);
+        zone.ends = Some(ZoneEnd::Success);
+        world.environment_params.zones = vec![zone];
+    };
+    let with = |rule: Option<EndCondition>| {
+        let mut environment = start(|world| {
+            if rule.is_none() {
+                zone(world);
+            }
+            coin(world);
+            world.rules.success.extend(rule);
+            world.max_steps = 20;
+        });
+        loop {
+            let step = step(&mut environment, Action::Continuous([10.0, 0.0, 0.0]));
+            if step.ended() {
+                assert!(step.success);
+                return step.ended_by.map(EndedBy::word);
+            }
+        }
+    };
+    assert_eq!(with(None), Some("zone"));
+    assert_eq!(with(Some(EndCondition::AllCollected)), Some("all_collected"));
+    assert_eq!(with(Some(EndCondition::Touch("coin".to_owned()))), Some("touch"));
+    assert_eq!(with(Some(EndCondition::ReturnAtLeast(1.0))), Some("return"));
+}
