@@ -7,7 +7,9 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use driftworld_curriculum::{CurriculumError, ENDING, Experience, FoundWorld, Journal, Plan, RunContext, Sources, run};
+use driftworld_curriculum::{
+    CurriculumError, ENDED_BY, ENDING, Experience, FoundWorld, Journal, Plan, RunContext, Sources, run,
+};
 use driftworld_env::{Catalogue, OnRailsAgent};
 use driftworld_metrics::{Complexity, Difficulty, Timestamp, read_log, validate_log};
 use driftworld_spec::{Block, BlockKind, Regime, Scenario, ScenarioComplexity, ScenarioDifficulty, World};
@@ -77,11 +79,11 @@ fn live(log: &Path, most: u64, resume: bool) -> Result<(), CurriculumError> {
     journal.finish()
 }
 
-/// The words in the column `ending`; none where there is no such column.
-fn endings(log: &Path) -> Option<Vec<String>> {
+/// The words in a column; none where there is no such column.
+fn words(log: &Path, column: &str) -> Option<Vec<String>> {
     let text = std::fs::read_to_string(log.join("worker-default/0-test/data-log.tsv")).expect("the log has this file");
     let mut rows = text.lines().map(|line| line.split('\t').collect::<Vec<_>>());
-    let place = rows.next()?.iter().position(|name| *name == ENDING)?;
+    let place = rows.next()?.iter().position(|name| *name == column)?;
     Some(rows.map(|row| row[place].to_owned()).collect())
 }
 
@@ -90,7 +92,7 @@ fn the_log_says_how_each_experience_ended() {
     let folder = tempfile::tempdir().expect("a temporary folder can be made");
     let log = folder.path().join("log");
     live(&log, u64::MAX, false).unwrap_or_else(|error| panic!("{error}"));
-    let found = endings(&log).expect("there is such a column");
+    let found = words(&log, ENDING).expect("there is such a column");
     assert_eq!(
         found,
         ["success", "success", "failure", "failure", "step_limit", "step_limit"]
@@ -98,6 +100,10 @@ fn the_log_says_how_each_experience_ended() {
     let read = read_log(&log).unwrap_or_else(|error| panic!("{error}"));
     assert!(read.warnings.is_empty(), "{:?}", read.warnings);
     assert!(read.rows.metric(ENDING).is_none(), "it is no metric");
+    let found = words(&log, ENDED_BY).expect("there is such a column");
+    let of = |ending: &str| if ending == "step_limit" { "steps" } else { "touch" };
+    let endings = words(&log, ENDING).expect("there is such a column");
+    assert_eq!(found, endings.iter().map(|ending| of(ending)).collect::<Vec<_>>());
 }
 
 #[test]
@@ -124,19 +130,16 @@ fn a_log_from_before_there_were_endings_is_taken_up_without_them() {
     for log in [&old, &whole] {
         let file = log.join("worker-default/0-test/data-log.tsv");
         let text = std::fs::read_to_string(&file).expect("the log has this file");
-        let place = text
-            .lines()
-            .next()
-            .map(|line| line.split('\t').take_while(|name| *name != ENDING).count());
+        let header: Vec<&str> = text.lines().next().expect("there is a header").split('\t').collect();
         let without = |line: &str| {
-            let mut cells: Vec<&str> = line.split('\t').collect();
-            cells.remove(place.expect("there is a header"));
-            cells.join("\t") + "\n"
+            let cells = line.split('\t').zip(&header);
+            let kept = cells.filter(|(_, name)| **name != ENDING && **name != ENDED_BY);
+            kept.map(|(cell, _)| cell).collect::<Vec<_>>().join("\t") + "\n"
         };
         std::fs::write(&file, text.lines().map(without).collect::<String>()).expect("the folder is writable");
     }
     live(&old, u64::MAX, true).unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(endings(&old), None);
+    assert_eq!((words(&old, ENDING), words(&old, ENDED_BY)), (None, None));
     let text =
         |log: &Path| std::fs::read_to_string(log.join("worker-default/0-test/data-log.tsv")).expect("it is there");
     assert_eq!(

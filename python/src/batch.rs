@@ -7,7 +7,8 @@ use std::str::FromStr;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 
 use driftworld_env::{
-    Action, Batch, BatchOptions, Catalogue, Effect, EnvError, Event, GoOn, Library, RendererKind, WorldSource, top_down,
+    Action, Batch, BatchOptions, Catalogue, Effect, EndedBy, EnvError, Event, GoOn, Library, RendererKind, WorldSource,
+    top_down,
 };
 use driftworld_spec::World;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
@@ -203,6 +204,11 @@ impl PyBatch {
             Error::Env(inner) => no_row(inner, Some(&row)).unwrap_or(error),
             _ => error,
         })
+    }
+
+    /// Why the last step of an environment ended its episode, in a word; `None` if it did not.
+    fn ended_by(&self, env: usize) -> Result<Option<&'static str>> {
+        Ok(self.lock()?.batch.ended_by(env).map(EndedBy::word))
     }
 
     /// Repeats the last step's actions so often without coming back to Python: what the batch can do by itself.

@@ -12,6 +12,7 @@ use driftworld_curriculum::{
     CurriculumError, Experience, FoundWorld, Journal, MOST_STEPS, Plan, Progress, REPEATED_EVALUATIONS, Rollout, Tried,
     Undrawable, run_rollout,
 };
+use driftworld_env::EndedBy;
 use driftworld_spec::{BlockKind, Scenario, TaskSpec, World};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -283,13 +284,15 @@ impl Rollout for PythonRollout<'_> {
         let outcome = self
             .rollout
             .call_method1("experience", (number, handle(world)?, time))?;
-        let (reward, success, steps, seconds, truncated) = outcome.extract()?;
+        let (reward, success, steps, seconds, truncated, ended_by) = outcome.extract()?;
+        let ended_by: Option<String> = ended_by;
         Ok(Some(Experience {
             reward,
             success,
             steps,
             seconds,
             truncated,
+            ended_by: ended_by.and_then(|word| EndedBy::ALL.into_iter().find(|one| one.word() == word)),
         }))
     }
 

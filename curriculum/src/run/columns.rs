@@ -49,6 +49,11 @@ pub const COLUMNS: [&str; 13] = [
 /// `skipped` where it was left out. It is not among the metrics columns that the log declares, so that l2metrics passes it over. Logs from before it go on without it.
 pub const ENDING: &str = "ending";
 
+/// The column of words that says what ended an experience, as [`EndedBy::word`](driftworld_env::EndedBy::word) does: `all_collected`,
+/// `touch`, `return`, `energy`, `zone`, `steps` or `time`; `unknown` where nobody said, and `skipped` where it was left out. As with
+/// [`ENDING`], l2metrics passes it over, and logs from before it go on without it.
+pub const ENDED_BY: &str = "ended_by";
+
 /// The row of experience `number`.
 pub(super) fn record(planned: &Planned, number: u64, experience: &Experience, gap: &Gap, now: Timestamp) -> Record {
     let kind = block_type(planned.kind);

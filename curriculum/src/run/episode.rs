@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use driftworld_env::{Agent, EnvError, Environment, Label, Step};
+use driftworld_env::{Agent, EndedBy, EnvError, Environment, Label, Step};
 
 /// Steps after which an experience in a world without a limit is over.
 pub const MOST_STEPS: u32 = 100_000;
@@ -30,6 +30,8 @@ pub struct Experience {
     pub seconds: f64,
     /// Cut off by a limit of steps, not ended by what happened.
     pub truncated: bool,
+    /// What ended it, as the environment says; `None` where nobody said.
+    pub ended_by: Option<EndedBy>,
 }
 
 impl Experience {
@@ -66,7 +68,10 @@ pub(super) fn run_episode(
         }
         let action = agent.act(environment);
         last = environment.step(action)?;
-        last.truncated |= !last.terminated && environment.num_steps() >= limit;
+        if !last.terminated && environment.num_steps() >= limit {
+            last.truncated = true;
+            last.ended_by.get_or_insert(EndedBy::Steps);
+        }
         if context.learn {
             agent.learn(environment, &last);
         }
@@ -86,5 +91,6 @@ pub(super) fn run_episode(
         steps,
         seconds: (f64::from(steps) * step_seconds).min(most),
         truncated: last.truncated,
+        ended_by: last.ended_by,
     }))
 }

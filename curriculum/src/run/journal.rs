@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use driftworld_env::EndedBy;
 use driftworld_metrics::{
     Complexity, Difficulty, LogWriter, LoggerInfo, MetricsError, Record, Row, Rows, ScenarioInfo, ScenarioType,
     TaskParams, Timestamp, begun_log, read_log,
@@ -9,7 +10,7 @@ use driftworld_metrics::{
 use driftworld_spec::{ScenarioComplexity, ScenarioDifficulty, ScenarioForm, Variant};
 use serde_json::{Map, Value, json};
 
-use super::columns::{self, COLUMNS, ENDING, block_type};
+use super::columns::{self, COLUMNS, ENDED_BY, ENDING, block_type};
 use super::episode::Experience;
 use super::gap::{Gap, Gaps};
 use super::plan::Plan;
@@ -105,20 +106,24 @@ impl Journal {
     ) -> Result<Progress, CurriculumError> {
         let planned = &plan.regimes[plan.regime_of(number)];
         let record = columns::skipped(planned, number, reason, now);
-        let record = self.with_ending(record, columns::SKIPPED);
+        let record = self.with_words(record, columns::SKIPPED, columns::SKIPPED);
         self.writer.write(&record)?;
         self.summary.leave_out(planned, number, reason);
         Ok(self.progress(plan, number, f64::NAN))
     }
 
-    /// A record that says how its experience ended; a log that was begun before there was this column goes on without it.
-    fn with_ending(&self, record: Record, ending: &str) -> Record {
-        let has_ending = |columns: &[String]| columns.iter().any(|column| column == ENDING);
-        if self.writer.columns().is_none_or(has_ending) {
-            record.with_text(ENDING, ending)
-        } else {
-            record
-        }
+    /// A record that says how its experience ended, and what by; a log that was begun before there were these columns goes on
+    /// without them.
+    fn with_words(&self, record: Record, ending: &str, ended_by: &str) -> Record {
+        let words = [(ENDING, ending), (ENDED_BY, ended_by)];
+        words.into_iter().fold(record, |record, (name, word)| {
+            let has_it = |columns: &[String]| columns.iter().any(|column| column == name);
+            if self.writer.columns().is_none_or(has_it) {
+                record.with_text(name, word)
+            } else {
+                record
+            }
+        })
     }
 
     /// How far the run has come with experience `number`; also notes whether that was the last.
@@ -147,7 +152,8 @@ impl Journal {
         let planned = &plan.regimes[plan.regime_of(number)];
         let gap = self.gap(plan, number, between);
         let record = columns::record(planned, number, experience, &gap, now);
-        let record = self.with_ending(record, experience.ending());
+        let ended_by = experience.ended_by.map_or("unknown", EndedBy::word);
+        let record = self.with_words(record, experience.ending(), ended_by);
         self.writer.write(&record)?;
         let success = f64::from(u8::from(experience.success));
         let steps = u64::from(experience.steps);

@@ -26,7 +26,7 @@ use driftworld_env::{Agent, Catalogue, Environment};
 use driftworld_metrics::Timestamp;
 use driftworld_spec::{BlockKind, Variant, World};
 
-pub use columns::{COLUMNS, ENDING};
+pub use columns::{COLUMNS, ENDED_BY, ENDING};
 pub use episode::{Experience, MOST_STEPS};
 pub use journal::Journal;
 pub use log_names::same_log_name;

@@ -34,6 +34,7 @@ impl Rollout for Replay {
             steps: record.metrics["episode_step_count"] as u32,
             seconds: record.metrics["time_to_completion"],
             truncated: record.metrics["truncated"] == 1.0,
+            ended_by: None,
         }))
     }
 

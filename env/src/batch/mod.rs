@@ -23,7 +23,7 @@ use self::slot::Slot;
 use crate::EnvError;
 use crate::assets::Catalogue;
 use crate::render::{CpuRenderer, Renderer, RendererKind};
-use crate::sim::{Action, Environment, Event};
+use crate::sim::{Action, EndedBy, Environment, Event};
 
 /// The most threads of a batch for each processor: more would only take turns.
 const THREADS_PER_PROCESSOR: usize = 4;
@@ -180,6 +180,11 @@ impl Batch {
     /// What happened in an environment in the last step.
     pub fn events(&self, env: usize) -> Option<&[Event]> {
         self.slots.get(env).map(|slot| slot.step.events.as_slice())
+    }
+
+    /// Why the last step of an environment ended its episode, if it did.
+    pub fn ended_by(&self, env: usize) -> Option<EndedBy> {
+        self.slots.get(env)?.step.ended_by
     }
 
     /// Which episode an environment is in.

@@ -282,8 +282,8 @@ class Rollout:
 
     def experience(
         self, number: int, world: _native.Stream, time: tuple[float, int, float]
-    ) -> tuple[float, bool, int, float, bool]:
-        """One experience in its world: reward, success, steps, seconds and whether a limit cut it off.
+    ) -> tuple[float, bool, int, float, bool, str | None]:
+        """One experience in its world: reward, success, steps, seconds, whether a limit cut it off, and what ended it.
 
         ``time`` is the world's time step in seconds, for how many of these each action is held, and its limit of seconds, 0 for none.
         """
@@ -303,7 +303,8 @@ class Rollout:
                     Transition(observation, action, float(reward), terminated, truncated, following, info)
                 )
             observation = following
-        return earned, bool(info["is_success"]), steps, self._seconds(steps, time), truncated and not terminated
+        cut_off = truncated and not terminated
+        return earned, bool(info["is_success"]), steps, self._seconds(steps, time), cut_off, info.get("ended_by")
 
     def logged(self, number: int, reward: float) -> bool:
         """After an experience was logged, NaN for one that was left out; whether to go on."""
@@ -346,7 +347,7 @@ def origin(experience: Experience) -> dict[str, Any]:
 
 
 #: What an agent in a curriculum is given beside observations, whatever the scenario says of labels.
-PERMITTED = ("is_success",)
+PERMITTED = ("is_success", "ended_by")
 
 
 class Permitted(gymnasium.Wrapper[Any, Any, Any, Any]):
@@ -383,7 +384,7 @@ class Permitted(gymnasium.Wrapper[Any, Any, Any, Any]):
 
     def _permitted(self, observation: Any, info: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
         if not self._full:
-            info = {name: info[name] for name in PERMITTED}
+            info = {name: info[name] for name in PERMITTED if name in info}
         if self._label is None:
             return observation, info
         if self._observed:

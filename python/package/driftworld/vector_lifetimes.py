@@ -112,7 +112,7 @@ class VectorRollout(Rollout):
         """Forgets what is under way."""
         self._next, self._block = 0, -1
         self._running: list[int | None] = [None] * self._num_envs
-        self._over: dict[int, tuple[float, bool, int, bool]] = {}
+        self._over: dict[int, tuple[float, bool, int, bool, str | None]] = {}
         self._earned = np.zeros(self._num_envs)
         self._steps = np.zeros(self._num_envs, dtype=np.int64)
         self._observations: Any = None
@@ -127,7 +127,7 @@ class VectorRollout(Rollout):
 
     def experience(
         self, number: int, world: _native.Stream, time: tuple[float, int, float]
-    ) -> tuple[float, bool, int, float, bool]:
+    ) -> tuple[float, bool, int, float, bool, str | None]:
         """One experience, which may have run while earlier ones were asked for: as :meth:`driftworld.lifetimes.Rollout.experience`."""
         if number not in self._over and number not in self._running:
             # The first of a block; or one that is run once more: from here on, so that batches are what they were.
@@ -136,8 +136,8 @@ class VectorRollout(Rollout):
             self._next, self._block, self._learning = number, now.block, now.learning
         while number not in self._over:
             self._step()
-        reward, success, steps, truncated = self._over.pop(number)
-        return reward, success, steps, self._seconds(steps, time), truncated
+        reward, success, steps, truncated, ended_by = self._over.pop(number)
+        return reward, success, steps, self._seconds(steps, time), truncated, ended_by
 
     def _step(self) -> None:
         """One step of all environments, after those without an experience got the next ones of the block."""
@@ -164,7 +164,8 @@ class VectorRollout(Rollout):
             number = self._running[env]
             assert number is not None, "an environment that is active runs an experience"
             cut_off = bool(truncated[env] and not terminated[env])
-            self._over[number] = (float(self._earned[env]), bool(self._success[env]), int(self._steps[env]), cut_off)
+            earned, success, steps = float(self._earned[env]), bool(self._success[env]), int(self._steps[env])
+            self._over[number] = (earned, success, steps, cut_off, infos["ended_by"][env])
             self._running[env] = None
 
     def _begin(self, env: int) -> bool:

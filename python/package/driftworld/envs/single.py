@@ -133,7 +133,9 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         Returns:
             Observation, reward, terminated, truncated, and the info: ``events``, a tuple of dictionaries with ``object``, ``tag``,
             ``stimulus``, ``reward``, ``destroyed`` and ``effect`` (None, or what a door, switch or thing did: ``opened``, ``closed``,
-            ``switched``, ``picked_up``, ``put_down``); ``is_success``, whether the episode has ended well.
+            ``switched``, ``picked_up``, ``put_down``); ``is_success``, whether the episode has ended well;
+            and, once it has ended, ``ended_by``: ``"all_collected"``, ``"touch"``, ``"opened"``, ``"carried"``, ``"delivered"``,
+            ``"return"``, ``"energy"``, ``"zone"``, ``"steps"`` or ``"time"``.
 
         Raises:
             EnvError: After the end of an episode, or for an action that is none.
@@ -147,6 +149,8 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
             "events": members.batch.events(0) if eventful else (),
             "is_success": success,
         }
+        if terminated or truncated:
+            info["ended_by"] = members.batch.ended_by(0)
         if members.label_in_info:
             info["task_label"] = members.label_number(0)
         observation = members.observation(0)

@@ -253,6 +253,10 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         ended = terminated | truncated
         begun = self._ended if self._mode == AutoresetMode.NEXT_STEP else ended
         infos = self._infos(success, eventful)
+        if ended.any():
+            infos["ended_by"], infos["_ended_by"] = np.full(self.num_envs, None, dtype=object), ended.copy()
+            for env in np.flatnonzero(ended).tolist():
+                infos["ended_by"][env] = members.batch.ended_by(env)
         if self._mode != AutoresetMode.DISABLED and begun.any():
             for env in np.flatnonzero(begun).tolist():
                 self._add_beginning(infos, env)
@@ -281,6 +285,8 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         if self._mode == AutoresetMode.SAME_STEP:
             members.note_finals(env)
             final = {key: infos[key][env] for key in _STEP_KEYS if key in infos}
+            if infos["_ended_by"][env]:
+                final["ended_by"] = infos["ended_by"][env]
             final = {key: value.item() if isinstance(value, np.generic) else value for key, value in final.items()}
             for key in ("final_obs", "_final_obs", "final_info", "_final_info"):
                 if key not in infos:
