@@ -93,4 +93,11 @@ fn a_drift_that_forgets_shows_it() {
     };
     let rows = audited(&sized(drifting));
     assert_eq!(rows[4].passed, Some(true), "{rows:#?}");
+    // Nobody learns the drift alone.
+    for row in &rows[2..4] {
+        assert!(
+            row.found.starts_with("a drift is learned under a name of its own"),
+            "{row:?}"
+        );
+    }
 }

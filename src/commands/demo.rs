@@ -39,7 +39,7 @@ pub(crate) struct Demo {
     #[arg(short, long, default_value = "demo-out", value_name = "DIR")]
     output: PathBuf,
     /// Seed of the worlds.
-    #[arg(long, default_value_t = 7)]
+    #[arg(long, default_value_t = 7, allow_negative_numbers = true)]
     seed: u64,
 }
 

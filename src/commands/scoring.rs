@@ -69,7 +69,13 @@ pub(crate) struct Scoring {
     #[arg(short = 'N', long, num_args = 2, value_names = ["MEAN", "STD"], allow_negative_numbers = true)]
     noise: Option<Vec<f64>>,
     /// Seed of the noise.
-    #[arg(long, value_name = "N", default_value_t = 0, requires = "noise")]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 0,
+        requires = "noise",
+        allow_negative_numbers = true
+    )]
     noise_seed: u64,
     /// Follow the published definitions where the reference program differs.
     ///
@@ -142,7 +148,7 @@ pub(crate) struct Intervals {
     #[arg(long, value_name = "WHAT", default_value_t = BootstrapOptions::default().resampling)]
     resampling: Resampling,
     /// Seed of the bootstrap.
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
     bootstrap_seed: u64,
 }
 

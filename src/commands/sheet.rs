@@ -36,7 +36,7 @@ pub(crate) struct Sheet {
     #[arg(long, value_name = "FILE")]
     scenario: Option<PathBuf>,
     /// Seed of the worlds [default: 0; in a scenario, each block's own].
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     seed: Option<u64>,
     /// Index of each variant's world [default: 0; in a scenario, the first of each block].
     #[arg(long)]

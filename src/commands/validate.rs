@@ -49,7 +49,7 @@ pub(crate) struct Validate {
     #[arg(long)]
     elements: bool,
     /// Seed for worlds of a task's variants. Scenarios have their own.
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
     seed: u64,
     #[command(flatten)]
     libraries: LibraryChoice,

@@ -152,7 +152,7 @@ impl DesignRequest {
     /// The variants that are learned: all that are named but those held out.
     fn learned(&self) -> Result<Vec<(String, Variant)>, Failure> {
         let mut named = tasks::variants_of(&self.tasks)?;
-        let held_out = tasks::variants_of(&self.hold_out)?;
+        let held_out = self.held_out()?;
         let is_held_out = |task: &str, variant: &Variant| {
             held_out
                 .iter()
@@ -170,7 +170,7 @@ impl DesignRequest {
 
     /// The design, with the variants that are held out.
     pub(super) fn laid_out(&self) -> Result<Design, Failure> {
-        let held_out = tasks::variants_of(&self.hold_out)?;
+        let held_out = self.held_out()?;
         let choice = |(task, variant): &(String, Variant)| Choice::new(task, variant.name());
         Ok(Design {
             held_out: held_out.iter().map(choice).collect(),

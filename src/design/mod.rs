@@ -3,6 +3,8 @@
 
 mod choose;
 mod drawable;
+mod notes;
+mod optima;
 mod proof;
 mod request;
 mod words;
@@ -13,6 +15,7 @@ use driftworld_spec::{Scenario, ScenarioForm};
 use std::path::Path;
 
 pub use choose::{Chosen, DEFAULT_STEPS, DEFAULT_TOLERANCE, Evidence};
+pub use optima::PairOptimum;
 pub use request::{DesignOrder, DesignRequest, MAX_LIFETIMES, MAX_TRIED};
 pub use words::{element, schedule};
 
@@ -31,6 +34,8 @@ pub struct Designed {
     pub experts: Vec<Scenario>,
     /// The variants and their order.
     pub chosen: Chosen,
+    /// What whoever asked for it may not expect.
+    pub notes: Vec<String>,
 }
 
 impl Designed {
@@ -110,6 +115,7 @@ pub fn design(request: &DesignRequest) -> Result<Designed, Failure> {
         Scenario::from_json("scenario", &scenario.to_json_pretty())?;
     }
     Ok(Designed {
+        notes: request.notes(&chosen)?,
         scenarios,
         controls,
         experts,

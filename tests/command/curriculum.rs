@@ -365,7 +365,7 @@ fn the_forms_arrange_the_blocks_and_say_so() {
     let folder = scratch();
     let several = |arguments: &[&str], file: &str| {
         let output = folder.path().join("several");
-        let output = curriculum(&[&[park(""), "-o", text(&output)], arguments].concat());
+        let output = curriculum(&[&[park(""), "--force", "-o", text(&output)], arguments].concat());
         assert_eq!(
             output.status.code(),
             Some(0),

@@ -5,6 +5,7 @@ mod assets;
 mod closed_pipes;
 mod console;
 mod curriculum;
+mod curriculum_notes;
 mod distance_findings;
 mod distances;
 mod elements;

@@ -158,7 +158,7 @@ impl Room<'_> {
                 let text = format!("{mean:.3} ± {error:.3} (standard error, {} lifetimes)", ratios.len());
                 (text, Some(mean <= 1.0 + 3.0 * error + RATIO_SLACK))
             }
-            None => ("no experts to compare with".to_owned(), None),
+            None => (self.no_experts(), None),
         };
         Ok(AuditRow {
             agent: "remembers by number",
@@ -185,12 +185,22 @@ impl Room<'_> {
             agent: "its own expert",
             expected: "ste_rel_perf and sample_efficiency 1",
             found: if found.is_empty() {
-                "no experts to compare with".to_owned()
+                self.no_experts()
             } else {
                 found.join(", ")
             },
             passed,
         })
+    }
+
+    /// Why nothing is compared with experts.
+    fn no_experts(&self) -> String {
+        let regimes = self.lifetime.scenario().blocks.iter().flat_map(|block| &block.regimes);
+        if regimes.into_iter().any(|regime| regime.drift.is_some()) {
+            "a drift is learned under a name of its own, which no expert learns: no experts to compare with".to_owned()
+        } else {
+            "no experts to compare with".to_owned()
+        }
     }
 
     fn forgets(&self) -> Result<AuditRow, CurriculumError> {

@@ -137,8 +137,8 @@ pub(crate) struct Curriculum {
     /// Difficulty of its tasks, as l2logger's logs state it.
     #[arg(long, value_enum)]
     difficulty: Option<Difficulty>,
-    /// Seed of all worlds. Learning and evaluation never share a world.
-    #[arg(long, default_value_t = 0)]
+    /// Seed of all worlds, at most 2^52. Learning and evaluation never share a world.
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
     seed: u64,
     /// Which worlds to evaluate on: validation to choose hyperparameters, test for what you report.
     #[arg(long, value_enum, default_value_t = WorldSplit::Test)]
@@ -166,6 +166,9 @@ pub(crate) struct Curriculum {
     /// Each learns one variant, in the worlds and as long as the lifetime does, and is evaluated where the lifetime is.
     #[arg(long, value_name = "DIR")]
     experts: Option<PathBuf>,
+    /// Replace the files of an earlier curriculum in a folder.
+    #[arg(long)]
+    force: bool,
     /// Draw the blocks over experiences into this PNG file.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
@@ -271,6 +274,21 @@ impl Curriculum {
                 "--output: found no folder, expected one for several scenarios",
             ));
         }
+        let is_file = |path: &Path| path.is_file() || path.extension().is_some_and(|end| end == "json");
+        if request.is_of_several() && is_file(&self.output) {
+            return Err(Failure::usage(format!(
+                "--output: found the file {}, expected a folder: several scenarios are written, each into a file of its \
+                 own",
+                self.output.shown()
+            )));
+        }
+        for (option, folder) in [("--experts", &self.experts), ("--controls", &self.controls)] {
+            if folder.as_deref().is_some_and(output::is_stdout) {
+                return Err(Failure::usage(format!(
+                    "{option}: found standard output, expected a folder: several scenarios are written"
+                )));
+            }
+        }
         if request.is_of_several() && self.plot.is_some() {
             return Err(Failure::usage(
                 "--plot: found with several scenarios, expected one; leave out --plot, or --lifetimes and --form \
@@ -282,6 +300,7 @@ impl Curriculum {
             overwrite::refuse_inputs(target, self.tasks.iter().map(String::as_str))?;
         }
         let designed = design::design(&request)?;
+        self.refuse_existing(&designed)?;
         let evidence = designed.chosen.evidence.as_ref();
         // What is printed beside a scenario on standard output would spoil it.
         let say = |text: String| {
@@ -294,6 +313,13 @@ impl Curriculum {
         if let Some(evidence) = evidence {
             say(tables::evidence(evidence, &designed.chosen.order)?)?;
         }
+        let optima = request.optima(&designed.chosen)?;
+        if !optima.is_empty() {
+            say(tables::optima(&optima))?;
+        }
+        for note in &designed.notes {
+            output::note(format!("note: {note}"));
+        }
         if request.is_of_several() {
             for scenario in &designed.scenarios {
                 let path = write_into(&self.output, scenario)?;
@@ -302,6 +328,29 @@ impl Curriculum {
             return self.write_experts(&designed, say);
         }
         self.write_one(&designed, say)
+    }
+
+    /// Refuses to replace what stands in the folders that scenarios are written into.
+    fn refuse_existing(&self, designed: &Designed) -> Result<(), Failure> {
+        let several = (self.request().is_of_several()).then_some(&self.output);
+        let into = [
+            (several, &designed.scenarios),
+            (self.controls.as_ref(), &designed.controls),
+            (self.experts.as_ref(), &designed.experts),
+        ];
+        for (folder, scenarios) in into
+            .into_iter()
+            .filter_map(|(folder, scenarios)| Some((folder?, scenarios)))
+        {
+            let existing = scenarios.iter().map(|scenario| file_of(folder, scenario));
+            if let Some(path) = existing.into_iter().find(|path| !self.force && path.is_file()) {
+                return Err(Failure::input(format!(
+                    "{}: found a file, expected none; name another folder, or replace its scenarios with --force",
+                    path.shown()
+                )));
+            }
+        }
+        Ok(())
     }
 
     /// Writes one scenario, its picture and its controls.
@@ -425,9 +474,14 @@ impl Curriculum {
 
 /// Writes a scenario into a folder, in a file named after it.
 fn write_into(folder: &Path, scenario: &Scenario) -> Result<PathBuf, Failure> {
-    let path = folder.join(format!("{}.json", scenario.name));
+    let path = file_of(folder, scenario);
     output::write(&path, scenario.to_json_pretty().as_bytes())?;
     Ok(path)
+}
+
+/// The file of a scenario in a folder.
+fn file_of(folder: &Path, scenario: &Scenario) -> PathBuf {
+    folder.join(format!("{}.json", scenario.name))
 }
 
 /// A name that a scenario may have.

@@ -1,7 +1,7 @@
 //! What is shown of a curriculum: the proof of its variants, its blocks. The picture is `timeline.rs`'s.
 
 use crate::curriculum::{Choice, Picked, Steps};
-use crate::design::Evidence;
+use crate::design::{Evidence, PairOptimum};
 use crate::similarity::{Distance, DistanceMatrix};
 use crate::spec::{Block, BlockKind, By, Element, Phase, Regime, Scenario, Variant};
 
@@ -166,11 +166,32 @@ fn step(matrix: &DistanceMatrix, from: (usize, usize, f64), to: (usize, usize, f
 /// The variants that a scenario learns, in a line.
 pub(super) fn learned(scenario: &Scenario) -> String {
     let learning = scenario.blocks.iter().filter(|block| block.kind == BlockKind::Learning);
-    let names: Vec<&str> = learning
-        .flat_map(|block| &block.regimes)
-        .map(Regime::variant_name)
-        .collect();
+    let name = |regime: &Regime| match &regime.drift {
+        None => regime.variant_name().to_owned(),
+        Some(drift) => format!("{} to {}", regime.variant_name(), drift.variant_name()),
+    };
+    let names: Vec<String> = learning.flat_map(|block| &block.regimes).map(name).collect();
     names.join(", ")
+}
+
+/// Whether what is best changes between variants: a row per pair.
+pub(super) fn optima(found: &[PairOptimum]) -> String {
+    let rows = found.iter().map(|pair| {
+        let word = if pair.optimum.turned { "yes" } else { "no" };
+        let points = |points: f64| format!("{:.1}", points + 0.0);
+        [
+            format!("{}, {}", pair.a, pair.b),
+            word.to_owned(),
+            points(pair.optimum.regret),
+            points(pair.optimum.regret_in_base),
+        ]
+    });
+    let headings = ["pair", "best changes", "expert of the first loses", "of the second"];
+    format!(
+        "{}\nWhat an expert of one variant earns less in worlds of the other than that one's own, in points; where nothing \
+         changes, nothing has to be forgotten.\n",
+        table(headings, rows.collect(), &[2, 3])
+    )
 }
 
 /// The blocks of a scenario as a table, with the distance of each learning block's beginning from the end of the one before.

@@ -56,7 +56,7 @@ pub(crate) struct TransferReport {
         value_parser = clap::value_parser!(u64).range(1..=MAX_RELABELLINGS))]
     relabellings: u64,
     /// Seed of the relabellings.
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
     seed: u64,
     /// Draw transfer over distance into this PNG file.
     #[arg(short, long, value_name = "FILE")]

@@ -1,0 +1,70 @@
+//! What is said of a design that its request does not show: named variants that are not learned, orders that are not
+//! balanced, experts of mixtures.
+
+use driftworld_spec::{DriftSwitch, ScenarioForm};
+
+use super::{Chosen, DesignRequest};
+use crate::{Failure, argument, tasks};
+
+impl DesignRequest {
+    pub(super) fn notes(&self, chosen: &Chosen) -> Result<Vec<String>, Failure> {
+        let held_out = self.held_out()?;
+        let mut notes = Vec::new();
+        for name in &self.tasks {
+            let (task, variant) = tasks::split(name);
+            let is_held = variant.is_some_and(|variant| {
+                held_out
+                    .iter()
+                    .any(|(other, held)| other == task && held.name() == variant)
+            });
+            if is_held {
+                notes.push(format!("{name} is named and held out: it is evaluated and not learned"));
+            }
+        }
+        let num = chosen.order.len() as u64;
+        let rows = if num.is_multiple_of(2) { num } else { 2 * num };
+        if let (Some(ScenarioForm::Permuted), Some(lifetimes)) = (self.form(), self.lifetimes)
+            && rows > 0
+            && !lifetimes.is_multiple_of(rows)
+        {
+            notes.push(format!(
+                "{lifetimes} lifetimes of {num} variants are not balanced: some variants come earlier, or after others, \
+                 more often; {rows} lifetimes, or a multiple of it, are balanced"
+            ));
+        }
+        if self.experts
+            && self
+                .design
+                .drifting
+                .is_some_and(|drifting| drifting.switch != DriftSwitch::AtPoint)
+        {
+            notes.push(
+                "experts of a mixture learn a variant for as long as the drift is nearer to it, not in the worlds in \
+                 which the mixture draws it: about as many, and not the same"
+                    .to_owned(),
+            );
+        }
+        Ok(notes)
+    }
+
+    /// The variants that are held out; a bare name of a variant gets a hint.
+    pub(super) fn held_out(&self) -> Result<Vec<(String, driftworld_spec::Variant)>, Failure> {
+        tasks::variants_of(&self.hold_out).map_err(|error| {
+            let named = self.hold_out.iter().find_map(|name| {
+                let whole = |task: &String| format!("{}#{name}", tasks::split(task).0);
+                let mut of_tasks = self.tasks.iter().map(whole);
+                of_tasks.find(|name| tasks::variant(name).is_ok())
+            });
+            match named.filter(|_| self.hold_out.iter().any(|name| tasks::split(name).1.is_none())) {
+                Some(near) => Failure::because(
+                    format!(
+                        "{}: {error}; of a variant, its task comes first: {near}",
+                        argument("hold_out")
+                    ),
+                    error,
+                ),
+                None => error.into(),
+            }
+        })
+    }
+}
