@@ -207,28 +207,36 @@ impl DesignRequest {
                  leave one of them out ({lifetimes} of the permuted form control each other)"
             )));
         }
-        if self.form() == Some(ScenarioForm::Permuted) {
-            // The start of a probe or of steps says what is varied, not what comes first.
-            let is_varied = is_given("probe") || is_given("step_distance");
-            let ordered = [
-                ("order", is_given("order")),
-                ("method", is_given("method")),
-                ("end", is_given("end")),
-                ("target_step", self.ordering.target_step.is_some()),
-                ("start", self.ordering.start.is_some() && !is_varied),
-            ];
-            if let Some((name, _)) = ordered.iter().find(|(_, is_given)| *is_given) {
-                return Err(Failure::usage(format!(
-                    "{}: found with {form} permuted, whose order is drawn at random, expected one of the two",
-                    argument(name)
-                )));
-            }
-        }
+        self.check_permuted()?;
         if self.form() == Some(ScenarioForm::Expert) && self.design.drifting.is_some() {
             return Err(Failure::usage(format!(
                 "{drift}: found with {form} expert, which learns one variant alone; leave {drift} out"
             )));
         }
         Ok(())
+    }
+
+    /// Refuses an order beside the form whose order is drawn at random.
+    fn check_permuted(&self) -> Result<(), Failure> {
+        if self.form() != Some(ScenarioForm::Permuted) {
+            return Ok(());
+        }
+        // The start of a probe or of steps says what is varied, not what comes first.
+        let is_varied = self.probe.is_some() || self.step_distance.is_some();
+        let ordered = [
+            ("order", self.order.is_some()),
+            ("method", self.ordering.method.is_some()),
+            ("end", self.ordering.end.is_some()),
+            ("target_step", self.ordering.target_step.is_some()),
+            ("start", self.ordering.start.is_some() && !is_varied),
+        ];
+        match ordered.iter().find(|(_, is_given)| *is_given) {
+            None => Ok(()),
+            Some((name, _)) => Err(Failure::usage(format!(
+                "{}: found with {} permuted, whose order is drawn at random, expected one of the two",
+                argument(name),
+                argument("form")
+            ))),
+        }
     }
 }

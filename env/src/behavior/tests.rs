@@ -144,7 +144,7 @@ proptest! {
         let (red, mut blue) = (draft(RED, BLUE), draft(BLUE, RED));
         // The same things stand in the same places, and pay the other way round.
         for (own, other) in blue.objects.iter_mut().zip(&red.objects) {
-            (own.color, own.reward) = (other.color.clone(), -other.reward / 2.0 - 1.0);
+            (own.color, own.reward) = (other.color, -other.reward / 2.0 - 1.0);
         }
         let (red, blue) = (sound(red), sound(blue));
         let expertise = Expertise::default();

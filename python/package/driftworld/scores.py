@@ -126,7 +126,8 @@ class Metrics:
 
         Each has ``evaluations``, a list of ``block``, ``mean``, ``standard_error`` over worlds and ``num_worlds``;
         ``best``, the place of the highest after learning; ``expert``, the expert's level; and ``share``, the best over
-        the expert. Below 0.2 the task was never learned.
+        the expert. Below 0.2 the task was never learned. With scales, ``unlabelled`` has what the best known agents earn
+        that cannot tell the task from others (``among``): ``fixed`` and ``finds_out``.
 
         Raises:
             ValueError: If there are several lifetimes; ask each of :attr:`lifetimes` for its ``"reached"`` then.
