@@ -103,7 +103,7 @@ fn of_variant(variant: &Variant, request: &ScalesRequest, catalogue: &Catalogue)
     for (name, mut agent) in agents_of_scales() {
         let mut episodes = Vec::new();
         for (index, world) in (0..).zip(&worlds) {
-            agent.begin(chance(request, index));
+            agent.begin(agent_seed(request, index));
             episodes.push(episode(agent.as_mut(), world, catalogue)?);
         }
         agents.insert(name.to_owned(), AgentLevel::of(&episodes));
@@ -118,7 +118,7 @@ fn of_variant(variant: &Variant, request: &ScalesRequest, catalogue: &Catalogue)
 }
 
 /// What an agent draws its own random numbers from: the same in every variant, and another in every world.
-fn chance(request: &ScalesRequest, index: u64) -> u64 {
+fn agent_seed(request: &ScalesRequest, index: u64) -> u64 {
     request.seed.rotate_left(32) ^ index
 }
 

@@ -79,13 +79,13 @@ impl Ignorant {
     }
 
     /// What it earns in one of these worlds, one of each variant, and whether it succeeds.
-    fn run(self, worlds: &[World], place: usize, chance: u64, expertise: &Expertise) -> Result<(f64, bool), Failure> {
+    fn run(self, worlds: &[World], place: usize, seed: u64, expertise: &Expertise) -> Result<(f64, bool), Failure> {
         let (abroad, catalogue) = (&worlds[place], &expertise.catalogue);
         let found = match self {
             Self::Still => return episode(&mut StillAgent, abroad, catalogue),
             Self::Random => {
                 let mut agent = RandomAgent::new(0);
-                agent.begin(chance);
+                agent.begin(seed);
                 return episode(&mut agent, abroad, catalogue);
             }
             Self::Fixed(own) => expertise.abroad(&worlds[own], abroad)?,
@@ -255,7 +255,7 @@ pub(super) fn ceiling(
             .map(|sampler| sampler.world(index))
             .collect::<Result<_, _>>()?;
         let of_agent = |agent: Ignorant| {
-            let of_variant = |place| agent.run(&worlds, place, super::chance(request, index), &expertise);
+            let of_variant = |place| agent.run(&worlds, place, super::agent_seed(request, index), &expertise);
             (0..set.len()).map(of_variant).collect()
         };
         Ignorant::all(set.len()).map(of_agent).collect()

@@ -26,6 +26,7 @@ mod report;
 mod run;
 mod run_files;
 mod scales;
+mod several_lifetimes;
 mod signals;
 mod special_files;
 mod terminal;

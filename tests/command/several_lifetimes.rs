@@ -1,0 +1,130 @@
+//! What `driftworld metrics` says of several lifetimes together: null bands, what was reached, notes of two agents,
+//! metrics that do not vary. The numbers are the libraries'.
+
+use std::path::Path;
+
+use driftworld::metrics::BlockType;
+
+use crate::null_bands::{parsed, write};
+use crate::terminal::{scratch, succeed_in};
+
+const SCALES: &str =
+    r#"{"scales": {"find_red": {"floor": 0, "ceiling": 100}, "find_held": {"floor": 0, "ceiling": 100}}}"#;
+
+/// Two tasks are evaluated in the same worlds before and after one of them is learned, and once more at the end; what is
+/// earned then is given.
+fn live(folder: &Path, kept: f64) {
+    let mut rows = Vec::new();
+    for (block, level) in [(0, 0.0), (2, 80.0), (4, kept)] {
+        for world in 0..8 {
+            let luck = f64::from(world * (block as u32 + 1) % 5);
+            rows.push((block, BlockType::Test, "find_red", world, level + luck));
+            rows.push((block, BlockType::Test, "find_held", world, 10.0 + luck));
+        }
+        let task = if block == 0 { "find_red" } else { "find_blue" };
+        if block < 4 {
+            rows.extend((0..8).map(|world| (block + 1, BlockType::Train, task, world, 40.0 + f64::from(world))));
+        }
+    }
+    // The rows of one task in a block come one after the other.
+    rows.sort_by_key(|row| (row.0, row.2 != "find_red"));
+    write(folder, &rows);
+}
+
+#[test]
+fn good_is_said_of_several_lifetimes_outside_the_null_band_only() {
+    let folder = scratch();
+    for (number, kept) in [30.0, 35.0, 25.0].into_iter().enumerate() {
+        live(&folder.path().join(format!("forgets/{number}")), kept);
+    }
+    for (number, kept) in [80.0, 81.0, 79.0].into_iter().enumerate() {
+        live(&folder.path().join(format!("keeps/{number}")), kept);
+    }
+    let reading = |runs: &str| {
+        let shown = succeed_in(folder.path(), &["metrics", "-R", runs, "-m", "both"]);
+        let row = shown
+            .lines()
+            .find(|line| line.starts_with("perf_maintenance_mrlep"))
+            .map(str::to_owned);
+        (row.expect("a row"), shown)
+    };
+    let (row, shown) = reading("forgets");
+    assert!(row.contains("  bad  "), "{shown}");
+    assert!(
+        shown.contains("Null band: the central 95% of means over lifetimes"),
+        "{shown}"
+    );
+    let (row, shown) = reading("keeps");
+    assert!(row.contains("no clear effect"), "{shown}");
+    let learned = shown
+        .lines()
+        .find(|line| line.starts_with("avg_train_perf"))
+        .expect("a row");
+    assert!(learned.contains("no null"), "{shown}");
+    let json = parsed(&succeed_in(folder.path(), &["metrics", "-R", "forgets", "--json"]));
+    let rows = json["repeats"].as_array().expect("a list");
+    let row = rows
+        .iter()
+        .find(|row| row["name"] == "perf_maintenance_mrlep")
+        .expect("a metric");
+    let (null, number) = (&row["null"], |value: &serde_json::Value| {
+        value.as_f64().expect("a number")
+    });
+    assert!(
+        number(&null["value"]) < number(&null["low"]) && number(&null["p"]) < 0.05,
+        "{row}"
+    );
+    assert!(
+        (number(&null["value"]) - number(&row["mean"]["value"])).abs() < 1e-9,
+        "{row}"
+    );
+}
+
+#[test]
+fn what_is_never_learned_is_among_what_was_reached_and_experts_have_its_unit() {
+    let folder = scratch();
+    for number in 0..2 {
+        live(&folder.path().join(format!("runs/{number}")), 50.0);
+    }
+    std::fs::write(folder.path().join("scales.json"), SCALES).expect("a file");
+    for more in [&["-R", "runs"][..], &["runs/0"]] {
+        let shown = succeed_in(
+            folder.path(),
+            &[&["metrics"][..], more, &["--scales", "scales.json"]].concat(),
+        );
+        let row = |task: &str| shown.lines().find(|line| line.starts_with(task)).map(str::to_owned);
+        assert!(row("find_held").is_some_and(|row| row.contains("10%")), "{shown}");
+        assert!(row("find_red").is_some_and(|row| row.contains("100%")), "{shown}");
+    }
+}
+
+#[test]
+fn notes_of_two_agents_are_told_apart() {
+    let folder = scratch();
+    for number in 0..2 {
+        live(&folder.path().join(format!("mine/{number}")), 50.0);
+        live(&folder.path().join(format!("theirs/{number}")), -50.0);
+    }
+    let compare = ["metrics", "-R", "mine", "--against", "theirs", "-n", "none"];
+    let shown = succeed_in(folder.path(), &compare);
+    assert!(
+        shown.contains("\nnote on the other agent: some performances are negative"),
+        "{shown}"
+    );
+    assert!(!shown.contains("\nnote: some performances are negative"), "{shown}");
+}
+
+#[test]
+fn a_metric_that_does_not_vary_is_among_those_with_power() {
+    let folder = scratch();
+    for number in 0..3 {
+        live(&folder.path().join(format!("runs/{number}")), 50.0);
+    }
+    let shown = succeed_in(folder.path(), &["metrics", "-R", "runs", "--power", "5"]);
+    let power = shown.split("power for 5").nth(1).expect("a table");
+    let row = power
+        .lines()
+        .find(|line| line.starts_with("avg_eval_perf"))
+        .expect("a row");
+    assert!(row.contains("0.000") && row.contains("does not vary"), "{shown}");
+}
