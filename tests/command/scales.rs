@@ -146,6 +146,8 @@ fn what_looks_alike_has_a_ceiling_of_its_own() {
     let shown = succeed_in(folder.path(), &["metrics", "life", "--scales", "scales.json"]);
     let line = "selectobject_green, selectobject_red look alike. Without a label the best known agent has ";
     assert!(shown.contains(line), "{shown}");
+    let shown = succeed_in(folder.path(), &["metrics", "-R", "life", "--scales", "scales.json"]);
+    assert_eq!(shown.matches(line).count(), 1, "{shown}");
     let json = parsed(&succeed_in(
         folder.path(),
         &["metrics", "life", "--scales", "scales.json", "--json"],

@@ -59,7 +59,8 @@ class Metrics:
     Attributes:
         lifetimes: Of each lifetime everything that was computed, as ``driftworld metrics --json`` says it.
         repeats: Of several lifetimes each metric over all of them, with interquartile mean, mean and median and their bootstrap
-            intervals; empty for one.
+            intervals; ``null`` is the null band of the mean over lifetimes, where evaluations alone decide the metric.
+            Empty for one.
         improvement: With ``against``, of each metric how probably a lifetime is better than one of the other agent.
         lifetimes_against: The other agent's lifetimes.
         repeats_against: Each metric over those.

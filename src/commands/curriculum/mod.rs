@@ -1,17 +1,18 @@
 //! `driftworld curriculum`: learning and evaluation blocks of variants in the order of their distances. The design is the
 //! library's; what is said of it is in `tables.rs`.
 
+mod folders;
 mod tables;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::curriculum::{Design, Drifting, Evaluate, LEARN, Split};
 use crate::design::{self, DesignOrder, DesignRequest, Designed};
 use crate::distances::By;
 use crate::modality::Kind;
 use crate::spec::{
-    DriftSchedule, DriftSwitch, Element, Modality, Scenario, ScenarioComplexity, ScenarioDifficulty, ScenarioForm,
-    TaskLabel, sound_name,
+    DriftSchedule, DriftSwitch, Element, Modality, ScenarioComplexity, ScenarioDifficulty, ScenarioForm, TaskLabel,
+    sound_name,
 };
 use clap::{Args, ValueEnum};
 use driftworld_text::ShownPath;
@@ -20,6 +21,7 @@ use super::assets::LibraryChoice;
 use super::mix::Mix;
 use super::order::OrderArgs;
 use super::{Failure, output, overwrite};
+use folders::write_into;
 pub(crate) use tables::{blocks, choices};
 
 /// Design learning and evaluation blocks from variants and their distances.
@@ -269,25 +271,11 @@ impl Curriculum {
         let request = self.request();
         request.check()?;
         let to_stdout = self.output.as_os_str() == "-";
-        if request.is_of_several() && to_stdout {
-            return Err(Failure::usage(
-                "--output: found no folder, expected one for several scenarios",
-            ));
-        }
-        let is_file = |path: &Path| path.is_file() || path.extension().is_some_and(|end| end == "json");
-        if request.is_of_several() && is_file(&self.output) {
-            return Err(Failure::usage(format!(
-                "--output: found the file {}, expected a folder: several scenarios are written, each into a file of its \
-                 own",
-                self.output.shown()
-            )));
+        if request.is_of_several() {
+            folders::refuse_no_folder(&self.output)?;
         }
         for (option, folder) in [("--experts", &self.experts), ("--controls", &self.controls)] {
-            if folder.as_deref().is_some_and(output::is_stdout) {
-                return Err(Failure::usage(format!(
-                    "{option}: found standard output, expected a folder: several scenarios are written"
-                )));
-            }
+            folders::refuse_standard_output(option, folder.as_deref())?;
         }
         if request.is_of_several() && self.plot.is_some() {
             return Err(Failure::usage(
@@ -300,7 +288,14 @@ impl Curriculum {
             overwrite::refuse_inputs(target, self.tasks.iter().map(String::as_str))?;
         }
         let designed = design::design(&request)?;
-        self.refuse_existing(&designed)?;
+        if !self.force {
+            let several = request.is_of_several().then_some(&self.output);
+            folders::refuse_existing(&[
+                (several, &designed.scenarios),
+                (self.controls.as_ref(), &designed.controls),
+                (self.experts.as_ref(), &designed.experts),
+            ])?;
+        }
         let evidence = designed.chosen.evidence.as_ref();
         // What is printed beside a scenario on standard output would spoil it.
         let say = |text: String| {
@@ -328,29 +323,6 @@ impl Curriculum {
             return self.write_experts(&designed, say);
         }
         self.write_one(&designed, say)
-    }
-
-    /// Refuses to replace what stands in the folders that scenarios are written into.
-    fn refuse_existing(&self, designed: &Designed) -> Result<(), Failure> {
-        let several = (self.request().is_of_several()).then_some(&self.output);
-        let into = [
-            (several, &designed.scenarios),
-            (self.controls.as_ref(), &designed.controls),
-            (self.experts.as_ref(), &designed.experts),
-        ];
-        for (folder, scenarios) in into
-            .into_iter()
-            .filter_map(|(folder, scenarios)| Some((folder?, scenarios)))
-        {
-            let existing = scenarios.iter().map(|scenario| file_of(folder, scenario));
-            if let Some(path) = existing.into_iter().find(|path| !self.force && path.is_file()) {
-                return Err(Failure::input(format!(
-                    "{}: found a file, expected none; name another folder, or replace its scenarios with --force",
-                    path.shown()
-                )));
-            }
-        }
-        Ok(())
     }
 
     /// Writes one scenario, its picture and its controls.
@@ -470,18 +442,6 @@ impl Curriculum {
             seed: self.seed,
         }
     }
-}
-
-/// Writes a scenario into a folder, in a file named after it.
-fn write_into(folder: &Path, scenario: &Scenario) -> Result<PathBuf, Failure> {
-    let path = file_of(folder, scenario);
-    output::write(&path, scenario.to_json_pretty().as_bytes())?;
-    Ok(path)
-}
-
-/// The file of a scenario in a folder.
-fn file_of(folder: &Path, scenario: &Scenario) -> PathBuf {
-    folder.join(format!("{}.json", scenario.name))
 }
 
 /// A name that a scenario may have.

@@ -1,7 +1,7 @@
 //! What each task came to beside its expert, and what its evaluation curve says: the first tables that people see. The
 //! numbers are `metrics`'.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::metrics::{EvaluationCell, LEARNED_SHARE, LifetimeMetrics, Reached, Unlabelled};
 
@@ -163,7 +163,9 @@ pub(super) fn reached_by_several(agent: &str, lifetimes: &[LifetimeMetrics]) -> 
     let headings = headings.into_iter().map(str::to_owned).collect();
     let is_scaled = tasks.values().flatten().any(|task| task.is_scaled());
     let unit = if is_scaled { UNITS } else { "" };
-    (!rows.is_empty()).then(|| wide_table(headings, rows, &[1, 2, 3, 4]) + unit)
+    let alike: BTreeSet<String> = lifetimes.iter().flat_map(unlabelled).collect();
+    let alike: String = alike.iter().map(|line| format!("\n{line}")).collect();
+    (!rows.is_empty()).then(|| wide_table(headings, rows, &[1, 2, 3, 4]) + unit + &alike)
 }
 
 /// What numbers with and without % are.

@@ -1,0 +1,61 @@
+//! Where scenarios are written into folders: each in a file named after it, and nothing that stands there is replaced.
+
+use std::path::{Path, PathBuf};
+
+use driftworld_text::ShownPath;
+
+use crate::commands::{Failure, output};
+use crate::spec::Scenario;
+
+/// Refuses standard output and files in place of the folder of several scenarios.
+pub(super) fn refuse_no_folder(path: &Path) -> Result<(), Failure> {
+    if path.as_os_str() == "-" {
+        return Err(Failure::usage(
+            "--output: found no folder, expected one for several scenarios",
+        ));
+    }
+    if path.is_file() || path.extension().is_some_and(|end| end == "json") {
+        return Err(Failure::usage(format!(
+            "--output: found the file {}, expected a folder: several scenarios are written, each into a file of its own",
+            path.shown()
+        )));
+    }
+    Ok(())
+}
+
+/// Refuses standard output in place of a folder.
+pub(super) fn refuse_standard_output(option: &str, folder: Option<&Path>) -> Result<(), Failure> {
+    if folder.is_some_and(output::is_stdout) {
+        return Err(Failure::usage(format!(
+            "{option}: found standard output, expected a folder: several scenarios are written"
+        )));
+    }
+    Ok(())
+}
+
+/// Refuses to replace what stands in folders that scenarios are written into.
+pub(super) fn refuse_existing(into: &[(Option<&PathBuf>, &Vec<Scenario>)]) -> Result<(), Failure> {
+    let folders = into
+        .iter()
+        .filter_map(|(folder, scenarios)| Some(((*folder)?, scenarios)));
+    let mut files = folders.flat_map(|(folder, scenarios)| scenarios.iter().map(|scenario| file_of(folder, scenario)));
+    match files.find(|path| path.is_file()) {
+        None => Ok(()),
+        Some(path) => Err(Failure::input(format!(
+            "{}: found a file, expected none; name another folder, or replace its scenarios with --force",
+            path.shown()
+        ))),
+    }
+}
+
+/// Writes a scenario into a folder, in a file named after it.
+pub(super) fn write_into(folder: &Path, scenario: &Scenario) -> Result<PathBuf, Failure> {
+    let path = file_of(folder, scenario);
+    output::write(&path, scenario.to_json_pretty().as_bytes())?;
+    Ok(path)
+}
+
+/// The file of a scenario in a folder.
+fn file_of(folder: &Path, scenario: &Scenario) -> PathBuf {
+    folder.join(format!("{}.json", scenario.name))
+}
