@@ -164,8 +164,8 @@ pub(super) fn reached_by_several(agent: &str, lifetimes: &[LifetimeMetrics]) -> 
     let is_scaled = tasks.values().flatten().any(|task| task.is_scaled());
     let unit = if is_scaled { UNITS } else { "" };
     let alike: BTreeSet<String> = lifetimes.iter().flat_map(unlabelled).collect();
-    let alike: String = alike.iter().map(|line| format!("\n{line}")).collect();
-    (!rows.is_empty()).then(|| wide_table(headings, rows, &[1, 2, 3, 4]) + unit + &alike)
+    let table = |rows: Vec<Vec<String>>| wide_table(headings, rows, &[1, 2, 3, 4]) + unit;
+    (!rows.is_empty()).then(|| std::iter::once(table(rows)).chain(alike).collect::<Vec<_>>().join("\n"))
 }
 
 /// What numbers with and without % are.
