@@ -13,6 +13,7 @@ mod camera;
 mod channel;
 mod error;
 mod experiment;
+mod ground;
 mod photograph;
 mod polygon;
 mod render;

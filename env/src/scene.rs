@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use driftworld_spec::{Object, World};
 
-use crate::assets::{Asset, Block, Catalogue, ColliderShape, Material, Mesh, Paint, Part};
+use crate::assets::{Asset, Block, Catalogue, ColliderShape, Mesh};
+use crate::ground;
 
 /// Everything that a picture of a world depends on, but for the camera.
 #[derive(Clone, Debug)]
@@ -27,7 +28,7 @@ pub struct Scene {
 /// How many of a scene's walls, the first ones, are the arena's own: west, north, east, south.
 pub(crate) const ARENA_WALLS: usize = 4;
 
-/// Wall panels that are drawn together: one wall of the arena, or all of a region.
+/// Panels that are drawn together: one wall of the arena, all of a region, or a zone on the ground.
 #[derive(Clone, Debug)]
 pub(crate) struct PanelGroup {
     /// Middle of a ball that holds all of them, in metres.
@@ -36,6 +37,8 @@ pub(crate) struct PanelGroup {
     pub(crate) radius: f32,
     /// Their colour, sRGB.
     pub(crate) color: [f32; 3],
+    /// How far above their place they are drawn, as a share of the camera's height: 0 for what stands upright.
+    pub(crate) lift: f32,
     pub(crate) blocks: Vec<Block>,
 }
 
@@ -138,6 +141,7 @@ impl Scene {
             catalogue: catalogue.clone(),
         };
         scene.add_walls(world);
+        scene.panels.extend(ground::patches(world));
         for object in &world.objects {
             scene.add(object);
         }
@@ -178,7 +182,7 @@ impl Scene {
         self.arena_size
     }
 
-    /// The walls as they are drawn: the arena's four, then one group for each region.
+    /// The walls as they are drawn: the arena's four, then one group for each region, then the zones on the ground.
     pub(crate) fn panels(&self) -> &[PanelGroup] {
         &self.panels
     }
@@ -251,22 +255,7 @@ impl Scene {
                     .extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
             }
         }
-        let part = Part::new(mesh, Paint::Fixed(color));
-        let corners = &part.mesh.corners;
-        let side = |axis: usize| {
-            let values = corners.iter().map(|corner| corner[axis]);
-            values.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], value| {
-                [low.min(value), high.max(value)]
-            })
-        };
-        let sides = [side(0), side(1), side(2)];
-        let halves = sides.map(|[low, high]| ((high - low) / 2.0).max(0.0));
-        self.panels.push(PanelGroup {
-            middle: sides.map(|[low, high]| if low <= high { f32::midpoint(low, high) } else { 0.0 }),
-            radius: halves.iter().map(|half| half * half).sum::<f32>().sqrt(),
-            color,
-            blocks: Material::new(&part).blocks,
-        });
+        self.panels.push(PanelGroup::of(mesh, color));
     }
 }
 

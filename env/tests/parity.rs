@@ -14,7 +14,7 @@ use driftworld_env::{
     Action, Autoreset, Batch, BatchOptions, Camera, CpuRenderer, EnvError, Environment, Episode, Frame, GpuChoice,
     GpuRenderer, Images, Picture, RendererKind, RendererReport, Scene, Target,
 };
-use driftworld_spec::{Color, Modality, Object, Wall, World, WorldDraft};
+use driftworld_spec::{Color, Modality, Object, Wall, World, WorldDraft, Zone, ZoneEnd};
 
 /// A renderer on this machine's adapter, if there is one.
 fn gpu() -> Option<GpuRenderer> {
@@ -52,6 +52,10 @@ fn worlds() -> Vec<(String, World)> {
     let mut foggy = world(files[1]).into_draft();
     foggy.environment_params.fog_distance = Some(50.0);
     foggy.environment_params.light_intensity = 0.6;
+    let mut lava = Zone::disc([4.0, 6.0], 3.5);
+    lava.ends = Some(ZoneEnd::Failure);
+    let bent = vec![[-8.0, -6.0], [9.0, -8.0], [0.0, -4.0], [7.0, 3.0]];
+    foggy.environment_params.zones = vec![Zone::polygon(bent), lava];
     foggy.environment_params.walls = [-12.0, 3.0, 14.0]
         .map(|x| Wall {
             polygon: vec![[x, -4.0], [x + 6.0, 2.0], [x + 5.0, 3.0], [x - 1.0, -3.0]],

@@ -277,7 +277,7 @@ impl CpuRenderer {
         shader: &Shader,
         scene: &Scene,
     ) {
-        let at = view.placement(&Pose::WORLD, scene.light.direction);
+        let at = view.placement(&Pose::of_panels(group, view), scene.light.direction);
         let params = ShadingParams {
             color: shader.in_light(group.color),
             ambient: shader.ambient,

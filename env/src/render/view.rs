@@ -1,7 +1,7 @@
 //! A camera ready to project, and what an object's own frame looks like from it. Filling is in `canvas.rs`.
 
 use crate::camera::{Axes, Camera};
-use crate::scene::Item;
+use crate::scene::{Item, PanelGroup};
 use crate::vector::{add, dot, scaled, sub};
 
 /// Nearest distance at which anything is drawn, in metres.
@@ -50,6 +50,17 @@ impl Pose {
         heading_deg: 0.0,
         scale: 1.0,
     };
+
+    /// That of panels: what lies on the ground is a little above it, as the camera sees it.
+    pub(crate) fn of_panels(group: &PanelGroup, view: &View) -> Self {
+        /// Metres above the ground from which on it is lifted no more.
+        const HIGHEST: f32 = 1000.0;
+        let height = view.position[2].clamp(0.0, HIGHEST);
+        Self {
+            position: [0.0, 0.0, group.lift * height],
+            ..Self::WORLD
+        }
+    }
 
     pub(crate) fn of(item: &Item) -> Self {
         Self {

@@ -89,7 +89,7 @@ impl TileContents {
     }
 
     fn add_panels(&mut self, group: &PanelGroup, view: &View, scene: &Scene) {
-        let at = view.placement(&Pose::WORLD, scene.light.direction);
+        let at = view.placement(&Pose::of_panels(group, view), scene.light.direction);
         let [r, g, b] = group.color;
         let label = u32::from(CATEGORY_MAP) << 24;
         for (block, lane) in group.blocks.iter().flat_map(triangles) {

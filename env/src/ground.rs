@@ -1,0 +1,160 @@
+//! Zones as they lie on the ground: flat polygons in their colours, for both renderers. What zones do is in `sim/zones.rs`.
+
+use driftworld_spec::{World, Zone};
+
+use crate::assets::{Material, Mesh, Paint, Part};
+use crate::scene::PanelGroup;
+
+/// How many corners a disc is drawn with.
+const CORNERS: u32 = 64;
+
+/// How far a patch is drawn above the ground, as a share of the camera's height: too little to be seen in depths, and
+/// enough to lie on top.
+const LIFT: f32 = 1e-4;
+
+/// How much higher each patch lies than the one before it, as a share of the lift; up to so many patches.
+const STEP: (f32, usize) = (0.1, 100);
+
+/// The visible zones of a world, in its order: where they overlap, the later lies on top.
+pub(crate) fn patches(world: &World) -> impl Iterator<Item = PanelGroup> {
+    let zones = world.environment_params.zones.iter().filter(|zone| zone.visible);
+    zones.enumerate().map(|(index, zone)| {
+        let mut group = PanelGroup::of(mesh(zone), zone.ground_color().to_f32());
+        let (step, most) = STEP;
+        group.lift = LIFT * (1.0 + step * index.min(most) as f32);
+        group
+    })
+}
+
+/// Its ground as triangles that are seen from above.
+fn mesh(zone: &Zone) -> Mesh {
+    let corners = corners(zone);
+    let mut mesh = Mesh::default();
+    mesh.triangles = triangles(&corners);
+    mesh.corners = corners.into_iter().map(|[x, y]| [x as f32, y as f32, 0.0]).collect();
+    mesh
+}
+
+/// A point well inside a zone: the middle of a disc, or of a polygon's largest triangle.
+pub(crate) fn middle(zone: &Zone) -> Option<[f64; 2]> {
+    if let Some(disc) = &zone.disc {
+        return Some(disc.center);
+    }
+    let corners = corners(zone);
+    let triangles = triangles(&corners);
+    let triangles = triangles
+        .iter()
+        .map(|triangle| triangle.map(|index| corners[index as usize]));
+    let largest = triangles.max_by(|a, b| turn(a[0], a[1], a[2]).total_cmp(&turn(b[0], b[1], b[2])))?;
+    Some([0, 1].map(|axis| largest.iter().map(|corner| corner[axis]).sum::<f64>() / 3.0))
+}
+
+/// Corners counter-clockwise; of a disc as it is drawn.
+pub(crate) fn corners(zone: &Zone) -> Vec<[f64; 2]> {
+    if let Some(disc) = &zone.disc {
+        let corner = |k: u32| {
+            let angle = std::f64::consts::TAU * f64::from(k) / f64::from(CORNERS);
+            let [x, y] = disc.center;
+            [x + disc.radius * libm::cos(angle), y + disc.radius * libm::sin(angle)]
+        };
+        return (0..CORNERS).map(corner).collect();
+    }
+    let mut corners = zone.polygon.clone().unwrap_or_default();
+    let next = corners.iter().cycle().skip(1);
+    let twice_area: f64 = corners.iter().zip(next).map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum();
+    if twice_area < 0.0 {
+        corners.reverse();
+    }
+    corners
+}
+
+/// Cuts one corner after the other off a polygon. One that crosses itself is filled as far as that goes.
+fn triangles(corners: &[[f64; 2]]) -> Vec<[u32; 3]> {
+    let mut left: Vec<u32> = (0..corners.len() as u32).collect();
+    let mut triangles = Vec::with_capacity(corners.len().saturating_sub(2));
+    let at = |index: u32| corners[index as usize];
+    while left.len() > 3 {
+        let count = left.len();
+        let around = |k: usize| [left[(k + count - 1) % count], left[k], left[(k + 1) % count]];
+        let is_ear = |k: &usize| {
+            let [a, b, c] = around(*k);
+            let inside =
+                |other: &u32| ![a, b, c].map(at).contains(&at(*other)) && is_within([a, b, c].map(at), at(*other));
+            turn(at(a), at(b), at(c)) >= 0.0 && !left.iter().any(inside)
+        };
+        let Some(ear) = (0..count).find(is_ear) else { break };
+        triangles.push(around(ear));
+        left.remove(ear);
+    }
+    if let [a, b, c] = left[..] {
+        triangles.push([a, b, c]);
+    }
+    triangles.retain(|triangle| {
+        let [a, b, c] = triangle.map(at);
+        turn(a, b, c) > 0.0
+    });
+    triangles
+}
+
+/// Above 0 where the way over three points turns left.
+fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+fn is_within([a, b, c]: [[f64; 2]; 3], point: [f64; 2]) -> bool {
+    turn(a, b, point) >= 0.0 && turn(b, c, point) >= 0.0 && turn(c, a, point) >= 0.0
+}
+
+impl PanelGroup {
+    /// Faces of one colour that are drawn together.
+    pub(crate) fn of(mesh: Mesh, color: [f32; 3]) -> Self {
+        let part = Part::new(mesh, Paint::Fixed(color));
+        let corners = &part.mesh.corners;
+        let side = |axis: usize| {
+            let values = corners.iter().map(|corner| corner[axis]);
+            values.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], value| {
+                [low.min(value), high.max(value)]
+            })
+        };
+        let sides = [side(0), side(1), side(2)];
+        let halves = sides.map(|[low, high]| ((high - low) / 2.0).max(0.0));
+        Self {
+            middle: sides.map(|[low, high]| if low <= high { f32::midpoint(low, high) } else { 0.0 }),
+            radius: halves.iter().map(|half| half * half).sum::<f32>().sqrt(),
+            color,
+            lift: 0.0,
+            blocks: Material::new(&part).blocks,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// The triangles of a polygon that does not cross itself cover what is in it, and nothing else.
+        #[test]
+        fn triangles_cover_the_zone(
+            radii in prop::collection::vec(0.5..5.0f64, 3..12),
+            turned in any::<bool>(),
+            point in prop::array::uniform2(-5.0..5.0f64),
+        ) {
+            let count = radii.len() as f64;
+            let mut star: Vec<[f64; 2]> = radii.iter().enumerate().map(|(k, radius)| {
+                let angle = std::f64::consts::TAU * k as f64 / count;
+                [radius * libm::cos(angle), radius * libm::sin(angle)]
+            }).collect();
+            if turned {
+                star.reverse();
+            }
+            let zone = Zone::polygon(star);
+            let corners = corners(&zone);
+            let triangles = triangles(&corners);
+            prop_assert_eq!(triangles.len(), corners.len() - 2);
+            let holds = triangles.iter().filter(|triangle| is_within(triangle.map(|k| corners[k as usize]), point));
+            prop_assert_eq!(holds.count(), usize::from(zone.contains(point)));
+        }
+    }
+}
