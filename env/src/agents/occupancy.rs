@@ -2,9 +2,10 @@
 //! found in
 //! `flood.rs`.
 
-use driftworld_spec::World;
+use driftworld_spec::{World, Zone};
 
 use super::grid::Grid;
+use crate::ground;
 use crate::polygon::is_near_or_inside;
 use crate::scene::Scene;
 
@@ -16,6 +17,9 @@ const CLEARANCE: f32 = 0.15;
 fn clearance(corridor: f32, body: f32) -> f32 {
     CLEARANCE.min((corridor / 2.0 - body) / 2.0).max(0.0)
 }
+
+/// How far the agent's middle keeps from zones that cost, in metres.
+const ZONE_CLEARANCE: f32 = 0.35;
 
 /// How often each cell is taken: by walls once, and once by each object that is led around. What did not change since
 /// the last way is kept.
@@ -37,6 +41,8 @@ struct Walls {
     /// The least width between walls of the layout, in metres.
     corridor: f32,
     regions: Vec<Vec<[f64; 2]>>,
+    /// Zones that cost, or end an episode as a failure: ways lead around them where they can.
+    zones: Vec<Zone>,
 }
 
 /// Ground that an object takes, for the agent's middle.
@@ -179,10 +185,12 @@ impl OccupancyGrid {
     fn block_walls(&mut self, world: &World, scene: &Scene) {
         let (arena_size, body) = (scene.arena_size(), world.agent_params.agent_width as f32 / 2.0);
         let corridor = world.plan().map_or(f32::INFINITY, |plan| plan.corridor as f32);
+        let zones = || world.environment_params.zones.iter().filter(|zone| zone.is_costly());
         let known = &self.walls;
         if !self.taken.is_empty()
             && (known.arena_size, known.body, known.corridor) == (arena_size, body, corridor)
             && known.regions.iter().map(Vec::as_slice).eq(world.obstacles())
+            && known.zones.iter().eq(zones())
         {
             return;
         }
@@ -215,12 +223,25 @@ impl OccupancyGrid {
                 }
             }
         }
+        for zone in zones() {
+            let Some([low, high]) = zone.bounds() else { continue };
+            let [low, high] = [(low, -ZONE_CLEARANCE), (high, ZONE_CLEARANCE)]
+                .map(|(place, by)| place.map(|metres| metres as f32 + by));
+            let corners = ground::corners(zone);
+            let corners = corners.iter().map(|corner| corner.map(|metres| metres as f32));
+            for cell in grid.within(low, high) {
+                if self.taken[cell] == 0 && is_near_or_inside(corners.clone(), grid.centre(cell), ZONE_CLEARANCE) {
+                    self.taken[cell] = 1;
+                }
+            }
+        }
         let regions = world.obstacles().map(<[[f64; 2]]>::to_vec).collect();
         self.walls = Walls {
             arena_size,
             body,
             corridor,
             regions,
+            zones: zones().cloned().collect(),
         };
     }
 }

@@ -1,12 +1,13 @@
 //! The policy on rails: it knows the map, and tours what pays. How it goes to one object is in `steering.rs`; the agent
 //! that acts by it, in `on_rails.rs`. A world on rails steers by it, too.
 
-use driftworld_spec::{EndCondition, Object, RailsProgress, Stimulus, World};
+use driftworld_spec::{EndCondition, Object, RailsProgress, Stimulus, World, Zone};
 
 use super::errands::Errands;
 use super::nearest::Goal;
 use super::route::Route;
-use super::steering::{Purpose, Target, avoided, distance};
+use super::steering::{Purpose, Target, avoided, distance, walk};
+use crate::ground;
 use crate::scene::Scene;
 use crate::sim::SimRef;
 
@@ -22,6 +23,8 @@ pub(crate) struct RailsPolicy {
     target: Option<Target>,
     steps_on_target: u32,
     given_up: Vec<usize>,
+    /// Where the route leads while nothing but a zone is wanted.
+    zone_goal: Option<[f32; 2]>,
     /// Leads to the target. Boxed: agents are moved about, and this is large.
     route: Box<Route>,
     /// Plans in worlds with doors and things, in place of the tour.
@@ -75,6 +78,7 @@ impl RailsPolicy {
             target,
             steps_on_target: progress.steps_on_target,
             given_up: progress.given_up.iter().map(|index| *index as usize).collect(),
+            zone_goal: None,
             route,
             errands: Box::default(),
         }
@@ -131,6 +135,9 @@ impl RailsPolicy {
 
     fn towards(&mut self, sim: SimRef) -> [f64; 3] {
         let Some(target) = &self.target else {
+            if let Some(step) = self.towards_zone(sim) {
+                return step;
+            }
             return if stands_in_the_way(sim) { back(sim) } else { [0.0; 3] };
         };
         let object = &sim.world.objects[target.object];
@@ -146,6 +153,29 @@ impl RailsPolicy {
 }
 
 impl RailsPolicy {
+    /// The next step into the zone that is best to be in, and none once it is there; `None` without such a zone.
+    fn towards_zone(&mut self, sim: SimRef) -> Option<[f64; 3]> {
+        let here = sim.agent().position;
+        let zones = sim.world.environment_params.zones.iter();
+        let wanted = zones.filter(|zone| zone.is_wanted());
+        let goals = wanted.filter_map(|zone| Some((zone, ground::middle(zone)?.map(|metres| metres as f32))));
+        // What ends the episode well, then what pays most; of equals the nearest.
+        let value = |zone: &Zone| (zone.ends.is_some(), zone.reward_per_second, zone.reward_on_entering);
+        let (zone, goal) = goals.max_by(|(a, to_a), (b, to_b)| {
+            let (a, b) = (value(a), value(b));
+            let pay = a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.total_cmp(&b.2));
+            pay.then(distance(here, *to_b).total_cmp(&distance(here, *to_a)))
+        })?;
+        if zone.contains(here.map(f64::from)) {
+            return Some([0.0; 3]);
+        }
+        if self.zone_goal != Some(goal) {
+            self.route.lead(sim.world, sim.scene(), goal, &avoided(sim, None));
+            self.zone_goal = Some(goal);
+        }
+        Some(walk(goal, sim, &mut self.route))
+    }
+
     /// What it does next, as speed, turn rate and interaction, whatever actions the world takes.
     pub(crate) fn steer(&mut self, sim: SimRef) -> [f64; 3] {
         if sim.state.has_things {
@@ -164,6 +194,9 @@ impl RailsPolicy {
             self.choose(sim);
         } else if wanted.is_empty() {
             self.target = None;
+        }
+        if self.target.is_some() {
+            self.zone_goal = None;
         }
         if let Some(target) = self.target.as_mut().filter(|target| target.is_astray(sim)) {
             *target = Target::at(target.object, sim, &mut self.route);

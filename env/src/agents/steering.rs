@@ -1,13 +1,16 @@
 //! Walking to one object: the way there, the next step on it, and that step as an action of the world. Which object is
 //! chosen by the agents.
 
-use driftworld_spec::{ActionModel, ActionSpace, MotionModel, Object};
+use driftworld_spec::{ActionModel, ActionSpace, MotionModel, Object, Zone};
 
 use super::route::Route;
 use crate::sim::{Action, SimRef};
 
 /// Metres within which an object is walked at straight, whatever the way.
 const NEAR: f32 = 2.0;
+
+/// The same in a world with zones that cost.
+const NEAR_BESIDE_ZONES: f32 = 1.2;
 
 /// Metres within which an agent that means to interact does so.
 const REACH: f32 = 3.0;
@@ -60,34 +63,38 @@ impl Target {
 
     /// The next step on the way, by the route that leads here, as speed, turn rate and interaction.
     pub(super) fn towards(&self, sim: SimRef, purpose: Purpose, route: &mut Route) -> [f64; 3] {
-        let world = sim.world;
-        let agent = sim.agent();
         let goal = sim.objects()[self.object].position;
-        let straight = distance(agent.position, goal);
-        let point = if straight < NEAR {
-            goal
-        } else {
-            route.next(agent.position, 3)
-        };
-        let way = [point[0] - agent.position[0], point[1] - agent.position[1]];
-        let wanted = libm::atan2f(way[0], way[1]).to_degrees();
-        let off = (wanted - agent.heading_deg + 540.0).rem_euclid(360.0) - 180.0;
-        let seconds = world.agent_params.time_step as f32 * world.agent_params.frame_skip as f32;
-        // Not past the next point, and not at full speed into a turn.
-        let reach = (distance(agent.position, point) + 0.3) / seconds;
-        let after_turn = (off.abs() - world.agent_params.max_angular_speed as f32 * seconds).max(0.0);
-        let speed = if after_turn > 25.0 {
-            0.0
-        } else {
-            reach.min(world.agent_params.max_linear_speed as f32)
-        };
-        let interact = purpose == Purpose::Interact && straight < REACH;
-        [
-            f64::from(speed),
-            f64::from(off / seconds),
-            if interact { 1.0 } else { 0.0 },
-        ]
+        let [speed, turn, _] = walk(goal, sim, route);
+        let interact = purpose == Purpose::Interact && distance(sim.agent().position, goal) < REACH;
+        [speed, turn, if interact { 1.0 } else { 0.0 }]
     }
+}
+
+/// The next step of the way to a place to which the route leads, as speed, turn rate and no interaction.
+pub(super) fn walk(goal: [f32; 2], sim: SimRef, route: &mut Route) -> [f64; 3] {
+    let world = sim.world;
+    let agent = sim.agent();
+    // Beside what costs no corner is cut.
+    let costs = world.environment_params.zones.iter().any(Zone::is_costly);
+    let (near, ahead) = if costs { (NEAR_BESIDE_ZONES, 1) } else { (NEAR, 3) };
+    let point = if distance(agent.position, goal) < near {
+        goal
+    } else {
+        route.next(agent.position, ahead)
+    };
+    let way = [point[0] - agent.position[0], point[1] - agent.position[1]];
+    let wanted = libm::atan2f(way[0], way[1]).to_degrees();
+    let off = (wanted - agent.heading_deg + 540.0).rem_euclid(360.0) - 180.0;
+    let seconds = world.agent_params.time_step as f32 * world.agent_params.frame_skip as f32;
+    // Not past the next point, and not at full speed into a turn.
+    let reach = (distance(agent.position, point) + if costs { 0.0 } else { 0.3 }) / seconds;
+    let after_turn = (off.abs() - world.agent_params.max_angular_speed as f32 * seconds).max(0.0);
+    let speed = if after_turn > if costs { 5.0 } else { 25.0 } {
+        0.0
+    } else {
+        reach.min(world.agent_params.max_linear_speed as f32)
+    };
+    [f64::from(speed), f64::from(off / seconds), 0.0]
 }
 
 /// The objects that a way to `goal` leads around: what stands fast and is solid or costs. Without a goal all of them,
