@@ -4,7 +4,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::env::{Action, Autoreset, Batch, BatchOptions, Environment, Renderer, RendererKind};
-use crate::spec::{Modality, World};
+use crate::generator::Sampler;
+use crate::spec::{Modality, TaskSpec, World};
 use serde_json::json;
 
 use crate::Failure;
@@ -16,6 +17,15 @@ const ARENA_20: &str = include_str!("../../env/benches/scenes/arena_20.json");
 
 /// The same with 8 objects.
 const ARENA_8: &str = include_str!("../../env/benches/scenes/arena_8.json");
+
+/// A maze drawn for each world, with a goal. The agent starts in the middle of a cell.
+const MAZE: &str = r#"{ "version": 2, "name": "maze",
+    "world": {
+        "environment_params": { "layout": { "maze": { "cells": [8, 8], "cell": 3, "height": 2.5, "braid": 0.2 } } },
+        "agent_params": { "coordinates": [1.5, 1.5], "observation_size": 84,
+                          "modalities": ["rgb", "depth", "segmentation"] } },
+    "groups": [{ "name": "goal", "count": 1, "placement": { "points": { "values": [[10.5, 10.5]] } },
+                 "object": { "class": "geometric", "scale": 0.4, "reward": 1, "reward_once_stimulus": ["AgentCollide"] } }] }"#;
 
 /// Environments that step together: few enough that their pictures stay near the processor.
 const NUM_ENVS: usize = 16;
@@ -37,6 +47,7 @@ pub(crate) fn measure(round: Duration, renderer: RendererKind) -> Result<Figures
     let square = arena(ARENA_20, [84, 84])?;
     let wide = arena(ARENA_20, [160, 120])?;
     let small = in_color(arena(ARENA_8, [64, 64])?)?;
+    let mazes = mazes()?;
     let one = steps(&square, NUM_ENVS, 1, round)?;
     let mut environment = Environment::new(square.clone());
     let mut figures = rates([
@@ -47,6 +58,17 @@ pub(crate) fn measure(round: Duration, renderer: RendererKind) -> Result<Figures
             "resets_per_second_per_core",
             rate(round, |_| {
                 environment.reset(square.clone());
+                Ok::<_, Failure>(())
+            })?,
+        ),
+        (
+            "steps_per_second_per_core_maze_84",
+            steps(&mazes.world(0)?, NUM_ENVS, 1, round)?,
+        ),
+        (
+            "resets_per_second_per_core_maze",
+            rate(round, |index| {
+                environment.reset(mazes.world(index)?);
                 Ok::<_, Failure>(())
             })?,
         ),
@@ -73,6 +95,13 @@ fn measure_graphics(round: Duration) -> Result<Figures, Failure> {
         ("gpu_steps_per_second_84_rgb_batch_1024", steps(&colors, 1024)?),
         ("gpu_steps_per_second_84_rgb_batch_4096", steps(&colors, 4096)?),
     ]))
+}
+
+/// Mazes of 8 × 8 cells with a goal and images of 84 × 84 pixels in colour, depth and segmentation; each world has one of
+/// its own.
+fn mazes() -> Result<Sampler, Failure> {
+    let task = TaskSpec::from_json("maze.json", MAZE)?;
+    Ok(Sampler::new(&task.variant("default")?, 7))
 }
 
 /// A scene with colour alone.
