@@ -6,7 +6,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use driftworld_env::{Action, Autoreset, Batch, BatchOptions, Environment};
-use driftworld_spec::{Modality, MotionModel, Object, Pushable, Stimulus, World, WorldDraft};
+use driftworld_spec::{
+    Door, Modality, MotionModel, Object, Portable, Pushable, StateFeature, Stimulus, Switch, World, WorldDraft,
+};
 
 /// The system's allocator, counting how often it is asked for memory.
 struct Counting;
@@ -92,6 +94,45 @@ fn world_with_a_far_body() -> World {
     world
 }
 
+/// Doors of all kinds, a switch and things to carry, in a room that is too small to miss them.
+fn world_with_things() -> World {
+    let both = || vec![Stimulus::AgentCollide, Stimulus::AgentInteract];
+    let mut objects = Vec::new();
+    for (number, at) in [[0.0, 2.0], [2.0, 0.0], [0.0, -2.0], [-2.0, 0.0]]
+        .into_iter()
+        .enumerate()
+    {
+        let mut door = Object::new("door", at);
+        (door.heading, door.tag) = (90.0 * number as f64, Some("gate".to_owned()));
+        (door.reward, door.reward_stimulus) = (1.0, both());
+        door.door = Some(Door {
+            opens_on: both(),
+            closes_on: vec![Stimulus::AgentInteract],
+            closes_after: (number == 1).then_some(0.5),
+            period: (number == 2).then_some(0.9),
+            ..Door::default()
+        });
+        let mut key = Object::new("key", [at[0] * 0.6 + 0.5, at[1] * 0.6 - 0.5]);
+        (key.portable, key.reward, key.reward_stimulus) = (Some(Portable::default()), 1.0, both());
+        objects.extend([door, key]);
+    }
+    let mut lever = Object::new("switch", [1.6, 1.6]);
+    lever.switch = Some(Switch {
+        on: both(),
+        ..Switch::of("gate")
+    });
+    objects.push(lever);
+    let mut world = WorldDraft {
+        objects,
+        ..WorldDraft::default()
+    };
+    world.environment_params.map_size = [7.0, 7.0];
+    (world.agent_params.agent_width, world.agent_params.carry_limit) = (0.4, 3);
+    world.agent_params.modalities = Vec::new();
+    world.agent_params.state_features = vec![StateFeature::Position, StateFeature::Carrying];
+    world.check().expect("the world is sound")
+}
+
 /// How often memory was taken in so many steps of a batch that has warmed up, and what these steps paid in all.
 fn taken(world: World, num_threads: usize, steps: usize) -> (u64, f64) {
     const NUM_ENVS: usize = 8;
@@ -124,6 +165,9 @@ fn steps_take_no_memory() {
     assert_eq!(taken_alone, 0, "on one thread");
     let (taken_beside_a_body, _) = taken(world_with_a_far_body(), 1, 300);
     assert_eq!(taken_beside_a_body, 0, "what can be pushed costs nothing until it is");
+    let (taken_by_things, paid) = taken(world_with_things(), 1, 600);
+    assert!(paid > 100.0, "doors open and things are picked up: {paid}");
+    assert_eq!(taken_by_things, 0, "doors, switches and things");
     // Handing work to other threads takes a block of the pool's queue for every 63 times, whatever the number of
     // environments.
     let (taken_by_two, _) = taken(world(), 2, 300);

@@ -2,15 +2,19 @@
 
 use driftworld_env::{Agent, Environment, OnRailsAgent};
 use driftworld_spec::{
-    ActionModel, ActionSpace, Delivery, Door, EndCondition, Object, Portable, Stimulus, Switch, SwitchAction, Wall, World,
-    WorldDraft,
+    ActionModel, ActionSpace, Delivery, Door, EndCondition, Object, Portable, Stimulus, Switch, SwitchAction, Wall,
+    World, WorldDraft,
 };
 use proptest::prelude::*;
 
 /// Three rooms in a row, 6 × 8 m each, with walls between them that have a doorway of 1.5 m: at x −3 and at x 3. The agent is in
 /// the middle one.
 fn rooms(doorways: [f64; 2]) -> WorldDraft {
-    let mut world = WorldDraft { max_steps: 3000, seed: Some(3), ..WorldDraft::default() };
+    let mut world = WorldDraft {
+        max_steps: 3000,
+        seed: Some(3),
+        ..WorldDraft::default()
+    };
     world.environment_params.map_size = [18.0, 8.0];
     let wall = |x: f64, from: f64, to: f64| Wall {
         polygon: vec![[x - 0.15, from], [x + 0.15, from], [x + 0.15, to], [x - 0.15, to]],
@@ -18,7 +22,10 @@ fn rooms(doorways: [f64; 2]) -> WorldDraft {
         color: None,
     };
     for (x, y) in [-3.0, 3.0].into_iter().zip(doorways) {
-        world.environment_params.walls.extend([wall(x, -4.0, y - 0.75), wall(x, y + 0.75, 4.0)]);
+        world
+            .environment_params
+            .walls
+            .extend([wall(x, -4.0, y - 0.75), wall(x, y + 0.75, 4.0)]);
     }
     world.agent_params.agent_width = 0.8;
     world.agent_params.max_linear_speed = 3.0;
@@ -39,7 +46,10 @@ fn door(tag: &str, at: [f64; 2], door: Door) -> Object {
 }
 
 fn locked(key: &str) -> Door {
-    Door { key: Some(key.to_owned()), ..Door::default() }
+    Door {
+        key: Some(key.to_owned()),
+        ..Door::default()
+    }
 }
 
 fn key(tag: &str, at: [f64; 2]) -> Object {
@@ -99,8 +109,14 @@ fn it_opens_the_one_door_on_its_way_by_hand_and_by_touch() {
     for stimulus in [Stimulus::AgentInteract, Stimulus::AgentCollide] {
         check("one door", |ways, unit| {
             let mut world = rooms(ways);
-            let leaf = Door { opens_on: vec![stimulus], ..Door::default() };
-            world.objects = vec![door("a", [3.0, ways[1]], leaf), goal([6.0 + unit(1), unit(2) * 5.0 - 2.5])];
+            let leaf = Door {
+                opens_on: vec![stimulus],
+                ..Door::default()
+            };
+            world.objects = vec![
+                door("a", [3.0, ways[1]], leaf),
+                goal([6.0 + unit(1), unit(2) * 5.0 - 2.5]),
+            ];
             world.rules.success = vec![touch()];
             world
         });
@@ -139,8 +155,14 @@ fn it_sets_off_switches_and_waits_for_clocks() {
     check("a switch", |ways, unit| {
         let mut world = rooms(ways);
         let mut lever = thing("switch", "lever", [-6.0, unit(0) * 4.0 - 2.0]);
-        lever.switch = Some(Switch { action: SwitchAction::Open, ..Switch::of("a") });
-        let shut = Door { opens_on: Vec::new(), ..Door::default() };
+        lever.switch = Some(Switch {
+            action: SwitchAction::Open,
+            ..Switch::of("a")
+        });
+        let shut = Door {
+            opens_on: Vec::new(),
+            ..Door::default()
+        };
         world.objects = vec![
             door("a", [3.0, ways[1]], shut),
             door("b", [-3.0, ways[0]], Door::default()),
@@ -152,7 +174,11 @@ fn it_sets_off_switches_and_waits_for_clocks() {
     });
     check("a clock", |ways, unit| {
         let mut world = rooms(ways);
-        let clock = Door { opens_on: Vec::new(), period: Some(4.0 + 8.0 * unit(1)), ..Door::default() };
+        let clock = Door {
+            opens_on: Vec::new(),
+            period: Some(4.0 + 8.0 * unit(1)),
+            ..Door::default()
+        };
         world.objects = vec![door("a", [3.0, ways[1]], clock), goal([7.0, unit(2) * 5.0 - 2.5])];
         world.rules.success = vec![touch()];
         world
@@ -186,9 +212,19 @@ fn it_opens_carries_and_delivers_where_a_rule_asks_for_it() {
         let mut world = rooms(ways);
         let mut first = key("ball", [-6.0, unit(0) * 5.0 - 2.5]);
         first.class = "pot".to_owned();
-        let second = Object { coordinates: [unit(1) * 2.0 - 1.0, 3.0], ..first.clone() };
+        let second = Object {
+            coordinates: [unit(1) * 2.0 - 1.0, 3.0],
+            ..first.clone()
+        };
         world.objects = vec![
-            door("a", [3.0, ways[1]], Door { closes_after: Some(3.0), ..Door::default() }),
+            door(
+                "a",
+                [3.0, ways[1]],
+                Door {
+                    closes_after: Some(3.0),
+                    ..Door::default()
+                },
+            ),
             door("b", [-3.0, ways[0]], Door::default()),
             first,
             second,
@@ -230,15 +266,36 @@ fn it_opens_doors_in_the_order_of_a_sequence_and_takes_what_pays_first() {
     });
 }
 
+/// The world of `docs/things.md` is as the page says.
+#[test]
+fn the_world_of_the_page_is_solved() {
+    let page = include_str!("../../docs/things.md");
+    let text = page.split("```").find_map(|part| part.strip_prefix("json\n"));
+    let world = World::from_json("docs/things.md", text.expect("the page has a world")).expect("it is sound");
+    assert_eq!(world.remarks("docs/things.md", text.unwrap_or_default()), []);
+    assert!(solved(&world).is_some_and(|steps| steps < 300));
+}
+
 /// What cannot be done is not tried: the agent stands still, and the episode ends by its limit.
 #[test]
 fn it_does_nothing_where_nothing_can_be_done() {
     let stands = |change: &dyn Fn(&mut WorldDraft)| {
         let mut world = rooms([0.0, 0.0]);
         world.max_steps = 200;
-        world.objects = vec![door("a", [3.0, 0.0], locked("red")), key("red", [7.0, 2.0]), goal([7.0, -2.0])];
+        world.objects = vec![
+            door("a", [3.0, 0.0], locked("red")),
+            key("red", [7.0, 2.0]),
+            goal([7.0, -2.0]),
+        ];
         // The other room is shut for good.
-        world.objects.push(door("b", [-3.0, 0.0], Door { opens_on: Vec::new(), ..Door::default() }));
+        world.objects.push(door(
+            "b",
+            [-3.0, 0.0],
+            Door {
+                opens_on: Vec::new(),
+                ..Door::default()
+            },
+        ));
         world.rules.success = vec![touch()];
         change(&mut world);
         let mut environment = Environment::new(world.check().expect("the world is sound"));
@@ -249,7 +306,10 @@ fn it_does_nothing_where_nothing_can_be_done() {
             let step = environment.step(action).expect("the agent's actions are sound");
             assert!(step.events.is_empty(), "{:?}", step.events);
         }
-        assert_eq!((environment.agent().position, environment.num_steps()), (start.position, 200));
+        assert_eq!(
+            (environment.agent().position, environment.num_steps()),
+            (start.position, 200)
+        );
     };
     stands(&|_| {});
     let key_is_here = |world: &mut WorldDraft| world.objects[1].coordinates = [0.0, 3.0];
@@ -263,11 +323,15 @@ fn it_does_nothing_where_nothing_can_be_done() {
     });
     stands(&|world| {
         key_is_here(world);
-        world.agent_params.actions = ActionSpace::Discrete(vec![[3.0, 0.0, 0.0], [0.0, 90.0, 0.0], [0.0, -90.0, 0.0], [0.0; 3]]);
+        world.agent_params.actions =
+            ActionSpace::Discrete(vec![[3.0, 0.0, 0.0], [0.0, 90.0, 0.0], [0.0, -90.0, 0.0], [0.0; 3]]);
     });
     let closed_switch = |world: &mut WorldDraft| {
         let mut lever = thing("switch", "lever", [0.0, 2.0]);
-        lever.switch = Some(Switch { action: SwitchAction::Close, ..Switch::of("a") });
+        lever.switch = Some(Switch {
+            action: SwitchAction::Close,
+            ..Switch::of("a")
+        });
         world.objects.push(lever);
     };
     stands(&closed_switch);

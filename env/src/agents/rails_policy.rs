@@ -61,7 +61,10 @@ impl RailsPolicy {
             errands.target = progress.target.filter(known);
             errands.steps_on_target = progress.steps_on_target;
             errands.given_up = progress.given_up.iter().copied().filter(known).collect();
-            return Self { errands, ..Self::default() };
+            return Self {
+                errands,
+                ..Self::default()
+            };
         }
         let mut route = Box::<Route>::default();
         let target = progress.target.filter(known).map(|object| {

@@ -355,26 +355,6 @@ impl CollisionWorld {
         num_corners
     }
 
-    /// How far a point is from an object's body up to the agent's height, in metres; `None` while it is not there.
-    pub(super) fn distance_of(&self, object: u32, at: Point) -> Option<f64> {
-        self.handles[object as usize].map(|handle| self.low[slot(handle)].gap(at).distance)
-    }
-
-    /// Whether a round body comes straight from one place to another without meeting a wall or a solid object.
-    pub(super) fn is_way_free(&self, from: [f32; 2], to: [f32; 2], radius: f64) -> bool {
-        let reach = radius as f32 + 0.01;
-        let area = [
-            [0, 1].map(|axis| from[axis].min(to[axis]) - reach),
-            [0, 1].map(|axis| from[axis].max(to[axis]) + reach),
-        ];
-        let (start, by) = (
-            from.map(f64::from),
-            [0, 1].map(|axis| f64::from(to[axis]) - f64::from(from[axis])),
-        );
-        let mut around = self.around(SOLID | WALL, None, area);
-        !around.any(|handle| self.whole[slot(handle)].time_within(start, by, radius).is_some())
-    }
-
     /// The outline of an object, while it is there.
     pub(super) fn outline_of(&self, object: u32) -> Option<&Outline> {
         self.handles[object as usize].map(|handle| &self.standing[slot(handle)].outline)

@@ -3,8 +3,11 @@
 
 use driftworld_spec::{Object, Stimulus, SwitchAction, World};
 
+use super::collision_world::{CollisionWorld, slot};
 use super::doors::{close_soon, open};
 use super::event::Effect;
+use super::footprint::Point;
+use super::groups::{SOLID, WALL};
 use super::sim_ref::SimRef;
 use super::state::SimState;
 use super::views::Views;
@@ -184,5 +187,27 @@ pub(super) fn put_down(world: &World, state: &mut SimState, views: &mut Views, i
 pub(super) fn follow(state: &mut SimState) {
     for index in &state.carried {
         state.objects[*index as usize].position = state.agent.position;
+    }
+}
+
+impl CollisionWorld {
+    /// How far a point is from an object's body up to the agent's height, in metres; `None` while it is not there.
+    pub(super) fn distance_of(&self, object: u32, at: Point) -> Option<f64> {
+        self.handles[object as usize].map(|handle| self.low[slot(handle)].gap(at).distance)
+    }
+
+    /// Whether a round body comes straight from one place to another without meeting a wall or a solid object.
+    pub(super) fn is_way_free(&self, from: [f32; 2], to: [f32; 2], radius: f64) -> bool {
+        let reach = radius as f32 + 0.01;
+        let area = [
+            [0, 1].map(|axis| from[axis].min(to[axis]) - reach),
+            [0, 1].map(|axis| from[axis].max(to[axis]) + reach),
+        ];
+        let (start, by) = (
+            from.map(f64::from),
+            [0, 1].map(|axis| f64::from(to[axis]) - f64::from(from[axis])),
+        );
+        let mut around = self.around(SOLID | WALL, None, area);
+        !around.any(|handle| self.whole[slot(handle)].time_within(start, by, radius).is_some())
     }
 }

@@ -16,16 +16,7 @@ pub(super) fn as_read(object: &Object) -> Object {
         &read.reward_once_stimulus,
         &read.destroy_stimulus,
     ];
-    let moves = [
-        read.door.as_ref().map(|door| &door.opens_on),
-        read.door.as_ref().map(|door| &door.closes_on),
-        read.switch.as_ref().map(|switch| &switch.on),
-        read.portable.as_ref().map(|portable| &portable.on),
-    ];
-    let has_range = stimuli
-        .into_iter()
-        .chain(moves.into_iter().flatten())
-        .any(|list| list.contains(&Stimulus::AgentInRange));
+    let has_range = stimuli.iter().any(|list| list.contains(&Stimulus::AgentInRange)) || is_moved_in_range(object);
     if !has_range {
         read.range_stimulus_distance = plain.range_stimulus_distance;
     }
@@ -46,4 +37,13 @@ pub(super) fn as_read(object: &Object) -> Object {
         read.waypoints.clear();
     }
     read
+}
+
+/// Whether coming near moves it: opens or closes it, sets it off, picks it up.
+fn is_moved_in_range(object: &Object) -> bool {
+    let is_near = |list: &Vec<Stimulus>| list.contains(&Stimulus::AgentInRange);
+    let door = object.door.as_ref();
+    door.is_some_and(|door| is_near(&door.opens_on) || is_near(&door.closes_on))
+        || object.switch.as_ref().is_some_and(|switch| is_near(&switch.on))
+        || object.portable.as_ref().is_some_and(|portable| is_near(&portable.on))
 }

@@ -3,8 +3,10 @@
 
 use driftworld_spec::Stimulus;
 
-use super::floor::{Floor, Leaf, Room};
+use super::floor::{Floor, Room};
+use super::leaf::Leaf;
 use super::plan::can_interact;
+use super::ways::Bringing;
 use super::wishes::moving_stimulus;
 use crate::sim::{SimRef, answering, put_down_place};
 
@@ -111,16 +113,20 @@ impl Task {
         }
         let radius = sim.body_radius(thing as usize);
         let ahead = sim.world.agent_params.agent_width as f32 / 2.0 + radius + 0.1;
-        let least = Leaf::of(sim, self.object as usize).own_radius() + radius + 0.1;
+        let least = Leaf::of(sim, self.object as usize).reach() + radius + 0.1;
         let most = (within - 0.1).max(least.min(within)) + ahead;
         let least = (least + ahead).min(most - 0.05);
-        floor.lead(floor.cells_around(to, [least, most], self.room));
+        let bringing = Bringing {
+            to: self.object,
+            room: self.room,
+            radius,
+            ahead,
+            from: [least, most],
+        };
+        floor.lead_to_bring(sim, bringing);
         match floor.next(sim.agent().position) {
             Some(point) => walk(sim, point, 0.2),
-            None if off(sim, to).abs() > 2.0 => [0.0, turn(sim, to), 0.0],
-            // It looks there, and there is no room: elsewhere around it there may be.
-            None if length(sim.agent().position, to) < least => [-0.5, 0.0, 0.0],
-            None => walk(sim, to, 0.0),
+            None => [0.0, turn(sim, to), 0.0],
         }
     }
 
@@ -136,10 +142,13 @@ impl Task {
             driftworld_spec::EndCondition::Delivered(delivery) => Some(delivery),
             _ => None,
         });
-        let is_ours = |delivery: &&driftworld_spec::Delivery| {
-            tags == [Some(delivery.tag.as_str()), Some(delivery.to.as_str())]
-        };
-        deliveries.filter(is_ours).map(|delivery| delivery.within as f32).fold(f32::INFINITY, f32::min).min(1000.0)
+        let is_ours =
+            |delivery: &&driftworld_spec::Delivery| tags == [Some(delivery.tag.as_str()), Some(delivery.to.as_str())];
+        deliveries
+            .filter(is_ours)
+            .map(|delivery| delivery.within as f32)
+            .fold(f32::INFINITY, f32::min)
+            .min(1000.0)
     }
 }
 
@@ -180,7 +189,11 @@ fn walk(sim: SimRef, point: [f32; 2], past: f32) -> [f64; 3] {
     let (off, seconds) = (off(sim, point), seconds(sim));
     let reach = (length(sim.agent().position, point) + past) / seconds;
     let after_turn = (off.abs() - agent.max_angular_speed as f32 * seconds).max(0.0);
-    let speed = if after_turn > 20.0 { 0.0 } else { reach.min(agent.max_linear_speed as f32) };
+    let speed = if after_turn > 20.0 {
+        0.0
+    } else {
+        reach.min(agent.max_linear_speed as f32)
+    };
     [f64::from(speed), f64::from(off / seconds), 0.0]
 }
 

@@ -1,13 +1,11 @@
 //! The ground that the agent's middle can be on, in fine cells, with closed doors as what divides it into rooms. What is done
-//! about the doors is decided in `plan.rs`.
-
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+//! about the doors is decided in `plan.rs`, ways are found in `ways.rs`.
 
 use driftworld_spec::{MotionModel, World};
 
+use super::leaf::Leaf;
+use super::ways::{Bringing, Waiting};
 use crate::agents::grid::Grid;
-use crate::assets::ColliderShape;
 use crate::polygon::is_near_or_inside;
 use crate::sim::SimRef;
 
@@ -20,7 +18,7 @@ const LIKED: f32 = 0.25;
 
 /// How dear cells are: on open ground, beside walls, at what stands around, at what costs.
 const OPEN: u8 = 1;
-const BESIDE: u8 = 2;
+pub(super) const BESIDE: u8 = 2;
 const STANDS: u8 = 6;
 const COSTS: u8 = 20;
 
@@ -33,9 +31,9 @@ const NO_ROOM: Room = 0;
 
 /// What stands where, as far as it decides where ways lead.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Standing {
+pub(super) struct Standing {
     object: u32,
-    leaf: Leaf,
+    pub(super) leaf: Leaf,
     /// Whether it is a closed door; else it is dear, or costs.
     is_door: bool,
     weight: u8,
@@ -58,16 +56,18 @@ pub(super) struct Floor {
     /// What each cell costs by the walls alone; 0 where nobody can be.
     bare: Vec<u8>,
     /// The same with what stands around.
-    weight: Vec<u8>,
-    room: Vec<Room>,
-    standing: Vec<Standing>,
+    pub(super) weight: Vec<u8>,
+    pub(super) room: Vec<Room>,
+    pub(super) standing: Vec<Standing>,
     pub(super) doors: Vec<ClosedDoor>,
     /// Counts the changes, so that who looks again knows whether to.
     pub(super) version: u64,
-    field: Vec<u32>,
-    open: BinaryHeap<Reverse<(u32, u32)>>,
+    pub(super) field: Vec<u32>,
+    pub(super) open: Waiting,
     /// What `field` leads to, and in which version.
-    leads: Option<(u64, Vec<u32>)>,
+    pub(super) leads: Option<(u64, Vec<u32>)>,
+    /// For what it leads there, if for a thing that is put down.
+    pub(super) brings: Option<(u64, Bringing)>,
 }
 
 impl Floor {
@@ -82,11 +82,15 @@ impl Floor {
         self.version += 1;
         self.weight.clone_from(&self.bare);
         for number in 0..self.standing.len() {
-            let Standing { leaf, is_door, weight, .. } = self.standing[number];
+            let Standing {
+                leaf, is_door, weight, ..
+            } = self.standing[number];
             let margin = self.body + if is_door { 0.02 } else { LEAST };
             let at = leaf.at;
             let reach = leaf.reach() + margin;
-            let cells = self.grid.within(at.map(|metres| metres - reach), at.map(|metres| metres + reach));
+            let cells = self
+                .grid
+                .within(at.map(|metres| metres - reach), at.map(|metres| metres + reach));
             for cell in cells {
                 if leaf.distance(self.grid.centre(cell)) < margin && self.weight[cell] > 0 {
                     self.weight[cell] = if is_door { 0 } else { self.weight[cell].max(weight) };
@@ -110,7 +114,12 @@ impl Floor {
         let environment = &world.environment_params;
         let body = world.agent_params.agent_width as f32 / 2.0;
         let inner = environment.regions();
-        let regions = || inner.iter().copied().chain(environment.walls.iter().map(|wall| wall.polygon.as_slice()));
+        let regions = || {
+            inner
+                .iter()
+                .copied()
+                .chain(environment.walls.iter().map(|wall| wall.polygon.as_slice()))
+        };
         let is_same = !self.bare.is_empty() && (self.arena_size, self.body) == (arena_size, body);
         if is_same && self.regions.iter().map(Vec::as_slice).eq(regions()) {
             return false;
@@ -122,12 +131,17 @@ impl Floor {
         let half = arena_size.map(|metres| metres / 2.0);
         for cell in self.grid.within(half.map(|metres| -metres), half) {
             let at = self.grid.centre(cell);
-            let room = (0..2).map(|axis| half[axis] - at[axis].abs()).fold(f32::INFINITY, f32::min);
+            let room = (0..2)
+                .map(|axis| half[axis] - at[axis].abs())
+                .fold(f32::INFINITY, f32::min);
             self.bare[cell] = by_room(room - body);
         }
         for corners in regions() {
             let bound = |axis: usize, sign: f32| {
-                let reach = corners.iter().map(|corner| corner[axis] as f32 * sign).fold(f32::NEG_INFINITY, f32::max);
+                let reach = corners
+                    .iter()
+                    .map(|corner| corner[axis] as f32 * sign)
+                    .fold(f32::NEG_INFINITY, f32::max);
                 (reach + body + LIKED) * sign
             };
             let [low, high] = [-1.0, 1.0].map(|sign| [bound(0, sign), bound(1, sign)]);
@@ -172,10 +186,15 @@ impl Floor {
     /// The cell where the agent is: the nearest on which it can be.
     pub(super) fn cell_near(&self, at: [f32; 2]) -> Option<usize> {
         let reach = self.body + 2.0 * self.grid.side();
-        let cells = self.grid.within(at.map(|metres| metres - reach), at.map(|metres| metres + reach));
+        let cells = self
+            .grid
+            .within(at.map(|metres| metres - reach), at.map(|metres| metres + reach));
         let of_all = cells.filter(|cell| self.weight[*cell] > 0);
         let squared = |cell: usize| squared(self.grid.centre(cell), at);
-        of_all.map(|cell| (cell, squared(cell))).min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(cell, _)| cell)
+        of_all
+            .map(|cell| (cell, squared(cell)))
+            .min_by(|(_, a), (_, b)| a.total_cmp(b))
+            .map(|(cell, _)| cell)
     }
 
     /// The room that a place is in.
@@ -191,13 +210,21 @@ impl Floor {
     /// The room of the nearest cell beside a body, on one side of it if that is asked for.
     fn room_beside(&self, leaf: &Leaf, side: Option<f32>) -> Option<Room> {
         let reach = leaf.reach() + self.body + 0.6;
-        let cells = self.grid.within(leaf.at.map(|metres| metres - reach), leaf.at.map(|metres| metres + reach));
+        let cells = self.grid.within(
+            leaf.at.map(|metres| metres - reach),
+            leaf.at.map(|metres| metres + reach),
+        );
         let counts = |cell: &usize| {
             let [along, across] = leaf.own_axes(self.grid.centre(*cell));
-            self.weight[*cell] > 0 && side.is_none_or(|side| across * side > 0.0 && along.abs() <= leaf.half[0].max(0.1))
+            self.weight[*cell] > 0
+                && side.is_none_or(|side| across * side > 0.0 && along.abs() <= leaf.half[0].max(0.1))
         };
-        let near = cells.filter(counts).map(|cell| (cell, leaf.distance(self.grid.centre(cell))));
-        let nearest = near.filter(|(_, distance)| *distance < self.body + 0.6).min_by(|(_, a), (_, b)| a.total_cmp(b));
+        let near = cells
+            .filter(counts)
+            .map(|cell| (cell, leaf.distance(self.grid.centre(cell))));
+        let nearest = near
+            .filter(|(_, distance)| *distance < self.body + 0.6)
+            .min_by(|(_, a), (_, b)| a.total_cmp(b));
         nearest.map(|(cell, _)| self.room[cell])
     }
 
@@ -205,109 +232,27 @@ impl Floor {
     pub(super) fn cells_beside(&self, sim: SimRef, object: u32, room: Room) -> Vec<u32> {
         let leaf = Leaf::of(sim, object as usize);
         let reach = leaf.reach() + self.body + 0.6;
-        let cells = self.grid.within(leaf.at.map(|metres| metres - reach), leaf.at.map(|metres| metres + reach));
+        let cells = self.grid.within(
+            leaf.at.map(|metres| metres - reach),
+            leaf.at.map(|metres| metres + reach),
+        );
         let in_room: Vec<(usize, f32)> = cells
             .filter(|cell| self.weight[*cell] > 0 && self.room[*cell] == room)
-            .filter(|cell| leaf.own_axes(self.grid.centre(*cell))[0].abs() <= leaf.half[0] * 0.5 + 0.3 || !leaf.is_long())
+            .filter(|cell| {
+                leaf.own_axes(self.grid.centre(*cell))[0].abs() <= leaf.half[0] * 0.5 + 0.3 || !leaf.is_long()
+            })
             .map(|cell| (cell, leaf.distance(self.grid.centre(cell))))
             .collect();
-        let nearest = in_room.iter().map(|(_, distance)| *distance).fold(f32::INFINITY, f32::min);
+        let nearest = in_room
+            .iter()
+            .map(|(_, distance)| *distance)
+            .fold(f32::INFINITY, f32::min);
         let most = nearest.max(self.body + NEAR) + 1e-3;
-        in_room.into_iter().filter(|(_, distance)| *distance <= most).map(|(cell, _)| cell as u32).collect()
-    }
-
-    /// The cells of a room whose middles are so far from a place.
-    pub(super) fn cells_around(&self, at: [f32; 2], [least, most]: [f32; 2], room: Room) -> Vec<u32> {
-        let cells = self.grid.within(at.map(|metres| metres - most), at.map(|metres| metres + most));
-        let is_right = |cell: &usize| {
-            let away = squared(self.grid.centre(*cell), at).sqrt();
-            self.room[*cell] == room && (least..=most).contains(&away)
-        };
-        cells.filter(is_right).map(|cell| cell as u32).collect()
-    }
-
-    /// Leads to these cells from now on.
-    pub(super) fn lead(&mut self, goals: Vec<u32>) {
-        if self.leads.as_ref().is_some_and(|(version, old)| *version == self.version && *old == goals) {
-            return;
-        }
-        let mut field = std::mem::take(&mut self.field);
-        self.spread(&goals, &mut field);
-        self.field = field;
-        self.leads = Some((self.version, goals));
-    }
-
-    /// How dear the way is from each cell to the nearest of these, or from these to each.
-    pub(super) fn spread(&mut self, goals: &[u32], field: &mut Vec<u32>) {
-        field.clear();
-        field.resize(self.weight.len(), u32::MAX);
-        self.open.clear();
-        for cell in goals {
-            field[*cell as usize] = 0;
-            self.open.push(Reverse((0, *cell)));
-        }
-        while let Some(Reverse((here, cell))) = self.open.pop() {
-            let cell = cell as usize;
-            if here > field[cell] {
-                continue;
-            }
-            for (step, is_slanting) in self.grid.around() {
-                let other = cell.wrapping_add_signed(step);
-                if self.weight[other] == 0 || is_slanting && !self.is_corner_open(cell, step) {
-                    continue;
-                }
-                let through = here + u32::from(self.weight[other]) * if is_slanting { 7 } else { 5 };
-                if through < field[other] {
-                    field[other] = through;
-                    self.open.push(Reverse((through, other as u32)));
-                }
-            }
-        }
-    }
-
-    /// Whether a slanting step cuts no corner.
-    fn is_corner_open(&self, cell: usize, step: isize) -> bool {
-        let row = self.grid.stride() as isize * step.signum();
-        let column = step - row;
-        self.weight[cell.wrapping_add_signed(row)] > 0 && self.weight[cell.wrapping_add_signed(column)] > 0
-    }
-
-    /// Where to walk next from a place: the farthest point on the way that can be walked to straight. `None` at the goal, and
-    /// where no way leads.
-    pub(super) fn next(&self, from: [f32; 2]) -> Option<[f32; 2]> {
-        let start = self.cell_near(from)?;
-        if self.field[start] == 0 || self.field[start] == u32::MAX {
-            return None;
-        }
-        let (mut cell, mut best) = (start, self.grid.centre(start));
-        for _ in 0..15 {
-            let around = self.grid.around().into_iter();
-            let open = around.filter(|(step, is_slanting)| !is_slanting || self.is_corner_open(cell, *step));
-            let nearest = open.map(|(step, _)| cell.wrapping_add_signed(step)).min_by_key(|other| self.field[*other]);
-            let Some(nearest) = nearest.filter(|other| self.field[*other] < self.field[cell]) else {
-                break;
-            };
-            cell = nearest;
-            if self.is_clear(from, self.grid.centre(cell)) {
-                best = self.grid.centre(cell);
-            } else if best != self.grid.centre(start) {
-                break;
-            }
-        }
-        Some(best)
-    }
-
-    /// Whether nothing is in the way of a straight walk, but for where it begins.
-    fn is_clear(&self, from: [f32; 2], to: [f32; 2]) -> bool {
-        let length = squared(from, to).sqrt();
-        let count = (length / (self.grid.side() / 2.0)) as usize;
-        let dear = self.weight[self.grid.cell_at(from)].max(BESIDE);
-        (1..=count).all(|number| {
-            let share = number as f32 / count as f32;
-            let at = [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * share);
-            let weight = self.weight[self.grid.cell_at(at)];
-            (1..=dear).contains(&weight) || weight == 0 && share * length < 0.3
-        })
+        in_room
+            .into_iter()
+            .filter(|(_, distance)| *distance <= most)
+            .map(|(cell, _)| cell as u32)
+            .collect()
     }
 }
 
@@ -344,56 +289,6 @@ fn standing(sim: SimRef) -> Vec<Standing> {
     stands.collect()
 }
 
-/// What a body takes of the ground: a rectangle, or a disc.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Leaf {
-    at: [f32; 2],
-    /// Sine and cosine of its heading.
-    turn: [f32; 2],
-    half: [f32; 2],
-    rounding: f32,
-}
-
-impl Leaf {
-    pub(super) fn of(sim: SimRef, object: usize) -> Self {
-        let (item, own) = (&sim.scene().items[object], &sim.objects()[object]);
-        let heading = own.heading_deg.to_radians();
-        let (half, rounding) = match &item.body.collider {
-            ColliderShape::Box { half: [x, y, _] } => ([x * item.scale, y * item.scale], 0.0),
-            other => ([0.0; 2], other.radius() * item.scale),
-        };
-        Self { at: own.position, turn: [libm::sinf(heading), libm::cosf(heading)], half, rounding }
-    }
-
-    fn reach(&self) -> f32 {
-        (self.half[0] * self.half[0] + self.half[1] * self.half[1]).sqrt() + self.rounding
-    }
-
-    /// How far it reaches from its middle at most.
-    pub(super) fn own_radius(&self) -> f32 {
-        self.reach()
-    }
-
-    /// Whether it is much wider than deep, as doors are.
-    fn is_long(&self) -> bool {
-        self.half[0] > 3.0 * self.half[1] && self.half[0] > 0.3
-    }
-
-    /// A place to its right and ahead of it, in metres from its middle.
-    fn own_axes(&self, at: [f32; 2]) -> [f32; 2] {
-        let [dx, dy] = [at[0] - self.at[0], at[1] - self.at[1]];
-        let [sine, cosine] = self.turn;
-        [dx * cosine - dy * sine, dx * sine + dy * cosine]
-    }
-
-    /// How far a place is from it, in metres.
-    pub(super) fn distance(&self, at: [f32; 2]) -> f32 {
-        let [along, across] = self.own_axes(at);
-        let out = [(along.abs() - self.half[0]).max(0.0), (across.abs() - self.half[1]).max(0.0)];
-        (out[0] * out[0] + out[1] * out[1]).sqrt() - self.rounding
-    }
-}
-
-fn squared(a: [f32; 2], b: [f32; 2]) -> f32 {
+pub(super) fn squared(a: [f32; 2], b: [f32; 2]) -> f32 {
     (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)
 }

@@ -2,12 +2,14 @@
 //! that an episode does not allow.
 //!
 //! What it wants is in `wishes.rs`, what it does first for it in `plan.rs`, how it does it in `deed.rs`, where it walks in
-//! `floor.rs`. What it does next follows from where things are and from the one object that it has set its mind on, so that
+//! `floor.rs` and `ways.rs`. What it does next follows from where things are and from the one object that it has set its mind on, so that
 //! a world that was written down goes on as it would have.
 
 mod deed;
 mod floor;
+mod leaf;
 mod plan;
+mod ways;
 mod wishes;
 
 use deed::{Deed, Task};
@@ -84,7 +86,9 @@ impl Errands {
     fn choose<'a>(&mut self, sim: SimRef, wishes: &[Vec<Wish<'a>>; 2]) -> Option<Wish<'a>> {
         let plan = Plan::new(sim, &self.floor)?;
         let can_be = |wish: &&Wish| plan.first(**wish).is_some();
-        let possible = wishes.iter().map(|list| list.iter().filter(can_be).copied().collect::<Vec<_>>());
+        let possible = wishes
+            .iter()
+            .map(|list| list.iter().filter(can_be).copied().collect::<Vec<_>>());
         let mut possible = possible.filter(|list| !list.is_empty());
         let mut list = possible.next()?;
         if list.iter().all(|wish| self.given_up.contains(&wish.object())) {
@@ -121,14 +125,23 @@ impl Errands {
     }
 
     fn situation(&self, sim: SimRef, target: u32) -> Situation {
-        let used = sim.world.objects.iter().zip(sim.objects()).filter(|(object, _)| object.is_used());
+        let used = sim
+            .world
+            .objects
+            .iter()
+            .zip(sim.objects())
+            .filter(|(object, _)| object.is_used());
         Situation {
             version: self.floor.version,
             room: self.floor.room_at(sim.agent().position),
             target,
             unlocked: sim.state.unlocked().collect(),
             carried: sim.state.carried().to_vec(),
-            things: used.clone().filter(|(_, own)| own.present).map(|(_, own)| own.position.map(f32::to_bits)).collect(),
+            things: used
+                .clone()
+                .filter(|(_, own)| own.present)
+                .map(|(_, own)| own.position.map(f32::to_bits))
+                .collect(),
             is_due: used.map(|(object, _)| sim.state.is_due(object.order)).collect(),
         }
     }

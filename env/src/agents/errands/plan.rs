@@ -44,16 +44,30 @@ impl<'a> Plan<'a> {
     /// What can be reached, in rounds: each door is opened with what can be had without it.
     pub(super) fn new(sim: SimRef<'a>, floor: &'a Floor) -> Option<Self> {
         let here = floor.room_at(sim.agent().position)?;
-        let mut plan = Self { sim, floor, here, entered: Vec::new(), ways: Vec::new() };
+        let mut plan = Self {
+            sim,
+            floor,
+            here,
+            entered: Vec::new(),
+            ways: Vec::new(),
+        };
         loop {
-            let found: Vec<Way> = floor.doors.iter().filter_map(|door| plan.way_through(door.object, door.rooms)).collect();
+            let found: Vec<Way> = floor
+                .doors
+                .iter()
+                .filter_map(|door| plan.way_through(door.object, door.rooms))
+                .collect();
             if found.is_empty() {
                 return Some(plan);
             }
             for way in found {
                 let number = plan.ways.len();
                 plan.ways.push(way);
-                let rooms = floor.doors.iter().find(|door| door.object == way.door).map_or([None; 2], |door| door.rooms);
+                let rooms = floor
+                    .doors
+                    .iter()
+                    .find(|door| door.object == way.door)
+                    .map_or([None; 2], |door| door.rooms);
                 for room in rooms.into_iter().flatten() {
                     if !plan.can_reach(room) {
                         plan.entered.push((room, number));
@@ -68,7 +82,9 @@ impl<'a> Plan<'a> {
     }
 
     fn can_reach_object(&self, object: u32) -> bool {
-        self.floor.room_of(self.sim, object).is_some_and(|room| self.can_reach(room))
+        self.floor
+            .room_of(self.sim, object)
+            .is_some_and(|room| self.can_reach(room))
     }
 
     /// How a door that cannot be passed yet can be got open with what can be reached.
@@ -153,7 +169,9 @@ impl<'a> Plan<'a> {
                 let objects = 0..world.objects.len() as u32;
                 let mut places = objects.filter(|index| {
                     let is_there = self.sim.objects()[*index as usize].present;
-                    is_there && world.objects[*index as usize].tag.as_deref() == Some(tag) && self.can_reach_object(*index)
+                    is_there
+                        && world.objects[*index as usize].tag.as_deref() == Some(tag)
+                        && self.can_reach_object(*index)
                 });
                 self.at(places.next()?, Deed::Bring { thing })
             }
@@ -177,7 +195,16 @@ impl<'a> Plan<'a> {
     }
 
     fn opened(&self, way: Way) -> Option<Task> {
-        let at_door = |deed| self.got_to(way.from, Task { object: way.door, room: way.from, deed });
+        let at_door = |deed| {
+            self.got_to(
+                way.from,
+                Task {
+                    object: way.door,
+                    room: way.from,
+                    deed,
+                },
+            )
+        };
         match way.means {
             Means::Hand => at_door(Deed::Move),
             Means::Clock => at_door(Deed::Wait),
@@ -215,7 +242,9 @@ impl<'a> Plan<'a> {
 pub(super) fn can_interact(world: &World) -> bool {
     let agent = &world.agent_params;
     let has_row = match &agent.actions {
-        ActionSpace::Discrete(table) => agent.action_model == ActionModel::OnRails || table.iter().any(|row| row[2] > 0.5),
+        ActionSpace::Discrete(table) => {
+            agent.action_model == ActionModel::OnRails || table.iter().any(|row| row[2] > 0.5)
+        }
         _ => true,
     };
     agent.interact && agent.action_model != ActionModel::ByWaypoint && has_row
@@ -230,5 +259,7 @@ pub(super) fn usable(world: &World, object: u32, stimuli: &[Stimulus]) -> Option
         Stimulus::AgentInRange => has_range,
     };
     let known = [Stimulus::AgentInteract, Stimulus::AgentCollide, Stimulus::AgentInRange];
-    known.into_iter().find(|stimulus| stimuli.contains(stimulus) && can(stimulus))
+    known
+        .into_iter()
+        .find(|stimulus| stimuli.contains(stimulus) && can(stimulus))
 }

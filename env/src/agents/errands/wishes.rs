@@ -47,7 +47,11 @@ fn toward(sim: SimRef, index: u32) -> Wish<'static> {
         object.switch.as_ref().map(|switch| &switch.on),
         object.portable.as_ref().map(|portable| &portable.on),
     ];
-    if lists.into_iter().flatten().any(|list| list.iter().any(|stimulus| pays(*stimulus))) {
+    if lists
+        .into_iter()
+        .flatten()
+        .any(|list| list.iter().any(|stimulus| pays(*stimulus)))
+    {
         return Wish::Move(index);
     }
     let by_hand = pays(Stimulus::AgentInteract) && can_interact(sim.world);
@@ -73,7 +77,8 @@ fn endings(sim: SimRef) -> Vec<Wish> {
                 found.extend(of_tag(tag).filter(is_closed).map(Wish::Move));
             }
             EndCondition::Carried(tag) => {
-                let lies = |index: &u32| world.objects[*index as usize].portable.is_some() && states[*index as usize].present;
+                let lies =
+                    |index: &u32| world.objects[*index as usize].portable.is_some() && states[*index as usize].present;
                 found.extend(of_tag(tag).filter(lies).map(Wish::Move));
             }
             EndCondition::Delivered(delivery) => {
@@ -89,7 +94,10 @@ fn endings(sim: SimRef) -> Vec<Wish> {
                     let (object, own) = (&world.objects[*index as usize], &states[*index as usize]);
                     object.portable.is_some() && (own.present || own.carried) && !is_there(*index)
                 };
-                found.extend(of_tag(&delivery.tag).filter(is_left).map(|thing| Wish::Bring { thing, tag: &delivery.to }));
+                found.extend(of_tag(&delivery.tag).filter(is_left).map(|thing| Wish::Bring {
+                    thing,
+                    tag: &delivery.to,
+                }));
             }
             _ => {}
         }
@@ -109,7 +117,10 @@ fn before_their_turn<'a>(sim: SimRef<'a>, found: Vec<Wish<'a>>) -> Vec<Wish<'a>>
         object.order.is_some() && !own.collected && own.present && is_due(object) && object.is_used()
     };
     let first = (0..states.len() as u32).filter(comes_first).map(Wish::Move);
-    let due = found.iter().copied().filter(|wish| is_due(&world.objects[wish.object() as usize]));
+    let due = found
+        .iter()
+        .copied()
+        .filter(|wish| is_due(&world.objects[wish.object() as usize]));
     due.chain(first).collect()
 }
 
@@ -122,5 +133,8 @@ pub(super) fn moving_stimulus(sim: SimRef, index: u32) -> Option<Stimulus> {
         object.switch.as_ref().map(|switch| &switch.on),
         object.portable.as_ref().map(|portable| &portable.on),
     ];
-    lists.into_iter().flatten().find_map(|list| usable(sim.world, index, list))
+    lists
+        .into_iter()
+        .flatten()
+        .find_map(|list| usable(sim.world, index, list))
 }

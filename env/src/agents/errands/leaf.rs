@@ -1,0 +1,59 @@
+//! What a body takes of the ground, as plans see it.
+
+use crate::assets::ColliderShape;
+use crate::sim::SimRef;
+
+/// What a body takes of the ground: a rectangle, or a disc.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Leaf {
+    pub(super) at: [f32; 2],
+    /// Sine and cosine of its heading.
+    turn: [f32; 2],
+    /// Half its width and depth.
+    pub(super) half: [f32; 2],
+    rounding: f32,
+}
+
+impl Leaf {
+    pub(super) fn of(sim: SimRef, object: usize) -> Self {
+        let (item, own) = (&sim.scene().items[object], &sim.objects()[object]);
+        let heading = own.heading_deg.to_radians();
+        let (half, rounding) = match &item.body.collider {
+            ColliderShape::Box { half: [x, y, _] } => ([x * item.scale, y * item.scale], 0.0),
+            other => ([0.0; 2], other.radius() * item.scale),
+        };
+        Self {
+            at: own.position,
+            turn: [libm::sinf(heading), libm::cosf(heading)],
+            half,
+            rounding,
+        }
+    }
+
+    /// How far it reaches from its middle at most, in metres.
+    pub(super) fn reach(&self) -> f32 {
+        (self.half[0] * self.half[0] + self.half[1] * self.half[1]).sqrt() + self.rounding
+    }
+
+    /// Whether it is much wider than deep, as doors are.
+    pub(super) fn is_long(&self) -> bool {
+        self.half[0] > 3.0 * self.half[1] && self.half[0] > 0.3
+    }
+
+    /// A place to its right and ahead of it, in metres from its middle.
+    pub(super) fn own_axes(&self, at: [f32; 2]) -> [f32; 2] {
+        let [dx, dy] = [at[0] - self.at[0], at[1] - self.at[1]];
+        let [sine, cosine] = self.turn;
+        [dx * cosine - dy * sine, dx * sine + dy * cosine]
+    }
+
+    /// How far a place is from it, in metres.
+    pub(super) fn distance(&self, at: [f32; 2]) -> f32 {
+        let [along, across] = self.own_axes(at);
+        let out = [
+            (along.abs() - self.half[0]).max(0.0),
+            (across.abs() - self.half[1]).max(0.0),
+        ];
+        (out[0] * out[0] + out[1] * out[1]).sqrt() - self.rounding
+    }
+}

@@ -1,0 +1,155 @@
+//! Ways over the floor: how dear it is to get somewhere from each cell, and where to walk next.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use super::floor::{BESIDE, Floor, Room, Standing, squared};
+use crate::sim::SimRef;
+
+/// Cells from which to go on, the nearest first.
+pub(super) type Waiting = BinaryHeap<Reverse<(u32, u32)>>;
+
+/// Where a thing is to be put down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Bringing {
+    /// Index of the object near which it is to lie.
+    pub(super) to: u32,
+    /// The room of the agent.
+    pub(super) room: Room,
+    /// Radius of the thing in metres.
+    pub(super) radius: f32,
+    /// How far in front of the agent's middle it comes to lie.
+    pub(super) ahead: f32,
+    /// How far from the object the agent stands, at least and at most.
+    pub(super) from: [f32; 2],
+}
+
+impl Floor {
+    /// Leads to where a thing can be put down near an object, by who looks at that from a distance between `least` and `most`.
+    pub(super) fn lead_to_bring(&mut self, sim: SimRef, bringing: Bringing) {
+        if self.brings == Some((self.version, bringing)) {
+            return;
+        }
+        let Bringing {
+            to,
+            room,
+            radius,
+            ahead,
+            from: [least, most],
+        } = bringing;
+        let at = sim.objects()[to as usize].position;
+        let is_free = |cell: &usize| {
+            let cell = self.grid.centre(*cell);
+            let away = squared(cell, at).sqrt();
+            if !(least..=most).contains(&away) {
+                return false;
+            }
+            // Where it would lie, and half the way there.
+            [ahead, ahead / 2.0].into_iter().all(|metres| {
+                let point = [0, 1].map(|axis| cell[axis] + (at[axis] - cell[axis]) * metres / away);
+                let is_room = |standing: &Standing| standing.leaf.distance(point) > radius + 0.03;
+                self.standing.iter().all(is_room)
+            })
+        };
+        let around = self
+            .grid
+            .within(at.map(|metres| metres - most), at.map(|metres| metres + most));
+        let goals = around
+            .filter(|cell| self.room[*cell] == room && is_free(cell))
+            .map(|cell| cell as u32)
+            .collect();
+        self.lead(goals);
+        self.brings = Some((self.version, bringing));
+    }
+
+    /// Leads to these cells from now on.
+    pub(super) fn lead(&mut self, goals: Vec<u32>) {
+        if self
+            .leads
+            .as_ref()
+            .is_some_and(|(version, old)| *version == self.version && *old == goals)
+        {
+            return;
+        }
+        let mut field = std::mem::take(&mut self.field);
+        self.spread(&goals, &mut field);
+        self.field = field;
+        self.brings = None;
+        self.leads = Some((self.version, goals));
+    }
+
+    /// How dear the way is from each cell to the nearest of these, or from these to each.
+    pub(super) fn spread(&mut self, goals: &[u32], field: &mut Vec<u32>) {
+        field.clear();
+        field.resize(self.weight.len(), u32::MAX);
+        self.open.clear();
+        for cell in goals {
+            field[*cell as usize] = 0;
+            self.open.push(Reverse((0, *cell)));
+        }
+        while let Some(Reverse((here, cell))) = self.open.pop() {
+            let cell = cell as usize;
+            if here > field[cell] {
+                continue;
+            }
+            for (step, is_slanting) in self.grid.around() {
+                let other = cell.wrapping_add_signed(step);
+                if self.weight[other] == 0 || is_slanting && !self.is_corner_open(cell, step) {
+                    continue;
+                }
+                let through = here + u32::from(self.weight[other]) * if is_slanting { 7 } else { 5 };
+                if through < field[other] {
+                    field[other] = through;
+                    self.open.push(Reverse((through, other as u32)));
+                }
+            }
+        }
+    }
+
+    /// Whether a slanting step cuts no corner.
+    fn is_corner_open(&self, cell: usize, step: isize) -> bool {
+        let row = self.grid.stride() as isize * step.signum();
+        let column = step - row;
+        self.weight[cell.wrapping_add_signed(row)] > 0 && self.weight[cell.wrapping_add_signed(column)] > 0
+    }
+
+    /// Where to walk next from a place: the farthest point on the way that can be walked to straight. `None` at the goal, and
+    /// where no way leads.
+    pub(super) fn next(&self, from: [f32; 2]) -> Option<[f32; 2]> {
+        let start = self.cell_near(from)?;
+        if self.field[start] == 0 || self.field[start] == u32::MAX {
+            return None;
+        }
+        let (mut cell, mut best) = (start, self.grid.centre(start));
+        for _ in 0..15 {
+            let around = self.grid.around().into_iter();
+            let open = around.filter(|(step, is_slanting)| !is_slanting || self.is_corner_open(cell, *step));
+            let nearest = open
+                .map(|(step, _)| cell.wrapping_add_signed(step))
+                .min_by_key(|other| self.field[*other]);
+            let Some(nearest) = nearest.filter(|other| self.field[*other] < self.field[cell]) else {
+                break;
+            };
+            cell = nearest;
+            if self.is_clear(from, self.grid.centre(cell)) {
+                best = self.grid.centre(cell);
+            } else if best != self.grid.centre(start) {
+                break;
+            }
+        }
+        Some(best)
+    }
+
+    /// Whether nothing is in the way of a straight walk, but for where it begins.
+    fn is_clear(&self, from: [f32; 2], to: [f32; 2]) -> bool {
+        let length = squared(from, to).sqrt();
+        let count = (length / (self.grid.side() / 2.0)) as usize;
+        let dear = self.weight[self.grid.cell_at(from)].max(BESIDE);
+        (1..=count).all(|number| {
+            let share = number as f32 / count as f32;
+            let at = [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * share);
+            let weight = self.weight[self.grid.cell_at(at)];
+            (1..=dear).contains(&weight) || weight == 0 && share * length < 0.3
+        })
+    }
+}
