@@ -20,7 +20,9 @@ fn start(zones: Vec<Zone>, at: [f64; 2], change: impl FnOnce(&mut WorldDraft)) -
 /// Why the episode ended, whether well, and what it paid.
 fn live(environment: &mut Environment) -> (Option<EndedBy>, bool, f64) {
     loop {
-        let step = environment.step(Action::Continuous([0.0; 3])).expect("the episode goes on");
+        let step = environment
+            .step(Action::Continuous([0.0; 3]))
+            .expect("the episode goes on");
         if step.ended() {
             return (step.ended_by, step.success, environment.episode_return());
         }

@@ -1,7 +1,7 @@
 //! What zones do to the agent that is in them: what they pay, how they slow it, how they end an episode, where they put it.
 
 use driftworld_env::{Action, Agent, Environment, RandomAgent, Step};
-use driftworld_spec::{ActionModel, Object, WorldDraft, Zone, ZoneEnd};
+use driftworld_spec::{ActionModel, Object, World, WorldDraft, Zone, ZoneEnd};
 use proptest::prelude::*;
 
 const AHEAD: Action = Action::Continuous([10.0, 0.0, 0.0]);
@@ -231,5 +231,21 @@ fn who_is_put_into_a_zone_from_outside_has_not_entered_it() {
     let mut other = Environment::new(environment.state());
     for environment in [&mut environment, &mut other] {
         assert!((step(environment, REST).reward - 0.2).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn the_worlds_of_the_page_are_sound() {
+    let page = include_str!("../../docs/zones.md");
+    let texts: Vec<&str> = page
+        .split("```json\n")
+        .skip(1)
+        .filter_map(|rest| rest.split("```").next())
+        .collect();
+    assert_eq!(texts.len(), 2);
+    for text in texts {
+        let world = World::from_json("docs/zones.md", text).unwrap_or_else(|error| panic!("{error}"));
+        assert!(world.remarks("docs/zones.md", text).is_empty());
+        step(&mut Environment::new(world), REST);
     }
 }

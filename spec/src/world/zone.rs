@@ -232,7 +232,6 @@ pub(super) fn problems(world: &WorldDraft) -> Vec<Problem> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::World;
 
     fn check(zone: &str, expected: &str) {

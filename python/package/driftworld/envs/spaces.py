@@ -28,6 +28,8 @@ _FEATURES: dict[str, list[tuple[float, float]]] = {
     "last_event": [(0.0, 3.0), (-_LARGE, _LARGE), (0.0, 1.0)],
     "steps_left": [(0.0, 1.0)],
     "carrying": [(0.0, 100.0), (0.0, 65535.0), (0.0, 100_000.0)],
+    "energy": [(0.0, 1e9)],
+    "zone": [(0.0, 1000.0), (-1e12, 1e12)],
 }
 
 
