@@ -1,7 +1,6 @@
 //! How far every cell is from one of them: Dijkstra's way of finding it, with one bucket for each distance, and no
 //! farther than anyone asks.
 
-use super::grid::Grid;
 use super::occupancy::OccupancyGrid;
 
 /// Cost of a step to a straight and to a slanting neighbour, in fifths of a cell.
@@ -38,11 +37,12 @@ pub(super) struct Flood {
 
 impl Flood {
     /// Begins anew from a cell.
-    pub(super) fn begin(&mut self, grid: Grid, start: usize) {
+    pub(super) fn begin(&mut self, occupancy: &OccupancyGrid, start: usize) {
+        let grid = occupancy.grid();
         self.distance.clear();
         self.distance.resize(grid.num_cells(), u32::MAX);
-        // Nothing is nearer than 0: the rim is never come to.
-        grid.rim().for_each(|cell| self.distance[cell] = 0);
+        // Nothing is nearer than 0: the rim and the walls of layouts are never come to.
+        grid.rim().chain(occupancy.sealed()).for_each(|cell| self.distance[cell] = 0);
         self.buckets.resize_with(NUM_BUCKETS, Vec::new);
         self.buckets.iter_mut().for_each(Vec::clear);
         self.distance[start] = 0;

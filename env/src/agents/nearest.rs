@@ -54,7 +54,8 @@ impl Route {
                 self.marks.add(cell, number);
             }
         }
-        self.flood.begin(grid, grid.cell_at(from));
+        let here = self.open_cell(from);
+        self.flood.begin(&self.occupancy, here);
         // For each goal, how far it is at least: to the first cell that is open on the way to it alone.
         let mut least: Vec<Option<u32>> = vec![None; goals.len()];
         let likeliest = goals.iter().map(|goal| goal.probability).fold(0.0, f32::max);
@@ -140,7 +141,11 @@ impl Route {
             looks,
             ..
         } = &mut self.marks;
-        let mut best = flood.distance(start);
+        let mut best = if occupancy.is_closed(start) {
+            u32::MAX
+        } else {
+            flood.distance(start)
+        };
         open.clear();
         open.push(Reverse((0, start)));
         back[start] = 0;
@@ -157,7 +162,7 @@ impl Route {
             *looks = rest;
             for (step, is_slanting) in grid.around() {
                 let other = cell.wrapping_add_signed(step);
-                if grid.is_rim(other) {
+                if occupancy.is_closed(other) {
                     continue;
                 }
                 let is_blocked = occupancy.count(other) > u32::from(own.covers(other, grid));

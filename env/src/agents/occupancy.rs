@@ -28,6 +28,8 @@ pub(super) struct OccupancyGrid {
     grid: Grid,
     walls: Walls,
     taken: Vec<u32>,
+    /// Whether a cell belongs to a wall of a layout, through which no way leads; empty where there is no layout.
+    sealed: Vec<bool>,
     /// The objects that are led around, by rising index.
     discs: Vec<Disc>,
 }
@@ -101,6 +103,16 @@ impl OccupancyGrid {
     /// Whether a cell is taken.
     pub(super) fn is_blocked(&self, cell: usize) -> bool {
         self.taken[cell] > 0
+    }
+
+    /// Whether no way leads over a cell, be there another or not: it is of the rim, or of a wall of a layout.
+    pub(super) fn is_closed(&self, cell: usize) -> bool {
+        self.grid.is_rim(cell) || self.sealed.get(cell).is_some_and(|sealed| *sealed)
+    }
+
+    /// The cells of walls of a layout.
+    pub(super) fn sealed(&self) -> impl Iterator<Item = usize> {
+        (0..self.sealed.len()).filter(|cell| self.sealed[*cell])
     }
 
     /// How many walls and objects take a cell.
@@ -196,16 +208,26 @@ impl OccupancyGrid {
         }
         let margin = body + clearance(corridor, body);
         // Between two walls there are cells whose middles are free, be the corridor narrow.
-        let grid = Grid::fine(arena_size, (corridor / 2.0 - margin).max(0.0));
+        let grid = match world.plan() {
+            // So small, too, that the cells of walls are not those in which a body beside them stands.
+            Some(_) => Grid::fine(arena_size, (corridor / 2.0 - margin).min(body / 1.45)),
+            None => Grid::fine(arena_size, f32::INFINITY),
+        };
         self.grid = grid;
         self.discs.clear();
         self.taken.clear();
         self.taken.resize(grid.num_cells(), 0);
+        self.sealed.clear();
         let half = arena_size.map(|metres| metres / 2.0);
         for cell in grid.within(half.map(|metres| -metres), half) {
             let at = grid.centre(cell);
             let is_near = |axis: usize| half[axis] - at[axis].abs() < body;
             self.taken[cell] = u32::from(is_near(0) || is_near(1));
+        }
+        // Nearer than this to a wall: no step from cell to cell crosses one.
+        let seal = 0.71 * grid.side();
+        if world.plan().is_some() {
+            self.sealed.resize(grid.num_cells(), false);
         }
         for corners in world.obstacles() {
             let bound = |axis: usize, sign: f32| {
@@ -220,6 +242,9 @@ impl OccupancyGrid {
             for cell in grid.within(low, high) {
                 if self.taken[cell] == 0 && is_near_or_inside(corners.clone(), grid.centre(cell), margin) {
                     self.taken[cell] = 1;
+                }
+                if let Some(sealed) = self.sealed.get_mut(cell) {
+                    *sealed |= is_near_or_inside(corners.clone(), grid.centre(cell), seal);
                 }
             }
         }

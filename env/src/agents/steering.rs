@@ -77,7 +77,10 @@ pub(super) fn walk(goal: [f32; 2], sim: SimRef, route: &mut Route) -> [f64; 3] {
     // Beside what costs no corner is cut.
     let costs = world.environment_params.zones.iter().any(Zone::is_costly);
     let (near, ahead) = if costs { (NEAR_BESIDE_ZONES, 1) } else { (NEAR, 3) };
-    let point = if distance(agent.position, goal) < near {
+    let straight = distance(agent.position, goal);
+    // In a layout a wall may stand between.
+    let mut is_open = || world.plan().is_none() || route.is_straight(agent.position, straight);
+    let point = if straight < near && is_open() {
         goal
     } else {
         route.next(agent.position, ahead)
