@@ -15,6 +15,8 @@ use crate::stream::{Rng, Stream};
 pub(crate) struct Compiled {
     pub(crate) parameters: Vec<Randomized>,
     pub(crate) world: Filled<WorldDraft>,
+    /// The cells of a layout in which the agent starts, where it does so.
+    pub(crate) start: Option<Start>,
     pub(crate) fixtures: Vec<Filled<Object>>,
     pub(crate) groups: Vec<Group>,
     /// How many objects room is made for.
@@ -160,6 +162,15 @@ pub(crate) enum Look {
     Group(usize),
 }
 
+/// Where the agent starts in a layout.
+#[derive(Debug)]
+pub(crate) enum Start {
+    /// In one of these cells, as the task says.
+    Cells(Drawn),
+    /// Where a text has a letter for it, if it has one: the task says nothing.
+    Letters(Stream),
+}
+
 /// Turns what a task declares into what is drawn for one variant under one seed.
 struct Compiler<'a> {
     variant: &'a Variant,
@@ -215,11 +226,27 @@ impl Compiled {
             }
         }
         let expected: f64 = groups.iter().map(|group| group.expected).sum();
+        let mut world = compiler.template(task.world(), "world");
+        let is_start = |(hole, fill): &(Hole<WorldDraft>, Fill)| {
+            let of_cells = matches!(fill, Fill::Own(drawn) if drawn.distribution.draws_cells());
+            of_cells && hole.pointer == "/agent_params/coordinates"
+        };
+        let start = world
+            .holes
+            .iter()
+            .position(is_start)
+            .map(|number| world.holes.remove(number).1);
+        let start = match start {
+            Some(Fill::Own(drawn)) => Some(Start::Cells(*drawn)),
+            _ if !task.says_start() => Some(Start::Letters(compiler.stream("world/agent_params/coordinates"))),
+            _ => None,
+        };
         Self {
             // A quarter more than the mean is enough for most worlds; few have to move when they grow beyond.
             room: (expected * 1.25).min(4096.0) as usize + task.fixtures().len(),
             parameters,
-            world: compiler.template(task.world(), "world"),
+            world,
+            start,
             fixtures: fixtures
                 .map(|(k, fixture)| {
                     let place = format!("fixture/{k}");

@@ -70,6 +70,18 @@ pub enum GeneratorError {
         /// How many were tried.
         tries: u32,
     },
+    /// The layout has no cell in which the agent can start.
+    #[error("{variant}, seed {seed}, index {index}: found no cell for the agent's start: {reason}")]
+    NoStartCell {
+        /// The variant.
+        variant: String,
+        /// The seed.
+        seed: u64,
+        /// The world's number.
+        index: u64,
+        /// What was asked, and how many cells there are.
+        reason: String,
+    },
     /// A condition that the task states holds in none of the tries.
     #[error(
         "{variant}, seed {seed}, index {index}: found no values in {tries} tries for which {requirement:?} holds, as \
@@ -223,6 +235,12 @@ mod tests {
                 index: 2,
                 start: [0.0, 0.5],
                 tries: 1,
+            },
+            GeneratorError::NoStartCell {
+                variant: "t#v".into(),
+                seed: 1,
+                index: 2,
+                reason: "of 16 cells, 0 are dead ends".into(),
             },
             GeneratorError::Requirement {
                 variant: "t#v".into(),

@@ -72,7 +72,10 @@ fn between_distributions(from: &Distribution, to: &Distribution, t: f64) -> Opti
         });
         return Some(colored(whole(between), &from, &to, t));
     }
-    let alike = if from.draws_colors() || to.draws_colors() {
+    let alike = if from.draws_cells() || to.draws_cells() {
+        // Cells are drawn by themselves.
+        false
+    } else if from.draws_colors() || to.draws_colors() {
         from.yields(ParameterType::Color) && to.yields(ParameterType::Color)
     } else {
         from.is_planar() == to.is_planar() && (from.is_planar() || from.mean().is_some() == to.mean().is_some())

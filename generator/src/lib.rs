@@ -1,6 +1,7 @@
 //! Variant, seed and index to a concrete world; the variants between two variants, and those at a wanted distance.
 
 mod at_distance;
+mod cells;
 mod clearance;
 mod compiled;
 mod draw;

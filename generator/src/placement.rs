@@ -1,7 +1,8 @@
 //! Placing objects: a free place for each. Candidates are drawn in `draw.rs`; the distance to walls is in `clearance.rs`.
 
-use driftworld_spec::{Distribution, Turns};
+use driftworld_spec::{Distribution, Layout, Turns};
 
+use crate::cells::Cells;
 use crate::clearance::FreeSpace;
 use crate::draw::{self, Place};
 use crate::spatial_hash::SpatialHash;
@@ -166,6 +167,51 @@ impl<'a> PlacementContext<'a> {
             }
         }
         Err(tried.failure())
+    }
+
+    /// The cells that fit a distribution of cells, for a group of this name; else why none does.
+    pub(crate) fn cells(
+        &self,
+        layout: Option<&Layout>,
+        asked: &Distribution,
+        group: &str,
+    ) -> Result<Cells<'a>, String> {
+        Cells::find(self.free_space.plan.as_deref(), layout, asked, group, self.agent)
+    }
+
+    /// As [`PlacementContext::find`], in a cell of a layout. The middle of a cell is never too near to a wall.
+    pub(crate) fn find_in_cells(
+        &mut self,
+        request: &Request,
+        cells: &mut Cells,
+        rng: &mut Rng,
+    ) -> Result<[f64; 2], (u32, String)> {
+        let mut tried = Tried::default();
+        let mut margins = request.margins.clone();
+        let found = cells.take(rng, |place, middle| {
+            let room = self.free_space.clearance(middle, request.margins.walls).max(0.0);
+            margins.walls = room.min(request.margins.walls);
+            let request = Request {
+                margins: &margins,
+                ..*request
+            };
+            let missed = self.miss(place, 0.0, &request);
+            missed.is_none_or(|miss| {
+                tried.failed[miss.condition as usize] += 1;
+                false
+            })
+        });
+        match found {
+            Ok(place) => {
+                self.everything.push(place);
+                self.groups[request.group].push(place);
+                Ok(place)
+            }
+            Err((tries, asked)) if tried.failed.iter().all(|count| *count == 0) => {
+                Err((tries, format!("{asked}; lower the count, or ask for less")))
+            }
+            Err((tries, asked)) => Err((tries, format!("{asked}; {}", tried.failure().1))),
+        }
     }
 
     /// As [`PlacementContext::find`], where places are taken in turn: the object's own, then the next ones on.

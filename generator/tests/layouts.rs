@@ -16,7 +16,7 @@ fn task(more: &str) -> Arc<TaskSpec> {
               {{ "rooms": {{ "grid": [2, 2], "room": [6, 6], "seed": 7 }} }}],
             "default": {{ "walls": [] }} }} }},
           "world": {{ "environment_params": {{ "layout": {{ "param": "map" }}, "map_size": [12, 12] }},
-            "agent_params": {{ "agent_width": 0.5, "coordinates": [0.7, 0.7] }} }},
+            "agent_params": {{ "agent_width": 0.5, "coordinates": [0.7, 0.9] }} }},
           "variants": {{ "open": {{}}, "small": {{ "map": {{ "maze": {{ "cell": 3, "cells": [4, 4], "seed": 7 }} }} }},
             "large": {{ "map": {{ "maze": {{ "cells": [9, 6], "cell": 2, "seed": 7 }} }} }},
             "rooms": {{ "map": {{ "rooms": {{ "grid": [2, 2], "room": [6, 6], "seed": 7 }} }} }} }} }}"#
@@ -129,7 +129,7 @@ fn numbers_in_a_layout_are_parameters_of_their_own_and_sizes_are_swept() {
         "loops": { "role": "variant", "type": "number", "affects": ["T"], "range": [0, 1], "default": 0 } },
       "world": { "environment_params": { "layout": { "maze": {
           "cells": { "param": "size" }, "cell": 2, "braid": { "param": "loops" }, "seed": 3 } } },
-        "agent_params": { "agent_width": 0.5, "coordinates": [0.9, 0.9] } },
+        "agent_params": { "agent_width": 0.5, "coordinates": { "cells": {} } } },
       "variants": { "a": {}, "b": { "size": [6, 9] }, "dense": { "sweep": { "loops": { "from": 0, "to": 1, "steps": 3 } } } } }"#;
     let task = TaskSpec::from_json("t", text).unwrap_or_else(|error| panic!("{error}"));
     let [a, b] = ["a", "b"].map(|name| task.variant(name).unwrap());

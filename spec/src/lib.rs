@@ -30,8 +30,8 @@ mod world;
 pub use classes::Classes;
 pub use color::Color;
 pub use distribution::{
-    Channel, ChannelChance, ChannelSpread, Channels, ColorMoments, Distribution, Number, Order, ParamRef,
-    PlanarMoments, Spread, Turns,
+    CellKind, CellRoom, Channel, ChannelChance, ChannelSpread, Channels, ColorMoments, Distribution, Number, Order,
+    ParamRef, PlanarMoments, Spread, Turns,
 };
 pub use element::Element;
 pub use error::{MAX_PROBLEMS, Problem, SpecError, did_you_mean, nearest};

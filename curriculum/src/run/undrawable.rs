@@ -82,7 +82,9 @@ impl Trial {
 
     fn count(&mut self, error: &GeneratorError, experience: Option<u64>, index: u64, progress: f64) {
         let kind = match error {
-            GeneratorError::NoPlace { .. } | GeneratorError::NoStart { .. } => &mut self.placement,
+            GeneratorError::NoPlace { .. } | GeneratorError::NoStart { .. } | GeneratorError::NoStartCell { .. } => {
+                &mut self.placement
+            }
             GeneratorError::Requirement { .. } | GeneratorError::Between(_) => &mut self.requirement,
             _ => &mut self.other,
         };

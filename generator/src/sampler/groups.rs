@@ -1,7 +1,7 @@
 //! The objects of a group: how many there are, what each is, where it stands and looks. Free places are found in
 //! `placement.rs`.
 
-use driftworld_spec::{MAX_OBJECTS, Turns, Value, WorldDraft};
+use driftworld_spec::{Distribution, MAX_OBJECTS, Turns, Value, WorldDraft};
 
 use super::Sampler;
 use crate::GeneratorError;
@@ -44,6 +44,25 @@ impl Sampler {
                 limit: MAX_OBJECTS,
             });
         }
+        let failed = |turn: u64, (tries, reason): (u32, String)| GeneratorError::NoPlace {
+            variant: self.variant.id(),
+            seed: self.seed,
+            index,
+            group: group.name.clone(),
+            object: turn as u32 + 1,
+            count,
+            tries,
+            reason,
+        };
+        let asked = &group.placement.distribution;
+        let mut cells = match asked {
+            Distribution::Cells { .. } if count > 0 => {
+                let layout = draft.world.environment_params.layout.as_ref();
+                let cells = draft.context.cells(layout, asked, &group.name);
+                Some(cells.map_err(|reason| failed(0, (0, reason)))?)
+            }
+            _ => None,
+        };
         let mut turns = group.placement.distribution.num_turns().map(Turns::new);
         for turn in 0..u64::from(count) {
             let mut object = self.fill(
@@ -67,19 +86,11 @@ impl Sampler {
                 group: number,
                 number: turn,
             };
-            let place = draft
-                .context
-                .find(&request, turns.as_mut(), &mut rng)
-                .map_err(|(tries, reason)| GeneratorError::NoPlace {
-                    variant: self.variant.id(),
-                    seed: self.seed,
-                    index,
-                    group: group.name.clone(),
-                    object: turn as u32 + 1,
-                    count,
-                    tries,
-                    reason,
-                })?;
+            let found = match &mut cells {
+                Some(cells) => draft.context.find_in_cells(&request, cells, &mut rng),
+                None => draft.context.find(&request, turns.as_mut(), &mut rng),
+            };
+            let place = found.map_err(|tried| failed(turn, tried))?;
             object.coordinates = place;
             if place.iter().any(|metres| metres.abs() > 300.0) {
                 // Only where no wall is kept out of: the arena itself is smaller.

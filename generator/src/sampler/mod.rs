@@ -1,6 +1,7 @@
 //! [`Sampler`]: a variant under a seed, compiled so that any of its worlds can be drawn at once.
 
 mod groups;
+mod start;
 
 use std::sync::Arc;
 
@@ -9,7 +10,7 @@ use driftworld_spec::{Layout, ParameterType, Requirement, Value, Variant, World,
 
 use crate::GeneratorError;
 use crate::clearance::FreeSpace;
-use crate::compiled::{Address, Compiled, Filled};
+use crate::compiled::{Address, Compiled, Filled, Start};
 use crate::placement::{Anchor, PlacementContext};
 use crate::sequence::Sequence;
 use crate::stream::Stream;
@@ -109,13 +110,15 @@ impl Sampler {
         let shapes = keys.map(|key| format!("/environment_params/{key}"));
         let layout = &self.compiled.world.base.environment_params.layout;
         let is_drawn = layout.as_ref().is_some_and(Layout::is_drawn);
-        let varies = is_drawn || self
-            .compiled
-            .world
-            .holes
-            .iter()
-            .any(|(hole, _)| shapes.iter().any(|shape| hole.pointer.starts_with(shape.as_str())));
+        let varies = is_drawn
+            || self
+                .compiled
+                .world
+                .holes
+                .iter()
+                .any(|(hole, _)| shapes.iter().any(|shape| hole.pointer.starts_with(shape.as_str())));
         self.start_varies = varies
+            || matches!(self.compiled.start, Some(Start::Cells(_)))
             || self
                 .compiled
                 .world
@@ -225,6 +228,7 @@ impl Sampler {
                 .as_ref()
                 .or(own_free_space.as_ref())
                 .expect("one of the two is there");
+            self.start_in_cell(&mut world, free_space, index, attempt)?;
             let start = world.agent_params.coordinates;
             if free_space.clearance(start, 0.0) > 0.0 {
                 return Ok((world, values, own_free_space));
@@ -300,12 +304,14 @@ impl Sampler {
             ranges.push(first..world.objects.len());
         }
         // Loading the task and `fill` hold each value in its range; whether values go together is seen here alone.
-        world.check_in_range_with(free_space.plan.clone()).map_err(|source| GeneratorError::Clash {
-            variant: self.variant.id(),
-            seed: self.seed,
-            index,
-            source,
-        })
+        world
+            .check_in_range_with(free_space.plan.clone())
+            .map_err(|source| GeneratorError::Clash {
+                variant: self.variant.id(),
+                seed: self.seed,
+                index,
+                source,
+            })
     }
 
     fn fill<T: Clone>(&self, template: &Filled<T>, at: Address, values: &[Value]) -> Result<T, GeneratorError> {

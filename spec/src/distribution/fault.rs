@@ -194,6 +194,22 @@ impl Distribution<f64> {
                 let found = format!("columns {columns}, rows {rows}, jitter {jitter}");
                 unless(fine, found, "whole columns and rows in 1..1000 and jitter in 0..1")
             }),
+            Self::Cells { walk, jitter, .. } => {
+                let [least, most] = walk.unwrap_or([0.0, 0.0]);
+                let far = unless(
+                    least >= 0.0 && least <= most && most <= 1e6,
+                    format!("a walk of {least} to {most} m"),
+                    "two distances in 0..1000000 m, the first not above the second",
+                );
+                let jitter = jitter.unwrap_or(0.0);
+                far.or_else(|| {
+                    unless(
+                        (0.0..=1.0).contains(&jitter),
+                        format!("a jitter of {jitter}"),
+                        "a share in 0..1",
+                    )
+                })
+            }
             Self::PoissonDisc { low, high, distance } => rectangle(low, high).or_else(|| {
                 unless(
                     (1e-9..=600.0).contains(distance),

@@ -129,6 +129,21 @@ impl<N> Distribution<N> {
                 high: pair(high, f)?,
                 distance: f(distance)?,
             },
+            Self::Cells {
+                kind,
+                letter,
+                of_group,
+                room,
+                walk,
+                jitter,
+            } => D::Cells {
+                kind: *kind,
+                letter: letter.clone(),
+                of_group: *of_group,
+                room: *room,
+                walk: walk.as_ref().map(|walk| pair(walk, f)).transpose()?,
+                jitter: maybe(jitter.as_ref(), f)?,
+            },
             Self::ColorUniform { from, to, channels } => D::ColorUniform {
                 from: color(from, f)?,
                 to: color(to, f)?,

@@ -1,5 +1,6 @@
 //! [`Distribution`]: how values scatter, as data with its laws. Drawing from it is the generator's job, comparing two `similarity`'s.
 
+mod cells;
 mod channels;
 mod color;
 mod color_moments;
@@ -21,6 +22,7 @@ mod von_mises;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use cells::{CellKind, CellRoom};
 pub use channels::{Channel, ChannelChance, ChannelSpread, Channels};
 pub use color_moments::ColorMoments;
 pub use planar::{Order, PlanarMoments, Spread};
@@ -285,6 +287,31 @@ pub enum Distribution<N = f64> {
         #[schemars(extend("exclusiveMinimum" = 0))]
         distance: N,
     },
+    /// The free cells of the layout, each alike, and each for one object of the group: for groups, and, without `room` and
+    /// `walk`, for the agent's start.
+    Cells {
+        /// By how many sides they can be left; any if absent.
+        #[serde(default, skip_serializing_if = "cells::is_any")]
+        kind: CellKind,
+        /// Those that one of these letters of a text stands for; any if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(length(min = 1, max = 100))]
+        letter: Option<String>,
+        /// Those whose letters the legend gives to the group.
+        #[serde(default, skip_serializing_if = "cells::is_false")]
+        of_group: bool,
+        /// Those of the room in which the agent starts, or of the others; of all rooms if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        room: Option<CellRoom>,
+        /// Least and greatest metres to walk from the cell in which the agent starts, from middle to middle; any if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(transform = schema::none_negative)]
+        walk: Option<[N; 2]>,
+        /// How far a place strays from the middle of its cell, as a share of the cell: 0 not at all, 1 anywhere in it; 0 if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(extend("minimum" = 0, "maximum" = 1))]
+        jitter: Option<N>,
+    },
     /// Every colour of a box in sRGB alike, or of the line between two of its corners.
     ColorUniform {
         /// One corner.
@@ -353,7 +380,8 @@ impl<N> Distribution<N> {
     }
 
     /// The names of the distributions that place objects, as messages list them.
-    pub const PLANAR: &'static str = "box, disc, annulus, gaussian, points, grid, poisson_disc, or a mixture of them";
+    pub const PLANAR: &'static str =
+        "box, disc, annulus, gaussian, points, grid, poisson_disc, cells, or a mixture of them";
 
     /// Whether it draws points, so that objects can be placed by it.
     pub fn is_planar(&self) -> bool {
@@ -364,7 +392,8 @@ impl<N> Distribution<N> {
             | Self::Gaussian { .. }
             | Self::Points { .. }
             | Self::Grid { .. }
-            | Self::PoissonDisc { .. } => true,
+            | Self::PoissonDisc { .. }
+            | Self::Cells { .. } => true,
             Self::Constant { value } => matches!(value, Value::Point(_)),
             Self::Choice { values, .. } => values.iter().all(|value| matches!(value, Value::Point(_))),
             Self::Mixture { parts, .. } => parts.iter().all(Self::is_planar),
@@ -376,9 +405,30 @@ impl<N> Distribution<N> {
     pub fn needs_group(&self) -> bool {
         match self {
             Self::Points { order, .. } | Self::Grid { order, .. } => *order == Order::Turn,
-            Self::PoissonDisc { .. } => true,
+            Self::PoissonDisc { .. } | Self::Cells { .. } => true,
             Self::Mixture { parts, .. } => parts.iter().any(Self::needs_group),
             _ => false,
+        }
+    }
+
+    /// Whether it draws cells of a layout, or a part of it does.
+    pub fn draws_cells(&self) -> bool {
+        match self {
+            Self::Cells { .. } => true,
+            Self::Mixture { parts, .. } => parts.iter().any(Self::draws_cells),
+            _ => false,
+        }
+    }
+
+    /// The cells whose letters the legend of a layout gives to a group.
+    pub(crate) fn cells_of_group() -> Self {
+        Self::Cells {
+            kind: CellKind::Any,
+            letter: None,
+            of_group: true,
+            room: None,
+            walk: None,
+            jitter: None,
         }
     }
 }

@@ -102,7 +102,8 @@ impl Distribution<f64> {
             | Self::Exponential { .. }
             | Self::Poisson { .. }
             | Self::Geometric { .. }
-            | Self::Gaussian { .. } => None,
+            | Self::Gaussian { .. }
+            | Self::Cells { .. } => None,
         }
     }
 
@@ -111,6 +112,7 @@ impl Distribution<f64> {
         match self {
             Self::Poisson { .. } | Self::Geometric { .. } => Value::Integer(0),
             Self::Gaussian { mean, .. } => Value::Point(*mean),
+            Self::Cells { .. } => Value::Point([0.0; 2]),
             Self::Mixture { parts, .. } => parts[0].example(),
             other => other
                 .support()

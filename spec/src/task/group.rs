@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
 
 use super::template::Source;
-use crate::distribution::Number;
+use crate::distribution::{Distribution, Number};
 
 /// A group of objects: how many, what each is, and where they stand.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -27,7 +27,9 @@ pub struct Group {
     /// What each object is; any leaf may be a value, a parameter, or a distribution, which is drawn for each object.
     #[schemars(schema_with = "super::template::object_schema")]
     pub object: Json,
-    /// Where they stand: a distribution of points, or a parameter that is one.
+    /// Where they stand: a distribution of points, or a parameter that is one; if absent, at the letters that the legend of
+    /// the world's layout gives to the group.
+    #[serde(default = "at_letters", skip_serializing_if = "is_at_letters")]
     pub placement: Source,
     /// A group placed before, around each of whose objects this one is placed: `count` and `placement` then hold for each of
     /// them, with the origin at its place (co-occurrence). Absent: the world's origin.
@@ -108,6 +110,14 @@ fn distances(schema: &mut schemars::Schema) {
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
 fn is_false(value: &bool) -> bool {
     !*value
+}
+
+fn at_letters() -> Source {
+    Source::Distribution(Box::new(Distribution::cells_of_group()))
+}
+
+fn is_at_letters(placement: &Source) -> bool {
+    *placement == at_letters()
 }
 
 fn zero() -> Number {

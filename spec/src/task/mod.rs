@@ -194,6 +194,11 @@ impl TaskSpec {
         &self.groups
     }
 
+    /// Whether it says where the agent starts.
+    pub fn says_start(&self) -> bool {
+        self.document.world.pointer("/agent_params/coordinates").is_some()
+    }
+
     /// The conditions that every variant and every world meets.
     pub fn requirements(&self) -> &[Requirement] {
         &self.requirements

@@ -33,6 +33,7 @@ impl Check<'_> {
             self.report(problem.advise("name them together by \"tag\""));
         }
         self.placement(&format!("{root}/placement"), &group.placement);
+        self.cells(&root, group);
         if self.problems.len() == before {
             self.room(&root, group, count.as_ref());
         }
@@ -98,6 +99,34 @@ impl Check<'_> {
             let found = format!("the distribution {}", odd.name());
             let expected = format!("one of {}", Distribution::<f64>::PLANAR);
             self.report(Problem::new("spec/type", pointer, found, expected));
+        }
+    }
+
+    /// Cells of a layout: by themselves, in a world that has a layout, and not around anything.
+    fn cells(&mut self, root: &str, group: &Group) {
+        let all = self.distributions_of(&group.placement);
+        if !all.iter().any(Distribution::draws_cells) {
+            return;
+        }
+        let pointer = format!("{root}/placement");
+        let is_mixed = |law: &Distribution<Number>| law.draws_cells() && !matches!(law, Distribution::Cells { .. });
+        if all.iter().any(is_mixed) {
+            let found = "cells in a mixture";
+            self.report(Problem::new("spec/value", &pointer, found, "cells by themselves"));
+        }
+        if !self.has_layout {
+            let problem = if all.contains(&Distribution::cells_of_group()) {
+                Problem::new("spec/missing-key", root, "nothing", "the key \"placement\"")
+            } else {
+                let found = "cells in a world without a layout";
+                Problem::new("spec/value", &pointer, found, "a layout in /world/environment_params")
+            };
+            self.report(problem);
+        }
+        if group.around.is_some() {
+            let found = "cells beside \"around\"";
+            let problem = Problem::new("spec/value", pointer, found, "one of the two");
+            self.report(problem.advise("cells do not move with what they would be around"));
         }
     }
 

@@ -152,6 +152,8 @@ struct Check<'a> {
     variants: Vec<(String, IndexMap<String, Value>)>,
     /// The classes that objects may be of, where they are known.
     classes: Option<&'a Classes>,
+    /// Whether the task's world says anything of a layout.
+    has_layout: bool,
     unsound: Unsound,
     problems: Vec<Problem>,
 }
@@ -171,6 +173,7 @@ impl<'a> Check<'a> {
             parameters: &document.parameters,
             variants: settled,
             classes,
+            has_layout: document.world.pointer("/environment_params/layout").is_some(),
             unsound,
             problems: Vec::new(),
         }

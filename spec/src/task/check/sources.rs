@@ -182,8 +182,11 @@ impl Check<'_> {
         let grouped = self
             .distributions_of(source)
             .into_iter()
-            .find(Distribution::needs_group);
-        if let Some(grouped) = &grouped {
+            .find(|law| law.needs_group() && !(pointer == START && is_of_cells(law)));
+        if let Some(cells) = grouped.as_ref().filter(|law| law.draws_cells()) {
+            let expected = "a placement of a group, or the agent's start, that without room, walk and of_group";
+            self.report(Problem::new("spec/type", pointer, cells.name(), expected));
+        } else if let Some(grouped) = &grouped {
             let advice = "write \"order\": \"random\", or a choice of points, to draw one of them";
             let found = format!("{}, which looks at the objects before", grouped.name());
             self.report(
@@ -306,6 +309,22 @@ impl Check<'_> {
         }
         outside.is_none()
     }
+}
+
+/// Where the agent starts.
+const START: &str = "/world/agent_params/coordinates";
+
+/// Whether a distribution draws cells without a look at the agent or a group.
+fn is_of_cells(law: &Distribution<Number>) -> bool {
+    matches!(
+        law,
+        Distribution::Cells {
+            of_group: false,
+            room: None,
+            walk: None,
+            ..
+        }
+    )
 }
 
 /// The references after the first three, where those are the channels of one parameter, as its name alone stands for.

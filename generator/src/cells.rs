@@ -1,0 +1,148 @@
+//! Places in the cells of a layout: which cells fit what is asked, and which of them an object or the agent gets. Distances to
+//! walls and to other objects are `placement.rs`'s.
+
+use std::collections::BTreeSet;
+
+use driftworld_spec::{CellRoom, Distribution, Layout, Legend, Plan};
+
+use crate::stream::Rng;
+
+/// How many cells are tried at random before they are gone through one by one.
+const RANDOM_TRIES: usize = 32;
+
+/// How many places are tried in a cell where they stray from its middle; the last try is the middle.
+const TRIES_IN_CELL: usize = 8;
+
+/// The cells that fit what is asked, and which of them are taken.
+pub(crate) struct Cells<'a> {
+    plan: &'a Plan,
+    fitting: Vec<usize>,
+    jitter: f64,
+    taken: BTreeSet<usize>,
+    /// What was asked, and how many fit, for messages.
+    asked: String,
+}
+
+impl<'a> Cells<'a> {
+    /// The cells of a layout that fit a distribution of cells, for a group of this name and an agent that starts at this
+    /// place; else why none does.
+    pub(crate) fn find(
+        plan: Option<&'a Plan>,
+        layout: Option<&Layout>,
+        distribution: &Distribution,
+        group: &str,
+        agent: [f64; 2],
+    ) -> Result<Self, String> {
+        let (Some(plan), Some(layout)) = (plan.filter(|plan| !plan.cells.is_empty()), layout) else {
+            return Err("the world's layout has no cells; use a maze, rooms or a text".to_owned());
+        };
+        let Distribution::Cells {
+            kind,
+            letter,
+            of_group,
+            room,
+            walk,
+            jitter,
+        } = distribution
+        else {
+            unreachable!("callers hand over distributions of cells")
+        };
+        let start = plan.cell_at(agent);
+        if start.is_none() && (room.is_some() || walk.is_some()) {
+            return Err(format!(
+                "the agent starts at {agent:?}, which lies in no cell of the layout"
+            ));
+        }
+        let metres = start
+            .filter(|_| walk.is_some())
+            .map(|start| plan.walking_distances(start));
+        let own_room = start.map(|start| plan.cells[start].room);
+        let is_own = |letter: char| matches!(layout.meaning(letter), Some(Legend::Group(name)) if name == group);
+        let fits = |number: &usize| {
+            let cell = &plan.cells[*number];
+            let by_letter = letter
+                .as_ref()
+                .is_none_or(|letters| cell.letter.is_some_and(|own| letters.contains(own)));
+            let by_group = !of_group || cell.letter.is_some_and(is_own);
+            let by_room = room.is_none_or(|room| (room == CellRoom::SameAsAgent) == (own_room == Some(cell.room)));
+            let by_walk = metres.as_ref().zip(*walk).is_none_or(|(metres, [least, most])| {
+                // A way of 4 cells of 2.5 m is one of 10 m, whatever is rounded.
+                (least - 1e-6..=most + 1e-6).contains(&metres[*number])
+            });
+            kind.has(cell.open_sides()) && by_letter && by_group && by_room && by_walk
+        };
+        let fitting: Vec<usize> = (0..plan.cells.len()).filter(fits).collect();
+        let mut asked = kind.describe().to_owned();
+        if let Some(letters) = letter {
+            asked += &format!(" at the letters {letters:?}");
+        }
+        if *of_group {
+            asked += &format!(" at the letters of the group {group:?}");
+        }
+        asked += match room {
+            Some(CellRoom::OtherThanAgent) => " in a room other than the agent's",
+            Some(CellRoom::SameAsAgent) => " in the agent's room",
+            None => "",
+        };
+        if let Some([least, most]) = walk {
+            asked += &format!(" at a walking distance of {least} to {most} m from the agent");
+        }
+        let (all, count) = (plan.cells.len(), fitting.len());
+        let of_kind = plan.cells.iter().filter(|cell| kind.has(cell.open_sides())).count();
+        let asked = format!(
+            "of {all} cells, {of_kind} of them {}, {count} are {asked}",
+            kind.describe()
+        );
+        if fitting.is_empty() {
+            return Err(format!("{asked}; ask for less, or change the layout"));
+        }
+        Ok(Self {
+            plan,
+            fitting,
+            jitter: jitter.unwrap_or(0.0),
+            taken: BTreeSet::new(),
+            asked,
+        })
+    }
+
+    /// A place in a free cell that nothing is said against, whose cell it then takes: cells at random, then all in turn. `is_free` gets a
+    /// place and the middle of its cell. Else how many places were tried, and what was asked.
+    pub(crate) fn take(
+        &mut self,
+        rng: &mut Rng,
+        mut is_free: impl FnMut([f64; 2], [f64; 2]) -> bool,
+    ) -> Result<[f64; 2], (u32, String)> {
+        let count = self.fitting.len();
+        let mut tries = 0;
+        let mut first = 0;
+        for turn in 0..RANDOM_TRIES + count {
+            if turn < RANDOM_TRIES {
+                first = ((rng.unit() * count as f64) as usize).min(count - 1);
+            }
+            let number = self.fitting[(first + turn.saturating_sub(RANDOM_TRIES - 1)) % count];
+            if self.taken.contains(&number) {
+                continue;
+            }
+            let middle = self.plan.cells[number].center;
+            let places = if self.jitter > 0.0 { TRIES_IN_CELL } else { 1 };
+            for left in (0..places).rev() {
+                let stray = |axis: usize, rng: &mut Rng| {
+                    let share = if left > 0 {
+                        self.jitter * (rng.unit() - 0.5)
+                    } else {
+                        0.0
+                    };
+                    middle[axis] + share * self.plan.cell[axis]
+                };
+                let place = [stray(0, rng), stray(1, rng)];
+                tries += 1;
+                if is_free(place, middle) {
+                    self.taken.insert(number);
+                    return Ok(place);
+                }
+            }
+        }
+        let taken = self.taken.len();
+        Err((tries, format!("{}, and {taken} of them are taken", self.asked)))
+    }
+}

@@ -1,0 +1,244 @@
+//! Groups and the agent in cells of a layout: by kind, letter, room and walking distance.
+
+use std::sync::Arc;
+
+use driftworld_generator::{Sampler, drift};
+use driftworld_spec::{Object, Plan, TaskSpec, World};
+use proptest::prelude::*;
+
+/// A task with a layout, an agent that is placed so, and a group of coins that is.
+fn task(layout: &str, start: &str, count: u32, placement: &str) -> Arc<TaskSpec> {
+    let placement = if placement.is_empty() {
+        String::new()
+    } else {
+        format!(r#""placement": {placement},"#)
+    };
+    let text = format!(
+        r#"{{ "name": "t", "world": {{ "environment_params": {{ "layout": {layout} }},
+            "agent_params": {{ "agent_width": 0.5 {start} }} }},
+          "groups": [{{ "name": "coin", "count": {count}, {placement} "object": {{ "class": "geometric" }},
+            "keep_out": {{ "agent": 0 }} }}] }}"#
+    );
+    TaskSpec::from_json("t", &text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+const ANY_START: &str = r#", "coordinates": { "cells": {} }"#;
+const MAZE: &str = r#"{ "maze": { "cells": [6, 5], "cell": 2 } }"#;
+const ROOMS: &str = r#"{ "rooms": { "grid": [2, 2], "room": [6, 6] } }"#;
+
+fn worlds(task: &Arc<TaskSpec>, count: u64) -> Vec<World> {
+    let sampler = Sampler::new(&task.variant("default").unwrap(), 5);
+    let world = |index| sampler.world(index).unwrap_or_else(|error| panic!("{error}"));
+    (0..count).map(world).collect()
+}
+
+/// The plan of a world, the agent's cell, and those of its objects.
+fn cells(world: &World) -> (&Plan, usize, Vec<usize>) {
+    let plan = world.plan().unwrap();
+    let cell_of = |place: [f64; 2]| plan.cell_at(place).expect("it lies in a cell");
+    let objects = world.objects.iter().map(|object: &Object| cell_of(object.coordinates));
+    (plan, cell_of(world.agent_params.coordinates), objects.collect())
+}
+
+fn said(task: &Arc<TaskSpec>) -> String {
+    let sampler = Sampler::new(&task.variant("default").unwrap(), 5);
+    sampler
+        .world(0)
+        .map_or_else(|error| error.to_string(), |_| String::new())
+}
+
+#[test]
+fn dead_ends_corridors_and_junctions_are_what_they_are_called() {
+    for (kind, sides) in [
+        ("dead_end", 1..2),
+        ("corridor", 2..3),
+        ("junction", 3..5),
+        ("any", 1..5),
+    ] {
+        let maze = r#"{ "maze": { "cells": [12, 12], "cell": 2 } }"#;
+        let task = task(maze, ANY_START, 2, &format!(r#"{{ "cells": {{ "kind": "{kind}" }} }}"#));
+        let mut seen = std::collections::BTreeSet::new();
+        for world in worlds(&task, 20) {
+            let (plan, _, coins) = cells(&world);
+            assert!(
+                coins.iter().all(|coin| sides.contains(&plan.cells[*coin].open_sides())),
+                "{kind}"
+            );
+            assert_ne!(coins[0], coins[1], "each has a cell of its own");
+            seen.extend(coins);
+        }
+        assert!(seen.len() >= 8, "{kind}: places vary");
+    }
+}
+
+#[test]
+fn rooms_are_those_of_the_agent_or_others() {
+    for (room, is_same) in [("same_as_agent", true), ("other_than_agent", false)] {
+        let task = task(
+            ROOMS,
+            ANY_START,
+            3,
+            &format!(r#"{{ "cells": {{ "room": "{room}" }} }}"#),
+        );
+        for world in worlds(&task, 20) {
+            let (plan, agent, coins) = cells(&world);
+            let same = |coin: &usize| plan.cells[*coin].room == plan.cells[agent].room;
+            assert!(coins.iter().all(|coin| same(coin) == is_same), "{room}");
+        }
+    }
+}
+
+#[test]
+fn groups_stand_at_their_letters_and_the_agent_at_its_own() {
+    let text =
+        r#"{ "text": ["*********", "*A c * c*", "*  * cA *", "*********"], "legend": { "c": { "group": "coin" } } }"#;
+    let task = task(text, "", 3, "");
+    let mut starts = std::collections::BTreeSet::new();
+    for world in worlds(&task, 12) {
+        let (plan, agent, mut coins) = cells(&world);
+        starts.insert(agent);
+        assert_eq!(plan.cells[agent].letter, Some('A'));
+        coins.sort_unstable();
+        let letters: Vec<usize> = (0..plan.cells.len())
+            .filter(|cell| plan.cells[*cell].letter == Some('c'))
+            .collect();
+        assert_eq!(coins, letters);
+    }
+    assert_eq!(starts.len(), 2, "the agent starts at either letter");
+}
+
+#[test]
+fn a_start_that_is_said_is_kept() {
+    let text = r#"{ "text": ["*****", "*A c*", "*****"], "legend": { "c": { "group": "coin" } } }"#;
+    let task = task(text, r#", "coordinates": [0, 0]"#, 1, "");
+    assert_eq!(worlds(&task, 1)[0].agent_params.coordinates, [0.0, 0.0]);
+}
+
+#[test]
+fn what_does_not_fit_is_said_with_how_many_cells_there_are() {
+    let none = |layout: &str, start: &str, placement: &str| said(&task(layout, start, 2, placement));
+    let braided = r#"{ "maze": { "cells": [4, 4], "braid": 1, "seed": 3 } }"#;
+    let found = none(braided, ANY_START, r#"{ "cells": { "kind": "dead_end" } }"#);
+    assert!(
+        found.contains("of 16 cells, 0 of them dead ends, 0 are dead ends"),
+        "{found}"
+    );
+    let found = none(MAZE, ANY_START, r#"{ "cells": { "walk": [500, 600] } }"#);
+    assert!(
+        found.contains("0 are cells at a walking distance of 500 to 600 m from the agent"),
+        "{found}"
+    );
+    let found = none(MAZE, ANY_START, r#"{ "cells": { "room": "other_than_agent" } }"#);
+    assert!(found.contains("in a room other than the agent's"), "{found}");
+    let found = none(r#"{ "walls": [] }"#, "", r#"{ "cells": {} }"#);
+    assert!(found.contains("the world's layout has no cells"), "{found}");
+    let found = none(
+        r#"{ "maze": { "cells": [2, 1], "cell": 4 } }"#,
+        r#", "coordinates": [1, 0]"#,
+        r#"{ "cells": { "letter": "x" } }"#,
+    );
+    assert!(found.contains(r#"0 are cells at the letters "x""#), "{found}");
+    let found = none(
+        r#"{ "maze": { "cells": [1, 1], "cell": 4 } }"#,
+        ANY_START,
+        r#"{ "cells": {} }"#,
+    );
+    assert!(
+        found.contains("group \"coin\", object 2 of 2") && found.contains("1 of them are taken"),
+        "{found}"
+    );
+    let found = none(
+        braided,
+        r#", "coordinates": { "cells": { "kind": "dead_end" } }"#,
+        r#"{ "cells": {} }"#,
+    );
+    assert!(
+        found.contains("found no cell for the agent's start: of 16 cells, 0 of them dead ends"),
+        "{found}"
+    );
+}
+
+#[test]
+fn tasks_in_which_cells_mean_nothing_are_refused() {
+    let said = |world: &str, group: &str| {
+        let text = format!(
+            r#"{{ "name": "t", "world": {world}, "groups": [
+                {{ "name": "a", "count": 1, "object": {{ "class": "tree" }}, "placement": {{ "disc": {{ "center": [0, 0], "radius": 9 }} }} }},
+                {{ "name": "b", "count": 1, "object": {{ "class": "tree" }} {group} }}] }}"#
+        );
+        TaskSpec::from_json("t", &text).map_or_else(|error| error.to_string(), |_| String::new())
+    };
+    let maze = r#"{ "environment_params": { "layout": { "maze": {} } } }"#;
+    let cells = r#", "placement": { "cells": {} }"#;
+    assert!(said("{}", "").contains("(/groups/1): found nothing, expected the key \"placement\""));
+    assert!(said("{}", cells).contains("(/groups/1/placement): found cells in a world without a layout"));
+    assert_eq!(said(maze, cells), "");
+    assert!(said(maze, &format!(r#"{cells}, "around": "a""#)).contains("cells beside \"around\""));
+    let mixed = r#", "placement": { "mixture": { "parts": [{ "cells": {} }, { "disc": { "center": [0, 0], "radius": 1 } }] } }"#;
+    assert!(
+        said(maze, mixed).contains("found cells in a mixture"),
+        "{}",
+        said(maze, mixed)
+    );
+    let walk = r#", "placement": { "cells": { "walk": [9, 3] } }"#;
+    assert!(said(maze, walk).contains("the first not above the second"));
+    let start = r#"{ "environment_params": { "layout": { "maze": {} } },
+        "agent_params": { "coordinates": { "cells": { "walk": [1, 2] } } } }"#;
+    assert!(
+        said(start, cells).contains("(/world/agent_params/coordinates): found cells"),
+        "{}",
+        said(start, cells)
+    );
+}
+
+#[test]
+fn the_way_to_walk_is_a_parameter_and_drifts() {
+    let text = r#"{ "name": "t", "parameters": { "way": { "role": "variant", "type": "vector", "affects": ["S"], "range": [0, 40], "default": [0, 4] } },
+      "world": { "environment_params": { "layout": { "maze": { "cells": [8, 8], "cell": 2 } } }, "agent_params": { "agent_width": 0.5, "coordinates": { "cells": {} } } },
+      "groups": [{ "name": "goal", "count": 1, "object": { "class": "geometric" }, "keep_out": { "agent": 0 },
+        "placement": { "cells": { "walk": [{ "param": "way", "index": 0 }, { "param": "way", "index": 1 }] } } }],
+      "variants": { "near": {}, "far": { "way": [12, 20] } } }"#;
+    let task = TaskSpec::from_json("t", text).unwrap_or_else(|error| panic!("{error}"));
+    let [near, far] = ["near", "far"].map(|name| task.variant(name).unwrap());
+    let between = drift(&near, &far, 0.5).unwrap();
+    for (variant, [least, most]) in [(&near, [0.0, 4.0]), (&far, [12.0, 20.0]), (&between, [6.0, 12.0])] {
+        let sampler = Sampler::new(variant, 2);
+        for index in 0..20 {
+            let world = sampler.world(index).unwrap_or_else(|error| panic!("{error}"));
+            let (plan, agent, goal) = cells(&world);
+            let metres = plan.walking_distances(agent)[goal[0]];
+            assert!((least - 1e-6..=most + 1e-6).contains(&metres), "{metres} m");
+        }
+    }
+    // What both variants draw alike is alike: mazes and starts.
+    let [a, b] = [&near, &far].map(|variant| Sampler::new(variant, 2).world(7).unwrap());
+    assert_eq!(
+        (a.plan(), a.agent_params.coordinates),
+        (b.plan(), b.agent_params.coordinates)
+    );
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// World i is the same whatever was drawn before; places that stray stay in their cells and off the walls.
+    #[test]
+    fn worlds_are_drawn_by_random_access_and_stay_in_their_cells(index in 0_u64..1000, jitter in 0.0..1.0_f64) {
+        let task = task(MAZE, ANY_START, 4, &format!(r#"{{ "cells": {{ "jitter": {jitter} }} }}"#));
+        let variant = task.variant("default").unwrap();
+        let sampler = Sampler::new(&variant, 5);
+        let _ = sampler.world(index / 2).unwrap();
+        let world = sampler.world(index).unwrap();
+        prop_assert_eq!(&world, &Sampler::new(&variant, 5).world(index).unwrap());
+        let (plan, _, coins) = cells(&world);
+        for (object, cell) in world.objects.iter().zip(&coins) {
+            let middle = plan.cells[*cell].center;
+            for axis in 0..2 {
+                prop_assert!((object.coordinates[axis] - middle[axis]).abs() <= jitter * plan.cell[axis] / 2.0 + 1e-12);
+            }
+            prop_assert!(world.enclosure(object.coordinates).is_none());
+        }
+        let distinct: std::collections::BTreeSet<&usize> = coins.iter().collect();
+        prop_assert_eq!(distinct.len(), coins.len());
+    }
+}

@@ -1,0 +1,61 @@
+//! What is asked of the cells of a layout in which things are placed. Which cells there are is the plan's to say.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Which cells of a layout, by how many sides they can be left.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CellKind {
+    /// Every cell.
+    #[default]
+    Any,
+    /// Those that can be left by one side.
+    DeadEnd,
+    /// Those that can be left by two sides, corners too.
+    Corridor,
+    /// Those that can be left by three or four sides.
+    Junction,
+}
+
+impl CellKind {
+    /// Whether a cell that can be left by so many sides is one.
+    pub fn has(self, open_sides: u32) -> bool {
+        match self {
+            Self::Any => true,
+            Self::DeadEnd => open_sides == 1,
+            Self::Corridor => open_sides == 2,
+            Self::Junction => open_sides > 2,
+        }
+    }
+
+    /// What messages call so many of them.
+    pub fn describe(self) -> &'static str {
+        match self {
+            Self::Any => "cells",
+            Self::DeadEnd => "dead ends",
+            Self::Corridor => "corridors",
+            Self::Junction => "junctions",
+        }
+    }
+}
+
+/// Which room of a layout, as seen from the agent's start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CellRoom {
+    /// Another room than that in which the agent starts.
+    OtherThanAgent,
+    /// The room in which the agent starts.
+    SameAsAgent,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
+pub(super) fn is_any(kind: &CellKind) -> bool {
+    *kind == CellKind::Any
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
+pub(super) fn is_false(truth: &bool) -> bool {
+    !*truth
+}
