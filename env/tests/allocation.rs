@@ -129,6 +129,8 @@ fn world_with_things() -> World {
     world.environment_params.map_size = [7.0, 7.0];
     (world.agent_params.agent_width, world.agent_params.carry_limit) = (0.4, 3);
     world.agent_params.modalities = Vec::new();
+    // In circles, past all of them.
+    world.agent_params.max_linear_speed = 0.6;
     world.agent_params.state_features = vec![StateFeature::Position, StateFeature::Carrying];
     world.check().expect("the world is sound")
 }
@@ -166,7 +168,7 @@ fn steps_take_no_memory() {
     let (taken_beside_a_body, _) = taken(world_with_a_far_body(), 1, 300);
     assert_eq!(taken_beside_a_body, 0, "what can be pushed costs nothing until it is");
     let (taken_by_things, paid) = taken(world_with_things(), 1, 600);
-    assert!(paid > 100.0, "doors open and things are picked up: {paid}");
+    assert!(paid > 20.0, "doors open and things are picked up: {paid}");
     assert_eq!(taken_by_things, 0, "doors, switches and things");
     // Handing work to other threads takes a block of the pool's queue for every 63 times, whatever the number of
     // environments.

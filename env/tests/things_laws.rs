@@ -131,7 +131,7 @@ fn room_at(world: &World, [x, y]: [f32; 2]) -> f64 {
     walls.fold((8.0 - x.abs()).min(8.0 - y.abs()), f64::min)
 }
 
-/// How far the agent's middle is from a door's leaf as it is when closed.
+/// How far the agent's middle is from a door's leaf as it is when closed, or a little more.
 fn to_leaf(world: &World, environment: &Environment, door: usize) -> f64 {
     let [x, y] = environment.agent().position.map(f64::from);
     let [dx, dy] = [
@@ -140,7 +140,7 @@ fn to_leaf(world: &World, environment: &Environment, door: usize) -> f64 {
     ]
     .map(f64::abs);
     let (along, across) = if door % 2 == 0 { (dx, dy) } else { (dy, dx) };
-    libm::hypot((along - 0.75).max(0.0), (across - 0.15).max(0.0))
+    libm::hypot((along - 0.75).max(0.0), (across - 0.14).max(0.0))
 }
 
 proptest! {

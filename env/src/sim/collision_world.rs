@@ -21,12 +21,14 @@ pub(crate) struct CollisionWorld {
     bodies: RigidBodySet,
     pub(super) colliders: ColliderSet,
     /// Where colliders are, by the numbers of their handles.
-    places: BroadPhase,
+    pub(super) places: BroadPhase,
     pub(super) narrow_phase: NarrowPhase,
     islands: IslandManager,
     soft_bodies: SoftBodySet,
     /// For each object, its collider while it is there.
     pub(super) handles: Vec<Option<ColliderHandle>>,
+    /// The colliders of things that are carried, out of the trees: they are put back without taking memory.
+    pub(super) put_by: Vec<(u32, ColliderHandle)>,
     /// The agent's own collider, where objects move and may meet it.
     pub(super) agent_handle: Option<ColliderHandle>,
     pub(super) agent: SharedShape,
@@ -89,6 +91,7 @@ impl CollisionWorld {
             islands: IslandManager::new(),
             soft_bodies: SoftBodySet::new(),
             handles: vec![None; scene.items.len()],
+            put_by: Vec::new(),
             agent_handle: None,
             agent: capsule(radius),
             radius: f64::from(radius),
@@ -203,33 +206,8 @@ impl CollisionWorld {
         }
     }
 
-    /// Brings an object's body up to date with its item: puts it where that stands, or takes it away.
-    pub(super) fn sync_object(&mut self, index: u32, item: &Item, solid: bool) {
-        let body = self.handles.get(index as usize).copied().flatten();
-        match (body, item.visible) {
-            (Some(handle), true) => {
-                self.set_solid(handle, solid);
-                self.put(handle, item.position, item.heading_deg);
-            }
-            (Some(_), false) => self.remove(index),
-            (None, true) => self.add_object(index, item, solid),
-            (None, false) => {}
-        }
-    }
-
-    /// Lets a body stop others from now on, or none.
-    fn set_solid(&mut self, handle: ColliderHandle, solid: bool) {
-        let group = if solid { SOLID } else { GHOST };
-        let groups = self.colliders[handle].collision_groups();
-        if groups.memberships != group {
-            self.places.remove(groups.memberships, slot(handle) as u32);
-            let groups = InteractionGroups::new(group, Group::ALL, InteractionTestMode::And);
-            self.colliders[handle].set_collision_groups(groups);
-        }
-    }
-
     /// Puts an object's body where its item stands.
-    fn add_object(&mut self, index: u32, item: &Item, solid: bool) {
+    pub(super) fn add_object(&mut self, index: u32, item: &Item, solid: bool) {
         let (shape, from_ground) = body_shape(item);
         // Put together by hand: a product of poses would round the height in a way that depends on the heading.
         let at = from_ground.translation + Vector::new(item.position[0], item.position[1], 0.0);
@@ -253,7 +231,7 @@ impl CollisionWorld {
     }
 
     /// Puts a body at a place and turns it to a heading in degrees.
-    fn put(&mut self, handle: ColliderHandle, at: [f32; 2], heading_deg: f32) {
+    pub(super) fn put(&mut self, handle: ColliderHandle, at: [f32; 2], heading_deg: f32) {
         let collider = &self.colliders[handle];
         let mut pose = *collider.position();
         if shows_heading(collider.shared_shape()) {
@@ -265,7 +243,7 @@ impl CollisionWorld {
     }
 
     /// Takes an object away.
-    fn remove(&mut self, index: u32) {
+    pub(super) fn remove(&mut self, index: u32) {
         if let Some(handle) = self.handles[index as usize].take() {
             let group = self.colliders[handle].collision_groups().memberships;
             self.colliders.remove(

@@ -27,6 +27,7 @@ mod neighbours;
 mod observation;
 mod obstacle;
 mod outline;
+mod presence;
 mod progress;
 mod pushed;
 mod pushing;

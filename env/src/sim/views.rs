@@ -34,7 +34,9 @@ impl Views {
         let item = &mut self.scene.items[index];
         (item.position, item.heading_deg) = (state.position, state.heading_deg);
         (item.reward, item.visible) = (state.reward as f32, state.present);
-        self.bodies.sync_object(index as u32, item, object.solid && !state.open);
+        let solid = object.solid && !state.open;
+        self.bodies
+            .sync_object(index as u32, item, solid, object.portable.is_some());
         if state.open {
             item.swing();
         }

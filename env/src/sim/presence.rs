@@ -1,0 +1,49 @@
+//! Keeping an object's body up to date: where it stands, whether it is there, whether it stops others. What bodies are is in
+//! `collision_world.rs`.
+
+use rapier3d::prelude::*;
+
+use super::collision_world::{CollisionWorld, slot};
+use super::groups::{GHOST, SOLID};
+use crate::scene::Item;
+
+impl CollisionWorld {
+    /// Brings an object's body up to date with its item: puts it where that stands, or takes it away.
+    pub(super) fn sync_object(&mut self, index: u32, item: &Item, solid: bool, is_portable: bool) {
+        let body = self.handles.get(index as usize).copied().flatten();
+        match (body, item.visible) {
+            (Some(handle), true) => {
+                self.set_solid(handle, solid);
+                self.put(handle, item.position, item.heading_deg);
+            }
+            (Some(handle), false) if is_portable => {
+                self.handles[index as usize] = None;
+                self.put_by.push((index, handle));
+                let group = self.colliders[handle].collision_groups().memberships;
+                self.places.remove(group, slot(handle) as u32);
+            }
+            (Some(_), false) => self.remove(index),
+            (None, true) => {
+                if let Some(place) = self.put_by.iter().position(|(other, _)| *other == index) {
+                    let (_, handle) = self.put_by.swap_remove(place);
+                    self.handles[index as usize] = Some(handle);
+                    self.put(handle, item.position, item.heading_deg);
+                } else {
+                    self.add_object(index, item, solid);
+                }
+            }
+            (None, false) => {}
+        }
+    }
+
+    /// Lets a body stop others from now on, or none.
+    fn set_solid(&mut self, handle: ColliderHandle, solid: bool) {
+        let group = if solid { SOLID } else { GHOST };
+        let groups = self.colliders[handle].collision_groups();
+        if groups.memberships != group {
+            self.places.remove(groups.memberships, slot(handle) as u32);
+            let groups = InteractionGroups::new(group, Group::ALL, InteractionTestMode::And);
+            self.colliders[handle].set_collision_groups(groups);
+        }
+    }
+}
