@@ -53,6 +53,7 @@ const VERDICTS: &[(&str, Verdict)] = &[
     ("/environment_params/sky_color", Idle),
     ("/environment_params/ground_color", Idle),
     ("/environment_params/fog_distance", Idle),
+    ("/environment_params/layout", Moves),
     ("/agent_params/action_model", Moves),
     // The height at which ranges are measured.
     ("/agent_params/agent_height", Moves),

@@ -33,13 +33,23 @@ fn rooms(grid: [u32; 2], room: [f64; 2], doorway: f64, loops: f64, seed: u64) ->
 
 fn layouts() -> impl Strategy<Value = Layout> {
     prop_oneof![
-        (2_u32..9, 2_u32..9, 2.0..3.5, 0.0..=1.0, 0_u64..1 << 40)
-            .prop_map(|(columns, rows, cell, braid, seed)| maze([columns, rows], cell, braid, seed)),
-        (2_u32..4, 2_u32..4, (4.0..9.0, 4.0..9.0), 1.6..2.5, 0.0..=1.0, 0_u64..1 << 40).prop_map(
-            |(columns, rows, (width, depth), doorway, loops, seed)| {
+        (2_u32..9, 2_u32..9, 2.0..3.5, 0.0..=1.0, 0_u64..1 << 40).prop_map(|(columns, rows, cell, braid, seed)| maze(
+            [columns, rows],
+            cell,
+            braid,
+            seed
+        )),
+        (
+            2_u32..4,
+            2_u32..4,
+            (4.0..9.0, 4.0..9.0),
+            1.6..2.5,
+            0.0..=1.0,
+            0_u64..1 << 40
+        )
+            .prop_map(|(columns, rows, (width, depth), doorway, loops, seed)| {
                 rooms([columns, rows], [width, depth], doorway, loops, seed)
-            }
-        ),
+            }),
     ]
 }
 
@@ -191,7 +201,12 @@ proptest! {
 fn a_wall_of_a_layout_hides_what_is_behind_it() {
     let layout = |standing| {
         let text = ["*****", "*.*.*", "*****"].map(str::to_owned).to_vec();
-        Layout { text: Some(text), cell: Some(4.0), standing, ..Layout::default() }
+        Layout {
+            text: Some(text),
+            cell: Some(4.0),
+            standing,
+            ..Layout::default()
+        }
     };
     let seen = |standing| {
         let mut environment = Environment::new(world(layout(standing), 0, 0, |world| {

@@ -64,7 +64,11 @@ fn variants_share_their_mazes_and_a_parameter_takes_walls_away() {
     let [open, half, all] = [&open, &half, &all].map(|world| world.plan().expect("it has a layout"));
     assert!(open.walls.is_empty() && !half.walls.is_empty());
     for (half, all) in half.cells.iter().zip(&all.cells) {
-        assert_eq!(half.sides & all.sides, all.sides, "what is open in the whole maze is open in half of it");
+        assert_eq!(
+            half.sides & all.sides,
+            all.sides,
+            "what is open in the whole maze is open in half of it"
+        );
     }
 }
 
@@ -78,5 +82,8 @@ fn numbers_that_make_no_layout_are_an_error_of_the_draw() {
     let error = (0..50).find_map(|index| all.world(index).err());
     let error = error.expect("walls as wide as cells leave no corridor");
     assert!(matches!(error, GeneratorError::Clash { .. }), "{error}");
-    assert!(error.to_string().contains("/environment_params/layout/maze/wall"), "{error}");
+    assert!(
+        error.to_string().contains("/environment_params/layout/maze/wall"),
+        "{error}"
+    );
 }

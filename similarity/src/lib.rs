@@ -12,6 +12,7 @@ mod combined;
 mod correlation;
 pub mod distribution;
 mod error;
+mod layout_shape;
 mod matrix;
 mod mdp;
 mod metric_properties;
@@ -43,6 +44,7 @@ pub use correlation::{
 };
 pub use driftworld_spec::Oklab;
 pub use error::SimilarityError;
+pub use layout_shape::LayoutShape;
 pub use matrix::{
     DistanceMatrix, Embedding, MAX_DISTANCE, MAX_FEATURES, MAX_ITEMS, PlanarMap, Triangles, Violation, classical_map,
 };

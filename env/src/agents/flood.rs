@@ -42,7 +42,9 @@ impl Flood {
         self.distance.clear();
         self.distance.resize(grid.num_cells(), u32::MAX);
         // Nothing is nearer than 0: the rim and the walls of layouts are never come to.
-        grid.rim().chain(occupancy.sealed()).for_each(|cell| self.distance[cell] = 0);
+        grid.rim()
+            .chain(occupancy.sealed())
+            .for_each(|cell| self.distance[cell] = 0);
         self.buckets.resize_with(NUM_BUCKETS, Vec::new);
         self.buckets.iter_mut().for_each(Vec::clear);
         self.distance[start] = 0;

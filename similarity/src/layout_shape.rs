@@ -1,0 +1,237 @@
+//! [`LayoutShape`]: the walls of a layout as a raster, and the ways that they leave, so that layouts are compared by what
+//! they are and not by how they are written.
+
+use std::collections::VecDeque;
+use std::sync::LazyLock;
+
+use driftworld_spec::Plan;
+
+use crate::scalar::relative_difference;
+
+/// Cells of the raster along each side of the arena.
+const SIDE: usize = 96;
+
+/// Places along each side of the arena between which ways are measured.
+const PLACES: usize = 6;
+
+/// Steps of a way that there is not.
+const NO_WAY: u32 = (SIDE * SIDE) as u32;
+
+/// What layouts are compared by: a raster of 96 × 96 cells that walls touch, and how long the ways are between the cells
+/// nearest to 36 places in rows and columns. Both in shares of the arena's sides: how large it is does not count.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LayoutShape {
+    walls: Vec<bool>,
+    /// Steps from each place to each later one.
+    ways: Vec<u32>,
+}
+
+impl LayoutShape {
+    /// The shape of a plan in an arena of these sides in metres. A millisecond.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_similarity::LayoutShape;
+    /// use driftworld_spec::{Layout, Maze};
+    /// let layout = |standing| Layout { maze: Some(Maze::default()), standing, ..Layout::default() };
+    /// let [open, half, all] = [0.0, 0.5, 1.0].map(|standing| LayoutShape::of(&layout(standing).plan(7), [24.0, 24.0]));
+    /// assert_eq!(all.distance(&all), 0.0);
+    /// assert!(open.ways_distance(&all) > open.ways_distance(&half));
+    /// assert!(half.walls_distance(&all) > 0.0);
+    /// ```
+    pub fn of(plan: &Plan, arena: [f64; 2]) -> Self {
+        let mut walls = vec![false; SIDE * SIDE];
+        for wall in &plan.walls {
+            // In cells of the raster.
+            let corners: Vec<[f64; 2]> = wall
+                .polygon
+                .iter()
+                .map(|corner| [0, 1].map(|axis| (corner[axis] / arena[axis] + 0.5) * SIDE as f64))
+                .collect();
+            let ends = |axis: usize| {
+                let along = corners.iter().map(|corner| corner[axis]);
+                let [low, high] = along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| {
+                    [low.min(at), high.max(at)]
+                });
+                let whole = |at: f64| at.clamp(0.0, SIDE as f64) as usize;
+                whole(low - 1.0)..whole(high + 2.0)
+            };
+            for row in ends(1) {
+                for column in ends(0) {
+                    let middle = [column as f64 + 0.5, row as f64 + 0.5];
+                    let cell = &mut walls[row * SIDE + column];
+                    *cell = *cell || touches(&corners, middle);
+                }
+            }
+        }
+        let ways = ways(&walls);
+        Self { walls, ways }
+    }
+
+    /// The shape of an arena without walls.
+    pub fn open() -> &'static Self {
+        static OPEN: LazyLock<LayoutShape> = LazyLock::new(|| LayoutShape::of(&Plan::default(), [1.0; 2]));
+        &OPEN
+    }
+
+    /// Jaccard distance of the walls: the share of cells that walls of one touch alone among those that walls of either
+    /// touch, 0..1. A metric.
+    pub fn walls_distance(&self, other: &Self) -> f64 {
+        let pairs = || self.walls.iter().zip(&other.walls);
+        let either = pairs().filter(|(a, b)| **a || **b).count();
+        let alone = pairs().filter(|(a, b)| a != b).count();
+        alone as f64 / either.max(1) as f64
+    }
+
+    /// How much the ways differ: the mean over all pairs of places of the difference of the two lengths over the larger
+    /// one, 0..1. A metric of ways: 0 where all are as long.
+    pub fn ways_distance(&self, other: &Self) -> f64 {
+        let pairs = self.ways.iter().zip(&other.ways);
+        let apart: f64 = pairs
+            .map(|(a, b)| relative_difference(f64::from(*a), f64::from(*b)))
+            .sum();
+        apart / self.ways.len().max(1) as f64
+    }
+
+    /// Both together, 0..2. A metric.
+    pub fn distance(&self, other: &Self) -> f64 {
+        self.walls_distance(other) + self.ways_distance(other)
+    }
+}
+
+/// Whether a polygon holds a point, or comes within half a cell of it.
+fn touches(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
+    let Some(mut from) = corners.last().copied() else {
+        return false;
+    };
+    let (mut inside, mut least) = (false, f64::INFINITY);
+    for &to in corners {
+        let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+        let squared = (dx * dx + dy * dy).max(f64::MIN_POSITIVE);
+        let along = (((x - from[0]) * dx + (y - from[1]) * dy) / squared).clamp(0.0, 1.0);
+        let (ex, ey) = (x - from[0] - along * dx, y - from[1] - along * dy);
+        least = least.min(ex * ex + ey * ey);
+        if (from[1] > y) != (to[1] > y) && x < dx * (y - from[1]) / dy + from[0] {
+            inside = !inside;
+        }
+        from = to;
+    }
+    inside || least <= 0.25
+}
+
+/// The cells beside one, within the raster.
+fn beside(cell: usize) -> impl Iterator<Item = usize> {
+    let (column, row) = (cell % SIDE, cell / SIDE);
+    [
+        (column + 1 < SIDE).then_some(cell + 1),
+        (row + 1 < SIDE).then_some(cell + SIDE),
+        (column > 0).then(|| cell - 1),
+        (row > 0).then(|| cell - SIDE),
+    ]
+    .into_iter()
+    .flatten()
+}
+
+/// Steps from a cell to each over those that `may_enter` allows; [`NO_WAY`] to the others.
+fn steps(from: usize, may_enter: impl Fn(usize) -> bool) -> Vec<u32> {
+    let mut steps = vec![NO_WAY; SIDE * SIDE];
+    steps[from] = 0;
+    let mut open = VecDeque::from([from]);
+    while let Some(cell) = open.pop_front() {
+        for next in beside(cell) {
+            if steps[next] == NO_WAY && may_enter(next) {
+                steps[next] = steps[cell] + 1;
+                open.push_back(next);
+            }
+        }
+    }
+    steps
+}
+
+/// Steps between the free cells that are nearest to the places, from each to each later one.
+fn ways(walls: &[bool]) -> Vec<u32> {
+    let places: Vec<usize> = (0..PLACES * PLACES)
+        .map(|number| {
+            let at = |index: usize| (2 * index + 1) * SIDE / (2 * PLACES);
+            let middle = at(number / PLACES) * SIDE + at(number % PLACES);
+            if !walls[middle] {
+                return middle;
+            }
+            let near = steps(middle, |_| true);
+            let free = (0..walls.len()).filter(|cell| !walls[*cell]);
+            free.min_by_key(|cell| near[*cell]).unwrap_or(middle)
+        })
+        .collect();
+    let mut ways = Vec::with_capacity(places.len() * (places.len() - 1) / 2);
+    for (number, from) in places.iter().enumerate() {
+        let steps = steps(*from, |cell| !walls[cell]);
+        ways.extend(places[number + 1..].iter().map(|to| steps[*to]));
+    }
+    ways
+}
+
+#[cfg(test)]
+mod tests {
+    use driftworld_spec::{Layout, LayoutWall, Maze, Rooms};
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn layouts() -> impl Strategy<Value = Layout> {
+        let maze = (2_u32..9, 0.0..=1.0, 0_u64..999).prop_map(|(side, braid, seed)| Layout {
+            maze: Some(Maze {
+                cells: [side, side],
+                braid,
+                seed: Some(seed),
+                ..Maze::default()
+            }),
+            ..Layout::default()
+        });
+        let rooms = (1_u32..4, 0.0..=1.0, 0_u64..999).prop_map(|(side, loops, seed)| Layout {
+            rooms: Some(Rooms {
+                grid: [side, 2],
+                loops,
+                seed: Some(seed),
+                ..Rooms::default()
+            }),
+            ..Layout::default()
+        });
+        prop_oneof![maze, rooms]
+    }
+
+    fn shape(layout: &Layout) -> LayoutShape {
+        LayoutShape::of(&layout.plan(0), layout.size().expect("mazes and rooms have one"))
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(24))]
+
+        #[test]
+        fn it_is_a_metric(a in layouts(), b in layouts(), c in layouts()) {
+            let [a, b, c] = [a, b, c].map(|layout| shape(&layout));
+            prop_assert_eq!(a.distance(&a), 0.0);
+            prop_assert_eq!(a.distance(&b).to_bits(), b.distance(&a).to_bits());
+            prop_assert!(a.distance(&c) <= a.distance(&b) + b.distance(&c) + 1e-12);
+        }
+
+        #[test]
+        fn how_a_layout_is_written_does_not_count(layout in layouts()) {
+            let plan = layout.plan(0);
+            let walls = plan.walls.iter().map(|wall| LayoutWall {
+                polygon: Some(wall.polygon.clone()),
+                ..LayoutWall::default()
+            });
+            let single = Layout { walls: Some(walls.collect()), ..Layout::default() };
+            let single = LayoutShape::of(&single.plan(0), plan.size);
+            prop_assert_eq!(single.distance(&shape(&layout)), 0.0);
+        }
+
+        #[test]
+        fn the_fewer_walls_stand_the_farther_is_the_whole(layout in layouts(), more in 0.0..=1.0, less in 0.0..=1.0) {
+            let standing = |standing| shape(&Layout { standing, ..layout.clone() });
+            let (all, many, few) = (standing(1.0), standing(more), standing(more * less));
+            prop_assert!(all.walls_distance(&few) >= all.walls_distance(&many));
+            prop_assert_eq!(standing(0.0), LayoutShape::open().clone());
+        }
+    }
+}
