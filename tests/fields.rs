@@ -105,7 +105,9 @@ fn other_whole(pointer: &str, now: &Json) -> Json {
     let triangle = json!([[30.0, 30.0], [32.0, 30.0], [31.0, 33.0]]);
     match pointer {
         "/environment_params/map_regions" => json!([triangle]),
-        "/environment_params/map_regions/*" | "/environment_params/walls/*/polygon" => triangle,
+        "/environment_params/map_regions/*"
+        | "/environment_params/walls/*/polygon"
+        | "/environment_params/layout/walls/*/polygon" => triangle,
         "/environment_params/walls" => {
             json!([{ "polygon": triangle }, { "polygon": [[-30.0, 3.0], [-32.0, 3.0], [-31.0, 6.0]] }])
         }
@@ -119,7 +121,6 @@ fn other_whole(pointer: &str, now: &Json) -> Json {
         "/environment_params/layout/walls" => json!([{ "circle": { "center": [30.0, 0.0], "radius": 1.0 } }]),
         "/environment_params/layout/walls/*" => json!({ "from": [30.0, 0.0], "to": [33.0, 0.0] }),
         "/environment_params/layout/walls/*/circle" => json!({ "center": [30.0, 0.0], "radius": 1.0 }),
-        "/environment_params/layout/walls/*/polygon" => triangle,
         "/image_params" => json!({ "zoom": 5.0 }),
         "/rules" => json!({ "step_reward": -0.25, "success": ["all_collected"] }),
         "/rules/shaping" => json!({ "scale": 2.0 }),
@@ -189,12 +190,12 @@ fn every_place_takes_a_parameter_and_what_it_says_arrives_there_and_nowhere_else
 }
 
 /// A task in which variants give a place of the world one of two values.
-fn task_of_two(place: &FieldPlace, pointer: &str, full: &Json, values: [Json; 2]) -> Arc<TaskSpec> {
+fn task_of_two(place: &FieldPlace, pointer: &str, full: &Json, values: &[Json; 2]) -> Arc<TaskSpec> {
     let mut template = full.clone();
     *at(&mut template, pointer) = json!({ "param": "tried" });
     let comparisons = place.field.compared.comparisons().iter();
     let affects: BTreeSet<&str> = comparisons.map(|comparison| comparison.element().letter()).collect();
-    let [first, second] = &values;
+    let [first, second] = values;
     let task = json!({ "name": "t", "world": template, "parameters": { "tried": {
         "role": "variant", "type": "json", "affects": affects, "choices": values, "default": first } },
         "variants": { "first": {}, "second": { "tried": second } } });
@@ -218,7 +219,7 @@ fn every_place_takes_json_whose_variants_differ_by_its_elements_and_carry_their_
         let mut template = full.clone();
         let now = at(&mut template, &pointer).clone();
         let second = other(place, &now);
-        let task = task_of_two(place, &pointer, &full, [now, second.clone()]);
+        let task = task_of_two(place, &pointer, &full, &[now, second.clone()]);
         let plain = |template: &Json| {
             drawn(
                 &pointer,
@@ -275,7 +276,7 @@ fn what_may_be_absent_is_absent_where_a_parameter_is_null() {
             &template,
             &json!({ "role": "fixed", "type": "number", "value": 1 }),
         );
-        let task = task_of_two(place, &pointer, &full, [now, Json::Null]);
+        let task = task_of_two(place, &pointer, &full, &[now, Json::Null]);
         assert_eq!(world_of(&task, "second"), expected, "{pointer}");
         assert_ne!(world_of(&task, "first"), expected, "{pointer}");
     }
@@ -337,9 +338,12 @@ fn every_key_takes_a_parameter_or_holds_what_does_or_says_why_not() {
 fn change(world: &mut Json, place: &FieldPlace, full: &Json) -> bool {
     let pointer = first(place, full);
     match place.pointer.as_str() {
-        "/$schema" | "/version" | "/objects/*" | "/environment_params/walls/*/polygon" => return false,
-        // Without it there is no layout.
-        "/environment_params/layout/text" => return false,
+        // Without a text there is no layout.
+        "/$schema"
+        | "/version"
+        | "/objects/*"
+        | "/environment_params/walls/*/polygon"
+        | "/environment_params/layout/text" => return false,
         "/seed" => world["seed"] = json!(5),
         "/progress" => world["progress"] = json!({ "steps": 3, "objects": [{}] }),
         "/objects/*/unique_name" => world["objects"][0]["unique_name"] = json!("another"),

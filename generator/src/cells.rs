@@ -72,21 +72,15 @@ impl<'a> Cells<'a> {
             kind.has(cell.open_sides()) && by_letter && by_group && by_room && by_walk
         };
         let fitting: Vec<usize> = (0..plan.cells.len()).filter(fits).collect();
-        let mut asked = kind.describe().to_owned();
-        if let Some(letters) = letter {
-            asked += &format!(" at the letters {letters:?}");
-        }
-        if *of_group {
-            asked += &format!(" at the letters of the group {group:?}");
-        }
-        asked += match room {
-            Some(CellRoom::OtherThanAgent) => " in a room other than the agent's",
-            Some(CellRoom::SameAsAgent) => " in the agent's room",
-            None => "",
-        };
-        if let Some([least, most]) = walk {
-            asked += &format!(" at a walking distance of {least} to {most} m from the agent");
-        }
+        let by_letter = letter.as_ref().map(|letters| format!(" at the letters {letters:?}"));
+        let by_group = of_group.then(|| format!(" at the letters of the group {group:?}"));
+        let by_room = room.map(|room| match room {
+            CellRoom::OtherThanAgent => " in a room other than the agent's".to_owned(),
+            CellRoom::SameAsAgent => " in the agent's room".to_owned(),
+        });
+        let by_walk = walk.map(|[least, most]| format!(" at a walking distance of {least} to {most} m from the agent"));
+        let conditions: String = [by_letter, by_group, by_room, by_walk].into_iter().flatten().collect();
+        let asked = format!("{}{conditions}", kind.describe());
         let (all, count) = (plan.cells.len(), fitting.len());
         let of_kind = plan.cells.iter().filter(|cell| kind.has(cell.open_sides())).count();
         let asked = format!(

@@ -135,8 +135,8 @@ pub(crate) struct Group {
 /// Whether what becomes of objects of a template is random, in any variant of its task. One answer for all of them:
 /// worlds of two variants differ in what the variants differ in, and not in who has a seed.
 fn may_be_random(template: &Template<Object>) -> bool {
-    let of_chance = ["/motion_model", "/reward_probability", "/respawn"];
-    let opens = |hole: &Hole<Object>| of_chance.contains(&hole.pointer.as_str());
+    let random = ["/motion_model", "/reward_probability", "/respawn"];
+    let opens = |hole: &Hole<Object>| random.contains(&hole.pointer.as_str());
     template.base.takes_chances() || template.holes.iter().any(opens)
 }
 

@@ -102,14 +102,14 @@ impl Value {
             | (P::Point, Self::Point(_))
             | (P::Color, Self::Color(_))
             | (P::Vector, Self::Vector(_))
-            | (P::Distribution, Self::Distribution(_)) => Some(self.clone()),
+            | (P::Distribution, Self::Distribution(_))
+            | (P::Layout, Self::Layout(_)) => Some(self.clone()),
             (P::Number, Self::Integer(whole)) => Some(Self::Number(*whole as f64)),
             (P::Heading, Self::Number(_) | Self::Integer(_)) => {
                 self.as_number().map(|degrees| Self::Number(turned(degrees)))
             }
             (P::Color, Self::Text(name)) => Color::from_name(name).map(Self::Color),
             (P::Vector, _) => self.as_vector().map(|vector| Self::Vector(vector.to_vec())),
-            (P::Layout, Self::Layout(_)) => Some(self.clone()),
             (P::Layout, Self::Json(json)) => Layout::deserialize(&**json)
                 .ok()
                 .map(|layout| Self::Layout(Box::new(layout))),
