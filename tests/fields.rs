@@ -38,7 +38,7 @@ fn full_with(place: &FieldPlace) -> Json {
     };
     let words: Vec<&str> = inside.split('/').skip(1).collect();
     world["environment_params"]["predefined_map"] = json!(0);
-    world["agent_params"]["coordinates"] = json!([0.25, 0.25]);
+    world["agent_params"]["coordinates"] = json!([0.3, 0.3]);
     let wall = |form: Json| json!({ "walls": [form] });
     world["environment_params"]["layout"] = match words.as_slice() {
         ["rooms", ..] => json!({ "rooms": {
