@@ -45,7 +45,7 @@ fn full_with(place: &FieldPlace) -> Json {
             "grid": [1, 3], "room": [7.0, 6.0], "doorway": 1.0, "wall": 0.25, "height": 3.0, "loops": 0.25, "doors": "none", "seed": 4 } }),
         ["text" | "cell" | "height" | "legend", ..] => json!({
             "text": ["#####", "#D  #", "#   #", "#####"], "cell": 1.0, "height": 2.0, "legend": { "D": "wall" } }),
-        ["predefined"] => json!({ "predefined": 1 }),
+        ["predefined" | "size", ..] => json!({ "predefined": 1, "size": [150.0, 140.0] }),
         ["walls", "*", "circle", ..] => {
             wall(json!({ "circle": { "center": [20.0, 9.0], "radius": 2.0 }, "height": 3.0 }))
         }
