@@ -68,8 +68,8 @@ fn other(place: &FieldPlace, now: &Json) -> Json {
         .rfind(|word| **word != "*")
         .expect("a place is at or below a key");
     match place.kind.expect("it can be a parameter") {
-        ParameterType::Number if ["map_size", "field_of_view"].contains(key) => json!(62.5),
-        ParameterType::Point if *key == "map_size" => json!([62.5, 61.5]),
+        ParameterType::Number if ["map_size", "size", "field_of_view"].contains(key) => json!(62.5),
+        ParameterType::Point if ["map_size", "size"].contains(key) => json!([62.5, 61.5]),
         ParameterType::Number if *key == "room" => json!(6.5),
         ParameterType::Point if *key == "room" => json!([6.5, 7.5]),
         ParameterType::Number | ParameterType::Heading if *now == 0.5 => json!(0.75),
