@@ -92,7 +92,7 @@ fn clock(door: &Door, ticks: u64, time_step: f64) -> Option<bool> {
     let half = door.period? / 2.0;
     let halves = |ticks: u64| (ticks as f64 * time_step / half + 1e-6).floor() as u64;
     let now = halves(ticks);
-    (now != halves(ticks.saturating_sub(1))).then_some(door.open == (now % 2 == 0))
+    (now != halves(ticks.saturating_sub(1))).then_some(door.open == now.is_multiple_of(2))
 }
 
 /// Whether the agent stands in a door, or a body that can move.
@@ -154,7 +154,7 @@ mod tests {
             for tick in 1..1000_u64 {
                 now = clock(&door, tick, time_step).unwrap_or(now);
                 let halves = (tick as f64 * time_step + 1e-6).floor() as u64;
-                assert_eq!(now, is_open == (halves % 2 == 0), "tick {tick}");
+                assert_eq!(now, is_open == halves.is_multiple_of(2), "tick {tick}");
             }
         }
         assert_eq!(clock(&Door::default(), 7, 0.1), None);

@@ -30,6 +30,10 @@ impl AgentState {
 
 /// One object while its world runs.
 #[derive(Clone, Debug, PartialEq)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "facts that have nothing to do with each other"
+)]
 pub struct ObjectState {
     /// Position in metres; the last one of an object that is gone.
     pub position: [f32; 2],

@@ -59,7 +59,7 @@ impl Task {
         };
         let away = length(sim.agent().position, sim.objects()[self.object as usize].position);
         if self.deed == Deed::Move && is_too_much(sim, self.object) && away < BESIDE {
-            return self.put_down(sim);
+            return put_down(sim);
         }
         let by_hand = stimulus == Some(Stimulus::AgentInteract) && can_interact(sim.world);
         if by_hand && self.is_at_hand(sim) {
@@ -92,19 +92,10 @@ impl Task {
         }
     }
 
-    /// Turns until there is room in front.
-    fn put_down(self, sim: SimRef) -> [f64; 3] {
-        let is_free = answering(sim, &reached(sim)).is_none() && put_down_place(sim).is_some();
-        if is_free {
-            return [0.0, 0.0, 1.0];
-        }
-        [0.0, sim.world.agent_params.max_angular_speed, 0.0]
-    }
-
     fn bring(self, sim: SimRef, floor: &mut Floor, thing: u32) -> [f64; 3] {
         let to = sim.objects()[self.object as usize].position;
         let within = self.within(sim, thing);
-        let place = put_down_place(sim).filter(|(index, _)| *index == thing || self.is_last_useless(sim, thing));
+        let place = put_down_place(sim).filter(|(index, _)| *index == thing || is_last_useless(sim, thing));
         if let Some((index, place)) = place
             && answering(sim, &reached(sim)).is_none()
             && (index != thing || length(place, to) < within - 0.02)
@@ -130,11 +121,6 @@ impl Task {
         }
     }
 
-    /// Whether what would be put down now is not what is to be brought.
-    fn is_last_useless(self, sim: SimRef, thing: u32) -> bool {
-        sim.state.carried().last() != Some(&thing)
-    }
-
     fn within(self, sim: SimRef, thing: u32) -> f32 {
         let world = sim.world;
         let tags = [thing, self.object].map(|index| world.objects[index as usize].tag.as_deref());
@@ -150,6 +136,20 @@ impl Task {
             .fold(f32::INFINITY, f32::min)
             .min(1000.0)
     }
+}
+
+/// Turns until there is room in front.
+fn put_down(sim: SimRef) -> [f64; 3] {
+    let is_free = answering(sim, &reached(sim)).is_none() && put_down_place(sim).is_some();
+    if is_free {
+        return [0.0, 0.0, 1.0];
+    }
+    [0.0, sim.world.agent_params.max_angular_speed, 0.0]
+}
+
+/// Whether what would be put down now is not what is to be brought.
+fn is_last_useless(sim: SimRef, thing: u32) -> bool {
+    sim.state.carried().last() != Some(&thing)
 }
 
 /// Whether an object can be picked up, and the agent's hands are full.
