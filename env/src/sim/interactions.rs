@@ -14,7 +14,7 @@ use super::energy::give_energy;
 use super::rng::ObjectRng;
 use super::sim_ref::SimRef;
 use super::state::SimState;
-use super::things::{answering, carry_out, effect_of, follow, listens, put_down, put_down_place};
+use super::things::{answering, apply_effect, effect_of, follow, listens, put_down, put_down_place};
 use super::views::Views;
 
 /// Lists that each time step uses again.
@@ -247,7 +247,7 @@ fn trigger(
     }
     state.advance_sequence();
     if let Some(effect) = effect {
-        carry_out(world, state, views, index, effect);
+        apply_effect(world, state, views, index, effect);
     }
     if let (true, Some(respawn)) = (destroyed, &object.respawn) {
         let ticks = (respawn.delay / world.agent_params.time_step).ceil() as u64;

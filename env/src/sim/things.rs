@@ -109,7 +109,7 @@ pub(crate) fn put_down_place(sim: SimRef) -> Option<(u32, [f32; 2])> {
 }
 
 /// Does what an object does.
-pub(super) fn carry_out(world: &World, state: &mut SimState, views: &mut Views, index: usize, effect: Effect) {
+pub(super) fn apply_effect(world: &World, state: &mut SimState, views: &mut Views, index: usize, effect: Effect) {
     let object = &world.objects[index];
     match effect {
         Effect::Opened => {
