@@ -53,6 +53,16 @@ const VERDICTS: &[(&str, Verdict)] = &[
     ("/environment_params/sky_color", Idle),
     ("/environment_params/ground_color", Idle),
     ("/environment_params/fog_distance", Idle),
+    ("/environment_params/zones/*/disc", Moves),
+    ("/environment_params/zones/*/polygon", Moves),
+    ("/environment_params/zones/*/name", Idle),
+    ("/environment_params/zones/*/reward_per_second", Ends),
+    ("/environment_params/zones/*/reward_on_entering", Ends),
+    ("/environment_params/zones/*/speed_factor", Moves),
+    ("/environment_params/zones/*/ends", Ends),
+    ("/environment_params/zones/*/teleport", Moves),
+    ("/environment_params/zones/*/color", Idle),
+    ("/environment_params/zones/*/visible", Idle),
     ("/environment_params/layout", Moves),
     ("/agent_params/action_model", Moves),
     // The height at which ranges are measured.
@@ -72,6 +82,8 @@ const VERDICTS: &[(&str, Verdict)] = &[
     ("/agent_params/state_features", Idle),
     ("/agent_params/actions", Moves),
     ("/agent_params/interact", Moves),
+    ("/agent_params/energy", Ends),
+    ("/agent_params/carry_limit", Moves),
     ("/rules/step_reward", Ends),
     ("/rules/reward_per_second", Ends),
     ("/rules/order_penalty", Ends),
@@ -105,6 +117,12 @@ const VERDICTS: &[(&str, Verdict)] = &[
     ("/objects/*/seed", Chance),
     ("/objects/*/tag", Ends),
     ("/objects/*/unique_name", Idle),
+    ("/objects/*/energy", Ends),
+    ("/objects/*/range_trigger", Moves),
+    ("/objects/*/contact_trigger", Moves),
+    ("/objects/*/door", Moves),
+    ("/objects/*/switch", Moves),
+    ("/objects/*/portable", Moves),
 ];
 
 const STEPS: usize = 500;

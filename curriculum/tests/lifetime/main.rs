@@ -334,7 +334,7 @@ fn varied() -> Scenario {
 }
 
 fn rows(folder: &Path) -> Vec<Record> {
-    let log = read_log(folder).unwrap_or_else(|error| panic!("{error}"));
+    let log = driftworld_metrics::read_log_with_texts(folder).unwrap_or_else(|error| panic!("{error}"));
     log.rows.iter().map(Row::to_record).collect()
 }
 
