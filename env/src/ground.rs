@@ -29,10 +29,10 @@ pub(crate) fn patches(world: &World) -> impl Iterator<Item = PanelGroup> {
 /// Its ground as triangles that are seen from above.
 fn mesh(zone: &Zone) -> Mesh {
     let corners = corners(zone);
-    let mut mesh = Mesh::default();
-    mesh.triangles = triangles(&corners);
-    mesh.corners = corners.into_iter().map(|[x, y]| [x as f32, y as f32, 0.0]).collect();
-    mesh
+    Mesh {
+        triangles: triangles(&corners),
+        corners: corners.into_iter().map(|[x, y]| [x as f32, y as f32, 0.0]).collect(),
+    }
 }
 
 /// A point well inside a zone: the middle of a disc, or of a polygon's largest triangle.

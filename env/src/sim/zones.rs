@@ -167,7 +167,7 @@ pub(super) fn apply_zones(world: &World, state: &mut SimState, views: &Views, st
         return end;
     };
     let sim = SimRef { world, state, views };
-    let Some(place) = free_place(sim, to) else { return None };
+    let place = free_place(sim, to)?;
     let agent = &mut state.agent;
     agent.position = place.map(|metres| metres as f32);
     agent.velocity = [0.0; 2];

@@ -228,6 +228,7 @@ mod tests {
 
     #[test]
     fn a_zone_counts_in_the_elements_that_it_is_part_of_and_its_place_in_the_list_does_not() {
+        type Change = fn(&mut Zone);
         let plain = || {
             let mut zone = Zone::disc([3.0, 0.0], 2.0);
             zone.visible = false;
@@ -239,13 +240,13 @@ mod tests {
                 .unwrap()
         };
         let apart = |a: Vec<Zone>, b: Vec<Zone>| world_distance(&world(a), &world(b), &Weights::default());
-        let changes: [(Element, fn(&mut Zone)); 5] = [
+        let changes: [(Element, Change); 5] = [
             (Element::T, |zone| zone.speed_factor = 0.5),
             (Element::T, |zone| zone.teleport = Some([9.0, 9.0])),
             (Element::R, |zone| zone.reward_per_second = 1.0),
             (Element::R, |zone| zone.ends = Some(ZoneEnd::Failure)),
             (Element::O, |zone| {
-                (zone.visible, zone.color) = (true, Color::from_name("red"))
+                (zone.visible, zone.color) = (true, Color::from_name("red"));
             }),
         ];
         assert_eq!(apart(vec![plain()], vec![]).total, 0.0, "it does nothing");

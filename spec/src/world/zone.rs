@@ -210,13 +210,12 @@ pub(super) fn problems(world: &WorldDraft) -> Vec<Problem> {
             problems.push(Problem::new("spec/zone", pointer.clone(), found, "one of the two").advise(advice));
         }
         let Some([x, y]) = zone.teleport else { continue };
-        let found = if !arena.contains([x, y]) {
-            let [width, depth] = arena.arena_size();
-            Some(format!("({x}, {y}), outside the {width} × {depth} m arena"))
+        let [width, depth] = arena.arena_size();
+        let found = if arena.contains([x, y]) {
+            let enclosure = arena.enclosure([x, y], plan.as_deref());
+            enclosure.map(|enclosure| format!("({x}, {y}), inside {enclosure}"))
         } else {
-            arena
-                .enclosure([x, y], plan.as_deref())
-                .map(|enclosure| format!("({x}, {y}), inside {enclosure}"))
+            Some(format!("({x}, {y}), outside the {width} × {depth} m arena"))
         };
         if let Some(found) = found {
             problems.push(Problem::new(
