@@ -335,7 +335,12 @@ fn varied() -> Scenario {
 
 fn rows(folder: &Path) -> Vec<Record> {
     let log = driftworld_metrics::read_log_with_texts(folder).unwrap_or_else(|error| panic!("{error}"));
-    log.rows.iter().map(Row::to_record).collect()
+    let with_texts = |row: Row| {
+        let record = row.to_record();
+        row.texts()
+            .fold(record, |record, (name, text)| record.with_text(name, text))
+    };
+    log.rows.iter().map(with_texts).collect()
 }
 
 #[test]

@@ -13,9 +13,9 @@ mod progress;
 mod remarks;
 mod rules;
 mod table;
-mod zone;
 mod thing_remarks;
 mod things;
+mod zone;
 
 use std::ops::Deref;
 use std::sync::{Arc, LazyLock};
@@ -33,8 +33,8 @@ pub use object::{Model, MotionModel, Object, Pushable, Respawn, Stimulus, Trigge
 pub use progress::{LastEvent, ObjectProgress, Origin, Progress, RailsProgress};
 pub use rules::{Delivery, EndCondition, Rules, Shaping};
 pub use table::LeafTexts;
-pub use zone::{Disc, Zone, ZoneEnd};
 pub use things::{Door, Portable, Switch, SwitchAction};
+pub use zone::{Disc, Zone, ZoneEnd};
 
 use crate::classes::Classes;
 use crate::document::Document;
