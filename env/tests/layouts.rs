@@ -121,8 +121,12 @@ proptest! {
     fn a_state_written_down_goes_on_in_its_layout(layout in layouts(), start in 0_usize..99, seed in 0_u64..99) {
         // The layout is drawn by the world's own seed.
         let mut layout = layout;
-        for own in [layout.maze.as_mut().map(|maze| &mut maze.seed), layout.rooms.as_mut().map(|rooms| &mut rooms.seed)] {
-            own.into_iter().for_each(|own| *own = None);
+        let seeds = [
+            layout.maze.as_mut().map(|maze| &mut maze.seed),
+            layout.rooms.as_mut().map(|rooms| &mut rooms.seed),
+        ];
+        for seed in seeds.into_iter().flatten() {
+            *seed = None;
         }
         let mut environment = Environment::new(world(layout, start, 0, |world| world.seed = Some(0)));
         let mut agent = RandomAgent::new(0);
