@@ -111,15 +111,8 @@ impl Floor {
 
     /// Whether the walls are others than before.
     fn look_at_walls(&mut self, world: &World, arena_size: [f32; 2]) -> bool {
-        let environment = &world.environment_params;
         let body = world.agent_params.agent_width as f32 / 2.0;
-        let inner = environment.regions();
-        let regions = || {
-            inner
-                .iter()
-                .copied()
-                .chain(environment.walls.iter().map(|wall| wall.polygon.as_slice()))
-        };
+        let regions = || world.obstacles();
         let is_same = !self.bare.is_empty() && (self.arena_size, self.body) == (arena_size, body);
         if is_same && self.regions.iter().map(Vec::as_slice).eq(regions()) {
             return false;
