@@ -25,7 +25,7 @@ from typing import Any
 import driftworld
 import numpy as np
 import torch
-from record import Record, Watch, folder_of
+from record import T_95, Record, Watch, folder_of
 from torch import nn
 
 TASK = os.path.relpath(Path(__file__).with_name("two_skies.json"))
@@ -366,12 +366,17 @@ def levels(experts: Mapping[Path, dict[str, Any]]) -> dict[str, float]:
 
 
 def scores_table(**agents: driftworld.Metrics) -> list[dict[str, Any]]:
-    """A row for each metric, a column for each agent: the mean over its lifetimes."""
+    """A row for each metric, a column for each agent: the mean over its lifetimes, of several with an interval of 95 %."""
     names = list(next(iter(agents.values())).lifetime)
 
     def value(scores: driftworld.Metrics, name: str) -> str:
         number = scores.lifetime[name]
-        return "none" if number is None else f"{number:.3f}"
+        if number is None:
+            return "none"
+        each = np.array([one[name] for one in scores.lifetimes if one[name] is not None], dtype=float)
+        if not 2 <= len(each) <= len(T_95) + 1:
+            return f"{number:.3f}"
+        return f"{number:.3f} ± {T_95[len(each) - 2] * each.std(ddof=1) / len(each) ** 0.5:.3f}"
 
     return [{"metric": name} | {agent: value(scores, name) for agent, scores in agents.items()} for name in names]
 

@@ -24,7 +24,7 @@ import gymnasium as gym
 import numpy as np
 import torch
 from driftworld.adapters.sb3 import make_vec_env
-from record import EVALUATION_SEED, Record, Watch, evaluated, folder_of, held_out
+from record import EVALUATION_SEED, T_95, Record, Watch, evaluated, folder_of, held_out
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
@@ -196,10 +196,6 @@ def main() -> None:
             write_down(arguments, curve, table, lines, watch)
 
 
-#: Student's t for intervals of 95 %, for means of 2, 3, … 10 numbers.
-T_95 = (12.71, 4.30, 3.18, 2.78, 2.57, 2.45, 2.36, 2.31, 2.26)
-
-
 def over_seeds(table: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """The table, and below it the means of 2 to 10 seeds with their 95 % intervals."""
     rows = list(table)
@@ -228,8 +224,8 @@ def write_down(
     done = list(dict.fromkeys(row["seed"] for row in table))
     Record(
         title="PPO finds objects",
-        text="Stable-Baselines3's PPO on `driftworld/FindObjects-v0` from 64 × 64 colour pictures. Five cubes pay 100 each, each "
-        "action costs 0.1 and is held for five time steps; 60 actions make an episode. The expert knows the map; one holds its "
+        text="Stable-Baselines3's PPO on `driftworld/FindObjects-v0` from 64 × 64 colour pictures. Five cubes pay 100 each, each second costs 1, "
+        "each action is held for five time steps (half a second); 60 actions make an episode. The expert knows the map; one holds its "
         f"actions as long, the other acts anew in each of 300 time steps. n = {len(done)}: seeds of learning, which share no world. All are "
         "evaluated in the same worlds; an interval is over seeds (95 %), and says nothing of other worlds of evaluation.",
         settings={"id": ID, **vars(arguments), "seeds": done, **OPTIONS, "evaluation_seed": EVALUATION_SEED},

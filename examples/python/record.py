@@ -24,6 +24,8 @@ import numpy as np
 
 # The worlds that nobody learns from.
 EVALUATION_SEED = 1_000_000
+# Student's t for intervals of 95 %, for means of 2, 3, … 10 numbers.
+T_95 = (12.71, 4.30, 3.18, 2.78, 2.57, 2.45, 2.36, 2.31, 2.26)
 FOLDER = Path(__file__).parent / "results"
 # Settings that say where and whether things are kept: each reader's own.
 _WHERE = ("logs", "results", "quick", "again", "threads", "address")
