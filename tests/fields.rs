@@ -33,6 +33,11 @@ fn full() -> Json {
 /// The same with a layout that has what a place of a layout is in; of each kind there is one.
 fn full_with(place: &FieldPlace) -> Json {
     let mut world = full();
+    if place.pointer.starts_with("/environment_params/zones/*/polygon") {
+        let zone = &mut world["environment_params"]["zones"][0];
+        zone.as_object_mut().expect("it is a zone").remove("disc");
+        zone["polygon"] = json!([[3, -9], [7, -9], [7, -5], [3, -5]]);
+    }
     let Some(inside) = place.pointer.strip_prefix("/environment_params/layout") else {
         return world;
     };
@@ -92,6 +97,8 @@ fn other(place: &FieldPlace, now: &Json) -> Json {
             "model" => "3",
             key if key.ends_with("stimulus") || ["on", "opens_on", "closes_on"].contains(&key) => "AgentInteract",
             "action" => "close",
+            "ends" => "success",
+            "range_trigger" | "contact_trigger" => "edge",
             _ => "word",
         }),
         ParameterType::Distribution => unreachable!("no place of a world holds a distribution"),
@@ -107,11 +114,19 @@ fn other_whole(pointer: &str, now: &Json) -> Json {
         "/environment_params/map_regions" => json!([triangle]),
         "/environment_params/map_regions/*"
         | "/environment_params/walls/*/polygon"
+        | "/environment_params/zones/*/polygon"
         | "/environment_params/layout/walls/*/polygon" => triangle,
         "/environment_params/walls" => {
             json!([{ "polygon": triangle }, { "polygon": [[-30.0, 3.0], [-32.0, 3.0], [-31.0, 6.0]] }])
         }
         "/environment_params/walls/*" => json!({ "polygon": triangle, "height": 3.0 }),
+        "/environment_params/zones" | "/environment_params/zones/*" => {
+            let zone = json!({ "disc": { "center": [-8.0, -9.0], "radius": 1.0 }, "speed_factor": 0.25, "color": "navy",
+                "reward_per_second": 3.0 });
+            if pointer.ends_with('*') { zone } else { json!([zone]) }
+        }
+        "/environment_params/zones/*/disc" => json!({ "center": [9.0, -9.0], "radius": 1.0 }),
+        "/agent_params/energy" => json!({ "start": 7.0, "per_second": -2.0 }),
         "/agent_params/modalities" => json!(["rgb", "instance"]),
         "/agent_params/state_features" => json!(["heading", "counts"]),
         "/environment_params/layout/maze" => json!({ "cells": [3, 5], "seed": 9 }),
@@ -126,6 +141,14 @@ fn other_whole(pointer: &str, now: &Json) -> Json {
         "/rules/shaping" => json!({ "scale": 2.0 }),
         "/rules/success" | "/rules/failure" => json!([{ "return_at_least": 77.0 }]),
         "/rules/success/*" | "/rules/failure/*" => json!({ "return_at_most": -77.0 }),
+        "/rules/success/*/delivered" | "/rules/failure/*/delivered" => json!({ "tag": "coin", "to": "coin", "within": 4.0 }),
+        "/objects/*/door" => json!({ "opens_on": ["AgentCollide"], "key": "word", "period": 3.0 }),
+        "/objects/*/door/opens_on"
+        | "/objects/*/door/closes_on"
+        | "/objects/*/switch/on"
+        | "/objects/*/portable/on" => json!(["AgentInRange"]),
+        "/objects/*/switch" => json!({ "target": "word", "action": "close" }),
+        "/objects/*/portable" => json!({ "on": ["AgentInRange"] }),
         "/objects/*/pushable" => json!({ "mass": 9.0, "friction": 0.25 }),
         "/objects/*/waypoints" => json!([[1.0, 2.0], [3.0, 4.0], [5.0, 7.0]]),
         "/objects/*/respawn" => json!({ "delay": 9.0 }),

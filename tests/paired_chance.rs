@@ -228,6 +228,11 @@ fn spice(world: &mut WorldDraft) {
         color: None,
     });
     world.objects.extend([box_, coin, arm, after, wanderer, hunter, prey]);
+    // Nobody comes into it: what zones do is judged in `env`.
+    let [east, north] = world.environment_params.arena_size().map(|side| side / 2.0);
+    let zone = serde_json::json!({ "disc": { "center": [east, north], "radius": 0.1 } });
+    let zone = serde_json::from_value(zone).expect("it is a zone");
+    world.environment_params.zones.push(zone);
 }
 
 /// All ways of an episode, as bits: the agent's and every object's place and heading, and whether it is there, step by step.

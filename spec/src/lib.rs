@@ -39,7 +39,9 @@ pub use layout::{
     Circle, Doorway, Layout, LayoutWall, Legend, MAX_CELLS, MAX_LAYOUT_SIDE, Maze, Plan, PlanCell, PlanWall, RoomDoors,
     Rooms,
 };
-pub use limits::{MAX_BYTES, MAX_DEPTH, MAX_KEY_BYTES, MAX_SCENARIO_VALUES, MAX_VALUES, MAX_WORLD_VALUES};
+pub use limits::{
+    MAX_BYTES, MAX_DEPTH, MAX_KEY_BYTES, MAX_SCENARIO_VALUES, MAX_TASK_DEPTH, MAX_VALUES, MAX_WORLD_VALUES,
+};
 pub use names::sound_name;
 pub use oklab::{Oklab, linear_from_srgb};
 pub use philox::philox;

@@ -18,3 +18,6 @@ pub const MAX_KEY_BYTES: usize = 400;
 /// How deep lists and objects may stand in each other: `serde_json`'s limit, which keeps a hostile text from taking the
 /// whole stack.
 pub const MAX_DEPTH: usize = 127;
+
+/// How deep lists and objects may stand in each other in a task spec, whose values may be any JSON.
+pub const MAX_TASK_DEPTH: usize = 48;

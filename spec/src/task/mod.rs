@@ -38,9 +38,10 @@ pub use variant_spec::VariantSpec;
 
 use crate::classes::Classes;
 use crate::distribution::Number;
+use crate::describe::escape;
 use crate::document::Document;
 use crate::error::{Listed, Problem, SpecError};
-use crate::limits::MAX_VALUES;
+use crate::limits::{MAX_TASK_DEPTH, MAX_VALUES};
 use crate::value::Value;
 use crate::version;
 use crate::world::{Object, WorldDraft};
@@ -121,6 +122,7 @@ impl TaskSpec {
     /// As [`TaskSpec::from_json`].
     pub fn from_json_with(name: &str, text: &str, classes: Option<&Classes>) -> Result<Arc<Self>, SpecError> {
         let mut document = Document::parse(name, text, MAX_VALUES)?;
+        document.fail_on(Vec::from_iter(too_deep(&document.value, "", 0)))?;
         document.upgrade(&version::TASK)?;
         let refused = TaskDocument::schema().problems(&document.value);
         if !refused.problems.is_empty() {
@@ -367,5 +369,27 @@ impl TaskSpec {
             }
         }
         problems
+    }
+}
+
+/// The first value that stands too deep in others.
+fn too_deep(json: &Json, pointer: &str, depth: usize) -> Option<Problem> {
+    if depth > MAX_TASK_DEPTH {
+        let found = format!("more than {MAX_TASK_DEPTH} lists and objects in each other");
+        let expected = format!("at most {MAX_TASK_DEPTH}; is a bracket missing?");
+        return Some(Problem::new("spec/value", pointer, found, expected));
+    }
+    let inside = |key: &str, child| too_deep(child, &format!("{pointer}/{}", escape(key)), depth + 1);
+    match json {
+        Json::Array(list) => list
+            .iter()
+            .enumerate()
+            .filter(|(_, child)| child.is_array() || child.is_object())
+            .find_map(|(index, child)| inside(&index.to_string(), child)),
+        Json::Object(map) => map
+            .iter()
+            .filter(|(_, child)| child.is_array() || child.is_object())
+            .find_map(|(key, child)| inside(key, child)),
+        _ => None,
     }
 }
