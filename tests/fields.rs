@@ -44,6 +44,7 @@ fn full_with(place: &FieldPlace) -> Json {
     let words: Vec<&str> = inside.split('/').skip(1).collect();
     world["environment_params"]["predefined_map"] = json!(0);
     world["agent_params"]["coordinates"] = json!([0.3, 0.3]);
+    world["environment_params"]["zones"] = json!([]);
     let wall = |form: Json| json!({ "walls": [form] });
     world["environment_params"]["layout"] = match words.as_slice() {
         ["rooms", ..] => json!({ "rooms": {
@@ -73,6 +74,7 @@ fn other(place: &FieldPlace, now: &Json) -> Json {
         .rfind(|word| **word != "*")
         .expect("a place is at or below a key");
     match place.kind.expect("it can be a parameter") {
+        ParameterType::Number if *key == "most" => json!(60),
         ParameterType::Number if ["map_size", "size", "field_of_view"].contains(key) => json!(62.5),
         ParameterType::Point if ["map_size", "size"].contains(key) => json!([62.5, 61.5]),
         ParameterType::Number if *key == "room" => json!(6.5),
