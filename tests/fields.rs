@@ -143,7 +143,9 @@ fn other_whole(pointer: &str, now: &Json) -> Json {
         "/rules/shaping" => json!({ "scale": 2.0 }),
         "/rules/success" | "/rules/failure" => json!([{ "return_at_least": 77.0 }]),
         "/rules/success/*" | "/rules/failure/*" => json!({ "return_at_most": -77.0 }),
-        "/rules/success/*/delivered" | "/rules/failure/*/delivered" => json!({ "tag": "coin", "to": "coin", "within": 4.0 }),
+        "/rules/success/*/delivered" | "/rules/failure/*/delivered" => {
+            json!({ "tag": "coin", "to": "coin", "within": 4.0 })
+        }
         "/objects/*/door" => json!({ "opens_on": ["AgentCollide"], "key": "word", "period": 3.0 }),
         "/objects/*/door/opens_on"
         | "/objects/*/door/closes_on"

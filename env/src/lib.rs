@@ -53,7 +53,9 @@ pub use render::{
 #[cfg(feature = "gpu")]
 pub use render::{GpuChoice, GpuRenderer};
 pub use scene::{Item, Light, Scene, WallPanel};
-pub use sim::{Action, AgentState, Effect, EndedBy, Environment, Event, ObjectState, Obstacle, Snapshot, Step, Warning};
+pub use sim::{
+    Action, AgentState, Effect, EndedBy, Environment, Event, ObjectState, Obstacle, Snapshot, Step, Warning,
+};
 
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/zones.md")]

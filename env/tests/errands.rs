@@ -85,7 +85,7 @@ fn check(name: &str, make: impl Fn([f64; 2], &dyn Fn(usize) -> f64) -> WorldDraf
     let mut failed = Vec::new();
     for number in 0..60_usize {
         // Places that differ from world to world: fractions of √2, √3, √5.
-        let unit = |k: usize| ((number + 1) as f64 * [1.414_213, 1.732_05, 2.236_067, 2.645_751][k % 4]).fract();
+        let unit = |k: usize| ((number + 1) as f64 * [1.618_034, 1.732_05, 2.236_067, 2.645_751][k % 4]).fract();
         let doorways = [unit(0) * 4.0 - 2.0, unit(1) * 4.0 - 2.0];
         let mut world = make(doorways, &unit);
         world.agent_params.coordinates = [unit(2) * 3.0 - 1.5, unit(3) * 4.0 - 2.0];

@@ -37,8 +37,8 @@ pub use variant::{DEFAULT_VARIANT, Resolved, Variant};
 pub use variant_spec::VariantSpec;
 
 use crate::classes::Classes;
-use crate::distribution::Number;
 use crate::describe::escape;
+use crate::distribution::Number;
 use crate::document::Document;
 use crate::error::{Listed, Problem, SpecError};
 use crate::limits::{MAX_TASK_DEPTH, MAX_VALUES};
