@@ -6,13 +6,13 @@ use proptest::prelude::*;
 
 const REST: Action = Action::Continuous([0.0; 3]);
 
-fn energy(start: f64, per_second: f64, per_metre: f64, most: f64) -> Option<Energy> {
-    Some(Energy {
+fn energy(start: f64, per_second: f64, per_metre: f64, most: f64) -> Energy {
+    Energy {
         start,
         per_second,
         per_metre,
         most,
-    })
+    }
 }
 
 fn start(change: impl FnOnce(&mut WorldDraft)) -> Environment {
@@ -56,7 +56,7 @@ proptest! {
             let agent = &mut world.agent_params;
             agent.coordinates = [0.0, -140.0];
             (agent.energy, agent.time_step, agent.frame_skip) =
-                (energy(begin, per_second, per_metre, 60.0), time_step, frame_skip);
+                (Some(energy(begin, per_second, per_metre, 60.0)), time_step, frame_skip);
         });
         let used = -(per_second + per_metre * speed);
         loop {
@@ -82,7 +82,7 @@ proptest! {
         let mut environment = start(|world| {
             world.rules.failure.clear();
             world.environment_params.map_size = [16.0, 16.0];
-            world.agent_params.energy = energy(most / 2.0, rates[0], rates[1], most);
+            world.agent_params.energy = Some(energy(most / 2.0, rates[0], rates[1], most));
             for (gain, at, is_level) in gains {
                 let mut thing = thing(at);
                 (thing.energy, thing.reward_stimulus) = (gain, vec![Stimulus::AgentCollide]);
@@ -126,7 +126,7 @@ proptest! {
 fn what_pays_gives_its_energy_and_what_pays_once_gives_it_once() {
     let gained = |change: fn(&mut Object)| {
         let mut environment = start(|world| {
-            world.agent_params.energy = energy(10.0, 0.0, 0.0, 100.0);
+            world.agent_params.energy = Some(energy(10.0, 0.0, 0.0, 100.0));
             let mut thing = thing([0.0, 3.0]);
             thing.energy = 20.0;
             change(&mut thing);
@@ -176,7 +176,7 @@ fn what_ended_an_episode_is_said() {
     assert_eq!(ended_by(|world| world.max_steps = 3), "steps");
     assert_eq!(ended_by(|world| world.max_seconds = 0.3), "time");
     assert_eq!(
-        ended_by(|world| world.agent_params.energy = energy(1.0, -9.0, 0.0, 1.0)),
+        ended_by(|world| world.agent_params.energy = Some(energy(1.0, -9.0, 0.0, 1.0))),
         "energy"
     );
     let zone = |world: &mut WorldDraft| {

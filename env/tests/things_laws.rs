@@ -139,7 +139,7 @@ fn to_leaf(world: &World, environment: &Environment, door: usize) -> f64 {
         y - world.objects[door].coordinates[1],
     ]
     .map(f64::abs);
-    let (along, across) = if door % 2 == 0 { (dx, dy) } else { (dy, dx) };
+    let (along, across) = if door.is_multiple_of(2) { (dx, dy) } else { (dy, dx) };
     libm::hypot((along - 0.75).max(0.0), (across - 0.14).max(0.0))
 }
 

@@ -27,21 +27,21 @@ const MAZE: &str = r#"{ "maze": { "cells": [6, 5], "cell": 2 } }"#;
 const ROOMS: &str = r#"{ "rooms": { "grid": [2, 2], "room": [6, 6] } }"#;
 
 fn worlds(task: &Arc<TaskSpec>, count: u64) -> Vec<World> {
-    let sampler = Sampler::new(&task.variant("default").unwrap(), 5);
+    let sampler = Sampler::new(&task.variant("default").expect("it is always there"), 5);
     let world = |index| sampler.world(index).unwrap_or_else(|error| panic!("{error}"));
     (0..count).map(world).collect()
 }
 
 /// The plan of a world, the agent's cell, and those of its objects.
 fn cells(world: &World) -> (&Plan, usize, Vec<usize>) {
-    let plan = world.plan().unwrap();
+    let plan = world.plan().expect("the world has a layout");
     let cell_of = |place: [f64; 2]| plan.cell_at(place).expect("it lies in a cell");
     let objects = world.objects.iter().map(|object: &Object| cell_of(object.coordinates));
     (plan, cell_of(world.agent_params.coordinates), objects.collect())
 }
 
 fn said(task: &Arc<TaskSpec>) -> String {
-    let sampler = Sampler::new(&task.variant("default").unwrap(), 5);
+    let sampler = Sampler::new(&task.variant("default").expect("it is always there"), 5);
     sampler
         .world(0)
         .map_or_else(|error| error.to_string(), |_| String::new())
@@ -233,8 +233,8 @@ proptest! {
         let (plan, _, coins) = cells(&world);
         for (object, cell) in world.objects.iter().zip(&coins) {
             let middle = plan.cells[*cell].center;
-            for axis in 0..2 {
-                prop_assert!((object.coordinates[axis] - middle[axis]).abs() <= jitter * plan.cell[axis] / 2.0 + 1e-12);
+            for ((place, middle), side) in object.coordinates.iter().zip(middle).zip(plan.cell) {
+                prop_assert!((place - middle).abs() <= jitter * side / 2.0 + 1e-12);
             }
             prop_assert!(world.enclosure(object.coordinates).is_none());
         }

@@ -99,7 +99,7 @@ fn distance(corners: &[[f64; 2]], point: [f64; 2]) -> f64 {
             .fold(f64::NEG_INFINITY, f64::max);
         (low - point[axis]).max(point[axis] - high).max(0.0)
     });
-    along[0].hypot(along[1])
+    (along[0] * along[0] + along[1] * along[1]).sqrt()
 }
 
 fn in_a_wall(plan: &Plan, point: [f64; 2]) -> bool {
