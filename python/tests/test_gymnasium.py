@@ -248,7 +248,7 @@ def test_steps_tell_of_events_and_success(small: dict[str, Any]) -> None:
             if terminated or truncated:
                 break
     assert seen, "nothing was met in 12 episodes"
-    assert {key for event in seen for key in event} == {"object", "tag", "stimulus", "reward", "destroyed"}
+    assert {key for event in seen for key in event} == {"object", "tag", "stimulus", "reward", "destroyed", "effect"}
     assert any(event["reward"] > 0 for event in seen)
 
 

@@ -55,7 +55,7 @@ def test_what_is_given_is_a_function_of_what_is_permitted(label: str) -> None:
     heard = [given(draw.choice(names, 2, replace=False).tolist(), int(draw.integers(2**31)), label) for _ in range(4)]
     # Whatever the variants and the worlds are, whether it learns or not: the same is given, to the last key.
     assert all(one.given == heard[0].given for one in heard)
-    wanted = {"is_success", "frozen", *(["task_label"] if label == "info" else [])}
+    wanted = {"is_success", "ended_by", "frozen", *(["task_label"] if label == "info" else [])}
     assert {key for info in heard[0].given for key in info} == wanted
     assert {info["frozen"] for info in heard[0].given} == {False, True}
     # Boundaries between blocks of learning are not given either.

@@ -165,7 +165,8 @@ class VectorRollout(Rollout):
             assert number is not None, "an environment that is active runs an experience"
             cut_off = bool(truncated[env] and not terminated[env])
             earned, success, steps = float(self._earned[env]), bool(self._success[env]), int(self._steps[env])
-            self._over[number] = (earned, success, steps, cut_off, infos["ended_by"][env])
+            ended_by = infos["ended_by"][env] or ("steps" if cut_off else None)
+            self._over[number] = (earned, success, steps, cut_off, ended_by)
             self._running[env] = None
 
     def _begin(self, env: int) -> bool:

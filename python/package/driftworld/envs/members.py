@@ -183,10 +183,15 @@ class Members:
         self._name(env, origin["variant_id"])
         if not self._options.names_variant:
             del origin["task_id"], origin["variant_id"]
-        info: dict[str, Any] = {**origin, "events": (), "is_success": False}
+        info: dict[str, Any] = {**origin, "events": (), "is_success": False, "ended_by": None}
         if self.label_in_info:
             info["task_label"] = self.label_number(env)
         return info
+
+    def ended_by(self, env: int) -> str | None:
+        """What ended an environment's episode; None for a limit of steps, which may as well be a wrapper's."""
+        word = self.batch.ended_by(env)
+        return None if word == "steps" else word
 
     def _name(self, env: int, variant: str) -> None:
         self._names[env] = variant

@@ -134,8 +134,9 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
             Observation, reward, terminated, truncated, and the info: ``events``, a tuple of dictionaries with ``object``, ``tag``,
             ``stimulus``, ``reward``, ``destroyed`` and ``effect`` (None, or what a door, switch or thing did: ``opened``, ``closed``,
             ``switched``, ``picked_up``, ``put_down``); ``is_success``, whether the episode has ended well;
-            and, once it has ended, ``ended_by``: ``"all_collected"``, ``"touch"``, ``"opened"``, ``"carried"``, ``"delivered"``,
-            ``"return"``, ``"energy"``, ``"zone"``, ``"steps"`` or ``"time"``.
+            and ``ended_by``: None until it has ended, then ``"all_collected"``, ``"touch"``, ``"opened"``, ``"carried"``, ``"delivered"``,
+            ``"return"``, ``"energy"``, ``"zone"`` or ``"time"``; None, too, where a limit of steps cut it off, as
+            Gymnasium's own may.
 
         Raises:
             EnvError: After the end of an episode, or for an action that is none.
@@ -148,9 +149,8 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         info: dict[str, Any] = {
             "events": members.batch.events(0) if eventful else (),
             "is_success": success,
+            "ended_by": members.ended_by(0) if terminated or truncated else None,
         }
-        if terminated or truncated:
-            info["ended_by"] = members.batch.ended_by(0)
         if members.label_in_info:
             info["task_label"] = members.label_number(0)
         observation = members.observation(0)

@@ -253,10 +253,8 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         ended = terminated | truncated
         begun = self._ended if self._mode == AutoresetMode.NEXT_STEP else ended
         infos = self._infos(success, eventful)
-        if ended.any():
-            infos["ended_by"], infos["_ended_by"] = np.full(self.num_envs, None, dtype=object), ended.copy()
-            for env in np.flatnonzero(ended).tolist():
-                infos["ended_by"][env] = members.batch.ended_by(env)
+        for env in np.flatnonzero(ended).tolist():
+            infos["ended_by"][env] = members.ended_by(env)
         if self._mode != AutoresetMode.DISABLED and begun.any():
             for env in np.flatnonzero(begun).tolist():
                 self._add_beginning(infos, env)
@@ -273,6 +271,8 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
             "_events": self._everyone.copy(),
             "is_success": success,
             "_is_success": self._everyone.copy(),
+            "ended_by": np.full(self.num_envs, None, dtype=object),
+            "_ended_by": self._everyone.copy(),
         }
         if self._members.label_in_info:
             infos["task_label"] = np.array([self._members.label_number(env) for env in range(self.num_envs)])
@@ -285,8 +285,6 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         if self._mode == AutoresetMode.SAME_STEP:
             members.note_finals(env)
             final = {key: infos[key][env] for key in _STEP_KEYS if key in infos}
-            if infos["_ended_by"][env]:
-                final["ended_by"] = infos["ended_by"][env]
             final = {key: value.item() if isinstance(value, np.generic) else value for key, value in final.items()}
             for key in ("final_obs", "_final_obs", "final_info", "_final_info"):
                 if key not in infos:
@@ -364,4 +362,4 @@ def _limit(steps: Any) -> int | None:
 
 
 #: What a step says, and so what the last step of an episode ends with.
-_STEP_KEYS = ("events", "is_success", "task_label")
+_STEP_KEYS = ("events", "is_success", "ended_by", "task_label")
