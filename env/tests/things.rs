@@ -1,9 +1,12 @@
 //! Doors, switches and things that are carried: what opens when, what is put down where, and that a written world goes on.
 
+mod tagged;
+
 use driftworld_env::{Action, Effect, Environment, Event};
 use driftworld_spec::{
     Delivery, Door, EndCondition, Object, Portable, StateFeature, Stimulus, Switch, SwitchAction, Wall, WorldDraft,
 };
+use tagged::{key, thing};
 
 const AHEAD: Action = Action::Continuous([2.0, 0.0, 0.0]);
 const USE: Action = Action::Continuous([0.0, 0.0, 1.0]);
@@ -25,18 +28,6 @@ fn draft(door: Door) -> WorldDraft {
     leaf.door = Some(door);
     world.objects = vec![leaf];
     world
-}
-
-fn thing(class: &str, tag: &str, at: [f64; 2]) -> Object {
-    let mut object = Object::new(class, at);
-    object.tag = Some(tag.to_owned());
-    object
-}
-
-fn key(tag: &str, at: [f64; 2]) -> Object {
-    let mut key = thing("key", tag, at);
-    key.portable = Some(Portable::default());
-    key
 }
 
 fn start(world: WorldDraft) -> Environment {

@@ -1,21 +1,12 @@
 //! Laws of doors and of things that are carried, over drawn actions: nothing is lost, nothing is put into walls, no door closes
 //! on the agent, and a written world goes on.
 
+mod tagged;
+
 use driftworld_env::{Action, Effect, Environment};
-use driftworld_spec::{Door, Object, Portable, Pushable, StateFeature, Stimulus, Switch, Wall, World, WorldDraft};
+use driftworld_spec::{Door, Portable, Pushable, StateFeature, Stimulus, Switch, Wall, World, WorldDraft};
 use proptest::prelude::*;
-
-fn thing(class: &str, tag: &str, at: [f64; 2]) -> Object {
-    let mut object = Object::new(class, at);
-    object.tag = Some(tag.to_owned());
-    object
-}
-
-fn key(tag: &str, at: [f64; 2]) -> Object {
-    let mut key = thing("key", tag, at);
-    key.portable = Some(Portable::default());
-    key
-}
+use tagged::{key, thing};
 
 /// A house of four rooms with doors of all kinds, keys, a switch, a box that is pushed and somebody who wanders.
 fn house() -> WorldDraft {
