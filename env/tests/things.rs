@@ -4,7 +4,7 @@ mod tagged;
 
 use driftworld_env::{Action, Effect, Environment, Event};
 use driftworld_spec::{
-    Delivery, Door, EndCondition, Object, Portable, StateFeature, Stimulus, Switch, SwitchAction, Wall, WorldDraft,
+    Delivery, Door, EndCondition, Portable, StateFeature, Stimulus, Switch, SwitchAction, Wall, WorldDraft,
 };
 use tagged::{key, thing};
 
