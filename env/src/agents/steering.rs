@@ -85,19 +85,36 @@ pub(super) fn walk(goal: [f32; 2], sim: SimRef, route: &mut Route) -> [f64; 3] {
     } else {
         route.next(agent.position, ahead)
     };
-    let way = [point[0] - agent.position[0], point[1] - agent.position[1]];
-    let wanted = libm::atan2f(way[0], way[1]).to_degrees();
-    let off = (wanted - agent.heading_deg + 540.0).rem_euclid(360.0) - 180.0;
-    let seconds = world.agent_params.time_step as f32 * world.agent_params.frame_skip as f32;
-    // Not past the next point, and not at full speed into a turn.
-    let reach = (distance(agent.position, point) + if costs { 0.0 } else { 0.3 }) / seconds;
-    let after_turn = (off.abs() - world.agent_params.max_angular_speed as f32 * seconds).max(0.0);
-    let speed = if after_turn > if costs { 5.0 } else { 25.0 } {
+    let (past, widest) = if costs { (0.0, 5.0) } else { (0.3, 25.0) };
+    step_to(sim, point, past, widest)
+}
+
+/// A step towards a point, and so many metres past it, as speed, turn rate and no interaction: at no speed where it would
+/// still be off by more than `widest` degrees after the step.
+pub(super) fn step_to(sim: SimRef, point: [f32; 2], past: f32, widest: f32) -> [f64; 3] {
+    let agent = &sim.world.agent_params;
+    let (off, seconds) = (off(sim, point), seconds(sim));
+    let reach = (distance(sim.agent().position, point) + past) / seconds;
+    let after_turn = (off.abs() - agent.max_angular_speed as f32 * seconds).max(0.0);
+    let speed = if after_turn > widest {
         0.0
     } else {
-        reach.min(world.agent_params.max_linear_speed as f32)
+        reach.min(agent.max_linear_speed as f32)
     };
     [f64::from(speed), f64::from(off / seconds), 0.0]
+}
+
+/// How far a point is to the right of where the agent looks, in degrees, -180 to 180.
+pub(super) fn off(sim: SimRef, point: [f32; 2]) -> f32 {
+    let agent = sim.agent();
+    let way = [point[0] - agent.position[0], point[1] - agent.position[1]];
+    let wanted = libm::atan2f(way[0], way[1]).to_degrees();
+    (wanted - agent.heading_deg + 540.0).rem_euclid(360.0) - 180.0
+}
+
+/// Seconds of a step of the agent.
+pub(super) fn seconds(sim: SimRef) -> f32 {
+    sim.world.agent_params.time_step as f32 * sim.world.agent_params.frame_skip as f32
 }
 
 /// The objects that a way to `goal` leads around: what stands fast and is solid or costs. Without a goal all of them,

@@ -8,6 +8,7 @@ use super::leaf::Leaf;
 use super::plan::can_interact;
 use super::ways::Bringing;
 use super::wishes::moving_stimulus;
+use crate::agents::steering::{distance, off, seconds, step_to};
 use crate::sim::{SimRef, answering, put_down_place};
 
 /// Degrees off which an agent goes on looking at what it means to use, rather than walking to it.
@@ -57,7 +58,7 @@ impl Task {
             Deed::Move => moving_stimulus(sim, self.object),
             _ => None,
         };
-        let away = length(sim.agent().position, sim.objects()[self.object as usize].position);
+        let away = distance(sim.agent().position, sim.objects()[self.object as usize].position);
         if self.deed == Deed::Move && is_too_much(sim, self.object) && away < BESIDE {
             return put_down(sim);
         }
@@ -98,7 +99,7 @@ impl Task {
         let place = put_down_place(sim).filter(|(index, _)| *index == thing || is_last_useless(sim, thing));
         if let Some((index, place)) = place
             && answering(sim, &reached(sim)).is_none()
-            && (index != thing || length(place, to) < within - 0.02)
+            && (index != thing || distance(place, to) < within - 0.02)
         {
             return [0.0, 0.0, 1.0];
         }
@@ -166,37 +167,12 @@ fn reached(sim: SimRef) -> Vec<u32> {
     reached
 }
 
-/// How far a point is to the right of where the agent looks, in degrees.
-fn off(sim: SimRef, point: [f32; 2]) -> f32 {
-    let agent = sim.agent();
-    let way = [point[0] - agent.position[0], point[1] - agent.position[1]];
-    let wanted = libm::atan2f(way[0], way[1]).to_degrees();
-    (wanted - agent.heading_deg + 540.0).rem_euclid(360.0) - 180.0
-}
-
 /// The turn rate that brings the agent to look at a point in one step, if it can turn so fast.
 fn turn(sim: SimRef, point: [f32; 2]) -> f64 {
     f64::from(off(sim, point) / seconds(sim))
 }
 
-fn seconds(sim: SimRef) -> f32 {
-    sim.world.agent_params.time_step as f32 * sim.world.agent_params.frame_skip as f32
-}
-
 /// A step towards a point, and so many metres past it: not at full speed into a turn.
 fn walk(sim: SimRef, point: [f32; 2], past: f32) -> [f64; 3] {
-    let agent = &sim.world.agent_params;
-    let (off, seconds) = (off(sim, point), seconds(sim));
-    let reach = (length(sim.agent().position, point) + past) / seconds;
-    let after_turn = (off.abs() - agent.max_angular_speed as f32 * seconds).max(0.0);
-    let speed = if after_turn > 20.0 {
-        0.0
-    } else {
-        reach.min(agent.max_linear_speed as f32)
-    };
-    [f64::from(speed), f64::from(off / seconds), 0.0]
-}
-
-fn length(a: [f32; 2], b: [f32; 2]) -> f32 {
-    ((a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)).sqrt()
+    step_to(sim, point, past, 20.0)
 }

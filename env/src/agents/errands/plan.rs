@@ -41,7 +41,7 @@ pub(super) struct Plan<'a> {
 }
 
 impl<'a> Plan<'a> {
-    /// What can be reached, in rounds: each door is opened with what can be had without it.
+    /// What can be reached, in rounds: each door is opened with what is found without it.
     pub(super) fn new(sim: SimRef<'a>, floor: &'a Floor) -> Option<Self> {
         let here = floor.room_at(sim.agent().position)?;
         let mut plan = Self {
@@ -155,7 +155,7 @@ impl<'a> Plan<'a> {
         Some(doors)
     }
 
-    /// What is done first for the sake of a wish; `None` where it cannot be had.
+    /// What is done first for the sake of a wish; `None` where there is no way to it.
     pub(super) fn first(&self, wish: Wish) -> Option<Task> {
         match wish {
             Wish::Touch(object) => self.at(object, Deed::Touch),
