@@ -412,7 +412,7 @@ def main() -> None:
             curve=evaluations(lived), lines=levels(experts), table=table, axes=("experiences", "reward"),
             labels=("experiences learned from", "reward in evaluations, each lifetime"),
             seconds=sum(done["seconds"] for done in everything), load_before=everything[0]["load_before"],
-            files={"curriculum.json": everything[-1]["made_with"]["scenario"], "two_skies.json": driftworld.TaskSpec.load(TASK).to_dict(), "scores.json": scores.lifetimes, "report.html": page},
+            files={"curriculum.json": everything[-1]["made_with"]["scenario"], "two_skies.json": driftworld.TaskSpec.load(TASK).to_dict(), "scores.json": scores.lifetimes},
         ).write(arguments.results)  # fmt: skip
 
 
