@@ -304,7 +304,8 @@ class Rollout:
                 )
             observation = following
         cut_off = truncated and not terminated
-        return earned, bool(info["is_success"]), steps, self._seconds(steps, time), cut_off, info.get("ended_by") or ("steps" if cut_off else None)
+        ended_by = info.get("ended_by") or ("steps" if cut_off else None)
+        return earned, bool(info["is_success"]), steps, self._seconds(steps, time), cut_off, ended_by
 
     def logged(self, number: int, reward: float) -> bool:
         """After an experience was logged, NaN for one that was left out; whether to go on."""
