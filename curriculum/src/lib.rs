@@ -21,7 +21,7 @@ pub use error::CurriculumError;
 pub use run::{
     COLUMNS, ENDED_BY, ENDING, Experience, ExperienceSpec, Failed, FoundWorld, Journal, LeftOut, MOST_STEPS, Plan,
     Progress, REPEATED_EVALUATIONS, RegimeSummary, Rollout, RunContext, Sources, Summary, Trial, Tried, Undrawable,
-    log_name, run, run_rollout, same_log_name, try_worlds,
+    log_name, relearn, run, run_rollout, same_log_name, try_worlds,
 };
 pub use transfer::{
     DirectionReport, PairTransfer, TransferOptions, TransferReport, log_name_of_label, transfer_report,

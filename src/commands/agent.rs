@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use crate::env::{Agent, OnRailsAgent, RandomAgent, ScriptedAgent, StillAgent};
+use crate::env::{Agent, OnRailsAgent, RandomAgent, SarsaAgent, ScriptedAgent, StillAgent};
 use crate::spec::nearest;
 use driftworld_text::ShownPath;
 
@@ -19,6 +19,8 @@ pub(crate) enum AgentArg {
     Still,
     /// Knows the map and tours what pays.
     Onrails,
+    /// Learns by linear Sarsa(λ) from what it sees.
+    Sarsa,
     /// Follows the script in this file.
     Scripted(PathBuf),
 }
@@ -26,7 +28,7 @@ pub(crate) enum AgentArg {
 impl AgentArg {
     /// What the help says of the argument.
     pub(crate) const HELP: &'static str =
-        "The agent: random, still, onrails (knows the map and visits what pays), or scripted:FILE";
+        "The agent: random, still, onrails (knows the map and visits what pays), sarsa (a small learner), or scripted:FILE";
 
     /// What logs call the agent.
     pub(crate) fn name(&self) -> String {
@@ -34,6 +36,7 @@ impl AgentArg {
             Self::Random => "random".to_owned(),
             Self::Still => "still".to_owned(),
             Self::Onrails => "onrails".to_owned(),
+            Self::Sarsa => "sarsa".to_owned(),
             Self::Scripted(path) => format!("scripted:{}", path.shown()),
         }
     }
@@ -44,6 +47,7 @@ impl AgentArg {
             Self::Random => (Box::new(RandomAgent::new(0)), None),
             Self::Still => (Box::new(StillAgent), None),
             Self::Onrails => (Box::new(OnRailsAgent::new()), None),
+            Self::Sarsa => (Box::new(SarsaAgent::new()), None),
             Self::Scripted(path) => {
                 let text = documents::text(path)?;
                 let agent = ScriptedAgent::parse(&path.display().to_string(), &text)?;
@@ -73,15 +77,16 @@ impl FromStr for AgentArg {
             None if text == "random" => Ok(Self::Random),
             None if text == "still" => Ok(Self::Still),
             None if text == "onrails" => Ok(Self::Onrails),
+            None if text == "sarsa" => Ok(Self::Sarsa),
             _ => {
-                let near = nearest(text, ["random", "still", "onrails", "scripted"]);
+                let near = nearest(text, ["random", "still", "onrails", "sarsa", "scripted"]);
                 let near = match near.as_deref() {
                     Some("scripted") => "; did you mean \"scripted:FILE\"?".to_owned(),
                     Some(near) => format!("; did you mean {near:?}?"),
                     None => String::new(),
                 };
                 Err(format!(
-                    "found {text:?}, expected random, still, onrails or scripted:FILE{near}"
+                    "found {text:?}, expected random, still, onrails, sarsa or scripted:FILE{near}"
                 ))
             }
         }
@@ -96,6 +101,7 @@ mod tests {
     fn agents_are_called_by_name_and_a_script_by_its_file() {
         assert_eq!("random".parse(), Ok(AgentArg::Random));
         assert_eq!("onrails".parse(), Ok(AgentArg::Onrails));
+        assert_eq!("sarsa".parse(), Ok(AgentArg::Sarsa));
         assert_eq!("scripted:a:b.txt".parse(), Ok(AgentArg::Scripted("a:b.txt".into())));
         assert_eq!(AgentArg::Scripted("a.txt".into()).name(), "scripted:a.txt");
     }
@@ -103,7 +109,7 @@ mod tests {
     #[test]
     fn a_misspelt_agent_is_told_the_agents_there_are() {
         let said = |text: &str| text.parse::<AgentArg>().expect_err("there is no such agent");
-        let expected = "expected random, still, onrails or scripted:FILE; did you mean";
+        let expected = "expected random, still, onrails, sarsa or scripted:FILE; did you mean";
         assert_eq!(said("onrail"), format!("found \"onrail\", {expected} \"onrails\"?"));
         assert_eq!(
             said("scripted"),
@@ -111,7 +117,7 @@ mod tests {
         );
         assert_eq!(
             said("bot"),
-            "found \"bot\", expected random, still, onrails or scripted:FILE"
+            "found \"bot\", expected random, still, onrails, sarsa or scripted:FILE"
         );
     }
 }

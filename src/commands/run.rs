@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::clock::Clock;
 use crate::curriculum::{
-    CurriculumError, Journal, Plan, Progress, REPEATED_EVALUATIONS, RunContext, Summary, Undrawable, run,
+    CurriculumError, Journal, Plan, Progress, REPEATED_EVALUATIONS, RunContext, Summary, Undrawable, relearn, run,
 };
 use crate::env::Catalogue;
 use crate::metrics::MetricsError;
@@ -246,7 +246,14 @@ impl LifetimeRun<'_> {
             jobs: self.jobs,
             repeated_evaluations: REPEATED_EVALUATIONS,
         };
-        let ran = run(self.plan, self.agent.agent.as_mut(), &mut journal, &mut context);
+        let agent = self.agent.agent.as_mut();
+        let done = journal.num_experiences();
+        // What is complete needs no agent.
+        let to_relearn = if done < self.plan.num_experiences() { done } else { 0 };
+        let ran = relearn(self.plan, agent, to_relearn, &mut context).and_then(|flow| match flow {
+            ControlFlow::Continue(()) => run(self.plan, agent, &mut journal, &mut context),
+            ControlFlow::Break(()) => Ok(journal.summary().clone()),
+        });
         bar.finish_and_clear();
         let done = journal.num_experiences();
         let finished = journal.finish();

@@ -70,7 +70,7 @@ pub const REPEATED_EVALUATIONS: usize = 4;
 /// The order of experiences, their worlds and the numbers that the agent begins them with depend on the scenario alone:
 /// a run that was interrupted and taken up again writes what an undisturbed one does. [`Agent::learn`] is called in learning
 /// blocks only. An agent that learns lives learning blocks one experience after the other; whoever takes up a log with such an
-/// agent hands over one that has learned what is in the log. Evaluation blocks, and all blocks of an agent that does not
+/// agent hands over one that has learned what is in the log ([`relearn`]). Evaluation blocks, and all blocks of an agent that does not
 /// learn, are run by its [`Agent::frozen`] copies, several at a time; by the agent itself where it has no copies. Of an agent that
 /// learns the first evaluations of each block are run once more at its end, and have to pay the same.
 ///
@@ -118,6 +118,31 @@ pub fn run(
         next = end;
     }
     Ok(journal.summary().clone())
+}
+
+/// Lets an agent that learns run the learning experiences among the first `done` once more, as they were, and logs nothing: it
+/// then is what it was when the log held so many. For an agent that keeps no file of what it has learned. Does nothing for one that
+/// does not learn. `Break` if it was stopped.
+///
+/// # Errors
+/// [`CurriculumError`] that says at which block, regime and experience.
+pub fn relearn(
+    plan: &Plan,
+    agent: &mut dyn Agent,
+    done: u64,
+    context: &mut RunContext,
+) -> Result<ControlFlow<()>, CurriculumError> {
+    if !agent.learns() {
+        return Ok(ControlFlow::Continue(()));
+    }
+    let mut worker = Worker::new(plan, context.catalogue.clone(), context.stop);
+    let mut one_by_one = OneByOne {
+        agent,
+        worker: &mut worker,
+        watch: context.watch,
+        repeated: 0,
+    };
+    rollout::relearn_range(plan, 0..done, (&mut Worlds::new(plan), &mut None), &mut one_by_one)
 }
 
 /// Experiences, and whether each is run once more: the first so many of each block of evaluations, behind its last.

@@ -67,9 +67,23 @@ pub fn run_rollout<R: Rollout>(
     now: &mut dyn FnMut() -> Timestamp,
 ) -> Result<Summary, R::Error> {
     let (done, total) = (journal.num_experiences(), plan.num_experiences());
-    let mut worlds = Worlds::new(plan);
-    let mut block = None;
-    for number in learned..done {
+    let (mut worlds, mut block) = (Worlds::new(plan), None);
+    if relearn_range(plan, learned..done, (&mut worlds, &mut block), rollout)?.is_break() {
+        return Ok(journal.summary().clone());
+    }
+    // What the rollout says of it is in the summary.
+    let _ = run_range(plan, done..total, (&mut worlds, &mut block), rollout, journal, now)?;
+    Ok(journal.summary().clone())
+}
+
+/// Runs those of these experiences once more in which the agent learned, and logs none. `block` is the last that the rollout began.
+pub(super) fn relearn_range<R: Rollout>(
+    plan: &Plan,
+    numbers: Range<u64>,
+    (worlds, block): (&mut Worlds<'_>, &mut Option<usize>),
+    rollout: &mut R,
+) -> Result<ControlFlow<()>, R::Error> {
+    for number in numbers {
         let planned = &plan.regimes[plan.regime_of(number)];
         if planned.kind == BlockKind::Learning
             && let Drawn::World { world, .. } = worlds.draw(number)?
@@ -78,13 +92,11 @@ pub fn run_rollout<R: Rollout>(
                 rollout.begin_block(true)?;
             }
             if rollout.experience(number, world)?.is_none() {
-                return Ok(journal.summary().clone());
+                return Ok(ControlFlow::Break(()));
             }
         }
     }
-    // What the rollout says of it is in the summary.
-    let _ = run_range(plan, done..total, (&mut worlds, &mut block), rollout, journal, now)?;
-    Ok(journal.summary().clone())
+    Ok(ControlFlow::Continue(()))
 }
 
 /// Runs these experiences, and logs each as soon as it is over. `block` is the last that the rollout began.

@@ -111,3 +111,32 @@ fn every_evaluation_of_a_variant_has_the_same_chance_and_learning_has_its_own() 
     // Two worlds of learning, three that are learned again on the way to another variant, four of evaluation.
     assert_eq!(seeds.len(), 9, "{seeds:?}");
 }
+
+#[test]
+fn a_learner_that_learns_its_log_again_goes_on_as_if_it_had_never_stopped() {
+    let folder = scratch();
+    let scenario = scenario(&["blue", "red"]);
+    let whole = folder.path().join("whole");
+    live(&scenario, &mut SarsaAgent::new(), &whole, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
+    // Stopped after the first learning block, then in the second; each time by a new process, which has learned nothing.
+    let gone_on = |relearns: bool| {
+        let log = folder.path().join(format!("{relearns}"));
+        for (most, resume) in [(8, false), (12, true), (u64::MAX, true)] {
+            let (mut agent, living) = (SarsaAgent::new(), Living { most, resume, ..WHOLE });
+            if resume && relearns {
+                let plan = plan(&scenario).unwrap_or_else(|error| panic!("{error}"));
+                let done = Journal::resume(&log, &plan, "test").unwrap_or_else(|error| panic!("{error}"));
+                let flow = living.context(&mut |context| relearn(&plan, &mut agent, done.num_experiences(), context));
+                assert!(flow.unwrap_or_else(|error| panic!("{error}")).is_continue());
+            }
+            live_by(&scenario, &mut agent, &log, &living).unwrap_or_else(|error| panic!("{error}"));
+        }
+        everything(&log)
+    };
+    assert_eq!(gone_on(true), everything(&whole));
+    assert_ne!(
+        gone_on(false),
+        everything(&whole),
+        "what was learned makes a difference"
+    );
+}

@@ -12,9 +12,9 @@ use std::sync::{Arc, Mutex};
 
 use driftworld_curriculum::{
     Choice, CurriculumError, Design, Drifting, FoundWorld, Journal, Plan, Progress, RunContext, Sources, Summary,
-    design, run,
+    design, relearn, run,
 };
-use driftworld_env::{Action, Agent, Catalogue, Environment, Label, OnRailsAgent, RandomAgent, Step};
+use driftworld_env::{Action, Agent, Catalogue, Environment, Label, OnRailsAgent, RandomAgent, SarsaAgent, Step};
 use driftworld_metrics::{MaintenanceMethod, Options, Record, Row, Timestamp, read_log, score};
 use driftworld_similarity::{Weights, variant_distance};
 use driftworld_spec::{
@@ -84,7 +84,27 @@ const WHOLE: Living = Living {
     repeated: 0,
 };
 
-/// Lives a scenario by a clock that stands still, so that logs can be compared byte for byte.
+impl Living {
+    /// What a run is handed: a clock that stands still, so that logs can be compared byte for byte.
+    fn context<T>(&self, act: &mut dyn FnMut(&mut RunContext) -> T) -> T {
+        act(&mut RunContext {
+            now: &mut || Timestamp::from_unix_micros(1_600_000_000_000_000).expect("the year is 2020"),
+            watch: &mut |progress: &Progress| {
+                if progress.done < self.most {
+                    ControlFlow::Continue(())
+                } else {
+                    ControlFlow::Break(())
+                }
+            },
+            stop: &AtomicBool::new(false),
+            catalogue: Catalogue::default(),
+            jobs: NonZeroUsize::new(self.jobs).expect("somebody has to live it"),
+            repeated_evaluations: self.repeated,
+        })
+    }
+}
+
+/// Lives a scenario.
 fn live_by(
     scenario: &Scenario,
     agent: &mut dyn Agent,
@@ -97,21 +117,7 @@ fn live_by(
     } else {
         Journal::create(folder, &plan, "test")?
     };
-    let mut around = RunContext {
-        now: &mut || Timestamp::from_unix_micros(1_600_000_000_000_000).expect("the year is 2020"),
-        watch: &mut |progress: &Progress| {
-            if progress.done < living.most {
-                ControlFlow::Continue(())
-            } else {
-                ControlFlow::Break(())
-            }
-        },
-        stop: &AtomicBool::new(false),
-        catalogue: Catalogue::default(),
-        jobs: NonZeroUsize::new(living.jobs).expect("somebody has to live it"),
-        repeated_evaluations: living.repeated,
-    };
-    let summary = run(&plan, agent, &mut journal, &mut around)?;
+    let summary = living.context(&mut |context| run(&plan, agent, &mut journal, context))?;
     journal.finish()?;
     Ok(summary)
 }

@@ -1,4 +1,4 @@
-//! Agents that come with the environment: one acts at random, one knows the map, one follows a script. None learns.
+//! Agents that come with the environment: one acts at random, one knows the map, one follows a script, one learns.
 
 mod agent;
 mod errands;
@@ -11,6 +11,7 @@ mod on_rails;
 mod rails_policy;
 mod random;
 mod route;
+mod sarsa;
 mod script;
 mod scripted;
 mod steering;
@@ -20,6 +21,7 @@ pub use agent::{Agent, Label};
 pub use on_rails::OnRailsAgent;
 pub(crate) use rails_policy::RailsPolicy;
 pub use random::RandomAgent;
+pub use sarsa::SarsaAgent;
 pub use scripted::ScriptedAgent;
 pub(crate) use steering::in_space;
 pub use still::StillAgent;

@@ -1,0 +1,155 @@
+//! What the learner sees: how much of each colour is where in a small picture. What it makes of it is in `linear.rs`.
+
+use std::sync::LazyLock;
+
+use crate::camera::Camera;
+use crate::render::{CpuRenderer, Target};
+use crate::sim::Environment;
+
+/// Height and width of the picture in pixels.
+const SIDE: usize = 42;
+/// The picture is looked at in so many columns.
+const COLUMNS: usize = 7;
+/// The first row of each band, and the end of the last: above the horizon, just below it, near the feet.
+const BANDS: [usize; 4] = [0, 21, 27, SIDE];
+/// Six hues, and dark and bright without a hue.
+const COLORS: usize = 8;
+
+/// How many numbers the eye gives: a share for each colour in each cell, then a constant 1.
+pub(super) const FEATURES: usize = COLUMNS * (BANDS.len() - 1) * COLORS + 1;
+
+/// Draws what the agent's camera shows, small, and counts colours.
+#[derive(Default)]
+pub(super) struct Eye {
+    renderer: CpuRenderer,
+    rgb: Vec<u8>,
+}
+
+impl Eye {
+    /// The square root of the share of each cell that each colour covers, 0 to 1: so few pixels count beside many.
+    pub(super) fn look(&mut self, environment: &Environment) -> [f32; FEATURES] {
+        let agent = &environment.world().agent_params;
+        let state = environment.agent();
+        let camera = Camera::first_person(
+            state.position,
+            state.heading_deg,
+            agent.agent_height as f32,
+            agent.field_of_view as f32,
+        );
+        self.rgb.resize(SIDE * SIDE * 3, 0);
+        let mut target = Target {
+            width: SIDE as u32,
+            height: SIDE as u32,
+            rgb: Some(&mut self.rgb),
+            ..Target::default()
+        };
+        let drawn = self.renderer.draw(environment.scene(), &camera, &mut target);
+        drawn.expect("the picture has a size that can be drawn");
+        shares(&self.rgb)
+    }
+}
+
+/// What a picture of `SIDE` × `SIDE` pixels comes to.
+fn shares(rgb: &[u8]) -> [f32; FEATURES] {
+    let mut features = [0.0; FEATURES];
+    for (band, rows) in BANDS.windows(2).enumerate() {
+        let mut counts = [0_u16; COLUMNS * COLORS];
+        let lines = &rgb[rows[0] * SIDE * 3..rows[1] * SIDE * 3];
+        for line in lines.chunks_exact(SIDE * 3) {
+            for (column, pixels) in line.chunks_exact(SIDE / COLUMNS * 3).enumerate() {
+                for pixel in pixels.chunks_exact(3) {
+                    counts[column * COLORS + color([pixel[0], pixel[1], pixel[2]])] += 1;
+                }
+            }
+        }
+        let pixels = ((rows[1] - rows[0]) * SIDE / COLUMNS) as f32;
+        let own = &mut features[band * counts.len()..(band + 1) * counts.len()];
+        for (feature, count) in own.iter_mut().zip(counts) {
+            *feature = (f32::from(count) / pixels).sqrt();
+        }
+    }
+    features[FEATURES - 1] = 1.0;
+    features
+}
+
+/// The number of a colour, looked up by its five highest bits in each channel.
+fn color([r, g, b]: [u8; 3]) -> usize {
+    static TABLE: LazyLock<Box<[u8]>> = LazyLock::new(|| {
+        let level = |bits: usize| (bits & 31) as i32 * 8 + 4;
+        (0..1 << 15)
+            .map(|k: usize| named([level(k >> 10), level(k >> 5), level(k)]))
+            .collect()
+    });
+    let five = |byte: u8| usize::from(byte >> 3);
+    usize::from(TABLE[five(r) << 10 | five(g) << 5 | five(b)])
+}
+
+/// Its hue in sixths of the circle, 0 to 5 around red, yellow, green, cyan, blue and magenta; without much of a hue 6 where it is
+/// dark and 7 where it is bright.
+fn named([r, g, b]: [i32; 3]) -> u8 {
+    let (most, least) = (r.max(g).max(b), r.min(g).min(b));
+    let chroma = most - least;
+    if chroma * 5 < most * 2 || most < 16 {
+        return if most < 128 { 6 } else { 7 };
+    }
+    let degrees = if most == r {
+        60 * (g - b) / chroma
+    } else if most == g {
+        60 * (b - r) / chroma + 120
+    } else {
+        60 * (r - g) / chroma + 240
+    };
+    ((degrees + 390).rem_euclid(360) / 60) as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn hues_go_around_the_circle_and_greys_have_none() {
+        let seen = [
+            [255, 0, 0],
+            [255, 255, 0],
+            [0, 255, 0],
+            [0, 255, 255],
+            [0, 0, 255],
+            [255, 0, 255],
+            [60, 60, 60],
+            [230, 230, 230],
+        ];
+        assert_eq!(seen.map(color), [0, 1, 2, 3, 4, 5, 6, 7]);
+        // By dusk a hue is the same, down to the darkest.
+        assert_eq!([[60, 0, 0], [0, 60, 0], [0, 0, 60]].map(color), [0, 2, 4]);
+    }
+
+    proptest! {
+        /// Colours share each cell: whatever the picture, the squares of a cell's numbers come to 1.
+        #[test]
+        fn the_colours_of_a_cell_share_it(rgb in proptest::collection::vec(0_u8..=255, SIDE * SIDE * 3)) {
+            let features = shares(&rgb);
+            for cell in features[..FEATURES - 1].chunks(COLORS) {
+                let whole: f32 = cell.iter().map(|x| x * x).sum();
+                prop_assert!((whole - 1.0).abs() < 1e-5, "{}", whole);
+            }
+        }
+
+        /// One pixel changes the cell that it is in, and no other.
+        #[test]
+        fn a_pixel_counts_where_it_is(row in 0..SIDE, x in 0..SIDE) {
+            let grey = vec![200_u8; SIDE * SIDE * 3];
+            let mut dotted = grey.clone();
+            dotted[(row * SIDE + x) * 3 + 1] = 0;
+            dotted[(row * SIDE + x) * 3 + 2] = 0;
+            let (without, with) = (shares(&grey), shares(&dotted));
+            let band = [21, 27].iter().filter(|first| row >= **first).count();
+            let cell = band * COLUMNS + x / 6;
+            for k in 0..FEATURES {
+                let changes = k / COLORS == cell && [0, 7].contains(&(k % COLORS));
+                prop_assert_eq!(without[k] != with[k], changes, "number {}", k);
+            }
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! A small learner that comes with the environment, so that a lifetime shows learning, transfer and forgetting in seconds. What
+//! it sees is in `eye.rs`, how it learns in `linear.rs`.
+
+mod eye;
+mod linear;
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use super::Agent;
+use super::steering::in_space;
+use crate::sim::{Action, Environment, Step};
+use eye::Eye;
+use linear::{LinearSarsa, Seen};
+
+/// What it can do: shares of the largest speed and turn rate, and whether it interacts.
+const DEEDS: [[f64; 3]; 5] = [
+    [1.0, 0.0, 1.0],
+    [1.0, -0.5, 1.0],
+    [1.0, 0.5, 1.0],
+    [0.0, -1.0, 0.0],
+    [0.0, 1.0, 0.0],
+];
+
+/// A deed takes so many seconds of the world, as nearly as steps allow.
+const DEED_SECONDS: f64 = 0.2;
+/// What a reward is worth one deed later.
+const DISCOUNT: f32 = 0.93;
+/// How much of an error one deed earlier is to blame for.
+const LAMBDA: f32 = 0.8;
+/// How often it tries some deed: while it learns, and while it does not.
+const TRIES: [f64; 2] = [0.1, 0.02];
+/// Rewards are counted in hundreds: touching a cube of the built-in tasks pays 1.
+const UNIT: f32 = 0.01;
+
+/// Learns by linear Sarsa(λ) what each of five deeds is worth: straight ahead, ahead to either side, turning on the spot.
+///
+/// It sees the agent's camera at 42 × 42 pixels, and of that how much of each cell of a 7 × 3 grid each of eight colours
+/// covers: 169 numbers. It knows no map, no state and no label, and remembers nothing within an episode. It is small: it finds
+/// coloured things and shows what learning one task does to others, but plans nothing and opens no door.
+///
+/// A deed is ε-greedy (ε 0.1, in evaluations 0.02) and held for 0.2 s. All that it draws comes from the seed of the episode, so a
+/// lifetime can be repeated to the bit.
+///
+/// # Source
+/// Sutton and Barto, *Reinforcement Learning*, 2nd edition, section 12.7, with accumulating traces.
+///
+/// # Example
+/// ```
+/// use driftworld_env::{Agent, Environment, SarsaAgent};
+/// use driftworld_spec::World;
+/// let mut agent = SarsaAgent::new();
+/// let mut environment = Environment::new(World::default());
+/// agent.begin(7);
+/// for _ in 0..10 {
+///     let action = agent.act(&environment);
+///     let step = environment.step(action)?;
+///     agent.learn(&environment, &step);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct SarsaAgent {
+    learner: LinearSarsa<{ DEEDS.len() }>,
+    eye: Eye,
+    rng: ChaCha8Rng,
+    /// The last deed, with what was seen before it.
+    last: Option<(Seen, usize)>,
+    /// Steps for which it goes on.
+    held: u32,
+    /// What was paid since.
+    reward: f32,
+    is_frozen: bool,
+}
+
+impl Default for SarsaAgent {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl SarsaAgent {
+    /// An agent that has learned nothing.
+    pub fn new() -> Self {
+        Self {
+            learner: LinearSarsa::new(),
+            eye: Eye::default(),
+            rng: ChaCha8Rng::seed_from_u64(0),
+            last: None,
+            held: 0,
+            reward: 0.0,
+            is_frozen: false,
+        }
+    }
+
+    /// Looks, learns from what the last deed led to, and chooses the next.
+    fn decide(&mut self, environment: &Environment) -> (Seen, usize) {
+        let seen = self.eye.look(environment);
+        let values = self.learner.values(&seen);
+        let deed = if self.rng.random::<f64>() < TRIES[usize::from(self.is_frozen)] {
+            self.rng.random_range(0..DEEDS.len() as u32) as usize
+        } else {
+            best(&values)
+        };
+        if !self.is_frozen {
+            self.learn_that(DISCOUNT * values[deed]);
+            self.learner.done(&seen, deed, DISCOUNT * LAMBDA);
+        }
+        (seen, deed)
+    }
+
+    /// Learns from what was paid since the last deed, and what is still to come.
+    fn learn_that(&mut self, to_come: f32) {
+        let paid = std::mem::take(&mut self.reward);
+        if let Some((seen, deed)) = &self.last {
+            let error = paid + to_come - self.learner.values(seen)[*deed];
+            self.learner.learn(seen, error);
+        }
+    }
+}
+
+/// The deed that is worth most; the first of equals.
+fn best(values: &[f32]) -> usize {
+    let better = |best: usize, deed: usize| if values[deed] > values[best] { deed } else { best };
+    (0..values.len()).fold(0, better)
+}
+
+impl Agent for SarsaAgent {
+    fn act(&mut self, environment: &Environment) -> Action {
+        let agent = &environment.world().agent_params;
+        if self.held == 0 {
+            self.last = Some(self.decide(environment));
+            let step_seconds = agent.time_step * f64::from(agent.frame_skip.max(1));
+            self.held = (DEED_SECONDS / step_seconds).round().max(1.0) as u32;
+        }
+        self.held -= 1;
+        let [speed, turn, interact] = self.last.as_ref().map_or([0.0; 3], |(_, deed)| DEEDS[*deed]);
+        let numbers = [speed * agent.max_linear_speed, turn * agent.max_angular_speed, interact];
+        in_space(numbers, environment.sim())
+    }
+
+    fn begin(&mut self, seed: u64) {
+        self.rng = ChaCha8Rng::seed_from_u64(seed);
+        self.learner.begin();
+        (self.last, self.held, self.reward) = (None, 0, 0.0);
+    }
+
+    /// An episode that is cut off teaches nothing of what would have come.
+    fn learn(&mut self, _environment: &Environment, step: &Step) {
+        if self.is_frozen {
+            return;
+        }
+        self.reward += step.reward as f32 * UNIT;
+        if step.terminated {
+            self.learn_that(0.0);
+        }
+    }
+
+    fn frozen(&self) -> Option<Box<dyn Agent + Send>> {
+        Some(Box::new(Self {
+            learner: self.learner.clone(),
+            is_frozen: true,
+            ..Self::new()
+        }))
+    }
+}
