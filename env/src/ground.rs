@@ -69,7 +69,7 @@ pub(crate) fn corners(zone: &Zone) -> Vec<[f64; 2]> {
 }
 
 /// Cuts one corner after the other off a polygon. One that crosses itself is filled as far as that goes.
-fn triangles(corners: &[[f64; 2]]) -> Vec<[u32; 3]> {
+pub(crate) fn triangles(corners: &[[f64; 2]]) -> Vec<[u32; 3]> {
     let mut left: Vec<u32> = (0..corners.len() as u32).collect();
     let mut triangles = Vec::with_capacity(corners.len().saturating_sub(2));
     let at = |index: u32| corners[index as usize];

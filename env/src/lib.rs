@@ -20,6 +20,7 @@ mod render;
 mod scene;
 mod sim;
 mod vector;
+mod wall_tops;
 
 pub use abstraction::{
     Abstraction, MAX_ABSTRACT_STATES, MAX_MACRO_SECONDS, NUM_HEADINGS, NUM_MACRO_ACTIONS, StateGrid, WorldAbstraction,
@@ -48,7 +49,7 @@ pub use photograph::{MAX_PHOTOGRAPHS, Photograph, Studio};
 pub use render::{
     AdapterReport, CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE,
     CATEGORY_SKY, CpuRenderer, FAR_DEPTH, Frame, Image, Picture, Renderer, RendererKind, RendererReport, Target,
-    category_color, depth_to_gray, top_down,
+    category_color, depth_to_gray, top_down, top_down_with_way,
 };
 #[cfg(feature = "gpu")]
 pub use render::{GpuChoice, GpuRenderer};

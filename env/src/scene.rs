@@ -6,6 +6,7 @@ use driftworld_spec::{Object, World};
 
 use crate::assets::{Asset, Block, Catalogue, ColliderShape, Mesh};
 use crate::ground;
+use crate::wall_tops::tops;
 
 /// Everything that a picture of a world depends on, but for the camera.
 #[derive(Clone, Debug)]
@@ -170,6 +171,13 @@ impl Scene {
             class_id,
             visible: true,
         });
+    }
+
+    /// The same scene whose walls have tops, as pictures from above need them: the agent sees none.
+    #[must_use]
+    pub fn with_wall_tops(mut self) -> Self {
+        self.panels.extend(tops(&self.walls));
+        self
     }
 
     /// Where the assets of its objects come from.

@@ -2,11 +2,15 @@
 
 use super::cpu::CpuRenderer;
 use super::frame::Frame;
+use crate::assets::{ColliderShape, Paint};
 use crate::camera::Camera;
-use crate::scene::Scene;
+use crate::scene::{ARENA_WALLS, Item, Scene};
 
 /// Least radius of an object on the map, as a share of the map's height.
 const LEAST_SIZE: f32 = 0.014;
+
+/// Classes of which little is seen from above.
+const THIN: [&str; 3] = ["door", "key", "switch"];
 
 /// A picture: 8-bit RGB, row 0 on top.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -21,8 +25,20 @@ pub struct Image {
 
 /// The scene from above, with the agent's position and heading as an arrow if it is given.
 ///
-/// All of the arena and every object is on it; objects that would be specks are drawn larger than they are.
+/// All of the arena and every object is on it; objects that would be specks are drawn larger than they are. Walls are filled, with a
+/// dark rim, and doors, keys and switches are bars and dots.
 pub fn top_down(scene: &Scene, width: u32, height: u32, agent: Option<([f32; 2], f32)>) -> Image {
+    top_down_with_way(scene, width, height, agent, &[])
+}
+
+/// As [`top_down`], with a way over these places, in metres, as a line below the arrow.
+pub fn top_down_with_way(
+    scene: &Scene,
+    width: u32,
+    height: u32,
+    agent: Option<([f32; 2], f32)>,
+    way: &[[f32; 2]],
+) -> Image {
     let span = span(scene, width as f32 / height as f32);
     // From so high that nothing leans.
     let camera_height = 40.0 * span;
@@ -32,7 +48,7 @@ pub fn top_down(scene: &Scene, width: u32, height: u32, agent: Option<([f32; 2],
         pitch_deg: -90.0,
         field_of_view_deg: 2.0 * libm::atanf(span / 2.0 / camera_height).to_degrees(),
     };
-    let mut scene = scene.clone();
+    let mut scene = scene.clone().with_wall_tops();
     for item in &mut scene.items {
         item.scale = item.scale.max(LEAST_SIZE * span / item.asset.radius);
     }
@@ -45,12 +61,23 @@ pub fn top_down(scene: &Scene, width: u32, height: u32, agent: Option<([f32; 2],
     };
     let scale = height as f32 / span;
     let pixel = |[x, y]: [f32; 2]| [width as f32 / 2.0 + x * scale, height as f32 / 2.0 - y * scale];
+    // Dark rims, where there are walls beside the arena's own.
+    let brightness = if scene.walls.len() > ARENA_WALLS { 90.0 } else { 200.0 };
     for wall in &scene.walls {
-        image.line(
-            pixel(wall.from),
-            pixel(wall.to),
-            wall.color.map(|channel| (channel * 200.0) as u8),
-        );
+        image.line([wall.from, wall.to].map(pixel), 0, darkened(wall.color, brightness));
+    }
+    let numbers = THIN.map(|class| scene.catalogue().class_number(class));
+    for item in scene
+        .items
+        .iter()
+        .filter(|item| item.visible && numbers.contains(&item.class_id))
+    {
+        image.bar(item, pixel);
+    }
+    for (more, rgb) in [(2 * (height as i32 / 300).max(1), [20, 24, 30]), (0, [255, 255, 255])] {
+        for step in way.windows(2) {
+            image.line([step[0], step[1]].map(pixel), more, rgb);
+        }
     }
     if let Some((position, heading)) = agent {
         image.arrow(pixel(position), heading);
@@ -69,10 +96,35 @@ fn span(scene: &Scene, aspect: f32) -> f32 {
     deep.max(wide / aspect).max(1.0) * 1.06
 }
 
+/// A colour in bytes, at most as bright as said.
+fn darkened(color: [f32; 3], brightness: f32) -> [u8; 3] {
+    color.map(|channel| (channel * brightness) as u8)
+}
+
 impl Image {
-    /// A line as thick as a hundredth of the picture, at least two pixels: walls are thin from above.
-    fn line(&mut self, from: [f32; 2], to: [f32; 2], rgb: [u8; 3]) {
-        let thick = (self.height as i32 / 150).max(1);
+    /// A door as a bar along its leaf, what is round as a dot, in its main colour with a dark rim.
+    fn bar(&mut self, item: &Item, pixel: impl Fn([f32; 2]) -> [f32; 2]) {
+        let half = match item.body.collider {
+            ColliderShape::Box {
+                half: [width, depth, _],
+            } if width > 3.0 * depth => width * item.scale,
+            _ => 0.0,
+        };
+        let heading = item.heading_deg.to_radians();
+        let (along, [x, y]) = ([libm::cosf(heading) * half, -libm::sinf(heading) * half], item.position);
+        let ends = [[x - along[0], y - along[1]], [x + along[0], y + along[1]]].map(pixel);
+        let own = item.asset.parts.iter().find_map(|part| match part.paint {
+            Paint::Main(color) => Some(color),
+            Paint::Fixed(_) => None,
+        });
+        let more = (self.height as i32 / if half > 0.0 { 300 } else { 100 }).max(1);
+        self.line(ends, more + 2 * (self.height as i32 / 200).max(1), [20, 24, 30]);
+        self.line(ends, more, darkened(item.color.or(own).unwrap_or([0.5; 3]), 255.0));
+    }
+
+    /// A line as thick as a hundredth of the picture, at least two pixels, and so many pixels more: walls are thin from above.
+    fn line(&mut self, [from, to]: [[f32; 2]; 2], more: i32, rgb: [u8; 3]) {
+        let thick = (self.height as i32 / 150).max(1) + more;
         let along = [to[0] - from[0], to[1] - from[1]];
         let steps = along[0].abs().max(along[1].abs()).ceil().clamp(1.0, 10_000.0);
         for k in 0..=steps as i32 {
