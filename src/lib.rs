@@ -32,6 +32,7 @@ pub mod distances;
 pub mod documents;
 pub mod dynamics;
 pub mod elements;
+mod episode_frames;
 mod failure;
 mod figure_files;
 mod libraries;

@@ -62,20 +62,21 @@ impl<'a> Views<'a> {
 
     /// From outside, above a corner of the arena.
     pub(crate) fn overview(&self, width: u32) -> Result<Picture, Failure> {
-        self.smooth(&Camera::overview(&self.scene), width)
+        let scene = self.scene.clone().with_wall_tops();
+        self.smooth(&scene, &Camera::overview(&scene), width)
     }
 
     /// What the agent sees at the start.
     pub(crate) fn first_person(&self) -> Result<Seen, Failure> {
         let camera = self.agent_camera(self.turn);
-        let frame = self.frame(&camera, self.size, self.size)?;
+        let frame = self.frame(&self.scene, &camera, self.size, self.size)?;
         let picture = |rgb| Picture {
             width: self.size,
             height: self.size,
             rgb,
         };
         Ok(Seen {
-            rgb: self.smooth(&camera, self.size)?,
+            rgb: self.smooth(&self.scene, &camera, self.size)?,
             depth: picture(
                 depth_to_gray(&frame.depth)
                     .into_iter()
@@ -99,7 +100,7 @@ impl<'a> Views<'a> {
                 field_of_view_deg: 90.0,
                 ..self.agent_camera(self.turn + turn)
             };
-            self.smooth(&camera, self.size)
+            self.smooth(&self.scene, &camera, self.size)
         };
         [0.0, 90.0, 180.0, 270.0].into_iter().map(look).collect()
     }
@@ -121,7 +122,7 @@ impl<'a> Views<'a> {
         for index in indices {
             let class = self.world.objects[index].class.to_lowercase();
             if shown.len() < most && !shown.iter().any(|(other, _)| *other == class) {
-                shown.push((class, self.smooth(&self.close_to(index), self.size)?));
+                shown.push((class, self.smooth(&self.scene, &self.close_to(index), self.size)?));
             }
         }
         Ok(shown)
@@ -175,9 +176,9 @@ impl<'a> Views<'a> {
     }
 
     /// A colour picture with smooth edges: drawn at twice the size where that is allowed.
-    fn smooth(&self, camera: &Camera, width: u32) -> Result<Picture, Failure> {
+    fn smooth(&self, scene: &Scene, camera: &Camera, width: u32) -> Result<Picture, Failure> {
         let twice = if self.size.max(width) <= 2048 { 2 } else { 1 };
-        let frame = self.frame(camera, width * twice, self.size * twice)?;
+        let frame = self.frame(scene, camera, width * twice, self.size * twice)?;
         let picture = Picture {
             width: frame.width,
             height: frame.height,
@@ -186,9 +187,9 @@ impl<'a> Views<'a> {
         Ok(if twice == 2 { picture.halved() } else { picture })
     }
 
-    fn frame(&self, camera: &Camera, width: u32, height: u32) -> Result<Frame, Failure> {
+    fn frame(&self, scene: &Scene, camera: &Camera, width: u32, height: u32) -> Result<Frame, Failure> {
         let mut frame = Frame::new(width, height);
-        self.renderer.borrow_mut().render(&self.scene, camera, &mut frame)?;
+        self.renderer.borrow_mut().render(scene, camera, &mut frame)?;
         Ok(frame)
     }
 }

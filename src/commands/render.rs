@@ -6,9 +6,11 @@ use crate::env::{Catalogue, Environment, Renderer, RendererKind};
 use crate::spec::World;
 use clap::{Args, ValueEnum};
 
+use super::agent::AgentArg;
 use super::assets::LibraryChoice;
 use super::world_choice::WorldChoice;
 use super::{Failure, output};
+use crate::episode_frames::rows;
 use crate::report::picture::{Picture, SheetRow, sheet};
 use crate::views::Views;
 
@@ -16,7 +18,8 @@ use crate::views::Views;
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld render find_objects#dusk --seed 7 -o dusk.png
-  driftworld render map.json --l2explorer --view overview --size 800 -o map.png")]
+  driftworld render map.json --l2explorer --view overview --size 800 -o map.png
+  driftworld render maze.json#small --view episode --frames 6 -o solved.png")]
 pub(crate) struct Render {
     #[command(flatten)]
     choice: WorldChoice,
@@ -31,6 +34,12 @@ pub(crate) struct Render {
     /// Turn the first-person camera clockwise from the agent's heading, in degrees.
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     turn: f64,
+    /// Number of frames of `--view episode` [default: 8].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(2..=60))]
+    frames: Option<u8>,
+    /// The agent of `--view episode` [default: onrails].
+    #[arg(long, value_name = "AGENT", help = AgentArg::HELP)]
+    agent: Option<AgentArg>,
     /// Where to render: cpu, gpu, or auto (gpu if there is one).
     ///
     /// Maps are always drawn on the CPU.
@@ -56,10 +65,17 @@ enum View {
     Depth,
     /// The agent's view as reward categories.
     Segmentation,
+    /// An agent's episode, frame by frame: start, end, and what was done between.
+    Episode,
 }
 
 impl Render {
     pub(crate) fn run(self) -> Result<(), Failure> {
+        if self.view != View::Episode && (self.frames.is_some() || self.agent.is_some()) {
+            return Err(Failure::usage(
+                "--frames and --agent: found another view, expected --view episode",
+            ));
+        }
         let world = self.choice.world()?;
         let catalogue = self.libraries.catalogue()?;
         warn(&world, &catalogue);
@@ -76,7 +92,20 @@ impl Render {
             View::Depth => views.first_person()?.depth,
             View::Segmentation => views.first_person()?.segmentation,
             View::Sheet => self.sheet(&views)?,
+            View::Episode => self.episode(world, catalogue)?,
         })
+    }
+
+    /// Two frames side by side.
+    fn episode(&self, world: &World, catalogue: &Catalogue) -> Result<Picture, Failure> {
+        let mut agent = self.agent.as_ref().unwrap_or(&AgentArg::Onrails).agent()?.agent;
+        let mut environment = Environment::with_catalogue(world.clone(), catalogue.clone());
+        environment.set_renderer(Renderer::new(self.renderer)?);
+        let most = usize::from(self.frames.unwrap_or(8));
+        Ok(sheet(
+            &rows(&mut environment, world, agent.as_mut(), self.size, most)?,
+            2,
+        )?)
     }
 
     fn sheet(&self, views: &Views) -> Result<Picture, Failure> {

@@ -1,0 +1,194 @@
+//! An episode as a few frames: which steps are shown, what is said of them, and their pictures. How rows of pictures become a sheet
+//! is `report`'s.
+
+use driftworld_env::{Agent, Effect, EndedBy, Environment, Event, MAX_EXPERT_STEPS, Step, top_down_with_way};
+use driftworld_report::picture::{Picture, SheetRow};
+use driftworld_spec::{Stimulus, World};
+
+use crate::Failure;
+
+/// What one step did, in words, and how much it matters: 0 for a step on the way.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Deed {
+    words: Vec<String>,
+    weight: u8,
+}
+
+/// An agent's episode in a world, as rows of a sheet: what the agent sees, and the map with the way since the row before.
+///
+/// The start and the end are among the rows, and of what happened as much as `most` rows have room for; where little happened,
+/// steps on the way.
+pub(crate) fn rows(
+    environment: &mut Environment,
+    world: &World,
+    agent: &mut dyn Agent,
+    size: u32,
+    most: usize,
+) -> Result<Vec<SheetRow>, Failure> {
+    let mut deeds = vec![Deed::default()];
+    environment.reset(world.clone());
+    agent.begin(0);
+    let mut last = None;
+    while !environment.ended() && (deeds.len() as u32) <= MAX_EXPERT_STEPS {
+        let action = agent.act(environment);
+        let step = environment.step(action)?;
+        deeds.push(deed(world, &step));
+        last = Some(step);
+    }
+    // Once more, to the same bits, for the pictures of the steps that are shown.
+    environment.reset(world.clone());
+    agent.begin(0);
+    let (mut rows, mut way, mut taken) = (Vec::new(), vec![environment.agent().position], 0);
+    for number in chosen(&deeds, most) {
+        while taken < number {
+            let action = agent.act(environment);
+            environment.step(action)?;
+            way.push(environment.agent().position);
+            taken += 1;
+        }
+        let end = last.as_ref().filter(|_| number + 1 == deeds.len());
+        rows.push(SheetRow {
+            title: title(number, &deeds[number]),
+            words: words(environment, end),
+            pictures: pictures(environment, size, &way)?,
+        });
+        way.drain(..way.len() - 1);
+    }
+    Ok(rows)
+}
+
+/// Which steps are shown: the first, the last, those that matter most, then the middles of the longest ways between.
+fn chosen(deeds: &[Deed], most: usize) -> Vec<usize> {
+    let last = deeds.len() - 1;
+    let mut shown = vec![0, last];
+    let mut done: Vec<usize> = (1..last).filter(|number| deeds[*number].weight > 0).collect();
+    done.sort_by_key(|number| std::cmp::Reverse(deeds[*number].weight));
+    shown.extend(done.into_iter().take(most.saturating_sub(2)));
+    shown.sort_unstable();
+    shown.dedup();
+    while shown.len() < most {
+        let gaps = shown.windows(2).enumerate();
+        let Some((place, gap)) = gaps.max_by_key(|(place, pair)| (pair[1] - pair[0], usize::MAX - place)) else {
+            break;
+        };
+        if gap[1] - gap[0] < 2 {
+            break;
+        }
+        shown.insert(place + 1, usize::midpoint(gap[0], gap[1]));
+    }
+    shown
+}
+
+fn deed(world: &World, step: &Step) -> Deed {
+    let mut deed = Deed::default();
+    for event in &step.events {
+        let own = match event.effect {
+            Some(Effect::Closed) => 2,
+            Some(_) => 3,
+            None if event.destroyed || event.reward != 0.0 => 1,
+            None => continue,
+        };
+        deed.weight = deed.weight.max(own);
+        deed.words.push(said(world, event));
+    }
+    deed
+}
+
+/// What an event was, as "opens the door".
+fn said(world: &World, event: &Event) -> String {
+    let class = world.objects.get(event.object).map_or("object", |object| &object.class);
+    let what = match event.effect {
+        Some(Effect::Opened) => format!("opens the {class}"),
+        Some(Effect::Closed) => format!("closes the {class}"),
+        Some(Effect::Switched) => format!("sets off the {class}"),
+        Some(Effect::PickedUp) => format!("picks up the {class}"),
+        Some(Effect::PutDown) => format!("puts down the {class}"),
+        None => {
+            // What is only a shape is better named by what it is for.
+            let name = event.tag.as_deref().unwrap_or(class);
+            match event.stimulus {
+                Stimulus::AgentCollide => format!("touches the {name}"),
+                Stimulus::AgentInteract => format!("uses the {name}"),
+                Stimulus::AgentInRange => format!("comes near the {name}"),
+            }
+        }
+    };
+    if event.reward == 0.0 {
+        what
+    } else {
+        format!("{what}: {:+.1}", event.reward)
+    }
+}
+
+fn title(number: usize, deed: &Deed) -> String {
+    match (number, &deed.words[..]) {
+        (0, _) => "Start".to_owned(),
+        (_, []) => format!("Step {number}"),
+        (_, [one]) => format!("Step {number}: {one}"),
+        (_, [first, rest @ ..]) => format!("Step {number}: {first}, and {} more", rest.len()),
+    }
+}
+
+/// The time, the return, what is carried, and why the episode ended.
+fn words(environment: &Environment, end: Option<&Step>) -> String {
+    let mut parts = vec![
+        format!("{:.1} s", environment.seconds()),
+        format!("return {:.1}", environment.episode_return()),
+    ];
+    let objects = environment.world().objects.iter().zip(environment.objects());
+    let carried: Vec<&str> = objects
+        .filter(|(_, own)| own.carried)
+        .map(|(object, _)| object.class.as_str())
+        .collect();
+    if !carried.is_empty() {
+        parts.push(format!("carries: {}", carried.join(", ")));
+    }
+    if let Some(step) = end {
+        let by = step.ended_by.map_or("nothing", EndedBy::word).replace('_', " ");
+        parts.push(format!("ended by {by}{}", if step.success { ", success" } else { "" }));
+    }
+    parts.join(" · ")
+}
+
+/// What the agent sees, and the map: drawn at twice the size where that is allowed, for smooth edges.
+fn pictures(environment: &mut Environment, size: u32, way: &[[f32; 2]]) -> Result<Vec<Picture>, Failure> {
+    let twice = if size <= 2048 { 2 } else { 1 };
+    let agent = environment.agent();
+    let camera = environment.camera();
+    let seen = environment.render(&camera, size * twice, size * twice)?;
+    let agent = Some((agent.position, agent.heading_deg));
+    let map = top_down_with_way(environment.scene(), size * twice, size * twice, agent, way);
+    let finished = |[width, height]: [u32; 2], rgb| {
+        let picture = Picture { width, height, rgb };
+        if twice == 2 { picture.halved() } else { picture }
+    };
+    Ok(vec![
+        finished([seen.width, seen.height], seen.rgb),
+        finished([map.width, map.height], map.rgb),
+    ])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// The frames rise, begin at the start, end at the end, are as many as asked for where there are so many steps, and leave
+        /// out nothing that matters more than what they show.
+        #[test]
+        fn the_frames_show_what_matters(weights in prop::collection::vec(0u8..4, 1..200), most in 2usize..30) {
+            let deeds: Vec<Deed> = weights.iter().map(|weight| Deed { words: Vec::new(), weight: *weight }).collect();
+            let shown = chosen(&deeds, most);
+            prop_assert!(shown.is_sorted_by(|a, b| a < b));
+            prop_assert_eq!((shown[0], *shown.last().expect("there is one")), (0, deeds.len() - 1));
+            prop_assert_eq!(shown.len(), most.min(deeds.len()));
+            let inner = || 1..deeds.len().saturating_sub(1);
+            let least = inner().filter(|number| shown.contains(number)).map(|number| weights[number]).min();
+            let left_out = inner().filter(|number| !shown.contains(number)).map(|number| weights[number]).max();
+            if let (Some(least), Some(left_out)) = (least, left_out) {
+                prop_assert!(left_out <= least || left_out == 0, "{left_out} is left out, {least} is shown");
+            }
+        }
+    }
+}
