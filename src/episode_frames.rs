@@ -154,8 +154,7 @@ fn words(environment: &Environment, end: Option<&Step>) -> String {
 fn pictures(environment: &mut Environment, size: u32, way: &[[f32; 2]]) -> Result<Vec<Picture>, Failure> {
     let twice = if size <= 2048 { 2 } else { 1 };
     let agent = environment.agent();
-    let camera = environment.camera();
-    let seen = environment.render(&camera, size * twice, size * twice)?;
+    let seen = environment.observe_at(size * twice, size * twice)?;
     let agent = Some((agent.position, agent.heading_deg));
     let map = top_down_with_way(environment.scene(), size * twice, size * twice, agent, way);
     let finished = |[width, height]: [u32; 2], rgb| {

@@ -84,6 +84,7 @@ const VERDICTS: &[(&str, Verdict)] = &[
     ("/agent_params/interact", Moves),
     ("/agent_params/energy", Ends),
     ("/agent_params/carry_limit", Moves),
+    ("/agent_params/show_carried", Idle),
     ("/rules/step_reward", Ends),
     ("/rules/reward_per_second", Ends),
     ("/rules/order_penalty", Ends),

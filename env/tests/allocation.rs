@@ -170,6 +170,12 @@ fn steps_take_no_memory() {
     let (taken_by_things, paid) = taken(world_with_things(), 1, 600);
     assert!(paid > 20.0, "doors open and things are picked up: {paid}");
     assert_eq!(taken_by_things, 0, "doors, switches and things");
+    let seen = world_with_things().edit(|world| {
+        world.agent_params.show_carried = true;
+        world.agent_params.modalities = vec![Modality::Rgb];
+    });
+    let (taken_by_hands, _) = taken(seen.expect("the world is sound"), 1, 600);
+    assert_eq!(taken_by_hands, 0, "pictures of what is carried");
     // Handing work to other threads takes a block of the pool's queue for every 63 times, whatever the number of
     // environments.
     let (taken_by_two, _) = taken(world(), 2, 300);

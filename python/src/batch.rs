@@ -288,7 +288,9 @@ impl PyBatch {
                 top_down(scene, width, height, Some((agent.position, agent.heading_deg))).rgb
             } else {
                 let mut frame = driftworld_env::Frame::new(width, height);
-                driftworld_env::CpuRenderer::new().render(scene, &environment.camera(), &mut frame);
+                let mut renderer = driftworld_env::CpuRenderer::new();
+                renderer.render(scene, &environment.camera(), &mut frame);
+                environment.draw_carried(&mut renderer, &mut frame.target());
                 frame.rgb
             }
         });

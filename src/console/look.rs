@@ -29,6 +29,7 @@ impl Session<'_> {
         self.renderer
             .draw(self.environment.scene(), &camera, &mut target)
             .map_err(plain)?;
+        self.environment.draw_carried(&mut self.renderer, &mut target);
         Ok(frame)
     }
 

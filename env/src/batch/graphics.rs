@@ -14,16 +14,23 @@ pub(super) fn draw(
     is_chosen: impl Fn(usize, &Slot) -> bool,
 ) -> Result<(), EnvError> {
     let targets = images.targets(slots.len());
-    let mut pictures: Vec<Picture<'_>> = slots
+    let (mut pictures, carried): (Vec<Picture<'_>>, Vec<&[u32]>) = slots
         .iter()
         .zip(targets)
         .enumerate()
         .filter(|(env, (slot, target))| !target.is_empty() && is_chosen(*env, slot))
-        .map(|(_, (slot, target))| Picture {
-            scene: slot.environment.scene(),
-            camera: slot.environment.camera(),
-            target,
+        .map(|(_, (slot, target))| {
+            let picture = Picture {
+                scene: slot.environment.scene(),
+                camera: slot.environment.camera(),
+                target,
+            };
+            (picture, slot.environment.shown_carried())
         })
-        .collect();
-    renderer.draw_batch(&mut pictures)
+        .unzip();
+    renderer.draw_batch(&mut pictures)?;
+    for (picture, carried) in pictures.iter_mut().zip(carried) {
+        renderer.draw_carried(picture.scene, carried, &mut picture.target);
+    }
+    Ok(())
 }

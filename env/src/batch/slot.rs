@@ -192,7 +192,9 @@ impl Slot {
         if target.is_empty() {
             return Ok(());
         }
-        renderer.draw(self.environment.scene(), &camera, &mut target)?;
+        let scene = self.environment.scene();
+        renderer.draw(scene, &camera, &mut target)?;
+        renderer.draw_carried(scene, self.environment.shown_carried(), &mut target);
         outputs.images.form_depth(index);
         Ok(())
     }

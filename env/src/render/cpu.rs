@@ -5,6 +5,7 @@ use super::backdrop::Backdrop;
 use super::canvas::Canvas;
 use super::compose::{CATEGORY_BITS, Composition, Scratch, Walls};
 use super::frame::{CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE, Frame};
+use super::hand::Hand;
 #[cfg(target_arch = "x86_64")]
 use super::lanes::{Avx2, Avx512};
 use super::lanes::{Lanes, MOST_LANES, Portable};
@@ -33,6 +34,7 @@ pub struct CpuRenderer {
     scratch: Scratch,
     /// Colours of all points, where there are several in a pixel.
     points: Vec<u8>,
+    hand: Hand,
 }
 
 /// An instruction set that this processor has.
@@ -79,6 +81,7 @@ impl CpuRenderer {
             classes: Vec::new(),
             scratch: Scratch::default(),
             points: Vec::new(),
+            hand: Hand::default(),
         }
     }
 
@@ -106,6 +109,11 @@ impl CpuRenderer {
             samples => self.run_sampled(scene, camera, target, samples),
         }
         Ok(())
+    }
+
+    /// Draws the scene's items of these numbers, things that are carried, at the lower edge of the target's colours.
+    pub(crate) fn draw_carried(&mut self, scene: &Scene, carried: &[u32], target: &mut Target<'_>) {
+        self.hand.draw(scene, carried, target);
     }
 
     /// Draws all but colours as they are, and colours as the mean of many points.

@@ -12,6 +12,7 @@ mod cpu;
 mod frame;
 #[cfg(feature = "gpu")]
 mod gpu;
+mod hand;
 mod kind;
 mod lanes;
 mod picture;

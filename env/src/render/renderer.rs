@@ -114,6 +114,15 @@ impl Renderer {
         }
     }
 
+    /// Draws the scene's items of these numbers, things that are carried, at the lower edge of the target's colours.
+    pub(crate) fn draw_carried(&mut self, scene: &Scene, carried: &[u32], target: &mut Target<'_>) {
+        match &mut self.0 {
+            Inner::Cpu(renderer) => renderer.draw_carried(scene, carried, target),
+            #[cfg(feature = "gpu")]
+            Inner::Gpu(renderer) => renderer.draw_carried(scene, carried, target),
+        }
+    }
+
     /// Draws many pictures; a graphics card draws those of one size together.
     ///
     /// # Errors

@@ -1,7 +1,10 @@
 //! Looking at a running world: the agent's observation, its camera, pictures from anywhere. How they are drawn is in
 //! `render`.
 
+use driftworld_spec::World;
+
 use super::environment::Environment;
+use super::state::SimState;
 use crate::EnvError;
 use crate::camera::Camera;
 use crate::render::{CpuRenderer, Frame, Target};
@@ -14,7 +17,10 @@ impl Environment {
         if self.draw_observation().is_err() {
             let camera = self.camera();
             // On the processor: only for so many points that no buffer holds them, then one a pixel.
-            CpuRenderer::new().render(&self.views.scene, &camera, &mut self.frame);
+            let mut renderer = CpuRenderer::new();
+            renderer.render(&self.views.scene, &camera, &mut self.frame);
+            let mut target = self.frame.target();
+            renderer.draw_carried(&self.views.scene, shown(&self.world, &self.state), &mut target);
         }
         &self.frame
     }
@@ -39,7 +45,33 @@ impl Environment {
             supersampling,
             ..self.frame.target()
         };
-        self.renderer.draw(&self.views.scene, &camera, &mut target)
+        self.renderer.draw(&self.views.scene, &camera, &mut target)?;
+        let carried = shown(&self.world, &self.state);
+        self.renderer.draw_carried(&self.views.scene, carried, &mut target);
+        Ok(())
+    }
+
+    /// The numbers of the things that pictures from the agent's eyes show as carried: none unless the world says so.
+    pub(crate) fn shown_carried(&self) -> &[u32] {
+        shown(&self.world, &self.state)
+    }
+
+    /// Draws what the agent carries onto a picture from its eyes, if the world shows it: at the lower edge of the target's
+    /// colours. The other images stay as they are.
+    pub fn draw_carried(&self, renderer: &mut CpuRenderer, target: &mut Target<'_>) {
+        renderer.draw_carried(&self.views.scene, self.shown_carried(), target);
+    }
+
+    /// What the agent sees now, at any size, one point a pixel.
+    ///
+    /// # Errors
+    /// As [`Environment::render`].
+    pub fn observe_at(&mut self, width: u32, height: u32) -> Result<Frame, EnvError> {
+        let mut frame = self.render(&self.camera(), width, height)?;
+        let carried = shown(&self.world, &self.state);
+        self.renderer
+            .draw_carried(&self.views.scene, carried, &mut frame.target());
+        Ok(frame)
     }
 
     /// The agent's camera.
@@ -65,5 +97,14 @@ impl Environment {
         let mut frame = Frame::new(width, height);
         self.renderer.render(&self.views.scene, camera, &mut frame)?;
         Ok(frame)
+    }
+}
+
+/// What is carried, if the world shows it.
+pub(super) fn shown<'a>(world: &World, state: &'a SimState) -> &'a [u32] {
+    if world.agent_params.show_carried {
+        state.carried()
+    } else {
+        &[]
     }
 }

@@ -6,6 +6,7 @@ use driftworld_spec::World;
 use super::action::{Action, Intent};
 use super::environment::Environment;
 use super::mover::Mover;
+use super::observation::shown;
 use super::sequence::Sequence;
 use super::state::SimState;
 use super::walls::agent_obstacle;
@@ -224,7 +225,10 @@ impl Environment {
             supersampling,
             ..target
         };
-        self.renderer.draw(&self.views.scene, &camera, &mut target)
+        self.renderer.draw(&self.views.scene, &camera, &mut target)?;
+        let carried = shown(&self.world, &self.state);
+        self.renderer.draw_carried(&self.views.scene, carried, &mut target);
+        Ok(())
     }
 }
 

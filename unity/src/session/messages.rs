@@ -168,8 +168,7 @@ impl Session {
         let png = if size == self.environment.world().agent_params.picture_size() {
             png(size, &self.environment.observe().rgb)
         } else {
-            let camera = self.environment.camera();
-            let drawn = self.environment.render(&camera, size[0], size[1]);
+            let drawn = self.environment.observe_at(size[0], size[1]);
             png(size, &drawn.map_err(|error| error.to_string())?.rgb)
         };
         let png = png.map_err(|error| error.to_string())?;

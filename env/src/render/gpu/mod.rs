@@ -27,6 +27,7 @@ use self::pass::{Pass, Stage, most_in_a_pass};
 use super::compose::CATEGORY_BITS;
 use super::cpu::average;
 use super::frame::Frame;
+use super::hand::Hand;
 use super::picture::Picture;
 use super::target::Target;
 use crate::EnvError;
@@ -43,6 +44,7 @@ pub struct GpuRenderer {
     device: Device,
     stage: Stage,
     contents: Vec<TileContents>,
+    hand: Hand,
 }
 
 /// One picture to draw, or its colours alone at several points per pixel.
@@ -73,6 +75,7 @@ impl GpuRenderer {
             device,
             stage,
             contents: Vec::new(),
+            hand: Hand::default(),
         };
         let scene = Scene::from_world(&driftworld_spec::World::default());
         renderer.render(&scene, &Camera::overview(&scene), &mut Frame::new(16, 16))?;
@@ -119,6 +122,11 @@ impl GpuRenderer {
             camera: *camera,
             target: target.reborrow(),
         }])
+    }
+
+    /// Draws things that are carried onto colours: the processor does it here, too.
+    pub(super) fn draw_carried(&mut self, scene: &Scene, carried: &[u32], target: &mut Target<'_>) {
+        self.hand.draw(scene, carried, target);
     }
 
     /// Draws many pictures, those of one size together.

@@ -1,0 +1,118 @@
+//! What the agent carries, as small pictures at the lower edge of what it sees: colours alone, drawn by the processor whatever draws
+//! the rest, so that the pixels are the same.
+
+use driftworld_spec::World;
+
+use super::cpu::CpuRenderer;
+use super::target::Target;
+use crate::camera::Camera;
+use crate::scene::{Item, Light, Scene};
+
+/// Height of a thing's picture as a share of the whole picture's height.
+const SHARE: u32 = 5;
+
+/// The least height of a thing's picture in pixels, as far as there are so many.
+const LEAST: u32 = 8;
+
+/// Draws things that are carried. Takes memory when the first is drawn, and then only for larger pictures.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Hand(Option<Box<Studio>>);
+
+/// A place without anything but the thing that is drawn.
+#[derive(Clone, Debug)]
+struct Studio {
+    renderer: CpuRenderer,
+    scene: Scene,
+    rgb: Vec<u8>,
+    instance: Vec<u32>,
+}
+
+impl Hand {
+    /// Draws the items of these numbers side by side at the lower edge of the colours, in this order, the last ones if there is no
+    /// room for all.
+    pub(super) fn draw(&mut self, scene: &Scene, carried: &[u32], target: &mut Target<'_>) {
+        let (width, height) = (target.width, target.height);
+        let side = (height / SHARE).max(LEAST).min(width).min(height);
+        let Some(rgb) = target.rgb.as_deref_mut().filter(|_| side > 0) else {
+            return;
+        };
+        let room = (width / side) as usize;
+        let shown = &carried[carried.len().saturating_sub(room)..];
+        let left = (width - side * shown.len() as u32) / 2;
+        for (number, item) in shown.iter().enumerate() {
+            let Some(item) = scene.items.get(*item as usize) else {
+                continue;
+            };
+            let studio = self.0.get_or_insert_with(Box::default);
+            studio.draw(item, scene.light, side);
+            studio.paste(rgb, width, [left + side * number as u32, height - side], side);
+        }
+    }
+}
+
+impl Default for Studio {
+    fn default() -> Self {
+        Self {
+            renderer: CpuRenderer::new(),
+            scene: Scene::from_world(&World::default()),
+            rgb: Vec::new(),
+            instance: Vec::new(),
+        }
+    }
+}
+
+impl Studio {
+    /// Draws one thing so large that it fills a square, in the world's light without its fog.
+    fn draw(&mut self, item: &Item, light: Light, side: u32) {
+        /// From so far, in lengths of the thing.
+        const DISTANCE: f32 = 3.0;
+        /// From so high above the thing's middle.
+        const ABOVE: f32 = 0.6;
+        let length = item.asset.height.max(2.0 * item.asset.radius).max(1e-3);
+        let item = Item {
+            position: [0.0; 2],
+            // Its face, a little from the side.
+            heading_deg: 200.0,
+            scale: 1.0 / length,
+            // The number may be higher than those that this scene knows.
+            class_id: 0,
+            visible: true,
+            ..item.clone()
+        };
+        let middle = item.asset.height * item.scale / 2.0;
+        self.scene.items.clear();
+        self.scene.items.push(item);
+        self.scene.light = Light {
+            fog_distance: None,
+            ..light
+        };
+        let camera = Camera {
+            position: [0.0, -DISTANCE, middle + ABOVE],
+            heading_deg: 0.0,
+            pitch_deg: -libm::atanf(ABOVE / DISTANCE).to_degrees(),
+            field_of_view_deg: 24.0,
+        };
+        let pixels = side as usize * side as usize;
+        self.rgb.resize(3 * pixels, 0);
+        self.instance.resize(pixels, 0);
+        let mut target = Target {
+            width: side,
+            height: side,
+            rgb: Some(&mut self.rgb),
+            instance: Some(&mut self.instance),
+            ..Target::default()
+        };
+        self.renderer
+            .draw(&self.scene, &camera, &mut target)
+            .expect("a side is 1 to 4096, and the buffers fit it");
+    }
+
+    /// Puts the thing's pixels, and nothing around it, into a picture.
+    fn paste(&self, rgb: &mut [u8], width: u32, [left, top]: [u32; 2], side: u32) {
+        for (pixel, _) in self.instance.iter().enumerate().filter(|(_, item)| **item > 0) {
+            let [x, y] = [pixel as u32 % side, pixel as u32 / side];
+            let to = 3 * ((top + y) as usize * width as usize + (left + x) as usize);
+            rgb[to..to + 3].copy_from_slice(&self.rgb[3 * pixel..3 * pixel + 3]);
+        }
+    }
+}
