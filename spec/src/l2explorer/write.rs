@@ -5,19 +5,18 @@ use indexmap::IndexMap;
 use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
 
+use super::left_out::LeftOut;
 use super::{PARTS, Part, map_of};
 use crate::describe::describe;
 use crate::warning::Warning;
-use crate::world::{World, WorldDraft};
-
-/// How the text of a warning ends where the original has no key for a value.
-pub(super) const LEFT_OUT: &str = "left out, L2Explorer has no such key";
+use crate::world::{EnvironmentParams, World, WorldDraft};
 
 impl World {
     /// The world as a reset file of the original: indented JSON with a final newline, and a warning for each kind of loss.
     ///
-    /// The file holds the original's keys and no others. What it cannot say and is not at its default is left out with a
-    /// warning whose pointer leads into the world; objects that lose the same thing share one warning, which counts them.
+    /// The file holds the original's keys and no others. What it has no key for and is not at its default is left out, with one
+    /// warning that names all these keys and whose pointer leads to the first. What becomes something else has a warning of its
+    /// own; objects that lose the same thing share one, which counts them. The arena of a layout keeps its size.
     /// [`World::from_l2explorer`] reads the file back as this world with what was left out at its default. `schema` is
     /// not part of a world and goes without a warning.
     ///
@@ -31,7 +30,7 @@ impl World {
     /// assert!(text.contains("\"class\": \"tree\""));
     /// assert_eq!(
     ///     warnings[0].to_string(),
-    ///     "world (/objects/0/heading): heading of this object: left out, L2Explorer has no such key"
+    ///     "world (/objects/0/heading): left out, L2Explorer has no such key: /objects/*/heading"
     /// );
     /// # Ok::<(), driftworld_spec::SpecError>(())
     /// ```
@@ -61,6 +60,7 @@ struct LossCount {
 
 #[derive(Default)]
 pub(super) struct Writer {
+    pub(super) left_out: LeftOut,
     warnings: Vec<Warning>,
     /// In the order in which the kinds of loss were met first.
     losses: IndexMap<Loss, LossCount>,
@@ -72,9 +72,7 @@ impl Writer {
         let mut payload = Map::new();
         for key in &PARTS.world.original {
             let value = match *key {
-                "environment_params" => {
-                    Some(self.part("/environment_params", &PARTS.environment, &world.environment_params))
-                }
+                "environment_params" => Some(self.environment(&world.environment_params)),
                 "agent_params" => Some(self.part("/agent_params", &PARTS.agent, &world.agent_params)),
                 "objects" => Some(self.objects(&world.objects)),
                 "max_steps" => Some(json!(self.max_steps(world))),
@@ -83,13 +81,15 @@ impl Writer {
             payload.extend(value.map(|value| ((*key).to_owned(), value)));
         }
         self.part("/rules", &PARTS.rules, &world.rules);
-        for (key, value) in changed(&PARTS.world, &full) {
-            let text = match key {
-                "rules" | "max_seconds" => continue,
-                "progress" => format!("progress: {LEFT_OUT}; the file is a start from where things are now"),
-                key => format!("{key} ({}): {LEFT_OUT}", describe(value)),
-            };
-            self.warnings.push(warning(format!("/{key}"), text));
+        for key in changed(&PARTS.world, &full) {
+            match key {
+                "rules" | "max_seconds" => {}
+                "progress" => {
+                    let text = "progress: left out; the file is a start from where things are now";
+                    self.warnings.push(warning("/progress".to_owned(), text.to_owned()));
+                }
+                key => self.left_out.key(format!("/{key}")),
+            }
         }
         Json::Object(payload)
     }
@@ -112,14 +112,18 @@ impl Writer {
         steps
     }
 
-    /// The original's keys of a part of the world; each of ours that is not at its default gets a warning.
+    /// The original's keys of the arena, which is as large as its layout.
+    fn environment(&mut self, environment: &EnvironmentParams) -> Json {
+        let mut sized = environment.clone();
+        sized.map_size = environment.arena_size();
+        self.part("/environment_params", &PARTS.environment, &sized)
+    }
+
+    /// The original's keys of a part of the world; those of ours that are not at their defaults are left out.
     fn part(&mut self, at: &str, known: &Part, part: &impl Serialize) -> Json {
         let full = map_of(part);
-        for (key, value) in changed(known, &full) {
-            self.warnings.push(warning(
-                format!("{at}/{key}"),
-                format!("{key} ({}): {LEFT_OUT}", describe(value)),
-            ));
+        for key in changed(known, &full) {
+            self.left_out.key(format!("{at}/{key}"));
         }
         let original = known.original.iter().filter_map(|key| Some((*key, full.get(*key)?)));
         original.map(|(key, value)| (key.to_owned(), value.clone())).collect()
@@ -133,7 +137,8 @@ impl Writer {
         lost.count += 1;
     }
 
-    /// The warnings in the order of the world's parts; the objects' stand last, as the objects do.
+    /// The summary of what is left out, then the other warnings in the order of the world's parts; the objects' stand last, as the
+    /// objects do.
     fn warnings(self) -> Vec<Warning> {
         let of_objects = self.losses.into_iter().map(|(Loss { what, becomes }, lost)| {
             let text = match lost.count {
@@ -142,20 +147,19 @@ impl Writer {
             };
             warning(lost.first, text)
         });
-        self.warnings.into_iter().chain(of_objects).collect()
+        let summary = self.left_out.summary().into_iter();
+        summary.chain(self.warnings).chain(of_objects).collect()
     }
 }
 
 /// Our own keys whose value is not the default; a key that the default does not write has a value only where it differs.
-pub(super) fn changed<'a>(
-    part: &'a Part,
-    full: &'a Map<String, Json>,
-) -> impl Iterator<Item = (&'static str, &'a Json)> {
+pub(super) fn changed<'a>(part: &'a Part, full: &'a Map<String, Json>) -> impl Iterator<Item = &'static str> + 'a {
     let ours = part.ours.iter().filter_map(|key| Some((*key, full.get(*key)?)));
-    ours.filter(|(key, value)| part.defaults.get(*key) != Some(*value))
+    let changed = ours.filter(|(key, value)| part.defaults.get(*key) != Some(*value));
+    changed.map(|(key, _)| key)
 }
 
-fn warning(pointer: String, text: String) -> Warning {
+pub(super) fn warning(pointer: String, text: String) -> Warning {
     Warning {
         name: "world".to_owned(),
         pointer,
@@ -236,7 +240,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn what_only_our_arena_agent_and_rules_have_is_left_out_with_a_warning_each() {
+    fn what_only_our_arena_agent_and_rules_have_is_left_out_with_one_summary() {
         let mut world = WorldDraft::default();
         let environment = &mut world.environment_params;
         environment.wall_height = 6.0;
@@ -260,19 +264,11 @@ pub(super) mod tests {
         check(
             &world,
             &[
-                "world (/environment_params/wall_height): wall_height (6.0): left out, L2Explorer has no such key",
-                "world (/environment_params/walls): walls ([{\"polygon\":[[0.0,0.0],[1.0,0.0],[0.0,1.0]]}]): left out, L2Explorer has no such key",
-                "world (/environment_params/sun_direction): sun_direction ([0.0,0.0,1.0]): left out, L2Explorer has no such key",
-                "world (/environment_params/light_color): light_color ([1.0,1.0,1.0]): left out, L2Explorer has no such key",
-                "world (/environment_params/ambient_light): ambient_light (0.5): left out, L2Explorer has no such key",
-                "world (/environment_params/sky_color): sky_color ([0.0,0.0,1.0]): left out, L2Explorer has no such key",
-                "world (/environment_params/ground_color): ground_color ([0.0,1.0,0.0]): left out, L2Explorer has no such key",
-                "world (/agent_params/time_step): time_step (0.05): left out, L2Explorer has no such key",
-                "world (/agent_params/field_of_view): field_of_view (90.0): left out, L2Explorer has no such key",
-                "world (/agent_params/modalities): modalities ([\"rgb\"]): left out, L2Explorer has no such key",
-                "world (/agent_params/actions): actions ({\"discrete\":[[1.0,0.0,0.0]]}): left out, L2Explorer has no such key",
-                "world (/rules/step_reward): step_reward (-0.1): left out, L2Explorer has no such key",
-                "world (/rules/success): success ([\"all_collected\"]): left out, L2Explorer has no such key",
+                "world (/environment_params/wall_height): left out, L2Explorer has no such keys: \
+                 /environment_params/wall_height, /environment_params/walls, /environment_params/sun_direction, \
+                 /environment_params/light_color, /environment_params/ambient_light, /environment_params/sky_color, \
+                 /environment_params/ground_color, /agent_params/time_step, /agent_params/field_of_view, \
+                 /agent_params/modalities, /agent_params/actions, /rules/step_reward, /rules/success",
             ],
         );
     }

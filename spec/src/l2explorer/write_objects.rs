@@ -2,7 +2,7 @@
 
 use serde_json::{Value as Json, json};
 
-use super::write::{LEFT_OUT, Writer, changed};
+use super::write::{Writer, changed};
 use super::{ASSUMED_SPEED, PARTS, black_is_chosen, map_of, moves};
 use crate::world::{MotionModel, Object};
 
@@ -12,14 +12,14 @@ impl Writer {
     pub(super) fn objects(&mut self, objects: &[Object]) -> Json {
         let written = objects.iter().enumerate().map(|(index, object)| {
             let full = map_of(object);
-            for (key, _) in changed(&PARTS.object, &full) {
+            for key in changed(&PARTS.object, &full) {
                 let is_said = match key {
                     "speed" => moves(object.motion_model),
                     "body_model" => object.body_model.as_ref() == Some(&object.model),
                     _ => false,
                 };
                 if !is_said {
-                    self.lose(index, key, key, LEFT_OUT);
+                    self.left_out.of_object(index, key);
                 }
             }
             if moves(object.motion_model) && object.speed != ASSUMED_SPEED {
@@ -120,15 +120,9 @@ mod tests {
         check(
             &with_objects(vec![plain, turned.clone(), guard, turned]),
             &[
-                "world (/objects/1/heading): heading of 3 objects, this one first: left out, L2Explorer has no such key",
-                "world (/objects/1/tag): tag of 2 objects, this one first: left out, L2Explorer has no such key",
-                "world (/objects/2/scale): scale of this object: left out, L2Explorer has no such key",
-                "world (/objects/2/solid): solid of this object: left out, L2Explorer has no such key",
-                "world (/objects/2/reward_probability): reward_probability of this object: left out, L2Explorer has no such key",
-                "world (/objects/2/speed): speed of this object: left out, L2Explorer has no such key",
-                "world (/objects/2/waypoints): waypoints of this object: left out, L2Explorer has no such key",
-                "world (/objects/2/order): order of this object: left out, L2Explorer has no such key",
-                "world (/objects/2/respawn): respawn of this object: left out, L2Explorer has no such key",
+                "world (/objects/1/heading): left out, L2Explorer has no such keys: /objects/*/heading, /objects/*/tag, \
+                 /objects/*/scale, /objects/*/solid, /objects/*/reward_probability, /objects/*/speed, \
+                 /objects/*/waypoints, /objects/*/order, /objects/*/respawn",
                 "world (/objects/2/motion_model): motion_model patrol of this object: becomes stationary, L2Explorer has no such motion model",
             ],
         );
