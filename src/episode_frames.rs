@@ -14,7 +14,8 @@ struct Deed {
     weight: u8,
 }
 
-/// An agent's episode in a world, as rows of a sheet: what the agent sees, and the map with the way since the row before.
+/// An agent's episode in a world, as rows of a sheet: what the agent sees, and the map with the way since the row before. Where
+/// something was done, it is what the agent saw when it did it, and the map after that.
 ///
 /// The start and the end are among the rows, and of what happened as much as `most` rows have room for; where little happened,
 /// steps on the way.
@@ -40,7 +41,11 @@ pub(crate) fn rows(
     agent.begin(0);
     let (mut rows, mut way, mut taken) = (Vec::new(), vec![environment.agent().position], 0);
     for number in chosen(&deeds, most) {
+        let mut seen = None;
         while taken < number {
+            if taken + 1 == number && deeds[number].weight > 0 {
+                seen = Some(seen_by(environment, size)?);
+            }
             let action = agent.act(environment);
             environment.step(action)?;
             way.push(environment.agent().position);
@@ -50,7 +55,10 @@ pub(crate) fn rows(
         rows.push(SheetRow {
             title: title(number, &deeds[number]),
             words: words(environment, end),
-            pictures: pictures(environment, size, &way)?,
+            pictures: vec![
+                seen.map_or_else(|| seen_by(environment, size), Ok)?,
+                map_of(environment, size, &way),
+            ],
         });
         way.drain(..way.len() - 1);
     }
@@ -116,24 +124,30 @@ fn said(world: &World, event: &Event) -> String {
     if event.reward == 0.0 {
         what
     } else {
-        format!("{what}: {:+.1}", event.reward)
+        format!("{what}: {}", number(event.reward, "+"))
     }
 }
 
-fn title(number: usize, deed: &Deed) -> String {
-    match (number, &deed.words[..]) {
+fn title(step: usize, deed: &Deed) -> String {
+    match (step, &deed.words[..]) {
         (0, _) => "Start".to_owned(),
-        (_, []) => format!("Step {number}"),
-        (_, [one]) => format!("Step {number}: {one}"),
-        (_, [first, rest @ ..]) => format!("Step {number}: {first}, and {} more", rest.len()),
+        (_, []) => format!("Step {step}"),
+        (_, [one]) => format!("Step {step}: {one}"),
+        (_, [first, rest @ ..]) => format!("Step {step}: {first}, and {} more", rest.len()),
     }
+}
+
+/// A number with one decimal and its sign.
+fn number(value: f64, plus: &str) -> String {
+    let sign = if value < 0.0 { "−" } else { plus };
+    format!("{sign}{:.1}", value.abs())
 }
 
 /// The time, the return, what is carried, and why the episode ended.
 fn words(environment: &Environment, end: Option<&Step>) -> String {
     let mut parts = vec![
         format!("{:.1} s", environment.seconds()),
-        format!("return {:.1}", environment.episode_return()),
+        format!("return {}", number(environment.episode_return(), "")),
     ];
     let objects = environment.world().objects.iter().zip(environment.objects());
     let carried: Vec<&str> = objects
@@ -144,27 +158,40 @@ fn words(environment: &Environment, end: Option<&Step>) -> String {
         parts.push(format!("carries: {}", carried.join(", ")));
     }
     if let Some(step) = end {
-        let by = step.ended_by.map_or("nothing", EndedBy::word).replace('_', " ");
-        parts.push(format!("ended by {by}{}", if step.success { ", success" } else { "" }));
+        let word = step.ended_by.map(EndedBy::word);
+        parts.push(match word.map(|word| word.replace('_', " ")) {
+            Some(word) => format!("ended by {word}{}", if step.success { ", success" } else { "" }),
+            None => "has no end".to_owned(),
+        });
     }
     parts.join(" · ")
 }
 
-/// What the agent sees, and the map: drawn at twice the size where that is allowed, for smooth edges.
-fn pictures(environment: &mut Environment, size: u32, way: &[[f32; 2]]) -> Result<Vec<Picture>, Failure> {
-    let twice = if size <= 2048 { 2 } else { 1 };
+/// How often a picture is drawn too large along each side, for smooth edges: where that is allowed.
+fn oversize(size: u32) -> u32 {
+    if size <= 2048 { 2 } else { 1 }
+}
+
+/// A picture that was drawn too large, at its size.
+fn finished(width: u32, height: u32, rgb: Vec<u8>, size: u32) -> Picture {
+    let picture = Picture { width, height, rgb };
+    if oversize(size) == 2 { picture.halved() } else { picture }
+}
+
+/// What the agent sees.
+fn seen_by(environment: &mut Environment, size: u32) -> Result<Picture, Failure> {
+    let side = size * oversize(size);
+    let frame = environment.observe_at(side, side)?;
+    Ok(finished(frame.width, frame.height, frame.rgb, size))
+}
+
+/// The map with the agent, and a way to it.
+fn map_of(environment: &Environment, size: u32, way: &[[f32; 2]]) -> Picture {
+    let side = size * oversize(size);
     let agent = environment.agent();
-    let seen = environment.observe_at(size * twice, size * twice)?;
     let agent = Some((agent.position, agent.heading_deg));
-    let map = top_down_with_way(environment.scene(), size * twice, size * twice, agent, way);
-    let finished = |[width, height]: [u32; 2], rgb| {
-        let picture = Picture { width, height, rgb };
-        if twice == 2 { picture.halved() } else { picture }
-    };
-    Ok(vec![
-        finished([seen.width, seen.height], seen.rgb),
-        finished([map.width, map.height], map.rgb),
-    ])
+    let map = top_down_with_way(environment.scene(), side, side, agent, way);
+    finished(map.width, map.height, map.rgb, size)
 }
 
 #[cfg(test)]

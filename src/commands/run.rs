@@ -147,6 +147,9 @@ impl Run {
         if let Some(skipped) = skipped(&summary) {
             output::line(format!("\n{skipped}"))?;
         }
+        if let Some(endings) = endings(&summary) {
+            output::line(format!("\n{endings}"))?;
+        }
         output::line(format!(
             "\n{} experiences, {} steps; log in {}",
             summary.experiences,
@@ -154,6 +157,18 @@ impl Run {
             self.logs.shown()
         ))
     }
+}
+
+/// How many experiences were ended by what, the most frequent first; nothing where none was lived.
+fn endings(summary: &Summary) -> Option<String> {
+    let mut counts: Vec<(&str, u64)> = summary
+        .ended_by
+        .iter()
+        .map(|(word, count)| (word.as_str(), *count))
+        .collect();
+    counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    let listed: Vec<String> = counts.iter().map(|(word, count)| format!("{word} {count}")).collect();
+    (!listed.is_empty()).then(|| format!("ended by: {}", listed.join(", ")))
 }
 
 /// What was left out, and why; nothing where all was run.

@@ -9,6 +9,7 @@ mod curriculum_notes;
 mod distance_findings;
 mod distances;
 mod elements;
+mod endings;
 mod general;
 mod half_written;
 mod hostile_text;

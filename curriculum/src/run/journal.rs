@@ -5,7 +5,7 @@ use std::path::Path;
 use driftworld_env::EndedBy;
 use driftworld_metrics::{
     Complexity, Difficulty, LogWriter, LoggerInfo, MetricsError, Record, Row, Rows, ScenarioInfo, ScenarioType,
-    TaskParams, Timestamp, begun_log, read_log,
+    TaskParams, Timestamp, begun_log, read_log_with_texts,
 };
 use driftworld_spec::{ScenarioComplexity, ScenarioDifficulty, ScenarioForm, Variant};
 use serde_json::{Map, Value, json};
@@ -68,7 +68,7 @@ impl Journal {
             return Err(other(&place, found, expected));
         }
         let writer = LogWriter::resume(folder)?;
-        let rows = match read_log(folder) {
+        let rows = match read_log_with_texts(folder) {
             Ok(log) => log.rows,
             Err(MetricsError::NoDataFiles { .. }) => Rows::default(),
             Err(error) => return Err(error.into()),
@@ -152,12 +152,12 @@ impl Journal {
         let planned = &plan.regimes[plan.regime_of(number)];
         let gap = self.gap(plan, number, between);
         let record = columns::record(planned, number, experience, &gap, now);
-        let ended_by = experience.ended_by.map_or("unknown", EndedBy::word);
+        let ended_by = experience.ended_by.map_or(UNKNOWN, EndedBy::word);
         let record = self.with_words(record, experience.ending(), ended_by);
         self.writer.write(&record)?;
         let success = f64::from(u8::from(experience.success));
         let steps = u64::from(experience.steps);
-        self.summary.count(planned, experience.reward, success, steps);
+        self.summary.count(planned, experience.reward, success, steps, ended_by);
         Ok(self.progress(plan, number, experience.reward))
     }
 
@@ -195,6 +195,9 @@ impl Journal {
         Ok(self.writer.finish()?)
     }
 }
+
+/// The word for what ended an experience where nobody said.
+const UNKNOWN: &str = "unknown";
 
 /// Counts a row of an earlier run, if it is the one that the plan has there; else says what it is, and what the plan has.
 fn count_row(plan: &Plan, summary: &mut Summary, number: u64, row: Row<'_>) -> Result<(), (String, String)> {
@@ -242,7 +245,8 @@ fn count_row(plan: &Plan, summary: &mut Summary, number: u64, row: Row<'_>) -> R
         return Ok(());
     }
     let steps = value("episode_step_count") as u64;
-    summary.count(planned, value("reward"), value("success"), steps);
+    let ended_by = row.text(ENDED_BY).unwrap_or(UNKNOWN);
+    summary.count(planned, value("reward"), value("success"), steps, ended_by);
     Ok(())
 }
 

@@ -1,5 +1,7 @@
 //! What a lifetime came to, regime by regime, counted while it is lived or from its log. What lifelong learning makes of it is `metrics`'.
 
+use std::collections::BTreeMap;
+
 use driftworld_spec::BlockKind;
 
 use super::planned::Planned;
@@ -33,6 +35,9 @@ pub struct Summary {
     pub left_out: Vec<LeftOut>,
     /// Steps in all that were lived.
     pub steps: u64,
+    /// How many of those that were lived were ended by what, by the words of the log's column
+    /// [`ENDED_BY`](super::ENDED_BY): `unknown` where the log does not say.
+    pub ended_by: BTreeMap<String, u64>,
     /// Whether the whole scenario was lived.
     pub finished: bool,
     /// One row for each regime that was begun.
@@ -85,9 +90,13 @@ impl Summary {
         self.experiences + self.skipped
     }
 
-    /// Takes the next experience into account.
-    pub(super) fn count(&mut self, planned: &Planned, reward: f64, success: f64, steps: u64) {
+    /// Takes the next experience into account, which was ended by what the word says.
+    pub(super) fn count(&mut self, planned: &Planned, reward: f64, success: f64, steps: u64, ended_by: &str) {
         self.experiences += 1;
+        match self.ended_by.get_mut(ended_by) {
+            Some(count) => *count += 1,
+            None => drop(self.ended_by.insert(ended_by.to_owned(), 1)),
+        }
         self.steps += steps;
         let row = self.row(planned);
         let before = f64::from(row.experiences);

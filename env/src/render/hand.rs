@@ -62,8 +62,10 @@ impl Default for Studio {
 }
 
 impl Studio {
-    /// Draws one thing so large that it fills a square, in the world's light without its fog.
+    /// Draws one thing so large that it fills a square, as bright as the world without its fog.
     fn draw(&mut self, item: &Item, light: Light, side: u32) {
+        /// Behind the eyes, to the left and above: all sides that are seen are lit.
+        const SUN: [f32; 3] = [-0.36, -0.8, 0.48];
         /// From so far, in lengths of the thing.
         const DISTANCE: f32 = 3.0;
         /// From so high above the thing's middle.
@@ -83,6 +85,7 @@ impl Studio {
         self.scene.items.clear();
         self.scene.items.push(item);
         self.scene.light = Light {
+            direction: SUN,
             fog_distance: None,
             ..light
         };

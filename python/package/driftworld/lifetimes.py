@@ -103,6 +103,8 @@ class Summary:
         left_out: The first 100 of those: dictionaries with ``experience``, ``block``, ``variant``, ``progress`` and ``reason``.
         steps: Steps in all that were lived.
         finished: Whether the whole curriculum was lived.
+        ended_by: How many were ended by what, by the words of the log: ``touch``, ``zone``, ``steps``, …; ``unknown`` where the log
+            does not say.
         regimes: One dictionary for each regime that was begun: ``block``, ``kind``, ``variant``, ``experiences``, ``skipped``,
             ``mean_reward`` and ``success_rate``.
         log: The folder of the log, if it was kept.
@@ -115,6 +117,7 @@ class Summary:
     log: Path | None
     skipped: int = 0
     left_out: list[dict[str, Any]] = field(default_factory=list)
+    ended_by: dict[str, int] = field(default_factory=dict)
 
     def __str__(self) -> str:
         rows = [("block", "kind", "variant", "experiences", "mean reward", "success")]

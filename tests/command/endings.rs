@@ -1,0 +1,93 @@
+//! How episodes ended: what `driftworld run` counts of it, and how `driftworld render --view episode` shows one.
+
+use std::collections::BTreeMap;
+
+use crate::run_files::{files, is_table, write};
+use crate::terminal::{fail, scratch, succeed, text};
+
+/// A field with a river of lava in the way, which some agents go around, and little time.
+const TASK: &str = r#"{ "name": "river", "world": {
+    "max_steps": 60,
+    "environment_params": { "map_size": [16, 16], "zones": [{ "polygon": [[-3, 1], [8, 1], [8, 3], [-3, 3]], "ends": "failure" }] },
+    "agent_params": { "observation_size": 8, "heading": { "uniform": { "low": 0, "high": 360 } } },
+    "rules": { "success": [{ "touch": "goal" }] } },
+  "groups": [{ "name": "goal", "count": 1, "placement": { "box": { "low": [-6, -4], "high": [6, 6] } },
+    "object": { "class": "barrel", "tag": "goal", "reward": 1, "reward_stimulus": ["AgentCollide"] } }] }"#;
+
+/// How often each word stands in the column `ended_by` of a log.
+fn counted(log: &std::path::Path) -> BTreeMap<String, u64> {
+    let mut counts = BTreeMap::new();
+    for (_, table) in files(log).into_iter().filter(|(name, _)| is_table(name)) {
+        let mut lines = table.lines().map(|line| line.split('\t').collect::<Vec<_>>());
+        let header = lines.next().expect("a table has a header");
+        let place = header.iter().position(|name| *name == "ended_by").expect("rows say it");
+        for row in lines {
+            *counts.entry(row[place].to_owned()).or_default() += 1;
+        }
+    }
+    counts
+}
+
+#[test]
+fn a_run_says_how_many_episodes_were_ended_by_what_also_when_it_was_resumed() {
+    let folder = scratch();
+    write(&folder.path().join("river.json"), TASK);
+    let scenario = folder.path().join("scenario.json");
+    let regime =
+        |count: u32| format!(r#"{{ "task": "river.json", "variant": "default", "count": {count}, "seed": 3 }}"#);
+    let block = |kind: &str, count: u32| format!(r#"{{ "type": "{kind}", "regimes": [{}] }}"#, regime(count));
+    write(
+        &scenario,
+        &format!(
+            r#"{{ "name": "ends", "blocks": [{}, {}] }}"#,
+            block("evaluation", 12),
+            block("learning", 30)
+        ),
+    );
+    let mut seen = BTreeMap::new();
+    for agent in ["random", "onrails", "still"] {
+        let log = folder.path().join(agent);
+        let arguments = ["run", text(&scenario), "--agent", agent, "--logs", text(&log)];
+        let said = succeed(&[&arguments[..], &["--json"]].concat());
+        let said: serde_json::Value = serde_json::from_str(&said).expect("--json prints JSON");
+        let counts = counted(&log);
+        assert_eq!(counts.values().sum::<u64>(), 42);
+        assert_eq!(said["ended_by"], serde_json::json!(counts), "{agent}");
+        // All is in the log: nothing is run, and the same is said in words.
+        let again = succeed(&[&arguments[..], &["--resume"]].concat());
+        let mut listed: Vec<(&String, &u64)> = counts.iter().collect();
+        listed.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
+        let listed: Vec<String> = listed.iter().map(|(word, count)| format!("{word} {count}")).collect();
+        assert!(
+            again.contains(&format!("\nended by: {}\n", listed.join(", "))),
+            "{again}"
+        );
+        seen.extend(counts);
+    }
+    assert_eq!(seen.keys().collect::<Vec<_>>(), ["steps", "touch", "zone"]);
+}
+
+#[test]
+fn an_episode_is_drawn_frame_by_frame() {
+    let folder = scratch();
+    let path = folder.path().join("solved.png");
+    let episode = [
+        "render",
+        "examples/worlds/key_corridor.json#closed",
+        "--size",
+        "64",
+        "-o",
+        text(&path),
+    ];
+    let size = |more: &[&str]| {
+        let said = succeed(&[&episode[..], &["--view", "episode"], more].concat());
+        assert!(path.exists(), "{said}");
+        said.rsplit(": ").next().expect("it says the size").trim().to_owned()
+    };
+    // Rows of two frames, each of two pictures and a head.
+    assert_eq!(size(&[]), "316 × 500 pixels");
+    assert_eq!(size(&["--frames", "3"]), "316 × 256 pixels");
+    assert_eq!(size(&["--frames", "2", "--agent", "still"]), "316 × 134 pixels");
+    let error = fail(2, &[&episode[..], &["--frames", "3"]].concat());
+    assert!(error.contains("expected --view episode"), "{error}");
+}
