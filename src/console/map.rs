@@ -1,9 +1,31 @@
-//! The map in letters: walls `#`, objects by the first letter of their class, the agent an arrow. The map in colours is
-//! drawn by `env`.
+//! The map in letters: walls `#`, zones by what they do, objects by the first letter of their class, the agent an arrow. The map
+//! in colours is drawn by `env`.
 
 use crate::env::Environment;
+use crate::spec::Zone;
 
-/// The world from above, north on top: capital letters are objects that pay.
+/// The sign of an open door: a closed one has a letter, as all objects have.
+const OPEN_DOOR: (char, &str) = ('\'', "an open door");
+
+/// The sign of a zone on the map, and what it says.
+fn sign(zone: &Zone) -> (char, &'static str) {
+    if zone.is_costly() {
+        ('!', "costs or fails")
+    } else if zone.is_wanted() {
+        ('+', "pays or succeeds")
+    } else if zone.teleport.is_some() {
+        ('%', "a teleport")
+    } else if zone.speed_factor < 1.0 {
+        ('~', "slows")
+    } else if zone.speed_factor > 1.0 {
+        ('=', "hastens")
+    } else {
+        (':', "a zone")
+    }
+}
+
+/// The world from above, north on top: capital letters are objects that pay. Below it the signs of zones and open doors that stand on
+/// it, if there are any.
 pub(super) fn letters(environment: &Environment, columns: u32) -> String {
     let scene = environment.scene();
     let [width, depth] = scene.arena_size();
@@ -18,13 +40,52 @@ pub(super) fn letters(environment: &Environment, columns: u32) -> String {
         let at = |value: f32, count: usize| (value.max(0.0) as usize).min(count - 1);
         (at(line, lines), at(column, columns))
     };
-    for wall in scene.walls.iter().filter(|wall| wall.height > 0.0) {
-        let along = [wall.to[0] - wall.from[0], wall.to[1] - wall.from[1]];
+    let middle = |line: usize, column: usize| {
+        let share = |at: usize, count: usize| (at as f64 + 0.5) / count as f64 - 0.5;
+        [
+            share(column, columns) * f64::from(span[0]),
+            -share(line, lines) * f64::from(span[1]),
+        ]
+    };
+    // The cells whose middle lies in an area, which is asked only within its bounds.
+    let mut fill = |area: &Zone, letter: char| {
+        let Some([low, high]) = area.bounds() else { return };
+        let [low, high] = [low, high].map(|corner| cell(corner.map(|metres| metres as f32)));
+        for line in high.0..=low.0 {
+            for column in low.1..=high.1 {
+                if area.contains(middle(line, column)) {
+                    grid[line][column] = letter;
+                }
+            }
+        }
+    };
+    let mut signs = Vec::new();
+    for zone in &environment.world().environment_params.zones {
+        fill(zone, sign(zone).0);
+        signs.push(sign(zone));
+    }
+    let sides = [span[0] / columns as f32, span[1] / lines as f32].map(f64::from);
+    let mut edges: Vec<[[f32; 2]; 2]> = Vec::new();
+    if scene.walls.iter().any(|wall| wall.height > 0.0) {
+        edges.extend(scene.walls.iter().take(4).map(|wall| [wall.from, wall.to]));
+        for wall in environment.world().obstacles() {
+            let area = Zone::polygon(wall.to_vec());
+            fill(&area, '#');
+            let is_thin = |[low, high]: [[f64; 2]; 2]| (0..2).any(|axis| high[axis] - low[axis] < 1.5 * sides[axis]);
+            if area.bounds().is_some_and(is_thin) {
+                let next = wall.iter().cycle().skip(1);
+                let ends = wall.iter().zip(next);
+                edges.extend(ends.map(|(from, to)| [*from, *to].map(|corner| corner.map(|metres| metres as f32))));
+            }
+        }
+    }
+    for [from, to] in edges {
+        let along = [to[0] - from[0], to[1] - from[1]];
         let cells = (along[0].abs() / span[0]).max(along[1].abs() / span[1]) * columns.max(lines) as f32;
         let steps = (2.0 * cells).ceil().clamp(1.0, 2000.0);
         for k in 0..=steps as u32 {
             let share = k as f32 / steps;
-            let (line, column) = cell([wall.from[0] + along[0] * share, wall.from[1] + along[1] * share]);
+            let (line, column) = cell([from[0] + along[0] * share, from[1] + along[1] * share]);
             grid[line][column] = '#';
         }
     }
@@ -38,8 +99,12 @@ pub(super) fn letters(environment: &Environment, columns: u32) -> String {
                 .filter(char::is_ascii_graphic)
                 .unwrap_or('?');
             let pays = object.is_target() && state.reward > 0.0;
-            let (line, column) = cell(item.position);
-            grid[line][column] = if pays {
+            // An open door is where it was, not where its leaf is now.
+            let (line, column) = cell(if state.open { state.position } else { item.position });
+            grid[line][column] = if state.open {
+                signs.push(OPEN_DOOR);
+                OPEN_DOOR.0
+            } else if pays {
                 first.to_ascii_uppercase()
             } else {
                 first.to_ascii_lowercase()
@@ -53,13 +118,23 @@ pub(super) fn letters(environment: &Environment, columns: u32) -> String {
     let rows = grid
         .into_iter()
         .map(|row| row.into_iter().collect::<String>().trim_end().to_owned() + "\n");
-    rows.collect()
+    let mut map: String = rows.collect();
+    signs.sort_unstable();
+    signs.dedup();
+    if !signs.is_empty() {
+        let listed: Vec<String> = signs
+            .iter()
+            .map(|(letter, meaning)| format!("{letter} {meaning}"))
+            .collect();
+        map += &format!("{}\n", listed.join(", "));
+    }
+    map
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::spec::{Object, Stimulus, WorldDraft};
+    use crate::spec::{Door, Layout, Object, Stimulus, WorldDraft, ZoneEnd};
 
     #[test]
     fn what_pays_is_a_capital_and_the_agent_looks_its_way() {
@@ -90,5 +165,57 @@ mod tests {
             "####################\n",
         ];
         assert_eq!(letters(&environment, 20), expected.join("\n"));
+    }
+
+    #[test]
+    fn walls_are_filled_and_zones_and_open_doors_have_signs() {
+        let mut lava = Zone::polygon(vec![[-4.0, -1.0], [4.0, -1.0], [4.0, 1.0], [-4.0, 1.0]]);
+        lava.ends = Some(ZoneEnd::Failure);
+        let mut mud = Zone::disc([-3.0, -4.0], 1.2);
+        mud.speed_factor = 0.5;
+        let gate = |east: f64, open: bool| {
+            let mut gate = Object::new("door", [east, 2.0]);
+            gate.scale = 2.0;
+            gate.door = Some(Door {
+                open,
+                ..Door::default()
+            });
+            gate
+        };
+        let mut world = WorldDraft {
+            objects: vec![gate(-2.0, false), gate(2.0, true)],
+            ..WorldDraft::default()
+        };
+        world.environment_params.layout = Some(Layout {
+            text: Some(
+                [
+                    "#######", "#.....#", "##D#D##", "#.....#", "#.....#", "#A....#", "#######",
+                ]
+                .map(str::to_owned)
+                .to_vec(),
+            ),
+            ..Layout::default()
+        });
+        world.environment_params.zones = vec![lava, mud];
+        world.agent_params.coordinates = [4.5, -4.5];
+        let environment = Environment::new(world.check().expect("the world is sound"));
+        let expected = [
+            "############################",
+            "############################",
+            "####                    ####",
+            "####                    ####",
+            "########    ####    ########",
+            "########  d ####  ' ########",
+            "####  !!!!!!!!!!!!!!!!  ####",
+            "####  !!!!!!!!!!!!!!!!  ####",
+            "####                    ####",
+            "####                    ####",
+            "####  ~~~~              ####",
+            "####  ~~~~             ^####",
+            "############################",
+            "############################",
+            "! costs or fails, ' an open door, ~ slows\n",
+        ];
+        assert_eq!(letters(&environment, 28), expected.join("\n"));
     }
 }

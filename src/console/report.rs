@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::spec::did_you_mean;
+use crate::spec::{EnvironmentParams, Layout, did_you_mean};
 
 use super::line::COMMANDS;
 use super::session::{MOST_LINES, Session};
@@ -50,7 +50,7 @@ impl Session<'_> {
             Some(steps) => format!("at most {steps}"),
         };
         let mut text = format!(
-            "world      {}\nsteps      {}, {limit}\nreturn     {}{}\narena      {:?} m, map {}\nobjects    {}, of \
+            "world      {}\nsteps      {}, {limit}\nreturn     {}{}\narena      {:?} m, {}\nobjects    {}, of \
              which {there} are there\n\
              actions    {:?}, {} s each\npictures   {width} × {height} pixels: {}\nwatched    {}\nsnapshots  {}",
             world.hash(),
@@ -58,7 +58,7 @@ impl Session<'_> {
             amount(self.environment.episode_return()),
             if self.environment.ended() { ", ended" } else { "" },
             world.environment_params.arena_size(),
-            world.environment_params.predefined_map,
+            ground(&world.environment_params),
             world.objects.len(),
             agent.action_model,
             agent.time_step * f64::from(agent.frame_skip),
@@ -123,4 +123,22 @@ pub(super) fn short(number: f32) -> String {
     let text = format!("{number:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+/// What divides the arena, and how many zones there are, if any.
+fn ground(environment: &EnvironmentParams) -> String {
+    let kind = environment.layout.as_ref().map(|layout| match layout {
+        Layout { maze: Some(_), .. } => "layout maze".to_owned(),
+        Layout { rooms: Some(_), .. } => "layout rooms".to_owned(),
+        Layout { text: Some(_), .. } => "layout text".to_owned(),
+        Layout {
+            predefined: Some(number),
+            ..
+        } => format!("layout predefined {number}"),
+        _ => "layout walls".to_owned(),
+    });
+    let kind = kind.unwrap_or_else(|| format!("map {}", environment.predefined_map));
+    match environment.zones.len() {
+        0 => kind,
+        count => format!("{kind}, zones {count}"),
+    }
 }
