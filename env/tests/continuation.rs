@@ -257,7 +257,7 @@ fn each_of_the_three_counts() {
         while !environment.ended() {
             let action = expert.act(&environment);
             let step = environment.step(action).expect("the episode goes on");
-            course.push((environment.state_vector().to_vec(), step.ended_by));
+            course.push((environment.state_vector().clone(), step.ended_by));
         }
         course
     };

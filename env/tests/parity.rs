@@ -14,7 +14,7 @@ use driftworld_env::{
     Action, Autoreset, Batch, BatchOptions, Camera, CpuRenderer, EnvError, Environment, Episode, Frame, GpuChoice,
     GpuRenderer, Images, Picture, RendererKind, RendererReport, Scene, Target,
 };
-use driftworld_spec::{Color, Modality, Object, Wall, World, WorldDraft, Zone, ZoneEnd};
+use driftworld_spec::{Color, Modality, Object, Portable, Wall, World, WorldDraft, Zone, ZoneEnd};
 
 /// A renderer on this machine's adapter, if there is one.
 fn gpu() -> Option<GpuRenderer> {
@@ -360,4 +360,61 @@ fn an_environment_draws_with_the_card_that_was_asked_for() {
         takes_it,
         "auto takes cards, never software"
     );
+}
+
+/// A world in which the first interaction picks up a red thing; what is carried is shown or not.
+fn carrying(shown: bool) -> World {
+    let mut thing = Object::new("cube", [0.0, 1.0]);
+    (thing.scale, thing.color) = (0.3, Some(Color([0.9, 0.1, 0.1])));
+    thing.portable = Some(Portable::default());
+    let mut world = WorldDraft {
+        objects: vec![thing, Object::new("tree", [1.0, 7.0])],
+        ..WorldDraft::default()
+    };
+    (world.agent_params.carry_limit, world.agent_params.show_carried) = (1, shown);
+    world.agent_params.modalities = vec![Modality::Rgb, Modality::Depth, Modality::Instance];
+    world.check().expect("the world is sound")
+}
+
+#[test]
+fn what_is_carried_is_drawn_alike_alone_and_in_a_batch() {
+    if gpu().is_none() {
+        return;
+    }
+    let used = Action::Continuous([0.0, 0.0, 1.0]);
+    let drawn = |kind: RendererKind, shown: bool| {
+        let mut environment = Environment::with_renderer(carrying(shown), kind).expect("there is an adapter");
+        environment.step(used).expect("the episode goes on");
+        environment.observe().clone()
+    };
+    let [bare, shows] = [false, true].map(|shown| drawn(RendererKind::Cpu, shown));
+    let on_card = drawn(RendererKind::Gpu, true);
+    let options = BatchOptions {
+        renderer: RendererKind::Gpu,
+        autoreset: Autoreset::Disabled,
+        ..BatchOptions::default()
+    };
+    let mut batch = Batch::new(2, Arc::new(|_| Ok(carrying(true))), options).expect("there is an adapter");
+    batch.reset().expect("there are worlds");
+    batch
+        .step(&[used, Action::Continuous([0.0; 3])])
+        .expect("the batch goes on");
+    let images = &batch.outputs().images;
+    let pixels = |rgb: &[u8]| rgb.chunks(3).map(<[u8]>::to_vec).collect::<Vec<_>>();
+    let [bare_pixels, shown_pixels, card_pixels] = [&bare, &shows, &on_card].map(|frame| pixels(&frame.rgb));
+    let batch_pixels = pixels(&images.rgb);
+    let unlike = (0..shown_pixels.len()).filter(|pixel| bare_pixels[*pixel] != shown_pixels[*pixel]);
+    let places: Vec<usize> = unlike.collect();
+    assert!(places.len() > 20, "it is seen: {places:?}");
+    for pixel in places {
+        assert_eq!(card_pixels[pixel], shown_pixels[pixel], "pixel {pixel} alone");
+        assert_eq!(batch_pixels[pixel], shown_pixels[pixel], "pixel {pixel} in a batch");
+        assert_ne!(
+            batch_pixels[shown_pixels.len() + pixel],
+            shown_pixels[pixel],
+            "the other carries nothing"
+        );
+    }
+    let like = likeness(&shows, &on_card);
+    assert!(like.colors >= 0.99 && like.instances >= 0.99, "{like:?}");
 }

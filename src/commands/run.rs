@@ -159,7 +159,7 @@ impl Run {
     }
 }
 
-/// How many experiences were ended by what, the most frequent first; nothing where none was lived.
+/// How many experiences were ended by what, the most frequent first; nothing where none was run.
 fn endings(summary: &Summary) -> Option<String> {
     let mut counts: Vec<(&str, u64)> = summary
         .ended_by
