@@ -1,5 +1,5 @@
-//! An episode as a few frames: which steps are shown, what is said of them, and their pictures. How rows of pictures become a sheet
-//! is `report`'s.
+//! An episode as a few frames: which steps are shown, what is said of them, and their pictures. How rows of pictures
+//! become a sheet is `report`'s.
 
 use driftworld_env::{Agent, Effect, EndedBy, Environment, Event, MAX_EXPERT_STEPS, Step, top_down_with_way};
 use driftworld_report::picture::{Picture, SheetRow};
@@ -14,11 +14,11 @@ struct Deed {
     weight: u8,
 }
 
-/// An agent's episode in a world, as rows of a sheet: what the agent sees, and the map with the way since the row before. Where
-/// something was done, it is what the agent saw when it did it, and the map after that.
+/// An agent's episode in a world, as rows of a sheet: what the agent sees, and the map with the way since the row
+/// before. Where something was done, it is what the agent saw when it did it, and the map after that.
 ///
-/// The start and the end are among the rows, and of what happened as much as `most` rows have room for; where little happened,
-/// steps on the way.
+/// The start and the end are among the rows, and of what happened as much as `most` rows have room for; where little
+/// happened, steps on the way.
 pub(crate) fn rows(
     environment: &mut Environment,
     world: &World,
@@ -200,8 +200,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// The frames rise, begin at the start, end at the end, are as many as asked for where there are so many steps, and leave
-        /// out nothing that matters more than what they show.
+        /// The frames rise, begin at the start, end at the end, are as many as asked for where there are so many steps,
+        /// and leave out nothing that matters more than what they show.
         #[test]
         fn the_frames_show_what_matters(weights in prop::collection::vec(0u8..4, 1..200), most in 2usize..30) {
             let deeds: Vec<Deed> = weights.iter().map(|weight| Deed { words: Vec::new(), weight: *weight }).collect();

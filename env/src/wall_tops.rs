@@ -4,8 +4,8 @@ use crate::assets::Mesh;
 use crate::ground::triangles;
 use crate::scene::{ARENA_WALLS, PanelGroup, WallPanel};
 
-/// The tops of regions and walls as faces seen from above, each in its wall's colour. The arena's own walls have no thickness, and
-/// walls without height no top.
+/// The tops of regions and walls as faces seen from above, each in its wall's colour. The arena's own walls have no
+/// thickness, and walls without height no top.
 pub(crate) fn tops(walls: &[WallPanel]) -> impl Iterator<Item = PanelGroup> {
     let mut left = walls.get(ARENA_WALLS..).unwrap_or_default();
     std::iter::from_fn(move || {

@@ -1,5 +1,5 @@
-//! A world that is written down in the middle of a puzzle goes on from its text as if nothing had been: the locked door stands
-//! open, the agent carries the key, and half of its energy is used up.
+//! A world that is written down in the middle of a puzzle goes on from its text as if nothing had been: the locked door
+//! stands open, the agent carries the key, and half of its energy is used up.
 
 mod tagged;
 
@@ -105,7 +105,8 @@ fn begin(world: &WorldDraft) -> Environment {
     Environment::new(world.clone().check().expect("the world is sound"))
 }
 
-/// Runs the expert until the locked door stands open while the agent carries the key; says how long that took, in seconds.
+/// Runs the expert until the locked door stands open while the agent carries the key; says how long that took, in
+/// seconds.
 fn to_the_open_door(environment: &mut Environment) -> f64 {
     let mut expert = OnRailsAgent::new();
     loop {

@@ -19,7 +19,7 @@ fn draft(size: [u32; 2], limit: u32, colors: &[[f64; 3]]) -> WorldDraft {
     let place = |number: usize| [0.25 * number as f64 - 0.4, 1.1 + 0.1 * number as f64];
     let carried = |(number, color): (usize, &[f64; 3])| -> Object {
         let mut own = key("thing", place(number));
-        own.class = ["key", "geometric", "mushroom"][number % 3].to_owned();
+        own.class = String::from(["key", "geometric", "mushroom"][number % 3]);
         (own.scale, own.color) = (0.3, Some(Color(*color)));
         own
     };
@@ -64,7 +64,8 @@ fn changed(one: &Frame, other: &Frame) -> Vec<[u32; 2]> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
-    /// Only colours change, only in the lowest fifth (or eight rows), only while something is carried; and nothing else does.
+    /// Only colours change, only in the lowest fifth (or eight rows), only while something is carried; and nothing else
+    /// does.
     #[test]
     fn only_the_lower_edge_of_the_colours_shows_it(
         size in prop::array::uniform2(8u32..90),

@@ -1,5 +1,5 @@
-//! The map in letters: walls `#`, zones by what they do, objects by the first letter of their class, the agent an arrow. The map
-//! in colours is drawn by `env`.
+//! The map in letters: walls `#`, zones by what they do, objects by the first letter of their class, the agent an
+//! arrow. The map in colours is drawn by `env`.
 
 use crate::env::Environment;
 use crate::spec::Zone;
@@ -24,8 +24,8 @@ fn sign(zone: &Zone) -> (char, &'static str) {
     }
 }
 
-/// The world from above, north on top: capital letters are objects that pay. Below it the signs of zones and open doors that stand on
-/// it, if there are any.
+/// The world from above, north on top: capital letters are objects that pay. Below it the signs of zones and open doors
+/// that stand on it, if there are any.
 pub(super) fn letters(environment: &Environment, columns: u32) -> String {
     let scene = environment.scene();
     let [width, depth] = scene.arena_size();
@@ -51,10 +51,10 @@ pub(super) fn letters(environment: &Environment, columns: u32) -> String {
     let mut fill = |area: &Zone, letter: char| {
         let Some([low, high]) = area.bounds() else { return };
         let [low, high] = [low, high].map(|corner| cell(corner.map(|metres| metres as f32)));
-        for line in high.0..=low.0 {
-            for column in low.1..=high.1 {
+        for (line, row) in grid.iter_mut().enumerate().take(low.0 + 1).skip(high.0) {
+            for (column, sign) in row.iter_mut().enumerate().take(high.1 + 1).skip(low.1) {
                 if area.contains(middle(line, column)) {
-                    grid[line][column] = letter;
+                    *sign = letter;
                 }
             }
         }
@@ -126,7 +126,8 @@ pub(super) fn letters(environment: &Environment, columns: u32) -> String {
             .iter()
             .map(|(letter, meaning)| format!("{letter} {meaning}"))
             .collect();
-        map += &format!("{}\n", listed.join(", "));
+        map += &listed.join(", ");
+        map.push('\n');
     }
     map
 }

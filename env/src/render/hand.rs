@@ -1,5 +1,5 @@
-//! What the agent carries, as small pictures at the lower edge of what it sees: colours alone, drawn by the processor whatever draws
-//! the rest, so that the pixels are the same.
+//! What the agent carries, as small pictures at the lower edge of what it sees: colours alone, drawn by the processor
+//! whatever draws the rest, so that the pixels are the same.
 
 use driftworld_spec::World;
 
@@ -28,8 +28,8 @@ struct Studio {
 }
 
 impl Hand {
-    /// Draws the items of these numbers side by side at the lower edge of the colours, in this order, the last ones if there is no
-    /// room for all.
+    /// Draws the items of these numbers side by side at the lower edge of the colours, in this order, the last ones if
+    /// there is no room for all.
     pub(super) fn draw(&mut self, scene: &Scene, carried: &[u32], target: &mut Target<'_>) {
         let (width, height) = (target.width, target.height);
         let side = (height / SHARE).max(LEAST).min(width).min(height);

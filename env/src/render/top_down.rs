@@ -25,8 +25,8 @@ pub struct Image {
 
 /// The scene from above, with the agent's position and heading as an arrow if it is given.
 ///
-/// All of the arena and every object is on it; objects that would be specks are drawn larger than they are. Walls are filled, with a
-/// dark rim, and doors, keys and switches are bars and dots.
+/// All of the arena and every object is on it; objects that would be specks are drawn larger than they are. Walls are
+/// filled, with a dark rim, and doors, keys and switches are bars and dots.
 pub fn top_down(scene: &Scene, width: u32, height: u32, agent: Option<([f32; 2], f32)>) -> Image {
     top_down_with_way(scene, width, height, agent, &[])
 }
@@ -122,7 +122,8 @@ impl Image {
         self.line(ends, more, darkened(item.color.or(own).unwrap_or([0.5; 3]), 255.0));
     }
 
-    /// A line as thick as a hundredth of the picture, at least two pixels, and so many pixels more: walls are thin from above.
+    /// A line as thick as a hundredth of the picture, at least two pixels, and so many pixels more: walls are thin from
+    /// above.
     fn line(&mut self, [from, to]: [[f32; 2]; 2], more: i32, rgb: [u8; 3]) {
         let thick = (self.height as i32 / 150).max(1) + more;
         let along = [to[0] - from[0], to[1] - from[1]];

@@ -56,8 +56,8 @@ impl Environment {
         shown(&self.world, &self.state)
     }
 
-    /// Draws what the agent carries onto a picture from its eyes, if the world shows it: at the lower edge of the target's
-    /// colours. The other images stay as they are.
+    /// Draws what the agent carries onto a picture from its eyes, if the world shows it: at the lower edge of the
+    /// target's colours. The other images stay as they are.
     pub fn draw_carried(&self, renderer: &mut CpuRenderer, target: &mut Target<'_>) {
         renderer.draw_carried(&self.views.scene, self.shown_carried(), target);
     }

@@ -1,8 +1,8 @@
 //! The dialect of L2Explorer's reset files: its keys, and what is said where it and a [`World`](crate::World) differ.
-//! Reading it is in `read.rs`, its objects in `read_objects.rs`, with the leniency for single values in `lenient.rs` and what is assumed in place of entries that
-//! say nothing in `mend.rs`; writing it is in `write.rs` and `write_objects.rs`, with the summary of what is left out in
-//! `left_out.rs`.
-//! Its scenario files, which name such reset files, are read in `read_scenario.rs` and written in `write_scenario.rs`.
+//! Reading it is in `read.rs`, its objects in `read_objects.rs`, with the leniency for single values in `lenient.rs`
+//! and what is assumed in place of entries that say nothing in `mend.rs`; writing it is in `write.rs` and
+//! `write_objects.rs`, with the summary of what is left out in `left_out.rs`. Its scenario files, which name such reset
+//! files, are read in `read_scenario.rs` and written in `write_scenario.rs`.
 //!
 //! The dialect is the smaller language: every file of it becomes a world, but a world may hold more than a file can.
 //! Both directions hand back a [`Warning`](crate::Warning) for whatever did not pass as it stood. A number of a

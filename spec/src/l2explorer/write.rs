@@ -14,11 +14,11 @@ use crate::world::{EnvironmentParams, World, WorldDraft};
 impl World {
     /// The world as a reset file of the original: indented JSON with a final newline, and a warning for each kind of loss.
     ///
-    /// The file holds the original's keys and no others. What it has no key for and is not at its default is left out, with one
-    /// warning that names all these keys and whose pointer leads to the first. What becomes something else has a warning of its
-    /// own; objects that lose the same thing share one, which counts them. The arena of a layout keeps its size.
-    /// [`World::from_l2explorer`] reads the file back as this world with what was left out at its default. `schema` is
-    /// not part of a world and goes without a warning.
+    /// The file holds the original's keys and no others. What it has no key for and is not at its default is left out,
+    /// with one warning that names all these keys and whose pointer leads to the first. What becomes something else has
+    /// a warning of its own; objects that lose the same thing share one, which counts them. The arena of a layout keeps
+    /// its size. [`World::from_l2explorer`] reads the file back as this world with what was left out at its default.
+    /// `schema` is not part of a world and goes without a warning.
     ///
     /// # Example
     /// ```
@@ -137,8 +137,8 @@ impl Writer {
         lost.count += 1;
     }
 
-    /// The summary of what is left out, then the other warnings in the order of the world's parts; the objects' stand last, as the
-    /// objects do.
+    /// The summary of what is left out, then the other warnings in the order of the world's parts; the objects' stand
+    /// last, as the objects do.
     fn warnings(self) -> Vec<Warning> {
         let of_objects = self.losses.into_iter().map(|(Loss { what, becomes }, lost)| {
             let text = match lost.count {

@@ -76,8 +76,8 @@ fields! {
         #[serde(skip_serializing_if = "is_default")]
         #[schemars(range(min = 0, max = 100))]
         pub carry_limit: u32 = 0 => Field::ours(Leaves(SpaceOfActions)),
-        /// Whether pictures from the agent's eyes show what it carries: small, at the lower edge of the colours, and in no other
-        /// image.
+        /// Whether pictures from the agent's eyes show what it carries: small, at the lower edge of the colours, and in
+        /// no other image.
         #[serde(skip_serializing_if = "is_default")]
         pub show_carried: bool = false => Field::ours(Leaves(CameraAndWeather)),
         /// The agent's energy, which falls and rises; without it there is none. What comes of it is said by an end condition and by the
