@@ -8,6 +8,7 @@ use serde_json::{Map, Value as Json, json};
 use super::left_out::LeftOut;
 use super::{PARTS, Part, map_of};
 use crate::describe::describe;
+use crate::layout::Layout;
 use crate::warning::Warning;
 use crate::world::{EnvironmentParams, World, WorldDraft};
 
@@ -115,7 +116,9 @@ impl Writer {
     /// The original's keys of the arena, which is as large as its layout.
     fn environment(&mut self, environment: &EnvironmentParams) -> Json {
         let mut sized = environment.clone();
-        sized.map_size = environment.arena_size();
+        if let Some(size) = environment.layout.as_ref().and_then(Layout::size) {
+            sized.map_size = size;
+        }
         self.part("/environment_params", &PARTS.environment, &sized)
     }
 
