@@ -149,10 +149,13 @@ impl Trial {
             let values: Vec<_> = back
                 .filter_map(|name| Some((name.clone(), base.value(name)?.clone())))
                 .collect();
-            // What the task's requirements do not allow cannot be tried.
+            // What the task's requirements do not allow cannot be tried, nor what cannot be drawn, as a start within a wall.
             let Ok(without) = other.with("without", values) else {
                 continue;
             };
+            if self.worlds(&without, worlds.len() as u64).is_err() {
+                continue;
+            }
             if self.compare(&worlds, &without)?.differences.is_empty() {
                 idle.push(name.clone());
             }

@@ -108,7 +108,8 @@ impl Sampler {
     fn settle_free_space(&mut self) {
         let keys = ["predefined_map", "map_size", "map_regions", "walls", "layout"];
         let shapes = keys.map(|key| format!("/environment_params/{key}"));
-        let layout = &self.compiled.world.base.environment_params.layout;
+        let layout = &mut self.compiled.world.base.environment_params.layout;
+        layout.take_if(|layout| is_open(layout));
         let is_drawn = layout.as_ref().is_some_and(Layout::is_drawn);
         let varies = is_drawn
             || self
@@ -216,6 +217,7 @@ impl Sampler {
                 if let Some(maps) = &self.maps {
                     maps.apply(&mut world);
                 }
+                world.environment_params.layout.take_if(|layout| is_open(layout));
                 if let Some(layout) = &mut world.environment_params.layout
                     && layout.is_drawn()
                 {
@@ -362,4 +364,9 @@ impl Sampler {
             high,
         }
     }
+}
+
+/// Whether a layout is an open field: the arena without one, to the last bit.
+fn is_open(layout: &Layout) -> bool {
+    layout.walls.as_ref().is_some_and(Vec::is_empty)
 }
