@@ -1,6 +1,6 @@
 //! Placing objects: a free place for each. Candidates are drawn in `draw.rs`; the distance to walls is in `clearance.rs`.
 
-use driftworld_spec::{Distribution, Layout, Turns};
+use driftworld_spec::{Distribution, Layout, Plan, Turns};
 
 use crate::cells::Cells;
 use crate::clearance::FreeSpace;
@@ -133,6 +133,18 @@ impl<'a> PlacementContext<'a> {
     /// Takes a place, so that later objects keep their separation from it.
     pub(crate) fn occupy(&mut self, place: [f64; 2]) {
         self.everything.push(place);
+    }
+
+    /// What the layout comes to.
+    pub(crate) fn plan(&self) -> Option<&'a Plan> {
+        self.free_space.plan.as_deref()
+    }
+
+    /// Whether a place keeps these distances in metres: to walls, and to the objects placed so far and the agent's start.
+    pub(crate) fn is_clear(&self, place: [f64; 2], walls: f64, others: f64) -> bool {
+        self.free_space.clearance(place, walls) >= walls
+            && distance(place, self.agent) >= others
+            && self.everything.within(place, others).is_none()
     }
 
     /// The places of a group.

@@ -79,6 +79,11 @@ impl Rng {
     pub(crate) fn unit(&mut self) -> f64 {
         unit(self.next())
     }
+
+    /// A whole number below `bound`, which is at least 1.
+    pub(crate) fn below(&mut self, bound: usize) -> usize {
+        ((self.unit() * bound as f64) as usize).min(bound - 1)
+    }
 }
 
 /// 64 bits as a number above 0 and below 1.

@@ -1,7 +1,7 @@
 //! The objects of a group: how many there are, what each is, where it stands and looks. Free places are found in
 //! `placement.rs`.
 
-use driftworld_spec::{Distribution, MAX_OBJECTS, Turns, Value, WorldDraft};
+use driftworld_spec::{Distribution, Turns, Value, WorldDraft};
 
 use super::Sampler;
 use crate::GeneratorError;
@@ -34,16 +34,7 @@ impl Sampler {
             ),
         };
         let found = draft.world.objects.len().saturating_add(count as usize);
-        if found > MAX_OBJECTS {
-            let variant = self.variant.id();
-            return Err(GeneratorError::TooMany {
-                variant,
-                seed: self.seed,
-                index,
-                found,
-                limit: MAX_OBJECTS,
-            });
-        }
+        self.check_count(found, index)?;
         let failed = |turn: u64, (tries, reason): (u32, String)| GeneratorError::NoPlace {
             variant: self.variant.id(),
             seed: self.seed,

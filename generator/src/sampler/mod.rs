@@ -1,12 +1,13 @@
 //! [`Sampler`]: a variant under a seed, compiled so that any of its worlds can be drawn at once.
 
+mod doors;
 mod groups;
 mod start;
 
 use std::sync::Arc;
 
 use driftworld_spec::maps::MapLibrary;
-use driftworld_spec::{Layout, ParameterType, Requirement, Value, Variant, World, WorldDraft};
+use driftworld_spec::{Layout, MAX_OBJECTS, ParameterType, Requirement, Value, Variant, World, WorldDraft};
 
 use crate::GeneratorError;
 use crate::clearance::FreeSpace;
@@ -14,6 +15,7 @@ use crate::compiled::{Address, Compiled, Filled, Start};
 use crate::placement::{Anchor, PlacementContext};
 use crate::sequence::Sequence;
 use crate::stream::Stream;
+use doors::stands_in_door;
 use groups::Draft;
 
 /// How often the randomized parameters of a world are drawn before a requirement that never holds is an error.
@@ -48,6 +50,8 @@ pub struct Sampler {
     seeds: Stream,
     /// Where layouts that have none have their seeds from.
     layouts: Stream,
+    /// The doors and keys of rooms.
+    doors: Stream,
     maps: Option<Arc<MapLibrary>>,
     /// The free space, where it is the same in every world.
     free_space: Option<FreeSpace>,
@@ -81,6 +85,7 @@ impl Sampler {
             sequence_stream: Stream::new(variant.task().name(), seed, "coverage"),
             seeds: Stream::new(variant.task().name(), seed, "seed"),
             layouts: Stream::new(variant.task().name(), seed, "layout"),
+            doors: Stream::new(variant.task().name(), seed, "doors"),
             maps: None,
             free_space: None,
             start_varies: false,
@@ -232,7 +237,8 @@ impl Sampler {
                 .expect("one of the two is there");
             self.start_in_cell(&mut world, free_space, index, attempt)?;
             let start = world.agent_params.coordinates;
-            if free_space.clearance(start, 0.0) > 0.0 {
+            let radius = world.agent_params.agent_width / 2.0;
+            if free_space.clearance(start, 0.0) > 0.0 && !stands_in_door(&world, free_space, start, radius) {
                 return Ok((world, values, own_free_space));
             }
             let tries = attempt + 1;
@@ -278,6 +284,8 @@ impl Sampler {
             context.occupy(object.coordinates);
             world.objects.push(object);
         }
+        let mut doors = self.doors(&world, free_space, index);
+        doors.iter().for_each(|door| context.occupy(door.coordinates));
         // For each group, where its objects stand in the world's list.
         let mut ranges = Vec::with_capacity(self.compiled.groups.len());
         for (number, group) in self.compiled.groups.iter().enumerate() {
@@ -304,6 +312,18 @@ impl Sampler {
                 }
             }
             ranges.push(first..world.objects.len());
+        }
+        if !doors.is_empty() {
+            let mut draft = Draft {
+                index,
+                values: &values,
+                context: &mut context,
+                world: &mut world,
+            };
+            let mut keys = self.keys(&doors, &mut draft)?;
+            world.objects.append(&mut doors);
+            world.objects.append(&mut keys);
+            self.check_count(world.objects.len(), index)?;
         }
         // Loading the task and `fill` hold each value in its range; whether values go together is seen here alone.
         world
@@ -348,6 +368,20 @@ impl Sampler {
             })?;
         }
         Ok(target)
+    }
+
+    /// An error for more objects than a world may have.
+    fn check_count(&self, found: usize, index: u64) -> Result<(), GeneratorError> {
+        if found <= MAX_OBJECTS {
+            return Ok(());
+        }
+        Err(GeneratorError::TooMany {
+            variant: self.variant.id(),
+            seed: self.seed,
+            index,
+            found,
+            limit: MAX_OBJECTS,
+        })
     }
 
     fn out_of_range(&self, index: u64, place: &str, found: [f64; 2], [low, high]: [f64; 2]) -> GeneratorError {

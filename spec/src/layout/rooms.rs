@@ -36,7 +36,8 @@ fields! {
         /// each room to each other, with 1 every wall between two rooms has a doorway.
         #[schemars(range(min = 0.0, max = 1.0))]
         pub loops: f64 = 1.0 => Field::ours(AsPart),
-        /// What stands in the doorways.
+        /// What stands in the doorways. The doors and keys are objects that sampling adds to the world; in a world that is
+        /// not sampled the word alone makes none.
         pub doors: RoomDoors = RoomDoors::None => Field::ours(AsPart),
         /// What it is drawn with. Without it the world's `seed` decides, or 0 where that is absent, too; a sampled world has
         /// one of its own.
@@ -55,9 +56,9 @@ pub enum RoomDoors {
     None,
     /// A door that stands open.
     Open,
-    /// A door that is shut.
+    /// A door that is shut, and opened by interaction.
     Closed,
-    /// A door that is shut and wants its key.
+    /// A door that is shut and wants the key of its colour, which lies in a free cell.
     Keyed,
 }
 
