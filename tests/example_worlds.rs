@@ -66,6 +66,11 @@ fn maps_of_letters_are_solved() {
 }
 
 #[test]
+fn keys_of_rooms_are_fetched_in_their_order() {
+    check("locked_rooms");
+}
+
+#[test]
 fn keys_are_fetched_for_doors() {
     check("key_corridor");
 }

@@ -208,9 +208,36 @@ impl<'a> Plan<'a> {
         match way.means {
             Means::Hand => at_door(Deed::Move),
             Means::Clock => at_door(Deed::Wait),
-            Means::Key(key) => self.picked_up(key),
+            Means::Key(key) => match self.locked_before(way) {
+                Some(earlier) => self.opened(earlier),
+                None => self.picked_up(key),
+            },
             Means::Switch(switch) => self.at(switch, Deed::Move),
         }
+    }
+
+    /// The first locked door on the way to a door, if the agent has no hand left once it has the door's key: it would put
+    /// the one key down for the other, and back again. Doors once unlocked stay so, so that this comes to an end.
+    fn locked_before(&self, way: Way) -> Option<Way> {
+        let hands = self.sim.world.agent_params.carry_limit as usize;
+        if self.sim.state.carried().len() + 1 < hands {
+            return None;
+        }
+        let (mut first, mut room) = (None, way.from);
+        while room != self.here {
+            let (_, number) = self.entered.iter().find(|(other, _)| *other == room)?;
+            let earlier = self.ways[*number];
+            let door = earlier.door as usize;
+            let has_key = self.sim.world.objects[door]
+                .door
+                .as_ref()
+                .is_some_and(|door| door.key.is_some());
+            if has_key && matches!(earlier.means, Means::Hand | Means::Key(_)) && !self.sim.state.is_unlocked(door) {
+                first = Some(earlier);
+            }
+            room = earlier.from;
+        }
+        first
     }
 
     /// A door is opened, a switch set off, a thing picked up.
