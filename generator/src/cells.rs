@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use driftworld_spec::{CellRoom, Distribution, Layout, Legend, Plan};
+use driftworld_spec::{CellKind, CellRoom, Distribution, Doorway, Layout, Legend, Plan};
 
 use crate::stream::Rng;
 
@@ -13,10 +13,18 @@ const RANDOM_TRIES: usize = 32;
 /// How many places are tried in a cell where they stray from its middle; the last try is the middle.
 const TRIES_IN_CELL: usize = 8;
 
-/// The cells that fit what is asked, and which of them are taken.
+/// Where something can stand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Spot {
+    pub(crate) place: [f64; 2],
+    /// Where it faces in degrees, if that is said: in a doorway.
+    pub(crate) heading: Option<f64>,
+}
+
+/// The cells or doorways that fit what is asked, and which of them are taken.
 pub(crate) struct Cells<'a> {
     plan: &'a Plan,
-    fitting: Vec<usize>,
+    fitting: Vec<Spot>,
     jitter: f64,
     taken: BTreeSet<usize>,
     /// What was asked, and how many fit, for messages.
@@ -58,20 +66,43 @@ impl<'a> Cells<'a> {
             .map(|start| plan.walking_distances(start));
         let own_room = start.map(|start| plan.cells[start].room);
         let is_own = |letter: char| matches!(layout.meaning(letter), Some(Legend::Group(name)) if name == group);
-        let fits = |number: &usize| {
+        let fits = |number: &usize, rooms: [u32; 2]| {
             let cell = &plan.cells[*number];
             let by_letter = letter
                 .as_ref()
                 .is_none_or(|letters| cell.letter.is_some_and(|own| letters.contains(own)));
             let by_group = !of_group || cell.letter.is_some_and(is_own);
-            let by_room = room.is_none_or(|room| (room == CellRoom::SameAsAgent) == (own_room == Some(cell.room)));
+            let by_room = room.is_none_or(|room| {
+                let is_own = rooms.iter().any(|room| own_room == Some(*room));
+                (room == CellRoom::SameAsAgent) == is_own
+            });
             let by_walk = metres.as_ref().zip(*walk).is_none_or(|(metres, [least, most])| {
                 // A way of 4 cells of 2.5 m is one of 10 m, whatever is rounded.
                 (least - 1e-6..=most + 1e-6).contains(&metres[*number])
             });
-            kind.has(cell.open_sides()) && by_letter && by_group && by_room && by_walk
+            by_letter && by_group && by_room && by_walk
         };
-        let fitting: Vec<usize> = (0..plan.cells.len()).filter(fits).collect();
+        let is_kind = |number: &usize| kind.has(plan.cells[*number].open_sides());
+        let fitting: Vec<Spot> = if *kind == CellKind::Doorway {
+            let doorways = plan.doorways.iter();
+            let fits = |doorway: &&Doorway| {
+                let cell = plan.cell_at(doorway.center);
+                cell.is_some_and(|cell| fits(&cell, doorway.rooms))
+            };
+            let spot = |doorway: &Doorway| Spot {
+                place: doorway.center,
+                heading: Some(doorway.heading),
+            };
+            doorways.filter(fits).map(spot).collect()
+        } else {
+            let cells = (0..plan.cells.len()).filter(is_kind);
+            let cells = cells.filter(|number| fits(number, [plan.cells[*number].room; 2]));
+            let spot = |number: usize| Spot {
+                place: plan.cells[number].center,
+                heading: None,
+            };
+            cells.map(spot).collect()
+        };
         let by_letter = letter.as_ref().map(|letters| format!(" at the letters {letters:?}"));
         let by_group = of_group.then(|| format!(" at the letters of the group {group:?}"));
         let by_room = room.map(|room| match room {
@@ -82,18 +113,22 @@ impl<'a> Cells<'a> {
         let conditions: String = [by_letter, by_group, by_room, by_walk].into_iter().flatten().collect();
         let asked = format!("{}{conditions}", kind.describe());
         let (all, count) = (plan.cells.len(), fitting.len());
-        let of_kind = plan.cells.iter().filter(|cell| kind.has(cell.open_sides())).count();
-        let asked = format!(
-            "of {all} cells, {of_kind} of them {}, {count} are {asked}",
-            kind.describe()
-        );
+        let asked = if *kind == CellKind::Doorway {
+            format!("of {} doorways, {count} are {asked}", plan.doorways.len())
+        } else {
+            let of_kind = (0..all).filter(is_kind).count();
+            format!(
+                "of {all} cells, {of_kind} of them {}, {count} are {asked}",
+                kind.describe()
+            )
+        };
         if fitting.is_empty() {
             return Err(format!("{asked}; ask for less, or change the layout"));
         }
         Ok(Self {
             plan,
             fitting,
-            jitter: jitter.unwrap_or(0.0),
+            jitter: jitter.filter(|_| *kind != CellKind::Doorway).unwrap_or(0.0),
             taken: BTreeSet::new(),
             asked,
         })
@@ -105,7 +140,7 @@ impl<'a> Cells<'a> {
         &mut self,
         rng: &mut Rng,
         mut is_free: impl FnMut([f64; 2], [f64; 2]) -> bool,
-    ) -> Result<[f64; 2], (u32, String)> {
+    ) -> Result<Spot, (u32, String)> {
         let count = self.fitting.len();
         let mut tries = 0;
         let mut first = 0;
@@ -113,11 +148,12 @@ impl<'a> Cells<'a> {
             if turn < RANDOM_TRIES {
                 first = ((rng.unit() * count as f64) as usize).min(count - 1);
             }
-            let number = self.fitting[(first + turn.saturating_sub(RANDOM_TRIES - 1)) % count];
+            let number = (first + turn.saturating_sub(RANDOM_TRIES - 1)) % count;
             if self.taken.contains(&number) {
                 continue;
             }
-            let middle = self.plan.cells[number].center;
+            let spot = self.fitting[number];
+            let middle = spot.place;
             let places = if self.jitter > 0.0 { TRIES_IN_CELL } else { 1 };
             for left in (0..places).rev() {
                 let stray = |axis: usize, rng: &mut Rng| {
@@ -132,7 +168,7 @@ impl<'a> Cells<'a> {
                 tries += 1;
                 if is_free(place, middle) {
                     self.taken.insert(number);
-                    return Ok(place);
+                    return Ok(Spot { place, ..spot });
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 use driftworld_spec::{Distribution, Layout, Plan, Turns};
 
-use crate::cells::Cells;
+use crate::cells::{Cells, Spot};
 use crate::clearance::FreeSpace;
 use crate::draw::{self, Place};
 use crate::spatial_hash::SpatialHash;
@@ -197,7 +197,7 @@ impl<'a> PlacementContext<'a> {
         request: &Request,
         cells: &mut Cells,
         rng: &mut Rng,
-    ) -> Result<[f64; 2], (u32, String)> {
+    ) -> Result<Spot, (u32, String)> {
         let mut tried = Tried::default();
         let mut margins = request.margins.clone();
         let found = cells.take(rng, |place, middle| {
@@ -214,10 +214,10 @@ impl<'a> PlacementContext<'a> {
             })
         });
         match found {
-            Ok(place) => {
-                self.everything.push(place);
-                self.groups[request.group].push(place);
-                Ok(place)
+            Ok(spot) => {
+                self.everything.push(spot.place);
+                self.groups[request.group].push(spot.place);
+                Ok(spot)
             }
             Err((tries, asked)) if tried.failed.iter().all(|count| *count == 0) => {
                 Err((tries, format!("{asked}; lower the count, or ask for less")))

@@ -242,3 +242,54 @@ proptest! {
         prop_assert_eq!(distinct.len(), coins.len());
     }
 }
+
+#[test]
+fn doorways_hold_one_object_each_turned_along_the_wall() {
+    let task = |layout: &str, count: u32| {
+        let text = format!(
+            r#"{{ "name": "t", "world": {{ "environment_params": {{ "layout": {layout} }},
+                "agent_params": {{ "agent_width": 0.5, "coordinates": {{ "cells": {{}} }} }} }},
+                "groups": [{{ "name": "gate", "count": {count}, "object": {{ "class": "door", "scale": 1.5, "heading": 33 }},
+                "keep_out": {{ "walls": 0, "agent": 0 }}, "placement": {{ "cells": {{ "kind": "doorway" }} }} }}] }}"#
+        );
+        TaskSpec::from_json("t", &text).unwrap_or_else(|error| panic!("{error}"))
+    };
+    let rooms = r#"{ "rooms": { "grid": [3, 2] } }"#;
+    let text = r#"{ "text": ["*********", "*A.D.*..*", "*..*.D..*", "*********"] }"#;
+    for (layout, most) in [(rooms, 7), (text, 2)] {
+        for index in 0..10 {
+            let sampler = Sampler::new(&task(layout, most).variant("default").unwrap(), 3);
+            let world = sampler.world(index).unwrap_or_else(|error| panic!("{error}"));
+            let sorted = |mut places: Vec<([f64; 2], f64)>| {
+                places.sort_by(|a, b| a.partial_cmp(b).unwrap());
+                places
+            };
+            let doorways = &world.plan().unwrap().doorways;
+            assert_eq!(doorways.len(), most as usize);
+            assert_eq!(
+                sorted(
+                    world
+                        .objects
+                        .iter()
+                        .map(|object| (object.coordinates, object.heading))
+                        .collect()
+                ),
+                sorted(
+                    doorways
+                        .iter()
+                        .map(|doorway| (doorway.center, doorway.heading))
+                        .collect()
+                )
+            );
+        }
+        let error = Sampler::new(&task(layout, most + 1).variant("default").unwrap(), 3)
+            .world(0)
+            .unwrap_err();
+        let expected =
+            format!("of {most} doorways, {most} are doorways, and {most} of them are taken; lower the count");
+        assert!(error.to_string().contains(&expected), "{error}");
+    }
+    let maze = task(r#"{ "maze": {} }"#, 1).variant("default").unwrap();
+    let error = Sampler::new(&maze, 3).world(0).unwrap_err().to_string();
+    assert!(error.contains("of 0 doorways"), "{error}");
+}

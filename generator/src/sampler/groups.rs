@@ -5,6 +5,7 @@ use driftworld_spec::{Distribution, Turns, Value, WorldDraft};
 
 use super::Sampler;
 use crate::GeneratorError;
+use crate::cells::Spot;
 use crate::compiled::{Address, Group, GroupCount, Look};
 use crate::placement::{Anchor, PlacementContext, Request};
 
@@ -79,10 +80,14 @@ impl Sampler {
             };
             let found = match &mut cells {
                 Some(cells) => draft.context.find_in_cells(&request, cells, &mut rng),
-                None => draft.context.find(&request, turns.as_mut(), &mut rng),
+                None => draft
+                    .context
+                    .find(&request, turns.as_mut(), &mut rng)
+                    .map(|place| Spot { place, heading: None }),
             };
-            let place = found.map_err(|tried| failed(turn, tried))?;
+            let Spot { place, heading: along } = found.map_err(|tried| failed(turn, tried))?;
             object.coordinates = place;
+            object.heading = along.unwrap_or(object.heading);
             if place.iter().any(|metres| metres.abs() > 300.0) {
                 // Only where no wall is kept out of: the arena itself is smaller.
                 return Err(self.out_of_range(

@@ -16,6 +16,8 @@ pub enum CellKind {
     Corridor,
     /// Those that can be left by three or four sides.
     Junction,
+    /// No cells but the doorways between rooms. Objects stand in their middle, turned along the wall.
+    Doorway,
 }
 
 impl CellKind {
@@ -26,6 +28,7 @@ impl CellKind {
             Self::DeadEnd => open_sides == 1,
             Self::Corridor => open_sides == 2,
             Self::Junction => open_sides > 2,
+            Self::Doorway => false,
         }
     }
 
@@ -36,6 +39,7 @@ impl CellKind {
             Self::DeadEnd => "dead ends",
             Self::Corridor => "corridors",
             Self::Junction => "junctions",
+            Self::Doorway => "doorways",
         }
     }
 }
