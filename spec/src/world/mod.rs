@@ -8,6 +8,7 @@ mod environment;
 mod features;
 pub(crate) mod fields;
 mod hash;
+mod lock_remarks;
 mod object;
 mod progress;
 mod remarks;

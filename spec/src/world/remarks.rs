@@ -1,6 +1,7 @@
 //! What is odd about a sound world: what means to move and stands still, and what stands where nobody comes. What is wrong with
 //! one is said by the schema and in `mod.rs`.
 
+use super::lock_remarks::lock_remarks;
 use super::thing_remarks::thing_remarks;
 use super::{EndCondition, MotionModel, Object, World};
 use crate::layout::{self, Layout};
@@ -68,7 +69,7 @@ impl World {
                 remarks.push(format!("/objects/{index}/motion_model"), text);
             }
         }
-        for (pointer, text) in thing_remarks(self) {
+        for (pointer, text) in thing_remarks(self).into_iter().chain(lock_remarks(self)) {
             remarks.push(pointer, text);
         }
         remarks.in_text(name, text)
