@@ -78,7 +78,7 @@ impl Task {
         let at = sim.objects()[self.object as usize].position;
         let gap = Leaf::of(sim, self.object as usize).distance(sim.agent().position)
             - sim.world.agent_params.agent_width as f32 / 2.0;
-        if self.deed == Deed::Wait && gap < 0.4 || by_hand && gap < 0.15 && off(sim, at).abs() > OFF {
+        if self.deed == Deed::Wait && gap < 0.4 || by_hand && gap < 0.15 && !is_facing(sim, at) {
             return [0.0, turn(sim, at), 0.0];
         }
         walk(sim, at, if by_hand { 0.1 } else { 0.5 })
@@ -96,14 +96,17 @@ impl Task {
     fn bring(self, sim: SimRef, floor: &mut Floor, thing: u32) -> [f64; 3] {
         let to = sim.objects()[self.object as usize].position;
         let within = self.within(sim, thing);
-        let place = put_down_place(sim).filter(|(index, _)| *index == thing || is_last_useless(sim, thing));
-        if let Some((index, place)) = place
+        // What was picked up last is put down first.
+        let last = sim.state.carried().last().copied().unwrap_or(thing);
+        let tag = |index: u32| &sim.world.objects[index as usize].tag;
+        let is_ours = tag(last) == tag(thing);
+        if let Some((_, place)) = put_down_place(sim)
             && answering(sim, &reached(sim)).is_none()
-            && (index != thing || distance(place, to) < within - 0.02)
+            && (!is_ours || distance(place, to) < within - 0.02)
         {
             return [0.0, 0.0, 1.0];
         }
-        let radius = sim.body_radius(thing as usize);
+        let radius = sim.body_radius(last as usize);
         let ahead = sim.world.agent_params.agent_width as f32 / 2.0 + radius + 0.1;
         let least = Leaf::of(sim, self.object as usize).reach() + radius + 0.1;
         let most = (within - 0.1).max(least.min(within)) + ahead;
@@ -114,12 +117,19 @@ impl Task {
             radius,
             ahead,
             from: [least, most],
+            carried: sim.state.carried().len(),
         };
         floor.lead_to_bring(sim, bringing);
-        match floor.next(sim.agent().position) {
-            Some(point) => walk(sim, point, 0.2),
-            None => [0.0, turn(sim, to), 0.0],
+        if let Some(point) = floor.next(sim.agent().position) {
+            return walk(sim, point, 0.2);
         }
+        if !is_facing(sim, to) {
+            return [0.0, turn(sim, to), 0.0];
+        }
+        // The middle of the cell is near enough, but the agent is not there.
+        let speed = (distance(sim.agent().position, to) - (least + most) / 2.0) / seconds(sim);
+        let most = sim.world.agent_params.max_linear_speed as f32;
+        [f64::from(speed.clamp(-most, most)), turn(sim, to), 0.0]
     }
 
     fn within(self, sim: SimRef, thing: u32) -> f32 {
@@ -148,9 +158,10 @@ fn put_down(sim: SimRef) -> [f64; 3] {
     [0.0, sim.world.agent_params.max_angular_speed, 0.0]
 }
 
-/// Whether what would be put down now is not what is to be brought.
-fn is_last_useless(sim: SimRef, thing: u32) -> bool {
-    sim.state.carried().last() != Some(&thing)
+/// Whether the agent looks at a point as well as its turns allow.
+fn is_facing(sim: SimRef, point: [f32; 2]) -> bool {
+    let step = sim.world.agent_params.max_angular_speed as f32 * seconds(sim);
+    off(sim, point).abs() <= OFF.max(0.55 * step)
 }
 
 /// Whether an object can be picked up, and the agent's hands are full.

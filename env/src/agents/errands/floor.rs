@@ -51,7 +51,7 @@ pub(super) struct ClosedDoor {
 pub(super) struct Floor {
     pub(super) grid: Grid,
     arena_size: [f32; 2],
-    body: f32,
+    pub(super) body: f32,
     regions: Vec<Vec<[f64; 2]>>,
     /// What each cell costs by the walls alone; 0 where nobody can be.
     bare: Vec<u8>,
@@ -150,6 +150,20 @@ impl Floor {
         }
         self.regions = regions().map(<[[f64; 2]]>::to_vec).collect();
         true
+    }
+
+    /// Whether a round body has room between the walls at a place.
+    pub(super) fn is_off_walls(&self, at: [f32; 2], radius: f32) -> bool {
+        let is_inside = (0..2).all(|axis| at[axis].abs() + radius <= self.arena_size[axis] / 2.0);
+        // The middle of a cell that the agent can be on is its body's radius away from walls.
+        if !is_inside || radius + self.grid.side() <= self.body && self.bare[self.grid.cell_at(at)] > 0 {
+            return is_inside;
+        }
+        let is_near = |corners: &Vec<[f64; 2]>| {
+            let corners = corners.iter().map(|corner| corner.map(|metres| metres as f32));
+            is_near_or_inside(corners, at, radius)
+        };
+        !self.regions.iter().any(is_near)
     }
 
     fn number_rooms(&mut self) {

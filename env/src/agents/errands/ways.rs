@@ -4,10 +4,15 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::floor::{BESIDE, Floor, Room, Standing, squared};
-use crate::sim::SimRef;
+use super::leaf::Leaf;
+use crate::sim::{SimRef, answering};
 
 /// Cells from which to go on, the nearest first.
 pub(super) type Waiting = BinaryHeap<Reverse<(u32, u32)>>;
+
+/// How far beyond the agent's body and to its sides an interaction reaches, in metres.
+const REACH: f32 = 1.0;
+const ASIDE: f32 = 0.5;
 
 /// Where a thing is to be put down.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +27,8 @@ pub(super) struct Bringing {
     pub(super) ahead: f32,
     /// How far from the object the agent stands, at least and at most.
     pub(super) from: [f32; 2],
+    /// How many things the agent carries: with a free hand it picks up what lies in front of it.
+    pub(super) carried: usize,
 }
 
 impl Floor {
@@ -30,36 +37,56 @@ impl Floor {
         if self.brings == Some((self.version, bringing)) {
             return;
         }
+        // First with room to spare, for the agent stands anywhere in a cell.
+        let goals = [0.15, 0.03].map(|margin| self.places_to_bring(sim, bringing, margin));
+        self.lead(goals.into_iter().find(|goals| !goals.is_empty()).unwrap_or_default());
+        self.brings = Some((self.version, bringing));
+    }
+
+    fn places_to_bring(&self, sim: SimRef, bringing: Bringing, margin: f32) -> Vec<u32> {
         let Bringing {
             to,
             room,
             radius,
             ahead,
             from: [least, most],
+            ..
         } = bringing;
         let at = sim.objects()[to as usize].position;
+        // What would answer in place of what is put down.
+        let answers = |index: &u32| answering(sim, &[*index]).is_some();
+        let others: Vec<Leaf> = (0..sim.objects().len() as u32)
+            .filter(answers)
+            .map(|index| Leaf::of(sim, index as usize))
+            .collect();
         let is_free = |cell: &usize| {
             let cell = self.grid.centre(*cell);
             let away = squared(cell, at).sqrt();
             if !(least..=most).contains(&away) {
                 return false;
             }
+            let [east, north] = [0, 1].map(|axis| (at[axis] - cell[axis]) / away);
             // Where it would lie, and half the way there.
-            [ahead, ahead / 2.0].into_iter().all(|metres| {
-                let point = [0, 1].map(|axis| cell[axis] + (at[axis] - cell[axis]) * metres / away);
-                let is_room = |standing: &Standing| standing.leaf.distance(point) > radius + 0.03;
-                self.standing.iter().all(is_room)
-            })
+            let has_room = [ahead, ahead / 2.0].into_iter().all(|metres| {
+                let point = [cell[0] + east * metres, cell[1] + north * metres];
+                let is_room = |standing: &Standing| standing.leaf.distance(point) > radius + margin;
+                self.standing.iter().all(is_room) && self.is_off_walls(point, radius + margin)
+            });
+            let is_out_of_reach = |leaf: &Leaf| {
+                let [dx, dy] = [leaf.at[0] - cell[0], leaf.at[1] - cell[1]];
+                let (before, aside) = (dx * east + dy * north, (dx * north - dy * east).abs());
+                let spare = leaf.reach() + margin;
+                before < -spare || before > self.body + REACH + spare || aside > ASIDE + spare
+            };
+            has_room && others.iter().all(is_out_of_reach)
         };
         let around = self
             .grid
             .within(at.map(|metres| metres - most), at.map(|metres| metres + most));
-        let goals = around
+        around
             .filter(|cell| self.room[*cell] == room && is_free(cell))
             .map(|cell| cell as u32)
-            .collect();
-        self.lead(goals);
-        self.brings = Some((self.version, bringing));
+            .collect()
     }
 
     /// Leads to these cells from now on.
