@@ -59,6 +59,7 @@ fn each_assessment_curriculum_changes_its_element_and_no_other() {
         ("transition", Element::T),
         ("observation", Element::O),
         ("action", Element::A),
+        ("modality", Element::O),
     ] {
         check(name, element);
     }
@@ -74,6 +75,46 @@ fn the_example_of_the_paper_changes_what_it_says() {
         steps,
         ["S R", "S R", "S R O"],
         "only the last block changes what is seen of the surroundings"
+    );
+}
+
+#[test]
+fn the_curriculum_of_maps_changes_states_their_course_and_what_is_seen_of_them() {
+    let variants = learned(&scenario("map"));
+    assert!(variants.len() >= 6, "the open field, four maps and rooms");
+    for (index, a) in variants.iter().enumerate() {
+        for b in &variants[index + 1..] {
+            assert_eq!(differs(a, b), "S T O", "{} and {}", a.id(), b.id());
+        }
+    }
+}
+
+#[test]
+fn the_curriculum_of_interaction_changes_who_can_interact_and_what_comes_of_it() {
+    let variants = learned(&scenario("interaction"));
+    let steps: Vec<String> = variants.windows(2).map(|pair| differs(&pair[0], &pair[1])).collect();
+    assert_eq!(steps, ["A", "A T", "T"]);
+}
+
+#[test]
+fn the_curriculum_of_drift_drifts_in_every_learning_block() {
+    let scenario = scenario("drift");
+    let learning: Vec<_> = (scenario.blocks.iter())
+        .filter(|block| block.kind == BlockKind::Learning)
+        .flat_map(|block| &block.regimes)
+        .collect();
+    assert!(learning.len() >= 3 && learning.iter().all(|regime| regime.drift.is_some()));
+}
+
+#[test]
+fn the_curriculum_across_tasks_learns_each_of_them() {
+    let variants = learned(&scenario("across_tasks"));
+    let mut names: Vec<&str> = variants.iter().map(|variant| variant.task().name()).collect();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(
+        names,
+        ["find_objects", "get_to_goal", "moving_object", "scavenger_hunt"]
     );
 }
 
@@ -141,6 +182,11 @@ fn the_agent_that_knows_the_map_lives_and_solves_every_curriculum() {
         "observation",
         "action",
         "blue_red_green",
+        "map",
+        "modality",
+        "interaction",
+        "drift",
+        "across_tasks",
     ] {
         live(name, "onrails");
     }

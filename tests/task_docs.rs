@@ -196,17 +196,28 @@ fn curricula() -> String {
         "observation",
         "action",
         "blue_red_green",
+        "map",
+        "modality",
+        "interaction",
+        "drift",
+        "across_tasks",
     ] {
         let path = format!("{ROOT}/examples/curricula/{name}.json");
         let document = std::fs::read_to_string(path).expect("the curricula are committed");
         let scenario = Scenario::from_json(name, &document).unwrap_or_else(|error| panic!("{error}"));
         let learning = scenario.blocks.iter().filter(|block| block.kind == BlockKind::Learning);
         let regimes: Vec<_> = learning.flat_map(|block| &block.regimes).collect();
-        let task = regimes.first().map_or("", |regime| regime.task.as_str());
-        let learned: Vec<String> = regimes.iter().map(|regime| format!("`{}`", regime.variant)).collect();
-        let (learned, count, said) = (learned.join(", "), scenario.num_experiences(), &scenario.description);
+        let mut tasks: Vec<&str> = regimes.iter().map(|regime| regime.task.as_str()).collect();
+        tasks.dedup();
+        let of = |task: &str| {
+            let own = regimes.iter().filter(|regime| regime.task == task);
+            let variants: Vec<String> = own.map(|regime| format!("`{}`", regime.variant)).collect();
+            format!("`{task}`: {}", variants.join(", "))
+        };
+        let learned: Vec<String> = tasks.into_iter().map(of).collect();
+        let (learned, count, said) = (learned.join("; "), scenario.num_experiences(), &scenario.description);
         let file = format!("[{name}.json](../examples/curricula/{name}.json)");
-        let _ = writeln!(text, "| {file} | `{task}`: {learned} | {count} | {said} |");
+        let _ = writeln!(text, "| {file} | {learned} | {count} | {said} |");
     }
     text
 }

@@ -21,9 +21,14 @@ fn known() -> &'static Known {
     })
 }
 
-const EXAMPLES: [&str; 6] = [
+const EXAMPLES: [&str; 11] = [
+    include_str!("../../examples/curricula/across_tasks.json"),
     include_str!("../../examples/curricula/action.json"),
     include_str!("../../examples/curricula/blue_red_green.json"),
+    include_str!("../../examples/curricula/drift.json"),
+    include_str!("../../examples/curricula/interaction.json"),
+    include_str!("../../examples/curricula/map.json"),
+    include_str!("../../examples/curricula/modality.json"),
     include_str!("../../examples/curricula/observation.json"),
     include_str!("../../examples/curricula/reward.json"),
     include_str!("../../examples/curricula/state.json"),

@@ -27,8 +27,7 @@ pub(crate) enum AgentArg {
 
 impl AgentArg {
     /// What the help says of the argument.
-    pub(crate) const HELP: &'static str =
-        "The agent: random, still, onrails (knows the map and visits what pays), sarsa (a small learner), or scripted:FILE";
+    pub(crate) const HELP: &'static str = "The agent: random, still, onrails (knows the map and visits what pays), sarsa (a small learner), or scripted:FILE";
 
     /// What logs call the agent.
     pub(crate) fn name(&self) -> String {
