@@ -15,7 +15,7 @@ const TRIES_IN_CELL: usize = 8;
 
 /// Where something can stand.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Spot {
+pub(crate) struct FreePlace {
     pub(crate) place: [f64; 2],
     /// Where it faces in degrees, if that is said: in a doorway.
     pub(crate) heading: Option<f64>,
@@ -24,7 +24,7 @@ pub(crate) struct Spot {
 /// The cells or doorways that fit what is asked, and which of them are taken.
 pub(crate) struct Cells<'a> {
     plan: &'a Plan,
-    fitting: Vec<Spot>,
+    fitting: Vec<FreePlace>,
     jitter: f64,
     taken: BTreeSet<usize>,
     /// What was asked, and how many fit, for messages.
@@ -83,25 +83,25 @@ impl<'a> Cells<'a> {
             by_letter && by_group && by_room && by_walk
         };
         let is_kind = |number: &usize| kind.has(plan.cells[*number].open_sides());
-        let fitting: Vec<Spot> = if *kind == CellKind::Doorway {
+        let fitting: Vec<FreePlace> = if *kind == CellKind::Doorway {
             let doorways = plan.doorways.iter();
             let fits = |doorway: &&Doorway| {
                 let cell = plan.cell_at(doorway.center);
                 cell.is_some_and(|cell| fits(&cell, doorway.rooms))
             };
-            let spot = |doorway: &Doorway| Spot {
+            let found = |doorway: &Doorway| FreePlace {
                 place: doorway.center,
                 heading: Some(doorway.heading),
             };
-            doorways.filter(fits).map(spot).collect()
+            doorways.filter(fits).map(found).collect()
         } else {
             let cells = (0..plan.cells.len()).filter(is_kind);
             let cells = cells.filter(|number| fits(number, [plan.cells[*number].room; 2]));
-            let spot = |number: usize| Spot {
+            let found = |number: usize| FreePlace {
                 place: plan.cells[number].center,
                 heading: None,
             };
-            cells.map(spot).collect()
+            cells.map(found).collect()
         };
         let by_letter = letter.as_ref().map(|letters| format!(" at the letters {letters:?}"));
         let by_group = of_group.then(|| format!(" at the letters of the group {group:?}"));
@@ -140,7 +140,7 @@ impl<'a> Cells<'a> {
         &mut self,
         rng: &mut Rng,
         mut is_free: impl FnMut([f64; 2], [f64; 2]) -> bool,
-    ) -> Result<Spot, (u32, String)> {
+    ) -> Result<FreePlace, (u32, String)> {
         let count = self.fitting.len();
         let mut tries = 0;
         let mut first = 0;
@@ -152,8 +152,8 @@ impl<'a> Cells<'a> {
             if self.taken.contains(&number) {
                 continue;
             }
-            let spot = self.fitting[number];
-            let middle = spot.place;
+            let found = self.fitting[number];
+            let middle = found.place;
             let places = if self.jitter > 0.0 { TRIES_IN_CELL } else { 1 };
             for left in (0..places).rev() {
                 let stray = |axis: usize, rng: &mut Rng| {
@@ -168,7 +168,7 @@ impl<'a> Cells<'a> {
                 tries += 1;
                 if is_free(place, middle) {
                     self.taken.insert(number);
-                    return Ok(Spot { place, ..spot });
+                    return Ok(FreePlace { place, ..found });
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 use driftworld_spec::{Distribution, Layout, Plan, Turns};
 
-use crate::cells::{Cells, Spot};
+use crate::cells::{Cells, FreePlace};
 use crate::clearance::FreeSpace;
 use crate::draw::{self, Place};
 use crate::spatial_hash::SpatialHash;
@@ -197,7 +197,7 @@ impl<'a> PlacementContext<'a> {
         request: &Request,
         cells: &mut Cells,
         rng: &mut Rng,
-    ) -> Result<Spot, (u32, String)> {
+    ) -> Result<FreePlace, (u32, String)> {
         let mut tried = Tried::default();
         let mut margins = request.margins.clone();
         let found = cells.take(rng, |place, middle| {
@@ -214,10 +214,10 @@ impl<'a> PlacementContext<'a> {
             })
         });
         match found {
-            Ok(spot) => {
-                self.everything.push(spot.place);
-                self.groups[request.group].push(spot.place);
-                Ok(spot)
+            Ok(found) => {
+                self.everything.push(found.place);
+                self.groups[request.group].push(found.place);
+                Ok(found)
             }
             Err((tries, asked)) if tried.failed.iter().all(|count| *count == 0) => {
                 Err((tries, format!("{asked}; lower the count, or ask for less")))

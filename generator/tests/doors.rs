@@ -19,7 +19,7 @@ fn task(rooms: &str, groups: &str) -> Arc<TaskSpec> {
 }
 
 fn world(task: &Arc<TaskSpec>, seed: u64, index: u64) -> World {
-    let sampler = Sampler::new(&task.variant("default").unwrap(), seed);
+    let sampler = Sampler::new(&task.variant("default").expect("there is one"), seed);
     sampler.world(index).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -49,19 +49,21 @@ fn beside(plan: &Plan, doorway: usize) -> [usize; 2] {
 /// The cells that are reached when only doors are opened whose key was reached before, written without regard to how the
 /// doors were made: by looking at everything again until nothing changes.
 fn reached(world: &World) -> BTreeSet<usize> {
-    let (plan, doors, keys) = (world.plan().unwrap(), doors(world), keys(world));
-    let start = plan.cell_at(world.agent_params.coordinates).unwrap();
+    let (plan, doors, keys) = (world.plan().expect("it has rooms"), doors(world), keys(world));
+    let start = plan
+        .cell_at(world.agent_params.coordinates)
+        .expect("rooms fill the arena");
     let mut reached = BTreeSet::from([start]);
     loop {
         let before = reached.len();
         let owned: BTreeSet<_> = keys
             .iter()
-            .filter(|key| reached.contains(&plan.cell_at(key.coordinates).unwrap()))
+            .filter(|key| reached.contains(&plan.cell_at(key.coordinates).expect("rooms fill the arena")))
             .map(|key| key.tag.clone())
             .collect();
         let mut shut = BTreeSet::new();
         for (number, object) in doors.iter().enumerate() {
-            let door = object.door.as_ref().unwrap();
+            let door = object.door.as_ref().expect("it is a door");
             if door.key.is_some() && !owned.contains(&door.key) {
                 let [a, b] = beside(plan, number);
                 shut.extend([(a, b), (b, a)]);
@@ -122,7 +124,7 @@ proptest! {
             let coins = world.objects.iter().filter(|object| object.class == "geometric").map(|coin| coin.coordinates);
             for other in keys[..place].iter().map(|key| key.coordinates).chain(coins).chain([start]) {
                 let away = [0, 1].map(|axis| key.coordinates[axis] - other[axis]);
-                prop_assert!(away[0].hypot(away[1]) >= 0.79, "{:?} and {other:?}", key.coordinates);
+                prop_assert!(libm::hypot(away[0], away[1]) >= 0.79, "{:?} and {other:?}", key.coordinates);
             }
         }
         // The world's document says all of it.

@@ -5,7 +5,7 @@ use driftworld_spec::{Distribution, Turns, Value, WorldDraft};
 
 use super::Sampler;
 use crate::GeneratorError;
-use crate::cells::Spot;
+use crate::cells::FreePlace;
 use crate::compiled::{Address, Group, GroupCount, Look};
 use crate::placement::{Anchor, PlacementContext, Request};
 
@@ -83,9 +83,9 @@ impl Sampler {
                 None => draft
                     .context
                     .find(&request, turns.as_mut(), &mut rng)
-                    .map(|place| Spot { place, heading: None }),
+                    .map(|place| FreePlace { place, heading: None }),
             };
-            let Spot { place, heading: along } = found.map_err(|tried| failed(turn, tried))?;
+            let FreePlace { place, heading: along } = found.map_err(|tried| failed(turn, tried))?;
             object.coordinates = place;
             object.heading = along.unwrap_or(object.heading);
             if place.iter().any(|metres| metres.abs() > 300.0) {

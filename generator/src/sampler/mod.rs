@@ -284,8 +284,10 @@ impl Sampler {
             context.occupy(object.coordinates);
             world.objects.push(object);
         }
-        let mut doors = self.doors(&world, free_space, index);
-        doors.iter().for_each(|door| context.occupy(door.coordinates));
+        let doors = self.doors(&world, free_space, index);
+        for door in &doors {
+            context.occupy(door.coordinates);
+        }
         // For each group, where its objects stand in the world's list.
         let mut ranges = Vec::with_capacity(self.compiled.groups.len());
         for (number, group) in self.compiled.groups.iter().enumerate() {
@@ -320,9 +322,8 @@ impl Sampler {
                 context: &mut context,
                 world: &mut world,
             };
-            let mut keys = self.keys(&doors, &mut draft)?;
-            world.objects.append(&mut doors);
-            world.objects.append(&mut keys);
+            let keys = self.keys(&doors, &mut draft)?;
+            world.objects.extend(doors.into_iter().chain(keys));
             self.check_count(world.objects.len(), index)?;
         }
         // Loading the task and `fill` hold each value in its range; whether values go together is seen here alone.

@@ -48,7 +48,7 @@ impl Sampler {
         let is_free =
             |place: [f64; 2], middle: [f64; 2]| place == middle || free_space.clearance(place, radius) >= radius;
         let mut rng = stream.at(index, 0, attempt);
-        let spot = Cells::find(plan, layout, asked, "", world.agent_params.coordinates)
+        let found = Cells::find(plan, layout, asked, "", world.agent_params.coordinates)
             .and_then(|mut cells| cells.take(&mut rng, is_free).map_err(|(_, reason)| reason))
             .map_err(|reason| GeneratorError::NoStartCell {
                 variant: self.variant.id(),
@@ -56,7 +56,7 @@ impl Sampler {
                 index,
                 reason,
             })?;
-        world.agent_params.coordinates = spot.place;
+        world.agent_params.coordinates = found.place;
         Ok(())
     }
 }
