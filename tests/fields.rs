@@ -45,10 +45,14 @@ fn full_with(place: &FieldPlace) -> Json {
     world["environment_params"]["predefined_map"] = json!(0);
     world["agent_params"]["coordinates"] = json!([0.3, 0.3]);
     world["environment_params"]["zones"] = json!([]);
+    // Regions of one's own stand in for those of a predefined map.
+    if let Some(around) = world["environment_params"].as_object_mut() {
+        around.remove("map_regions");
+    }
     let wall = |form: Json| json!({ "walls": [form] });
     world["environment_params"]["layout"] = match words.as_slice() {
         ["rooms", ..] => json!({ "rooms": {
-            "grid": [1, 3], "room": [7.0, 6.0], "doorway": 1.0, "wall": 0.25, "height": 3.0, "loops": 0.25, "doors": "none", "seed": 4 } }),
+            "grid": [3, 3], "room": [7.0, 6.0], "doorway": 1.0, "wall": 0.25, "height": 3.0, "loops": 0.25, "doors": "none", "seed": 4 } }),
         ["text" | "cell" | "height" | "legend", ..] => json!({
             "text": ["#####", "#D  #", "#   #", "#####"], "cell": 1.0, "height": 2.0, "legend": { "D": "wall" } }),
         ["predefined" | "size", ..] => json!({ "predefined": 1, "size": [150.0, 140.0] }),
@@ -447,10 +451,18 @@ fn worlds_that_differ_in_one_place_differ_in_the_comparisons_that_it_names_and_i
         }
         let distance = world_distance(&world, &read(&place.pointer, &changed), &Weights::default());
         let differs = distance.parts.iter().filter(|part| part.normalised > 0.0);
-        // A layout says how large the arena is, too.
-        let of_layout = place.pointer.starts_with("/environment_params/layout");
-        let differs = differs.filter(|part| !of_layout || part.name != Comparison::ArenaSize.name());
         let mut differs: Vec<&str> = differs.map(|part| part.name.as_str()).collect();
+        // A layout says how large the arena is, too; of some keys that is all there is to see, since shapes are compared in shares
+        // of its sides.
+        if place.pointer.starts_with("/environment_params/layout") {
+            let layouts = Comparison::Layouts.name();
+            let sides = Comparison::ArenaSize.name();
+            let scales = ["/cell", "/size", "/size/*"].map(|key| format!("/environment_params/layout{key}"));
+            if differs == [sides] && scales.contains(&place.pointer) {
+                differs = vec![layouts];
+            }
+            differs.retain(|part| *part != sides);
+        }
         let mut expected: Vec<&str> = place
             .field
             .compared

@@ -1,7 +1,7 @@
 //! [`LayoutShape`]: the walls of a layout as a raster, and the ways that they leave, so that layouts are compared by what
 //! they are and not by how they are written.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 use std::sync::LazyLock;
 
 use driftworld_spec::Plan;
@@ -17,31 +17,36 @@ const PLACES: usize = 6;
 /// Steps of a way that there is not.
 const NO_WAY: u32 = (SIDE * SIDE) as u32;
 
-/// What layouts are compared by: a raster of 96 × 96 cells that walls touch, and how long the ways are between the cells
-/// nearest to 36 places in rows and columns. Both in shares of the arena's sides: how large it is does not count.
+/// What layouts are compared by: a raster of 96 × 96 cells with the heights of the walls that touch them, how long the ways are
+/// between the cells nearest to 36 places in rows and columns, and what is marked: letters of cells and colours of walls.
+/// Places are shares of the arena's sides: how large it is does not count. What is finer than a cell of the raster is not seen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayoutShape {
-    walls: Vec<bool>,
+    /// Metres; 0 where no wall is.
+    walls: Vec<f32>,
     /// Steps from each place to each later one.
     ways: Vec<u32>,
+    /// Letters and colours, each with its place.
+    marks: BTreeSet<String>,
 }
 
 impl LayoutShape {
-    /// The shape of a plan in an arena of these sides in metres. A millisecond.
+    /// The shape of a plan in an arena of these sides in metres, where walls without a height are so high. A millisecond.
     ///
     /// # Example
     /// ```
     /// use driftworld_similarity::LayoutShape;
     /// use driftworld_spec::{Layout, Maze};
     /// let layout = |standing| Layout { maze: Some(Maze::default()), standing, ..Layout::default() };
-    /// let [open, half, all] = [0.0, 0.5, 1.0].map(|standing| LayoutShape::of(&layout(standing).plan(7), [24.0, 24.0]));
+    /// let [open, half, all] = [0.0, 0.5, 1.0].map(|standing| LayoutShape::of(&layout(standing).plan(7), [24.0, 24.0], 4.0));
     /// assert_eq!(all.distance(&all), 0.0);
     /// assert!(open.ways_distance(&all) > open.ways_distance(&half));
     /// assert!(half.walls_distance(&all) > 0.0);
     /// ```
-    pub fn of(plan: &Plan, arena: [f64; 2]) -> Self {
-        let mut walls = vec![false; SIDE * SIDE];
+    pub fn of(plan: &Plan, arena: [f64; 2], wall_height: f64) -> Self {
+        let mut walls = vec![0.0_f32; SIDE * SIDE];
         for wall in &plan.walls {
+            let height = wall.height.unwrap_or(wall_height) as f32;
             // In cells of the raster.
             let corners: Vec<[f64; 2]> = wall
                 .polygon
@@ -60,27 +65,46 @@ impl LayoutShape {
                 for column in ends(0) {
                     let middle = [column as f64 + 0.5, row as f64 + 0.5];
                     let cell = &mut walls[row * SIDE + column];
-                    *cell = *cell || touches(&corners, middle);
+                    if *cell < height && touches(&corners, middle) {
+                        *cell = height;
+                    }
                 }
             }
         }
         let ways = ways(&walls);
-        Self { walls, ways }
+        let share = |[x, y]: [f64; 2]| format!("{:.4} {:.4}", x / arena[0], y / arena[1]);
+        let letters = plan.cells.iter().filter_map(|cell| Some((cell.letter?, cell.center)));
+        let letters = letters.map(|(letter, center)| format!("{letter} {}", share(center)));
+        let colors = plan.walls.iter().filter_map(|wall| {
+            let corners: Vec<String> = wall.polygon.iter().copied().map(share).collect();
+            Some(format!(
+                "{} {}",
+                wall.color?.0.map(|channel| format!("{channel:.4}")).join(" "),
+                corners.join(" ")
+            ))
+        });
+        let marks = letters.chain(colors).collect();
+        Self { walls, ways, marks }
     }
 
     /// The shape of an arena without walls.
     pub fn open() -> &'static Self {
-        static OPEN: LazyLock<LayoutShape> = LazyLock::new(|| LayoutShape::of(&Plan::default(), [1.0; 2]));
+        static OPEN: LazyLock<LayoutShape> = LazyLock::new(|| LayoutShape::of(&Plan::default(), [1.0; 2], 1.0));
         &OPEN
     }
 
-    /// Jaccard distance of the walls: the share of cells that walls of one touch alone among those that walls of either
-    /// touch, 0..1. A metric.
+    /// Jaccard distance of the walls, weighted by their heights: what stands in one alone, as a share of what stands in either,
+    /// 0..1. A metric (Soergel's). Where all walls are as high, it is the share of the cells that walls of one touch alone.
     pub fn walls_distance(&self, other: &Self) -> f64 {
-        let pairs = || self.walls.iter().zip(&other.walls);
-        let either = pairs().filter(|(a, b)| **a || **b).count();
-        let alone = pairs().filter(|(a, b)| a != b).count();
-        alone as f64 / either.max(1) as f64
+        let pairs = || {
+            self.walls
+                .iter()
+                .zip(&other.walls)
+                .map(|(a, b)| (f64::from(*a), f64::from(*b)))
+        };
+        let either: f64 = pairs().map(|(a, b)| a.max(b)).sum();
+        let alone: f64 = pairs().map(|(a, b)| (a - b).abs()).sum();
+        if either > 0.0 { alone / either } else { 0.0 }
     }
 
     /// How much the ways differ: the mean over all pairs of places of the difference of the two lengths over the larger
@@ -93,9 +117,17 @@ impl LayoutShape {
         apart / self.ways.len().max(1) as f64
     }
 
-    /// Both together, 0..2. A metric.
+    /// Jaccard distance of the marks: letters of cells and colours of walls that only one of them has there, as a share of those
+    /// that either has, 0..1. A metric.
+    pub fn marks_distance(&self, other: &Self) -> f64 {
+        let either = self.marks.union(&other.marks).count();
+        let both = self.marks.intersection(&other.marks).count();
+        (either - both) as f64 / either.max(1) as f64
+    }
+
+    /// All three together, 0..3. A metric.
     pub fn distance(&self, other: &Self) -> f64 {
-        self.walls_distance(other) + self.ways_distance(other)
+        self.walls_distance(other) + self.ways_distance(other) + self.marks_distance(other)
     }
 }
 
@@ -149,22 +181,22 @@ fn steps(from: usize, may_enter: impl Fn(usize) -> bool) -> Vec<u32> {
 }
 
 /// Steps between the free cells that are nearest to the places, from each to each later one.
-fn ways(walls: &[bool]) -> Vec<u32> {
+fn ways(walls: &[f32]) -> Vec<u32> {
     let places: Vec<usize> = (0..PLACES * PLACES)
         .map(|number| {
             let at = |index: usize| (2 * index + 1) * SIDE / (2 * PLACES);
             let middle = at(number / PLACES) * SIDE + at(number % PLACES);
-            if !walls[middle] {
+            if walls[middle] == 0.0 {
                 return middle;
             }
             let near = steps(middle, |_| true);
-            let free = (0..walls.len()).filter(|cell| !walls[*cell]);
+            let free = (0..walls.len()).filter(|cell| walls[*cell] == 0.0);
             free.min_by_key(|cell| near[*cell]).unwrap_or(middle)
         })
         .collect();
     let mut ways = Vec::with_capacity(places.len() * (places.len() - 1) / 2);
     for (number, from) in places.iter().enumerate() {
-        let steps = steps(*from, |cell| !walls[cell]);
+        let steps = steps(*from, |cell| walls[cell] == 0.0);
         ways.extend(places[number + 1..].iter().map(|to| steps[*to]));
     }
     ways
@@ -200,7 +232,7 @@ mod tests {
     }
 
     fn shape(layout: &Layout) -> LayoutShape {
-        LayoutShape::of(&layout.plan(0), layout.size().expect("mazes and rooms have one"))
+        LayoutShape::of(&layout.plan(0), layout.size().expect("mazes and rooms have one"), 4.0)
     }
 
     proptest! {
@@ -219,10 +251,11 @@ mod tests {
             let plan = layout.plan(0);
             let walls = plan.walls.iter().map(|wall| LayoutWall {
                 polygon: Some(wall.polygon.clone()),
+                height: wall.height,
                 ..LayoutWall::default()
             });
             let single = Layout { walls: Some(walls.collect()), ..Layout::default() };
-            let single = LayoutShape::of(&single.plan(0), plan.size);
+            let single = LayoutShape::of(&single.plan(0), plan.size, 4.0);
             prop_assert_eq!(single.distance(&shape(&layout)), 0.0);
         }
 

@@ -1,12 +1,15 @@
 //! The parts that two sketches of worlds are compared by, found one after the other. What becomes of them, a table or a
 //! sum, is said in `world.rs`; which objects are compared with which, in `matching.rs`.
 
+use std::sync::Arc;
+
 use driftworld_spec::Comparison;
 
 use crate::combined::kinds::Kinds;
 use crate::combined::matching::{UNIT_OF_PLACE, UNIT_OF_REWARD, each_match};
 use crate::combined::sketch::{ObjectFeatures, Sketch};
 use crate::combined::weighted_distance::{Part, Weights};
+use crate::layout_shape::LayoutShape;
 use crate::scalar::relative_difference;
 
 /// Takes the parts as they are found: the comparison, the difference in the unit of the field, and the one that counts.
@@ -146,7 +149,16 @@ fn transition(a: &Sketch, b: &Sketch, objects: &Objects, sink: &mut impl Sink) {
     relative(Comparison::Width, a.agent_width, b.agent_width, sink);
     let map = f64::from(u8::from(a.map != b.map));
     as_it_is(Comparison::MapAndWalls, map + a.walls.distance(&b.walls), sink);
-    as_it_is(Comparison::Layouts, a.layout.distance(&b.layout), sink);
+    let layouts = match (&a.layout, &b.layout) {
+        (None, None) => 0.0,
+        (Some(a), Some(b)) if Arc::ptr_eq(a, b) => 0.0,
+        (a, b) => {
+            let open = LayoutShape::open();
+            a.as_deref().unwrap_or(open).distance(b.as_deref().unwrap_or(open))
+        }
+    };
+    let layouts = layouts + f64::from(u8::from(a.doors != b.doors));
+    as_it_is(Comparison::Layouts, layouts, sink);
     let sides = a.arena.iter().zip(&b.arena);
     let (raw, normalised) = sides.fold((0.0, 0.0), |(raw, normalised), (a, b)| {
         (raw + (a - b).abs(), normalised + relative_difference(*a, *b))

@@ -6,11 +6,12 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{self, AtomicU64};
 
-use driftworld_spec::{Comparison, LeafTexts, Object, World};
+use driftworld_spec::{Comparison, Layout, LeafTexts, Object, Plan, RoomDoors, World};
 
 use crate::Oklab;
 use crate::combined::leaves::{LeafReader, Leaves};
 use crate::combined::read::as_read;
+use crate::layout_shape::LayoutShape;
 
 /// The number of the next kind that is met. 0 is none.
 static NEXT_KIND: AtomicU64 = AtomicU64::new(1);
@@ -21,6 +22,8 @@ pub(super) struct Sketcher {
     texts: LeafTexts,
     reader: LeafReader,
     kinds: BTreeMap<[u64; 10], u64>,
+    /// The last layout that was met, with its arena and its shape.
+    layout: Option<(Plan, [f64; 3], Arc<LayoutShape>)>,
 }
 
 /// A world as it is compared.
@@ -41,8 +44,10 @@ pub(super) struct Sketch {
     pub(super) agent_width: f64,
     pub(super) map: u8,
     pub(super) walls: Arc<Leaves>,
-    /// What divides the arena.
-    pub(super) layout: Arc<Leaves>,
+    /// What divides the arena; `None` where there is no layout.
+    pub(super) layout: Option<Arc<LayoutShape>>,
+    /// Which doors its rooms are given.
+    pub(super) doors: RoomDoors,
     pub(super) arena: [f64; 2],
     /// Zones that act on motion, that pay, and that are seen.
     pub(super) zones: [Arc<Leaves>; 3],
@@ -112,7 +117,8 @@ impl Sketcher {
             agent_width: agent.agent_width,
             map: around.predefined_map,
             walls: self.leaves(Comparison::MapAndWalls),
-            layout: self.leaves(Comparison::Layouts),
+            layout: self.shape(world),
+            doors: doors(around.layout.as_ref()),
             arena: around.arena_size(),
             zones: [Comparison::Zones, Comparison::ZonePay, Comparison::ZoneLooks].map(|part| self.leaves(part)),
             step_reward: rules.step_reward / step_seconds + rules.reward_per_second,
@@ -134,6 +140,21 @@ impl Sketcher {
             picture: agent.picture_size().map(f64::from),
             camera: self.leaves(Comparison::CameraAndWeather),
         }
+    }
+
+    /// The shape of the world's layout; worlds of one layout often come one after the other.
+    fn shape(&mut self, world: &World) -> Option<Arc<LayoutShape>> {
+        let around = &world.environment_params;
+        let (plan, arena, height) = (world.plan()?, around.arena_size(), around.wall_height);
+        let size = [arena[0], arena[1], height];
+        if let Some((known, known_size, shape)) = &self.layout
+            && (known, *known_size) == (plan, size)
+        {
+            return Some(Arc::clone(shape));
+        }
+        let shape = Arc::new(LayoutShape::of(plan, arena, height));
+        self.layout = Some((plan.clone(), size, Arc::clone(&shape)));
+        Some(shape)
     }
 
     fn features(&mut self, index: usize, object: &Object) -> ObjectFeatures {
@@ -250,4 +271,10 @@ mod tests {
             [(vec![], vec![4.0]), (vec![1.0, 3.0], vec![]), (vec![2.0], vec![5.0])]
         );
     }
+}
+
+/// Which doors the rooms of a layout are given; none where it has no rooms.
+pub(super) fn doors(layout: Option<&Layout>) -> RoomDoors {
+    let rooms = layout.and_then(|layout| layout.rooms.as_ref());
+    rooms.map_or_else(RoomDoors::default, |rooms| rooms.doors)
 }

@@ -1,8 +1,12 @@
 //! [`ValueMeasure`]: how two values of a parameter are compared, and what the number is divided by. Distributions are in `drawn.rs`.
 
-use driftworld_spec::{Domain, MeasureName, Parameter, ParameterType, Value};
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::combined::leaves::LeafReader;
+use driftworld_spec::{Domain, EnvironmentParams, Layout, MeasureName, Parameter, ParameterType, Value};
+
+use crate::combined::sketch::doors;
+use crate::layout_shape::LayoutShape;
 use crate::scalar::{CostTable, choice_mismatch, circular_difference, relative_difference};
 use crate::{ColorMeasure, MetricProperties};
 
@@ -154,11 +158,36 @@ impl ValueMeasure {
     }
 }
 
-/// How far two layouts are apart: of numbers the difference over the larger, of words 1, summed over all that either has.
+/// How far two layouts are apart by what they are: their shapes, the sides of their arenas, each by the difference over the larger,
+/// and 1 for other doors. Those without a seed are compared as drawn with seed 0. Walls one by one stand in the default arena.
 fn layouts_apart(a: &Value, b: &Value) -> f64 {
-    let mut reader = LeafReader::default();
-    let [a, b] = [a, b].map(|layout| reader.read(layout.to_json().to_string().as_bytes()));
-    a.distance(&b)
+    let (Value::Layout(a), Value::Layout(b)) = (a, b) else {
+        return choice_mismatch(a, b);
+    };
+    let sides = |layout: &Layout| layout.size().unwrap_or(EnvironmentParams::default().map_size);
+    let doors = f64::from(u8::from(doors(Some(a)) != doors(Some(b))));
+    let sides = sides(a).into_iter().zip(sides(b));
+    shape(a).distance(&shape(b)) + doors + sides.map(|(a, b)| relative_difference(a, b)).sum::<f64>()
+}
+
+/// The shape of a layout. The last that were asked for are kept: the same few choices are compared again and again.
+fn shape(layout: &Layout) -> Arc<LayoutShape> {
+    const MOST_KEPT: usize = 256;
+    static KEPT: Mutex<BTreeMap<String, Arc<LayoutShape>>> = Mutex::new(BTreeMap::new());
+    let key = serde_json::to_string(layout).unwrap_or_default();
+    let kept = || KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(shape) = kept().get(&key) {
+        return Arc::clone(shape);
+    }
+    let around = EnvironmentParams::default();
+    let arena = layout.size().unwrap_or(around.map_size);
+    let shape = Arc::new(LayoutShape::of(&layout.plan(0), arena, around.wall_height));
+    let mut kept = kept();
+    if kept.len() >= MOST_KEPT {
+        kept.clear();
+    }
+    kept.insert(key, Arc::clone(&shape));
+    shape
 }
 
 /// The numbers that a value consists of.

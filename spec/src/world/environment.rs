@@ -66,7 +66,7 @@ fields! {
         /// What divides the arena: a maze, rooms, a map drawn with letters, a predefined map, or walls. All but walls say how
         /// large the arena is, in place of `map_size`. Not beside a `predefined_map`.
         #[serde(skip_serializing_if = "Option::is_none")]
-        pub layout: Option<Layout> = None => Field::ours(Leaves(Layouts)).layout(),
+        pub layout: Option<Layout> = None => Field::ours(Measured(&[Layouts])).layout(),
     }
 }
 

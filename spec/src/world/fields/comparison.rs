@@ -71,7 +71,7 @@ comparisons! {
     /// The map and its walls.
     MapAndWalls: T, "map and walls", "the larger one, or another word",
     /// What divides the arena: mazes, rooms and walls.
-    Layouts: T, "layouts", "the larger one, or another word",
+    Layouts: T, "layouts", "no wall in common, or ways of no likeness",
     /// The sides of the arena.
     ArenaSize: T, "sides of the arena", "the larger one",
     /// Where zones are that act on how the agent moves, and how.
