@@ -92,7 +92,7 @@ fn a_new_parameter_group_or_object_moves_nothing_that_was_there() {
     let with_parameter = text.replacen(
         parameter,
         &format!(
-            r#""fog": {{ "role": "randomized", "type": "number", "affects": ["O"], "distribution": {{ "uniform": {{ "low": 0, "high": 1 }} }} }}, {parameter}"#
+            r#""mist": {{ "role": "randomized", "type": "number", "affects": ["O"], "distribution": {{ "uniform": {{ "low": 0, "high": 1 }} }} }}, {parameter}"#
         ),
         1,
     );
