@@ -78,10 +78,13 @@ proptest! {
                 f64::from(at[1]) + metres * (cos - right * sin),
             ];
             // Not at the border, which a disc has a little further in, and where pixels are large.
-            let margin = 0.02 + 0.04 * metres * metres / f64::from(height) * step;
+            let pixel = metres * metres / f64::from(height) * step;
+            let margin = 0.02 + 0.04 * pixel;
             let around = [[0.0, margin], [margin, 0.0], [0.0, -margin], [-margin, 0.0]]
                 .map(|by| zone.contains([place[0] + by[0], place[1] + by[1]]));
-            if around == [true; 4] && zone.contains(place) {
+            // Nor a disc that is flatter than half a pixel: its 64 corners make slivers, which are too thin to fill.
+            let is_sliver = zone.disc.as_ref().is_some_and(|disc| 4.0 * disc.radius < pixel);
+            if around == [true; 4] && zone.contains(place) && !is_sliver {
                 prop_assert!(colors[1][0] > 60 && colors[1][1] == 0, "{colors:?} at {place:?}");
             } else if around == [false; 4] && !zone.contains(place) {
                 prop_assert_eq!(colors[0], colors[1]);
