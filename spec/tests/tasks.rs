@@ -43,7 +43,7 @@ fn broken_tasks_are_refused_and_the_message_says_how_to_mend_them() {
         ("\"param\": \"light\"", "\"param\": \"ligth\""),
         ("\"param\": \"light\"", "\"param\": \"target_color\""),
         (
-            "\"light_intensity\": { \"param\": \"light\" }",
+            "\"light_intensity\": { \"perturb\": { \"value\": { \"param\": \"light\" }, \"noise\": { \"param\": \"light_noise\" }, \"low\": 0.2, \"high\": 4 } }",
             "\"light_intensity\": { \"uniform\": { \"low\": -1, \"high\": 2 } }",
         ),
         ("\"param\": \"spread\"", "\"param\": \"start_heading\""),

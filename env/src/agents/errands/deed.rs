@@ -127,7 +127,7 @@ impl Task {
             return [0.0, turn(sim, to), 0.0];
         }
         // The middle of the cell is near enough, but the agent is not there.
-        let speed = (distance(sim.agent().position, to) - (least + most) / 2.0) / seconds(sim);
+        let speed = (distance(sim.agent().position, to) - f32::midpoint(least, most)) / seconds(sim);
         let most = sim.world.agent_params.max_linear_speed as f32;
         [f64::from(speed.clamp(-most, most)), turn(sim, to), 0.0]
     }
