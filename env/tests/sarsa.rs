@@ -5,8 +5,10 @@ use driftworld_spec::{Color, Object, Stimulus, World, WorldDraft};
 
 /// A field with blue cubes that pay, in other places for each number.
 fn field(number: u64) -> World {
-    let mut draft = WorldDraft::default();
-    draft.max_steps = 100;
+    let mut draft = WorldDraft {
+        max_steps: 100,
+        ..WorldDraft::default()
+    };
     draft.environment_params.map_size = [30.0, 30.0];
     for k in 0..6_u64 {
         let angle = (number * 37 + k * 60) as f64;

@@ -52,7 +52,10 @@ fn broken_tasks_are_refused_and_the_message_says_how_to_mend_them() {
             "\"range\": [0.2, 4], \"default\": 2.3",
             "\"range\": [0.2, 4], \"default\": 23",
         ),
-        ("\"range\": [0.2, 4]", "\"range\": [0.2, 400]"),
+        (
+            "\"range\": [1, 10], \"default\": 1",
+            "\"range\": [1, 1e9], \"default\": 1",
+        ),
         ("\"low\": 0, \"high\": 360", "\"low\": 360, \"high\": 0"),
         (
             "\"uniform\": { \"low\": 0, \"high\": 360 }",
