@@ -86,12 +86,12 @@ fn what_nobody_reads_ends_with_words() {
 }
 
 #[test]
-fn an_experience_of_a_million_steps_is_not_waited_for() {
+fn a_long_experience_is_not_waited_for() {
     let folder = scratch();
     let path = folder.path();
     // Nothing in it can end an experience early.
     write(&path.join("endless.json"), r#"{ "version": 2, "name": "endless" }"#);
-    let regime = r#"{ "task": "endless", "variant": "default", "count": 3, "max_steps": 1000000 }"#;
+    let regime = r#"{ "task": "endless.json", "variant": "default", "count": 3, "max_steps": 1000000000 }"#;
     write(
         &path.join("scenario.json"),
         &format!(r#"{{ "name": "s", "blocks": [{{ "type": "learning", "regimes": [{regime}] }}] }}"#),

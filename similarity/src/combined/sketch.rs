@@ -250,6 +250,12 @@ impl Sketch {
     }
 }
 
+/// Which doors the rooms of a layout are given; none where it has no rooms.
+pub(super) fn doors(layout: Option<&Layout>) -> RoomDoors {
+    let rooms = layout.and_then(|layout| layout.rooms.as_ref());
+    rooms.map_or_else(RoomDoors::default, |rooms| rooms.doors)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -271,10 +277,4 @@ mod tests {
             [(vec![], vec![4.0]), (vec![1.0, 3.0], vec![]), (vec![2.0], vec![5.0])]
         );
     }
-}
-
-/// Which doors the rooms of a layout are given; none where it has no rooms.
-pub(super) fn doors(layout: Option<&Layout>) -> RoomDoors {
-    let rooms = layout.and_then(|layout| layout.rooms.as_ref());
-    rooms.map_or_else(RoomDoors::default, |rooms| rooms.doors)
 }

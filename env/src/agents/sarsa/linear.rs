@@ -77,9 +77,9 @@ mod tests {
                 seen[way[t].0] = way[t].1;
                 seen
             };
-            for t in 0..way.len() {
-                learner.done(&seen_at(t), way[t].2, decay);
-                learner.learn(&seen_at(t), way[t].3);
+            for (t, (_, _, deed, error)) in way.iter().enumerate() {
+                learner.done(&seen_at(t), *deed, decay);
+                learner.learn(&seen_at(t), *error);
             }
             for (k, (feature, _, deed, _)) in way.iter().enumerate() {
                 let mut expected = 0.0_f64;
