@@ -22,10 +22,29 @@ pub(crate) fn shown(trials: &[Trial]) -> String {
             share(trial.placement, trial.worlds),
             share(trial.requirement, trial.worlds),
             share(trial.other, trial.worlds),
+            trial.expert.as_ref().map_or_else(
+                || "-".to_owned(),
+                |expert| {
+                    if expert.worlds == 0 {
+                        "no success".to_owned()
+                    } else {
+                        format!("{} of {}", expert.succeeded, expert.worlds)
+                    }
+                },
+            ),
         ]
     });
-    let headings = ["block", "variant", "seed", "worlds", "no place", "requirement", "other"];
-    let mut lines = vec![table(headings, rows.collect(), &[0, 2, 3, 4, 5, 6])];
+    let headings = [
+        "block",
+        "variant",
+        "seed",
+        "worlds",
+        "no place",
+        "requirement",
+        "other",
+        "expert finishes",
+    ];
+    let mut lines = vec![table(headings, rows.collect(), &[0, 2, 3, 4, 5, 6, 7])];
     // The first of each kind: what fails in one way may fail in another, too.
     let failed = trials.iter().flat_map(|trial| {
         let is_first =
@@ -55,4 +74,25 @@ pub(crate) fn summary(trials: &[Trial]) -> Option<String> {
     let failed: u64 = trials.iter().map(Trial::num_failed).sum();
     let worlds: u64 = trials.iter().map(|trial| trial.worlds).sum();
     (failed > 0).then(|| format!("{failed} of {worlds} worlds cannot be drawn"))
+}
+
+/// In which worlds the agent on rails did not come to the success that there is; nothing where it did in all.
+pub(crate) fn unfinished(trial: &Trial) -> Option<String> {
+    let expert = trial
+        .expert
+        .as_ref()
+        .filter(|expert| expert.succeeded < expert.worlds)?;
+    let told: Vec<String> = expert.failed.iter().take(MOST_TOLD).map(u64::to_string).collect();
+    let more = if expert.failed.len() > told.len() {
+        " and more"
+    } else {
+        ""
+    };
+    Some(format!(
+        "{}: the agent on rails came to the success in {} of {} worlds, not in {}{more}; look at one with driftworld render",
+        trial.variant,
+        expert.succeeded,
+        expert.worlds,
+        told.join(", ")
+    ))
 }

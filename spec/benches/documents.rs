@@ -3,7 +3,7 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use driftworld_spec::{Object, TaskSpec, World, WorldDraft};
+use driftworld_spec::{Layout, Maze, Object, TaskSpec, World, WorldDraft};
 
 fn world_of(objects: u32) -> String {
     let objects = (0..objects).map(|number| {
@@ -40,5 +40,24 @@ fn documents(c: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, documents);
+/// A maze of 20 × 20 cells from a seed to its walls.
+fn layouts(c: &mut Criterion) {
+    let layout = Layout {
+        maze: Some(Maze {
+            cells: [20, 20],
+            braid: 0.2,
+            ..Maze::default()
+        }),
+        ..Layout::default()
+    };
+    let mut seed = 0;
+    c.bench_function("draw a maze of 20 x 20 cells", |bench| {
+        bench.iter(|| {
+            seed += 1;
+            black_box(&layout).plan(seed)
+        });
+    });
+}
+
+criterion_group!(benches, documents, layouts);
 criterion_main!(benches);

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::contents::Contents;
-use crate::curriculum::{Trial, Tried, Undrawable, try_worlds};
+use crate::curriculum::{Trial, Tried, Undrawable, try_expert, try_worlds};
 use crate::documents::{self, Checked, Kind};
 use crate::elements::{ElementsOutcome, ElementsRequest, elements_of};
 use crate::scenarios::{Missing, ScenarioFile, task_from};
@@ -11,6 +11,7 @@ use crate::spec::{Classes, Problem, SpecError, TaskSpec};
 use crate::tasks;
 use clap::Args;
 use driftworld_text::ShownPath;
+use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::assets::LibraryChoice;
@@ -27,12 +28,16 @@ use super::output;
 /// --worlds also draws worlds: of every variant of a task, and of every regime of a scenario. Along a drift, the
 /// variants are checked one by one. A task or scenario fails if one of its worlds cannot be drawn.
 ///
+/// --worlds N --expert also lets the agent on rails try those worlds of a task. Where it does not come to a success that there is,
+/// a warning names the worlds: the way may be closed, or too hard for it.
+///
 /// --elements also tests which elements of the decision process the variants of a task change, as `driftworld elements`
 /// does. A task fails if that contradicts the `affects` of its parameters. A parameter that nothing reads is a warning.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld validate examples/tasks
   driftworld validate my_task.json scenario.json --worlds 100
+  driftworld validate my_task.json --worlds 20 --expert
   driftworld validate my_task.json --elements
   driftworld validate --l2explorer map.json")]
 pub(crate) struct Validate {
@@ -45,6 +50,9 @@ pub(crate) struct Validate {
     /// Also draw this many worlds of each variant and regime, and report failures.
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
     worlds: u32,
+    /// Also let the agent on rails try the worlds of tasks, and warn of those whose success it does not come to.
+    #[arg(long, requires = "worlds")]
+    expert: bool,
     /// Also test which elements of the decision process variants change, and fail on what contradicts `affects`.
     #[arg(long)]
     elements: bool,
@@ -182,9 +190,16 @@ impl Validate {
             Kind::Task => {
                 let task = TaskSpec::from_json(&name, text).map_err(|error| (error.code(), error.to_string()))?;
                 let variants = task.all_variants();
-                let tried = variants
-                    .iter()
-                    .map(|variant| try_worlds(variant, self.seed, u64::from(self.worlds)));
+                let catalogue = self
+                    .libraries
+                    .catalogue()
+                    .map_err(|failure| ("document/unreadable", failure.text().for_command().to_string()))?;
+                let worlds = u64::from(self.worlds);
+                let tried = variants.par_iter().map(|variant| {
+                    let mut trial = try_worlds(variant, self.seed, worlds);
+                    trial.expert = self.expert.then(|| try_expert(variant, self.seed, worlds, &catalogue));
+                    trial
+                });
                 Ok(tried.collect())
             }
             Kind::Scenario | Kind::L2ExplorerScenario => {
@@ -220,9 +235,10 @@ impl Found {
         self.elements.as_ref().is_none_or(ElementsOutcome::is_sound)
     }
 
-    /// What the experiment warns of, in sentences.
-    fn idle(&self) -> Vec<String> {
-        self.elements.iter().flat_map(ElementsOutcome::warnings).collect()
+    /// What the experiments warn of, in sentences.
+    fn cautions(&self) -> Vec<String> {
+        let idle = self.elements.iter().flat_map(ElementsOutcome::warnings);
+        idle.chain(self.trials.iter().filter_map(trials::unfinished)).collect()
     }
 }
 
@@ -250,8 +266,7 @@ impl Verdict {
             return Ok(());
         }
         let (path, kind) = (self.path.shown(), checked.kind.name());
-        let idle = found.idle();
-        for warning in &idle {
+        for warning in &found.cautions() {
             output::warning(format!("{path}: {warning}"));
         }
         if let Some(elements) = found.elements.as_ref().filter(|elements| !elements.is_sound()) {
@@ -300,13 +315,13 @@ impl Verdict {
         if !found.trials.is_empty() {
             report["worlds"] = json!(found.trials);
         }
+        if let Some(warnings) = report["warnings"].as_array_mut() {
+            warnings.extend(found.cautions().into_iter().map(Value::from));
+        }
         if let Some(elements) = &found.elements {
             let contradiction = |message: &str| json!({ "code": "task/elements", "message": message });
             if let Some(problems) = report["problems"].as_array_mut() {
                 problems.extend(elements.contradictions().map(contradiction));
-            }
-            if let Some(warnings) = report["warnings"].as_array_mut() {
-                warnings.extend(found.idle().into_iter().map(Value::from));
             }
             report["elements"] = json!(elements);
         }

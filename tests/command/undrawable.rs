@@ -282,3 +282,35 @@ fn a_misspelt_parameter_is_not_left_out_of_a_variation() {
         "{error}"
     );
 }
+
+#[test]
+fn the_agent_on_rails_tries_what_validate_drew_and_says_where_it_fails() {
+    let folder = scratch();
+    let task = |name: &str, wall: &str| {
+        let text = format!(
+            r#"{{ "version": 2, "name": "{name}", "world": {{ "max_steps": 400, "environment_params": {{ "map_size": [30, 30],
+                "walls": [{wall}], "zones": [{{ "disc": {{ "center": [0, 10], "radius": 1 }}, "ends": "success" }}] }} }} }}"#
+        );
+        write(&folder.path().join(format!("{name}.json")), &text);
+    };
+    task("ways", r#"{ "polygon": [[-9, 4], [9, 4], [9, 5], [-9, 5]] }"#);
+    task("closed", r#"{ "polygon": [[-15, 4], [15, 4], [15, 5], [-15, 5]] }"#);
+    let try_of = |name: &str| {
+        let told = output(&mut driftworld_in(
+            folder.path(),
+            &["validate", name, "--worlds", "3", "--expert", "--json"],
+        ));
+        assert_eq!(told.status.code(), Some(0), "a failure of the expert is a warning");
+        let told: Value = serde_json::from_slice(&told.stdout).expect("it is JSON");
+        (
+            told[0]["worlds"][0]["expert"]["succeeded"].as_u64(),
+            told[0]["warnings"].to_string(),
+        )
+    };
+    assert_eq!(try_of("ways.json"), (Some(3), "[]".to_owned()));
+    let (succeeded, warnings) = try_of("closed.json");
+    assert_eq!(succeeded, Some(0));
+    assert!(warnings.contains("0 of 3 worlds, not in 0, 1, 2"), "{warnings}");
+    let error = fail_in(folder.path(), 2, &["validate", "ways.json", "--expert"]);
+    assert!(error.contains("--worlds"), "{error}");
+}

@@ -4,6 +4,7 @@
 
 mod columns;
 mod episode;
+mod finishing;
 mod gap;
 mod in_order;
 mod journal;
@@ -28,6 +29,7 @@ use driftworld_spec::{BlockKind, Variant, World};
 
 pub use columns::{COLUMNS, ENDED_BY, ENDING};
 pub use episode::{Experience, MOST_STEPS};
+pub use finishing::{Finished, try_expert};
 pub use journal::Journal;
 pub use log_names::same_log_name;
 pub use plan::{ExperienceSpec, FoundWorld, Plan, Sources, log_name};

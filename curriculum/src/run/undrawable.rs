@@ -6,6 +6,7 @@ use driftworld_generator::{GeneratorError, Sampler};
 use driftworld_spec::Variant;
 use serde::Serialize;
 
+use super::finishing::Finished;
 use super::plan::Plan;
 use super::planned::Planned;
 
@@ -59,6 +60,9 @@ pub struct Trial {
     pub other: u64,
     /// The first that failed, 100 at most.
     pub failed: Vec<Failed>,
+    /// What came of letting the agent on rails try the others, where that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub expert: Option<Finished>,
 }
 
 impl Trial {
@@ -72,6 +76,7 @@ impl Trial {
             requirement: 0,
             other: 0,
             failed: Vec::new(),
+            expert: None,
         }
     }
 
