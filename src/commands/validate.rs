@@ -28,8 +28,8 @@ use super::output;
 /// --worlds also draws worlds: of every variant of a task, and of every regime of a scenario. Along a drift, the
 /// variants are checked one by one. A task or scenario fails if one of its worlds cannot be drawn.
 ///
-/// --worlds N --expert also lets the agent on rails try those worlds of a task. Where it does not come to a success that there is,
-/// a warning names the worlds: the way may be closed, or too hard for it.
+/// The agent on rails tries the first 100 of those worlds of a task. Where it does not come to a success that there is, a
+/// warning names the worlds: the way may be closed, too hard for it, or not worth going.
 ///
 /// --elements also tests which elements of the decision process the variants of a task change, as `driftworld elements`
 /// does. A task fails if that contradicts the `affects` of its parameters. A parameter that nothing reads is a warning.
@@ -37,7 +37,6 @@ use super::output;
 #[command(after_help = "Examples:
   driftworld validate examples/tasks
   driftworld validate my_task.json scenario.json --worlds 100
-  driftworld validate my_task.json --worlds 20 --expert
   driftworld validate my_task.json --elements
   driftworld validate --l2explorer map.json")]
 pub(crate) struct Validate {
@@ -50,9 +49,6 @@ pub(crate) struct Validate {
     /// Also draw this many worlds of each variant and regime, and report failures.
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
     worlds: u32,
-    /// Also let the agent on rails try the worlds of tasks, and warn of those whose success it does not come to.
-    #[arg(long, requires = "worlds")]
-    expert: bool,
     /// Also test which elements of the decision process variants change, and fail on what contradicts `affects`.
     #[arg(long)]
     elements: bool,
@@ -68,6 +64,9 @@ pub(crate) struct Validate {
 
 /// The kinds that are checked. Any other recognised kind is refused.
 const DOCUMENTS: [Contents; 4] = [Contents::Task, Contents::World, Contents::Scenario, Contents::Maps];
+
+/// The most worlds of a variant that the agent on rails tries.
+const MOST_TRIED: u64 = 100;
 
 /// What was found in one file.
 struct Verdict {
@@ -197,7 +196,7 @@ impl Validate {
                 let worlds = u64::from(self.worlds);
                 let tried = variants.par_iter().map(|variant| {
                     let mut trial = try_worlds(variant, self.seed, worlds);
-                    trial.expert = self.expert.then(|| try_expert(variant, self.seed, worlds, &catalogue));
+                    trial.expert = Some(try_expert(variant, self.seed, worlds.min(MOST_TRIED), &catalogue));
                     trial
                 });
                 Ok(tried.collect())

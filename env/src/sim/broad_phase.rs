@@ -21,8 +21,6 @@ const WORN: usize = 4;
 pub(super) struct BroadPhase {
     trees: [Tree; 3],
     workspace: BvhWorkspace,
-    /// Whether boxes wait for [`BroadPhase::build`].
-    waits: bool,
 }
 
 #[derive(Default)]
@@ -33,8 +31,6 @@ struct Tree {
     /// How often a body was put somewhere since the tree was built. The boxes around boxes only grow when one moves, so
     /// that in the end every question would lead to every body.
     moved: usize,
-    /// Boxes of a world that is being put together: one tree of all is built faster than box by box.
-    waiting: Vec<(usize, Aabb)>,
 }
 
 impl BroadPhase {
@@ -42,31 +38,12 @@ impl BroadPhase {
         Self {
             trees: Default::default(),
             workspace: BvhWorkspace::default(),
-            waits: true,
-        }
-    }
-
-    /// Builds the trees of what was put until now. Until then they hold nothing.
-    pub(super) fn build(&mut self) {
-        self.waits = false;
-        for tree in &mut self.trees {
-            if tree.waiting.len() < FEW {
-                for (number, area) in tree.waiting.drain(..) {
-                    tree.boxes.insert(area, number as u32);
-                }
-            } else {
-                tree.boxes = Bvh::from_iter(BvhBuildStrategy::default(), std::mem::take(&mut tree.waiting));
-            }
         }
     }
 
     /// Notes where a body of a group is now.
     pub(super) fn put(&mut self, group: Group, number: u32, area: Aabb) {
         let tree = &mut self.trees[place_of(group)];
-        if self.waits {
-            tree.waiting.push((number as usize, area));
-            return;
-        }
         tree.boxes.insert(area, number);
         tree.moved += 1;
         let count = tree.boxes.leaf_count() as usize;

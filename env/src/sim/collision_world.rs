@@ -114,7 +114,6 @@ impl CollisionWorld {
         for (index, (item, object)) in scene.items.iter().zip(&world.objects).enumerate() {
             bodies.add_object(index as u32, item, object.solid);
         }
-        bodies.places.build();
         bodies
     }
 
