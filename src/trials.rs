@@ -82,8 +82,8 @@ pub(crate) fn unfinished(trial: &Trial) -> Option<String> {
         .expert
         .as_ref()
         .filter(|expert| expert.succeeded < expert.worlds)?;
-    let told: Vec<String> = expert.failed.iter().take(MOST_TOLD).map(u64::to_string).collect();
-    let more = if expert.failed.len() > told.len() {
+    let listed: Vec<String> = expert.failed.iter().take(MOST_TOLD).map(u64::to_string).collect();
+    let more = if expert.failed.len() > listed.len() {
         " and more"
     } else {
         ""
@@ -93,6 +93,6 @@ pub(crate) fn unfinished(trial: &Trial) -> Option<String> {
         trial.variant,
         expert.succeeded,
         expert.worlds,
-        told.join(", ")
+        listed.join(", ")
     ))
 }

@@ -192,7 +192,7 @@ impl Validate {
                 let catalogue = self
                     .libraries
                     .catalogue()
-                    .map_err(|failure| ("document/unreadable", failure.text().for_command().to_string()))?;
+                    .map_err(|failure| ("document/unreadable", failure.text().for_command().clone()))?;
                 let worlds = u64::from(self.worlds);
                 let tried = variants.par_iter().map(|variant| {
                     let mut trial = try_worlds(variant, self.seed, worlds);
