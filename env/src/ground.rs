@@ -123,6 +123,8 @@ impl PanelGroup {
             radius: halves.iter().map(|half| half * half).sum::<f32>().sqrt(),
             color,
             lift: 0.0,
+            edges: Vec::new(),
+            height: 0.0,
             blocks: Material::new(&part).blocks,
         }
     }

@@ -40,6 +40,10 @@ pub(crate) struct PanelGroup {
     pub(crate) color: [f32; 3],
     /// How far above their place they are drawn, as a share of the camera's height: 0 for what stands upright.
     pub(crate) lift: f32,
+    /// Where upright panels stand on the ground, from and to; none of what lies.
+    pub(crate) edges: Vec<[[f32; 2]; 2]>,
+    /// How high those are in metres.
+    pub(crate) height: f32,
     pub(crate) blocks: Vec<Block>,
 }
 
@@ -263,7 +267,10 @@ impl Scene {
                     .extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
             }
         }
-        self.panels.push(PanelGroup::of(mesh, color));
+        let mut group = PanelGroup::of(mesh, color);
+        group.edges.extend(edges.iter().map(|(from, to)| [*from, *to]));
+        group.height = height;
+        self.panels.push(group);
     }
 }
 

@@ -6,6 +6,7 @@ use super::canvas::Canvas;
 use super::compose::{CATEGORY_BITS, Composition, Scratch, Walls};
 use super::frame::{CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE, Frame};
 use super::hand::Hand;
+use super::hidden::Hidden;
 #[cfg(target_arch = "x86_64")]
 use super::lanes::{Avx2, Avx512};
 use super::lanes::{Lanes, MOST_LANES, Portable};
@@ -35,6 +36,9 @@ pub struct CpuRenderer {
     /// Colours of all points, where there are several in a pixel.
     points: Vec<u8>,
     hand: Hand,
+    hidden: Hidden,
+    /// Whether what walls hide is left out.
+    hides: bool,
 }
 
 /// An instruction set that this processor has.
@@ -82,7 +86,16 @@ impl CpuRenderer {
             scratch: Scratch::default(),
             points: Vec::new(),
             hand: Hand::default(),
+            hidden: Hidden::default(),
+            hides: true,
         }
+    }
+
+    /// A renderer that draws what walls hide, too, or does not: the pictures are the same.
+    #[cfg(test)]
+    pub(super) fn that_hides(mut self, hides: bool) -> Self {
+        self.hides = hides;
+        self
     }
 
     /// The name of the instruction set in use: `portable`, `avx2` or `avx512`.
@@ -199,15 +212,28 @@ impl CpuRenderer {
         let mut order = std::mem::take(&mut self.order);
         find(scene, &view, walls.is_some(), &mut order);
         sort(&mut order);
+        self.hidden.clear(&view);
         for &visible in &order {
             match visible.drawable {
                 Drawable::Item(index) => {
                     let item = &scene.items[index as usize];
+                    let [x, y] = item.position;
+                    let top = item.asset.height * item.scale;
+                    let radius = item.asset.ball_radius() * item.scale;
+                    if self.hides && self.hidden.hides_ball([x, y, top / 2.0], radius, top, &view) {
+                        continue;
+                    }
                     self.draw_item::<L, ITEMS>(lanes, item, index, visible, &view, &shader, scene);
                 }
                 Drawable::Panels(index) => {
                     let group = &scene.panels()[index as usize];
+                    if self.hides && self.hidden.hides_panels(group, &view) {
+                        continue;
+                    }
                     self.draw_panels::<L, ITEMS>(lanes, group, visible, &view, &shader, scene);
+                    if self.hides {
+                        self.hidden.note(group, &view);
+                    }
                 }
             }
         }

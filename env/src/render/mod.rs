@@ -13,6 +13,7 @@ mod frame;
 #[cfg(feature = "gpu")]
 mod gpu;
 mod hand;
+mod hidden;
 mod kind;
 mod lanes;
 mod picture;

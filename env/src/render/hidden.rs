@@ -1,0 +1,197 @@
+//! What walls hide: how near a wall stands in each column of a picture. What is behind it and no higher is not drawn. Where
+//! things are is in `visibility.rs`.
+
+use super::view::{NEAR, View};
+use crate::scene::PanelGroup;
+
+/// Room for how positions round: in columns, and as a share of a depth.
+const COLUMN: f32 = 0.01;
+const SHARE: f32 = 1e-3;
+
+/// Walls that were drawn, as columns see them. Only for cameras that look straight ahead, over the ground and below the
+/// tops of walls: there a wall fills its columns from the ground to above the horizon.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Hidden {
+    /// 1 / depth of the nearest wall of each column; 0 without one.
+    inverse: Vec<f32>,
+    /// All walls that are noted are at least so high, in metres.
+    height: Option<f32>,
+    is_usable: bool,
+}
+
+/// Where something is seen.
+#[derive(Clone, Copy, Debug)]
+struct Span {
+    /// First and last column.
+    columns: [f32; 2],
+    /// Its least depth in metres.
+    nearest: f32,
+}
+
+impl Hidden {
+    /// Forgets what was noted.
+    pub(super) fn clear(&mut self, view: &View) {
+        self.inverse.clear();
+        self.inverse.resize(view.size[0] as usize, 0.0);
+        self.height = None;
+        self.is_usable = view.axes.forward[2] == 0.0 && view.axes.right[2] == 0.0 && view.position[2] > 0.0;
+    }
+
+    /// Notes walls that were drawn.
+    pub(super) fn note(&mut self, group: &PanelGroup, view: &View) {
+        let is_high_enough = match self.height {
+            Some(height) => group.height >= height,
+            None => group.height > view.position[2] * (1.0 + SHARE),
+        };
+        if !self.is_usable || !is_high_enough {
+            return;
+        }
+        for [from, to] in &group.edges {
+            self.note_edge(place(view, *from), place(view, *to), view);
+        }
+        if !group.edges.is_empty() {
+            self.height.get_or_insert(group.height);
+        }
+    }
+
+    fn note_edge(&mut self, mut from: [f32; 2], mut to: [f32; 2], view: &View) {
+        // Walls are seen from their right-hand side.
+        if from[0] * to[1] - from[1] * to[0] >= 0.0 {
+            return;
+        }
+        let least = 2.0 * NEAR;
+        if from[1] < least && to[1] < least {
+            return;
+        }
+        let cut = |near: [f32; 2], far: [f32; 2]| {
+            let along = (least - near[1]) / (far[1] - near[1]);
+            [near[0] + along * (far[0] - near[0]), least]
+        };
+        if from[1] < least {
+            from = cut(from, to);
+        } else if to[1] < least {
+            to = cut(to, from);
+        }
+        let [a, b] = [from, to].map(|[right, ahead]| (column(view, right, ahead), 1.0 / ahead));
+        let [(left, left_inverse), (right, right_inverse)] = if a.0 < b.0 { [a, b] } else { [b, a] };
+        let last = self.inverse.len() as f32 - 1.0;
+        let first = (left + COLUMN).ceil().max(0.0);
+        let last = (right - COLUMN).floor().min(last);
+        if first > last {
+            return;
+        }
+        let slope = (right_inverse - left_inverse) / (right - left);
+        for (step, inverse) in self.inverse[first as usize..=last as usize].iter_mut().enumerate() {
+            let here = left_inverse + slope * (first + step as f32 - left);
+            *inverse = inverse.max(here);
+        }
+    }
+
+    /// Whether walls hide all of a group of panels.
+    pub(super) fn hides_panels(&self, group: &PanelGroup, view: &View) -> bool {
+        if !self.may_hide(group.height) || group.edges.is_empty() {
+            return false;
+        }
+        let mut span = Span {
+            columns: [f32::INFINITY, f32::NEG_INFINITY],
+            nearest: f32::INFINITY,
+        };
+        for [from, _] in &group.edges {
+            let [right, ahead] = place(view, *from);
+            if ahead < 2.0 * NEAR {
+                return false;
+            }
+            let at = column(view, right, ahead);
+            span.columns = [span.columns[0].min(at), span.columns[1].max(at)];
+            span.nearest = span.nearest.min(ahead);
+        }
+        self.hides(span)
+    }
+
+    /// Whether walls hide a ball, of which nothing is higher than `top`, in metres.
+    pub(super) fn hides_ball(&self, middle: [f32; 3], radius: f32, top: f32, view: &View) -> bool {
+        if !self.may_hide(top) {
+            return false;
+        }
+        let [right, _, ahead] = view.view_from_world(middle);
+        let (nearest, farthest) = (ahead - radius, ahead + radius);
+        if nearest < 2.0 * NEAR {
+            return false;
+        }
+        let [left, right] = [right - radius, right + radius];
+        let left = column(view, left, if left < 0.0 { nearest } else { farthest });
+        let right = column(view, right, if right > 0.0 { nearest } else { farthest });
+        self.hides(Span {
+            columns: [left, right],
+            nearest,
+        })
+    }
+
+    fn may_hide(&self, top: f32) -> bool {
+        self.height.is_some_and(|height| top <= height)
+    }
+
+    fn hides(&self, span: Span) -> bool {
+        let last = self.inverse.len() as f32 - 1.0;
+        let first = (span.columns[0] - COLUMN).ceil().max(0.0);
+        let last = (span.columns[1] + COLUMN).floor().min(last);
+        if first > last {
+            return true;
+        }
+        let inverse = (1.0 + SHARE) / span.nearest;
+        let mut walls = self.inverse[first as usize..=last as usize].iter();
+        walls.all(|wall| *wall > inverse)
+    }
+}
+
+/// A place on the ground as the camera sees it: to the right and ahead, in metres.
+fn place(view: &View, [x, y]: [f32; 2]) -> [f32; 2] {
+    let [right, _, ahead] = view.view_from_world([x, y, 0.0]);
+    [right, ahead]
+}
+
+fn column(view: &View, right: f32, ahead: f32) -> f32 {
+    right / ahead * view.scale + view.size[0] / 2.0 - 0.5
+}
+
+#[cfg(test)]
+mod tests {
+    use driftworld_spec::{Layout, Maze, Object, WorldDraft};
+    use proptest::prelude::*;
+
+    use crate::camera::Camera;
+    use crate::render::{CpuRenderer, Frame};
+    use crate::scene::Scene;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        /// To the bit, but for a pixel on a seam of what is in front.
+        #[test]
+        fn what_is_hidden_is_not_seen(
+            (seed, standing, wall) in (0_u64..999, 0.3..=1.0, 0.05..1.5_f64),
+            at in prop::array::uniform2(-11.5_f32..11.5),
+            (heading, eye, low) in (0.0_f32..360.0, 0.1_f32..2.0, 1.0..3.0_f64),
+            things in prop::collection::vec((prop::array::uniform2(-11.0_f64..11.0), 0.2..3.0_f64), 0..12),
+        ) {
+            let mut draft = WorldDraft::default();
+            let maze = Maze { seed: Some(seed), wall, height: Some(low), ..Maze::default() };
+            draft.environment_params.layout = Some(Layout { maze: Some(maze), standing, ..Layout::default() });
+            draft.objects.extend(things.into_iter().map(|(at, scale)| Object { scale, ..Object::new("geometric", at) }));
+            let scene = Scene::from_world(&draft.check().expect("the world is sound"));
+            let camera = Camera::first_person(at, heading, eye, 60.0);
+            let [hiding, all] = [true, false].map(|hides| {
+                let mut frame = Frame::new(84, 84);
+                CpuRenderer::new().that_hides(hides).render(&scene, &camera, &mut frame);
+                frame
+            });
+            let other = (0..84 * 84).filter(|pixel| {
+                let same = |rgb: &Frame| rgb.rgb[3 * pixel..3 * pixel + 3].to_vec();
+                same(&hiding) != same(&all) || hiding.depth[*pixel].to_bits() != all.depth[*pixel].to_bits()
+                    || hiding.instance[*pixel] != all.instance[*pixel]
+            });
+            let other: Vec<usize> = other.collect();
+            prop_assert!(other.is_empty(), "{} pixels, first at {:?}", other.len(), other.first().map(|at| [at % 84, at / 84]));
+        }
+    }
+}
