@@ -55,6 +55,11 @@ impl LeafReader {
             .enumerate()
         {
             let json: Json = serde_json::from_slice(field).expect("fields of a world are JSON");
+            // That there is a struct at all: a key is one by `{}`, which consists of nothing else.
+            if json.is_object() {
+                let leaf = Leaf::Word(self.number("{}".to_owned()));
+                all.push((self.number(format!("{line}/")), leaf));
+            }
             self.walk(&json, &mut line.to_string(), &mut all);
         }
         all.sort_unstable_by_key(|(path, _)| *path);
@@ -129,7 +134,7 @@ impl LeafReader {
 
 impl Leaves {
     /// How far two are apart: the sum over all paths of the difference of two numbers over the larger in size, of points
-    /// the way between them in tens of metres, up to 2; 1 for another word, 1 for what stands in one only; of sets of words, how many have to be changed, added or taken away;
+    /// the way between them in tens of metres, up to 2; 1 for another word, 1 for what stands in one only, a struct too; of sets of words, how many have to be changed, added or taken away;
     /// of things, the sum over those that are matched, as is cheapest, and all that the others consist of. A metric; 0
     /// for equal ones. Both must come from one reader.
     pub(super) fn distance(&self, other: &Self) -> f64 {
@@ -263,7 +268,15 @@ mod tests {
         assert!((d("2\n", "2.001\n") - 0.001 / 2.001).abs() < 1e-12);
         assert_eq!(d("2\n", "20\n"), 0.9);
         assert_eq!(d("\"a\"\n[1,2]\n", "\"b\"\n[1,2]\n"), 1.0);
-        assert_eq!(d("null\n", "{\"x\":1,\"y\":[1,2]}\n"), 3.0);
+        assert_eq!(d("null\n", "{\"x\":1,\"y\":[1,2]}\n"), 4.0);
+        assert_eq!(
+            (
+                d("null\n", "{}\n"),
+                d("{}\n", "{\"x\":1}\n"),
+                d("null\n", "{\"x\":1}\n")
+            ),
+            (1.0, 1.0, 2.0)
+        );
         assert_eq!(d("[]\n5\n", "[\"a\"]\n10\n"), 1.5);
     }
 

@@ -158,7 +158,7 @@ fn total(a: &Sketch, b: &Sketch, weights: &Weights) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use driftworld_spec::{Color, Disc, Element, Object, Stimulus, WorldDraft, Zone, ZoneEnd};
+    use driftworld_spec::{Color, Disc, Door, Element, Object, Portable, Stimulus, Switch, WorldDraft, Zone, ZoneEnd};
     use proptest::prelude::*;
 
     fn world(color: &str, reward: f64) -> World {
@@ -204,6 +204,25 @@ mod tests {
         assert_eq!(distance.differs_in(), [Element::S, Element::R, Element::O]);
         let elements = [Element::S, Element::R, Element::O].map(|element| distance.element(element));
         assert_eq!(elements, [Some(1.0), Some(0.5), Some(1.0)]);
+    }
+
+    #[test]
+    fn a_key_a_door_and_a_switch_are_more_than_bodies() {
+        let with = |change: fn(&mut Object)| {
+            let mut object = Object::new("cube", [3.0, 4.0]);
+            change(&mut object);
+            World::default().edit(|world| world.objects.push(object)).unwrap()
+        };
+        let bare = with(|_| ());
+        for thing in [
+            with(|object| object.portable = Some(Portable::default())),
+            with(|object| object.door = Some(Door::default())),
+            with(|object| object.switch = Some(Switch::of("gate"))),
+        ] {
+            let distance = world_distance(&bare, &thing, &Weights::default());
+            assert_eq!(distance.differs_in(), [Element::T]);
+            assert!(distance.total >= 1.0, "{}", distance.total);
+        }
     }
 
     #[test]
