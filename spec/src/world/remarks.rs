@@ -3,7 +3,7 @@
 
 use super::lock_remarks::lock_remarks;
 use super::thing_remarks::thing_remarks;
-use super::{EndCondition, MotionModel, Object, World};
+use super::{EndCondition, MotionModel, Object, World, ZoneEnd};
 use crate::layout::{self, Layout};
 use crate::warning::{Remarks, Warning};
 
@@ -43,6 +43,14 @@ impl World {
             let text = format!("the zone lies outside the {width} × {depth} m arena; it is kept, out of reach");
             remarks.push(format!("/environment_params/zones/{index}"), text);
         }
+        let failing = |place: [f64; 2]| {
+            let mut zones = arena.zones.iter().enumerate();
+            zones.find(|(_, zone)| zone.ends == Some(ZoneEnd::Failure) && zone.contains(place))
+        };
+        if let Some((zone, _)) = failing(self.agent_params.coordinates) {
+            let text = format!("the agent starts in zone {zone}, which ends the episode as a failure");
+            remarks.push("/agent_params/coordinates".to_owned(), text);
+        }
         if let Some(odd) = self.plan().and_then(Layout::remark) {
             remarks.push(layout::POINTER.to_owned(), odd);
         }
@@ -56,6 +64,13 @@ impl World {
         for (index, object) in self.objects.iter().enumerate() {
             if let Some(place) = self.out_of_reach(object) {
                 remarks.push(format!("/objects/{index}/coordinates"), place);
+            }
+            if let Some((zone, _)) = failing(object.coordinates).filter(|_| self.is_wanted(object)) {
+                let text = format!(
+                    "the {} stands in zone {zone}, which ends the episode as a failure before the agent gets there",
+                    object.class
+                );
+                remarks.push(format!("/objects/{index}/coordinates"), text);
             }
             if object.stands_still() {
                 let model = serde_json::to_value(object.motion_model).unwrap_or_default();
@@ -75,6 +90,17 @@ impl World {
         remarks.in_text(name, text)
     }
 
+    /// Whether the agent is to go to an object: it pays, or touching it or picking it up ends the episode well.
+    fn is_wanted(&self, object: &Object) -> bool {
+        let tag = object.tag.as_ref();
+        let mut ends = self.rules.success.iter();
+        let is_end = ends.any(|condition| match condition {
+            EndCondition::Touch(wanted) | EndCondition::Carried(wanted) => Some(wanted) == tag,
+            _ => false,
+        });
+        is_end || object.is_target()
+    }
+
     /// Where an object stands that nobody comes to: outside the arena, or inside which wall; `None` on free ground.
     pub(crate) fn out_of_reach(&self, object: &Object) -> Option<String> {
         let arena = &self.environment_params;
@@ -88,5 +114,46 @@ impl World {
         Some(format!(
             "the {class} stands at ({x:.1}, {y:.1}), {place}; it is kept, out of reach"
         ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Rules, WorldDraft, Zone};
+
+    #[test]
+    fn a_start_and_a_goal_in_a_zone_that_fails_are_said() {
+        let said = |start: [f64; 2], goal: [f64; 2], ends: Option<ZoneEnd>| {
+            let mut world = WorldDraft::default();
+            let mut zone = Zone::disc([5.0, 0.0], 2.0);
+            zone.ends = ends;
+            world.environment_params.zones = vec![zone];
+            world.agent_params.coordinates = start;
+            let mut cube = Object::new("cube", goal);
+            cube.tag = Some("goal".to_owned());
+            world.objects = vec![cube, Object::new("tree", [5.0, 1.0])];
+            world.rules = Rules {
+                success: vec![EndCondition::Touch("goal".to_owned())],
+                ..Rules::default()
+            };
+            let world = world.check().expect("the world is sound");
+            let text = serde_json::to_string(&world).expect("a world is JSON");
+            let remarks = world.remarks("w.json", &text);
+            remarks.iter().map(ToString::to_string).collect::<Vec<_>>()
+        };
+        let fails = Some(ZoneEnd::Failure);
+        assert_eq!(said([-5.0, 0.0], [-9.0, 0.0], fails), [""; 0]);
+        assert_eq!(said([5.0, 0.0], [5.0, 0.0], Some(ZoneEnd::Success)), [""; 0]);
+        let start = said([5.0, 1.0], [-9.0, 0.0], fails);
+        assert!(
+            start.len() == 1 && start[0].contains("the agent starts in zone 0"),
+            "{start:?}"
+        );
+        let goal = said([-5.0, 0.0], [4.0, 0.0], fails);
+        assert!(
+            goal.len() == 1 && goal[0].contains("the cube stands in zone 0"),
+            "{goal:?}"
+        );
     }
 }

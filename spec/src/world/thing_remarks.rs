@@ -88,6 +88,7 @@ fn ending(world: &World, condition: &EndCondition) -> Option<String> {
     let portable = |tag: &String| has(world, tag, |object| object.portable.is_some());
     let text = |tag: &String, what: &str| Some(format!("no {what} has the tag {tag:?}; this never ends the episode"));
     match condition {
+        EndCondition::Touch(tag) if !has(world, tag, |_| true) => text(tag, "object"),
         EndCondition::Opened(tag) if !has(world, tag, |object| object.door.is_some()) => text(tag, "door"),
         EndCondition::Carried(tag) if !portable(tag) => text(tag, "portable object"),
         EndCondition::Delivered(delivery) if !has(world, &delivery.tag, |_| true) => text(&delivery.tag, "object"),
@@ -189,6 +190,7 @@ mod tests {
                     opened,
                     EndCondition::Delivered(delivery),
                     EndCondition::Carried("key".into()),
+                    EndCondition::Touch("goal".into()),
                 ];
                 world.rules = Rules {
                     success,
@@ -198,6 +200,7 @@ mod tests {
             &[
                 "/rules/success/0: no door has the tag \"key\"",
                 "/rules/success/1: no object has the tag \"box\"",
+                "/rules/success/3: no object has the tag \"goal\"",
             ],
         );
     }
