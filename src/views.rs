@@ -63,7 +63,29 @@ impl<'a> Views<'a> {
     /// From outside, above a corner of the arena.
     pub(crate) fn overview(&self, width: u32) -> Result<Picture, Failure> {
         let scene = self.scene.clone().with_wall_tops();
-        self.smooth(&scene, &Camera::overview(&scene), width)
+        self.smooth(&scene, &self.above(&scene), width)
+    }
+
+    /// The camera of the overview: higher, and looking down at the same ground, where walls would hide a small arena.
+    fn above(&self, scene: &Scene) -> Camera {
+        let camera = Camera::overview(scene);
+        let layout = self.world.plan().into_iter().flat_map(|plan| &plan.walls);
+        let wall = layout
+            .filter_map(|wall| wall.height)
+            .fold(self.world.environment_params.wall_height, f64::max) as f32;
+        let span = scene.arena_size().into_iter().fold(4.0, f32::max);
+        let hidden = wall - span / 12.0;
+        if hidden <= 0.0 {
+            return camera;
+        }
+        let [x, y, z] = camera.position;
+        let height = z + (2.0 * hidden).min(span);
+        let ahead = z / -camera.pitch_deg.to_radians().tan();
+        Camera {
+            position: [x, y, height],
+            pitch_deg: -(height / ahead).atan().to_degrees(),
+            ..camera
+        }
     }
 
     /// What the agent sees at the start.
