@@ -58,7 +58,7 @@ mod worlds;
 pub(crate) use failure::argument;
 pub use failure::{Cause, Failure, FailureText, Warn};
 
-/// The README's Rust example is compiled with the documentation's tests.
+/// The Rust of the page is compiled with the documentation's tests.
 #[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct Readme;
+#[doc = include_str!("../docs/rust.md")]
+struct RustPage;

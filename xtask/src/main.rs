@@ -9,6 +9,7 @@
 
 mod advisories;
 mod bench;
+mod book;
 mod chaos;
 mod deny;
 mod dist;
@@ -54,6 +55,7 @@ Usage:
   cargo xtask test --list           the stages and what each holds
   cargo xtask STAGE                 the same as `test --only STAGE`, but for `schemas` and `protocol`
   cargo xtask schemas               rewrite schemas/*.json and docs/reference/*.md from the Rust types
+  cargo xtask docs                  the documentation of the crates, and the book of docs/ as target/book/index.html
   cargo xtask protocol              rewrite unity/src/protocol.rs from unity/proto/*.proto
   cargo xtask advisories            check advisories, and write xtask/advisories-checked.txt
   cargo xtask fuzz SECONDS [TARGET]...
@@ -69,7 +71,7 @@ Usage:
   cargo xtask bench [NAME]          measure, optimised: all benches, or those of NAME (generator, similarity,
                                     env, metrics, unity)
   cargo xtask bench peers PYTHON SCRIPTS
-                                    ours beside the peers that PYTHON has, by the scripts in a folder; draws the README's plot";
+                                    ours beside the peers that PYTHON has, by the scripts in a folder; draws docs/images/speed.svg";
 
 /// What the arguments ask for.
 #[derive(Debug, PartialEq)]

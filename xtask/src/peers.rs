@@ -1,4 +1,4 @@
-//! `cargo xtask bench peers`: the peers' scripts and our own bench in one run on one machine, as a table and as the README's plot.
+//! `cargo xtask bench peers`: the peers' scripts and our own bench in one run on one machine, as a table and as a plot.
 //! What the scripts measure is their own; each prints lines of a name, `SPS [a, b, c]` and `resets/s [a, b, c]`.
 
 use std::fmt::Write as _;

@@ -7,7 +7,7 @@ use crate::error::XtaskError;
 use crate::outcome::Outcome;
 use crate::process::{AS_TESTED, cargo, run};
 use crate::workspace::Workspace;
-use crate::{bench, deny, documents, examples, layers, protocol, python, rebuilds, runner, schemas, tidy, unity};
+use crate::{bench, book, deny, documents, examples, layers, protocol, python, rebuilds, runner, schemas, tidy, unity};
 
 /// One step of `cargo xtask test`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -101,7 +101,9 @@ impl Stage {
                 "with the feature gpu, a graphics card draws what the processor draws; skipped without an adapter"
             }
             Self::Doctests => "every example in a doc comment runs",
-            Self::Docs => "the documentation builds without a warning",
+            Self::Docs => {
+                "the documentation builds without a warning, the book of docs/ too, and every link of it leads somewhere"
+            }
             Self::Examples => "every program in examples/ ends well in an empty folder",
             Self::Benches => "every bench runs once",
             Self::Schemas => "schemas/*.json and docs/reference/*.md equal what the Rust types generate",
@@ -153,7 +155,8 @@ impl Stage {
             Self::Docs => {
                 let mut command = cargo(workspace, &["doc", "--workspace", "--no-deps", "--all-features"]);
                 command.env("RUSTDOCFLAGS", "-D warnings");
-                run(command).map(|()| Outcome::Passed)
+                run(command)?;
+                book::build(workspace).map(Outcome::PassedWith)
             }
             Self::Examples => examples::stage(workspace).map(Outcome::PassedWith),
             Self::Benches => bench::stage(workspace).map(|()| Outcome::Passed),

@@ -25,6 +25,11 @@ pub(super) fn check(tree: &Tree) -> Vec<Finding> {
     findings
 }
 
+/// The paths from the root that a page's links name.
+pub(super) fn resolved(path: &str, text: &str) -> impl Iterator<Item = String> {
+    links(text).filter_map(move |(_, target)| resolve(path, target))
+}
+
 /// Lines of a Markdown text outside fenced blocks, numbered from 1.
 pub(super) fn prose(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let mut fence: Option<&str> = None;

@@ -2,6 +2,7 @@
 //! whom is the business of `layers`.
 
 mod architecture;
+mod book;
 mod links;
 mod marks;
 mod names;
@@ -39,6 +40,7 @@ fn check(tree: &Tree, members: &[(String, String)]) -> Vec<Finding> {
     findings.extend(retired::check(tree));
     findings.extend(shown::check(tree));
     findings.extend(architecture::check(tree, members));
+    findings.extend(book::check(tree));
     findings.extend(unsafety::check(tree));
     findings.extend(sizes::check(tree));
     findings

@@ -58,7 +58,7 @@ impl Tree {
     ) -> impl Iterator<Item = (&'a str, impl Iterator<Item = (usize, &'a str)>)> {
         let is_shipped = move |path: &str| {
             let is_source = path.starts_with("src/") || path.contains("/src/");
-            let is_apart = ["xtask/", "examples/", but]
+            let is_apart = ["xtask/", "examples/", "book/", but]
                 .iter()
                 .any(|folder| path.starts_with(folder));
             let is_test = path.ends_with("/tests.rs") || path.contains("/tests/");
