@@ -11,11 +11,11 @@ pub(super) struct Canvas {
     /// Pixels from one row to the next.
     pub(super) stride: usize,
     /// 1 / depth; 0 is infinitely far.
-    pub(super) inverse_depth: Vec<f32>,
+    pub(super) inverse_depth: Aligned<f32>,
     /// Colour in the lower three bytes, red lowest; a label in the highest. Counts where something was drawn.
-    pub(super) pixels: Vec<u32>,
+    pub(super) pixels: Aligned<u32>,
     /// Number of the item plus 1, where that is asked for.
-    pub(super) items: Vec<u32>,
+    pub(super) items: Aligned<u32>,
 }
 
 /// A triangle on the screen, ready to be filled. Pixel centres have whole coordinates.
@@ -40,11 +40,11 @@ impl Canvas {
         let stride = width.next_multiple_of(MOST_LANES);
         let pixels = stride * height;
         (self.width, self.height, self.stride) = (width, height, stride);
-        self.inverse_depth.clear();
-        self.inverse_depth.resize(pixels, 0.0);
+        self.inverse_depth.resize(pixels);
+        self.inverse_depth.fill(0.0);
         // What lies in these from before is never read: depth says where something was drawn.
-        self.pixels.resize(pixels, 0);
-        self.items.resize(if with_items { pixels } else { 0 }, 0);
+        self.pixels.resize(pixels);
+        self.items.resize(if with_items { pixels } else { 0 });
     }
 
     /// Draws a triangle where nothing nearer is.
@@ -57,9 +57,16 @@ impl Canvas {
         let packed = lanes.splat_word(triangle.pixel);
         let item = lanes.splat_word(triangle.item);
         let top = rows[0] as f32;
-        let last_start = self.stride - L::N;
+        let stride = self.stride;
+        let (depths, pixels, items) = (&mut *self.inverse_depth, &mut *self.pixels, &mut *self.items);
+        let last_start = stride - L::N;
+        let reach = (rows[1] - rows[0] >= TALL).then(|| Reach::of(triangle));
         let mut start = columns[0].min(last_start);
         loop {
+            let [first, last] = match &reach {
+                Some(reach) => reach.rows(start as f32, (start + L::N - 1) as f32, rows),
+                None => rows,
+            };
             let x = lanes.add(lanes.count_up(), lanes.splat(start as f32));
             let mut e0 = at_top(lanes, triangle.edges[0], x, top);
             let mut e1 = at_top(lanes, triangle.edges[1], x, top);
@@ -69,19 +76,23 @@ impl Canvas {
             let d1 = lanes.splat(triangle.edges[1][2]);
             let d2 = lanes.splat(triangle.edges[2][2]);
             let down = lanes.splat(triangle.inverse_depth[2]);
-            let mut pixel = rows[0] * self.stride + start;
-            for _ in rows[0]..=rows[1] {
-                let depths = &mut self.inverse_depth[pixel..pixel + L::N];
+            for _ in rows[0]..first {
+                (e0, e1, e2) = (lanes.add(e0, d0), lanes.add(e1, d1), lanes.add(e2, d2));
+                inverse = lanes.add(inverse, down);
+            }
+            let mut pixel = first * stride + start;
+            for _ in first..=last {
+                let depths = &mut depths[pixel..pixel + L::N];
                 let inside = lanes.at_least(lanes.min(e0, lanes.min(e1, e2)), zero);
                 let taken = lanes.both(inside, lanes.above(inverse, lanes.load(depths)));
                 lanes.store_where(taken, inverse, depths);
-                lanes.store_words_where(taken, packed, &mut self.pixels[pixel..pixel + L::N]);
+                lanes.store_words_where(taken, packed, &mut pixels[pixel..pixel + L::N]);
                 if ITEMS {
-                    lanes.store_words_where(taken, item, &mut self.items[pixel..pixel + L::N]);
+                    lanes.store_words_where(taken, item, &mut items[pixel..pixel + L::N]);
                 }
                 (e0, e1, e2) = (lanes.add(e0, d0), lanes.add(e1, d1), lanes.add(e2, d2));
                 inverse = lanes.add(inverse, down);
-                pixel += self.stride;
+                pixel += stride;
             }
             start += L::N;
             if start > columns[1] {
@@ -92,8 +103,184 @@ impl Canvas {
     }
 }
 
+/// Rows from which on it is worth knowing which of them a triangle reaches in a few columns.
+const TALL: usize = 12;
+
+/// Which rows a triangle reaches in some columns: never fewer than it does, however its edges are rounded.
+struct Reach {
+    edges: [[f32; 3]; 3],
+    /// 1 / what each edge gains from row to row.
+    per_row: [f32; 3],
+    /// How far each may be off through rounding.
+    off: [f32; 3],
+}
+
+impl Reach {
+    fn of(triangle: &Triangle) -> Self {
+        let Triangle {
+            edges, columns, rows, ..
+        } = *triangle;
+        let count = (rows[1] - rows[0] + 8) as f32;
+        Self {
+            edges,
+            per_row: edges.map(|edge| 1.0 / edge[2]),
+            off: edges.map(|[c, a, b]| {
+                let largest = c.abs() + a.abs() * (columns[1] + MOST_LANES) as f32 + b.abs() * rows[1] as f32;
+                largest * count * f32::EPSILON
+            }),
+        }
+    }
+
+    fn rows(&self, left: f32, right: f32, rows: [usize; 2]) -> [usize; 2] {
+        let [mut first, mut last] = rows.map(|row| row as f32);
+        for k in 0..3 {
+            let [c, a, b] = self.edges[k];
+            let most = c + (a * left).max(a * right) + self.off[k];
+            let zero = -most * self.per_row[k];
+            if b > 0.0 {
+                first = first.max(zero - 1.0);
+            } else if b < 0.0 {
+                last = last.min(zero + 1.0);
+            }
+        }
+        // One row at least is gone through, which costs little.
+        let first = (first as usize).min(rows[1]);
+        [first, (last.max(0.0) as usize).clamp(first, rows[1])]
+    }
+}
+
+/// A buffer whose first number is at the start of a line of the processor's memory, so that whole vectors lie in one.
+#[derive(Debug, Default)]
+pub(super) struct Aligned<T> {
+    numbers: Vec<T>,
+    start: usize,
+    length: usize,
+}
+
+/// Bytes of a line.
+const LINE: usize = 64;
+
+impl<T: Copy + Default> Aligned<T> {
+    /// Makes it so long. What is in it then is anything.
+    fn resize(&mut self, length: usize) {
+        let slack = LINE / size_of::<T>();
+        self.numbers.resize(length + slack, T::default());
+        self.start = self.numbers.as_ptr().align_offset(LINE).min(slack);
+        self.length = length;
+    }
+}
+
+impl<T: Clone> Clone for Aligned<T> {
+    /// The copy's numbers may lie elsewhere in a line.
+    fn clone(&self) -> Self {
+        Self {
+            numbers: self.numbers.clone(),
+            ..*self
+        }
+    }
+}
+
+impl<T> std::ops::Deref for Aligned<T> {
+    type Target = [T];
+
+    #[inline(always)]
+    fn deref(&self) -> &[T] {
+        &self.numbers[self.start..self.start + self.length]
+    }
+}
+
+impl<T> std::ops::DerefMut for Aligned<T> {
+    #[inline(always)]
+    fn deref_mut(&mut self) -> &mut [T] {
+        &mut self.numbers[self.start..self.start + self.length]
+    }
+}
+
 /// `c + a·x + b·y` in one row.
 #[inline(always)]
 fn at_top<L: Lanes>(lanes: L, [c, a, b]: [f32; 3], x: L::Float, y: f32) -> L::Float {
     lanes.mul_add(lanes.splat(a), x, lanes.splat(c + b * y))
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::super::lanes::Portable;
+    use super::*;
+
+    /// A triangle of these corners, each with its 1 / depth; clockwise on the screen, where rows go down.
+    fn triangle(corners: [[f32; 2]; 3], inverse: [f32; 3], size: [usize; 2]) -> Option<Triangle> {
+        let edge = |k: usize| {
+            let ([px, py], [qx, qy]) = (corners[(k + 1) % 3], corners[(k + 2) % 3]);
+            [qx * py - px * qy, qy - py, px - qx]
+        };
+        let edges = [edge(0), edge(1), edge(2)];
+        let area = edges[0][0] + edges[1][0] + edges[2][0];
+        let ends = |axis: usize| {
+            let values = corners.map(|corner| corner[axis]);
+            let low = values.into_iter().fold(f32::INFINITY, f32::min).max(0.0).ceil();
+            let high = values
+                .into_iter()
+                .fold(f32::NEG_INFINITY, f32::max)
+                .min(size[axis] as f32 - 1.0);
+            (low <= high).then_some([low as usize, high as usize])
+        };
+        let plane = |k: usize| (0..3).map(|corner| edges[corner][k] * inverse[corner]).sum::<f32>() / area;
+        (area > 0.0).then_some(())?;
+        Some(Triangle {
+            edges,
+            inverse_depth: [plane(0), plane(1), plane(2)],
+            columns: ends(0)?,
+            rows: ends(1)?,
+            pixel: 7,
+            item: 3,
+        })
+    }
+
+    /// What a triangle leaves, place by place, as `fill` has it: every row gone through.
+    fn plainly(triangle: &Triangle, canvas: &Canvas) -> Vec<f32> {
+        let mut depths = vec![0.0; canvas.stride * canvas.height];
+        let first = triangle.rows[0] as f32;
+        for x in 0..canvas.stride {
+            let at = |[c, a, b]: [f32; 3]| a * x as f32 + (c + b * first);
+            let mut edges = triangle.edges.map(at);
+            let mut inverse = at(triangle.inverse_depth);
+            for y in triangle.rows[0]..=triangle.rows[1] {
+                if edges.iter().all(|edge| *edge >= 0.0) && inverse > 0.0 {
+                    depths[y * canvas.stride + x] = inverse;
+                }
+                for (edge, [_, _, down]) in edges.iter_mut().zip(triangle.edges) {
+                    *edge += down;
+                }
+                inverse += triangle.inverse_depth[2];
+            }
+        }
+        depths
+    }
+
+    proptest! {
+        #[test]
+        fn rows_that_are_left_out_hold_nothing_of_a_triangle(
+            corners in prop::array::uniform3(prop::array::uniform2(prop_oneof![-300.0..400.0_f32, -9.0..99.0_f32, Just(30.0)])),
+            inverse in prop::array::uniform3(0.01..9.0_f32),
+        ) {
+            let size = [84, 90];
+            let found = [corners, [corners[0], corners[2], corners[1]]].into_iter().find_map(|corners| triangle(corners, inverse, size));
+            let mut canvas = Canvas::default();
+            canvas.clear(size[0], size[1], true);
+            if let Some(triangle) = found {
+                canvas.fill::<_, true>(Portable, &triangle);
+                let drawn: Vec<u32> = canvas.inverse_depth.iter().map(|depth| depth.to_bits()).collect();
+                let plain = plainly(&triangle, &canvas);
+                for (place, (drawn, plain)) in drawn.into_iter().zip(plain).enumerate() {
+                    // Beyond its last columns a triangle may fill up a vector, or not.
+                    if (triangle.columns[0]..=triangle.columns[1]).contains(&(place % canvas.stride)) {
+                        prop_assert_eq!(drawn, plain.to_bits(), "row {}, column {}", place / canvas.stride, place % canvas.stride);
+                        prop_assert_eq!(canvas.items[place] == 3, plain > 0.0);
+                    }
+                }
+            }
+        }
+    }
 }

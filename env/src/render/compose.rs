@@ -43,6 +43,8 @@ struct Row {
     squares: [[f32; 2]; 2],
     has_squares: bool,
     has_walls: bool,
+    /// Depth of the ground, or of the sky.
+    metres: f32,
 }
 
 impl Walls {
@@ -83,6 +85,9 @@ impl Walls {
 pub(super) struct Scratch {
     words: Vec<u32>,
     items: Vec<u32>,
+    /// The nearest of the arena's walls in each column: 1 / distance, and its packed pixel.
+    walls: Vec<f32>,
+    wall_pixels: Vec<u32>,
 }
 
 /// Everything that one picture is composed of.
@@ -106,9 +111,22 @@ impl Composition<'_> {
         let width = self.canvas.width;
         scratch.words.resize(self.canvas.stride, 0);
         scratch.items.resize(self.canvas.stride, 0);
+        scratch.walls.resize(self.canvas.stride, 0.0);
+        scratch.wall_pixels.resize(self.canvas.stride, 0);
         let labelled = target.has_labels();
+        let canvas = self.canvas;
+        let (inverse_depth, pixels, items) = (&*canvas.inverse_depth, &*canvas.pixels, &*canvas.items);
+        let all = (1 << L::N) - 1;
+        let nowhere = l.above(l.splat(0.0), l.splat(0.0));
+        let mut walls_are_known = false;
         for y in 0..self.canvas.height {
             let row = self.row(y);
+            if row.has_walls && !walls_are_known {
+                self.measure_walls(l, &row, scratch);
+                // To a camera that looks straight ahead they are as far in each row.
+                walls_are_known = self.walls.as_ref().is_some_and(|walls| walls.up == [0.0; 4]);
+            }
+            let ground = l.splat(row.ground);
             let out = y * width;
             let mut x = 0;
             while x < width {
@@ -119,11 +137,25 @@ impl Composition<'_> {
                     x
                 };
                 let pixel = y * self.canvas.stride + start;
-                let (word, inverse) = self.behind(l, &row, start);
-                let drawn = l.load(&self.canvas.inverse_depth[pixel..]);
-                let in_front = l.above(drawn, inverse);
-                let mut word = l.select_words(in_front, l.load_words(&self.canvas.pixels[pixel..]), word);
-                let inverse = l.max(drawn, inverse);
+                let drawn = l.load(&inverse_depth[pixel..]);
+                let mut behind = ground;
+                let mut is_wall = nowhere;
+                if row.has_walls {
+                    let wall = l.load(&scratch.walls[start..]);
+                    is_wall = l.both(l.at_least(wall, l.splat(row.edge)), l.above(wall, ground));
+                    behind = l.select(is_wall, wall, ground);
+                }
+                let in_front = l.above(drawn, behind);
+                let covered = l.bits(in_front);
+                let mut word = l.load_words(&pixels[pixel..]);
+                if covered != all {
+                    let mut other = self.ground(l, &row, start);
+                    if row.has_walls {
+                        other = l.select_words(is_wall, l.load_words(&scratch.wall_pixels[start..]), other);
+                    }
+                    word = l.select_words(in_front, word, other);
+                }
+                let inverse = l.max(drawn, behind);
                 if let Some(distance) = self.fog_distance {
                     word = self.in_fog(l, word, inverse, distance);
                 }
@@ -134,13 +166,19 @@ impl Composition<'_> {
                         l.store_rgb(word, &mut rgb[3 * (out + start)..]);
                     }
                     if let Some(depth) = &mut target.depth {
-                        l.store(metres(l, inverse), &mut depth[out + start..]);
+                        // Dividing takes long: what all of a row shares is divided once.
+                        let metres = if covered == 0 && !row.has_walls {
+                            l.splat(row.metres)
+                        } else {
+                            metres(l, inverse)
+                        };
+                        l.store(metres, &mut depth[out + start..]);
                     }
                 }
                 if labelled {
                     l.store_words(word, &mut scratch.words[start..]);
                     if ITEMS {
-                        let item = l.load_words(&self.canvas.items[pixel..]);
+                        let item = l.load_words(&items[pixel..]);
                         l.store_words(
                             l.select_words(in_front, item, l.splat_word(0)),
                             &mut scratch.items[start..],
@@ -199,6 +237,11 @@ impl Composition<'_> {
             squares: [[0.0; 2]; 2],
             has_squares: false,
             has_walls: false,
+            metres: if ground > 1.0 / FAR_DEPTH {
+                1.0 / ground
+            } else {
+                FAR_DEPTH
+            },
         };
         if ground > 0.0 && pixels != [pixels[0]; 4] {
             let metres = 1.0 / ground;
@@ -231,36 +274,36 @@ impl Composition<'_> {
         row
     }
 
-    /// Packed pixel and 1 / depth of what lies behind everything that was drawn, from a column on.
+    /// Packed pixels of ground and sky, from a column on.
     #[inline(always)]
-    fn behind<L: Lanes>(&self, l: L, row: &Row, start: usize) -> (L::Word, L::Float) {
-        let ground = l.splat(row.ground);
-        let mut pixel = l.splat_word(row.pixels[0]);
-        if !(row.has_squares || row.has_walls) {
-            return (pixel, ground);
+    fn ground<L: Lanes>(&self, l: L, row: &Row, start: usize) -> L::Word {
+        let pixel = l.splat_word(row.pixels[0]);
+        if !row.has_squares {
+            return pixel;
         }
         let offset = l.load(&self.offsets[start..]);
-        if row.has_squares {
-            let both = l.xor(square(l, row.squares[0], offset), square(l, row.squares[1], offset));
-            let fine = l.has_bit(both, 0);
-            let light = l.select_words(fine, l.splat_word(row.pixels[1]), pixel);
-            let dark = l.select_words(fine, l.splat_word(row.pixels[3]), l.splat_word(row.pixels[2]));
-            pixel = l.select_words(l.has_bit(both, 3), dark, light);
+        let both = l.xor(square(l, row.squares[0], offset), square(l, row.squares[1], offset));
+        let fine = l.has_bit(both, 0);
+        let light = l.select_words(fine, l.splat_word(row.pixels[1]), pixel);
+        let dark = l.select_words(fine, l.splat_word(row.pixels[3]), l.splat_word(row.pixels[2]));
+        l.select_words(l.has_bit(both, 3), dark, light)
+    }
+
+    /// Notes which of the arena's walls is the nearest in each column of a row.
+    #[inline(always)]
+    fn measure_walls<L: Lanes>(&self, l: L, row: &Row, scratch: &mut Scratch) {
+        let Some(walls) = &self.walls else { return };
+        for start in (0..self.canvas.stride).step_by(L::N) {
+            let offset = l.load(&self.offsets[start..]);
+            let (mut inverse, mut pixel) = (along(l, row.walls[0], offset), l.splat_word(walls.pixels[0]));
+            for k in 1..4 {
+                let other = along(l, row.walls[k], offset);
+                pixel = l.select_words(l.above(other, inverse), l.splat_word(walls.pixels[k]), pixel);
+                inverse = l.max(other, inverse);
+            }
+            l.store(inverse, &mut scratch.walls[start..]);
+            l.store_words(pixel, &mut scratch.wall_pixels[start..]);
         }
-        if !row.has_walls {
-            return (pixel, ground);
-        }
-        let Some(walls) = &self.walls else {
-            return (pixel, ground);
-        };
-        let (mut inverse, mut wall_pixel) = (along(l, row.walls[0], offset), l.splat_word(walls.pixels[0]));
-        for k in 1..4 {
-            let other = along(l, row.walls[k], offset);
-            wall_pixel = l.select_words(l.above(other, inverse), l.splat_word(walls.pixels[k]), wall_pixel);
-            inverse = l.max(other, inverse);
-        }
-        let seen = l.both(l.at_least(inverse, l.splat(row.edge)), l.above(inverse, ground));
-        (l.select_words(seen, wall_pixel, pixel), l.select(seen, inverse, ground))
     }
 
     /// Colours turned into the fog's with distance; the sky stays.
