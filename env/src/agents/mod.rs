@@ -14,6 +14,7 @@ mod route;
 mod sarsa;
 mod script;
 mod scripted;
+mod shield;
 mod steering;
 mod still;
 
@@ -23,5 +24,6 @@ pub(crate) use rails_policy::RailsPolicy;
 pub use random::RandomAgent;
 pub use sarsa::SarsaAgent;
 pub use scripted::ScriptedAgent;
+pub(crate) use shield::shielded_in_space;
 pub(crate) use steering::in_space;
 pub use still::StillAgent;

@@ -2,7 +2,7 @@
 //! found in
 //! `flood.rs`.
 
-use driftworld_spec::{World, Zone};
+use driftworld_spec::{World, Zone, ZoneEnd};
 
 use super::grid::Grid;
 use crate::ground;
@@ -21,6 +21,9 @@ fn clearance(corridor: f32, body: f32) -> f32 {
 /// How far the agent's middle keeps from zones that cost, in metres.
 const ZONE_CLEARANCE: f32 = 0.35;
 
+/// The most that a cell measures in metres where zones fail: so narrow fords are seen.
+const SIDE_BESIDE_FAILURE: f32 = 0.25;
+
 /// How often each cell is taken: by walls once, and once by each object that is led around. What did not change since
 /// the last way is kept.
 #[derive(Clone, Debug, Default)]
@@ -28,7 +31,8 @@ pub(super) struct OccupancyGrid {
     grid: Grid,
     walls: Walls,
     taken: Vec<u32>,
-    /// Whether a cell belongs to a wall of a layout, through which no way leads; empty where there is no layout.
+    /// Whether a cell belongs to a wall of a layout, or to a zone that ends the episode as a failure: no way leads through it.
+    /// Empty where there is neither.
     sealed: Vec<bool>,
     /// The objects that are led around, by rising index.
     discs: Vec<Disc>,
@@ -105,12 +109,12 @@ impl OccupancyGrid {
         self.taken[cell] > 0
     }
 
-    /// Whether no way leads over a cell, be there another or not: it is of the rim, or of a wall of a layout.
+    /// Whether no way leads over a cell, be there another or not: it is of the rim, of a wall of a layout, or of a zone that fails.
     pub(super) fn is_closed(&self, cell: usize) -> bool {
         self.grid.is_rim(cell) || self.sealed.get(cell).is_some_and(|sealed| *sealed)
     }
 
-    /// The cells of walls of a layout.
+    /// The cells of walls of a layout, and of zones that fail.
     pub(super) fn sealed(&self) -> impl Iterator<Item = usize> {
         (0..self.sealed.len()).filter(|cell| self.sealed[*cell])
     }
@@ -198,6 +202,7 @@ impl OccupancyGrid {
         let (arena_size, body) = (scene.arena_size(), world.agent_params.agent_width as f32 / 2.0);
         let corridor = world.plan().map_or(f32::INFINITY, |plan| plan.corridor as f32);
         let zones = || world.environment_params.zones.iter().filter(|zone| zone.is_costly());
+        let fails = |zone: &Zone| zone.ends == Some(ZoneEnd::Failure);
         let known = &self.walls;
         if !self.taken.is_empty()
             && (known.arena_size, known.body, known.corridor) == (arena_size, body, corridor)
@@ -211,6 +216,7 @@ impl OccupancyGrid {
         let grid = match world.plan() {
             // So small, too, that the cells of walls are not those in which a body beside them stands.
             Some(_) => Grid::fine(arena_size, (corridor / 2.0 - margin).min(body / 1.45)),
+            None if zones().any(fails) => Grid::fine(arena_size, SIDE_BESIDE_FAILURE),
             None => Grid::fine(arena_size, f32::INFINITY),
         };
         self.grid = grid;
@@ -226,7 +232,7 @@ impl OccupancyGrid {
         }
         // Nearer than this to a wall: no step from cell to cell crosses one.
         let seal = 0.71 * grid.side();
-        if world.plan().is_some() {
+        if world.plan().is_some() || zones().any(fails) {
             self.sealed.resize(grid.num_cells(), false);
         }
         for corners in world.obstacles() {
@@ -257,6 +263,9 @@ impl OccupancyGrid {
             for cell in grid.within(low, high) {
                 if self.taken[cell] == 0 && is_near_or_inside(corners.clone(), grid.centre(cell), ZONE_CLEARANCE) {
                     self.taken[cell] = 1;
+                }
+                if fails(zone) && is_near_or_inside(corners.clone(), grid.centre(cell), seal) {
+                    self.sealed[cell] = true;
                 }
             }
         }

@@ -3,7 +3,7 @@
 
 use super::Agent;
 use super::rails_policy::RailsPolicy;
-use super::steering::in_space;
+use super::shield::shielded_in_space;
 use crate::sim::{Action, Environment};
 
 /// Tours all objects that pay, nearest first by the way around obstacles and surest first where rewards are uncertain,
@@ -29,7 +29,7 @@ impl OnRailsAgent {
 
 impl Agent for OnRailsAgent {
     fn act(&mut self, environment: &Environment) -> Action {
-        in_space(self.policy.steer(environment.sim()), environment.sim())
+        shielded_in_space(self.policy.steer(environment.sim()), environment.sim())
     }
 
     fn begin(&mut self, _seed: u64) {

@@ -6,6 +6,7 @@ use driftworld_spec::{EndCondition, Object, RailsProgress, Stimulus, World, Zone
 use super::errands::Errands;
 use super::nearest::Goal;
 use super::route::Route;
+use super::shield::shielded;
 use super::steering::{Purpose, Target, avoided, distance, walk};
 use crate::ground;
 use crate::scene::Scene;
@@ -181,9 +182,15 @@ impl RailsPolicy {
 
     /// What it does next, as speed, turn rate and interaction, whatever actions the world takes.
     pub(crate) fn steer(&mut self, sim: SimRef) -> [f64; 3] {
-        if sim.state.has_things {
-            return self.errands.steer(sim);
-        }
+        let step = if sim.state.has_things {
+            self.errands.steer(sim)
+        } else {
+            self.tour(sim)
+        };
+        shielded(sim, step)
+    }
+
+    fn tour(&mut self, sim: SimRef) -> [f64; 3] {
         self.steps_on_target = self.steps_on_target.saturating_add(1);
         let wanted = wanted(sim);
         let stale = self

@@ -136,6 +136,11 @@ pub(super) fn avoided(sim: SimRef, goal: Option<usize>) -> Vec<u32> {
 
 /// The action in the world's own space: the row of its table that comes nearest, if it has one.
 pub(crate) fn in_space(numbers: [f64; 3], sim: SimRef) -> Action {
+    in_space_where(numbers, sim, |_| true)
+}
+
+/// The same, and of the rows of a table rather one that is allowed.
+pub(super) fn in_space_where(numbers: [f64; 3], sim: SimRef, is_allowed: impl Fn([f64; 3]) -> bool) -> Action {
     let agent = &sim.world.agent_params;
     let velocity = |numbers: [f64; 3]| match agent.action_model {
         ActionModel::ByWaypoint => waypoint(numbers, sim),
@@ -159,8 +164,11 @@ pub(crate) fn in_space(numbers: [f64; 3], sim: SimRef) -> Action {
     let scale = [speed, turn, 1.0];
     let wanted = [numbers[0], numbers[1].clamp(-scale[1], scale[1]), numbers[2]];
     let miss = |row: [f64; 3]| (0..3).map(|k| ((row[k] - wanted[k]) / scale[k]).powi(2)).sum::<f64>();
-    let misses = (0..rows).filter_map(|row| Some((row, miss(agent.action_row(row)?))));
-    let nearest = misses.min_by(|(_, a), (_, b)| a.total_cmp(b));
+    let misses = (0..rows).filter_map(|row| {
+        let numbers = agent.action_row(row)?;
+        Some((row, (!is_allowed(numbers), miss(numbers))))
+    });
+    let nearest = misses.min_by(|(_, a), (_, b)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
     Action::Discrete(nearest.map_or(0, |(row, _)| row))
 }
 

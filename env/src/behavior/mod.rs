@@ -8,7 +8,7 @@ mod tests;
 use driftworld_spec::World;
 
 use crate::EnvError;
-use crate::agents::{RailsPolicy, in_space};
+use crate::agents::{RailsPolicy, in_space, shielded_in_space};
 use crate::assets::Catalogue;
 use crate::sim::{Environment, Step};
 use belief::Belief;
@@ -93,7 +93,11 @@ impl Expertise {
         while !truth.ended() && lived.steps < self.steps.min(MAX_EXPERT_STEPS) {
             let seen = belief.as_mut().map_or(&truth, |belief| belief.at(&truth));
             let command = policy.steer(seen.sim());
-            let action = in_space(command, truth.sim());
+            // Who believes something else does not know where zones are.
+            let action = match &belief {
+                Some(_) => in_space(command, truth.sim()),
+                None => shielded_in_space(command, truth.sim()),
+            };
             truth.step_into(action, &mut step)?;
             if let Some(belief) = &mut belief {
                 belief.note(&step);

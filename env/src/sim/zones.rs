@@ -73,6 +73,13 @@ impl Zones {
         state.inside.extend(self.0.iter().map(is_entered));
     }
 
+    /// Whether a way leads into a zone that ends the episode as a failure.
+    pub(crate) fn fails_on(&self, path: &[Point]) -> bool {
+        let fails = |area: &&Area| area.zone.ends == Some(ZoneEnd::Failure);
+        let is_in = |area: &Area| path.last().is_some_and(|end| area.contains(*end)) || area.is_crossed(path);
+        self.0.iter().filter(fails).any(is_in)
+    }
+
     /// The zones that a place is in.
     pub(super) fn around(&self, point: Point) -> impl Iterator<Item = &Zone> {
         let areas = self.0.iter().filter(move |area| area.contains(point));

@@ -1,12 +1,12 @@
 //! How one thing is done: walking to an object, and there touching it, using it, waiting at it or putting something down. What
 //! is to be done is decided in `plan.rs`.
 
-use driftworld_spec::Stimulus;
+use driftworld_spec::{Stimulus, Zone};
 
 use super::floor::{Floor, Room};
 use super::leaf::Leaf;
 use super::plan::can_interact;
-use super::ways::Bringing;
+use super::ways::{Bringing, is_left};
 use super::wishes::moving_stimulus;
 use crate::agents::steering::{distance, off, seconds, step_to};
 use crate::sim::{SimRef, answering, put_down_place};
@@ -16,6 +16,9 @@ const OFF: f32 = 8.0;
 
 /// How near to a thing the agent puts down what it carries in its place, in metres.
 const BESIDE: f32 = 1.8;
+
+/// How far from things that are still to be picked up another is put down, in metres.
+const CROWDED: f32 = 1.0;
 
 /// What is done at an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,6 +36,8 @@ pub(super) enum Deed {
         /// Its index.
         thing: u32,
     },
+    /// A zone is entered; its place in the world's list stands for the object.
+    Enter,
 }
 
 /// A deed, and where it is done.
@@ -48,6 +53,7 @@ impl Task {
     pub(super) fn act(self, sim: SimRef, floor: &mut Floor) -> [f64; 3] {
         match self.deed {
             Deed::Bring { thing } => self.bring(sim, floor, thing),
+            Deed::Enter => self.enter(sim, floor),
             Deed::Touch | Deed::Use | Deed::Move | Deed::Wait => self.meet(sim, floor),
         }
     }
@@ -60,10 +66,10 @@ impl Task {
         };
         let away = distance(sim.agent().position, sim.objects()[self.object as usize].position);
         if self.deed == Deed::Move && is_too_much(sim, self.object) && away < BESIDE {
-            return put_down(sim);
+            return put_down(sim, self.object);
         }
         let by_hand = stimulus == Some(Stimulus::AgentInteract) && can_interact(sim.world);
-        if by_hand && self.is_at_hand(sim) {
+        if by_hand && (self.is_at_hand(sim) || self.is_behind_another(sim)) {
             return [0.0, 0.0, 1.0];
         }
         // A contact counts when it begins: what wants to be touched again is left first.
@@ -93,6 +99,44 @@ impl Task {
         }
     }
 
+    /// Whether another thing answers an interaction in place of the one that is wanted, though the agent looks at that from as
+    /// near as it gets: it is taken, and put down elsewhere.
+    fn is_behind_another(self, sim: SimRef) -> bool {
+        let object = &sim.world.objects[self.object as usize];
+        if self.deed != Deed::Move || object.portable.is_none() {
+            return false;
+        }
+        let reached = reached(sim);
+        let at = sim.objects()[self.object as usize].position;
+        let gap = distance(sim.agent().position, at) - sim.world.agent_params.agent_width as f32 / 2.0;
+        let is_thing = |index: u32| sim.world.objects[index as usize].portable.is_some();
+        let is_near = reached.contains(&self.object) && gap < 0.3 && is_facing(sim, at);
+        is_near && answering(sim, &reached).is_some_and(is_thing)
+    }
+
+    /// Walks to a zone, and into it.
+    fn enter(self, sim: SimRef, floor: &mut Floor) -> [f64; 3] {
+        let zone = &sim.world.environment_params.zones[self.object as usize];
+        let cells = floor.cells_in(zone);
+        floor.lead(
+            cells
+                .into_iter()
+                .filter(|cell| floor.room[*cell as usize] == self.room)
+                .collect(),
+        );
+        let here = sim.agent().position;
+        if let Some(point) = floor.next(here) {
+            return walk(sim, point, 0.1);
+        }
+        if zone.contains(here.map(f64::from)) {
+            return [0.0; 3];
+        }
+        // In a cell whose middle is in the zone, but not in the zone.
+        floor
+            .cell_near(here)
+            .map_or([0.0; 3], |cell| walk(sim, floor.grid.centre(cell), 0.1))
+    }
+
     fn bring(self, sim: SimRef, floor: &mut Floor, thing: u32) -> [f64; 3] {
         let to = sim.objects()[self.object as usize].position;
         let within = self.within(sim, thing);
@@ -100,12 +144,6 @@ impl Task {
         let last = sim.state.carried().last().copied().unwrap_or(thing);
         let tag = |index: u32| &sim.world.objects[index as usize].tag;
         let is_ours = tag(last) == tag(thing);
-        if let Some((_, place)) = put_down_place(sim)
-            && answering(sim, &reached(sim)).is_none()
-            && (!is_ours || distance(place, to) < within - 0.02)
-        {
-            return [0.0, 0.0, 1.0];
-        }
         let radius = sim.body_radius(last as usize);
         let ahead = sim.world.agent_params.agent_width as f32 / 2.0 + radius + 0.1;
         let least = Leaf::of(sim, self.object as usize).reach() + radius + 0.1;
@@ -117,10 +155,19 @@ impl Task {
             radius,
             ahead,
             from: [least, most],
+            within,
             carried: sim.state.carried().len(),
         };
         floor.lead_to_bring(sim, bringing);
-        if let Some(point) = floor.next(sim.agent().position) {
+        let next = floor.next(sim.agent().position);
+        if let Some((_, place)) = put_down_place(sim)
+            && answering(sim, &reached(sim)).is_none()
+            && (!is_ours
+                || distance(place, to) < within - 0.02 && (next.is_none() || !is_crowded(sim, bringing, place)))
+        {
+            return [0.0, 0.0, 1.0];
+        }
+        if let Some(point) = next {
             return walk(sim, point, 0.2);
         }
         if !is_facing(sim, to) {
@@ -149,9 +196,18 @@ impl Task {
     }
 }
 
-/// Turns until there is room in front.
-fn put_down(sim: SimRef) -> [f64; 3] {
-    let is_free = answering(sim, &reached(sim)).is_none() && put_down_place(sim).is_some();
+/// Whether something that is to be picked up lies so near that what is put down here would answer in its place.
+fn is_crowded(sim: SimRef, bringing: Bringing, place: [f32; 2]) -> bool {
+    let near = |index: &u32| distance(sim.objects()[*index as usize].position, place) < CROWDED;
+    (0..sim.objects().len() as u32)
+        .filter(near)
+        .any(|index| is_left(sim, bringing, index))
+}
+
+/// Turns until there is room in front, and what is to be picked up is not.
+fn put_down(sim: SimRef, wanted: u32) -> [f64; 3] {
+    let reached = reached(sim);
+    let is_free = answering(sim, &reached).is_none() && put_down_place(sim).is_some() && !reached.contains(&wanted);
     if is_free {
         return [0.0, 0.0, 1.0];
     }
@@ -185,5 +241,10 @@ fn turn(sim: SimRef, point: [f32; 2]) -> f64 {
 
 /// A step towards a point, and so many metres past it: not at full speed into a turn.
 fn walk(sim: SimRef, point: [f32; 2], past: f32) -> [f64; 3] {
+    let costs = sim.world.environment_params.zones.iter().any(Zone::is_costly);
+    if costs {
+        // Beside what costs no corner is cut.
+        return step_to(sim, point, past.min(0.05), 5.0);
+    }
     step_to(sim, point, past, 20.0)
 }

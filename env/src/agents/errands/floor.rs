@@ -1,9 +1,10 @@
 //! The ground that the agent's middle can be on, in fine cells, with closed doors as what divides it into rooms. What is done
 //! about the doors is decided in `plan.rs`, ways are found in `ways.rs`.
 
-use driftworld_spec::{MotionModel, World};
+use driftworld_spec::{MotionModel, World, Zone};
 
 use super::leaf::Leaf;
+use super::tolls::Tolls;
 use super::ways::{Bringing, Waiting};
 use crate::agents::grid::Grid;
 use crate::polygon::is_near_or_inside;
@@ -17,10 +18,10 @@ const LEAST: f32 = 0.04;
 const LIKED: f32 = 0.25;
 
 /// How dear cells are: on open ground, beside walls, at what stands around, at what costs.
-const OPEN: u8 = 1;
-pub(super) const BESIDE: u8 = 2;
-const STANDS: u8 = 6;
-const COSTS: u8 = 20;
+const OPEN: u16 = 1;
+pub(super) const BESIDE: u16 = 2;
+const STANDS: u16 = 6;
+pub(super) const COSTS: u16 = 20;
 
 /// How far beyond touching a place counts as beside an object, in metres.
 const NEAR: f32 = 0.3;
@@ -36,7 +37,7 @@ pub(super) struct Standing {
     pub(super) leaf: Leaf,
     /// Whether it is a closed door; else it is dear, or costs.
     is_door: bool,
-    weight: u8,
+    weight: u16,
 }
 
 /// A closed door, and the rooms behind and in front of it.
@@ -53,10 +54,13 @@ pub(super) struct Floor {
     arena_size: [f32; 2],
     pub(super) body: f32,
     regions: Vec<Vec<[f64; 2]>>,
-    /// What each cell costs by the walls alone; 0 where nobody can be.
-    bare: Vec<u8>,
+    zones: Vec<Zone>,
+    /// What each cell costs by walls and zones alone; 0 where nobody can be, or should not.
+    pub(super) bare: Vec<u16>,
     /// The same with what stands around.
-    pub(super) weight: Vec<u8>,
+    pub(super) weight: Vec<u16>,
+    /// What entering zones costs: on the way to a cell, by how much more it has than the cell before it; empty if nothing does.
+    pub(super) tolls: Tolls,
     pub(super) room: Vec<Room>,
     pub(super) standing: Vec<Standing>,
     pub(super) doors: Vec<ClosedDoor>,
@@ -114,7 +118,8 @@ impl Floor {
         let body = world.agent_params.agent_width as f32 / 2.0;
         let regions = || world.obstacles();
         let is_same = !self.bare.is_empty() && (self.arena_size, self.body) == (arena_size, body);
-        if is_same && self.regions.iter().map(Vec::as_slice).eq(regions()) {
+        let zones = &world.environment_params.zones;
+        if is_same && self.zones == *zones && self.regions.iter().map(Vec::as_slice).eq(regions()) {
             return false;
         }
         self.grid = Grid::of_side(arena_size, SIDE);
@@ -149,6 +154,8 @@ impl Floor {
             }
         }
         self.regions = regions().map(<[[f64; 2]]>::to_vec).collect();
+        self.zones.clone_from(zones);
+        self.tolls = Tolls::lay(world, self.grid, &mut self.bare);
         true
     }
 
@@ -209,6 +216,20 @@ impl Floor {
         self.cell_near(at).map(|cell| self.room[cell])
     }
 
+    /// The cells in a zone on which the agent can be.
+    pub(super) fn cells_in(&self, zone: &Zone) -> Vec<u32> {
+        let Some([low, high]) = zone.bounds() else {
+            return Vec::new();
+        };
+        let [low, high] = [low, high].map(|place| place.map(|metres| metres as f32));
+        let is_in = |cell: &usize| self.weight[*cell] > 0 && zone.contains(self.grid.centre(*cell).map(f64::from));
+        self.grid
+            .within(low, high)
+            .filter(is_in)
+            .map(|cell| cell as u32)
+            .collect()
+    }
+
     /// The room that an object is reached from.
     pub(super) fn room_of(&self, sim: SimRef, object: u32) -> Option<Room> {
         self.room_beside(&Leaf::of(sim, object as usize), None)
@@ -264,7 +285,7 @@ impl Floor {
 }
 
 /// The weight of a cell by how much room the walls leave there beyond the agent's body.
-fn by_room(metres: f32) -> u8 {
+fn by_room(metres: f32) -> u16 {
     match metres {
         room if room < LEAST => 0,
         room if room < LIKED => BESIDE,

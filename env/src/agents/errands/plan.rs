@@ -1,15 +1,16 @@
 //! What is done first to get somewhere or to get something: which door is opened, and before it which key is fetched or which
-//! switch set off. How it is done is in `deed.rs`, where it is in `floor.rs`.
+//! switch set off. How it is done is in `deed.rs`, where it is in `floor.rs`; which doors keys are spent on that open one door
+//! only, in `spending.rs`.
 
-use driftworld_spec::{ActionModel, ActionSpace, Stimulus, SwitchAction, World};
+use driftworld_spec::{ActionModel, ActionSpace, Object, Stimulus, SwitchAction, World, Zone};
 
 use super::deed::{Deed, Task};
 use super::floor::{Floor, Room};
-use super::wishes::Wish;
+use super::wishes::{Wish, toward};
 use crate::sim::SimRef;
 
 /// How a closed door can be got open.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 enum Means {
     /// By its stimuli.
     Hand,
@@ -19,30 +20,35 @@ enum Means {
     Switch(u32),
     /// By waiting for its clock.
     Clock,
+    /// Once this has had its turn in the sequence.
+    After(Wish<'static>),
 }
 
 /// A door that can be got open: what leads to it is known before it.
 #[derive(Clone, Copy, Debug)]
-struct Way {
-    door: u32,
+pub(super) struct Way {
+    pub(super) door: u32,
     /// The room from which it is opened, or passed.
     from: Room,
     means: Means,
+    /// The key that is gone when it has opened the door.
+    pub(super) spends: Option<u32>,
 }
 
 /// What can be reached from where the agent is, door by door.
+#[derive(Clone)]
 pub(super) struct Plan<'a> {
-    sim: SimRef<'a>,
+    pub(super) sim: SimRef<'a>,
     floor: &'a Floor,
     here: Room,
     /// For each room that can be got to beyond this one, the door that leads there.
     entered: Vec<(Room, usize)>,
-    ways: Vec<Way>,
+    pub(super) ways: Vec<Way>,
 }
 
 impl<'a> Plan<'a> {
-    /// What can be reached, in rounds: each door is opened with what is found without it.
-    pub(super) fn new(sim: SimRef<'a>, floor: &'a Floor) -> Option<Self> {
+    /// What can be reached for the sake of these wishes.
+    pub(super) fn new(sim: SimRef<'a>, floor: &'a Floor, wishes: &[Vec<Wish>; 3]) -> Option<Self> {
         let here = floor.room_at(sim.agent().position)?;
         let mut plan = Self {
             sim,
@@ -51,28 +57,41 @@ impl<'a> Plan<'a> {
             entered: Vec::new(),
             ways: Vec::new(),
         };
+        plan.open_what_is_free();
+        Some(plan.with_keys_spent(wishes))
+    }
+
+    /// Opens all doors for which nothing is used up, in rounds: each with what is found without it.
+    pub(super) fn open_what_is_free(&mut self) {
         loop {
-            let found: Vec<Way> = floor
-                .doors
-                .iter()
-                .filter_map(|door| plan.way_through(door.object, door.rooms))
-                .collect();
-            if found.is_empty() {
-                return Some(plan);
+            let found = self.ways_through();
+            let free: Vec<Way> = found.into_iter().filter(|way| way.spends.is_none()).collect();
+            if free.is_empty() {
+                return;
             }
-            for way in found {
-                let number = plan.ways.len();
-                plan.ways.push(way);
-                let rooms = floor
-                    .doors
-                    .iter()
-                    .find(|door| door.object == way.door)
-                    .map_or([None; 2], |door| door.rooms);
-                for room in rooms.into_iter().flatten() {
-                    if !plan.can_reach(room) {
-                        plan.entered.push((room, number));
-                    }
-                }
+            free.into_iter().for_each(|way| self.take(way));
+        }
+    }
+
+    /// The doors that can be got open next, by rising object.
+    pub(super) fn ways_through(&self) -> Vec<Way> {
+        let doors = self.floor.doors.iter();
+        doors
+            .filter_map(|door| self.way_through(door.object, door.rooms))
+            .collect()
+    }
+
+    /// Opens a door.
+    pub(super) fn take(&mut self, way: Way) {
+        let number = self.ways.len();
+        self.ways.push(way);
+        let mut doors = self.floor.doors.iter();
+        let rooms = doors
+            .find(|door| door.object == way.door)
+            .map_or([None; 2], |door| door.rooms);
+        for room in rooms.into_iter().flatten() {
+            if !self.can_reach(room) {
+                self.entered.push((room, number));
             }
         }
     }
@@ -93,28 +112,59 @@ impl<'a> Plan<'a> {
             return None;
         }
         let from = rooms.into_iter().flatten().find(|room| self.can_reach(*room))?;
-        let means = self.means(door)?;
-        Some(Way { door, from, means })
+        let (means, spends) = self.means(door)?;
+        Some(Way {
+            door,
+            from,
+            means,
+            spends,
+        })
     }
 
-    fn means(&self, door: u32) -> Option<Means> {
+    /// How a door is got open, and which key is gone then: rather by what is not used up.
+    fn means(&self, door: u32) -> Option<(Means, Option<u32>)> {
+        let by_hand = self.by_hand(door);
+        match by_hand {
+            Some((_, None)) => by_hand,
+            _ => self.from_afar(door).map(|means| (means, None)).or(by_hand),
+        }
+    }
+
+    /// How a door is opened at the door.
+    fn by_hand(&self, door: u32) -> Option<(Means, Option<u32>)> {
         let SimRef { world, state, .. } = self.sim;
         let object = &world.objects[door as usize];
         let own = object.door.as_ref()?;
-        let is_due = state.is_due(object.order);
-        if is_due && usable(world, door, &own.opens_on).is_some() {
-            let Some(tag) = own.key.as_ref().filter(|_| !state.is_unlocked(door as usize)) else {
-                return Some(Means::Hand);
-            };
-            let has_tag = |index: &u32| world.objects[*index as usize].tag.as_ref() == Some(tag);
-            if state.carried().iter().any(has_tag) {
-                return Some(Means::Hand);
-            }
-            let mut keys = (0..world.objects.len() as u32).filter(has_tag);
-            if let Some(key) = keys.find(|key| self.can_pick_up(*key)) {
-                return Some(Means::Key(key));
-            }
+        if !state.is_due(object.order) || usable(world, door, &own.opens_on).is_none() {
+            return None;
         }
+        let Some(tag) = own.key.as_ref().filter(|_| !state.is_unlocked(door as usize)) else {
+            return Some((Means::Hand, None));
+        };
+        let has_tag = |index: &u32| world.objects[*index as usize].tag.as_ref() == Some(tag) && !self.is_spent(*index);
+        let spent = |key: u32| {
+            let thing = world.objects[key as usize].portable.as_ref();
+            thing.is_some_and(|thing| thing.consumed).then_some(key)
+        };
+        if let Some(key) = state.carried().iter().copied().find(has_tag) {
+            return Some((Means::Hand, spent(key)));
+        }
+        let keys = (0..world.objects.len() as u32).filter(has_tag);
+        let key = keys
+            .filter(|key| self.can_pick_up(*key))
+            .min_by_key(|key| spent(*key))?;
+        Some((Means::Key(key), spent(key)))
+    }
+
+    fn is_spent(&self, key: u32) -> bool {
+        self.ways.iter().any(|way| way.spends == Some(key))
+    }
+
+    /// How a door is opened without a key: by a switch, by its clock, or later in the sequence.
+    fn from_afar(&self, door: u32) -> Option<Means> {
+        let SimRef { world, state, .. } = self.sim;
+        let object = &world.objects[door as usize];
+        let own = object.door.as_ref()?;
         let opens = |index: &u32| {
             let object_of = &world.objects[*index as usize];
             object_of.switch.as_ref().is_some_and(|switch| {
@@ -127,7 +177,40 @@ impl<'a> Plan<'a> {
         if let Some(switch) = switches.find(|switch| self.can_reach_object(*switch)) {
             return Some(Means::Switch(switch));
         }
-        own.period.is_some().then_some(Means::Clock)
+        if own.period.is_some() {
+            return Some(Means::Clock);
+        }
+        self.next_in_turn(door).map(Means::After)
+    }
+
+    /// What has its turn in the sequence now and can be done, if a door waits for its own turn, or for that of what opens it.
+    fn next_in_turn(&self, door: u32) -> Option<Wish<'static>> {
+        let SimRef { world, state, .. } = self.sim;
+        let object = &world.objects[door as usize];
+        let key = object.door.as_ref().and_then(|own| own.key.as_ref());
+        let waits = |other: &Object| {
+            let moves = other
+                .switch
+                .as_ref()
+                .is_some_and(|switch| Some(&switch.target) == object.tag.as_ref());
+            !state.is_due(other.order) && (moves || key.is_some() && other.tag.as_ref() == key)
+        };
+        if state.is_due(object.order) && !world.objects.iter().any(waits) {
+            return None;
+        }
+        let is_next = |index: &u32| {
+            let (object, own) = (&world.objects[*index as usize], &self.sim.objects()[*index as usize]);
+            object.order.is_some() && state.is_due(object.order) && own.present && !own.collected
+        };
+        let next = (0..world.objects.len() as u32).filter(is_next);
+        let mut wishes = next.map(|index| {
+            if world.objects[index as usize].is_used() {
+                Wish::Move(index)
+            } else {
+                toward(self.sim, index)
+            }
+        });
+        wishes.find(|wish| self.first(*wish).is_some())
     }
 
     /// Whether a thing lies where it can be reached, and can be picked up there.
@@ -178,6 +261,20 @@ impl<'a> Plan<'a> {
         }
     }
 
+    /// How a zone is entered, or what is to be done first; `None` where there is no way to it.
+    pub(super) fn into_zone(&self, index: usize, zone: &Zone) -> Option<Task> {
+        let rooms = self.floor.cells_in(zone).into_iter();
+        let mut rooms: Vec<Room> = rooms.map(|cell| self.floor.room[cell as usize]).collect();
+        rooms.sort_by_key(|room| (*room != self.here, *room));
+        let room = rooms.into_iter().find(|room| self.can_reach(*room))?;
+        let task = Task {
+            object: index as u32,
+            room,
+            deed: Deed::Enter,
+        };
+        self.got_to(room, task)
+    }
+
     /// A deed at an object, or what is to be done before the agent gets there.
     fn at(&self, object: u32, deed: Deed) -> Option<Task> {
         let room = self.floor.room_of(self.sim, object)?;
@@ -213,6 +310,7 @@ impl<'a> Plan<'a> {
                 None => self.picked_up(key),
             },
             Means::Switch(switch) => self.at(switch, Deed::Move),
+            Means::After(wish) => self.first(wish),
         }
     }
 

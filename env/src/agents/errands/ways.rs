@@ -27,6 +27,8 @@ pub(super) struct Bringing {
     pub(super) ahead: f32,
     /// How far from the object the agent stands, at least and at most.
     pub(super) from: [f32; 2],
+    /// How near to the object the thing is to lie at most, in metres.
+    pub(super) within: f32,
     /// How many things the agent carries: with a free hand it picks up what lies in front of it.
     pub(super) carried: usize,
 }
@@ -38,8 +40,11 @@ impl Floor {
             return;
         }
         // First with room to spare, for the agent stands anywhere in a cell.
-        let goals = [0.15, 0.03].map(|margin| self.places_to_bring(sim, bringing, margin));
-        self.lead(goals.into_iter().find(|goals| !goals.is_empty()).unwrap_or_default());
+        let mut goals = [0.15, 0.03]
+            .into_iter()
+            .map(|margin| self.places_to_bring(sim, bringing, margin));
+        let goals = goals.find(|goals| !goals.is_empty()).unwrap_or_default();
+        self.lead(goals);
         self.brings = Some((self.version, bringing));
     }
 
@@ -53,8 +58,8 @@ impl Floor {
             ..
         } = bringing;
         let at = sim.objects()[to as usize].position;
-        // What would answer in place of what is put down.
-        let answers = |index: &u32| answering(sim, &[*index]).is_some();
+        // What would answer in place of what is put down, and what is still to be picked up: the nearer thing answers.
+        let answers = |index: &u32| answering(sim, &[*index]).is_some() || is_left(sim, bringing, *index);
         let others: Vec<Leaf> = (0..sim.objects().len() as u32)
             .filter(answers)
             .map(|index| Leaf::of(sim, index as usize))
@@ -98,25 +103,25 @@ impl Floor {
         {
             return;
         }
-        let mut field = std::mem::take(&mut self.field);
-        self.spread(&goals, &mut field);
-        self.field = field;
+        self.field.clear();
+        self.field.resize(self.weight.len(), u32::MAX);
+        self.open.clear();
+        for cell in &goals {
+            self.field[*cell as usize] = 0;
+            self.open.push(Reverse((0, *cell)));
+        }
         self.brings = None;
         self.leads = Some((self.version, goals));
     }
 
-    /// How dear the way is from each cell to the nearest of these, or from these to each.
-    pub(super) fn spread(&mut self, goals: &[u32], field: &mut Vec<u32>) {
-        field.clear();
-        field.resize(self.weight.len(), u32::MAX);
-        self.open.clear();
-        for cell in goals {
-            field[*cell as usize] = 0;
-            self.open.push(Reverse((0, *cell)));
-        }
-        while let Some(Reverse((here, cell))) = self.open.pop() {
+    /// Finds how dear the way is from a cell, and from all that are nearer: no farther than anyone asks.
+    fn reach(&mut self, asked: usize) {
+        while let Some(Reverse((here, cell))) = self.open.peek().copied()
+            && here <= self.field[asked]
+        {
+            self.open.pop();
             let cell = cell as usize;
-            if here > field[cell] {
+            if here > self.field[cell] {
                 continue;
             }
             for (step, is_slanting) in self.grid.around() {
@@ -124,9 +129,10 @@ impl Floor {
                 if self.weight[other] == 0 || is_slanting && !self.is_corner_open(cell, step) {
                     continue;
                 }
-                let through = here + u32::from(self.weight[other]) * if is_slanting { 7 } else { 5 };
-                if through < field[other] {
-                    field[other] = through;
+                let ground = u32::from(self.weight[other]) * if is_slanting { 7 } else { 5 };
+                let through = here.saturating_add(ground + self.tolls.of(other, cell));
+                if through < self.field[other] {
+                    self.field[other] = through;
                     self.open.push(Reverse((through, other as u32)));
                 }
             }
@@ -142,8 +148,9 @@ impl Floor {
 
     /// Where to walk next from a place: the farthest point on the way that can be walked to straight. `None` at the goal, and
     /// where no way leads.
-    pub(super) fn next(&self, from: [f32; 2]) -> Option<[f32; 2]> {
+    pub(super) fn next(&mut self, from: [f32; 2]) -> Option<[f32; 2]> {
         let start = self.cell_near(from)?;
+        self.reach(start);
         if self.field[start] == 0 || self.field[start] == u32::MAX {
             return None;
         }
@@ -171,12 +178,22 @@ impl Floor {
     fn is_clear(&self, from: [f32; 2], to: [f32; 2]) -> bool {
         let length = squared(from, to).sqrt();
         let count = (length / (self.grid.side() / 2.0)) as usize;
-        let dear = self.weight[self.grid.cell_at(from)].max(BESIDE);
+        let start = self.grid.cell_at(from);
+        let dear = self.weight[start].max(BESIDE);
         (1..=count).all(|number| {
             let share = number as f32 / count as f32;
             let at = [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * share);
-            let weight = self.weight[self.grid.cell_at(at)];
-            (1..=dear).contains(&weight) || weight == 0 && share * length < 0.3
+            let cell = self.grid.cell_at(at);
+            let weight = self.weight[cell];
+            let is_walked = (1..=dear).contains(&weight) && self.tolls.of(start, cell) == 0;
+            is_walked || weight == 0 && share * length < 0.3
         })
     }
+}
+
+/// Whether a thing lies that is not delivered yet and may be picked up next.
+pub(super) fn is_left(sim: SimRef, bringing: Bringing, index: u32) -> bool {
+    let (object, own) = (&sim.world.objects[index as usize], &sim.objects()[index as usize]);
+    let to = sim.objects()[bringing.to as usize].position;
+    own.present && object.portable.is_some() && squared(own.position, to) > bringing.within * bringing.within
 }

@@ -29,14 +29,41 @@ impl Wish<'_> {
     }
 }
 
-/// All wishes, those that come first before others.
-pub(super) fn wishes(sim: SimRef) -> [Vec<Wish>; 2] {
-    let paying = wanted(sim).into_iter().map(|index| toward(sim, index as u32)).collect();
-    [paying, endings(sim)]
+/// All wishes, those that come first before others: what pays; what ends the episode well; what is to be delivered and carried
+/// by an agent that has a hand free for more.
+pub(super) fn wishes(sim: SimRef) -> [Vec<Wish>; 3] {
+    let paying: Vec<Wish> = wanted(sim).into_iter().map(|index| toward(sim, index as u32)).collect();
+    let carried = sim.state.carried();
+    let has_hand = carried.len() < sim.world.agent_params.carry_limit as usize;
+    let is_carried = |wish: &Wish| matches!(wish, Wish::Bring { thing, .. } if carried.contains(thing));
+    let (mut held, mut others): (Vec<Wish>, Vec<Wish>) = endings(sim).into_iter().partition(is_carried);
+    // What was picked up last is put down first.
+    let place = |wish: &Wish| carried.iter().position(|thing| *thing == wish.object());
+    let last = held.iter().copied().max_by_key(place);
+    held.retain(|wish| Some(*wish) == last);
+    let is_touched = |index: &u32| ends_by_touch(sim, *index) && !paying.iter().any(|wish| wish.object() == *index);
+    others.extend(
+        (0..sim.objects().len() as u32)
+            .filter(is_touched)
+            .map(|index| toward(sim, index)),
+    );
+    if held.is_empty() || has_hand {
+        [paying, others, held]
+    } else {
+        [paying, held, others]
+    }
+}
+
+/// Whether an object is there whose touch is a success.
+fn ends_by_touch(sim: SimRef, index: u32) -> bool {
+    let tag = &sim.world.objects[index as usize].tag;
+    let is_it =
+        |condition: &EndCondition| matches!(condition, EndCondition::Touch(wanted) if tag.as_ref() == Some(wanted));
+    sim.objects()[index as usize].present && sim.world.rules.success.iter().any(is_it)
 }
 
 /// What makes an object pay, or counts as touching it.
-fn toward(sim: SimRef, index: u32) -> Wish<'static> {
+pub(super) fn toward(sim: SimRef, index: u32) -> Wish<'static> {
     let (object, own) = (&sim.world.objects[index as usize], &sim.objects()[index as usize]);
     let pays = |stimulus: Stimulus| {
         object.reward_stimulus.contains(&stimulus) || object.reward_once_stimulus.contains(&stimulus)
