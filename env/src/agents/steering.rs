@@ -12,6 +12,9 @@ const NEAR: f32 = 2.0;
 /// The same in a world with zones that cost.
 const NEAR_BESIDE_ZONES: f32 = 1.2;
 
+/// Metres that it looks ahead on its way there, without a layout.
+const AHEAD_BESIDE_ZONES: f32 = 0.5;
+
 /// Metres within which an agent that means to interact does so.
 const REACH: f32 = 3.0;
 
@@ -76,7 +79,15 @@ pub(super) fn walk(goal: [f32; 2], sim: SimRef, route: &mut Route) -> [f64; 3] {
     let agent = sim.agent();
     // Beside what costs no corner is cut.
     let costs = world.environment_params.zones.iter().any(Zone::is_costly);
-    let (near, ahead) = if costs { (NEAR_BESIDE_ZONES, 1) } else { (NEAR, 3) };
+    let ahead = if !costs {
+        3
+    } else if world.plan().is_some() {
+        1
+    } else {
+        // As far as a cell of open ground, however fine the cells are: how fast it walks does not depend on them.
+        (AHEAD_BESIDE_ZONES / route.side()).round().max(1.0) as usize
+    };
+    let near = if costs { NEAR_BESIDE_ZONES } else { NEAR };
     let straight = distance(agent.position, goal);
     // In a layout a wall may stand between.
     let mut is_open = || world.plan().is_none() || route.is_straight(agent.position, straight);
