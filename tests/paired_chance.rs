@@ -64,6 +64,7 @@ const VERDICTS: &[(&str, Verdict)] = &[
     ("/environment_params/zones/*/color", Idle),
     ("/environment_params/zones/*/visible", Idle),
     ("/environment_params/layout", Moves),
+    ("/environment_params/looks", Idle),
     ("/agent_params/action_model", Moves),
     // The height at which ranges are measured.
     ("/agent_params/agent_height", Moves),
@@ -99,6 +100,7 @@ const VERDICTS: &[(&str, Verdict)] = &[
     ("/objects/*/heading", Moves),
     ("/objects/*/scale", Moves),
     ("/objects/*/color", Idle),
+    ("/objects/*/surface", Idle),
     ("/objects/*/solid", Moves),
     ("/objects/*/pushable", Moves),
     ("/objects/*/reward", Ends),

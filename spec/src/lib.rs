@@ -58,9 +58,9 @@ pub use value::{ParameterType, Value};
 pub use version::{SCENARIO_VERSION, TASK_VERSION, WORLD_VERSION};
 pub use warning::Warning;
 pub use world::{
-    ActionModel, ActionSpace, AgentParams, Compared, Comparison, Delivery, Disc, Door, Enclosure, EndCondition, Energy,
-    EnvironmentParams, Field, FieldPlace, GameMode, ImageParams, LastEvent, LeafTexts, MAX_OBJECTS, MAX_POINTS,
-    MAX_SEED, Modality, Model, MotionModel, Object, ObjectProgress, Origin, Portable, Progress, Pushable,
-    RailsProgress, Region, Respawn, Rules, Shaping, StateFeature, Stimulus, Switch, SwitchAction, Trigger, Wall, World,
-    WorldDraft, Zone, ZoneEnd,
+    ActionModel, ActionSpace, AgentParams, Compared, Comparison, Covering, Delivery, Disc, Door, Enclosure,
+    EndCondition, Energy, EnvironmentParams, Field, FieldPlace, GameMode, ImageParams, LastEvent, LeafTexts, Looks,
+    MAX_OBJECTS, MAX_POINTS, MAX_SEED, Modality, Model, MotionModel, Object, ObjectProgress, Origin, Portable,
+    Progress, Pushable, RailsProgress, Region, Respawn, Rules, Shaping, StateFeature, Stimulus, Style, Surface, Switch,
+    SwitchAction, Trigger, Wall, World, WorldDraft, Zone, ZoneEnd,
 };

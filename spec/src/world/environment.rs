@@ -5,8 +5,10 @@ use std::fmt;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Zone;
+use super::defaults::is_default;
 use super::fields::{Field, FieldPlace, Place, fields};
+use super::looks::LooksForm;
+use super::{Looks, Zone};
 use crate::layout::{Layout, Plan};
 use crate::value::{ParameterType, Value};
 use crate::{Color, maps};
@@ -67,6 +69,11 @@ fields! {
         /// large the arena is, in place of `map_size`. Not beside a `predefined_map`.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub layout: Option<Layout> = None => Field::ours(Measured(&[Layouts])).layout(),
+        /// In which style the world is drawn: `"plain"`, `"natural"`, or an object that says what covers the ground and walls,
+        /// and whether there are shadows and a ceiling.
+        #[serde(skip_serializing_if = "is_default")]
+        #[schemars(with = "LooksForm")]
+        pub looks: Looks = Looks::default() => Field::ours(Leaves(CameraAndWeather)),
     }
 }
 

@@ -7,7 +7,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use super::defaults::{half, is_default, is_one, one, yes};
 use super::fields::{Place, fields, word};
-use super::{Door, MAX_SEED, Portable, Switch};
+use super::{Door, MAX_SEED, Portable, Surface, Switch};
 use crate::Color;
 use crate::value::{ParameterType, Value};
 
@@ -46,6 +46,9 @@ fields! {
         /// Main colour; the asset's own colours if absent.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub color: Option<Color> => Field::original(Measured(&[ColorsOfObjects])),
+        /// What covers it, where the world's looks are natural: a pattern at its own size in metres, whatever the object's `scale`.
+        #[serde(default, skip_serializing_if = "is_default")]
+        pub surface: Surface => Field::ours(Leaves(ModelsOfObjects)),
         /// Whether the agent is stopped by it.
         #[serde(default = "yes")]
         pub solid: bool => Field::ours(Leaves(Bodies)),
@@ -153,6 +156,7 @@ impl Object {
             heading: 0.0,
             scale: 1.0,
             color: None,
+            surface: Surface::Plain,
             solid: true,
             pushable: None,
             reward: 0.0,
