@@ -6,6 +6,8 @@ use std::sync::LazyLock;
 
 use driftworld_spec::Plan;
 
+use crate::SimilarityError;
+use crate::occupancy::{Grid, GridShape, grid_earth_movers_distance};
 use crate::scalar::relative_difference;
 
 /// Cells of the raster along each side of the arena.
@@ -13,6 +15,9 @@ const SIDE: usize = 96;
 
 /// Places along each side of the arena between which ways are measured.
 const PLACES: usize = 6;
+
+/// Cells of the coarser raster along each side, between which the mass of walls is moved; each is 3 × 3 of the finer.
+const COARSE: usize = 32;
 
 /// Steps of a way that there is not.
 const NO_WAY: u32 = (SIDE * SIDE) as u32;
@@ -125,7 +130,55 @@ impl LayoutShape {
         (either - both) as f64 / either.max(1) as f64
     }
 
-    /// All three together, 0..3. A metric.
+    /// How far the walls have to be moved to stand as the other's: the mean way of their mass, in sides of the arena, 0..√2. The
+    /// earth mover's distance (Wasserstein-1) of rasters of 32 × 32 cells. Each has a mass of 1 in all, spread by how much
+    /// of a cell walls touch, and how high they are.
+    ///
+    /// A metric of where walls stand: not of how many, nor of how high all are, which [`LayoutShape::walls_distance`] counts. A
+    /// wall that is moved by a quarter of the arena costs a quarter of its share of the mass, where the Jaccard distance of two
+    /// places that do not overlap is as large however near they are. From a layout without walls, where nothing can be moved,
+    /// each other one is √2 away. It is not part of [`LayoutShape::distance`].
+    ///
+    /// Exact, by network simplex; ten milliseconds or so for two mazes.
+    ///
+    /// # Errors
+    /// None for shapes made by [`LayoutShape::of`]: [`SimilarityError::BadMass`] for heights that are not finite.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_similarity::LayoutShape;
+    /// use driftworld_spec::{Layout, LayoutWall};
+    /// // A wall of 4 m in an arena of 32 m, 16 m further to the east each time.
+    /// let [west, east] = [-8.0, 8.0].map(|x| {
+    ///     let wall = LayoutWall { from: Some([x + 0.5, -2.0]), to: Some([x + 0.5, 2.0]), thickness: Some(0.5), ..LayoutWall::default() };
+    ///     let layout = Layout { walls: Some(vec![wall]), ..Layout::default() };
+    ///     LayoutShape::of(&layout.plan(0), [32.0; 2], 2.0)
+    /// });
+    /// assert!((west.transport_distance(&east)? - 0.5).abs() < 1e-12);
+    /// # Ok::<(), driftworld_similarity::SimilarityError>(())
+    /// ```
+    pub fn transport_distance(&self, other: &Self) -> Result<f64, SimilarityError> {
+        let [a, b] = [self.coarse()?, other.coarse()?];
+        match (a.total() > 0.0, b.total() > 0.0) {
+            (true, true) => grid_earth_movers_distance(&a, &b),
+            (false, false) => Ok(0.0),
+            _ => Ok(std::f64::consts::SQRT_2),
+        }
+    }
+
+    /// Where the mass of the walls is, 1 in all, on the coarser raster of an arena whose side is 1.
+    fn coarse(&self) -> Result<Grid, SimilarityError> {
+        const FINE: usize = SIDE / COARSE;
+        let mut masses = vec![0.0; COARSE * COARSE];
+        for (cell, height) in self.walls.iter().enumerate() {
+            let (row, column) = (cell / SIDE / FINE, cell % SIDE / FINE);
+            masses[row * COARSE + column] += f64::from(*height);
+        }
+        let shape = GridShape::new(COARSE, COARSE, 1, 1.0 / COARSE as f64)?;
+        Ok(Grid::new(shape, masses)?.normalised())
+    }
+
+    /// Walls, ways and marks together, 0..3. A metric.
     pub fn distance(&self, other: &Self) -> f64 {
         self.walls_distance(other) + self.ways_distance(other) + self.marks_distance(other)
     }
@@ -235,6 +288,100 @@ mod tests {
         LayoutShape::of(&layout.plan(0), layout.size().expect("mazes and rooms have one"), 4.0)
     }
 
+    /// Puts a wall into a cell of the coarser raster, by column and row.
+    fn fill(walls: &mut [f32], [column, row]: [usize; 2], height: f32) {
+        const FINE: usize = SIDE / COARSE;
+        for y in 0..FINE {
+            for x in 0..FINE {
+                walls[(row * FINE + y) * SIDE + column * FINE + x] += height;
+            }
+        }
+    }
+
+    /// The share of the mass in each cell of the coarser raster, cell by cell.
+    fn shares(shape: &LayoutShape) -> Vec<[f64; 3]> {
+        const FINE: usize = SIDE / COARSE;
+        let all: f64 = shape.walls.iter().copied().map(f64::from).sum();
+        let cells = (0..COARSE * COARSE).map(|cell| {
+            let [column, row] = [cell % COARSE, cell / COARSE];
+            let places = (0..FINE * FINE).map(|k| (row * FINE + k / FINE) * SIDE + column * FINE + k % FINE);
+            let mass: f64 = places.map(|place| f64::from(shape.walls[place])).sum();
+            [column as f64, row as f64, if all > 0.0 { mass / all } else { 0.0 }]
+        });
+        cells.collect()
+    }
+
+    fn same_shares(a: &LayoutShape, b: &LayoutShape) -> bool {
+        shares(a)
+            .iter()
+            .zip(shares(b))
+            .all(|(a, b)| (a[2] - b[2]).abs() < 1e-12)
+    }
+
+    /// Wasserstein-1 of the masses seen along one axis, 0 for columns, in sides of the arena.
+    fn area_between_sums(a: &LayoutShape, b: &LayoutShape, axis: usize) -> f64 {
+        let along = |shape: &LayoutShape| {
+            let mut sums = vec![0.0; COARSE];
+            for cell in shares(shape) {
+                sums[cell[axis] as usize] += cell[2];
+            }
+            sums
+        };
+        let (mut between, mut area) = (0.0_f64, 0.0);
+        for (a, b) in along(a).into_iter().zip(along(b)) {
+            between += a - b;
+            area += between.abs();
+        }
+        area / COARSE as f64
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(6))]
+
+        /// Along one axis the least work is the area between the sums up to each place, and in the plane no less than either.
+        #[test]
+        fn along_an_axis_it_is_the_area_between_the_sums(
+            rows in prop::array::uniform2(prop::collection::vec(0_u8..9, COARSE)), lines in any::<bool>(), other in layouts(),
+        ) {
+            let shapes = rows.map(|row| {
+                let mut walls = vec![0.0_f32; SIDE * SIDE];
+                for (at, height) in row.into_iter().enumerate() {
+                    fill(&mut walls, if lines { [at, 5] } else { [5, at] }, f32::from(height));
+                }
+                LayoutShape { walls, ..LayoutShape::open().clone() }
+            });
+            let [a, b] = &shapes;
+            if shapes.iter().all(|shape| shape.walls.iter().any(|height| *height > 0.0)) {
+                let found = a.transport_distance(b).expect("heights are finite");
+                let expected = area_between_sums(a, b, usize::from(!lines));
+                prop_assert!((found - expected).abs() < 1e-9, "{found} instead of {expected}");
+                let other = shape(&other);
+                if other.walls.iter().any(|height| *height > 0.0) {
+                    let found = a.transport_distance(&other).expect("heights are finite");
+                    for axis in [0, 1] {
+                        prop_assert!(found >= area_between_sums(a, &other, axis) - 1e-9);
+                    }
+                }
+            }
+        }
+
+        #[test]
+        fn moving_walls_is_a_metric_of_where_they_stand(a in layouts(), b in layouts(), c in layouts(), times in 1_u8..9) {
+            let [a, b, c] = [a, b, c].map(|layout| shape(&layout));
+            let between = |a: &LayoutShape, b: &LayoutShape| a.transport_distance(b).expect("heights are finite");
+            prop_assert_eq!(between(&a, &a), 0.0);
+            prop_assert!((between(&a, &b) - between(&b, &a)).abs() < 1e-12);
+            prop_assert!(between(&a, &c) <= between(&a, &b) + between(&b, &c) + 1e-12);
+            prop_assert!(between(&a, &b) <= std::f64::consts::SQRT_2);
+            let stand = a.walls.iter().any(|height| *height > 0.0);
+            prop_assert_eq!(between(&a, LayoutShape::open()), if stand { std::f64::consts::SQRT_2 } else { 0.0 });
+            // How high all are does not count, and how they share the mass does.
+            let higher = LayoutShape { walls: a.walls.iter().map(|height| height * f32::from(times)).collect(), ..a.clone() };
+            prop_assert!(between(&a, &higher) < 1e-12);
+            prop_assert_eq!(between(&a, &b) < 1e-12, same_shares(&a, &b));
+        }
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(24))]
 
@@ -244,6 +391,24 @@ mod tests {
             prop_assert_eq!(a.distance(&a), 0.0);
             prop_assert_eq!(a.distance(&b).to_bits(), b.distance(&a).to_bits());
             prop_assert!(a.distance(&c) <= a.distance(&b) + b.distance(&c) + 1e-12);
+        }
+
+        #[test]
+        fn a_wall_that_is_moved_costs_its_way_times_its_share(
+            (still, moved) in (1_u8..6, 1_u8..6), from in [0..32_usize, 0..32_usize], to in [0..32_usize, 0..32_usize],
+        ) {
+            let all = f64::from(still) + f64::from(moved);
+            // What stays put: no plan is cheaper than one that leaves it.
+            let at = |place: [usize; 2]| {
+                let mut walls = vec![0.0_f32; SIDE * SIDE];
+                fill(&mut walls, [7, 9], f32::from(still));
+                fill(&mut walls, place, f32::from(moved));
+                LayoutShape { walls, ..LayoutShape::open().clone() }
+            };
+            let way = |axis: usize| (from[axis] as f64 - to[axis] as f64) / COARSE as f64;
+            let found = at(from).transport_distance(&at(to)).expect("heights are finite");
+            let expected = libm::hypot(way(0), way(1)) * f64::from(moved) / all;
+            prop_assert!((found - expected).abs() < 1e-12, "{found} instead of {expected}");
         }
 
         #[test]
