@@ -1,5 +1,10 @@
 //! Which classes are built in, how many models each has, and who makes them.
 
+use driftworld_spec::Model;
+
+use super::animals::{self, ANIMALS};
+use super::furnishings::{self, FURNISHINGS};
+use super::signs::{self, Ink, SIGNS};
 use super::{Asset, Builder, Mesh, furniture, nature, structures, things, trees};
 
 /// Every class of the original with its number of models, in alphabetical order.
@@ -30,7 +35,17 @@ pub(crate) const CLASSES: &[(&str, u32)] = &[
 ];
 
 /// Classes of ours, in the order in which they came: a new one goes behind the others, up to the seventh.
-pub(crate) const OWN_CLASSES: &[(&str, u32)] = &[("door", 2), ("key", 1), ("switch", 1)];
+pub(crate) const OWN_CLASSES: &[(&str, u32)] = &[
+    ("door", 2),
+    ("key", 1),
+    ("switch", 1),
+    ("animal", ANIMALS.len() as u32),
+    ("sign", SIGNS.len() as u32),
+    ("furniture", FURNISHINGS.len() as u32),
+];
+
+/// The models that have names, by their class; their numbers are their places in the list, from 1 on.
+const NAMED: &[(&str, &[&str])] = &[("animal", &ANIMALS), ("sign", &SIGNS), ("furniture", &FURNISHINGS)];
 
 /// All built-in classes with their numbers of models, in the order of their numbers in class segmentation.
 pub(crate) fn classes() -> impl Iterator<Item = (&'static str, u32)> {
@@ -49,6 +64,28 @@ pub(crate) fn class_number(class: &str) -> Option<u16> {
 /// How many models a class has, if it is known.
 pub(crate) fn models(class: &str) -> Option<u32> {
     classes().find(|(name, _)| *name == class).map(|(_, models)| models)
+}
+
+/// The number that a model of a class has, by its name or as it is written; capitals do not matter.
+pub(crate) fn number(class: &str, model: &Model) -> Option<u32> {
+    let name = model.0.trim();
+    let named = names(class).iter().position(|own| own.eq_ignore_ascii_case(name));
+    named.map(|place| place as u32 + 1).or_else(|| model.number())
+}
+
+/// The models of a class in the order of their numbers, by their names or else by their numbers.
+pub(crate) fn model_names(class: &str) -> impl Iterator<Item = String> {
+    let names = names(class);
+    let name = |number: u32| {
+        let own = names.get(number as usize - 1);
+        own.map_or_else(|| number.to_string(), |name| (*name).to_owned())
+    };
+    (1..=models(class).unwrap_or(0)).map(name)
+}
+
+fn names(class: &str) -> &'static [&'static str] {
+    let found = NAMED.iter().find(|(named, _)| *named == class);
+    found.map_or(&[], |(_, names)| names)
 }
 
 /// Makes an asset; what is not known is the placeholder.
@@ -78,6 +115,9 @@ pub(crate) fn make(class: &str, model: u32) -> Asset {
         "door" => things::door(model),
         "key" => things::key(),
         "switch" => things::switch(),
+        "animal" => animals::animal(model),
+        "sign" => signs::sign(model, "", Ink::Dark),
+        "furniture" => furnishings::furnishing(model),
         _ => placeholder(),
     }
 }

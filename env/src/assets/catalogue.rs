@@ -71,7 +71,7 @@ impl Catalogue {
 
     /// The number of a class in class segmentation, the same in every world; capitals do not matter.
     ///
-    /// Built-in classes have 1 to 26, those of libraries follow each other from [`FIRST_LIBRARY_CLASS`] on in the order
+    /// Built-in classes have 1 to 29, those of libraries follow each other from [`FIRST_LIBRARY_CLASS`] on in the order
     /// of their names, and whatever is not known has [`UNKNOWN_CLASS`]. A library's models of a built-in class have
     /// that class's number. 0 is where there is no object.
     ///
@@ -163,7 +163,7 @@ mod tests {
             numbers.join(", "),
             "1 bag, 2 barrel, 3 bed, 4 bench, 5 building, 6 car, 7 castleruin, 8 chair, 9 cube, 10 fence, 11 geometric, \
              12 icosphere, 13 mushroom, 14 nature, 15 pot, 16 roadblock, 17 rock, 18 shelf, 19 shrub, 20 streetsign, 21 table, \
-             22 tent, 23 tree, 24 door, 25 key, 26 switch"
+             22 tent, 23 tree, 24 door, 25 key, 26 switch, 27 animal, 28 sign, 29 furniture"
         );
     }
 
@@ -187,7 +187,7 @@ mod tests {
             .map(|(class, number)| (class.to_owned(), number))
             .collect();
         assert_eq!(
-            all[26..],
+            all[29..],
             [
                 ("buoy".to_owned(), 32),
                 ("kiosk".to_owned(), 33),

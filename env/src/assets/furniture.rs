@@ -3,16 +3,16 @@
 use super::mesh::hash;
 use super::{Asset, Builder, Mesh};
 
-const WOOD: [f32; 3] = [0.56, 0.38, 0.22];
-const DARK_WOOD: [f32; 3] = [0.38, 0.26, 0.16];
-const IRON: [f32; 3] = [0.28, 0.29, 0.31];
+pub(super) const WOOD: [f32; 3] = [0.56, 0.38, 0.22];
+pub(super) const DARK_WOOD: [f32; 3] = [0.38, 0.26, 0.16];
+pub(super) const IRON: [f32; 3] = [0.28, 0.29, 0.31];
 
 /// A box of width, depth, height whose lowest corner is at `(x, y, z)` by its middle.
-fn plank(size: [f32; 3], [x, y, z]: [f32; 3]) -> Mesh {
+pub(super) fn plank(size: [f32; 3], [x, y, z]: [f32; 3]) -> Mesh {
     Mesh::cuboid(size, z).moved([x, y, 0.0])
 }
 
-fn legs(width: f32, depth: f32, height: f32, thick: f32) -> Mesh {
+pub(super) fn legs(width: f32, depth: f32, height: f32, thick: f32) -> Mesh {
     let (x, y) = (width / 2.0 - thick / 2.0, depth / 2.0 - thick / 2.0);
     [[-x, -y], [x, -y], [x, y], [-x, y]]
         .iter()

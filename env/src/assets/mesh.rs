@@ -2,6 +2,8 @@
 
 use std::f32::consts::TAU;
 
+use crate::vector::{cross, dot, sub};
+
 /// A triangle mesh: corners in metres, triangles counter-clockwise seen from outside.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
@@ -52,18 +54,61 @@ impl Mesh {
             }
             rings.push((first, count));
         }
+        mesh.join(&rings, segments);
+        mesh
+    }
+
+    /// A tube through places, there as wide as twice the first half and as high as twice the second; its ends are capped, or
+    /// closed in a point where both are 0. Width is measured along x, and height across the tube; a tube along x has it along y.
+    /// With few segments it is as large in section as with many, so that a coarser tube can stand for a finer one.
+    pub fn tube(path: &[([f32; 3], [f32; 2])], segments: u32) -> Self {
+        let mut mesh = Self::default();
+        let mut rings = Vec::new();
+        let (Some((first, _)), Some((last, _))) = (path.first(), path.last()) else {
+            return mesh;
+        };
+        let whole = unit(sub(*last, *first));
+        let side = if whole[0].abs() > 0.9 {
+            [0.0, 1.0, 0.0]
+        } else {
+            [1.0, 0.0, 0.0]
+        };
+        let step = TAU / segments as f32;
+        let wider = (step / libm::sinf(step)).sqrt();
+        for (k, (place, half)) in path.iter().enumerate() {
+            let (before, after) = (path[k.saturating_sub(1)].0, path[(k + 1).min(path.len() - 1)].0);
+            let ahead = unit(sub(after, before));
+            let along = dot(side, ahead);
+            let across = unit([0, 1, 2].map(|axis| side[axis] - along * ahead[axis]));
+            let over = cross(ahead, across);
+            let number = mesh.corners.len() as u32;
+            let count = if *half == [0.0; 2] { 1 } else { segments };
+            for corner in 0..count {
+                // Half a segment on, so that four segments are a box.
+                let angle = step * (corner as f32 + 0.5);
+                let (a, b) = (wider * half[0] * libm::cosf(angle), wider * half[1] * libm::sinf(angle));
+                mesh.corners
+                    .push([0, 1, 2].map(|axis| place[axis] + a * across[axis] + b * over[axis]));
+            }
+            rings.push((number, count));
+        }
+        mesh.join(&rings, segments);
+        mesh
+    }
+
+    /// Bands between neighbouring rings, and a cap on either end that is no point.
+    fn join(&mut self, rings: &[(u32, u32)], segments: u32) {
         for pair in rings.windows(2) {
-            mesh.band(pair[0], pair[1], segments);
+            self.band(pair[0], pair[1], segments);
         }
         if let (Some(&(bottom, low)), Some(&(top, high))) = (rings.first(), rings.last()) {
             for k in 1..low.saturating_sub(1) {
-                mesh.triangles.push([bottom, bottom + k + 1, bottom + k]);
+                self.triangles.push([bottom, bottom + k + 1, bottom + k]);
             }
             for k in 1..high.saturating_sub(1) {
-                mesh.triangles.push([top, top + k, top + k + 1]);
+                self.triangles.push([top, top + k, top + k + 1]);
             }
         }
-        mesh
     }
 
     fn band(&mut self, (low, low_count): (u32, u32), (high, high_count): (u32, u32), segments: u32) {
@@ -158,6 +203,15 @@ impl Mesh {
         self
     }
 
+    /// The mesh and its mirror image on the other side of x = 0.
+    #[must_use]
+    pub fn on_both_sides(self) -> Self {
+        let mut other = self.clone();
+        other.corners.iter_mut().for_each(|corner| corner[0] = -corner[0]);
+        other.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        self.with(&other)
+    }
+
     /// Both meshes as one.
     #[must_use]
     pub fn with(mut self, other: &Self) -> Self {
@@ -170,6 +224,16 @@ impl Mesh {
                 .map(|triangle| triangle.map(|corner| corner + first)),
         );
         self
+    }
+}
+
+/// A vector of length 1; x where there is no direction.
+fn unit(vector: [f32; 3]) -> [f32; 3] {
+    let length = dot(vector, vector).sqrt();
+    if length > 0.0 {
+        vector.map(|part| part / length)
+    } else {
+        [1.0, 0.0, 0.0]
     }
 }
 

@@ -1,15 +1,20 @@
 //! What objects look like: meshes made by code from class and model number or read from libraries, and their colliders.
 //! Where they stand is the scene's.
 
+mod animals;
 mod blocks;
 mod builtin;
 mod catalogue;
+mod furnishings;
 mod furniture;
 #[cfg(feature = "gltf")]
 mod import;
+mod letters;
+mod levels;
 mod library;
 mod mesh;
 mod nature;
+mod signs;
 mod structures;
 mod things;
 mod trees;
@@ -178,7 +183,7 @@ pub fn asset(class: &str, model: &Model) -> Arc<Asset> {
     type Made = HashMap<(String, u32), Arc<Asset>>;
     static MADE: LazyLock<Mutex<Made>> = LazyLock::new(Mutex::default);
     let class = class.to_lowercase();
-    let number = model.number().unwrap_or(0);
+    let number = builtin::number(&class, model).unwrap_or(0);
     // What was made before a panic elsewhere is whole: assets are inserted when they are finished.
     let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(asset) = made.get(&(class.clone(), number)) {
@@ -200,6 +205,23 @@ pub fn asset(class: &str, model: &Model) -> Arc<Asset> {
 /// The built-in classes, and how many models each has, in the order of their numbers in class segmentation.
 pub fn classes() -> impl Iterator<Item = (&'static str, u32)> {
     builtin::classes()
+}
+
+/// The models of a built-in class in the order of their numbers: their names where they have some, else their numbers; none if
+/// the class is not built in.
+///
+/// # Example
+/// ```
+/// use driftworld_env::{asset, model_names};
+/// use driftworld_spec::Model;
+/// assert_eq!(model_names("table").collect::<Vec<_>>(), ["1", "2", "3"]);
+/// let animals: Vec<String> = model_names("animal").collect();
+/// assert_eq!((animals[0].as_str(), animals[6].as_str()), ("rabbit", "wolf"));
+/// // Worlds may use either.
+/// assert_eq!(asset("animal", &Model("7".into())).height, asset("animal", &Model("wolf".into())).height);
+/// ```
+pub fn model_names(class: &str) -> impl Iterator<Item = String> {
+    builtin::model_names(class)
 }
 
 /// Parts on their way to an asset.
@@ -242,6 +264,13 @@ impl Builder {
             },
             ..asset
         }
+    }
+
+    /// The parts, without those of which nothing is drawn.
+    pub(crate) fn into_parts(self) -> Vec<Part> {
+        let mut parts = self.0;
+        parts.retain(|part| !part.mesh.triangles.is_empty());
+        parts
     }
 
     fn asset(self) -> Asset {

@@ -10,7 +10,7 @@ use crate::scene::{ARENA_WALLS, Item, Scene};
 const LEAST_SIZE: f32 = 0.014;
 
 /// Classes of which little is seen from above.
-const THIN: [&str; 3] = ["door", "key", "switch"];
+const THIN: [&str; 4] = ["door", "key", "switch", "sign"];
 
 /// A picture: 8-bit RGB, row 0 on top.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,7 +26,7 @@ pub struct Image {
 /// The scene from above, with the agent's position and heading as an arrow if it is given.
 ///
 /// All of the arena and every object is on it; objects that would be specks are drawn larger than they are. Walls are
-/// filled, with a dark rim, and doors, keys and switches are bars and dots.
+/// filled, with a dark rim, and doors, keys, switches and signs are bars and dots.
 pub fn top_down(scene: &Scene, width: u32, height: u32, agent: Option<([f32; 2], f32)>) -> Image {
     top_down_with_way(scene, width, height, agent, &[])
 }

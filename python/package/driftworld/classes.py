@@ -12,7 +12,7 @@ from driftworld.envs.options import library_bytes
 def segmentation_classes(assets: str | PathLike[str] | Iterable[str | PathLike[str]] = ()) -> dict[str, int]:
     """The number of each class in images of modality ``class``: the same in every world, in rising order.
 
-    Built-in classes have 1 to 26, those of libraries follow from 32 on in the order of their names; a library's models of a
+    Built-in classes have 1 to 29, those of libraries follow from 32 on in the order of their names; a library's models of a
     built-in class have that class's number. Beside these, 0 is where there is no object, and 31 is every class that is not known.
 
     Args:

@@ -179,7 +179,7 @@ pub enum Modality {
     Depth,
     /// Reward category per pixel, `(size, size)` bytes.
     Segmentation,
-    /// Object class per pixel, `(size, size)` numbers that are the same in every world: built-in classes have 1 to 26, unknown ones
+    /// Object class per pixel, `(size, size)` numbers that are the same in every world: built-in classes have 1 to 29, unknown ones
     /// 31, those of libraries follow from 32 on in the order of their names; 0 where there is no object.
     Class,
     /// Object per pixel, `(size, size)` numbers: its index in the world plus 1; 0 where there is no object.

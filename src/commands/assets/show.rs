@@ -5,7 +5,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::env::{Asset, Camera, CpuRenderer, Frame, Library, LibraryModel, Scene, classes};
+use crate::env::{Asset, Camera, CpuRenderer, Frame, Library, LibraryModel, Scene, model_names as built_in};
 use crate::spec::{Model, Object, WorldDraft};
 use clap::Args;
 
@@ -166,10 +166,7 @@ fn triangles(asset: &Asset) -> usize {
 
 /// The models of a class: those built in, then those of libraries, each once.
 fn model_names(class: &str, libraries: &[Library]) -> Vec<String> {
-    let built_in = classes()
-        .find(|(name, _)| *name == class)
-        .map_or(0, |(_, models)| models);
-    let mut names: Vec<String> = (1..=built_in).map(|number| number.to_string()).collect();
+    let mut names: Vec<String> = built_in(class).collect();
     for model in libraries.iter().flat_map(Library::models) {
         if model.class().to_lowercase() == class && !names.iter().any(|name| name == model.name()) {
             names.push(model.name().to_owned());
