@@ -96,6 +96,7 @@ const VERDICTS: &[(&str, Verdict)] = &[
     ("/objects/*/class", Moves),
     ("/objects/*/model", Moves),
     ("/objects/*/body_model", Moves),
+    ("/objects/*/text", Idle),
     ("/objects/*/coordinates", Moves),
     ("/objects/*/heading", Moves),
     ("/objects/*/scale", Moves),

@@ -158,18 +158,21 @@ impl Scene {
         let class = object.class.to_lowercase();
         let class_id = self.catalogue.class_number(&class);
         self.highest_class = self.highest_class.max(class_id);
-        let asset = self.catalogue.asset(&class, &object.model);
-        let body = object
-            .body_model
-            .as_ref()
-            .map(|model| self.catalogue.asset(&class, model));
+        let color = object.color.map(driftworld_spec::Color::to_f32);
+        let body = object.body_model.as_ref().unwrap_or(&object.model);
+        let body = self.catalogue.asset(&class, body);
+        let asset = match &object.text {
+            Some(text) => self.catalogue.asset_with_text(&class, &object.model, text, color),
+            None if object.body_model.is_none() => Arc::clone(&body),
+            None => self.catalogue.asset(&class, &object.model),
+        };
         self.items.push(Item {
-            body: body.unwrap_or_else(|| Arc::clone(&asset)),
+            body,
             asset,
             position: object.coordinates.map(|metres| metres as f32),
             heading_deg: object.heading as f32,
             scale: object.scale as f32,
-            color: object.color.map(driftworld_spec::Color::to_f32),
+            color,
             building: class == "building",
             reward: object.reward as f32,
             class_id,

@@ -4,7 +4,7 @@ use driftworld_spec::Model;
 
 use super::animals::{self, ANIMALS};
 use super::furnishings::{self, FURNISHINGS};
-use super::signs::{self, Ink, SIGNS};
+use super::signs::{self, Lettering, SIGNS};
 use super::{Asset, Builder, Mesh, furniture, nature, structures, things, trees};
 
 /// Every class of the original with its number of models, in alphabetical order.
@@ -66,6 +66,11 @@ pub(crate) fn models(class: &str) -> Option<u32> {
     classes().find(|(name, _)| *name == class).map(|(_, models)| models)
 }
 
+/// Whether a class is built in and has a model of this number.
+pub(crate) fn has(class: &str, number: u32) -> bool {
+    models(class).is_some_and(|models| (1..=models).contains(&number))
+}
+
 /// The number that a model of a class has, by its name or as it is written; capitals do not matter.
 pub(crate) fn number(class: &str, model: &Model) -> Option<u32> {
     let name = model.0.trim();
@@ -116,7 +121,7 @@ pub(crate) fn make(class: &str, model: u32) -> Asset {
         "key" => things::key(),
         "switch" => things::switch(),
         "animal" => animals::animal(model),
-        "sign" => signs::sign(model, "", Ink::Dark),
+        "sign" => signs::sign(model, "", Lettering::Dark),
         "furniture" => furnishings::furnishing(model),
         _ => placeholder(),
     }

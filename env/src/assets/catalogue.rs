@@ -7,7 +7,7 @@ use std::sync::{Arc, OnceLock};
 use driftworld_spec::{Classes, Model};
 
 use super::library::{Library, LibraryModel};
-use super::{Asset, asset, builtin};
+use super::{Asset, Lettering, asset, builtin, sign};
 
 /// The number in class segmentation of every class that a catalogue does not know, which is drawn as a placeholder.
 pub const UNKNOWN_CLASS: u16 = 31;
@@ -121,6 +121,17 @@ impl Catalogue {
         }
         let found = self.models.get(&key(class, &model.0));
         found.map_or_else(|| asset(class, model), |entry| entry.asset())
+    }
+
+    /// The asset of a class and model as an object shows it that says something: a built-in sign has the text on its board, in an
+    /// lettering that is seen on the board's colour (sRGB; its own if absent). All else is as it is without a text.
+    pub fn asset_with_text(&self, class: &str, model: &Model, text: &str, color: Option<[f32; 3]>) -> Arc<Asset> {
+        let is_built_in =
+            class == "sign" && (self.models.is_empty() || !self.models.contains_key(&key(class, &model.0)));
+        match builtin::number(class, model).filter(|number| is_built_in && builtin::has(class, *number)) {
+            Some(number) => sign(number, text, color.map(Lettering::on).unwrap_or_default()),
+            None => self.asset(class, model),
+        }
     }
 }
 

@@ -52,13 +52,13 @@ const FONT: &[(char, [u8; 7])] = &[
     ('Z', [0x1F, 0x01, 0x02, 0x04, 0x08, 0x10, 0x1F]),
 ];
 
-/// Whether a square of a letter, counted from its left and its top, is inked; a letter that is not in the font has none.
-pub(crate) fn is_inked(letter: char, column: u32, row: u32) -> bool {
+/// Whether a square of a letter, counted from its left and its top, is filled; a letter that is not in the font has none.
+pub(crate) fn is_filled(letter: char, column: u32, row: u32) -> bool {
     let found = FONT.binary_search_by_key(&letter, |(letter, _)| *letter);
     found.is_ok_and(|place| FONT[place].1[row as usize] >> (LETTER[0] - 1 - column) & 1 == 1)
 }
 
-/// A letter's ink as rectangles that do not overlap: left, top, width and height in squares. Runs along a row that repeat below
+/// A letter as rectangles that do not overlap: left, top, width and height in squares. Runs along a row that repeat below
 /// are one rectangle.
 fn rectangles(letter: char) -> Vec<[u32; 4]> {
     let [columns, rows] = LETTER;
@@ -67,7 +67,7 @@ fn rectangles(letter: char) -> Vec<[u32; 4]> {
         let mut column = 0;
         while column < columns {
             let run = (column..columns)
-                .take_while(|column| is_inked(letter, *column, row))
+                .take_while(|column| is_filled(letter, *column, row))
                 .count() as u32;
             if run == 0 {
                 column += 1;
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn rectangles_cover_the_ink_once_and_nothing_else() {
+    fn rectangles_cover_a_letter_once_and_nothing_else() {
         for (letter, _) in FONT {
             let rectangles = rectangles(*letter);
             for (row, column) in (0..LETTER[1]).flat_map(|row| (0..LETTER[0]).map(move |column| (row, column))) {
@@ -135,7 +135,7 @@ mod tests {
                 let times = rectangles.iter().filter(covers).count();
                 assert_eq!(
                     times,
-                    usize::from(is_inked(*letter, column, row)),
+                    usize::from(is_filled(*letter, column, row)),
                     "{letter}: {column}, {row}"
                 );
             }

@@ -36,6 +36,7 @@ pub use library::{
     MAX_MODEL_VERTICES, MAX_NAME_BYTES,
 };
 pub use mesh::Mesh;
+pub(crate) use signs::Lettering;
 
 /// The look and the body of one model of one class, at scale 1.
 #[derive(Clone, Debug)]
@@ -189,7 +190,7 @@ pub fn asset(class: &str, model: &Model) -> Arc<Asset> {
     if let Some(asset) = made.get(&(class.clone(), number)) {
         return Arc::clone(asset);
     }
-    let known = builtin::models(&class).is_some_and(|models| (1..=models).contains(&number));
+    let known = builtin::has(&class, number);
     // Names that nobody knows share one placeholder, so that strangers cannot fill the memory.
     let key = if known {
         (class.clone(), number)
@@ -201,6 +202,28 @@ pub fn asset(class: &str, model: &Model) -> Arc<Asset> {
     made.insert(key, Arc::clone(&asset));
     asset
 }
+
+/// The built-in sign of a model with a text; made when it is first asked for, then shared for a while.
+pub(crate) fn sign(model: u32, text: &str, lettering: Lettering) -> Arc<Asset> {
+    type Made = HashMap<(u32, String, Lettering), Arc<Asset>>;
+    static MADE: LazyLock<Mutex<Made>> = LazyLock::new(Mutex::default);
+    // As for other assets, what is in it is whole.
+    let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
+    let key = (model, text.to_owned(), lettering);
+    if let Some(asset) = made.get(&key) {
+        return Arc::clone(asset);
+    }
+    // No stream of ever new texts fills the memory; who still draws what is forgotten keeps it.
+    if made.len() >= MOST_SIGNS {
+        made.clear();
+    }
+    let asset = Arc::new(signs::sign(model, text, lettering));
+    made.insert(key, Arc::clone(&asset));
+    asset
+}
+
+/// How many texts are kept as signs.
+const MOST_SIGNS: usize = 256;
 
 /// The built-in classes, and how many models each has, in the order of their numbers in class segmentation.
 pub fn classes() -> impl Iterator<Item = (&'static str, u32)> {

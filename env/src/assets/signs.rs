@@ -20,7 +20,7 @@ const BEFORE: f32 = 0.01;
 
 /// What letters are written with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub(crate) enum Ink {
+pub(crate) enum Lettering {
     /// For boards that are light: those of no other colour, too.
     #[default]
     Dark,
@@ -28,8 +28,8 @@ pub(crate) enum Ink {
     Light,
 }
 
-impl Ink {
-    /// The ink that is seen on a colour (sRGB).
+impl Lettering {
+    /// The lettering that is seen on a colour (sRGB).
     pub(crate) fn on([r, g, b]: [f32; 3]) -> Self {
         // The eye's weights; half of what is seen as white is a little below a half in sRGB.
         if 0.30 * r + 0.59 * g + 0.11 * b < 0.45 {
@@ -42,7 +42,7 @@ impl Ink {
 
 /// Sign number `model` of [`SIGNS`] with a text on its front. The letters are left out where one of their squares is below a
 /// pixel, so that they do not flicker.
-pub(crate) fn sign(model: u32, text: &str, ink: Ink) -> Asset {
+pub(crate) fn sign(model: u32, text: &str, lettering: Lettering) -> Asset {
     let ([wide, high], posts) = match model {
         2 => ([2.2, 0.62], [0.8, -0.8].as_slice()),
         _ => ([1.3, 0.62], [0.0].as_slice()),
@@ -60,9 +60,9 @@ pub(crate) fn sign(model: u32, text: &str, ink: Ink) -> Asset {
     let [columns, rows] = LETTER.map(|count| count as f32);
     let square = (wide / ((columns + 1.0) * count as f32 + 1.0)).min(high / (rows + 2.0));
     let letters = written(text, square, THICK / 2.0 + BEFORE, MIDDLE);
-    let color = match ink {
-        Ink::Dark => DARK,
-        Ink::Light => LIGHT,
+    let color = match lettering {
+        Lettering::Dark => DARK,
+        Lettering::Light => LIGHT,
     };
     let mut all = asset.parts.clone();
     all.push(Part::new(letters, super::Paint::Fixed(color)));

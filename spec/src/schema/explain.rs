@@ -10,6 +10,7 @@ use super::advice;
 use super::wording::{code_of, either, expected};
 use crate::describe::{describe, escape};
 use crate::error::{MAX_PROBLEMS, Problem};
+use crate::world::TEXT_PATTERN;
 
 /// A problem, and how sure it is that nothing narrower can be said.
 pub(super) struct Finding {
@@ -134,6 +135,7 @@ impl Explainer<'_> {
                 TypeKind::Single(kind) => kind.to_string() == name,
                 TypeKind::Multiple(kinds) => kinds.iter().any(|kind| kind.to_string() == name),
             }),
+            ValidationErrorKind::Pattern { pattern } if pattern == TEXT_PATTERN => in_capitals(value),
             ValidationErrorKind::Pattern { .. } => renamed(value),
             _ => None,
         };
@@ -260,6 +262,13 @@ fn unknown_key(pointer: &str, key: &str, known: &[String]) -> Problem {
         }
         _ => problem.suggest(key, known),
     }
+}
+
+/// What a text may have been meant to be that a sign cannot show.
+fn in_capitals(value: &Value) -> Option<String> {
+    let text = value.as_str()?;
+    let capitals = text.to_uppercase();
+    (capitals != text).then(|| format!("write {capitals:?}"))
 }
 
 /// What a name may have been meant to be, where its pattern wants another.

@@ -5,6 +5,8 @@ use jsonschema::ValidationError;
 use jsonschema::error::{TypeKind, ValidationErrorKind};
 use serde_json::Value;
 
+use crate::world::TEXT_PATTERN;
+
 pub(super) fn code_of(kind: &ValidationErrorKind) -> &'static str {
     match kind {
         ValidationErrorKind::Type { .. } => "spec/type",
@@ -63,6 +65,7 @@ fn letters(pattern: &str) -> String {
     match pattern {
         IDENTIFIER_PATTERN => "lower-case letters, digits and underscores, starting with a letter".to_owned(),
         NAME_PATTERN => "a name of letters, digits, _, -, + and ., which begins with a letter, a digit or _ and does not end with a dot".to_owned(),
+        TEXT_PATTERN => "capital letters A to Z, digits, spaces and ! ? < > + -".to_owned(),
         other => format!("text of the form {other}"),
     }
 }

@@ -32,6 +32,7 @@ pub use features::StateFeature;
 pub use fields::{Compared, Comparison, Field, FieldPlace};
 pub(crate) use fields::{Fields, Place, Setter, places_of};
 pub use looks::{Covering, Looks, Style, Surface};
+pub(crate) use object::TEXT_PATTERN;
 pub use object::{Model, MotionModel, Object, Pushable, Respawn, Stimulus, Trigger};
 pub use progress::{LastEvent, ObjectProgress, Origin, Progress, RailsProgress};
 pub use rules::{Delivery, EndCondition, Rules, Shaping};

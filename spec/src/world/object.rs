@@ -11,6 +11,9 @@ use super::{Door, MAX_SEED, Portable, Surface, Switch};
 use crate::Color;
 use crate::value::{ParameterType, Value};
 
+/// What can be written on a sign.
+pub(crate) const TEXT_PATTERN: &str = "^[A-Z0-9!?<>+ -]*$";
+
 fields! {
     /// An object: its look, its place, what it is worth.
     ///
@@ -32,6 +35,11 @@ fields! {
         /// its range is measured. That of its own model if absent.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub body_model: Option<Model> => Field::ours(Leaves(Bodies)),
+        /// What a sign says, in block letters on its front: capital letters, digits, spaces and `! ? < > + -`. Only the class `sign`
+        /// shows it.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(length(max = 8), regex(pattern = TEXT_PATTERN))]
+        pub text: Option<String> => Field::ours(Leaves(ModelsOfObjects)),
         /// Position on the ground in metres.
         #[schemars(inner(range(min = -300.0, max = 300.0)))]
         pub coordinates: [f64; 2] => Field::original(Measured(&[PlacesOfObjects])).unit("m"),
@@ -152,6 +160,7 @@ impl Object {
             class: class.into(),
             model: Model::default(),
             body_model: None,
+            text: None,
             coordinates,
             heading: 0.0,
             scale: 1.0,

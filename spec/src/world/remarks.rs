@@ -72,6 +72,10 @@ impl World {
                 );
                 remarks.push(format!("/objects/{index}/coordinates"), text);
             }
+            if object.text.is_some() && object.class.to_lowercase() != "sign" {
+                let text = format!("a {} shows no text; signs do, the class \"sign\"", object.class);
+                remarks.push(format!("/objects/{index}/text"), text);
+            }
             if object.stands_still() {
                 let model = serde_json::to_value(object.motion_model).unwrap_or_default();
                 let lack = if object.speed == 0.0 {
