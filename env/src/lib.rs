@@ -29,7 +29,7 @@ pub use agents::{Agent, Label, OnRailsAgent, RandomAgent, SarsaAgent, ScriptedAg
 pub use assets::{
     Asset, Catalogue, ColliderShape, FIRST_LIBRARY_CLASS, Library, LibraryModel, MAX_LIBRARY_MODELS, MAX_MODEL_LEVELS,
     MAX_MODEL_PARTS, MAX_MODEL_REACH, MAX_MODEL_TRIANGLES, MAX_MODEL_VERTICES, MAX_NAME_BYTES, Mesh, Paint, Part,
-    UNKNOWN_CLASS, asset, classes, model_names,
+    UNKNOWN_CLASS, asset, asset_in, classes, model_names,
 };
 #[cfg(feature = "gltf")]
 pub use assets::{

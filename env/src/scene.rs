@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use driftworld_spec::{Object, World};
+use driftworld_spec::{Object, Style, World};
 
 use crate::assets::{Asset, Block, Catalogue, ColliderShape, Mesh};
 use crate::ground;
@@ -24,6 +24,8 @@ pub struct Scene {
     /// The highest number of a class among its items.
     highest_class: u16,
     catalogue: Catalogue,
+    /// Which looks its objects have.
+    style: Style,
 }
 
 /// How many of a scene's walls, the first ones, are the arena's own: west, north, east, south.
@@ -144,6 +146,7 @@ impl Scene {
             panels: Vec::new(),
             highest_class: 0,
             catalogue: catalogue.clone(),
+            style: environment.looks.style,
         };
         scene.add_walls(world);
         scene.panels.extend(ground::patches(world));
@@ -163,8 +166,7 @@ impl Scene {
         let body = self.catalogue.asset(&class, body);
         let asset = match &object.text {
             Some(text) => self.catalogue.asset_with_text(&class, &object.model, text, color),
-            None if object.body_model.is_none() => Arc::clone(&body),
-            None => self.catalogue.asset(&class, &object.model),
+            None => self.catalogue.asset_in(self.style, &class, &object.model),
         };
         self.items.push(Item {
             body,

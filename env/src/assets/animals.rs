@@ -85,11 +85,7 @@ impl Fine {
             .iter()
             .map(|[x, y, z, wide, deep]| ([*x, *y, *z], [*wide, *deep]))
             .collect();
-        let mut mesh = Mesh::tube(&path, 3);
-        mesh.corners
-            .iter_mut()
-            .for_each(|corner| corner[2] = corner[2].max(0.0));
-        mesh.on_both_sides()
+        Mesh::tube(&path, 3).on_both_sides()
     }
 
     /// A pair of legs from the ground up, x from the middle, bent at the knee by `bend` to the front.

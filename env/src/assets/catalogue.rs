@@ -4,10 +4,10 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
-use driftworld_spec::{Classes, Model};
+use driftworld_spec::{Classes, Model, Style};
 
 use super::library::{Library, LibraryModel};
-use super::{Asset, Lettering, asset, builtin, sign};
+use super::{Asset, Lettering, asset_in, builtin, sign};
 
 /// The number in class segmentation of every class that a catalogue does not know, which is drawn as a placeholder.
 pub const UNKNOWN_CLASS: u16 = 31;
@@ -115,15 +115,21 @@ impl Catalogue {
     ///
     /// Capitals do not matter, and a model that is a number may be written in any way that says the same number.
     pub fn asset(&self, class: &str, model: &Model) -> Arc<Asset> {
-        // Most catalogues hold nothing but built-in models, and then no key is made.
-        if self.models.is_empty() {
-            return asset(class, model);
-        }
-        let found = self.models.get(&key(class, &model.0));
-        found.map_or_else(|| asset(class, model), |entry| entry.asset())
+        self.asset_in(Style::Plain, class, model)
     }
 
-    /// The asset of a class and model as an object shows it that says something: a built-in sign has the text on its board, in an
+    /// The asset of a class and model as a style draws it, with the body that it has in every style. Models of libraries look the
+    /// same in all.
+    pub fn asset_in(&self, style: Style, class: &str, model: &Model) -> Arc<Asset> {
+        // Most catalogues hold nothing but built-in models, and then no key is made.
+        if self.models.is_empty() {
+            return asset_in(style, class, model);
+        }
+        let found = self.models.get(&key(class, &model.0));
+        found.map_or_else(|| asset_in(style, class, model), |entry| entry.asset())
+    }
+
+    /// The asset of a class and model as an object shows it that says something: a built-in sign has the text on its board, in
     /// lettering that is seen on the board's colour (sRGB; its own if absent). All else is as it is without a text.
     pub fn asset_with_text(&self, class: &str, model: &Model, text: &str, color: Option<[f32; 3]>) -> Arc<Asset> {
         let is_built_in =

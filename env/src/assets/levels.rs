@@ -6,10 +6,21 @@ use crate::vector::{add, cross, dot, scaled, sub};
 
 /// An asset of two forms of one thing; the coarse one is drawn where it is off by less than half a pixel. It has no body yet.
 pub(crate) fn levelled(fine: Builder, coarse: Builder) -> Asset {
-    let (fine, coarse) = (fine.into_parts(), coarse.into_parts());
+    let (fine, coarse) = (on_the_ground(fine), on_the_ground(coarse));
     let error = deviation(&fine, &coarse).max(deviation(&coarse, &fine));
     let collider = ColliderShape::Ball { radius: 0.01 };
     Asset::of_levels(vec![(0.0, fine), (error, coarse)], collider)
+}
+
+/// The parts, without what would be below the ground.
+fn on_the_ground(built: Builder) -> Vec<Part> {
+    let parts = built.into_parts().into_iter().map(|Part { mut mesh, paint, .. }| {
+        mesh.corners
+            .iter_mut()
+            .for_each(|corner| corner[2] = corner[2].max(0.0));
+        Part::new(mesh, paint)
+    });
+    parts.collect()
 }
 
 /// How far the corners of some parts, and the middles of their triangles, lie from the surface of others at most, in metres.

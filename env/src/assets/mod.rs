@@ -13,6 +13,7 @@ mod letters;
 mod levels;
 mod library;
 mod mesh;
+mod natural;
 mod nature;
 mod signs;
 mod structures;
@@ -22,7 +23,7 @@ mod trees;
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
-use driftworld_spec::Model;
+use driftworld_spec::{Model, Style};
 
 pub(crate) use blocks::{BLOCK, Block, Material};
 pub use catalogue::{Catalogue, FIRST_LIBRARY_CLASS, UNKNOWN_CLASS};
@@ -181,25 +182,36 @@ fn reach<'a>(points: impl Iterator<Item = &'a [f32; 3]>) -> f32 {
 
 /// The built-in asset of a class and model; made once, then shared. What is not known is a placeholder.
 pub fn asset(class: &str, model: &Model) -> Arc<Asset> {
-    type Made = HashMap<(String, u32), Arc<Asset>>;
+    asset_in(Style::Plain, class, model)
+}
+
+/// The built-in asset of a class and model in a style. The body is the same in all styles, so that looks change what is seen alone.
+pub fn asset_in(style: Style, class: &str, model: &Model) -> Arc<Asset> {
+    type Made = HashMap<(bool, String, u32), Arc<Asset>>;
     static MADE: LazyLock<Mutex<Made>> = LazyLock::new(Mutex::default);
     let class = class.to_lowercase();
     let number = builtin::number(&class, model).unwrap_or(0);
+    let is_natural = style == Style::Natural;
     // What was made before a panic elsewhere is whole: assets are inserted when they are finished.
     let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(asset) = made.get(&(class.clone(), number)) {
+    if let Some(asset) = made.get(&(is_natural, class.clone(), number)) {
         return Arc::clone(asset);
     }
     let known = builtin::has(&class, number);
     // Names that nobody knows share one placeholder, so that strangers cannot fill the memory.
-    let key = if known {
-        (class.clone(), number)
-    } else {
-        (String::new(), 0)
-    };
-    let made_before = made.get(&key).cloned();
-    let asset = made_before.unwrap_or_else(|| Arc::new(builtin::make(&key.0, key.1)));
-    made.insert(key, Arc::clone(&asset));
+    let (class, number) = if known { (class, number) } else { (String::new(), 0) };
+    let plain = made.entry((false, class.clone(), number));
+    let plain = Arc::clone(plain.or_insert_with(|| Arc::new(builtin::make(&class, number))));
+    if !is_natural {
+        return plain;
+    }
+    let asset = natural::make(&class, number).map(|asset| Asset {
+        collider: plain.collider.clone(),
+        known: plain.known,
+        ..asset
+    });
+    let asset = asset.map_or(plain, Arc::new);
+    made.insert((is_natural, class, number), Arc::clone(&asset));
     asset
 }
 
