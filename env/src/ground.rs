@@ -109,14 +109,13 @@ impl PanelGroup {
     /// Faces of one colour that are drawn together.
     pub(crate) fn of(mesh: Mesh, color: [f32; 3]) -> Self {
         let part = Part::new(mesh, Paint::Fixed(color));
-        let corners = &part.mesh.corners;
-        let side = |axis: usize| {
-            let values = corners.iter().map(|corner| corner[axis]);
-            values.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], value| {
-                [low.min(value), high.max(value)]
-            })
-        };
-        let sides = [side(0), side(1), side(2)];
+        let mut sides = [[f32::INFINITY, f32::NEG_INFINITY]; 3];
+        for corner in &part.mesh.corners {
+            for ([low, high], value) in sides.iter_mut().zip(*corner) {
+                *low = low.min(value);
+                *high = high.max(value);
+            }
+        }
         let halves = sides.map(|[low, high]| ((high - low) / 2.0).max(0.0));
         Self {
             middle: sides.map(|[low, high]| if low <= high { f32::midpoint(low, high) } else { 0.0 }),

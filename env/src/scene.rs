@@ -256,6 +256,8 @@ impl Scene {
     /// Panels that stand on these edges, of one height and colour.
     fn add_panels(&mut self, edges: &[([f32; 2], [f32; 2])], height: f32, color: [f32; 3]) {
         let mut mesh = Mesh::default();
+        mesh.corners.reserve(4 * edges.len());
+        mesh.triangles.reserve(2 * edges.len());
         for &(from, to) in edges {
             self.walls.push(WallPanel {
                 from,

@@ -29,7 +29,7 @@ impl Material {
     /// A part's triangles, those that face the same way together: then whole blocks face away at once.
     pub(crate) fn new(part: &Part) -> Self {
         let mut order: Vec<usize> = (0..part.mesh.triangles.len()).collect();
-        order.sort_by_key(|&triangle| facing(part.normals[triangle]));
+        order.sort_by_cached_key(|&triangle| facing(part.normals[triangle]));
         let blocks = order
             .chunks(BLOCK)
             .map(|triangles| block(&part.mesh, &part.normals, triangles))

@@ -102,8 +102,8 @@ impl CollisionWorld {
             whole: Vec::new(),
             scratch: Scratch::default(),
         };
-        // Walls are added where there are any; most worlds have none but those of the arena.
-        let count = 4 + scene.items.len();
+        let edges = world.obstacles().map(<[_]>::len).sum::<usize>();
+        let count = 4 + edges + scene.items.len();
         bodies.standing.reserve(count);
         bodies.low.reserve(count);
         bodies.whole.reserve(count);
