@@ -1,4 +1,5 @@
-//! What the built-in expert costs: a step where things move, and a choice among two hundred targets.
+//! What the built-in expert costs: a step where things move, a step of errands over doors, keys, things and zones, and a choice
+//! among two hundred targets.
 
 use std::hint::black_box;
 
@@ -62,6 +63,32 @@ fn steps(c: &mut Criterion) {
     group.finish();
 }
 
+/// Worlds 0 under seed 77 of example worlds, with their plans from the first to the last.
+fn errands(c: &mut Criterion) {
+    let mut group = c.benchmark_group("on rails, a step of an example world");
+    group.throughput(Throughput::Elements(1));
+    for (name, text) in [
+        ("key_corridor#closed", include_str!("scenes/key_corridor.json")),
+        ("locked_rooms#six", include_str!("scenes/locked_rooms.json")),
+        ("put_next#three", include_str!("scenes/put_next.json")),
+        ("lava_crossing#lava", include_str!("scenes/lava_crossing.json")),
+    ] {
+        let start = World::from_json(name, text).expect("the scene is sound");
+        let mut environment = Environment::new(start.clone());
+        let mut agent = OnRailsAgent::new();
+        group.bench_function(name, |bench| {
+            bench.iter(|| {
+                let action = agent.act(&environment);
+                if environment.step(action).expect("the action is sound").ended() {
+                    environment.reset(start.clone());
+                    agent.begin(0);
+                }
+            });
+        });
+    }
+    group.finish();
+}
+
 fn choices(c: &mut Criterion) {
     let environment = Environment::new(crowd());
     // An agent that knows nothing of the world yet: the dearest of its choices.
@@ -70,5 +97,5 @@ fn choices(c: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, steps, choices);
+criterion_group!(benches, steps, errands, choices);
 criterion_main!(benches);

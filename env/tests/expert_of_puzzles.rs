@@ -34,10 +34,10 @@ const NEIGHBOURS: [[usize; 2]; 7] = [[0, 1], [2, 3], [4, 5], [0, 2], [1, 3], [2,
 impl Puzzle {
     /// Whether the goal can be got to from room 0, by trying every door with every key, one after the other.
     fn can_be_solved(&self) -> bool {
-        self.can_go_on([false; 7], vec![false; self.keys.len()])
+        self.can_go_on([false; 7], &vec![false; self.keys.len()])
     }
 
-    fn can_go_on(&self, opened: [bool; 7], used: Vec<bool>) -> bool {
+    fn can_go_on(&self, opened: [bool; 7], used: &[bool]) -> bool {
         let mut reached = [false; 6];
         reached[0] = true;
         for _ in 0..6 {
@@ -60,10 +60,10 @@ impl Puzzle {
             }
             let fits = |key: &usize| self.keys[*key].1 == lock && !used[*key] && reached[self.keys[*key].0];
             (0..self.keys.len()).filter(fits).any(|key| {
-                let (mut opened, mut used) = (opened, used.clone());
+                let (mut opened, mut used) = (opened, used.to_vec());
                 opened[number] = true;
                 used[key] = self.consumed;
-                self.can_go_on(opened, used)
+                self.can_go_on(opened, &used)
             })
         })
     }

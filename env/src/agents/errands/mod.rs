@@ -125,7 +125,7 @@ impl Errands {
         let plan = Plan::new(sim, &self.floor, wishes);
         let zones = sim.world.environment_params.zones.iter().enumerate();
         let wanted = zones.filter(|(_, zone)| zone.is_wanted());
-        let ways = wanted.filter_map(|(index, zone)| Some((zone, plan.as_ref()?.into_zone(index, zone)?)));
+        let ways = wanted.filter_map(|(index, zone)| Some((zone, plan.as_ref()?.zone_entered(index, zone)?)));
         let value = |zone: &Zone| (zone.ends.is_some(), zone.reward_per_second, zone.reward_on_entering);
         let best = ways.reduce(|best, other| if value(other.0) > value(best.0) { other } else { best });
         let task = best.map(|(_, task)| task);

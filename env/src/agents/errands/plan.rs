@@ -69,7 +69,9 @@ impl<'a> Plan<'a> {
             if free.is_empty() {
                 return;
             }
-            free.into_iter().for_each(|way| self.take(way));
+            for way in free {
+                self.take(way);
+            }
         }
     }
 
@@ -126,7 +128,7 @@ impl<'a> Plan<'a> {
         let by_hand = self.by_hand(door);
         match by_hand {
             Some((_, None)) => by_hand,
-            _ => self.from_afar(door).map(|means| (means, None)).or(by_hand),
+            _ => self.without_key(door).map(|means| (means, None)).or(by_hand),
         }
     }
 
@@ -161,7 +163,7 @@ impl<'a> Plan<'a> {
     }
 
     /// How a door is opened without a key: by a switch, by its clock, or later in the sequence.
-    fn from_afar(&self, door: u32) -> Option<Means> {
+    fn without_key(&self, door: u32) -> Option<Means> {
         let SimRef { world, state, .. } = self.sim;
         let object = &world.objects[door as usize];
         let own = object.door.as_ref()?;
@@ -262,7 +264,7 @@ impl<'a> Plan<'a> {
     }
 
     /// How a zone is entered, or what is to be done first; `None` where there is no way to it.
-    pub(super) fn into_zone(&self, index: usize, zone: &Zone) -> Option<Task> {
+    pub(super) fn zone_entered(&self, index: usize, zone: &Zone) -> Option<Task> {
         let rooms = self.floor.cells_in(zone).into_iter();
         let mut rooms: Vec<Room> = rooms.map(|cell| self.floor.room[cell as usize]).collect();
         rooms.sort_by_key(|room| (*room != self.here, *room));

@@ -64,11 +64,13 @@ impl Plan<'_> {
     /// The doors that keys were spent on, and these keys: each rising.
     fn spent(&self) -> [Vec<u32>; 2] {
         let ways = || self.ways.iter().filter(|way| way.spends.is_some());
-        let mut spent = [
+        let mut spent: [Vec<u32>; 2] = [
             ways().map(|way| way.door).collect(),
             ways().filter_map(|way| way.spends).collect(),
         ];
-        spent.iter_mut().for_each(|list: &mut Vec<u32>| list.sort_unstable());
+        for list in &mut spent {
+            list.sort_unstable();
+        }
         spent
     }
 
@@ -88,7 +90,7 @@ impl Plan<'_> {
         let zones = || {
             let wanted = self.sim.world.environment_params.zones.iter().enumerate();
             let wanted = wanted.filter(|(_, zone)| zone.is_wanted());
-            wanted.filter(|(index, zone)| self.into_zone(*index, zone).is_some())
+            wanted.filter(|(index, zone)| self.zone_entered(*index, zone).is_some())
         };
         let ends_in_zone = || zones().any(|(_, zone)| zone.ends.is_some());
         Worth {

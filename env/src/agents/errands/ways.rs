@@ -155,6 +155,7 @@ impl Floor {
             return None;
         }
         let (mut cell, mut best) = (start, self.grid.centre(start));
+        let mut beside = None;
         for _ in 0..15 {
             let around = self.grid.around().into_iter();
             let open = around.filter(|(step, is_slanting)| !is_slanting || self.is_corner_open(cell, *step));
@@ -165,11 +166,16 @@ impl Floor {
                 break;
             };
             cell = nearest;
+            beside.get_or_insert(nearest);
             if self.is_clear(from, self.grid.centre(cell)) {
                 best = self.grid.centre(cell);
             } else if best != self.grid.centre(start) {
                 break;
             }
+        }
+        // Onto dearer ground, such as a zone that is to be entered, nothing is clear: who stands in the cell goes to the next.
+        if best == self.grid.centre(start) && self.grid.cell_at(from) == start {
+            best = beside.map_or(best, |cell| self.grid.centre(cell));
         }
         Some(best)
     }
