@@ -112,7 +112,7 @@ impl Contents {
             Self::Task if wanted.contains(&Self::Matrix) => {
                 format!("`driftworld order {path} --matrix matrix.json` writes one")
             }
-            Self::Scenario if wanted.contains(&Self::Log) => format!("`driftworld run {path} --logs DIR` writes one"),
+            Self::Scenario if wanted.contains(&Self::Log) => format!("`driftworld run {path} -o DIR` writes one"),
             Self::Task => format!("`driftworld sample {path}` draws its worlds"),
             Self::World => format!("`driftworld render {path}` draws it"),
             Self::Scenario => format!("`driftworld run {path}` runs it"),

@@ -1,9 +1,10 @@
 //! Documents as files and texts: what one is, seen from its keys, and all that is wrong with it. What may stand in each is `spec`'s.
 
 use std::collections::BTreeMap;
+use std::io::Read;
 use std::path::Path;
 use std::str::FromStr;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use driftworld_curriculum::{CurriculumError, log_name};
 use driftworld_files::FileError;
@@ -22,6 +23,9 @@ pub enum DocumentError {
     /// The file cannot be read, is no regular file, is too large or is no text.
     #[error(transparent)]
     File(#[from] FileError),
+    /// Standard input cannot be read, is too long or is no text.
+    #[error("standard input: {0}")]
+    StandardInput(String),
     /// The document is of another kind.
     #[error(transparent)]
     OtherContents(#[from] OtherContents),
@@ -30,11 +34,60 @@ pub enum DocumentError {
     Spec(#[from] SpecError),
 }
 
-/// The text of a file of at most [`MAX_BYTES`], without the byte order mark that some editors put in front.
+/// What stands for standard input where the command was told so: what was read of it already.
+static STANDARD_INPUT: Mutex<Option<Option<Result<String, String>>>> = Mutex::new(None);
+
+/// From now on `-` and `/dev/stdin` are the text of standard input, which is read once however often it is asked for.
+pub(crate) fn accept_standard_input() {
+    *STANDARD_INPUT.lock().unwrap_or_else(PoisonError::into_inner) = Some(None);
+}
+
+/// Whether a path stands for standard input, in the command.
+pub(crate) fn is_standard_input(path: &Path) -> bool {
+    let is_meant = path == Path::new("-") || path == Path::new("/dev/stdin");
+    is_meant && STANDARD_INPUT.lock().unwrap_or_else(PoisonError::into_inner).is_some()
+}
+
+/// What messages call a document.
+pub(crate) fn name_of(path: &Path) -> String {
+    if is_standard_input(path) {
+        "standard input".to_owned()
+    } else {
+        path.display().to_string()
+    }
+}
+
+/// The text of standard input, however often it is asked for.
+fn standard_input() -> Result<String, DocumentError> {
+    let mut input = STANDARD_INPUT.lock().unwrap_or_else(PoisonError::into_inner);
+    let read = || {
+        let mut bytes = Vec::new();
+        let mut stdin = std::io::stdin().lock().take(MAX_BYTES as u64 + 1);
+        stdin
+            .read_to_end(&mut bytes)
+            .map_err(|error| format!("cannot be read: {error}"))?;
+        if bytes.len() > MAX_BYTES {
+            return Err(format!("found more than {MAX_BYTES} bytes, expected at most that many"));
+        }
+        let text = String::from_utf8(bytes).map_err(|error| {
+            let at = error.utf8_error().valid_up_to();
+            format!("found a byte that is not UTF-8 at {at}, expected text")
+        })?;
+        Ok(text.strip_prefix('\u{feff}').map_or(text.clone(), str::to_owned))
+    };
+    let text = input.get_or_insert_default().get_or_insert_with(read);
+    text.clone().map_err(DocumentError::StandardInput)
+}
+
+/// The text of a file of at most [`MAX_BYTES`], without the byte order mark that some editors put in front. In the command `-` is
+/// standard input.
 ///
 /// # Errors
-/// [`DocumentError::File`], also for what is no regular file.
+/// [`DocumentError::File`], also for what is no regular file; [`DocumentError::StandardInput`].
 pub fn text(path: &Path) -> Result<String, DocumentError> {
+    if is_standard_input(path) {
+        return standard_input();
+    }
     Ok(driftworld_files::text(path, MAX_BYTES as u64)?)
 }
 

@@ -45,7 +45,11 @@ pub struct FailureText(String);
 impl FailureText {
     /// With arguments as options of the command: `--window-length`.
     pub fn for_command(&self) -> String {
-        self.with(|name| format!("--{}", name.replace('_', "-")))
+        self.with(|name| match name {
+            // One option says the order, by aim or by method.
+            "method" => "--order".to_owned(),
+            name => format!("--{}", name.replace('_', "-")),
+        })
     }
 
     /// With arguments as Rust and Python have them: `window_length`.

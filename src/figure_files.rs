@@ -52,8 +52,12 @@ impl Files {
 
     /// What was written, in words.
     pub(crate) fn summary(&self) -> String {
-        let (folder, kilobytes) = (self.folder.shown(), self.bytes.div_ceil(1000));
-        format!("{folder}: {} figures, {kilobytes} kB", self.count)
+        format!("{}: {}", self.folder.shown(), self.what())
+    }
+
+    /// How many, without the folder.
+    pub(crate) fn what(&self) -> String {
+        format!("{} figures, {} kB", self.count, self.bytes.div_ceil(1000))
     }
 }
 

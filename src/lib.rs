@@ -47,13 +47,16 @@ pub mod picture_distance;
 pub mod scales;
 pub mod scenarios;
 pub mod scoring;
+mod style;
 mod table;
 pub mod tasks;
 mod throughput;
 mod top_level;
 mod trials;
+mod variant_names;
 mod views;
 mod worlds;
+mod wrap;
 
 pub(crate) use failure::argument;
 pub use failure::{Cause, Failure, FailureText, Warn};

@@ -43,7 +43,7 @@ pub(crate) fn below(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
         if found.len() == before {
             return Err(Failure::input(format!(
                 "{}: found no log, expected a folder with logger_info.json, or such folders up to {MOST_LEVELS} \
-                 levels below; `driftworld run … --logs DIR` writes one",
+                 levels below; `driftworld run … -o DIR` writes one",
                 argument.shown()
             )));
         }
@@ -68,7 +68,7 @@ pub(crate) fn named(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
             ),
             None => format!(
                 "{path}: found no log, expected a folder with logger_info.json and \
-                 WORKER/BLOCKNUM-BLOCKTYPE/data-log.tsv; `driftworld run … --logs DIR` writes one"
+                 WORKER/BLOCKNUM-BLOCKTYPE/data-log.tsv; `driftworld run … -o DIR` writes one"
             ),
         }));
     }

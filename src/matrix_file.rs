@@ -57,6 +57,16 @@ pub(crate) fn read(option: &str, path: &Path) -> Result<DistanceMatrix, Failure>
     if let Some(other) = OtherContents::check(path, Contents::of_folder(path), &[Contents::Matrix]) {
         return Err(other.into());
     }
+    if documents::is_standard_input(path) {
+        let text = documents::text(path)?;
+        let is_json = text.trim_start().starts_with('{');
+        let read = if is_json {
+            DistanceMatrix::from_json(&text)
+        } else {
+            DistanceMatrix::from_csv(&text)
+        };
+        return read.map_err(|error| Failure::input(format!("standard input: {error}")));
+    }
     match format(option, path)? {
         Format::Csv => DistanceMatrix::from_csv(&driftworld_files::text(path, MAX_MATRIX_BYTES)?).map_err(named),
         Format::Json => {

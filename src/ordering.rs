@@ -1,8 +1,9 @@
 //! [`OrderRequest`]: how variants are ordered, with its ends by their names. Orders are `similarity`'s.
 
 use driftworld_similarity::{DistanceMatrix, Method, OrderOptions, Ordering, SimilarityError, order};
+use driftworld_spec::did_you_mean;
 
-use crate::{Failure, argument};
+use crate::{Failure, argument, tasks};
 
 /// How an order is found.
 #[derive(Clone, Debug, Default)]
@@ -61,9 +62,14 @@ impl OrderRequest {
     /// The options that hold for every method.
     pub(crate) fn options(&self, matrix: &DistanceMatrix, seed: u64) -> Result<OrderOptions, Failure> {
         let position = |option: &str, name: &String| {
-            let found = matrix.labels().iter().position(|label| label == name);
-            let text = || format!("{}: found {name:?}, expected one of {}", argument(option), some(matrix));
-            found.ok_or_else(|| Failure::input(text()))
+            position_of(matrix.labels(), name).map_err(|found| {
+                let near = did_you_mean(name, matrix.labels().iter().map(|label| bare(label)));
+                Failure::input(format!(
+                    "{}: found {name:?}{found}, expected one of {}{near}",
+                    argument(option),
+                    some(matrix)
+                ))
+            })
         };
         let first = self.start.as_ref().map(|name| position("start", name)).transpose()?;
         let last = self.end.as_ref().map(|name| position("end", name)).transpose()?;
@@ -74,6 +80,33 @@ impl OrderRequest {
             target_step: self.target_step,
         })
     }
+}
+
+/// The place of a label, by itself or by the name of its variant alone where that is one label's only; else what else is to be
+/// said of it.
+pub(crate) fn position_of<S: AsRef<str>>(labels: &[S], name: &str) -> Result<usize, &'static str> {
+    if let Some(place) = labels.iter().position(|label| label.as_ref() == name) {
+        return Ok(place);
+    }
+    // A task that was called by its path may be called by its name, too.
+    if name.contains('#') {
+        let is_it = |label: &S| bare(label.as_ref()) == bare(name) && tasks::label_of(label.as_ref()) == name;
+        return labels.iter().position(is_it).ok_or("");
+    }
+    let mut found = labels
+        .iter()
+        .enumerate()
+        .filter(|(_, label)| bare(label.as_ref()) == name);
+    match (found.next(), found.next()) {
+        (Some((place, _)), None) => Ok(place),
+        (Some(_), Some(_)) => Err(", which several tasks have"),
+        _ => Err(""),
+    }
+}
+
+/// The name of a variant without its task.
+pub(crate) fn bare(label: &str) -> &str {
+    label.rsplit_once('#').map_or(label, |(_, variant)| variant)
 }
 
 /// The labels, or as many as a message can hold.

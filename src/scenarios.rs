@@ -50,7 +50,7 @@ impl ScenarioFile {
     /// # Errors
     /// [`SpecError`] with all that is wrong.
     pub fn from_text(path: &Path, text: &str, warn: Warn) -> Result<Self, SpecError> {
-        let name = path.display().to_string();
+        let name = documents::name_of(path);
         let original = is_original(text);
         let scenario = if original {
             let (scenario, warnings) = Scenario::from_l2explorer(&name, text)?;

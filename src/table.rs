@@ -1,7 +1,16 @@
-//! Tables for people: plain columns that stay readable when they are pasted or piped. The JSON beside them is the commands' own.
+//! Tables for people: plain columns that stay readable when they are pasted or piped, and that fit the terminal. The JSON
+//! beside them is the commands' own.
 
-use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use driftworld_text::{Cells, printable};
+
+use crate::style::Style;
+use crate::wrap::{columns_of, columns_of_stdout, longest_piece, wrap};
+
+/// Blanks between two columns.
+const GAP: usize = 2;
+
+/// The narrowest that a column of sentences is made before the table is given up, in columns of the terminal.
+const NARROW: usize = 12;
 
 /// How texts stand in a table for spreadsheets, by the option `--raw-cells`.
 pub(crate) fn cells(raw: bool) -> Cells {
@@ -19,22 +28,229 @@ pub(crate) fn table<const N: usize>(headings: [&str; N], rows: Vec<[String; N]>,
 
 /// The same for a number of columns that is not known beforehand.
 pub(crate) fn wide_table(headings: Vec<String>, rows: Vec<Vec<String>>, numbers: &[usize]) -> String {
-    let mut table = Table::new();
-    table
-        .load_style(presets::NOTHING)
-        .set_content_arrangement(ContentArrangement::Disabled);
+    fitted(headings, rows, numbers, columns_of_stdout())
+}
+
+/// A table of at most `width` columns of the terminal. Cells go on in further lines where need be, broken between words; where
+/// not even that fits, each row becomes a list.
+fn fitted(headings: Vec<String>, rows: Vec<Vec<String>>, numbers: &[usize], width: Option<usize>) -> String {
     // A cell is one line, whatever it says.
-    let shown = |cells: Vec<String>| cells.into_iter().map(|cell| printable(&cell).into_owned());
-    table.set_header(shown(headings));
-    for row in rows {
-        table.add_row(shown(row));
+    let shown = |cells: Vec<String>| -> Vec<String> {
+        let cells = cells.into_iter();
+        cells.map(|cell| printable(&cell).into_owned()).collect()
+    };
+    let headings = shown(headings);
+    let rows: Vec<Vec<String>> = rows.into_iter().map(shown).collect();
+    let Some(widths) = widths(&headings, &rows, width) else {
+        return narrow(headings, rows, numbers, width.unwrap_or(usize::MAX));
+    };
+    let mut lines: Vec<String> = lines(&headings, &widths, numbers)
+        .iter()
+        .map(|line| Style::Strong.on(line))
+        .collect();
+    for row in &rows {
+        lines.extend(self::lines(row, &widths, numbers));
     }
-    for (index, column) in table.column_iter_mut().enumerate() {
-        column.set_padding((0, 2));
-        if numbers.contains(&index) {
-            column.set_cell_alignment(CellAlignment::Right);
+    lines.join("\n")
+}
+
+/// A table that has no room as it is: without columns in which no row says anything; else with the last column below each row;
+/// else each row as a list.
+fn narrow(headings: Vec<String>, rows: Vec<Vec<String>>, numbers: &[usize], width: usize) -> String {
+    let says = |column: &usize| rows.iter().any(|row| !matches!(row[*column].as_str(), "" | "-"));
+    let kept: Vec<usize> = (0..headings.len()).filter(says).collect();
+    if kept.len() < headings.len() {
+        let only = |cells: &[String]| kept.iter().map(|column| cells[*column].clone()).collect();
+        let numbers: Vec<usize> = (0..kept.len())
+            .filter(|place| numbers.contains(&kept[*place]))
+            .collect();
+        let rows = rows.iter().map(|row| only(row)).collect();
+        return fitted(only(&headings), rows, &numbers, Some(width));
+    }
+    let last = headings.len() - 1;
+    let firsts: Vec<Vec<String>> = rows.iter().map(|row| row[..last].to_vec()).collect();
+    let is_text = !numbers.contains(&last);
+    let Some(widths) = widths(&headings[..last], &firsts, Some(width)).filter(|_| is_text && last > 1) else {
+        return listed(&headings, &rows, width);
+    };
+    let mut shown: Vec<String> = lines(&headings[..last], &widths, numbers)
+        .iter()
+        .map(|line| Style::Strong.on(line))
+        .collect();
+    for (row, first) in rows.iter().zip(&firsts) {
+        shown.extend(lines(first, &widths, numbers));
+        let below = wrap(&row[last], width.saturating_sub(2 * GAP));
+        shown.extend(
+            below
+                .iter()
+                .filter(|line| !line.is_empty())
+                .map(|line| format!("    {line}")),
+        );
+    }
+    shown.join("\n")
+}
+
+/// How wide each column becomes; nothing where they cannot stand beside each other.
+fn widths(headings: &[String], rows: &[Vec<String>], width: Option<usize>) -> Option<Vec<usize>> {
+    let all = || std::iter::once(headings).chain(rows.iter().map(Vec::as_slice));
+    let widest = |column: usize, of: fn(&str) -> usize| {
+        let cells = all().filter_map(|row| row.get(column));
+        cells.map(|cell| of(cell)).max().unwrap_or(0)
+    };
+    let natural: Vec<usize> = (0..headings.len()).map(|column| widest(column, columns_of)).collect();
+    let least = |column: usize| widest(column, longest_piece).max(natural[column].min(NARROW));
+    let least: Vec<usize> = (0..headings.len()).map(least).collect();
+    let gaps = GAP * headings.len().saturating_sub(1);
+    let Some(room) = width.map(|width| width.saturating_sub(gaps)) else {
+        return Some(natural);
+    };
+    if least.iter().sum::<usize>() > room {
+        return None;
+    }
+    // The widest columns give way first, all down to one width.
+    let under = |cap: usize| -> Vec<usize> {
+        let pairs = natural.iter().zip(&least);
+        pairs.map(|(natural, least)| (*natural).min(cap.max(*least))).collect()
+    };
+    let fits = |cap: &usize| under(*cap).iter().sum::<usize>() <= room;
+    let cap = (0..=natural.iter().copied().max().unwrap_or(0)).rev().find(fits)?;
+    Some(under(cap))
+}
+
+/// A row in as many lines as its highest cell needs.
+fn lines(row: &[String], widths: &[usize], numbers: &[usize]) -> Vec<String> {
+    let cells: Vec<Vec<String>> = row
+        .iter()
+        .zip(widths)
+        .map(|(cell, width)| wrap(cell, (*width).max(1)))
+        .collect();
+    let height = cells.iter().map(Vec::len).max().unwrap_or(0);
+    let line = |number: usize| {
+        let mut line = String::new();
+        for (column, (cell, width)) in cells.iter().zip(widths).enumerate() {
+            let text = cell.get(number).map_or("", String::as_str);
+            let blanks = " ".repeat(width.saturating_sub(columns_of(text)));
+            let gap = if column == 0 { "" } else { "  " };
+            let text = match Style::of_verdict(text) {
+                Some(style) => style.on(text),
+                None => text.to_owned(),
+            };
+            line += gap;
+            line += &if numbers.contains(&column) {
+                blanks + &text
+            } else {
+                text + &blanks
+            };
+        }
+        line.trim_end().to_owned()
+    };
+    (0..height).map(line).collect()
+}
+
+/// Each row as a list: its first cell, and below it what the others are and say.
+fn listed(headings: &[String], rows: &[Vec<String>], width: usize) -> String {
+    let name = headings
+        .iter()
+        .skip(1)
+        .map(|heading| columns_of(heading))
+        .max()
+        .unwrap_or(0)
+        .min(width / 2);
+    let mut lines = Vec::new();
+    for row in rows {
+        lines.push(Style::Strong.on(row.first().map_or("", String::as_str)));
+        for (heading, cell) in headings.iter().zip(row).skip(1).filter(|(_, cell)| !cell.is_empty()) {
+            let room = width.saturating_sub(name + 2 * GAP).max(1);
+            for (number, text) in wrap(cell, room).into_iter().enumerate() {
+                let heading = if number == 0 { heading.as_str() } else { "" };
+                let blanks = " ".repeat(name.saturating_sub(columns_of(heading)));
+                lines.push(format!("  {heading}{blanks}  {text}").trim_end().to_owned());
+            }
         }
     }
-    let lines: Vec<String> = table.lines().map(|line| line.trim_end().to_owned()).collect();
     lines.join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn example(width: Option<usize>) -> String {
+        let row = |cells: [&str; 3]| cells.map(str::to_owned).to_vec();
+        fitted(
+            row(["variant", "reward", "what it is"]),
+            vec![
+                row(["find_objects#red", "3.5", "red cubes pay, and nothing else does"]),
+                row(["find_objects#blue", "12", "blue"]),
+            ],
+            &[1],
+            width,
+        )
+    }
+
+    #[test]
+    fn without_a_width_every_row_is_a_line() {
+        assert_eq!(
+            example(None),
+            "variant            reward  what it is\n\
+             find_objects#red      3.5  red cubes pay, and nothing else does\n\
+             find_objects#blue      12  blue"
+        );
+    }
+
+    #[test]
+    fn cells_go_on_in_further_lines_broken_between_words() {
+        assert_eq!(
+            example(Some(44)),
+            "variant            reward  what it is\n\
+             find_objects#red      3.5  red cubes pay,\n\
+             \x20                          and nothing else\n\
+             \x20                          does\n\
+             find_objects#blue      12  blue"
+        );
+    }
+
+    #[test]
+    fn where_there_is_no_room_the_last_column_goes_below() {
+        assert_eq!(
+            example(Some(30)),
+            "variant            reward\n\
+             find_objects#red      3.5\n    red cubes pay, and nothing\n    else does\n\
+             find_objects#blue      12\n    blue"
+        );
+    }
+
+    #[test]
+    fn where_columns_have_no_room_beside_each_other_rows_become_lists() {
+        let row = |cells: [&str; 3]| cells.map(str::to_owned).to_vec();
+        let shown = fitted(
+            row(["variant", "second of the columns", ""]),
+            vec![row(["find_objects#red", "incomprehensibilities", "-"])],
+            &[],
+            Some(30),
+        );
+        assert_eq!(
+            shown,
+            "find_objects#red\n  second of the columns  incomprehensibilities"
+        );
+    }
+
+    proptest! {
+        #[test]
+        fn no_line_is_wider_than_it_may_be_and_every_word_is_whole(
+            rows in proptest::collection::vec(proptest::collection::vec("([a-z#_]{1,8} ?){0,6}", 4), 1..6),
+            width in 40_usize..130,
+        ) {
+            let headings = ["a", "some heading", "c", "d"].map(str::to_owned).to_vec();
+            let shown = fitted(headings, rows.clone(), &[1], Some(width));
+            for line in shown.lines() {
+                prop_assert!(columns_of(line) <= width, "{line:?}");
+            }
+            let words: Vec<&str> = shown.split_whitespace().collect();
+            for word in rows.iter().flatten().flat_map(|cell| cell.split_whitespace()) {
+                prop_assert!(words.contains(&word), "{word}");
+            }
+        }
+    }
 }

@@ -96,7 +96,7 @@ pub fn task(name: &str) -> Result<Arc<TaskSpec>, TaskError> {
         DocumentError::File(error) => TaskError::Unreadable(error),
         other => TaskError::Document(other),
     })?;
-    Ok(TaskSpec::from_json(task, &text)?)
+    Ok(TaskSpec::from_json(&documents::name_of(path), &text)?)
 }
 
 /// The variant of this name; without one behind `#`, the variant in which every parameter has its default.
@@ -108,32 +108,76 @@ pub fn variant(name: &str) -> Result<Variant, TaskError> {
     Ok(task(name)?.variant(variant.unwrap_or(DEFAULT_VARIANT))?)
 }
 
-/// The variants that a name stands for: the one behind `#`, the members of the family behind `#`, or all that the task declares.
+/// The variants that a name stands for: the one behind `#`, the members of the family behind `#`, those whose names fit a pattern
+/// with `*` behind `#`, or all that the task declares.
 ///
 /// # Errors
 /// [`TaskError`] if there is none, or the document is wrong.
 pub fn variants(name: &str) -> Result<Vec<Variant>, TaskError> {
-    let Some(own) = split(name).1 else {
-        return Ok(task(name)?.all_variants());
-    };
     let task = task(name)?;
-    match task.family(own) {
-        Some(members) => Ok(members
-            .into_iter()
-            .map(|member| task.variant(member))
-            .collect::<Result<_, _>>()?),
-        None => Ok(vec![task.variant(own)?]),
+    match split(name).1 {
+        None => Ok(task.all_variants()),
+        Some(own) => Ok(variants_called(&task, own)?),
     }
 }
 
+/// The variants of a task that a name stands for, without the task in front of it: a variant, a family, or a pattern such as
+/// `light-*`.
+///
+/// # Errors
+/// [`SpecError::UnknownVariant`] if there is none.
+pub fn variants_called(task: &Arc<TaskSpec>, name: &str) -> Result<Vec<Variant>, SpecError> {
+    let members: Vec<&str> = match task.family(name) {
+        Some(members) => members,
+        None => {
+            let fitting = || task.variant_names().into_iter().filter(|known| fits(name, known));
+            if name.contains('*') && fitting().next().is_some() {
+                fitting().collect()
+            } else {
+                vec![name]
+            }
+        }
+    };
+    members.into_iter().map(|member| task.variant(member)).collect()
+}
+
+/// Whether a name fits a pattern, in which `*` stands for any letters.
+fn fits(pattern: &str, name: &str) -> bool {
+    match pattern.split_once('*') {
+        None => pattern == name,
+        Some((start, rest)) => name.strip_prefix(start).is_some_and(|behind| {
+            let mut ends = behind.char_indices().map(|(at, _)| at).chain([behind.len()]);
+            ends.any(|at| fits(rest, &behind[at..]))
+        }),
+    }
+}
+
+/// The names with their tasks: a variant, a family or a pattern may stand without its task behind one that has it, as in
+/// `find_objects#red dusk`.
+pub(crate) fn with_tasks(names: &[String]) -> Vec<String> {
+    let mut known: Vec<(String, Arc<TaskSpec>)> = Vec::new();
+    let called = names.iter().map(|name| {
+        let (of, own) = split(name);
+        let is_task = own.is_some() || BUILT_IN.iter().any(|(built_in, _)| *built_in == of) || Path::new(of).exists();
+        if !is_task && let Some((task, _)) = known.iter().rev().find(|(_, spec)| variants_called(spec, name).is_ok()) {
+            return format!("{task}#{name}");
+        }
+        if let Ok(spec) = task(of) {
+            known.push((of.to_owned(), spec));
+        }
+        name.clone()
+    });
+    called.collect()
+}
+
 /// The variants that a list of names stands for, in that order, each once, with the names of their tasks as they were
-/// called.
+/// called. Behind a name with a task, others of the same task may stand without it.
 ///
 /// # Errors
 /// As [`variants`].
 pub fn variants_of(names: &[String]) -> Result<Vec<(String, Variant)>, TaskError> {
     let mut found: Vec<(String, Variant)> = Vec::new();
-    for name in names {
+    for name in &with_tasks(names) {
         let (task, _) = split(name);
         for variant in variants(name)? {
             if !found
@@ -145,6 +189,37 @@ pub fn variants_of(names: &[String]) -> Result<Vec<(String, Variant)>, TaskError
         }
     }
     Ok(found)
+}
+
+/// What tables call variants: `TASK#VARIANT` by the names that tasks have, also where a task was called by its path; by that path
+/// where two would have one name.
+pub(crate) fn labels_of(variants: &[(String, Variant)]) -> Vec<String> {
+    let ids: Vec<String> = variants.iter().map(|(_, variant)| variant.id()).collect();
+    let is_alone = |id: &String| ids.iter().filter(|other| *other == id).count() == 1;
+    let label = |((task, variant), id): (&(String, Variant), &String)| {
+        if is_alone(id) {
+            id.clone()
+        } else {
+            format!("{task}#{}", variant.name())
+        }
+    };
+    variants.iter().zip(&ids).map(label).collect()
+}
+
+/// The name of a task that was called by its path or its name; the path itself where no task is there.
+pub(crate) fn name_of(called: &str) -> String {
+    match BUILT_IN.iter().any(|(name, _)| *name == called) {
+        true => called.to_owned(),
+        false => task(called).map_or_else(|_| called.to_owned(), |task| task.name().to_owned()),
+    }
+}
+
+/// A variant as tables call it, whatever its task was called by; a bare name as it is.
+pub(crate) fn label_of(called: &str) -> String {
+    match split(called) {
+        (task, Some(variant)) => format!("{}#{variant}", name_of(task)),
+        (_, None) => called.to_owned(),
+    }
 }
 
 #[cfg(test)]
@@ -171,5 +246,32 @@ mod tests {
              spheres, clearing, wide, modest, poor, half, turned, interact, near, held, long_held, slim, slow, \
              stiff and 16 more; did you mean \"red\"?"
         );
+    }
+
+    #[test]
+    fn variants_may_be_named_by_patterns_and_behind_their_task_without_it() {
+        let names = |names: &[&str]| -> Vec<String> {
+            let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
+            let found = variants_of(&names).unwrap().into_iter();
+            found
+                .map(|(task, variant)| format!("{task}#{}", variant.name()))
+                .collect()
+        };
+        assert_eq!(
+            names(&["find_objects#red", "dusk", "get_to_goal#plain", "soft"]),
+            [
+                "find_objects#red",
+                "find_objects#dusk",
+                "get_to_goal#plain",
+                "get_to_goal#soft"
+            ]
+        );
+        assert_eq!(
+            names(&["find_objects#*held"]),
+            ["find_objects#held", "find_objects#long_held"]
+        );
+        let unknown = variants_of(&["find_objects#red".to_owned(), "dsk".to_owned()]).unwrap_err();
+        assert!(unknown.to_string().starts_with("found task \"dsk\""), "{unknown}");
+        assert!(fits("a*c", "abcc") && !fits("a*c", "abcd") && fits("*", "") && !fits("a", "ab"));
     }
 }

@@ -18,7 +18,7 @@ use crate::{Failure, Warn, argument};
 
 /// A world file, in our form or in the original's.
 pub(crate) fn world_file(path: &Path, l2explorer: bool) -> Result<(World, Vec<Warning>), Failure> {
-    let name = path.display().to_string();
+    let name = documents::name_of(path);
     let text = documents::text_of(path, &[Contents::World])?;
     if l2explorer {
         return Ok(World::from_l2explorer(&name, &text)?);

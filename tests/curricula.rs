@@ -158,7 +158,7 @@ fn live(name: &str, agent: &str) {
     let command = command
         .arg("run")
         .arg(&short)
-        .args(["--agent", agent, "--json", "--logs"])
+        .args(["--agent", agent, "--json", "--output"])
         .arg(&log);
     let output = command.output().expect("the command is built before its tests");
     assert!(

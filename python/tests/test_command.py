@@ -84,7 +84,7 @@ def test_an_interrupt_ends_it_in_words() -> None:
 def test_an_interrupted_run_leaves_a_log_that_goes_on(tmp_path: Path) -> None:
     scenario, log = tmp_path / "scenario.json", tmp_path / "log"
     driftworld.Curriculum.design("find_objects#blue", learn=3000, eval_episodes=1).save(scenario)
-    argv = command("run", str(scenario), "--agent", "random", "--logs", str(log))
+    argv = command("run", str(scenario), "--agent", "random", "--output", str(log))
     child = subprocess.Popen(argv, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     while not list(log.glob("*/1-train")) and child.poll() is None:
         pass

@@ -222,7 +222,7 @@ def test_an_order_is_the_commands(method: str | None) -> None:
     flags = ["--seed", "3"] if method == "random" else []
     if method == "target-step":
         options, flags = {"target_step": 0.05}, ["--target-step", "0.05"]
-    expected = commanded("order", *SOME, *flags, *([] if method is None else ["--method", method]))
+    expected = commanded("order", *SOME, *flags, *([] if method is None else ["--order", method]))
     found = order(SOME, method, **options)
     for field in ("method", "order", "steps", "length", "largest_step", "mean_step", "anchor_correlation"):
         assert getattr(found, field) == expected[field], field

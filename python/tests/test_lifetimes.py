@@ -42,7 +42,7 @@ def test_the_log_is_the_one_that_the_command_writes(tmp_path: Path) -> None:
     curriculum, script = small(), tmp_path / "circle.txt"
     script.write_text("step 1 5 45 0\nrepeat\n", encoding="utf-8")
     curriculum.save(tmp_path / "s.json")
-    argv = ["run", str(tmp_path / "s.json"), "--agent", f"scripted:{script}", "--logs", str(tmp_path / "theirs")]
+    argv = ["run", str(tmp_path / "s.json"), "--agent", f"scripted:{script}", "--output", str(tmp_path / "theirs")]
     subprocess.run([sys.executable, "-m", "driftworld", *argv], check=True, capture_output=True)
     agent = Circler()
     summary = curriculum.run(agent, tmp_path / "mine", **SMALL)
@@ -60,7 +60,7 @@ def test_the_log_is_the_one_that_the_command_writes(tmp_path: Path) -> None:
 def test_a_random_agents_log_has_the_form_of_the_commands(tmp_path: Path) -> None:
     curriculum = small(max_steps=10)
     curriculum.save(tmp_path / "s.json")
-    argv = ["run", str(tmp_path / "s.json"), "--agent", "random", "--logs", str(tmp_path / "theirs")]
+    argv = ["run", str(tmp_path / "s.json"), "--agent", "random", "--output", str(tmp_path / "theirs")]
     subprocess.run([sys.executable, "-m", "driftworld", *argv], check=True, capture_output=True)
     space = curriculum.environment(**SMALL).action_space
 
@@ -282,7 +282,7 @@ def test_time_counts_every_step_that_an_action_is_held_for(tmp_path: Path) -> No
     (tmp_path / "s.json").write_text(json.dumps(document), encoding="utf-8")
     script = tmp_path / "circle.txt"
     script.write_text("step 1 5 45 0\nrepeat\n", encoding="utf-8")
-    argv = ["run", str(tmp_path / "s.json"), "--agent", f"scripted:{script}", "--logs", str(tmp_path / "theirs")]
+    argv = ["run", str(tmp_path / "s.json"), "--agent", f"scripted:{script}", "--output", str(tmp_path / "theirs")]
     subprocess.run([sys.executable, "-m", "driftworld", *argv], check=True, capture_output=True)
     curriculum = Curriculum.load(tmp_path / "s.json")
     curriculum.run(Circler(), tmp_path / "mine", **SMALL)

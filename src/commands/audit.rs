@@ -12,7 +12,7 @@ use serde_json::json;
 
 use super::{Failure, output};
 
-/// Test a scenario's protocol with agents whose scores are known.
+/// Test a curriculum with agents whose scores are known.
 ///
 /// Five simulated agents run the scenario: one that never learns, one that learns while it is evaluated, one that only
 /// remembers what paid at each number, one that learns every variant like its own expert, and one that forgets. The

@@ -9,7 +9,9 @@ use clap::{Args, Subcommand};
 
 use super::output;
 
-/// Measure the speed of this build on this machine, on one core.
+/// Measure the speed of this build on this machine.
+///
+/// On one core, unless a benchmark says otherwise.
 #[derive(Args)]
 #[command(after_help = "Example:\n  driftworld bench generator --json")]
 pub(crate) struct Bench {

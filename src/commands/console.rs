@@ -16,14 +16,14 @@ use super::world_choice::WorldChoice;
 /// The longest line that is read, in bytes: a message may hold a whole world.
 const LONGEST_LINE: u64 = 64 << 20;
 
-/// Step through a world by hand: act, observe, edit it, send it messages.
+/// Step through a world by hand: act, observe, edit it.
 ///
 /// On a terminal you can edit, recall and complete (Tab) lines. From a pipe or a script, each line is a command and `#`
 /// starts a comment. Each command is echoed before its answer. The first error ends the session with exit code 1.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld console find_objects#red --seed 7
-  driftworld console world.json --script tour.txt --out pictures
+  driftworld console world.json --script tour.txt -o pictures
   printf 'step 10 2 0 0\\nobjects\\n' | driftworld console find_objects
 
 Type help for the commands.")]
@@ -37,8 +37,8 @@ pub(crate) struct Console {
     #[arg(long)]
     keep_going: bool,
     /// Folder for screenshots and states. Nothing is written elsewhere.
-    #[arg(long, default_value = "console-out", value_name = "FOLDER")]
-    out: PathBuf,
+    #[arg(short, long, default_value = "console-out", value_name = "DIR")]
+    output: PathBuf,
 }
 
 impl Console {
@@ -50,7 +50,7 @@ impl Console {
         let choice = self.choice.request();
         let warn = |text| output::warning(text);
         let world = choice.world(&warn)?;
-        let mut session = Session::new((choice, &warn), world, &self.out, Screen::of_this_terminal());
+        let mut session = Session::new((choice, &warn), world, &self.output, Screen::of_this_terminal());
         output::line(session.greeting())?;
         if let Some((path, text)) = script {
             let lines = text.lines().map(|line| Ok(line.to_owned()));

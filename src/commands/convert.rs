@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use crate::spec::{MAX_BYTES, Scenario, World};
+use crate::documents;
+use crate::spec::{Scenario, World};
 use clap::{Args, ValueEnum};
 use driftworld_text::ShownPath;
 
@@ -12,7 +13,9 @@ use super::world_choice::WorldChoice;
 use super::{Failure, output, overwrite};
 use crate::scenarios::{Missing, ScenarioFile};
 
-/// Convert a world or a scenario to or from L2Explorer's format, or a world from a map of letters.
+/// Convert worlds and scenarios from and to other formats.
+///
+/// Those are L2Explorer's format, for both, and maps of letters, for worlds.
 ///
 /// Warnings on standard error name everything that the other format cannot express. L2Explorer's scenarios use map
 /// files only, so the worlds that a scenario draws are written as maps into a folder beside the output.
@@ -35,6 +38,9 @@ pub(crate) struct Convert {
     /// File to write, or - for standard output.
     #[arg(short, long, default_value = "-", value_name = "FILE")]
     output: PathBuf,
+    /// Print what was written as JSON.
+    #[arg(long)]
+    json: bool,
 }
 
 /// A form of documents.
@@ -59,14 +65,14 @@ enum Letters {
 impl Letters {
     /// Reads the world, with warnings to standard error.
     fn world(self, path: &Path) -> Result<World, Failure> {
-        let text = driftworld_files::text(path, MAX_BYTES as u64)?;
-        let name = path.display().to_string();
+        let text = documents::text(path)?;
+        let name = documents::name_of(path);
         let (world, warnings) = match self {
             Self::DmlabText => World::from_dmlab_text(&name, &text),
             Self::MinigridText => World::from_minigrid_text(&name, &text),
         }?;
         for warning in warnings {
-            output::note(format!("warning: {warning}"));
+            output::warning(warning.to_string());
         }
         Ok(world)
     }
@@ -74,6 +80,14 @@ impl Letters {
 
 impl Convert {
     pub(crate) fn run(self) -> Result<(), Failure> {
+        self.convert()?;
+        if self.json && !output::is_stdout(&self.output) {
+            return output::json_of_what_was_written();
+        }
+        Ok(())
+    }
+
+    fn convert(&self) -> Result<(), Failure> {
         let path = Path::new(self.choice.name());
         overwrite::refuse_inputs(&self.output, [self.choice.name()])?;
         if self.from.is_none() && ScenarioFile::is_one(path) {
@@ -88,7 +102,7 @@ impl Convert {
         }
         let (text, warnings) = world.to_l2explorer();
         for warning in warnings {
-            output::note(format!("warning: {warning}"));
+            output::warning(warning.to_string());
         }
         output::write_or_print(&self.output, &text)
     }
@@ -129,7 +143,7 @@ impl Convert {
         }
         let (text, warnings) = scenario.to_l2explorer()?;
         for warning in warnings {
-            output::note(format!("warning: {warning}"));
+            output::warning(warning.to_string());
         }
         output::write_or_print(&self.output, &text)
     }

@@ -26,7 +26,7 @@ use crate::table::table;
 /// its own unit. See docs/similarity.md.
 #[derive(Args)]
 #[command(after_help = "Examples:
-  driftworld distance find_objects#blue find_objects#dusk --explain
+  driftworld distance find_objects#blue dusk --explain
   driftworld distance find_objects#blue find_objects#dusk --by pictures --explain
   driftworld distance get_to_goal#plain get_to_goal#soft --by rewards
   driftworld distance find_objects#red find_objects#blue --by behavior
@@ -35,7 +35,7 @@ use crate::table::table;
 pub(crate) struct Distance {
     /// A variant of a task, or a world file.
     a: String,
-    /// The other variant or world file.
+    /// The other variant or world file. A variant of the same task may be named without it.
     b: String,
     /// What to compare by: parameters, worlds, pictures, occupancy, placements, objects, colors, rewards, dynamics or
     /// behavior.
@@ -54,7 +54,7 @@ pub(crate) struct Distance {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000), num_args = 0..=1, default_missing_value = "16")]
     worlds: Option<u64>,
     /// Seed for drawing worlds from variants.
-    #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = super::numbers::seed)]
     seed: u64,
     /// Index of the first world drawn.
     #[arg(long, default_value_t = 0)]
@@ -86,7 +86,7 @@ impl Distance {
         output::line(format!(
             "{} to {}, {description}\n",
             one_line(&self.a),
-            one_line(&self.b)
+            one_line(&self.other())
         ))?;
         output::line(by_element(&distance))?;
         if self.explain && distance.parts.is_empty() {
@@ -107,8 +107,14 @@ impl Distance {
             scale: self.scale,
             catalogue: self.libraries.catalogue()?,
         };
-        let (a, b) = (self.side(&self.a)?, self.side(&self.b)?);
+        let (a, b) = (self.side(&self.a)?, self.side(&self.other())?);
         Ok(between(&a, &b, &sample, |declared| self.weights.over(declared))?)
+    }
+
+    /// The other one with its task, which may be left out behind a variant.
+    fn other(&self) -> String {
+        let named = tasks::with_tasks(&[self.a.clone(), self.b.clone()]);
+        named.into_iter().next_back().unwrap_or_default()
     }
 
     fn side(&self, name: &str) -> Result<Side, Failure> {
@@ -145,9 +151,10 @@ fn parts(distance: &Measured) -> String {
         [
             part.name.clone(),
             part.element.letter().to_owned(),
-            part.measure.to_string(),
-            part.method
-                .map_or_else(|| "of the values".to_owned(), |method| method.to_string()),
+            part.method.map_or_else(
+                || part.measure.to_string(),
+                |method| format!("{} ({method})", part.measure),
+            ),
             format!("{:.4}", part.raw),
             format!("{:.4}", part.normalised),
             format!("{}", part.weight),
@@ -164,18 +171,9 @@ fn parts(distance: &Measured) -> String {
         return equal.trim_start().to_owned();
     }
     let shown = table(
-        [
-            "what",
-            "element",
-            "measure",
-            "found",
-            "raw",
-            "normalised",
-            "weight",
-            "share",
-        ],
+        ["what", "element", "measure", "raw", "scaled", "weight", "share"],
         parts.into_iter().map(row).collect(),
-        &[4, 5, 6, 7],
+        &[3, 4, 5, 6],
     );
     shown + &equal
 }

@@ -10,7 +10,9 @@ use serde_json::{Value, json};
 use super::optional::FEATURES;
 use super::{Failure, output};
 
-/// Report which renderers work on this machine, and what the others need.
+/// Report which renderers and features work on this machine.
+///
+/// Also says what the others need.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld doctor

@@ -5,7 +5,6 @@ use std::path::Path;
 
 use crate::curriculum::{Plan, log_name};
 use crate::spec::{Regime, Scenario};
-use driftworld_text::ShownPath;
 
 use super::{Failure, output};
 
@@ -61,13 +60,9 @@ pub(crate) fn draw_maps(scenario: &mut Scenario, plan: &Plan, file: &Path) -> Re
         block.regimes = regimes;
     }
     for lost in &maps.lost {
-        output::note(format!("warning: {lost}"));
+        output::warning(lost);
     }
-    output::note(format!(
-        "{} maps in {}",
-        maps.written.len(),
-        maps.beside.join(&maps.folder).shown()
-    ));
+    output::wrote(&maps.beside.join(&maps.folder), format!("{} maps", maps.written.len()));
     Ok(())
 }
 

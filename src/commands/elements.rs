@@ -10,7 +10,9 @@ use crate::table::table;
 use super::assets::LibraryChoice;
 use super::{Failure, output};
 
-/// Try which elements of the decision process variants change, beside what the task says.
+/// Test what variants change: state, action, reward and so on.
+///
+/// What is measured stands beside what the task says.
 ///
 /// Worlds of two variants are drawn in pairs, and both run side by side: the same actions from the same states. S is what can
 /// be there, p where things are at the start, A what actions do to the body, T what follows, R what is paid and what ends, O the form of
@@ -41,7 +43,7 @@ pub(crate) struct Elements {
     #[arg(long, default_value_t = 32, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000))]
     worlds: u64,
     /// The seed that worlds are drawn under.
-    #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = super::numbers::seed)]
     seed: u64,
     /// The most steps of an episode.
     #[arg(long, default_value_t = 100, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]

@@ -6,6 +6,7 @@ mod agent;
 mod assets;
 mod audit;
 mod bench;
+mod completions;
 mod console;
 mod convert;
 mod curriculum;
@@ -15,10 +16,14 @@ mod doctor;
 mod draw_maps;
 mod elements;
 mod figures;
+mod help;
 mod interrupt;
 mod logs;
 mod metrics;
 mod mix;
+mod new;
+mod numbers;
+mod old_spellings;
 mod optional;
 mod order;
 mod output;
@@ -43,11 +48,11 @@ use std::borrow::Cow;
 use std::ffi::OsString;
 use std::sync::{Mutex, PoisonError};
 
-use clap::Parser;
+use clap::{ColorChoice, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use driftworld_text::printable;
 
 pub(crate) use crate::Failure;
-use crate::{log_folders, matrix_file, overwrite};
+use crate::{documents, log_folders, matrix_file, overwrite, style};
 
 /// Runs the command as a program of its own does, and prints what it has to say; `args` begins with the program's name.
 ///
@@ -60,10 +65,15 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> u8 {
     static RUNNING: Mutex<()> = Mutex::new(());
     let _one_at_a_time = RUNNING.lock().unwrap_or_else(PoisonError::into_inner);
     translate_panics();
-    match parse(args) {
+    documents::accept_standard_input();
+    let (args, notes) = old_spellings::translated(args.into_iter().collect());
+    style::follow(asked_color(&args));
+    match parse(&args) {
         Ok(command) => {
+            notes.iter().for_each(|note| output::note(format!("note: {note}")));
             let done = interrupt::watch().and_then(|_watch| command.run());
-            done.map_or_else(|failure| report(&failure), |()| 0)
+            let told = output::tell_what_was_written();
+            done.and(told).map_or_else(|failure| report(&failure), |()| 0)
         }
         Err(help) => {
             // Where nobody reads, there is nobody to tell of it.
@@ -73,24 +83,66 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> u8 {
     }
 }
 
+/// The command as clap knows it.
+fn command() -> clap::Command {
+    help::grouped(Driftworld::command())
+}
+
+/// What `--color` says, before anything else is read: what is wrong with arguments is said in colours, too.
+fn asked_color(args: &[OsString]) -> ColorChoice {
+    let mut args = args
+        .iter()
+        .filter_map(|arg| arg.to_str())
+        .take_while(|arg| *arg != "--");
+    let mut asked = ColorChoice::Auto;
+    while let Some(arg) = args.next() {
+        let word = match arg.strip_prefix("--color") {
+            Some("") => args.next(),
+            Some(rest) => rest.strip_prefix('='),
+            None => None,
+        };
+        asked = word
+            .and_then(|word| ColorChoice::from_str(word, false).ok())
+            .unwrap_or(asked);
+    }
+    asked
+}
+
 /// Reads arguments. What is said of wrong ones quotes them, in one line each and without what a terminal would obey.
-fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, clap::Error> {
-    let args: Vec<OsString> = args.into_iter().collect();
-    Command::try_parse_from(&args).map_err(|said| {
+fn parse(args: &[OsString]) -> Result<Command, clap::Error> {
+    let read = |args: Vec<OsString>| {
+        let mut command = command().color(asked_color(&args));
+        let matches = command.try_get_matches_from_mut(args)?;
+        Driftworld::from_arg_matches(&matches)
+            .map(|read| read.command)
+            .map_err(|error| error.format(&mut command))
+    };
+    read(args.to_vec()).map_err(|said| {
         let shown = |arg: &OsString| match arg.to_str().map(printable) {
             Some(Cow::Owned(shown)) => shown.into(),
             _ => arg.clone(),
         };
-        Command::try_parse_from(args.iter().map(shown)).err().unwrap_or(said)
+        read(args.iter().map(shown).collect()).err().unwrap_or(said)
     })
 }
 
 /// Lifelong reinforcement learning: task specs, worlds, distances, curricula, a first-person environment and metrics.
 #[derive(Parser)]
 #[command(name = "driftworld", version, arg_required_else_help = true)]
+struct Driftworld {
+    #[command(subcommand)]
+    command: Command,
+    /// When to colour what is printed: on a terminal (auto, unless NO_COLOR is set), always or never.
+    #[arg(long, global = true, value_enum, default_value_t = ColorChoice::Auto, value_name = "WHEN", hide_possible_values = true)]
+    color: ColorChoice,
+}
+
+#[derive(Subcommand)]
 enum Command {
     Demo(demo::Demo),
     Tasks(tasks::Tasks),
+    New(new::New),
+    Export(new::Export),
     Validate(validate::Validate),
     Sample(sample::Sample),
     Vary(vary::Vary),
@@ -115,6 +167,7 @@ enum Command {
     Schema(schema::Schema),
     Unity(unity::Unity),
     Bench(bench::Bench),
+    Completions(completions::Completions),
     Doctor(doctor::Doctor),
 }
 
@@ -124,6 +177,8 @@ impl Command {
         match self {
             Self::Demo(command) => command.run(),
             Self::Tasks(command) => command.run(),
+            Self::New(command) => command.run(),
+            Self::Export(command) => command.run(),
             Self::Validate(command) => command.run(),
             Self::Sample(command) => command.run(),
             Self::Vary(command) => command.run(),
@@ -147,6 +202,7 @@ impl Command {
             Self::Schema(command) => command.run(),
             Self::Unity(command) => command.run(),
             Self::Bench(command) => command.run(),
+            Self::Completions(command) => command.run(),
             Self::Doctor(command) => command.run(),
         }
     }

@@ -2,24 +2,75 @@
 //! what a terminal would obey or hide in it is shown here, so that no command can forget it.
 
 use std::io::{IsTerminal, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use driftworld_text::{ShownPath, printable_json, printable_lines};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
+use serde_json::json;
 
 use crate::Failure;
 pub(crate) use crate::output_file::{create, unwritable, write, write_picture};
 use crate::report::picture::Picture;
+use crate::style::{self, Style};
+use crate::wrap::{columns_of_stderr, columns_of_stdout, wrap_lines};
 
-/// Prints a line, or ends quietly if the reader has gone.
+/// Whether data for a program went to standard output: then nothing else does.
+static IS_DATA: AtomicBool = AtomicBool::new(false);
+
+/// What was written, each with what it is, and was not told yet.
+static WRITTEN: Mutex<Vec<(PathBuf, String)>> = Mutex::new(Vec::new());
+
+fn written() -> MutexGuard<'static, Vec<(PathBuf, String)>> {
+    WRITTEN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Remembers that a file or a folder was written; `what` says more in a few words, or nothing. At the end of the command a line
+/// `wrote FILE` says so.
+pub(crate) fn wrote(path: &Path, what: impl Into<String>) {
+    // Whoever is told by standard output has seen it.
+    if !is_stdout(path) {
+        written().push((path.to_owned(), what.into()));
+    }
+}
+
+/// Says what was written: on standard output, or on standard error where data for a program is on the other.
+pub(crate) fn tell_what_was_written() -> Result<(), Failure> {
+    let is_data = IS_DATA.swap(false, Ordering::Relaxed);
+    for (path, what) in std::mem::take(&mut *written()) {
+        let what = if what.is_empty() { what } else { format!(" ({what})") };
+        let text = format!("wrote {}{what}", path.shown());
+        if is_data {
+            note(text);
+        } else {
+            line(text)?;
+        }
+    }
+    Ok(())
+}
+
+/// Prints what was written as JSON, for commands that have no other result.
+pub(crate) fn json_of_what_was_written() -> Result<(), Failure> {
+    let listed: Vec<_> = std::mem::take(&mut *written())
+        .into_iter()
+        .map(|(path, what)| json!({ "path": path, "what": what }))
+        .collect();
+    json(&json!({ "wrote": listed }))
+}
+
+/// Prints a line, or ends quietly if the reader has gone. What is longer than the terminal is wide is broken between words.
 pub(crate) fn line(text: impl AsRef<str>) -> Result<(), Failure> {
-    print(&format!("{}\n", text.as_ref()))
+    print(&format!("{}\n", wrap_lines(text.as_ref(), columns_of_stdout())))
 }
 
 /// Prints text, in which unprintable characters are shown.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    if style::of_stdout() {
+        return print_as_is(&style::paint(text, |text| printable_lines(text).into_owned()));
+    }
     print_as_is(&printable_lines(text))
 }
 
@@ -30,10 +81,16 @@ pub(crate) fn print_json(json: &str) -> Result<(), Failure> {
 
 /// Prints data for another program: to a terminal as [`print`], else as it is.
 pub(crate) fn print_data(text: &str) -> Result<(), Failure> {
+    carries_data();
     if std::io::stdout().is_terminal() {
         return print(text);
     }
     print_as_is(text)
+}
+
+/// From now on standard output holds data for a program.
+pub(crate) fn carries_data() {
+    IS_DATA.store(true, Ordering::Relaxed);
 }
 
 /// Prints text as it is: of our own making, with colours.
@@ -56,6 +113,7 @@ pub(crate) fn print_as_is(text: &str) -> Result<(), Failure> {
 
 /// Prints a value as indented JSON.
 pub(crate) fn json(value: &impl Serialize) -> Result<(), Failure> {
+    carries_data();
     print_json(&(serde_json::to_string_pretty(value)? + "\n"))
 }
 
@@ -67,7 +125,12 @@ pub(crate) fn note(text: impl AsRef<str>) {
 /// A line on standard error, in which unprintable characters are shown. Where its reader has gone, there is nobody to
 /// tell, and the work goes on.
 pub(super) fn to_standard_error(text: &str) {
-    let _ = writeln!(std::io::stderr().lock(), "{}", printable_lines(text));
+    let text = wrap_lines(&printable_lines(text), columns_of_stderr());
+    let text = match Style::of_message(&text).filter(|_| style::of_stderr()) {
+        Some((style, length)) => style.painted(&text[..length]) + &text[length..],
+        None => text,
+    };
+    let _ = writeln!(std::io::stderr().lock(), "{text}");
 }
 
 /// Says on standard error what is odd.
@@ -83,21 +146,20 @@ pub(crate) fn is_stdout(path: &Path) -> bool {
 /// A document in JSON to a file, or to standard output for `-`.
 pub(crate) fn write_or_print(path: &Path, json: &str) -> Result<(), Failure> {
     if is_stdout(path) {
+        carries_data();
         print_json(json)
     } else {
-        write(path, json.as_bytes())
+        write(path, json.as_bytes())?;
+        wrote(path, "");
+        Ok(())
     }
 }
 
 /// Writes a picture as a PNG file, and says so with its size.
 pub(crate) fn write_picture_and_tell(path: &Path, picture: &Picture) -> Result<(), Failure> {
     write_picture(path, picture)?;
-    line(format!(
-        "{}: {} × {} pixels",
-        path.shown(),
-        picture.width,
-        picture.height
-    ))
+    wrote(path, format!("{} × {} pixels", picture.width, picture.height));
+    Ok(())
 }
 
 /// A bar on a terminal, nothing elsewhere.

@@ -10,7 +10,6 @@ use crate::env::{
 };
 use crate::spec::{Object, World};
 use clap::Args;
-use driftworld_text::ShownPath;
 use serde::Serialize;
 
 use super::world_choice::WorldChoice;
@@ -20,7 +19,9 @@ use crate::modality::{Kind, metres_per_level, target};
 /// The longest part of a file name that comes from the document.
 const LONGEST_NAME: usize = 40;
 
-/// Photograph every object of a world from several sides and heights.
+/// Photograph every object of a world from all sides.
+///
+/// From several heights, too.
 ///
 /// Each object stands alone in full daylight, with the world's ground and sky. The world's `image_params` set the
 /// camera distance, the number of sides and the heights. Its `agent_params` set the image size and the field of view.
@@ -38,8 +39,11 @@ pub(crate) struct Photograph {
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
     modalities: Vec<Kind>,
     /// Folder for the pictures and manifest.json. Replaces pictures of the same name.
-    #[arg(short, long, default_value = "photographs", value_name = "FOLDER")]
+    #[arg(short, long, default_value = "photographs", value_name = "DIR")]
     output: PathBuf,
+    /// Print the manifest as JSON.
+    #[arg(long)]
+    json: bool,
 }
 
 /// What all pictures of a folder have in common, and the list of them.
@@ -106,12 +110,15 @@ impl Photograph {
         let manifest = manifest(&world, entries);
         let text = serde_json::to_string_pretty(&manifest)? + "\n";
         output::write(&self.output.join("manifest.json"), text.as_bytes())?;
-        output::line(format!(
-            "{}: {} objects in {} pictures of {width} × {height} pixels",
-            self.output.shown(),
-            world.objects.len(),
-            manifest.photographs.len(),
-        ))
+        output::wrote(
+            &self.output,
+            format!(
+                "{} objects in {} pictures of {width} × {height} pixels",
+                world.objects.len(),
+                manifest.photographs.len()
+            ),
+        );
+        if self.json { output::json(&manifest) } else { Ok(()) }
     }
 
     fn kinds(&self, world: &World) -> Result<Vec<Kind>, Failure> {

@@ -14,7 +14,7 @@ use crate::episode_frames::rows;
 use crate::report::picture::{Picture, SheetRow, sheet};
 use crate::views::Views;
 
-/// Draw the agent's view of a world, and the world from above.
+/// Draw a world: the agent's view, from above, or an episode.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld render find_objects#dusk --seed 7 -o dusk.png
@@ -48,6 +48,9 @@ pub(crate) struct Render {
     /// PNG file to write.
     #[arg(short, long, default_value = "world.png", value_name = "FILE")]
     output: PathBuf,
+    /// Print what was written as JSON.
+    #[arg(long)]
+    json: bool,
 }
 
 /// Which picture of a world.
@@ -79,7 +82,12 @@ impl Render {
         let world = self.choice.world()?;
         let catalogue = self.libraries.catalogue()?;
         warn(&world, &catalogue);
-        output::write_picture_and_tell(&self.output, &self.picture(&world, &catalogue)?)
+        output::write_picture_and_tell(&self.output, &self.picture(&world, &catalogue)?)?;
+        if self.json {
+            output::json_of_what_was_written()
+        } else {
+            Ok(())
+        }
     }
 
     fn picture(&self, world: &World, catalogue: &Catalogue) -> Result<Picture, Failure> {
@@ -148,7 +156,7 @@ const MOST_WARNINGS: usize = 10;
 fn warn(world: &World, catalogue: &Catalogue) {
     let warnings = Environment::with_catalogue(world.clone(), catalogue.clone()).warnings();
     for warning in warnings.iter().take(MOST_WARNINGS) {
-        output::note(format!("warning: {warning}"));
+        output::warning(warning.to_string());
     }
     if warnings.len() > MOST_WARNINGS {
         output::note(format!("warning: and {} more", warnings.len() - MOST_WARNINGS));

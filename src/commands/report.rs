@@ -1,6 +1,6 @@
 //! `driftworld report`: lifetimes on one page, and their figures as files. Pages are the library's.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::Failure;
 use crate::lifetime_report::{ReportRequest, write_report};
@@ -12,7 +12,9 @@ use super::figures::FigureChoice;
 use super::output;
 use super::scoring::{Intervals, Scoring};
 
-/// Write an HTML report on lifetimes: metrics, curriculum, learning curves.
+/// Write a report on lifetimes as one HTML page.
+///
+/// It shows metrics, the curriculum and learning curves.
 ///
 /// The report is one HTML file. It loads nothing and needs no network. With several lifetimes, each has a chapter, and
 /// all together have confidence intervals. --against compares two agents.
@@ -36,6 +38,9 @@ pub(crate) struct Report {
     /// The HTML file to write, or - for standard output.
     #[arg(short, long, value_name = "FILE", default_value = "report.html")]
     output: PathBuf,
+    /// Print what was written as JSON.
+    #[arg(long)]
+    json: bool,
     /// Title of the report [default: the lifetime's name].
     #[arg(long, value_name = "WORDS")]
     title: Option<String>,
@@ -86,7 +91,8 @@ impl Report {
             plots: self.plots,
         };
         let page = write_report(&request, &|text| output::warning(text))?;
-        if self.output == Path::new("-") {
+        if output::is_stdout(&self.output) {
+            output::carries_data();
             return output::print(&page.html);
         }
         output::write(&self.output, page.html.as_bytes())?;
@@ -95,8 +101,17 @@ impl Report {
         } else {
             "lifetimes"
         };
-        let (path, kilobytes) = (self.output.shown(), page.html.len().div_ceil(1000));
-        output::line(format!("{path}: {} {many}, {kilobytes} kB", page.num_lifetimes))?;
-        page.figures.map_or(Ok(()), output::line)
+        let kilobytes = page.html.len().div_ceil(1000);
+        output::wrote(&self.output, format!("{} {many}, {kilobytes} kB", page.num_lifetimes));
+        if let (Some(folder), Some(figures)) = (&request.plots, page.figures) {
+            // It says the folder first.
+            let what = figures.strip_prefix(&format!("{}: ", folder.shown()));
+            output::wrote(folder, what.unwrap_or_default());
+        }
+        if self.json {
+            output::json_of_what_was_written()
+        } else {
+            Ok(())
+        }
     }
 }

@@ -25,7 +25,7 @@ use crate::table::table;
 /// The most experiences that run at the same time.
 const MAX_JOBS: usize = 256;
 
-/// Run an agent through a curriculum and log every experience.
+/// Run an agent through a curriculum, and log every experience.
 ///
 /// The scenario is one of ours or of L2Explorer's. Relative paths of tasks and worlds are first resolved from the
 /// scenario's folder.
@@ -38,9 +38,9 @@ const MAX_JOBS: usize = 256;
 /// renamed, replaced or truncated, and says what is lost.
 #[derive(Args)]
 #[command(after_help = "Example:
-  driftworld run scenario.json --agent onrails --logs logs/first
-  driftworld run scenario.json --agent onrails --logs logs/first --resume
-  driftworld run scenario.json --agent scripted:keep_away.txt --logs logs/second
+  driftworld run scenario.json --agent onrails -o logs/first
+  driftworld run scenario.json --agent onrails -o logs/first --resume
+  driftworld run scenario.json --agent scripted:keep_away.txt -o logs/second
   driftworld metrics logs/first")]
 pub(crate) struct Run {
     /// The scenario file.
@@ -48,8 +48,8 @@ pub(crate) struct Run {
     #[arg(long, default_value = "onrails", value_name = "AGENT", help = AgentArg::HELP)]
     agent: AgentArg,
     /// Folder for the log. Must be empty, unless --resume is given.
-    #[arg(long, default_value = "logs/run", value_name = "DIR")]
-    logs: PathBuf,
+    #[arg(short, long, default_value = "logs/run", value_name = "DIR")]
+    output: PathBuf,
     /// Continue the log in the folder, or start a new one if there is none.
     #[arg(long)]
     resume: bool,
@@ -61,7 +61,7 @@ pub(crate) struct Run {
     /// Seed of the agent's random numbers: another seed is a repeat in the same worlds.
     ///
     /// The log says it. 0 is the run that the scenario has of itself.
-    #[arg(long, default_value_t = 0, value_name = "S", allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0, value_name = "S", allow_negative_numbers = true, value_parser = super::numbers::seed)]
     seed: u64,
     /// Skip experiences whose worlds cannot be drawn.
     ///
@@ -97,7 +97,21 @@ fn jobs(text: &str) -> Result<NonZeroUsize, String> {
 }
 
 impl Run {
+    /// Refuses the name of a task in place of a scenario's file; a task's file shows itself when it is read.
+    fn refuse_task(&self) -> Result<(), Failure> {
+        let called = self.scenario.to_str().unwrap_or_default();
+        let is_task = !self.scenario.exists() && tasks::variants(called).is_ok();
+        if !is_task {
+            return Ok(());
+        }
+        Err(Failure::input(format!(
+            "{called}: found a task, expected a scenario; `driftworld curriculum {called} -o scenario.json` makes one from \
+             its variants"
+        )))
+    }
+
     pub(crate) fn run(self) -> Result<(), Failure> {
+        self.refuse_task()?;
         let file = ScenarioFile::read(&self.scenario, &mut output::warning)?;
         // The original's own scenario names a map that it does not come with, and has to run as it stands.
         let missing = if self.missing.stand_in || (file.original && !self.missing.no_stand_in) {
@@ -134,12 +148,16 @@ impl Run {
         let run = LifetimeRun {
             plan: &plan,
             agent,
-            logs: &self.logs,
+            logs: &self.output,
             start: if self.resume { Start::Resumed } else { Start::New },
             jobs: self.jobs.unwrap_or_else(processors),
             catalogue: self.libraries.catalogue()?,
         };
         let summary = run.run()?;
+        output::wrote(
+            &self.output,
+            format!("a log of {} experiences, {} steps", summary.experiences, summary.steps),
+        );
         if self.json {
             return output::json(&summary);
         }
@@ -150,12 +168,7 @@ impl Run {
         if let Some(endings) = endings(&summary) {
             output::line(format!("\n{endings}"))?;
         }
-        output::line(format!(
-            "\n{} experiences, {} steps; log in {}",
-            summary.experiences,
-            summary.steps,
-            self.logs.shown()
-        ))
+        output::line("")
     }
 }
 
@@ -300,7 +313,7 @@ impl LifetimeRun<'_> {
         };
         opened.map_err(|error| match error {
             CurriculumError::Log(MetricsError::LogExists { path }) => Failure::input(format!(
-                "{}: found a folder that is not empty; choose a new one with --logs, or continue its log with --resume",
+                "{}: found a folder that is not empty; choose a new one with --output, or continue its log with --resume",
                 path.shown()
             )),
             other => other.into(),

@@ -12,7 +12,6 @@ use crate::spec::{Variant, World, maps::MapLibrary};
 use crate::tasks;
 use clap::{Args, ValueEnum};
 use driftworld_atomic_files::AtomicFile;
-use driftworld_text::ShownPath;
 use rayon::prelude::*;
 
 use super::interrupt::Interrupt;
@@ -43,7 +42,7 @@ pub(crate) struct Sample {
     /// The variant: PATH, PATH#variant, or a built-in such as `find_objects#red`.
     task: String,
     /// Seed of the worlds.
-    #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = super::numbers::seed)]
     seed: u64,
     /// Index of the first world.
     #[arg(long, default_value_t = 0)]
@@ -82,6 +81,9 @@ pub(crate) struct Sample {
     /// File, folder for several worlds, or - for standard output.
     #[arg(short, long, default_value = "-", value_name = "PATH")]
     output: PathBuf,
+    /// Print what was written as JSON.
+    #[arg(long)]
+    json: bool,
 }
 
 /// The names of [`Sequence`].
@@ -178,6 +180,14 @@ impl Source {
 
 impl Sample {
     pub(crate) fn run(self) -> Result<(), Failure> {
+        self.draw()?;
+        if self.json && !output::is_stdout(&self.output) {
+            return output::json_of_what_was_written();
+        }
+        Ok(())
+    }
+
+    fn draw(&self) -> Result<(), Failure> {
         let count = self.count.unwrap_or(1);
         if self.index.checked_add(count).is_none() {
             return Err(Failure::usage(format!(
@@ -263,7 +273,9 @@ impl Sample {
     }
 
     fn stream(&self, source: &Source, range: std::ops::Range<u64>) -> Result<(), Failure> {
+        let count = range.end - range.start;
         if output::is_stdout(&self.output) {
+            output::carries_data();
             return each(source, range, |(_, _, world)| {
                 output::print_json(&(world.to_json() + "\n"))
             });
@@ -276,7 +288,9 @@ impl Sample {
             let written = written.and_then(|()| if is_read_now { file.flush() } else { Ok(()) });
             written.map_err(|error| self.failed(&error))
         })?;
-        self.commit(file)
+        self.commit(file)?;
+        output::wrote(&self.output, format!("{count} worlds"));
+        Ok(())
     }
 
     #[cfg(not(feature = "parquet"))]
@@ -312,7 +326,8 @@ impl Sample {
             table.push(row).map_err(|error| self.failed(&error))
         })?;
         self.commit(table.finish().map_err(|error| self.failed(&error))?)?;
-        output::line(format!("{count} worlds in {}", self.output.shown()))
+        output::wrote(&self.output, format!("{count} worlds"));
+        Ok(())
     }
 
     fn files(&self, source: &Source, range: std::ops::Range<u64>) -> Result<(), Failure> {
@@ -321,7 +336,8 @@ impl Sample {
             let path = self.output.join(format!("{index:08}.json"));
             output::write(&path, world.to_json_pretty().as_bytes())
         })?;
-        output::line(format!("{count} worlds in {}", self.output.shown()))
+        output::wrote(&self.output, format!("{count} worlds"));
+        Ok(())
     }
 }
 

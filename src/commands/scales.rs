@@ -13,7 +13,9 @@ use crate::tasks::built_in_names;
 use super::assets::LibraryChoice;
 use super::{Failure, output};
 
-/// Measure what agents that know nothing earn in each variant, and one that knows the map.
+/// Measure the floor and the ceiling of each variant.
+///
+/// The floor is what agents that know nothing earn, the ceiling what one earns that knows the map.
 ///
 /// Three agents run in the same worlds: one that acts at random, one that stands still, one that knows the map. The
 /// better of the first two is the floor of a variant, the third its ceiling. `driftworld metrics --scales FILE` scales
@@ -33,7 +35,7 @@ pub(crate) struct Scales {
         value_parser = clap::value_parser!(u64).range(2..=MAX_SCALES_WORLDS))]
     worlds: u64,
     /// Seed of the worlds.
-    #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = super::numbers::seed)]
     seed: u64,
     /// Also the ceiling of agents that cannot tell variants apart which look alike at the start.
     ///

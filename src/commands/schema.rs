@@ -26,6 +26,9 @@ pub(crate) struct Schema {
     /// Compare the schemas in this folder with the code. Exit code 1 if one is stale.
     #[arg(long, value_name = "DIR", conflicts_with = "output")]
     check: Option<PathBuf>,
+    /// Print what was written as JSON.
+    #[arg(long, requires = "output")]
+    json: bool,
 }
 
 impl Schema {
@@ -55,9 +58,13 @@ impl Schema {
         for (name, text) in self.texts()? {
             let path = folder.join(name);
             output::write(&path, text.as_bytes())?;
-            output::line(path.shown().to_string())?;
+            output::wrote(&path, "");
         }
-        Ok(())
+        if self.json {
+            output::json_of_what_was_written()
+        } else {
+            Ok(())
+        }
     }
 
     fn texts(&self) -> Result<Vec<(&'static str, String)>, Failure> {

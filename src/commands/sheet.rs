@@ -18,7 +18,9 @@ use crate::views::Views;
 /// The most variants that one picture shows.
 const MOST_VARIANTS: usize = 60;
 
-/// Draw one world of each of several variants, from the agent's view and from above.
+/// Draw a world of each of several variants in one picture.
+///
+/// Each is seen from the agent's view and from above.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld sheet get_to_goal -o goal.png
@@ -36,7 +38,7 @@ pub(crate) struct Sheet {
     #[arg(long, value_name = "FILE")]
     scenario: Option<PathBuf>,
     /// Seed of the worlds [default: 0; in a scenario, each block's own].
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, allow_negative_numbers = true, value_parser = super::numbers::seed)]
     seed: Option<u64>,
     /// Index of each variant's world [default: 0; in a scenario, the first of each block].
     #[arg(long)]
@@ -53,6 +55,9 @@ pub(crate) struct Sheet {
     /// PNG file to write.
     #[arg(short, long, default_value = "sheet.png", value_name = "FILE")]
     output: PathBuf,
+    /// Print what was written as JSON.
+    #[arg(long)]
+    json: bool,
 }
 
 impl Sheet {
@@ -77,7 +82,12 @@ impl Sheet {
         };
         let rows = variants.iter().map(row).collect::<Result<Vec<_>, _>>()?;
         bar.finish_and_clear();
-        output::write_picture_and_tell(&self.output, &sheet(&rows, usize::from(self.columns))?)
+        output::write_picture_and_tell(&self.output, &sheet(&rows, usize::from(self.columns))?)?;
+        if self.json {
+            output::json_of_what_was_written()
+        } else {
+            Ok(())
+        }
     }
 
     fn row(&self, shown: &Shown) -> Result<SheetRow, Failure> {

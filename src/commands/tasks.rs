@@ -1,5 +1,7 @@
 //! `driftworld tasks`: which tasks are built in, and what varies in one.
 
+use std::sync::Arc;
+
 use crate::spec::{Domain, Parameter, ParameterType, Role, TaskSpec, Value, Variant};
 use crate::tasks;
 use clap::{Args, Subcommand};
@@ -7,7 +9,7 @@ use driftworld_text::{one_line, printable};
 use serde_json::json;
 
 use super::{Failure, output};
-use crate::table::wide_table;
+use crate::table::table;
 
 /// List the built-in tasks, or show what varies in a task.
 #[derive(Args)]
@@ -22,10 +24,12 @@ pub(crate) struct Tasks {
 
 #[derive(Subcommand)]
 enum Action {
-    /// Show a task's parameters, and their values in every variant.
-    #[command(after_help = "Example:\n  driftworld tasks show find_objects")]
+    /// Show a task's parameters, and what every variant changes.
+    #[command(
+        after_help = "Examples:\n  driftworld tasks show find_objects\n  driftworld tasks show find_objects#dusk"
+    )]
     Show {
-        /// A built-in task, or the path of a task spec.
+        /// A built-in task, or the path of a task spec; with #variant, that variant or family alone.
         task: String,
         /// Print the table as JSON.
         #[arg(long)]
@@ -37,7 +41,10 @@ impl Tasks {
     pub(crate) fn run(self) -> Result<(), Failure> {
         match self.action {
             None => list(self.json),
-            Some(Action::Show { task, json }) => show(&tasks::task(&task)?, json || self.json),
+            Some(Action::Show { task, json }) => {
+                let own = tasks::split(&task).1;
+                show(&tasks::task(&task)?, own, json || self.json)
+            }
         }
     }
 }
@@ -54,18 +61,19 @@ fn list(as_json: bool) -> Result<(), Failure> {
             .collect();
         return output::json(&list);
     }
-    for task in tasks {
-        output::line(format!("{}: {}", task.name(), printable(task.description())))?;
-        for name in task.variant_names() {
-            let said = printable(task.variant_description(name).unwrap_or_default());
-            output::line(format!("  {}#{name:<12} {said}", task.name()).trim_end())?;
-        }
-    }
-    Ok(())
+    let rows = tasks.iter().map(|task| {
+        let variants = task.variant_names().join(", ");
+        [task.name().to_owned(), task.description().to_owned(), variants]
+    });
+    output::line(table(["task", "what it is", "variants"], rows.collect(), &[]))?;
+    output::line("\n`driftworld tasks show TASK` says what varies in one, and what each of its variants changes.")
 }
 
-fn show(task: &std::sync::Arc<TaskSpec>, as_json: bool) -> Result<(), Failure> {
-    let variants = task.all_variants();
+fn show(task: &Arc<TaskSpec>, own: Option<&str>, as_json: bool) -> Result<(), Failure> {
+    let variants = match own {
+        Some(name) => tasks::variants_called(task, name)?,
+        None => task.all_variants(),
+    };
     if as_json {
         let values: serde_json::Map<_, _> = variants
             .iter()
@@ -77,66 +85,60 @@ fn show(task: &std::sync::Arc<TaskSpec>, as_json: bool) -> Result<(), Failure> {
     for requirement in task.requirements() {
         output::line(format!("require: {}", one_line(requirement)))?;
     }
-    let own: Vec<Vec<String>> = std::iter::once(["parameter", "role", "affects", "domain"].map(str::to_owned).to_vec())
-        .chain(task.parameters().iter().map(|(name, parameter)| {
+    if !task.parameters().is_empty() {
+        let rows = task.parameters().iter().map(|(name, parameter)| {
             let affects: Vec<&str> = parameter.affects.iter().map(|element| element.letter()).collect();
             let domain = parameter
                 .domain()
                 .map_or_else(String::new, |domain| in_words(&domain, parameter));
-            vec![name.clone(), role(parameter.role).to_owned(), affects.join(" "), domain]
-        }))
-        .collect();
-    let columns: Vec<Vec<String>> = variants
-        .iter()
-        .map(|variant| {
-            let values = task.parameters().keys().map(|name| value(variant, name));
-            std::iter::once(variant.name().to_owned()).chain(values).collect()
-        })
-        .collect();
-    for group in across(&own, &columns) {
-        output::line("")?;
-        let row = |number: usize| -> Vec<String> {
-            own[number]
-                .iter()
-                .cloned()
-                .chain(group.iter().map(|column| column[number].clone()))
-                .collect()
-        };
-        output::line(wide_table(row(0), (1..own.len()).map(row).collect(), &[]))?;
+            [
+                name.clone(),
+                role(parameter.role).to_owned(),
+                affects.join(" "),
+                usual(variants.first(), name, parameter),
+                domain,
+            ]
+        });
+        let headings = ["parameter", "role", "affects", "default", "range or choices"];
+        output::line(format!("\n{}", table(headings, rows.collect(), &[])))?;
     }
-    Ok(())
+    let rows = variants.iter().map(|variant| {
+        let said = task.variant_description(variant.name()).unwrap_or_default();
+        [variant.name().to_owned(), differing(variant), said.to_owned()]
+    });
+    output::line(format!(
+        "\n{}",
+        table(
+            ["variant", "differs from the defaults in", "what it is"],
+            rows.collect(),
+            &[]
+        )
+    ))
 }
 
-/// Widest table in characters: what does not fit goes into a further table, each whole in itself.
-const WIDTH: usize = 160;
-
-/// The columns of the variants in groups that fit beside a task's own columns.
-fn across<'a>(own: &[Vec<String>], columns: &'a [Vec<String>]) -> Vec<&'a [Vec<String>]> {
-    let widest =
-        |texts: &mut dyn Iterator<Item = &String>| texts.map(|text| text.chars().count() + 2).max().unwrap_or(0);
-    let left: usize = (0..own[0].len())
-        .map(|column| widest(&mut own.iter().map(|row| &row[column])))
-        .sum();
-    let (mut groups, mut start, mut width) = (Vec::new(), 0, left);
-    for (index, column) in columns.iter().enumerate() {
-        let more = widest(&mut column.iter());
-        if index > start && width + more > WIDTH {
-            groups.push(&columns[start..index]);
-            (start, width) = (index, left);
-        }
-        width += more;
-    }
-    groups.push(&columns[start..]);
-    groups
-}
-
-/// What a parameter is in a variant: its value, or how it is drawn.
-fn value(variant: &Variant, name: &str) -> String {
-    match (variant.value(name), variant.distribution(name)) {
-        (_, Some(distribution)) => short(&distribution.to_string()),
-        (Some(value), None) => short(&value.to_string()),
+/// What a parameter is where no variant says: its default, its fixed value, or how it is drawn.
+fn usual(variant: Option<&Variant>, name: &str, parameter: &Parameter) -> String {
+    let value = parameter.default.as_ref().or(parameter.value.as_ref());
+    let drawn = variant.and_then(|variant| variant.distribution(name));
+    match (value, drawn) {
+        (Some(value), _) => short(&value.to_string()),
+        (None, Some(distribution)) => short(&distribution.to_string()),
         (None, None) => String::new(),
     }
+}
+
+/// The values in which a variant differs from the defaults.
+fn differing(variant: &Variant) -> String {
+    let parameters = variant.task().parameters().iter();
+    let differing = parameters.filter_map(|(name, parameter)| {
+        let default = parameter
+            .default
+            .as_ref()
+            .and_then(|default| default.cast(parameter.kind));
+        let own = variant.value(name).filter(|own| default.as_ref() != Some(*own))?;
+        (parameter.role == Role::Variant).then(|| format!("{name} = {}", short(&own.to_string())))
+    });
+    differing.collect::<Vec<_>>().join(", ")
 }
 
 /// A text cut to what a column has room for.

@@ -14,7 +14,9 @@ use serde_json::json;
 
 use super::{Failure, output};
 
-/// Run the original L2Explorer client on Driftworld instead of its Unity build.
+/// Run the original L2Explorer client on Driftworld.
+///
+/// It takes the place of its Unity build.
 #[derive(Args)]
 #[command(after_help = "Examples:
   cargo build --release -p driftworld-unity
@@ -87,7 +89,7 @@ impl Install {
         let target = target(&self.folder)?;
         self.check_target(&target)?;
         copy(&source, &target)?;
-        output::note(format!("{} is a copy of {}", target.shown(), source.shown()));
+        output::note(format!("wrote {} (a copy of {})", target.shown(), source.shown()));
         if let Some(odd) = odd_for_the_client(&target) {
             output::warning(odd);
         }

@@ -10,7 +10,7 @@ use crate::scenarios::{Missing, ScenarioFile, task_from};
 use crate::spec::{Classes, Problem, SpecError, TaskSpec};
 use crate::tasks;
 use clap::Args;
-use driftworld_text::ShownPath;
+use driftworld_text::{ShownPath, printable};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
@@ -53,7 +53,7 @@ pub(crate) struct Validate {
     #[arg(long)]
     elements: bool,
     /// Seed for worlds of a task's variants. Scenarios have their own.
-    #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = super::numbers::seed)]
     seed: u64,
     #[command(flatten)]
     libraries: LibraryChoice,
@@ -125,7 +125,7 @@ impl Validate {
 
     fn check(&self, path: &Path, classes: &Classes) -> Result<Found, Failure> {
         let text = documents::text_of(path, &DOCUMENTS)?;
-        let name = path.shown().to_string();
+        let name = printable(&documents::name_of(path)).into_owned();
         let kind = match Kind::of(&text) {
             Kind::World if self.l2explorer => Kind::L2ExplorerWorld,
             kind => kind,
@@ -264,7 +264,10 @@ impl Verdict {
             output::note(wrong);
             return Ok(());
         }
-        let (path, kind) = (self.path.shown(), checked.kind.name());
+        let (path, kind) = (
+            printable(&documents::name_of(&self.path)).into_owned(),
+            checked.kind.name(),
+        );
         for warning in &found.cautions() {
             output::warning(format!("{path}: {warning}"));
         }

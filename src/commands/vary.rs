@@ -18,14 +18,14 @@ use super::{Failure, output};
 /// values that the variant sets, ready to paste into the task spec, and what stays as it is.
 #[derive(Args)]
 #[command(after_help = "Examples:
-  driftworld vary find_objects#red --element R --distance 0.5
+  driftworld vary find_objects#red --element reward --distance 0.5
   driftworld vary find_objects#red --parameters light,spread --distance 0.2 --name dim --json
-  driftworld vary find_objects#red --element O --distance 1.5 -o my_task.json")]
+  driftworld vary find_objects#red --element observation --distance 1.5 -o my_task.json")]
 pub(crate) struct Vary {
     /// The variant to start from: PATH, PATH#variant, or a built-in such as `find_objects#red`.
     variant: String,
-    /// Change the parameters of this element, and measure the distance in it: S, A, T, R or O.
-    #[arg(long, value_parser = element, required_unless_present = "parameters", conflicts_with = "parameters")]
+    /// Change the parameters of this element, and measure the distance in it: state, action, transition, reward or observation.
+    #[arg(long, value_parser = crate::design::element, required_unless_present = "parameters", conflicts_with = "parameters")]
     element: Option<Element>,
     /// Change these parameters, and measure the total distance.
     #[arg(long, value_delimiter = ',', value_name = "NAME,…")]
@@ -48,13 +48,6 @@ pub(crate) struct Vary {
     /// Print the result as JSON.
     #[arg(long)]
     json: bool,
-}
-
-fn element(text: &str) -> Result<Element, String> {
-    Element::ALL
-        .into_iter()
-        .find(|element| element.letter().eq_ignore_ascii_case(text) || element.name() == text)
-        .ok_or_else(|| "expected S, A, T, R or O".to_owned())
 }
 
 fn distance(text: &str) -> Result<f64, String> {

@@ -1,4 +1,4 @@
-//! `--weight R=2`: what the elements of the decision process weigh in a distance. Distances are `similarity`'s.
+//! `--weight reward=2`: what the elements of the decision process weigh in a distance. Distances are `similarity`'s.
 
 use crate::similarity::{MAX_WEIGHT, SimilarityError, Weights};
 use crate::spec::Element;
@@ -7,9 +7,9 @@ use clap::Args;
 /// The weights of elements; shared by the commands that measure.
 #[derive(Args, Clone, Default)]
 pub(crate) struct WeightArgs {
-    /// Weight of an element in the total distance, such as R=2. Repeatable.
+    /// Weight of an element in the total distance, such as reward=2. Repeatable.
     ///
-    /// Elements are S, A, T, R and O. The weight overrides the task's own.
+    /// Elements are state, action, transition, reward and observation. The weight overrides the task's own.
     #[arg(long, value_name = "ELEMENT=WEIGHT", value_parser = weight)]
     weight: Vec<(Element, f64)>,
 }
@@ -25,11 +25,10 @@ impl WeightArgs {
 }
 
 fn weight(text: &str) -> Result<(Element, f64), String> {
-    let expected = || "expected S, A, T, R or O, then = and a number from 0 to 1000000, such as R=2".to_owned();
+    let expected = || "expected an element, then = and a number from 0 to 1000000, such as reward=2".to_owned();
     let (element, weight) = text.split_once('=').ok_or_else(expected)?;
     let weight: f64 = weight.parse().map_err(|_| expected())?;
-    let known = |known: &Element| known.letter().eq_ignore_ascii_case(element) || known.name() == element;
-    let element = Element::ALL.into_iter().find(known).ok_or_else(expected)?;
+    let element = crate::design::element(element)?;
     if (0.0..=MAX_WEIGHT).contains(&weight) {
         Ok((element, weight))
     } else {

@@ -15,7 +15,7 @@ pub(crate) struct WorldChoice {
     /// A world file, or a variant: PATH, PATH#variant, or a built-in such as `find_objects#red`.
     world: String,
     /// Seed for drawing the world from a variant.
-    #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = super::numbers::seed)]
     seed: u64,
     /// Index of the world under the seed.
     #[arg(long, default_value_t = 0)]

@@ -62,6 +62,12 @@ pub(super) fn category(word: &str) -> Result<Category, String> {
 pub(super) fn step(words: &[&str]) -> Result<Line, String> {
     let (count, numbers) = match words {
         [] => (1, words),
+        [_, _, _] if words.iter().all(|word| number(word).is_ok()) => {
+            return Err(format!(
+                "found three numbers, expected how many steps before them; for one step of that action write: step 1 {}",
+                words.join(" ")
+            ));
+        }
         [steps, rest @ ..] => (count(steps)?, rest),
     };
     let action = match numbers {

@@ -2,10 +2,11 @@
 
 use driftworld_curriculum::{Choice, Design, Hypothesis, Picked, Steps, arrange, distances, probe, probe_named, steps};
 use driftworld_similarity::{DistanceMatrix, Method};
-use driftworld_spec::{By, DEFAULT_VARIANT, Element, Variant};
+use driftworld_spec::{By, DEFAULT_VARIANT, Element, Variant, did_you_mean};
 
 use super::{DesignOrder, DesignRequest};
 use crate::distances::{Sample, fitting, labelled_matrix};
+use crate::ordering::{bare, position_of};
 use crate::{Failure, argument, libraries, tasks};
 
 /// How far off a step may be where nobody says.
@@ -180,7 +181,8 @@ impl DesignRequest {
 
     /// Whether every argument names a variant or a family, not a whole task.
     fn names_variants(&self) -> bool {
-        self.tasks.iter().all(|name| tasks::split(name).1.is_some())
+        let named = tasks::with_tasks(&self.tasks);
+        named.iter().all(|name| tasks::split(name).1.is_some())
     }
 
     /// The variants that may come first where nobody says which: those of the first argument, if there are others.
@@ -207,18 +209,19 @@ impl DesignRequest {
         let pool: Vec<Variant> = named.iter().map(|(_, variant)| variant.clone()).collect();
         let anchor = match &self.ordering.start {
             Some(start) => {
-                let own = pool
+                let names: Vec<String> = pool
                     .iter()
-                    .find(|variant| format!("{task}#{}", variant.name()) == *start);
-                let names = || pool.iter().map(|variant| format!("{task}#{}", variant.name()));
-                own.cloned().ok_or_else(|| {
-                    let names: Vec<String> = names().collect();
+                    .map(|variant| format!("{task}#{}", variant.name()))
+                    .collect();
+                let own = position_of(&names, start).map_err(|_| {
+                    let near = did_you_mean(start, names.iter().map(|name| bare(name)));
                     Failure::input(format!(
-                        "{}: found {start:?}, expected one of {}",
+                        "{}: found {start:?}, expected one of {}{near}",
                         argument("start"),
                         names.join(", ")
                     ))
-                })?
+                })?;
+                pool[own].clone()
             }
             None if pool.len() == 1 => first.clone(),
             // The variant in which everything has its default, by the name that the task gives it if it does.

@@ -47,24 +47,10 @@ impl DesignRequest {
         Ok(notes)
     }
 
-    /// The variants that are held out; a bare name of a variant gets a hint.
+    /// The variants that are held out; they may be named without their task, which is one of those that are learned.
     pub(super) fn held_out(&self) -> Result<Vec<(String, driftworld_spec::Variant)>, Failure> {
-        tasks::variants_of(&self.hold_out).map_err(|error| {
-            let named = self.hold_out.iter().find_map(|name| {
-                let whole = |task: &String| format!("{}#{name}", tasks::split(task).0);
-                let mut of_tasks = self.tasks.iter().map(whole);
-                of_tasks.find(|name| tasks::variant(name).is_ok())
-            });
-            match named.filter(|_| self.hold_out.iter().any(|name| tasks::split(name).1.is_none())) {
-                Some(near) => Failure::because(
-                    format!(
-                        "{}: {error}; of a variant, its task comes first: {near}",
-                        argument("hold_out")
-                    ),
-                    error,
-                ),
-                None => error.into(),
-            }
-        })
+        let all = tasks::with_tasks(&[self.tasks.as_slice(), &self.hold_out].concat());
+        let found = tasks::variants_of(&all[self.tasks.len()..]);
+        found.map_err(|error| Failure::because(format!("{}: {error}", argument("hold_out")), error))
     }
 }

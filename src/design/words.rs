@@ -1,16 +1,18 @@
 //! Words of the command line and of Python that stand for elements and schedules.
 
-use driftworld_spec::{DriftSchedule, Element};
+use driftworld_spec::{DriftSchedule, Element, did_you_mean};
 
 /// An element by its letter or name.
 ///
 /// # Errors
 /// What was expected.
 pub fn element(text: &str) -> Result<Element, String> {
-    Element::ALL
-        .into_iter()
-        .find(|element| element.letter().eq_ignore_ascii_case(text) || element.name() == text)
-        .ok_or_else(|| "expected state, action, transition, reward or observation".to_owned())
+    let is_meant =
+        |element: &Element| element.letter().eq_ignore_ascii_case(text) || element.name().eq_ignore_ascii_case(text);
+    Element::ALL.into_iter().find(is_meant).ok_or_else(|| {
+        let near = did_you_mean(text, Element::ALL.map(Element::name));
+        format!("expected state, action, transition, reward or observation, or the letter S, A, T, R or O{near}")
+    })
 }
 
 /// A schedule, such as `cosine` or `step:4`.

@@ -158,7 +158,9 @@ fn named<'a>(
 ) -> Result<Vec<&'a Variant>, Failure> {
     let wrong = |text: String| Failure::usage(format!("{}: {text}", argument("unlabelled")));
     let mut set: Vec<&Variant> = Vec::new();
-    for (_, variant) in tasks::variants_of(names)? {
+    // They may be named without their tasks.
+    let all = tasks::with_tasks(&[request.tasks.as_slice(), names].concat());
+    for (_, variant) in tasks::variants_of(&all[request.tasks.len()..])? {
         let known = variants.iter().find(|(_, known)| known.id() == variant.id());
         let (_, known) = known.ok_or_else(|| {
             wrong(format!(

@@ -123,7 +123,7 @@ fn a_run_is_not_taken_up_with_other_libraries() {
     let json = format!(r#"{{ "name": "s", "blocks": [{{ "type": "learning", "regimes": [{regime}] }}] }}"#);
     std::fs::write(&scenario, json).expect("the scratch folder can be written");
     let log = folder.path().join("log");
-    let resume = ["run", text(&scenario), "--logs", text(&log), "--resume"];
+    let resume = ["run", text(&scenario), "--output", text(&log), "--resume"];
     let with = [&resume[..], &["--assets", text(&library)]].concat();
     succeed(&with);
     succeed(&with);

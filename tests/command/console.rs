@@ -14,7 +14,7 @@ const WORLD: &str = "examples/console/world.json";
 fn console(arguments: &[&str], out: &Path, lines: impl AsRef<[u8]>) -> Output {
     let mut child = driftworld(&["console"])
         .args(arguments)
-        .arg("--out")
+        .arg("--output")
         .arg(out)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())

@@ -307,7 +307,7 @@ fn a_probe_ends_where_it_is_asked_to() {
 
 #[test]
 fn evaluation_never_draws_what_is_learned_and_stands_where_it_is_wanted() {
-    let three = [park("#blue"), park("#red"), park("#green"), "--method", "given"];
+    let three = [park("#blue"), park("#red"), park("#green"), "--order", "given"];
     let with = |more: &[&str]| designed(&[&three[..], more].concat()).0;
     assert_eq!(kinds(&with(&[])), "ELELELE");
     assert_eq!(kinds(&with(&["--evaluate", "ends", "--pre-deployment", "7"])), "PELLLE");
@@ -330,7 +330,7 @@ fn evaluation_never_draws_what_is_learned_and_stands_where_it_is_wanted() {
 
 #[test]
 fn the_forms_arrange_the_blocks_and_say_so() {
-    let two = [park("#blue"), park("#red"), "--method", "given", "--form"];
+    let two = [park("#blue"), park("#red"), "--order", "given", "--form"];
     let with = |form: &str, more: &[&str]| designed(&[&two[..], &[form], more].concat()).0;
     let condensed = with("condensed", &[]);
     assert_eq!(
@@ -436,7 +436,7 @@ fn lifetimes_have_their_own_worlds_and_experts_what_their_lifetime_has() {
 #[test]
 fn drifts_lead_from_variant_to_variant_across_blocks() {
     let drift = |more: &[&str]| {
-        let two = [park("#blue"), park("#dusk"), "--method", "given", "--drift", "cosine"];
+        let two = [park("#blue"), park("#dusk"), "--order", "given", "--drift", "cosine"];
         let (scenario, _) = designed(&[&two[..], more].concat());
         let said = |regime: &&Value| {
             let drift = &regime["drift"];
@@ -572,8 +572,8 @@ fn what_is_asked_for_wrongly_is_answered_with_what_is_possible() {
     }
     assert!(refused(1, &[park(""), "--hold-out", park("")]).contains("found every variant held out"));
     assert!(refused(2, &[park(""), "--steps", "3"]).contains("--step-distance"));
-    let both = refused(2, &[park(""), "--order", "path", "--method", "exact"]);
-    assert!(both.contains("--order: found together with --method"), "{both}");
+    let both = refused(2, &[park(""), "--order", "path", "--order", "exact"]);
+    assert!(both.contains("cannot be used multiple times"), "{both}");
     let long = refused(2, &[park(""), "--lifetimes", "0", "--form", "permuted"]);
     assert!(
         long.contains("--lifetimes: found 0, expected a whole number in 1..=10000"),

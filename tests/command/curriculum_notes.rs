@@ -47,7 +47,7 @@ fn an_order_beside_a_random_one_is_refused() {
     let folder = scratch();
     for order in [
         ["--order", "gradual"],
-        ["--method", "exact"],
+        ["--order", "exact"],
         ["--start", TWO[1]],
         ["--end", TWO[1]],
     ] {

@@ -47,7 +47,7 @@ fn a_run_says_how_many_episodes_were_ended_by_what_also_when_it_was_resumed() {
     let mut seen = BTreeMap::new();
     for agent in ["random", "onrails", "still"] {
         let log = folder.path().join(agent);
-        let arguments = ["run", text(&scenario), "--agent", agent, "--logs", text(&log)];
+        let arguments = ["run", text(&scenario), "--agent", agent, "--output", text(&log)];
         let said = succeed(&[&arguments[..], &["--json"]].concat());
         let said: serde_json::Value = serde_json::from_str(&said).expect("--json prints JSON");
         let counts = counted(&log);

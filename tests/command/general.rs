@@ -28,6 +28,7 @@ fn every_subcommand_has_help_with_an_example() {
         "transfer-report",
         "schema",
         "unity",
+        "completions",
         "bench",
         "doctor",
     ] {
@@ -304,8 +305,8 @@ fn a_matrix_is_the_same_in_every_file_and_gives_the_same_order() {
         refused.contains("broken.csv: matrix, distance of \"a\" to \"b\": found 1 there and 2 back"),
         "{refused}"
     );
-    assert!(fail(2, &["order", "find_objects", "--method", "target-step"]).contains("--target-step"));
-    assert!(fail(2, &["order", "find_objects", "--method", "shortest"]).contains("typical-last"));
+    assert!(fail(2, &["order", "find_objects", "--order", "target-step"]).contains("--target-step"));
+    assert!(fail(2, &["order", "find_objects", "--order", "shortest"]).contains("typical-last"));
     assert!(
         fail(1, &["order", "find_objects", "--end", "pink"])
             .contains("--end: found \"pink\", expected one of find_objects#")
@@ -316,7 +317,7 @@ fn a_matrix_is_the_same_in_every_file_and_gives_the_same_order() {
             &[
                 "order",
                 "find_objects",
-                "--method",
+                "--order",
                 "spectral",
                 "--start",
                 "find_objects#red"
@@ -345,12 +346,15 @@ fn from_variants_to_scores_step_by_step() {
     succeed(&[&names[..], &few[..]].concat());
     succeed(&["validate", text(&scenario)]);
     let log = at("log");
-    succeed(&["run", text(&scenario), "--agent", "random", "--logs", text(&log)]);
+    succeed(&["run", text(&scenario), "--agent", "random", "--output", text(&log)]);
     let metrics = succeed(&["metrics", text(&log), "--json"]);
     let metrics: serde_json::Value = serde_json::from_str(&metrics).expect("--json prints JSON");
     assert_eq!(metrics["num_lx"], 4);
-    let again = fail(1, &["run", text(&scenario), "--agent", "random", "--logs", text(&log)]);
-    assert!(again.contains("--logs"), "a log is not written over: {again}");
+    let again = fail(
+        1,
+        &["run", text(&scenario), "--agent", "random", "--output", text(&log)],
+    );
+    assert!(again.contains("--output"), "a log is not written over: {again}");
 }
 
 #[test]

@@ -334,14 +334,14 @@ fn lives(stage: &mut Stage) {
         let file = stage.document(file, &document);
         stage.run(&["validate", &file, "--worlds", "2"]);
         let logs = format!("logs-{file}");
-        stage.run(&["run", &file, "--agent", "random", "--logs", &logs]);
+        stage.run(&["run", &file, "--agent", "random", "--output", &logs]);
         stage.run(&["audit", &file, "--lifetimes", "1", "--repeats", "2"]);
         stage.run(&[
             "run",
             &file,
             "--agent",
             "scripted:agent.txt",
-            "--logs",
+            "--output",
             &format!("{logs}-scripted"),
         ]);
         stage.run(&[
@@ -349,7 +349,7 @@ fn lives(stage: &mut Stage) {
             &file,
             "--agent",
             &format!("scripted:{HOSTILE}"),
-            "--logs",
+            "--output",
             "none",
         ]);
     }
@@ -486,7 +486,7 @@ fn names_of_files(stage: &mut Stage) {
             &["report", "-o", "r.html"],
             &["assets", "list"],
             &["assets", "pack"],
-            &["run", "--agent", "random", "--logs", "x"],
+            &["run", "--agent", "random", "--output", "x"],
             &["order", "--from-matrix"],
             &["metrics", "log1", "--load-settings"],
             &["sample", "find_objects#red", "--maps"],
@@ -519,7 +519,7 @@ fn arguments(stage: &mut Stage) {
     for arguments in [
         &["sample"][..],
         &["sample", "find_objects#red", "--seed"],
-        &["order", "find_objects", "--method"],
+        &["order", "find_objects", "--order"],
         &["run", "s.json", "--agent"],
         &["tasks"],
         &["vary", "find_objects#red", "--element"],

@@ -31,7 +31,7 @@ fn hit(jobs: &str, log: &Path, scenario: &str, mishap: impl FnOnce(&Path)) -> St
         "random",
         "--jobs",
         jobs,
-        "--logs",
+        "--output",
         text(log),
     ];
     let mut command = driftworld(&arguments);
@@ -132,10 +132,10 @@ fn after_a_folder_went_away_another_run_has_it_alone() {
     write(&small, &text_of.replace("2000", "20"));
     hit("2", &log, &scenario, |_| {
         fs::rename(&log, log.with_extension("away")).expect("the folder is ours");
-        succeed(&["run", text(&small), "--agent", "random", "--logs", text(&log)]);
+        succeed(&["run", text(&small), "--agent", "random", "--output", text(&log)]);
     });
     let alone = folder.path().join("alone");
-    succeed(&["run", text(&small), "--agent", "random", "--logs", text(&alone)]);
+    succeed(&["run", text(&small), "--agent", "random", "--output", text(&alone)]);
     assert_eq!(files(&log), files(&alone));
     succeed(&["logs", "validate", text(&log)]);
 }
@@ -155,7 +155,7 @@ fn with_a_clock_that_stands_still_two_logs_are_equal_to_the_byte() {
             "random",
             "--jobs",
             jobs,
-            "--logs",
+            "--output",
             text(&log),
         ]);
         let run = run.env("DRIFTWORLD_CLOCK", "2026-01-31T12:00:00Z").output();
@@ -165,7 +165,7 @@ fn with_a_clock_that_stands_still_two_logs_are_equal_to_the_byte() {
         table
     };
     assert_eq!(bytes("first", "1"), bytes("second", "2"));
-    let mut wrong = driftworld(&["run", &scenario, "--logs", text(&folder.path().join("wrong"))]);
+    let mut wrong = driftworld(&["run", &scenario, "--output", text(&folder.path().join("wrong"))]);
     let wrong = wrong
         .env("DRIFTWORLD_CLOCK", "yesterday")
         .output()

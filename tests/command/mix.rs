@@ -53,7 +53,7 @@ fn a_mixture_of_two_tasks_is_designed_run_and_logged() {
     worlds.sort_unstable();
     worlds.dedup();
     assert_eq!((worlds.len(), all), (36, 36), "no layout comes twice");
-    succeed(&["run", text(&scenario), "--agent", "still", "--logs", text(&logs)]);
+    succeed(&["run", text(&scenario), "--agent", "still", "--output", text(&logs)]);
     let info = fs::read_to_string(logs.join("scenario_info.json")).expect("a log has its scenario");
     assert!(
         info.contains("get_to_goal#plain") && info.contains("moving_object#blue"),

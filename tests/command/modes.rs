@@ -22,14 +22,14 @@ const COMMANDS: [&str; 25] = [
     "order find_objects#red find_objects#blue --matrix out/matrix.npy",
     "order find_objects#red find_objects#blue --matrix out/matrix.json",
     "curriculum find_objects#red find_objects#blue --learn 1 --eval-episodes 1 -o out/scenario.json --plot out/plan.png",
-    "run out/scenario.json --agent random --logs out/log",
+    "run out/scenario.json --agent random -o out/log",
     "logs aggregate out/log -o out/rows.tsv",
     "logs aggregate out/log -o out/rows.csv",
     "metrics out/log -O out/results -o scores",
     "metrics out/log -O out/results -o pictured --do-plot",
     "metrics out/expert -s a --ste-data out/experts",
     "report out/log -o out/page.html --plots out/figures",
-    "transfer-report out/log --distances out/matrix.csv -o out/transfer.png",
+    "transfer-report out/log --distances out/matrix.csv --plot out/transfer.png",
     "schema -o out/schemas",
     "unity install out/app --executable driftworld-unity",
     "console out/world.json --script screen.txt",
@@ -86,11 +86,7 @@ fn prepare(folder: &Path) {
 fn write_all(umask: &str, folder: &Path) {
     for command in COMMANDS {
         if command.contains("out/expert ") {
-            under(
-                "022",
-                folder,
-                "run expert.json --agent random --logs out/expert --resume",
-            );
+            under("022", folder, "run expert.json --agent random -o out/expert --resume");
         }
         if command.starts_with("demo") || command.starts_with("run") || command.starts_with("curriculum") {
             // Logs are never written over.

@@ -22,7 +22,7 @@ fn the_originals_scenario_is_lived_as_it_stands() {
     copy(&map, &folder.path().join("map_findobjects_0.json"));
     copy(&map, &folder.path().join("map_findobjects_1.json"));
     let log = folder.path().join("log");
-    let few = ["--agent", "onrails", "--logs", text(&log)];
+    let few = ["--agent", "onrails", "--output", text(&log)];
     succeed(&[&["run", text(&scenario)][..], &few].concat());
     let tables = files(&log);
     let names: Vec<&str> = tables
@@ -51,7 +51,7 @@ fn the_originals_scenario_is_lived_as_it_stands() {
             "run",
             text(&original),
             "--no-stand-in",
-            "--logs",
+            "--output",
             text(&folder.path().join("none")),
         ],
     );
@@ -64,7 +64,7 @@ fn the_originals_scenario_is_lived_as_it_stands() {
         "{error}"
     );
     let stand_in = folder.path().join("stand-in");
-    let run = ["run", text(&original), "--agent", "random", "--logs", text(&stand_in)];
+    let run = ["run", text(&original), "--agent", "random", "--output", text(&stand_in)];
     let output = output(&mut driftworld(&run));
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{said}");
@@ -128,7 +128,7 @@ fn worlds_that_a_scenario_draws_become_maps_that_are_lived_alike() {
     succeed(&["convert", text(&scenario), "--to", "l2explorer", "-o", text(&original)]);
     let (ours, theirs) = (folder.path().join("ours"), folder.path().join("theirs"));
     let live = |scenario: &Path, log: &Path| {
-        succeed(&["run", text(scenario), "--agent", "onrails", "--logs", text(log)]);
+        succeed(&["run", text(scenario), "--agent", "onrails", "--output", text(log)]);
         rewards(log)
     };
     let lived = live(&scenario, &ours);

@@ -19,7 +19,7 @@ const KINDS: [(&str, &str); 7] = [
 
 /// Each command with `DOC` in place of the document, and the kinds that it takes.
 const COMMANDS: [(&str, &[&str]); 27] = [
-    ("run DOC --logs new", &["scenario.json"]),
+    ("run DOC -o new", &["scenario.json"]),
     ("render DOC", &["task.json", "world.json"]),
     ("render task.json --maps DOC", &["maps.json"]),
     ("console DOC", &["task.json", "world.json"]),
@@ -61,7 +61,7 @@ fn everything() -> tempfile::TempDir {
     let curriculum = ["curriculum", "task.json#red", "task.json#blue", "-o", "scenario.json"];
     succeed_in(path, &[&curriculum[..], &short[..]].concat());
     succeed_in(path, &["order", "task.json", "--matrix", "matrix.json"]);
-    succeed_in(path, &["run", "scenario.json", "--agent", "random", "--logs", "log"]);
+    succeed_in(path, &["run", "scenario.json", "--agent", "random", "--output", "log"]);
     fs::write(path.join("settings.json"), r#"{ "perf_measure": "reward" }"#).expect("the folder is ours");
     let maps = root().join("tests/documents/good/maps/one_map.json");
     fs::copy(maps, path.join("maps.json")).expect("the document is there");
@@ -131,7 +131,7 @@ fn a_byte_order_mark_is_no_part_of_a_document() {
     for command in [
         "sample task.json#red",
         "distance world.json task.json#red",
-        "run scenario.json --agent random --logs again",
+        "run scenario.json --agent random -o again",
         "convert scenario.json",
         "convert world.json --maps maps.json",
         "order --from-matrix matrix.json",

@@ -46,7 +46,7 @@ fn files_of_a_log_are_not_written_over() {
         "-o",
         text(&scenario),
     ]);
-    succeed(&["run", text(&scenario), "--agent", "random", "--logs", text(&log)]);
+    succeed(&["run", text(&scenario), "--agent", "random", "--output", text(&log)]);
     let rows = log.join("worker-default/0-test/data-log.tsv");
     for file in [log.join("scenario_info.json"), log.join("logger_info.json"), rows] {
         let before = fs::read(&file).expect("it is a file of the log");

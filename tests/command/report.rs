@@ -20,7 +20,10 @@ fn live(folder: &Path) {
     });
     let scenario = format!(r#"{{ "name": "in_turns", "blocks": [{}] }}"#, blocks.join(", "));
     write(&folder.join("scenario.json"), &scenario);
-    succeed_in(folder, &["run", "scenario.json", "--agent", "random", "--logs", "log"]);
+    succeed_in(
+        folder,
+        &["run", "scenario.json", "--agent", "random", "--output", "log"],
+    );
 }
 
 #[test]
@@ -110,7 +113,7 @@ fn a_drift_is_measured_where_it_begins_and_where_it_ends() {
     write(&folder.path().join("scenario.json"), &scenario);
     succeed_in(
         folder.path(),
-        &["run", "scenario.json", "--agent", "random", "--logs", "log"],
+        &["run", "scenario.json", "--agent", "random", "--output", "log"],
     );
     succeed_in(folder.path(), &["report", "log"]);
     let page = read(folder.path().join("report.html"));
@@ -139,7 +142,7 @@ fn several_lifetimes_have_intervals_and_steps_are_counted_where_asked_for() {
     live(folder.path());
     succeed_in(
         folder.path(),
-        &["run", "scenario.json", "--agent", "random", "--logs", "more/second"],
+        &["run", "scenario.json", "--agent", "random", "--output", "more/second"],
     );
     let arguments = [
         "report",
@@ -229,7 +232,7 @@ fn files_that_a_log_names_are_not_opened() {
     let scenario = format!(r#"{{ "name": "s", "blocks": [{}] }}"#, blocks.join(", "));
     write(&path.join("scenario.json"), &scenario);
     std::fs::copy(root().join("examples/tasks/find_objects.json"), path.join("mine.json")).expect("the folder is ours");
-    succeed_in(path, &["run", "scenario.json", "--agent", "random", "--logs", "log"]);
+    succeed_in(path, &["run", "scenario.json", "--agent", "random", "--output", "log"]);
     // Not even one that would be the right one.
     succeed_in(path, &["report", "log"]);
     let page = read(path.join("report.html"));

@@ -67,13 +67,13 @@ fn a_run_killed_again_and_again_writes_what_an_undisturbed_one_does() {
     let scenario = scenario(folder.path());
     let whole = folder.path().join("whole");
     let all = ["run", text(&scenario), "--agent", "random", "--jobs", "2", "--json"];
-    let said = succeed(&[&all[..], &["--logs", text(&whole)]].concat());
+    let said = succeed(&[&all[..], &["--output", text(&whole)]].concat());
     let (expected, total) = (files(&whole), bytes(&whole));
     let mut kills = 0;
     // From the very beginning, when there is not even a folder, to the last rows, by another step each time.
     for step in [397, 1801, 4409] {
         let log = folder.path().join(format!("killed-{step}"));
-        let arguments = [&all[..], &["--resume", "--logs", text(&log)]].concat();
+        let arguments = [&all[..], &["--resume", "--output", text(&log)]].concat();
         let mut least = 0;
         while least < total {
             let mut child = start(&arguments);
@@ -130,10 +130,10 @@ fn a_run_told_to_stop_finishes_its_row_and_says_how_to_go_on() {
     let scenario = longer_scenario(folder.path(), 1000);
     let whole = folder.path().join("whole");
     let all = ["run", text(&scenario), "--agent", "random", "--jobs", "1"];
-    succeed(&[&all[..], &["--logs", text(&whole)]].concat());
+    succeed(&[&all[..], &["--output", text(&whole)]].concat());
     for signal in ["-INT", "-TERM"] {
         let log = folder.path().join(signal);
-        let arguments = [&all[..], &["--logs", text(&log)]].concat();
+        let arguments = [&all[..], &["--output", text(&log)]].concat();
         // The run may be over before the signal reaches it: then it is run again.
         let error = (0..10).find_map(|_| told_to_stop(&arguments, &log, signal));
         let error = error.expect("a signal reaches a run under way");
@@ -153,7 +153,7 @@ fn a_log_of_another_run_is_refused_and_stays_as_it_is() {
     let folder = scratch();
     let scenario = scenario(folder.path());
     let log = folder.path().join("log");
-    succeed(&["run", text(&scenario), "--agent", "random", "--logs", text(&log)]);
+    succeed(&["run", text(&scenario), "--agent", "random", "--output", text(&log)]);
     let before = files(&log);
     let resume = |scenario: &Path, agent: &str| {
         let error = fail(
@@ -163,7 +163,7 @@ fn a_log_of_another_run_is_refused_and_stays_as_it_is() {
                 text(scenario),
                 "--agent",
                 agent,
-                "--logs",
+                "--output",
                 text(&log),
                 "--resume",
             ],
@@ -186,8 +186,8 @@ fn a_log_of_another_run_is_refused_and_stays_as_it_is() {
         error.contains("/scenario/blocks/1/regimes/0/count: found 20, expected 21"),
         "{error}"
     );
-    let error = fail(1, &["run", text(&scenario), "--logs", text(&log)]);
-    assert!(error.contains("--logs") && error.contains("--resume"), "{error}");
+    let error = fail(1, &["run", text(&scenario), "--output", text(&log)]);
+    assert!(error.contains("--output") && error.contains("--resume"), "{error}");
 }
 
 #[test]
@@ -204,9 +204,9 @@ fn a_task_that_was_changed_between_is_noticed() {
         &format!(r#"{{ "name": "s", "blocks": [{{ "type": "learning", "regimes": [{regime}] }}] }}"#),
     );
     let log = folder.path().join("log");
-    succeed(&["run", text(&scenario), "--logs", text(&log)]);
+    succeed(&["run", text(&scenario), "--output", text(&log)]);
     write(&task, &spec.replace("intensity\": 2", "intensity\": 3"));
-    let error = fail(1, &["run", text(&scenario), "--logs", text(&log), "--resume"]);
+    let error = fail(1, &["run", text(&scenario), "--output", text(&log), "--resume"]);
     assert!(error.contains("/made_from/lamps#dim/variant: found"), "{error}");
 }
 
@@ -230,7 +230,7 @@ fn a_task_whose_first_world_stays_the_same_is_noticed_too() {
         &format!(r#"{{ "name": "s", "blocks": [{{ "type": "learning", "regimes": [{regime}] }}] }}"#),
     );
     let log = folder.path().join("log");
-    let run = ["run", text(&scenario), "--logs", text(&log), "--resume"];
+    let run = ["run", text(&scenario), "--output", text(&log), "--resume"];
     succeed(&run);
     write(&task, &spec.replace("\"max_steps\"", "  \"max_steps\""));
     succeed(&run);
@@ -250,7 +250,7 @@ fn a_script_that_was_edited_between_is_noticed() {
         text(&scenario),
         "--agent",
         &agent,
-        "--logs",
+        "--output",
         text(&log),
         "--resume",
     ];
@@ -275,7 +275,7 @@ fn a_task_beside_the_scenario_is_found_from_any_folder() {
         &scenario,
         &format!(r#"{{ "name": "s", "blocks": [{{ "type": "learning", "regimes": [{regime}] }}] }}"#),
     );
-    let said = succeed(&["run", text(&scenario), "--logs", text(&folder.path().join("log"))]);
+    let said = succeed(&["run", text(&scenario), "--output", text(&folder.path().join("log"))]);
     assert!(said.contains("lamps#default"), "{said}");
 }
 
@@ -309,7 +309,7 @@ fn every_variant_that_is_not_there_is_named() {
         &format!(r#"{{ "name": "s", "blocks": [{{ "type": "learning", "regimes": [{regimes}] }}] }}"#),
     );
     let log = folder.path().join("log");
-    let error = fail(1, &["run", text(&scenario), "--logs", text(&log)]);
+    let error = fail(1, &["run", text(&scenario), "--output", text(&log)]);
     assert!(error.contains("rde") && error.contains("bleu"), "{error}");
     assert!(!log.exists(), "nothing was begun");
 }
@@ -321,7 +321,7 @@ fn a_full_disk_is_an_error_that_loses_nothing() {
     let scenario = scenario(folder.path());
     let whole = folder.path().join("whole");
     let all = ["run", text(&scenario), "--agent", "random"];
-    succeed(&[&all[..], &["--logs", text(&whole)]].concat());
+    succeed(&[&all[..], &["--output", text(&whole)]].concat());
     // A log whose second block finds no room for all of it.
     let log = folder.path().join("log");
     let block = "worker-default/0-test/data-log.tsv";
@@ -329,7 +329,7 @@ fn a_full_disk_is_an_error_that_loses_nothing() {
         let text = fs::read_to_string(whole.join(file)).expect("the log has it");
         write(&log.join(file), &text);
     }
-    let arguments = [&all[..], &["--logs", text(&log), "--resume"]].concat();
+    let arguments = [&all[..], &["--output", text(&log), "--resume"]].concat();
     // Half of the block's file is as large as a file may become; the signal about it is left aside.
     let second = "worker-default/1-train/data-log.tsv";
     let blocks = fs::metadata(whole.join(second)).expect("it was written").len() / 2 / 512;
@@ -354,7 +354,7 @@ fn a_full_disk_is_an_error_that_loses_nothing() {
     );
     succeed(&arguments);
     assert_eq!(files(&log), files(&whole));
-    let error = fail(1, &["run", text(&scenario), "--logs", "/dev/full"]);
+    let error = fail(1, &["run", text(&scenario), "--output", "/dev/full"]);
     assert!(error.contains("/dev/full"), "{error}");
 }
 
@@ -366,11 +366,11 @@ fn a_folder_that_cannot_be_made_is_an_error() {
     write(&file, "in the way");
     let below = file.join("log");
     for resume in [&[][..], &["--resume"]] {
-        let arguments = ["run", text(&scenario), "--logs", text(&below)];
+        let arguments = ["run", text(&scenario), "--output", text(&below)];
         let error = fail(1, &[&arguments, resume].concat());
         assert!(error.contains("file/log: cannot make this directory"), "{error}");
     }
-    let error = fail(1, &["run", text(&scenario), "--logs", text(&file), "--resume"]);
+    let error = fail(1, &["run", text(&scenario), "--output", text(&file), "--resume"]);
     assert!(
         error.contains("found a file, expected the directory of a log"),
         "{error}"

@@ -98,7 +98,7 @@ fn a_long_experience_is_not_waited_for() {
     );
     for (name, _) in signals() {
         let log = format!("log{name}");
-        let mut child = start(path, &["run", "scenario.json", "--agent", "random", "--logs", &log]);
+        let mut child = start(path, &["run", "scenario.json", "--agent", "random", "--output", &log]);
         wait_until(&mut child, |_| path.join(&log).join("logger_info.json").exists());
         signal(&child, name);
         let (output, error) = ended(child);

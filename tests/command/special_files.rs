@@ -52,14 +52,14 @@ fn command_lines() -> Vec<Vec<&'static str>> {
         "order --from-matrix labelled.npy",
         "curriculum SPECIAL -o out.json",
         "curriculum find_objects --assets SPECIAL -o out.json",
-        "run SPECIAL --agent random --logs out",
+        "run SPECIAL --agent random -o out",
         "audit SPECIAL",
         "scales SPECIAL --worlds 2",
         "metrics log --scales SPECIAL",
-        "run scenario.json --agent scripted:SPECIAL --logs out",
-        "run scenario.json --agent random --assets SPECIAL --logs out",
-        "run names_task.json --agent random --logs out",
-        "run names_world.json --agent random --logs out",
+        "run scenario.json --agent scripted:SPECIAL -o out",
+        "run scenario.json --agent random --assets SPECIAL -o out",
+        "run names_task.json --agent random -o out",
+        "run names_world.json --agent random -o out",
         "logs validate SPECIAL",
         "logs validate SPECIAL --recursive",
         "logs validate info_log",
@@ -204,7 +204,10 @@ fn prepare(folder: &Path) {
         &["order", "--from-matrix", "matrix.csv", "--matrix", "labelled.npy"],
     );
     fs::remove_file(folder.join("labelled.labels.json")).expect("it was written beside");
-    succeed_in(folder, &["run", "scenario.json", "--agent", "random", "--logs", "log"]);
+    succeed_in(
+        folder,
+        &["run", "scenario.json", "--agent", "random", "--output", "log"],
+    );
     write("info_log/logger_info.json", r#"{"metrics_columns": ["reward"]}"#);
     write("rows_log/logger_info.json", r#"{"metrics_columns": ["reward"]}"#);
     fs::create_dir_all(folder.join("rows_log/w/0-train")).expect("the folder is ours");

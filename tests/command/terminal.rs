@@ -16,7 +16,8 @@ pub(crate) fn driftworld(arguments: &[&str]) -> Command {
 /// The same in another folder.
 pub(crate) fn driftworld_in(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_driftworld"));
-    command.args(arguments).current_dir(folder);
+    // Whoever runs the tests may have a narrow terminal, or want colours.
+    command.args(arguments).current_dir(folder).env_remove("COLUMNS");
     command
 }
 

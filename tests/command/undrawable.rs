@@ -90,7 +90,7 @@ fn a_drift_across_a_forbidden_value_is_found_before_it_is_run() {
     assert!(error.contains("worlds cannot be drawn"), "{error}");
 
     // It stops there, says so, and offers what goes on.
-    let run = ["run", "s.json", "--agent", "random", "--logs", "log"];
+    let run = ["run", "s.json", "--agent", "random", "--output", "log"];
     let error = fail_in(folder.path(), 1, &run);
     assert!(
         error.contains("experience 27, quarry#low..high at 0.425 of its way"),
@@ -137,7 +137,7 @@ fn a_first_world_that_cannot_be_drawn_begins_no_log_unless_it_may_be_left_out() 
         "1",
     ];
     succeed_in(folder.path(), &design);
-    let run = ["run", "s.json", "--agent", "random", "--logs", "log"];
+    let run = ["run", "s.json", "--agent", "random", "--output", "log"];
     let summary = succeed_in(folder.path(), &[&run[..], &["--skip-undrawable", "--json"]].concat());
     let summary: Value = serde_json::from_str(&summary).expect("it is JSON");
     let (lived, skipped) = (summary["experiences"].as_u64(), summary["skipped"].as_u64());

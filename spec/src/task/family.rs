@@ -120,6 +120,13 @@ pub(crate) fn unfold(
                 continue;
             }
         };
+        let pattern = match pattern_of(spec, &axes, &pointer) {
+            Ok(pattern) => pattern,
+            Err(problem) => {
+                problems.push(problem);
+                continue;
+            }
+        };
         let size = axes
             .iter()
             .fold(1_usize, |size, axis| size.saturating_mul(axis.1.len()));
@@ -137,7 +144,7 @@ pub(crate) fn unfold(
             continue;
         }
         for member in 0..size {
-            let declared = member_of(name, spec, &axes, member);
+            let declared = member_of(name, pattern.as_deref(), spec, &axes, member);
             let characters = declared.0.chars().count();
             if characters > MAX_NAME {
                 let found = format!("the variant {:?} of {characters} characters", declared.0);
@@ -221,18 +228,85 @@ fn axes_of<'a>(
     if problems.is_empty() { Ok(axes) } else { Err(problems) }
 }
 
+/// A piece of what a family calls its members.
+enum Piece<'a> {
+    Text(&'a str),
+    /// The value on the axis of this number.
+    Value(usize),
+}
+
+/// What a family calls its members, in pieces; nothing where it does not say, and what is wrong with it.
+fn pattern_of<'a>(spec: &'a VariantSpec, axes: &[Axis], pointer: &str) -> Result<Option<Vec<Piece<'a>>>, Problem> {
+    let Some(name) = spec.name.as_deref() else {
+        return Ok(None);
+    };
+    let at = format!("{pointer}/name");
+    let known: Vec<String> = axes.iter().map(|(parameter, _)| format!("{{{parameter}}}")).collect();
+    let refused = |found: String, expected: String| Problem::new("spec/name", at.clone(), found, expected);
+    if axes.is_empty() {
+        let problem = refused(
+            "a name of members".to_owned(),
+            "it in a family, with a grid or a sweep".to_owned(),
+        );
+        return Err(problem.advise("a single variant is called by its key"));
+    }
+    let mut pieces = Vec::new();
+    let mut rest = name;
+    while let Some((before, behind)) = rest.split_once('{') {
+        let Some((parameter, behind)) = behind.split_once('}') else {
+            return Err(refused(format!("{name:?}"), "a } behind every {".to_owned()));
+        };
+        let Some(axis) = axes.iter().position(|(known, _)| *known == parameter) else {
+            let found = format!("{{{parameter}}}");
+            let problem = refused(found.clone(), format!("one of {}", known.join(", ")));
+            return Err(problem.suggest(&found, &known));
+        };
+        pieces.extend([Piece::Text(before), Piece::Value(axis)]);
+        rest = behind;
+    }
+    pieces.push(Piece::Text(rest));
+    let is_told = |axis: usize| {
+        pieces
+            .iter()
+            .any(|piece| matches!(piece, Piece::Value(told) if *told == axis))
+    };
+    match (0..axes.len()).find(|axis| axes[*axis].1.len() > 1 && !is_told(*axis)) {
+        None => Ok(Some(pieces)),
+        Some(axis) => Err(refused(
+            format!("{name:?}"),
+            format!("{} in it, so that every member has a name of its own", known[axis]),
+        )),
+    }
+}
+
 /// Member number `member` of a family, the last axis running fastest: its name, and what it declares.
-fn member_of(name: &str, spec: &VariantSpec, axes: &[Axis], member: usize) -> (String, Declared) {
-    let mut own = name.to_owned();
+fn member_of(
+    name: &str,
+    pattern: Option<&[Piece]>,
+    spec: &VariantSpec,
+    axes: &[Axis],
+    member: usize,
+) -> (String, Declared) {
+    let mut words = Vec::with_capacity(axes.len());
     let mut values = spec.values.clone();
     let mut stride: usize = axes.iter().map(|axis| axis.1.len()).product();
     for (parameter, options) in axes {
         stride /= options.len().max(1);
         let index = member / stride % options.len();
-        own.push('-');
-        own.push_str(&word(&options[index], index));
+        words.push(word(&options[index], index));
         values.insert((*parameter).clone(), options[index].clone());
     }
+    let own = match pattern {
+        _ if axes.is_empty() => name.to_owned(),
+        None => format!("{name}-{}", words.join("-")),
+        Some(pieces) => pieces
+            .iter()
+            .map(|piece| match piece {
+                Piece::Text(text) => text,
+                Piece::Value(axis) => words[*axis].as_str(),
+            })
+            .collect(),
+    };
     let declared = Declared {
         extends: spec.extends.clone(),
         description: spec.description.clone(),
@@ -340,6 +414,31 @@ mod tests {
     fn family(json: &str) -> Vec<String> {
         let spec: IndexMap<String, VariantSpec> = serde_json::from_str(json).unwrap();
         unfold(&IndexMap::new(), &spec).0.into_keys().collect()
+    }
+
+    fn refused(json: &str) -> String {
+        let spec: IndexMap<String, VariantSpec> = serde_json::from_str(json).unwrap();
+        let (_, problems) = unfold(&IndexMap::new(), &spec);
+        let said = problems
+            .iter()
+            .map(|problem| format!("{}: {}, {}", problem.pointer, problem.found, problem.expected));
+        said.collect::<Vec<_>>().join("; ")
+    }
+
+    #[test]
+    fn a_family_may_say_what_its_members_are_called() {
+        let named = |name: &str| {
+            format!(r#"{{ "look": {{ "name": "{name}", "grid": {{ "color": ["red", "blue"], "light": [0.5] }} }} }}"#)
+        };
+        assert_eq!(family(&named("{color}-{light}")), ["red-0.5", "blue-0.5"]);
+        assert_eq!(family(&named("in_{color}")), ["in_red", "in_blue"]);
+        assert_eq!(
+            refused(&named("{colour}")),
+            "/variants/look/name: {colour}, one of {color}, {light}"
+        );
+        assert!(refused(&named("{light}")).contains("{color} in it"));
+        assert!(refused(&named("{color")).contains("a } behind every {"));
+        assert!(refused(r#"{ "red": { "name": "rot" } }"#).contains("a grid or a sweep"));
     }
 
     #[test]

@@ -23,7 +23,7 @@ use crate::value::{ParameterType, Value};
 #[schemars(transform = values_of_parameters)]
 #[schemars(extend("examples" = [
     { "extends": "day", "description": "Red cubes at dusk.", "light": 0.6 },
-    { "grid": { "target_color": ["red", "green"], "light": [0.6, 2.3] } },
+    { "name": "{target_color}-{light}", "grid": { "target_color": ["red", "green"], "light": [0.6, 2.3] } },
     { "sweep": { "light": { "from": 0.2, "to": 4, "steps": 5 } } },
 ]))]
 pub struct VariantSpec {
@@ -34,8 +34,12 @@ pub struct VariantSpec {
     /// What it is, in a sentence.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
-    /// Makes it a family: for each parameter the values that it takes; one variant for every combination, named after the
-    /// family and its values, as `look-red-0.5`.
+    /// Of a family: what its members are called, with a parameter in braces for each value, as `{target_color}-{light}`.
+    /// Without it they are named after the family and its values, as `look-red-0.5`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(length(min = 1, max = 200))]
+    pub name: Option<String>,
+    /// Makes it a family: for each parameter the values that it takes; one variant for every combination, called as `name` says.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(schema_with = "grid_schema")]
     pub grid: IndexMap<String, Vec<Value>>,
@@ -50,7 +54,7 @@ pub struct VariantSpec {
 }
 
 /// The keys that a variant has beside its parameters' names.
-pub(crate) const RESERVED: [&str; 4] = ["extends", "description", "grid", "sweep"];
+pub(crate) const RESERVED: [&str; 5] = ["extends", "description", "name", "grid", "sweep"];
 
 fn values_of_parameters(schema: &mut schemars::Schema) {
     schema.insert(

@@ -47,6 +47,9 @@ pub(crate) struct Pack {
     /// Material that takes an object's colour [default: the one named main, if any].
     #[arg(long, value_name = "MATERIAL")]
     main: Option<String>,
+    /// Print what was written as JSON.
+    #[arg(long)]
+    json: bool,
 }
 
 /// The bodies that models can get.
@@ -90,13 +93,14 @@ impl Pack {
         }
         let bytes = library.to_bytes();
         output::write(&self.output, &bytes)?;
-        output::line(list::models(&library.models()[first..]))?;
-        output::line(format!(
-            "\n{}: {} models, {} bytes",
-            self.output.shown(),
-            library.models().len(),
-            bytes.len()
-        ))
+        output::wrote(
+            &self.output,
+            format!("{} models, {} bytes", library.models().len(), bytes.len()),
+        );
+        if self.json {
+            return output::json_of_what_was_written();
+        }
+        output::line(list::models(&library.models()[first..]))
     }
 
     fn pack(&self, path: &Path, library: &mut Library) -> Result<(), Failure> {

@@ -31,6 +31,9 @@ pub(crate) struct Show {
     /// PNG file to write.
     #[arg(short, long, default_value = "assets.png", value_name = "FILE")]
     output: PathBuf,
+    /// Print what was written as JSON.
+    #[arg(long)]
+    json: bool,
 }
 
 /// Height and width in metres that a model is drawn at, whatever its own size is.
@@ -56,7 +59,12 @@ impl Show {
             }
             None => self.models(&class, &names)?,
         };
-        output::write_picture_and_tell(&self.output, &sheet(&rows, 1)?)
+        output::write_picture_and_tell(&self.output, &sheet(&rows, 1)?)?;
+        if self.json {
+            output::json_of_what_was_written()
+        } else {
+            Ok(())
+        }
     }
 
     /// All models of a class, some in each row.

@@ -7,15 +7,15 @@ mod tables;
 use std::path::PathBuf;
 
 use crate::curriculum::{Design, Drifting, Evaluate, LEARN, Split};
-use crate::design::{self, DesignOrder, DesignRequest, Designed};
+use crate::design::{self, DesignRequest, Designed};
 use crate::distances::By;
 use crate::modality::Kind;
 use crate::spec::{
-    DriftSchedule, DriftSwitch, Element, Modality, ScenarioComplexity, ScenarioDifficulty, ScenarioForm, TaskLabel,
-    sound_name,
+    DriftSchedule, DriftSwitch, Element, Modality, Scenario, ScenarioComplexity, ScenarioDifficulty, ScenarioForm,
+    TaskLabel, sound_name,
 };
 use clap::{Args, ValueEnum};
-use driftworld_text::ShownPath;
+use serde_json::json;
 
 use super::assets::LibraryChoice;
 use super::mix::Mix;
@@ -24,10 +24,12 @@ use super::{Failure, output, overwrite};
 use folders::write_into;
 pub(crate) use tables::{blocks, choices};
 
-/// Design learning and evaluation blocks from variants and their distances.
+/// Design a curriculum from variants and their distances.
 ///
-/// By default, --method orders the variants, and the first one given comes first. Given a whole task, the best first
-/// variant is chosen. --order named keeps the order given.
+/// A scenario has learning blocks and evaluation blocks.
+///
+/// By default, the variants lie on the shortest path, and the first one given comes first. Given a whole task, the best first
+/// variant is chosen. --order says another order, and --order named keeps the one given.
 ///
 /// --probe selects variants that differ in one element of the decision process only, creates more if too few are
 /// declared, and prints the evidence. --step-distance creates a sequence of equal steps. --form arranges the blocks.
@@ -36,12 +38,12 @@ pub(crate) use tables::{blocks, choices};
 /// scenario that could not run is not written.
 #[derive(Args)]
 #[command(after_help = "Examples:
-  driftworld curriculum find_objects --start find_objects#blue -o scenario.json
+  driftworld curriculum find_objects --start blue -o scenario.json
   driftworld curriculum find_objects --probe reward --order gradual --controls controls -o reward.json --plot reward.png
   driftworld curriculum find_objects#blue --probe observation --step-distance 0.1 --steps 5 -o steps.json
   driftworld curriculum find_objects#blue find_objects#dusk --form alternating --blocks 6 --drift cosine -o drift.json
   driftworld curriculum find_objects#blue find_objects#red --lifetimes 5 --experts experts -o lifetimes
-  driftworld run scenario.json --agent random --logs log")]
+  driftworld run scenario.json --agent random -o log")]
 pub(crate) struct Curriculum {
     /// Variants, or tasks, which stand for all their variants.
     #[arg(required = true, value_name = "TASK")]
@@ -59,9 +61,6 @@ pub(crate) struct Curriculum {
     /// Number of variants in the probe [default: all declared, and at least 4].
     #[arg(long, value_name = "N")]
     variants: Option<usize>,
-    /// Order of the variants, beginning with --start.
-    #[arg(long, value_enum)]
-    order: Option<Order>,
     /// What to compare the variants by: parameters, worlds, rewards, and so on, as for `driftworld distance`.
     ///
     /// By default what their task declares, which is parameters where it says nothing; worlds for variants of several
@@ -140,7 +139,7 @@ pub(crate) struct Curriculum {
     #[arg(long, value_enum)]
     difficulty: Option<Difficulty>,
     /// Seed of all worlds, at most 2^52. Learning and evaluation never share a world.
-    #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = crate::commands::numbers::seed)]
     seed: u64,
     /// Which worlds to evaluate on: validation to choose hyperparameters, test for what you report.
     #[arg(long, value_enum, default_value_t = WorldSplit::Test)]
@@ -177,6 +176,27 @@ pub(crate) struct Curriculum {
     /// Scenario file, or - for standard output. A folder if there are several scenarios.
     #[arg(short, long, default_value = "-", value_name = "FILE")]
     output: PathBuf,
+    /// Print the variants in their order, and the distances between them, as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// What was designed: the variants in their order, each with the distance from the one before it, and what is said of them.
+fn described(designed: &Designed) -> serde_json::Value {
+    let chosen = &designed.chosen;
+    let mut before = None;
+    let variants = chosen.order.iter().map(|index| {
+        let step = before
+            .replace(*index)
+            .map(|before: usize| chosen.matrix.get(before, *index));
+        let choice = &chosen.variants[*index];
+        json!({ "task": choice.task, "variant": choice.variant, "values": choice.values, "step": step })
+    });
+    let names = |scenarios: &[Scenario]| -> Vec<String> { scenarios.iter().map(|one| one.name.clone()).collect() };
+    json!({
+        "by": chosen.by, "variants": variants.collect::<Vec<_>>(), "notes": designed.notes,
+        "scenarios": names(&designed.scenarios), "controls": names(&designed.controls), "experts": names(&designed.experts),
+    })
 }
 
 /// When the agent is evaluated.
@@ -186,23 +206,6 @@ enum EvaluationSchedule {
     Every,
     /// Before the first learning block and after the last.
     Ends,
-}
-
-/// The order of the variants.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Order {
-    /// In small steps: the shortest path from the first, with the smallest largest step among equals.
-    Gradual,
-    /// By increasing distance from the first.
-    Outward,
-    /// The longest path from the first: neighbours as different as possible.
-    Abrupt,
-    /// The shortest path from the first: neighbours as similar as possible.
-    Path,
-    /// Each next variant is the one farthest from all before it.
-    Farthest,
-    /// In the order given, whatever the distances.
-    Named,
 }
 
 /// How learning blocks are arranged.
@@ -270,7 +273,7 @@ impl Curriculum {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let request = self.request();
         request.check()?;
-        let to_stdout = self.output.as_os_str() == "-";
+        let to_stdout = output::is_stdout(&self.output);
         if request.is_of_several() {
             folders::refuse_no_folder(&self.output)?;
         }
@@ -299,7 +302,7 @@ impl Curriculum {
         let evidence = designed.chosen.evidence.as_ref();
         // What is printed beside a scenario on standard output would spoil it.
         let say = |text: String| {
-            if to_stdout {
+            if to_stdout || self.json {
                 output::note(text);
                 return Ok(());
             }
@@ -317,39 +320,42 @@ impl Curriculum {
         }
         if request.is_of_several() {
             for scenario in &designed.scenarios {
-                let path = write_into(&self.output, scenario)?;
-                output::line(format!("{}: {}", path.shown(), tables::learned(scenario)))?;
+                output::wrote(&write_into(&self.output, scenario)?, tables::learned(scenario));
             }
-            return self.write_experts(&designed, say);
+        } else {
+            self.write_one(&designed)?;
         }
-        self.write_one(&designed, say)
+        self.write_experts(&designed)?;
+        if self.json && !to_stdout {
+            return output::json(&described(&designed));
+        }
+        Ok(())
     }
 
     /// Writes one scenario, its picture and its controls.
-    fn write_one(&self, designed: &Designed, say: impl Fn(String) -> Result<(), Failure>) -> Result<(), Failure> {
+    fn write_one(&self, designed: &Designed) -> Result<(), Failure> {
         let matrix = &designed.chosen.matrix;
         for scenario in &designed.scenarios {
             output::write_or_print(&self.output, &scenario.to_json_pretty())?;
-            if self.output.as_os_str() != "-" {
+            if !output::is_stdout(&self.output) && !self.json {
                 output::line(blocks(scenario, Some((matrix, designed.chosen.by))))?;
             }
         }
         if let Some(path) = &self.plot {
             designed.write_plot(path)?;
+            output::wrote(path, "");
         }
         let folder = self.controls.iter();
         for (folder, scenario) in folder.flat_map(|folder| designed.controls.iter().map(move |one| (folder, one))) {
-            let path = write_into(folder, scenario)?;
-            say(format!("{}: {}", path.shown(), tables::path(scenario, matrix)))?;
+            output::wrote(&write_into(folder, scenario)?, tables::path(scenario, matrix));
         }
-        self.write_experts(designed, say)
+        Ok(())
     }
 
-    fn write_experts(&self, designed: &Designed, say: impl Fn(String) -> Result<(), Failure>) -> Result<(), Failure> {
+    fn write_experts(&self, designed: &Designed) -> Result<(), Failure> {
         let Some(folder) = &self.experts else { return Ok(()) };
         for scenario in &designed.experts {
-            let path = write_into(folder, scenario)?;
-            say(format!("{}: {}", path.shown(), tables::learned(scenario)))?;
+            output::wrote(&write_into(folder, scenario)?, tables::learned(scenario));
         }
         Ok(())
     }
@@ -357,16 +363,9 @@ impl Curriculum {
     fn request(&self) -> DesignRequest {
         DesignRequest {
             tasks: self.tasks.clone(),
-            ordering: self.ordering.request(),
+            ordering: self.ordering.design_request(),
             by: self.by,
-            order: self.order.map(|order| match order {
-                Order::Gradual => DesignOrder::Gradual,
-                Order::Outward => DesignOrder::Outward,
-                Order::Abrupt => DesignOrder::Abrupt,
-                Order::Path => DesignOrder::Path,
-                Order::Farthest => DesignOrder::Farthest,
-                Order::Named => DesignOrder::Named,
-            }),
+            order: self.ordering.design_order(),
             probe: self.probe,
             modalities: self
                 .modalities

@@ -1,5 +1,7 @@
 //! What is shown of a curriculum: the proof of its variants, its blocks. The picture is `timeline.rs`'s.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use crate::curriculum::{Choice, Picked, Steps};
 use crate::design::{Evidence, PairOptimum};
 use crate::similarity::{Distance, DistanceMatrix};
@@ -7,6 +9,7 @@ use crate::spec::{Block, BlockKind, By, Element, Phase, Regime, Scenario, Varian
 
 use crate::commands::Failure;
 use crate::table::{table, wide_table};
+use crate::tasks;
 
 /// Variants in an order, as a scenario names them.
 pub(crate) fn choices(variants: &[(String, Variant)], order: &[usize]) -> Vec<Choice> {
@@ -31,7 +34,7 @@ fn probe(picked: &[Picked], order: &[usize], element: Element) -> Result<String,
     }
     Ok(format!(
         "distances from {}, probing the {}: 0 means exactly 0, - means that nothing could differ\n{}\n{}",
-        anchor.choice.id(),
+        shown(anchor),
         element.name(),
         wide_table(headings(), rows, &[2, 3, 4, 5, 6]),
         made_values(order.iter().map(|index| &picked[*index]))
@@ -71,9 +74,14 @@ fn made_values<'a>(picked: impl IntoIterator<Item = &'a Picked>) -> String {
             .iter()
             .map(|(name, value)| format!("{name} = {value}"));
         let values: Vec<String> = values.collect();
-        lines = format!("{lines}{} sets {}\n", one.choice.id(), values.join(", "));
+        lines = format!("{lines}{} sets {}\n", shown(one), values.join(", "));
     }
     if lines.is_empty() { lines } else { format!("\n{lines}") }
+}
+
+/// What a picked variant is called.
+fn shown(picked: &Picked) -> String {
+    format!("{}#{}", picked.variant.task().name(), picked.choice.name())
 }
 
 fn headings() -> Vec<String> {
@@ -88,10 +96,7 @@ fn headings() -> Vec<String> {
 fn row(picked: &Picked, apart: &Distance) -> Vec<String> {
     let is = if picked.is_made() { "made" } else { "declared" };
     let elements = Element::ALL.map(|element| apart.element(element).map_or_else(|| "-".to_owned(), exact));
-    [picked.choice.id(), is.to_owned()]
-        .into_iter()
-        .chain(elements)
-        .collect()
+    [shown(picked), is.to_owned()].into_iter().chain(elements).collect()
 }
 
 /// A distance to four places; 0 without places only where it is nothing else.
@@ -199,8 +204,9 @@ pub(crate) fn blocks(scenario: &Scenario, measured: Option<(&DistanceMatrix, By)
     let matrix = measured.map(|(matrix, _)| matrix);
     let by = measured.map_or_else(String::new, |(_, by)| format!(" by {}", by.name()));
     let mut before: Option<(usize, usize, f64)> = None;
+    let tasks = names_of_tasks(scenario);
     let rows = scenario.blocks.iter().enumerate().map(|(index, block)| {
-        let names: Vec<String> = block.regimes.iter().map(named).collect();
+        let names: Vec<String> = block.regimes.iter().map(|regime| named(regime, &tasks)).collect();
         let mut shown = String::new();
         if block.kind == BlockKind::Learning
             && let Some(matrix) = matrix
@@ -244,9 +250,22 @@ fn kind(block: &Block) -> &'static str {
     }
 }
 
+/// The names of the tasks that a scenario has by their paths.
+fn names_of_tasks(scenario: &Scenario) -> BTreeMap<&str, String> {
+    let regimes = scenario.blocks.iter().flat_map(|block| &block.regimes);
+    let called: BTreeSet<&str> = regimes.map(|regime| regime.task.as_str()).collect();
+    called
+        .into_iter()
+        .map(|called| (called, tasks::name_of(called)))
+        .collect()
+}
+
 /// A regime's variant, and where it drifts.
-fn named(regime: &Regime) -> String {
-    let name = format!("{}#{}", regime.task, regime.variant_name());
+fn named(regime: &Regime, tasks: &BTreeMap<&str, String>) -> String {
+    let task = tasks
+        .get(regime.task.as_str())
+        .map_or(regime.task.as_str(), String::as_str);
+    let name = format!("{task}#{}", regime.variant_name());
     match &regime.drift {
         None => name,
         Some(drift) => format!(

@@ -28,6 +28,7 @@ use super::run::{LifetimeRun, Start, processors};
 use super::{Failure, output};
 use crate::report::picture::{SheetRow, heat_map, sheet};
 use crate::table::wide_table;
+use crate::variant_names::VariantNames;
 use crate::views::Views;
 
 /// The task that the demo is about.
@@ -36,7 +37,9 @@ const TASK: &str = "find_objects";
 /// Its variants that the demo shows.
 const VARIANTS: [&str; 6] = ["blue", "red", "green", "dusk", "huddle", "penalty"];
 
-/// Run the whole pipeline once: worlds, pictures, distances, a curriculum, a run, scores.
+/// Run the whole pipeline once, from worlds to scores.
+///
+/// Draws worlds and pictures, measures distances, designs a curriculum, runs a small learner through it and scores it.
 #[derive(Args)]
 #[command(after_help = "Example:\n  driftworld demo -o demo-out")]
 pub(crate) struct Demo {
@@ -44,7 +47,7 @@ pub(crate) struct Demo {
     #[arg(short, long, default_value = "demo-out", value_name = "DIR")]
     output: PathBuf,
     /// Seed of the worlds.
-    #[arg(long, default_value_t = 7, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 7, allow_negative_numbers = true, value_parser = crate::commands::numbers::seed)]
     seed: u64,
 }
 
@@ -124,7 +127,9 @@ impl Demo {
         output::write(&folder.join("report.html"), page.html.as_bytes())?;
         let scores = score(&ScoringRequest::of([&logs]), &warn)?;
         scores.save(&folder.join("scores"), Some("demo"))?;
-        output::line(scores.lifetimes.iter().map(summary).collect::<String>())?;
+        let names = VariantNames::of_logs(&[&logs]);
+        let lifetimes = scores.lifetimes.iter().map(|lifetime| summary(lifetime, &names));
+        output::line(lifetimes.collect::<String>())?;
         output::line(
             "\nThe learner sees 169 numbers of a small picture, and knows no map. Yours takes its place from Python or Rust;\n\
              docs/curricula.md says how.",

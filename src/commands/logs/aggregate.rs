@@ -1,13 +1,13 @@
 //! `driftworld logs aggregate`: the rows of logs as one table in a file. Which rows and columns it has is `metrics`'s business.
 
 use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 #[cfg(feature = "parquet")]
 use crate::columns;
 use crate::metrics::{Delimiter, KeptRows, LogTable, read_log_with_texts};
 use clap::{Args, ValueEnum};
-use driftworld_text::{Cells, ShownPath};
+use driftworld_text::Cells;
 
 use super::super::{Failure, log_folders, output, overwrite};
 use super::count;
@@ -49,6 +49,9 @@ pub(crate) struct Aggregate {
     /// numbers.
     #[arg(long)]
     raw_cells: bool,
+    /// Print what was written as JSON.
+    #[arg(long)]
+    json: bool,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -87,16 +90,17 @@ impl Aggregate {
             log.run_id = name;
             table.add(&log)?;
         }
-        if self.output == Path::new("-") {
+        if output::is_stdout(&self.output) {
             return self.print(&table, format);
         }
         self.write(&table, format)?;
-        output::line(format!(
-            "{} of {} in {}",
-            count(table.len() as u64, "row", "rows"),
-            count(logs.len() as u64, "log", "logs"),
-            self.output.shown()
-        ))
+        let (rows, logs) = (table.len() as u64, logs.len() as u64);
+        let what = format!("{} of {}", count(rows, "row", "rows"), count(logs, "log", "logs"));
+        output::wrote(&self.output, what);
+        if self.json {
+            return output::json_of_what_was_written();
+        }
+        Ok(())
     }
 
     fn format(&self) -> Result<Format, Failure> {
@@ -145,6 +149,7 @@ impl Aggregate {
         let failed = |error: &dyn std::fmt::Display| Failure::input(format!("standard output: {error}"));
         let bytes = written(table, format, cells(self.raw_cells), Vec::new()).map_err(|error| failed(&error))?;
         let text = String::from_utf8(bytes).map_err(|error| failed(&error))?;
+        output::carries_data();
         if self.raw_cells {
             output::print_data(&text)
         } else {

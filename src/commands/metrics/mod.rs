@@ -13,13 +13,13 @@ use crate::figure_files::{Files, drawn};
 use crate::metrics::SteStoreMode;
 use crate::scoring::{Scores, ScoringRequest, score, score_looking};
 use clap::Args;
-use driftworld_text::ShownPath;
 
 pub(crate) use tables::summary;
 
 use super::figures::FigureChoice;
 use super::output;
 use super::scoring::{Intervals, Scoring};
+use crate::variant_names::VariantNames;
 
 /// Score the logs of lifetimes.
 ///
@@ -31,7 +31,7 @@ use super::scoring::{Intervals, Scoring};
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld metrics demo-out/log
-  driftworld metrics LOG --ste EXPERT_LOG --perf-measure performance -O results
+  driftworld metrics LOG --ste EXPERT_LOG --perf-measure performance --save results
   driftworld metrics -R runs/mine --against runs/theirs
   driftworld metrics -R runs/mine --power 10
   driftworld metrics EXPERT_LOG -s a --ste-data experts
@@ -68,27 +68,38 @@ pub(crate) struct Metrics {
     scoring: Scoring,
     #[command(flatten)]
     intervals: Intervals,
-    /// Save the results.
+    /// Save the results in this folder.
     ///
     /// Of one lifetime: `NAME_metrics.json`, `NAME_regime.tsv`, `NAME_settings.json`. Of several, or with -R:
     /// `NAME.json`, `NAME.tsv`, `NAME_regime.tsv`, `NAME_settings.json`, and `NAME_repeats.json` with intervals and
     /// comparisons.
-    #[arg(short = 'S', long, help_heading = "Saving")]
+    #[arg(long, value_name = "DIR", conflicts_with = "output_dir", help_heading = "Saving")]
+    save: Option<PathBuf>,
+    /// Also draw figures as PNG and SVG, into this folder.
+    #[arg(long, value_name = "DIR", help_heading = "Saving")]
+    plots: Option<PathBuf>,
+    /// Save the results in the folder results/.
+    #[arg(short = 'S', long, help_heading = "Saving, as l2metrics spells it")]
     do_save: bool,
-    /// Save results in this folder [default: results].
-    #[arg(short = 'O', long, value_name = "DIR", help_heading = "Saving")]
+    /// The same as --save.
+    #[arg(
+        short = 'O',
+        long,
+        value_name = "DIR",
+        help_heading = "Saving, as l2metrics spells it"
+    )]
     output_dir: Option<PathBuf>,
     /// Save results under this name [default: the log's; of several, `ll_metrics`].
-    #[arg(short, long, value_name = "NAME", help_heading = "Saving")]
+    #[arg(short, long, value_name = "NAME", help_heading = "Saving, as l2metrics spells it")]
     output: Option<String>,
-    /// Also draw figures as PNG and SVG, into plots/ under --output-dir.
-    #[arg(short = 'P', long, help_heading = "Saving")]
+    /// Draw figures into plots/ in the folder of the results.
+    #[arg(short = 'P', long, help_heading = "Saving, as l2metrics spells it")]
     do_plot: bool,
     /// l2metrics' option not to save. Nothing is saved by default.
-    #[arg(long, hide = true, conflicts_with_all = ["do_save", "output_dir", "output"])]
+    #[arg(long, hide = true, conflicts_with_all = ["save", "do_save", "output_dir", "output"])]
     no_save: bool,
     /// l2metrics' option not to plot. Nothing is plotted by default.
-    #[arg(long, hide = true, conflicts_with = "do_plot")]
+    #[arg(long, hide = true, conflicts_with_all = ["plots", "do_plot"])]
     no_plot: bool,
     #[command(flatten)]
     figures: FigureChoice,
@@ -104,13 +115,15 @@ impl Metrics {
         if self.json {
             output::json(&scores)?;
         } else {
-            output::line(tables::scores(&scores))?;
+            let folders = [request.folders()?, request.against.clone()].concat();
+            output::line(tables::scores(&scores, &VariantNames::of_logs(&folders)))?;
         }
-        if !self.do_save && self.output_dir.is_none() && self.output.is_none() {
+        let saves = self.save.is_some() || self.output_dir.is_some() || self.output.is_some();
+        if !self.do_save && !saves {
             return Ok(());
         }
         for file in scores.save(&self.folder(), self.output.as_deref())? {
-            output::note(format!("wrote {}", file.shown()));
+            output::wrote(&file, "");
         }
         Ok(())
     }
@@ -129,23 +142,25 @@ impl Metrics {
 
     /// The scores of the logs; figures are drawn and written on the way where they are asked for.
     fn score(&self, request: &ScoringRequest) -> Result<Scores, Failure> {
-        if !self.do_plot {
+        if !self.do_plot && self.plots.is_none() {
             return score(request, &|text| output::warning(text));
         }
         let (shown, options) = (self.figures.shown()?, self.figures.options()?);
-        let files = Mutex::new(Files::new(&self.folder().join("plots")));
+        let folder = self.plots.clone().unwrap_or_else(|| self.folder().join("plots"));
+        let files = Mutex::new(Files::new(&folder));
         let scores = score_looking(request, &|text| output::warning(text), |log| {
             let drawn = drawn(&log.lifetime, &log.metrics.metrics_column, &shown, &options)?;
             // Whoever panics with the lock has ended the process.
             files.lock().unwrap_or_else(PoisonError::into_inner).write(&drawn)
         })?;
         let files = files.into_inner().unwrap_or_else(PoisonError::into_inner);
-        output::note(format!("wrote {}", files.summary()));
+        output::wrote(&folder, files.what());
         Ok(scores)
     }
 
     /// Where results are saved.
     fn folder(&self) -> PathBuf {
-        self.output_dir.clone().unwrap_or_else(|| "results".into())
+        let folder = self.save.as_ref().or(self.output_dir.as_ref());
+        folder.cloned().unwrap_or_else(|| "results".into())
     }
 }

@@ -7,6 +7,7 @@ use crate::metrics::{EvaluationCell, LEARNED_SHARE, LifetimeMetrics, Reached, Un
 
 use super::tables::number;
 use crate::table::wide_table;
+use crate::variant_names::VariantNames;
 
 /// Tasks beyond these are in the JSON only.
 const MOST_ROWS: usize = 40;
@@ -16,7 +17,7 @@ const NEVER_LEARNED: &str = "never learned";
 
 /// A row per evaluated task: its first evaluation, the best after learning, the last, and the expert's level where there is one.
 /// `None` without evaluations.
-pub(super) fn reached(scores: &LifetimeMetrics) -> Option<String> {
+pub(super) fn reached(scores: &LifetimeMetrics, names: &VariantNames) -> Option<String> {
     let evaluated = || scores.reached.iter().filter(|(_, task)| !task.evaluations.is_empty());
     let has_expert = evaluated().any(|(_, task)| task.expert.is_some());
     let is_scaled = evaluated().any(|(_, task)| task.is_scaled());
@@ -24,7 +25,7 @@ pub(super) fn reached(scores: &LifetimeMetrics) -> Option<String> {
     let rows = evaluated().take(MOST_ROWS).map(|(name, task)| {
         let of = |evaluation: Option<&EvaluationCell>| evaluation.map_or_else(String::new, |found| cell(task, found));
         let mut cells = vec![
-            name.clone(),
+            names.shown(name).to_owned(),
             of(task.evaluations.first()),
             of(task.best()),
             of(task.last()),
@@ -76,12 +77,12 @@ pub(super) fn reached(scores: &LifetimeMetrics) -> Option<String> {
     }
     let headings = headings.into_iter().map(str::to_owned).collect();
     let mut lines = vec![wide_table(headings, rows, &numbers), notes.join(" ")];
-    lines.extend(unlabelled(scores));
+    lines.extend(unlabelled(scores, names));
     Some(lines.join("\n"))
 }
 
 /// What those earn that cannot tell the tasks apart that look alike: a line for each set of them.
-fn unlabelled(scores: &LifetimeMetrics) -> Vec<String> {
+fn unlabelled(scores: &LifetimeMetrics, names: &VariantNames) -> Vec<String> {
     let tasks = &scores.reached;
     let mut sets: Vec<&Vec<String>> = Vec::new();
     for set in tasks.values().filter_map(|task| task.unlabelled.as_ref()) {
@@ -101,7 +102,13 @@ fn unlabelled(scores: &LifetimeMetrics) -> Vec<String> {
         Some(format!(
             "{} look alike. Without a label the best known agent has {} of the way in their mean, and one that does the \
              same in all, as without memory, {}.",
-            driftworld_text::one_line(among.join(", ")),
+            driftworld_text::one_line(
+                among
+                    .iter()
+                    .map(|name| names.shown(name))
+                    .collect::<Vec<_>>()
+                    .join(", ")
+            ),
             percent(mean(|set| set.finds_out)?),
             percent(mean(|set| set.fixed)?)
         ))
@@ -111,7 +118,7 @@ fn unlabelled(scores: &LifetimeMetrics) -> Vec<String> {
 
 /// A row per task that some of these lifetimes evaluate: means over lifetimes, and in how many it was never learned.
 /// `None` without any. `agent` is put behind the heading.
-pub(super) fn reached_by_several(agent: &str, lifetimes: &[LifetimeMetrics]) -> Option<String> {
+pub(super) fn reached_by_several(agent: &str, lifetimes: &[LifetimeMetrics], names: &VariantNames) -> Option<String> {
     let mut tasks: BTreeMap<&str, Vec<&Reached>> = BTreeMap::new();
     for (name, task) in lifetimes.iter().flat_map(|lifetime| &lifetime.reached) {
         if !task.evaluations.is_empty() {
@@ -135,7 +142,7 @@ pub(super) fn reached_by_several(agent: &str, lifetimes: &[LifetimeMetrics]) -> 
         let known = found.iter().filter_map(|task| task.is_never_learned());
         let (not, all) = known.fold((0, 0), |(not, all), is_not| (not + usize::from(is_not), all + 1));
         vec![
-            (*name).to_owned(),
+            names.shown(name).to_owned(),
             level(Reached::best),
             level(Reached::last),
             if is_scaled {
@@ -163,7 +170,7 @@ pub(super) fn reached_by_several(agent: &str, lifetimes: &[LifetimeMetrics]) -> 
     let headings = headings.into_iter().map(str::to_owned).collect();
     let is_scaled = tasks.values().flatten().any(|task| task.is_scaled());
     let unit = if is_scaled { UNITS } else { "" };
-    let alike: BTreeSet<String> = lifetimes.iter().flat_map(unlabelled).collect();
+    let alike: BTreeSet<String> = lifetimes.iter().flat_map(|scores| unlabelled(scores, names)).collect();
     let table = |rows: Vec<Vec<String>>| wide_table(headings, rows, &[1, 2, 3, 4]) + unit;
     (!rows.is_empty()).then(|| std::iter::once(table(rows)).chain(alike).collect::<Vec<_>>().join("\n"))
 }
@@ -172,7 +179,7 @@ pub(super) fn reached_by_several(agent: &str, lifetimes: &[LifetimeMetrics]) -> 
 const UNITS: &str = "\nIn % of the way from floor to ceiling where these are known, else in the log's unit.";
 
 /// A row per evaluated task: what its curve says. `None` unless a task is evaluated more than once.
-pub(super) fn curves(scores: &LifetimeMetrics) -> Option<String> {
+pub(super) fn curves(scores: &LifetimeMetrics, names: &VariantNames) -> Option<String> {
     let shown = || scores.curves.iter().filter(|(_, curve)| curve.points.len() > 1);
     let level = |value: f64, is_scaled: bool| if is_scaled { percent(value) } else { number(value) };
     let rows = shown().take(MOST_ROWS).map(|(name, curve)| {
@@ -185,7 +192,7 @@ pub(super) fn curves(scores: &LifetimeMetrics) -> Option<String> {
                 .forgetting_error
                 .is_some_and(|error| curve.forgetting < 2.0 * error);
         vec![
-            name.clone(),
+            names.shown(name).to_owned(),
             level(curve.area),
             level(curve.forgetting) + &error,
             curve.lag.map_or_else(String::new, |lag| format!("{lag:.0}")),

@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use crate::metrics::{SteStoreMode, store_ste};
-use driftworld_text::ShownPath;
 
 use crate::commands::{Failure, output};
 
@@ -20,11 +19,7 @@ pub(super) fn store(logs: &[PathBuf], mode: SteStoreMode, data: &Path) -> Result
             mode
         };
         let stored = store_ste(data, log, mode)?;
-        output::line(format!(
-            "{}: stored as an expert of {}",
-            stored.dir.shown(),
-            stored.task_name
-        ))?;
+        output::wrote(&stored.dir, format!("an expert of {}", stored.task_name));
         replaced.push(task);
     }
     Ok(())

@@ -12,18 +12,23 @@ use driftworld_text::{one_line, printable};
 use super::reached_table::{curves, reached, reached_by_several};
 use crate::scoring::{Comparison, Scores, Varied, own_scale};
 use crate::table::{table, wide_table};
+use crate::variant_names::VariantNames;
 
 /// The scores of one lifetime, or of several with what they say together.
-pub(super) fn scores(scores: &Scores) -> String {
+pub(super) fn scores(scores: &Scores, names: &VariantNames) -> String {
     match (&scores.comparison, scores.lifetimes.as_slice()) {
-        (None, [lifetime]) => summary(lifetime),
-        (None, lifetimes) => lifetimes.iter().map(summary).collect::<Vec<_>>().join("\n\n"),
-        (Some(comparison), _) => several(scores, comparison),
+        (None, [lifetime]) => summary(lifetime, names),
+        (None, lifetimes) => lifetimes
+            .iter()
+            .map(|one| summary(one, names))
+            .collect::<Vec<_>>()
+            .join("\n\n"),
+        (Some(comparison), _) => several(scores, comparison, names),
     }
 }
 
 /// The lifetime's values as a table for a newcomer.
-pub(crate) fn summary(scores: &LifetimeMetrics) -> String {
+pub(crate) fn summary(scores: &LifetimeMetrics, names: &VariantNames) -> String {
     let rows = scores.summary().into_iter().filter_map(|row| {
         let error = row.null_band.and_then(|band| band.standard_error);
         let error = error.map_or_else(String::new, |error| format!(" ± {}", number(error)));
@@ -48,10 +53,10 @@ pub(crate) fn summary(scores: &LifetimeMetrics) -> String {
         one_line(&scores.metrics_column)
     );
     let mut parts = vec![head];
-    parts.extend(reached(scores));
+    parts.extend(reached(scores, names));
     parts.push(as_logged(&[("", std::slice::from_ref(scores))]));
-    parts.extend(curves(scores));
-    parts.extend(scaled(scores));
+    parts.extend(curves(scores, names));
+    parts.extend(scaled(scores, names));
     let headings = ["metric", "value", "null band", "p", "reading", "what it says"];
     let mut metrics = table(headings, rows, &[1, 3]);
     if has_bands {
@@ -97,11 +102,11 @@ fn what_bands_are(scores: &LifetimeMetrics) -> String {
 }
 
 /// What the metrics are made of, and what they cannot tell; nothing where nothing is scaled.
-fn scaled(scores: &LifetimeMetrics) -> Option<String> {
+fn scaled(scores: &LifetimeMetrics, names: &VariantNames) -> Option<String> {
     scores.normalization_data_range.as_ref()?;
     let by = |by: ScaledBy| {
         let tasks = scores.reached.iter().filter(move |(_, task)| task.scaled_by == by);
-        tasks.map(|(name, _)| name.as_str()).collect::<Vec<_>>()
+        tasks.map(|(name, _)| names.shown(name)).collect::<Vec<_>>()
     };
     let (anchored, own) = (by(ScaledBy::Anchors), by(ScaledBy::Own));
     if anchored.is_empty() {
@@ -154,7 +159,7 @@ fn as_logged(agents: &[(&str, &[LifetimeMetrics])]) -> String {
 }
 
 /// Several lifetimes, and how they compare with another agent's.
-fn several(scores: &Scores, together: &Comparison) -> String {
+fn several(scores: &Scores, together: &Comparison, names: &VariantNames) -> String {
     let (lifetimes, others) = (scores.lifetimes.as_slice(), scores.lifetimes_against.as_slice());
     let options = &scores.options;
     let share = format!("{}% interval", together.intervals.confidence * 100.0);
@@ -166,8 +171,8 @@ fn several(scores: &Scores, together: &Comparison) -> String {
         one_line(lifetimes.first().map_or("", |life| &life.metrics_column)),
     )];
     parts.extend(scores.varied.map(Varied::sentence));
-    parts.extend(reached_by_several("", lifetimes));
-    parts.extend(reached_by_several(" by the other agent", others));
+    parts.extend(reached_by_several("", lifetimes, names));
+    parts.extend(reached_by_several(" by the other agent", others, names));
     parts.extend([
         as_logged(&if others.is_empty() {
             vec![("", lifetimes)]

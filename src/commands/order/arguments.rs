@@ -1,37 +1,137 @@
 //! [`OrderArgs`]: the options by which an order is found, for every command that orders. Finding it is the library's.
 
+use std::str::FromStr;
+
+use clap::Args;
+
+use crate::design::DesignOrder;
 use crate::ordering::OrderRequest;
 use crate::similarity::Method;
-use clap::Args;
+use crate::spec::did_you_mean;
+use crate::tasks;
 
 /// How an order is found; shared with `curriculum`.
 #[derive(Args)]
 pub(crate) struct OrderArgs {
-    /// Ordering method [default: exact if there are few enough variants, else two-opt].
+    /// Order of the variants [default: the shortest path; exact for up to 15 variants].
     ///
-    /// One of nearest, exact (up to 15 variants), two-opt, spectral, tree, leaf, contrast, typical-last,
-    /// farthest-first, random, bottleneck, target-step, gradual, outward, given.
-    #[arg(long)]
-    method: Option<Method>,
-    /// First variant [default: the one named first, or whichever is best of one whole task].
-    #[arg(long, value_name = "TASK#VARIANT")]
+    /// What is to be like what: gradual (the shortest path, with the smallest largest step among equals), outward (by growing
+    /// distance from the first), abrupt (the longest path), path (the shortest path), farthest (each time what is farthest
+    /// from all before it), named (as given). Or a method: nearest, exact, two-opt, spectral, tree, leaf, contrast,
+    /// typical-last, farthest-first, random, bottleneck, target-step, given.
+    #[arg(long, value_name = "ORDER")]
+    order: Option<OrderWord>,
+    /// First variant, such as blue [default: the one named first, or whichever is best of one whole task].
+    #[arg(long, value_name = "VARIANT")]
     start: Option<String>,
     /// Last variant [default: whichever is best].
-    #[arg(long, value_name = "TASK#VARIANT")]
+    #[arg(long, value_name = "VARIANT")]
     end: Option<String>,
-    /// Step between neighbours for the method target-step.
+    /// Step between neighbours for the order target-step.
     #[arg(long, value_name = "DISTANCE")]
     target_step: Option<f64>,
 }
 
+/// What `--order` can say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum OrderWord {
+    /// An order by what it is to show.
+    Design(DesignOrder),
+    /// A way to find one.
+    Method(Method),
+}
+
+impl OrderWord {
+    /// The orders by what they are to show.
+    const DESIGNS: [(&'static str, DesignOrder); 6] = [
+        ("gradual", DesignOrder::Gradual),
+        ("outward", DesignOrder::Outward),
+        ("abrupt", DesignOrder::Abrupt),
+        ("path", DesignOrder::Path),
+        ("farthest", DesignOrder::Farthest),
+        ("named", DesignOrder::Named),
+    ];
+
+    /// The method that finds it; nothing for the shortest path, which each number of items has its own method for.
+    fn method(self) -> Option<Method> {
+        match self {
+            Self::Method(method) => Some(method),
+            Self::Design(DesignOrder::Gradual) => Some(Method::Gradual),
+            Self::Design(DesignOrder::Outward) => Some(Method::Outward),
+            Self::Design(DesignOrder::Abrupt) => Some(Method::Contrast),
+            Self::Design(DesignOrder::Path) => None,
+            Self::Design(DesignOrder::Farthest) => Some(Method::FarthestFirst),
+            Self::Design(DesignOrder::Named) => Some(Method::Given),
+        }
+    }
+}
+
+impl FromStr for OrderWord {
+    type Err = String;
+
+    fn from_str(word: &str) -> Result<Self, String> {
+        if let Some((_, design)) = Self::DESIGNS.iter().find(|(name, _)| *name == word) {
+            return Ok(Self::Design(*design));
+        }
+        word.parse().map(Self::Method).map_err(|_| {
+            let designs = Self::DESIGNS.map(|(name, _)| name);
+            let methods = Method::ALL.iter().map(|method| method.name());
+            let methods: Vec<&str> = methods.filter(|name| !designs.contains(name)).collect();
+            let near = did_you_mean(word, designs.iter().chain(&methods).copied());
+            format!(
+                "expected one of {}, or a method: {}{near}",
+                designs.join(", "),
+                methods.join(", ")
+            )
+        })
+    }
+}
+
 impl OrderArgs {
-    /// The same for the library.
+    /// The same for the library, for a plain order.
     pub(crate) fn request(&self) -> OrderRequest {
         OrderRequest {
-            method: self.method,
+            method: self.order.and_then(OrderWord::method),
+            start: self.start.as_deref().map(tasks::label_of),
+            end: self.end.as_deref().map(tasks::label_of),
+            target_step: self.target_step,
+        }
+    }
+
+    /// The same for a curriculum, which has orders by what they are to show of its own: [`OrderArgs::design_order`].
+    pub(crate) fn design_request(&self) -> OrderRequest {
+        OrderRequest {
+            method: match self.order {
+                Some(OrderWord::Method(method)) => Some(method),
+                Some(OrderWord::Design(_)) | None => None,
+            },
             start: self.start.clone(),
             end: self.end.clone(),
             target_step: self.target_step,
         }
+    }
+
+    /// The order by what it is to show, where one was asked for.
+    pub(crate) fn design_order(&self) -> Option<DesignOrder> {
+        match self.order {
+            Some(OrderWord::Design(order)) => Some(order),
+            Some(OrderWord::Method(_)) | None => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_word_says_the_order_whether_by_aim_or_by_method() {
+        assert_eq!("abrupt".parse(), Ok(OrderWord::Design(DesignOrder::Abrupt)));
+        assert_eq!("two-opt".parse(), Ok(OrderWord::Method(Method::TwoOpt)));
+        for method in Method::ALL {
+            assert!(method.name().parse::<OrderWord>().is_ok(), "{}", method.name());
+        }
+        let refused = "gradul".parse::<OrderWord>().expect_err("there is none");
+        assert!(refused.ends_with("did you mean \"gradual\"?"), "{refused}");
     }
 }

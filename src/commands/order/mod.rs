@@ -5,7 +5,7 @@ mod compare;
 
 use std::path::PathBuf;
 
-use crate::distances::{By, Sample, Scale, fitting, labelled_matrix};
+use crate::distances::{By, Sample, Scale, fitting, variant_matrix};
 use crate::report::picture::path_map;
 use crate::similarity::{DistanceMatrix, Method, NUM_RANDOM_ORDERS, Ordering, share_of_shorter_orders};
 use crate::tasks;
@@ -60,10 +60,10 @@ pub(crate) struct Order {
     #[command(flatten)]
     weights: WeightArgs,
     /// Seed of the method random, and of the random orders that the length is compared with.
-    #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = crate::commands::numbers::seed)]
     seed: u64,
     /// Compare all methods.
-    #[arg(long, conflicts_with_all = ["method", "plot"])]
+    #[arg(long, conflicts_with_all = ["order", "plot"])]
     compare: bool,
     /// Also write the distance matrix: .csv, .json, or .npy with a .labels.json beside it.
     #[arg(long, value_name = "FILE")]
@@ -92,13 +92,14 @@ impl Order {
         let (matrix, by) = self.measure()?;
         if let Some(path) = &self.matrix {
             matrix_file::write("matrix", path, &matrix, cells(self.raw_cells))?;
+            output::wrote(path, format!("{0} × {0} distances", matrix.len()));
         }
         if self.compare {
             return self.compare(&matrix);
         }
         let (method, ordering) = self.ordering.request().order_from(&matrix, self.seed, &self.firsts())?;
         if let Some(path) = &self.plot {
-            output::write_picture(path, &path_map(&matrix, method, &ordering)?)?;
+            output::write_picture_and_tell(path, &path_map(&matrix, method, &ordering)?)?;
         }
         if self.json {
             let mut found = json_of(&matrix, method, &ordering, self.seed);
@@ -139,7 +140,12 @@ impl Order {
             catalogue: self.libraries.catalogue()?,
             ..Sample::default()
         };
-        let matrix = labelled_matrix(&variants, &sample, |declared| self.weights.over(declared))?;
+        let labels = tasks::labels_of(&variants);
+        let labelled: Vec<_> = labels
+            .into_iter()
+            .zip(variants.iter().map(|(_, variant)| variant.clone()))
+            .collect();
+        let matrix = variant_matrix(&labelled, &sample, |declared| self.weights.over(declared))?;
         let by = self
             .by
             .unwrap_or_else(|| fitting(variants.iter().map(|(_, variant)| variant)));

@@ -9,7 +9,6 @@ use crate::curriculum::{TransferOptions, transfer_report};
 use crate::metrics::{NormalizationMethod, Options, SmoothingMethod, TransferMethod};
 use crate::similarity::MAX_RELABELLINGS;
 use clap::{Args, ValueEnum};
-use driftworld_text::ShownPath;
 
 use super::{Failure, log_folders, matrix_file, output, overwrite};
 use crate::report::picture::scatter;
@@ -30,7 +29,7 @@ use crate::scoring::{Experts, score_logs};
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld order find_objects --matrix distances.csv
-  driftworld transfer-report logs --distances distances.csv -o transfer.png
+  driftworld transfer-report logs --distances distances.csv --plot transfer.png
   driftworld transfer-report logs/run1 logs/run2 --distances distances.csv --json")]
 pub(crate) struct TransferReport {
     /// Folders of l2logger logs, or folders of such folders.
@@ -56,11 +55,11 @@ pub(crate) struct TransferReport {
         value_parser = clap::value_parser!(u64).range(1..=MAX_RELABELLINGS))]
     relabellings: u64,
     /// Seed of the relabellings.
-    #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = crate::commands::numbers::seed)]
     seed: u64,
     /// Draw transfer over distance into this PNG file.
-    #[arg(short, long, value_name = "FILE")]
-    output: Option<PathBuf>,
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
     /// Print the result as JSON.
     #[arg(long)]
     json: bool,
@@ -86,7 +85,7 @@ impl From<Measure> for TransferMethod {
 
 impl TransferReport {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        if let Some(target) = &self.output {
+        if let Some(target) = &self.plot {
             overwrite::refuse_inputs(target, self.distances.to_str())?;
         }
         let distances = matrix_file::read("distances", &self.distances)?;
@@ -115,10 +114,8 @@ impl TransferReport {
         } else {
             output::line(words::report(&report))?;
         }
-        let Some(path) = self.output else { return Ok(()) };
+        let Some(path) = self.plot else { return Ok(()) };
         let picture = scatter(&words::panels(&report))?;
-        output::write_picture(&path, &picture)?;
-        output::note(format!("wrote {}", path.shown()));
-        Ok(())
+        output::write_picture_and_tell(&path, &picture)
     }
 }

@@ -29,13 +29,13 @@ struct Case {
 const CASES: [Case; 7] = [
     Case {
         what: "run",
-        arguments: &["run", "long.json", "--agent", "random", "--logs", "out/log"],
+        arguments: &["run", "long.json", "--agent", "random", "--output", "out/log"],
         wait_millis: 300,
         is_blocked: false,
     },
     Case {
         what: "run, in a step of seconds",
-        arguments: &["run", "heap.json", "--agent", "random", "--logs", "out/log"],
+        arguments: &["run", "heap.json", "--agent", "random", "--output", "out/log"],
         wait_millis: 1500,
         is_blocked: false,
     },

@@ -95,7 +95,7 @@ impl Subject {
     /// A run of a lifetime that is begun, or gone on with.
     pub(super) fn run(&self, scenario: &Path, agent: &str, jobs: u64, log: &Path) -> Command {
         let mut command = self.command(&["run", "--agent", agent, "--resume", "--jobs", &jobs.to_string()]);
-        command.arg(scenario).arg("--logs").arg(log);
+        command.arg(scenario).arg("--output").arg(log);
         command
     }
 

@@ -1,0 +1,108 @@
+//! The list of commands in `driftworld --help`, in groups by what one wants to do. What each command does stands with it.
+
+use clap::Command;
+
+use crate::style;
+
+/// The groups, in the order in which they are met, each with its commands.
+const GROUPS: [(&str, &[&str]); 7] = [
+    ("Start here", &["demo", "tasks", "doctor"]),
+    (
+        "Author tasks and worlds",
+        &[
+            "new",
+            "export",
+            "validate",
+            "vary",
+            "sample",
+            "render",
+            "sheet",
+            "assets",
+            "photograph",
+            "schema",
+        ],
+    ),
+    ("Measure how tasks differ", &["distance", "order", "elements"]),
+    ("Teach: design and run curricula", &["curriculum", "run", "audit"]),
+    (
+        "Score what was learned",
+        &["scales", "metrics", "report", "transfer-report", "logs"],
+    ),
+    ("Watch and play", &["play", "console", "film", "replay"]),
+    (
+        "Work with other tools",
+        &["convert", "unity", "completions", "bench", "help"],
+    ),
+];
+
+/// Blanks in front of a command's name, and between the longest name and what it does.
+const GAP: usize = 2;
+
+/// The command with its subcommands listed in groups.
+pub(super) fn grouped(command: Command) -> Command {
+    let template = format!(
+        "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{}{}:\n{{options}}{{after-help}}",
+        groups(&command),
+        heading("Options")
+    );
+    command.help_template(template).after_help(
+        "'driftworld COMMAND --help' shows examples of each. A task is a built-in one, or the path of a task spec. A variant is \
+         TASK#VARIANT, such as find_objects#red; a family or a pattern, such as find_objects#any_*, stands for its members. \
+         In place of a file, - is standard input or output.",
+    )
+}
+
+/// The groups with their commands, and what is in none of them.
+fn groups(command: &Command) -> String {
+    let known: Vec<(&str, String)> = command
+        .get_subcommands()
+        .filter(|one| !one.is_hide_set())
+        .map(|one| {
+            (
+                one.get_name(),
+                one.get_about().map(ToString::to_string).unwrap_or_default(),
+            )
+        })
+        .chain([("help", "Say more of a command".to_owned())])
+        .collect();
+    let is_grouped = |name: &str| GROUPS.iter().any(|(_, names)| names.contains(&name));
+    let others: Vec<&str> = known
+        .iter()
+        .map(|(name, _)| *name)
+        .filter(|name| !is_grouped(name))
+        .collect();
+    let width = known.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+    let mut text = String::new();
+    for (title, names) in GROUPS.into_iter().chain([("Others", others.as_slice())]) {
+        let found: Vec<_> = names
+            .iter()
+            .filter_map(|name| known.iter().find(|(known, _)| known == name))
+            .collect();
+        if found.is_empty() {
+            continue;
+        }
+        text += &format!("{}:\n", heading(title));
+        for (name, about) in found {
+            text += &format!("{:GAP$}{}{:GAP$}{about}\n", "", command_name(name, width), "");
+        }
+        text.push('\n');
+    }
+    text
+}
+
+fn heading(text: &str) -> String {
+    if style::of_stdout() {
+        format!("\u{1b}[1;4m{text}\u{1b}[0m")
+    } else {
+        text.to_owned()
+    }
+}
+
+fn command_name(name: &str, width: usize) -> String {
+    let blanks = " ".repeat(width - name.len());
+    if style::of_stdout() {
+        format!("\u{1b}[1m{name}\u{1b}[0m{blanks}")
+    } else {
+        format!("{name}{blanks}")
+    }
+}

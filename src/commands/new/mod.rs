@@ -1,0 +1,138 @@
+//! `driftworld new` and `driftworld export`: a task spec to begin with, a small one or one that is built in.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use driftworld_text::ShownPath;
+
+use super::{Failure, output};
+use crate::spec::{TaskSpec, did_you_mean};
+use crate::tasks;
+
+/// A small task whose descriptions say what each part is for, under this name.
+const SCAFFOLD: (&str, &str) = ("my_task", include_str!("scaffold.json"));
+
+/// Write a small task spec to begin with.
+///
+/// It can be validated, drawn and run as it is. Its descriptions say what each part is for.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  driftworld new my_task
+  driftworld new berries -o tasks/berries.json")]
+pub(crate) struct New {
+    /// Name of the task: lower-case letters, digits and underscores.
+    name: String,
+    /// File to write, or - for standard output [default: NAME.json].
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Replace the file if it exists.
+    #[arg(long)]
+    force: bool,
+    /// Print what was written as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Write a built-in task as a task spec to edit.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  driftworld export find_objects
+  driftworld export get_to_goal --name my_goal -o tasks/my_goal.json")]
+pub(crate) struct Export {
+    /// The built-in task; `driftworld tasks` lists them.
+    task: String,
+    /// Give it another name, under which its worlds are others, too.
+    #[arg(long, value_name = "NAME")]
+    name: Option<String>,
+    /// File to write, or - for standard output [default: NAME.json].
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Replace the file if it exists.
+    #[arg(long)]
+    force: bool,
+    /// Print what was written as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+impl New {
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let name = self.name.strip_suffix(".json").unwrap_or(&self.name);
+        let text = renamed(SCAFFOLD, name)?;
+        let file = self.output.unwrap_or_else(|| format!("{name}.json").into());
+        write(&file, &text, self.force, self.json)?;
+        if self.json || output::is_stdout(&file) {
+            return Ok(());
+        }
+        output::tell_what_was_written()?;
+        let file = file.shown();
+        output::line(format!(
+            "Try it, change it, try it again:\n  \
+             driftworld validate {file} --worlds 20\n  \
+             driftworld tasks show {file}\n  \
+             driftworld sheet {file} -o sheet.png\n  \
+             driftworld distance {file}#plain modest --explain\n  \
+             driftworld curriculum {file} --learn 20 --eval-episodes 5 -o s.json\n  \
+             driftworld run s.json --agent sarsa -o log"
+        ))
+    }
+}
+
+impl Export {
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let (task, _) = tasks::split(&self.task);
+        let Some(built_in) = tasks::BUILT_IN.into_iter().find(|(name, _)| *name == task) else {
+            let names = tasks::built_in_names();
+            let near = did_you_mean(task, names.iter().copied());
+            let names = names.join(", ");
+            return Err(Failure::input(format!(
+                "found {task:?}, expected a built-in task, one of {names}{near}"
+            )));
+        };
+        let name = self.name.as_deref().unwrap_or(built_in.0);
+        let text = renamed(built_in, name)?;
+        let file = self.output.unwrap_or_else(|| format!("{name}.json").into());
+        write(&file, &text, self.force, self.json)
+    }
+}
+
+/// A task's text under another name, without the place of the schema, which is not beside the new file.
+fn renamed((old, text): (&str, &str), name: &str) -> Result<String, Failure> {
+    let lines = text
+        .lines()
+        .filter(|line| !line.trim_start().starts_with("\"$schema\""));
+    let text: String = lines.map(|line| format!("{line}\n")).collect();
+    let text = text.replacen(&format!("\"name\": \"{old}\""), &format!("\"name\": \"{name}\""), 1);
+    // In descriptions, too, a file is called by its name.
+    let text = text.replace(&format!("{old}.json#"), &format!("{name}.json#"));
+    TaskSpec::from_json(&format!("{name}.json"), &text)?;
+    Ok(text)
+}
+
+fn write(file: &Path, text: &str, force: bool, json: bool) -> Result<(), Failure> {
+    if !force && !output::is_stdout(file) && file.exists() {
+        return Err(Failure::input(format!(
+            "{}: found a file, expected none; name another with -o, or replace it with --force",
+            file.shown()
+        )));
+    }
+    output::write_or_print(file, text)?;
+    if json && !output::is_stdout(file) {
+        return output::json_of_what_was_written();
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_scaffold_and_every_built_in_task_can_be_had_under_another_name() {
+        for task in tasks::BUILT_IN.into_iter().chain([SCAFFOLD]) {
+            let text = renamed(task, "mine").expect("it is valid");
+            let task = TaskSpec::from_json("mine", &text).expect("it is valid");
+            assert_eq!(task.name(), "mine");
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! Colours of what is printed for people: when there are any, and what is set off. Pictures in the terminal are the console's.
+
+use std::io::IsTerminal;
+use std::sync::atomic::{AtomicU8, Ordering};
+
+use clap::ColorChoice;
+
+/// What a text that is set off begins with: a letter that no text has (Unicode keeps it out of interchange), and the style's own.
+const BEGIN: char = '\u{fdd0}';
+
+/// What it ends with.
+const END: char = '\u{fdd1}';
+
+/// What `--color` says.
+static CHOICE: AtomicU8 = AtomicU8::new(0);
+
+/// Follows `--color` from now on.
+pub(crate) fn follow(choice: ColorChoice) {
+    let number = match choice {
+        ColorChoice::Auto => 0,
+        ColorChoice::Always => 1,
+        ColorChoice::Never => 2,
+    };
+    CHOICE.store(number, Ordering::Relaxed);
+}
+
+/// Whether standard output takes colours.
+pub(crate) fn of_stdout() -> bool {
+    takes_colors(std::io::stdout().is_terminal())
+}
+
+/// Whether standard error does.
+pub(crate) fn of_stderr() -> bool {
+    takes_colors(std::io::stderr().is_terminal())
+}
+
+/// `--color` before `NO_COLOR` and `TERM=dumb` before what the stream is.
+fn takes_colors(is_terminal: bool) -> bool {
+    match CHOICE.load(Ordering::Relaxed) {
+        1 => true,
+        2 => false,
+        _ => {
+            let set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+            is_terminal && !set("NO_COLOR") && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
+        }
+    }
+}
+
+/// How a text is set off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Style {
+    /// Headings.
+    Strong,
+    /// What went well.
+    Good,
+    /// What to look at.
+    Odd,
+    /// What went wrong.
+    Bad,
+}
+
+impl Style {
+    const ALL: [Self; 4] = [Self::Strong, Self::Good, Self::Odd, Self::Bad];
+
+    fn letter(self) -> char {
+        match self {
+            Self::Strong => 's',
+            Self::Good => 'g',
+            Self::Odd => 'o',
+            Self::Bad => 'b',
+        }
+    }
+
+    fn sequence(self) -> &'static str {
+        match self {
+            Self::Strong => "\u{1b}[1m",
+            Self::Good => "\u{1b}[32m",
+            Self::Odd => "\u{1b}[33m",
+            Self::Bad => "\u{1b}[1;31m",
+        }
+    }
+
+    /// The style of a verdict that stands alone in a cell.
+    pub(crate) fn of_verdict(word: &str) -> Option<Self> {
+        match word {
+            "ok" | "sound" => Some(Self::Good),
+            "idle" | "nothing to learn" => Some(Self::Odd),
+            "FAILED" | "contradicted" => Some(Self::Bad),
+            _ => None,
+        }
+    }
+
+    /// The style of what a line on standard error begins with, and how long that is.
+    pub(crate) fn of_message(line: &str) -> Option<(Self, usize)> {
+        let kinds = [("error:", Self::Bad), ("warning:", Self::Odd), ("note:", Self::Strong)];
+        let found = kinds.into_iter().find(|(word, _)| line.starts_with(word));
+        found.map(|(word, style)| (style, word.len()))
+    }
+
+    /// A text set off on standard output, where that takes colours.
+    pub(crate) fn on(self, text: &str) -> String {
+        if of_stdout() && !text.is_empty() {
+            format!("{BEGIN}{}{text}{END}", self.letter())
+        } else {
+            text.to_owned()
+        }
+    }
+
+    /// A text as a terminal obeys it.
+    pub(crate) fn painted(self, text: &str) -> String {
+        format!("{}{text}\u{1b}[0m", self.sequence())
+    }
+}
+
+/// Whether something in a text is set off.
+pub(crate) fn is_set_off(text: &str) -> bool {
+    text.contains(BEGIN)
+}
+
+/// A text with what [`Style::on`] set off as a terminal obeys it; `shown` is done to all that lies between.
+pub(crate) fn paint(text: &str, shown: impl Fn(&str) -> String) -> String {
+    let mut painted = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some((before, behind)) = rest.split_once(BEGIN) {
+        painted.push_str(&shown(before));
+        let mut letters = behind.chars();
+        let style = letters
+            .next()
+            .and_then(|letter| Style::ALL.into_iter().find(|style| style.letter() == letter));
+        let set_off = style.and_then(|style| Some((style, letters.as_str().split_once(END)?)));
+        rest = match set_off {
+            Some((style, (inside, behind))) => {
+                painted.push_str(&style.painted(&shown(inside)));
+                behind
+            }
+            None => behind,
+        };
+    }
+    painted + &shown(rest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_set_off_is_painted_and_all_else_is_shown() {
+        let text = format!("a{BEGIN}sb{END}c{BEGIN}xd");
+        assert_eq!(paint(&text, str::to_uppercase), "A\u{1b}[1mB\u{1b}[0mCXD");
+        assert_eq!(paint("plain", str::to_owned), "plain");
+    }
+}

@@ -1,0 +1,141 @@
+//! How wide lines may be, and texts broken between words so that they fit. Tables are `table.rs`'s, colours `style.rs`'s.
+
+use std::io::IsTerminal;
+
+use unicode_width::UnicodeWidthStr;
+
+use crate::style;
+
+/// The narrowest width that is taken seriously, in columns.
+const NARROWEST: usize = 40;
+
+/// The columns of standard output: what `COLUMNS` says, else those of the terminal; nothing where lines may be of any length.
+pub(crate) fn columns_of_stdout() -> Option<usize> {
+    asked_for().or_else(|| {
+        let stdout = std::io::stdout();
+        stdout
+            .is_terminal()
+            .then(|| terminal_size::terminal_size_of(stdout))?
+            .map(columns)
+    })
+}
+
+/// The same of standard error.
+pub(crate) fn columns_of_stderr() -> Option<usize> {
+    asked_for().or_else(|| {
+        let stderr = std::io::stderr();
+        stderr
+            .is_terminal()
+            .then(|| terminal_size::terminal_size_of(stderr))?
+            .map(columns)
+    })
+}
+
+fn columns((width, _): (terminal_size::Width, terminal_size::Height)) -> usize {
+    usize::from(width.0).max(NARROWEST)
+}
+
+fn asked_for() -> Option<usize> {
+    let columns: usize = std::env::var("COLUMNS").ok()?.parse().ok()?;
+    (columns > 0).then(|| columns.max(NARROWEST))
+}
+
+/// How many columns a text takes.
+pub(crate) fn columns_of(text: &str) -> usize {
+    text.width()
+}
+
+/// The columns of the longest piece of a text that is not broken.
+pub(crate) fn longest_piece(text: &str) -> usize {
+    pieces(text)
+        .map(|piece| columns_of(piece.trim_end()))
+        .max()
+        .unwrap_or(0)
+}
+
+/// A text in lines of at most `width` columns, broken behind blanks and commas alone: a longer word stays whole.
+pub(crate) fn wrap(text: &str, width: usize) -> Vec<String> {
+    let mut lines = Vec::new();
+    let mut line = String::new();
+    for piece in pieces(text) {
+        if !line.is_empty() && columns_of(&line) + columns_of(piece.trim_end()) > width {
+            lines.push(line.trim_end().to_owned());
+            line.clear();
+        }
+        line.push_str(piece);
+    }
+    lines.push(line.trim_end().to_owned());
+    lines
+}
+
+/// Every line of a text wrapped; what goes on is set in as deep as its line.
+pub(crate) fn wrap_lines(text: &str, width: Option<usize>) -> String {
+    let Some(width) = width else {
+        return text.to_owned();
+    };
+    let wrapped = text.split('\n').map(|line| {
+        // What is set off was laid out already.
+        if columns_of(line) <= width || style::is_set_off(line) {
+            return line.to_owned();
+        }
+        let blank = line.len() - line.trim_start_matches(' ').len();
+        let (indent, rest) = line.split_at(blank.min(width / 2));
+        wrap(rest, width - indent.len())
+            .iter()
+            .map(|line| format!("{indent}{line}"))
+            .collect::<Vec<_>>()
+            .join("\n")
+    });
+    wrapped.collect::<Vec<_>>().join("\n")
+}
+
+/// A text in pieces that stay whole, each with the blanks behind it.
+fn pieces(text: &str) -> impl Iterator<Item = &str> {
+    let mut rest = text;
+    std::iter::from_fn(move || {
+        let mut letters = rest.char_indices().peekable();
+        let end = loop {
+            let (_, letter) = letters.next()?;
+            match (letter, letters.peek()) {
+                (_, None) => break rest.len(),
+                (' ', Some((next, after))) if *after != ' ' => break *next,
+                // Between the parts of a list, but not in a number such as 1,200.
+                (',', Some((next, after))) if *after != ' ' && !after.is_ascii_digit() => break *next,
+                _ => {}
+            }
+        };
+        let (piece, behind) = rest.split_at(end);
+        rest = behind;
+        Some(piece)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn lines_break_behind_blanks_and_commas() {
+        assert_eq!(wrap("one two  three", 8), ["one two", "three"]);
+        assert_eq!(
+            wrap("[\"rgb\",\"depth\"], 1,200", 10),
+            ["[\"rgb\",", "\"depth\"],", "1,200"]
+        );
+        assert_eq!(wrap("immeasurable", 5), ["immeasurable"]);
+        assert_eq!(wrap("", 5), [""]);
+        assert_eq!(wrap_lines("  a b c\nd", Some(5)), "  a b\n  c\nd");
+    }
+
+    proptest! {
+        #[test]
+        fn nothing_is_lost_and_no_word_is_broken(words in proptest::collection::vec("[a-zäß漢]{1,9}", 0..20), width in 1_usize..30) {
+            let text = words.join(" ");
+            let lines = wrap(&text, width);
+            prop_assert_eq!(lines.join(" "), text);
+            for line in lines {
+                prop_assert!(columns_of(&line) <= width || !line.contains(' '), "{}", line);
+            }
+        }
+    }
+}

@@ -1,0 +1,640 @@
+//! What a newcomer meets in the first hour: each test is named after what must be true, and was a defect once (docs of issue 24).
+
+use std::io::Write;
+use std::path::Path;
+use std::process::Stdio;
+
+use crate::terminal::{driftworld, driftworld_in, fail, fail_in, output, scratch, succeed, succeed_in};
+
+/// A small task with a family.
+const BERRIES: &str = r#"{ "name": "berries",
+    "parameters": {
+        "light": { "role": "variant", "type": "number", "affects": ["O"], "range": [0.2, 4], "default": 1 },
+        "count": { "role": "variant", "type": "integer", "affects": ["S"], "range": [1, 4], "default": 2 } },
+    "world": { "max_steps": 20, "environment_params": { "light_intensity": { "param": "light" } } },
+    "groups": [{ "name": "berries", "count": { "param": "count" }, "object": { "class": "cube" },
+        "placement": { "box": { "low": [-5, -5], "high": [5, 5] } } }],
+    "variants": { "plain": {}, "all": { "name": "l{light}-n{count}", "grid": { "light": [0.5, 2], "count": [1, 3] } } } }"#;
+
+fn with_berries() -> tempfile::TempDir {
+    let folder = scratch();
+    std::fs::write(folder.path().join("bush.json"), BERRIES).expect("the folder is ours");
+    folder
+}
+
+/// Runs the command with a text as its standard input: code, standard output, standard error.
+fn fed(folder: &Path, input: &str, arguments: &[&str]) -> (Option<i32>, String, String) {
+    let mut command = driftworld_in(folder, arguments);
+    let command = command
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    let mut child = command.spawn().expect("the command starts");
+    let mut stdin = child.stdin.take().expect("it was piped");
+    stdin.write_all(input.as_bytes()).expect("the command reads it");
+    drop(stdin);
+    let done = child.wait_with_output().expect("it ends");
+    let shown = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
+    (done.status.code(), shown(done.stdout), shown(done.stderr))
+}
+
+// 5. The commands.
+
+#[test]
+fn commands_are_listed_in_groups_and_none_twice() {
+    let help = succeed(&["--help"]);
+    for group in ["Author", "Measure", "Teach", "Score", "Watch", "Work with other tools"] {
+        assert!(help.lines().any(|line| line.starts_with(group)), "{group}: {help}");
+    }
+    assert!(
+        !help.contains("Others:"),
+        "a command is in no group; see src/commands/help.rs: {help}"
+    );
+    let mut names: Vec<&str> = help
+        .lines()
+        .take_while(|line| *line != "Options:")
+        .filter_map(|line| line.strip_prefix("  ")?.split(' ').next())
+        .collect();
+    let all = names.len();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), all);
+    assert!(help.lines().all(|line| line.chars().count() <= 100), "{help}");
+}
+
+#[test]
+fn completions_know_every_shell_and_every_command() {
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let script = succeed(&["completions", shell]);
+        for command in ["transfer-report", "curriculum", "completions"] {
+            assert!(script.contains(command), "{shell} completes {command}");
+        }
+    }
+    assert!(fail(2, &["completions", "csh"]).contains("bash"));
+}
+
+// 7. Colours.
+
+#[test]
+fn colours_come_where_they_are_asked_for_and_nowhere_else() {
+    let colored = |arguments: &[&str], variable: Option<&str>| {
+        let mut command = driftworld(arguments);
+        let done = output(command.envs(variable.map(|name| (name, "1"))));
+        [done.stdout, done.stderr].map(|bytes| bytes.contains(&b'\x1b'))
+    };
+    let order = ["order", "find_objects#red", "dusk"];
+    assert_eq!(colored(&order, None), [false, false], "a pipe is no terminal");
+    assert_eq!(
+        colored(&[&order[..], &["--color", "always"]].concat(), Some("NO_COLOR")),
+        [true, false]
+    );
+    assert_eq!(
+        colored(&[&order[..], &["--color=never"]].concat(), None),
+        [false, false]
+    );
+    assert_eq!(colored(&["order", "nowhere", "--color", "always"], None), [false, true]);
+    assert_eq!(colored(&["ordre", "--color", "always"], None), [false, true]);
+    assert_eq!(colored(&["ordre", "--color", "never"], None), [false, false]);
+}
+
+#[test]
+fn colours_change_no_word() {
+    let plain = succeed(&["tasks", "show", "get_to_goal"]);
+    let colored = succeed(&["tasks", "show", "get_to_goal", "--color", "always"]);
+    let mut stripped = String::new();
+    let mut inside = false;
+    for letter in colored.chars() {
+        match letter {
+            '\u{1b}' => inside = true,
+            'm' if inside => inside = false,
+            _ if inside => {}
+            _ => stripped.push(letter),
+        }
+    }
+    assert_eq!(stripped, plain);
+}
+
+#[test]
+fn tasks_show_has_one_table_of_variants_and_refuses_a_wrong_one() {
+    let shown = succeed(&["tasks", "show", "find_objects"]);
+    let headings = shown.lines().filter(|line| line.starts_with("variant ")).count();
+    assert_eq!(headings, 1, "{shown}");
+    let one = succeed(&["tasks", "show", "find_objects#turned"]);
+    assert!(
+        one.contains("rock_reward = 100") && !one.contains("Red cubes at dusk"),
+        "{one}"
+    );
+    assert!(fail(1, &["tasks", "show", "find_objects#turnd"]).contains("did you mean \"turned\"?"));
+}
+
+#[test]
+fn explain_prints_no_rows_of_zeros() {
+    let shown = succeed(&["distance", "find_objects#blue", "dusk", "--explain"]);
+    let parts = shown.split("\n\n").nth(2).unwrap_or_default();
+    assert!(parts.contains("light") && !parts.contains("0.0000"), "{shown}");
+}
+
+// 8. One spelling.
+
+#[test]
+fn an_element_is_called_by_its_letter_or_its_name_in_every_command() {
+    for element in ["R", "r", "reward", "Reward"] {
+        succeed(&["vary", "find_objects#red", "--element", element, "--distance", "0.5"]);
+        let weight = format!("{element}=2");
+        succeed(&["distance", "find_objects#red", "penalty", "--weight", &weight]);
+        let probe = [
+            "curriculum",
+            "find_objects#red",
+            "penalty",
+            "--probe",
+            element,
+            "--worlds",
+            "0",
+            "-o",
+            "-",
+        ];
+        succeed(&probe);
+    }
+    for arguments in [
+        ["vary", "find_objects#red", "--distance", "1", "--element", "rewrd"],
+        [
+            "distance",
+            "find_objects#red",
+            "penalty",
+            "--explain",
+            "--weight",
+            "rewrd=2",
+        ],
+        [
+            "curriculum",
+            "find_objects#red",
+            "penalty",
+            "--worlds=0",
+            "--probe",
+            "rewrd",
+        ],
+    ] {
+        let refused = fail(2, &arguments);
+        assert!(refused.contains("did you mean \"reward\"?"), "{refused}");
+    }
+}
+
+#[test]
+fn variants_go_by_bare_names_wherever_their_task_is_known() {
+    let folder = with_berries();
+    let path = folder.path();
+    let same = |bare: &[&str], whole: &[&str]| assert_eq!(succeed_in(path, bare), succeed_in(path, whole));
+    same(
+        &["distance", "find_objects#blue", "dusk", "--json"],
+        &["distance", "find_objects#blue", "find_objects#dusk", "--json"],
+    );
+    same(
+        &["order", "bush.json", "--start", "plain", "--end", "l2-n3", "--json"],
+        &[
+            "order",
+            "bush.json",
+            "--start",
+            "berries#plain",
+            "--end",
+            "bush.json#l2-n3",
+            "--json",
+        ],
+    );
+    same(
+        &[
+            "curriculum",
+            "find_objects#red",
+            "blue",
+            "dusk",
+            "--start",
+            "blue",
+            "--hold-out",
+            "dusk",
+            "--worlds",
+            "0",
+        ],
+        &[
+            "curriculum",
+            "find_objects#red",
+            "find_objects#blue",
+            "find_objects#dusk",
+            "--start",
+            "find_objects#blue",
+            "--hold-out",
+            "find_objects#dusk",
+            "--worlds",
+            "0",
+        ],
+    );
+    same(
+        &["sample", "bush.json", "--drift-to", "l2-n3", "--count", "3", "--jsonl"],
+        &[
+            "sample",
+            "bush.json",
+            "--drift-to",
+            "bush.json#l2-n3",
+            "--count",
+            "3",
+            "--jsonl",
+        ],
+    );
+    let wrong = fail_in(path, 1, &["order", "bush.json", "--start", "plan"]);
+    assert!(wrong.contains("did you mean \"plain\"?"), "{wrong}");
+}
+
+#[test]
+fn families_and_patterns_stand_for_their_members_everywhere() {
+    let folder = with_berries();
+    for named in ["bush.json#all", "bush.json#l*"] {
+        for command in [
+            &["order", named][..],
+            &["tasks", "show", named],
+            &["curriculum", named, "--worlds", "0", "-o", "-"],
+            &["scales", named, "--worlds", "2"],
+        ] {
+            let shown = succeed_in(folder.path(), command);
+            assert!(
+                shown.contains("l0.5-n1") && shown.contains("l2-n3"),
+                "{command:?}: {shown}"
+            );
+        }
+        succeed_in(folder.path(), &["sheet", named, "--size", "32", "-o", "sheet.png"]);
+    }
+}
+
+#[test]
+fn old_spellings_work_with_a_note() {
+    let folder = with_berries();
+    let path = folder.path();
+    let design = [
+        "curriculum",
+        "bush.json#plain",
+        "--learn",
+        "1",
+        "--eval-episodes",
+        "1",
+        "-o",
+        "s.json",
+    ];
+    succeed_in(path, &design);
+    let run = output(&mut driftworld_in(
+        path,
+        &["run", "s.json", "--agent", "still", "--logs", "log"],
+    ));
+    let said = String::from_utf8_lossy(&run.stderr);
+    assert!(run.status.success() && path.join("log").is_dir());
+    assert!(
+        said.contains("note: --logs of `driftworld run` is called --output now"),
+        "{said}"
+    );
+    let order = output(&mut driftworld_in(
+        path,
+        &["order", "bush.json", "--method", "nearest", "--json"],
+    ));
+    assert_eq!(
+        String::from_utf8_lossy(&order.stdout),
+        succeed_in(path, &["order", "bush.json", "--order", "nearest", "--json"])
+    );
+}
+
+#[test]
+fn whatever_is_written_is_told_in_one_line() {
+    let folder = with_berries();
+    let path = folder.path();
+    for (command, files) in [
+        ("sample bush.json -o w.json", &["w.json"][..]),
+        ("sample bush.json --count 2 -o worlds", &["worlds"]),
+        ("sample bush.json --count 2 --jsonl -o w.jsonl", &["w.jsonl"]),
+        ("render w.json --size 32 -o r.png", &["r.png"]),
+        ("sheet bush.json --size 32 -o s.png", &["s.png"]),
+        ("convert w.json --to l2explorer -o c.json", &["c.json"]),
+        ("vary bush.json --element O --distance 0.1 -o v.json", &["v.json"]),
+        ("order bush.json --matrix m.csv --plot p.png", &["m.csv", "p.png"]),
+        (
+            "curriculum bush.json#all --learn 1 --eval-episodes 1 -o scenario.json --plot b.png",
+            &["scenario.json", "b.png"],
+        ),
+        ("run scenario.json --agent still -o log", &["log"]),
+        ("report log -o report.html --plots figures", &["report.html", "figures"]),
+        ("metrics log --save results --plots plots", &["results/", "plots"]),
+        ("scales bush.json#plain --worlds 2 -o scales.json", &["scales.json"]),
+        ("transfer-report log --distances m.csv --plot t.png", &["t.png"]),
+        ("logs aggregate log -o rows.tsv", &["rows.tsv"]),
+        ("photograph w.json --modalities rgb -o photographs", &["photographs"]),
+        ("assets show cube -o cubes.png", &["cubes.png"]),
+        ("schema -o schemas", &["schemas"]),
+        ("new other", &["other.json"]),
+        ("export find_objects", &["find_objects.json"]),
+    ] {
+        let arguments: Vec<&str> = command.split(' ').collect();
+        let shown = succeed_in(path, &arguments);
+        for file in files {
+            let told = |line: &str| line.starts_with(&format!("wrote {file}"));
+            assert!(shown.lines().any(told), "{command}: {shown}");
+        }
+    }
+    // Where standard output holds data, the line is on the other.
+    let done = output(&mut driftworld_in(
+        path,
+        &["order", "bush.json", "--matrix", "m.json", "--json"],
+    ));
+    let said = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert!(said.contains("wrote m.json"), "{said}");
+    serde_json::from_slice::<serde_json::Value>(&done.stdout).expect("standard output is JSON alone");
+}
+
+#[test]
+fn every_command_with_a_result_prints_json() {
+    let folder = with_berries();
+    let path = folder.path();
+    for command in [
+        "tasks --json",
+        "tasks show bush.json --json",
+        "validate bush.json --json",
+        "vary bush.json --element O --distance 0.1 --json",
+        "sample bush.json --json -o w.json",
+        "sample bush.json --json",
+        "render w.json --size 32 --json",
+        "sheet bush.json --size 32 --json",
+        "convert w.json --json -o c.json",
+        "distance bush.json#plain l2-n3 --json",
+        "order bush.json --json",
+        "elements bush.json --worlds 1 --json",
+        "curriculum bush.json#all --learn 1 --eval-episodes 1 -o scenario.json --json",
+        "run scenario.json --agent still -o log --json",
+        "metrics log --json",
+        "report log --json",
+        "scales bush.json#plain --worlds 2 --json",
+        "logs validate log --json",
+        "logs aggregate log -o rows.tsv --json",
+        "photograph w.json --modalities rgb --json",
+        "assets list --json",
+        "assets show cube --json",
+        "schema -o schemas --json",
+        "new other --json",
+        "export find_objects --json",
+        "doctor --json",
+    ] {
+        let arguments: Vec<&str> = command.split(' ').collect();
+        let shown = succeed_in(path, &arguments);
+        let read = serde_json::from_str::<serde_json::Value>(&shown);
+        assert!(read.is_ok(), "{command}: {shown}");
+    }
+}
+
+#[test]
+fn documents_are_read_from_standard_input() {
+    let folder = with_berries();
+    let path = folder.path();
+    let read = |input: &str, arguments: &[&str]| {
+        let (code, shown, said) = fed(path, input, arguments);
+        assert_eq!(code, Some(0), "{arguments:?}: {said}");
+        shown
+    };
+    assert!(read(BERRIES, &["validate", "-"]).contains("standard input: a valid task spec"));
+    let world = read(BERRIES, &["sample", "-#l2-n3"]);
+    assert_eq!(world, succeed_in(path, &["sample", "bush.json#l2-n3"]));
+    assert_eq!(
+        read(&world, &["convert", "-"]),
+        succeed_in(path, &["convert", "bush.json#l2-n3"])
+    );
+    read(&world, &["render", "-", "--size", "32", "-o", "r.png"]);
+    assert!(read(BERRIES, &["order", "-"]).contains("berries#plain"));
+    assert!(read(BERRIES, &["tasks", "show", "-"]).contains("l0.5-n1"));
+    let scenario = r#"{ "name": "s", "blocks": [{ "type": "learning", "regimes": [{ "task": "bush.json", "variant": "plain", "count": 1 }] }] }"#;
+    read(scenario, &["run", "-", "--agent", "still", "-o", "log"]);
+    let matrix = succeed_in(path, &["order", "bush.json", "--json"]);
+    let matrix: serde_json::Value = serde_json::from_str(&matrix).expect("it is JSON");
+    read(&matrix["matrix"].to_string(), &["order", "--from-matrix", "-"]);
+    let (code, _, said) = fed(path, "{", &["validate", "-"]);
+    assert!(code == Some(1) && said.contains("standard input:1:"), "{said}");
+}
+
+// 9. Validate, then die.
+
+#[test]
+fn what_new_and_export_write_validates_samples_and_runs() {
+    let folder = scratch();
+    let path = folder.path();
+    let said = succeed_in(path, &["new", "berries"]);
+    assert!(
+        said.contains("wrote berries.json") && said.contains("driftworld validate berries.json"),
+        "{said}"
+    );
+    // What it says to do is done.
+    let advised: Vec<Vec<&str>> = said
+        .lines()
+        .filter_map(|line| line.strip_prefix("  driftworld "))
+        .map(|line| line.split(' ').collect())
+        .collect();
+    assert_eq!(advised.len(), 6, "{said}");
+    for arguments in advised {
+        // Small enough for a test.
+        let small: Vec<&str> = arguments
+            .iter()
+            .map(|word| match *word {
+                "20" => "2",
+                "5" => "1",
+                "sarsa" => "random",
+                word => word,
+            })
+            .collect();
+        succeed_in(path, &small);
+    }
+    let again = fail_in(path, 1, &["new", "berries"]);
+    assert!(again.contains("--force"), "{again}");
+    succeed_in(path, &["export", "select_object", "--name", "mine"]);
+    succeed_in(path, &["validate", "mine.json"]);
+    assert!(fail_in(path, 1, &["export", "select_objects"]).contains("did you mean \"select_object\"?"));
+    fail_in(path, 1, &["new", "No name"]);
+}
+
+#[test]
+fn all_mistakes_are_reported_in_one_round() {
+    let folder = scratch();
+    let task = r#"{ "name": "t",
+        "parameters": { "light": { "role": "variant", "type": "number", "affects": ["O"], "range": [0.2, 4], "default": "bright" } },
+        "require": ["ligth < 3"],
+        "world": { "max_steps": "x", "environment_params": { "light_intensity": { "param": "lihgt" } } },
+        "groups": [{ "name": "g", "count": 1, "object": { "class": "bushh" }, "placement": { "box": { "low": [0, 0], "high": [1, 1] } } }],
+        "variants": { "a": { "extends": "c" } } }"#;
+    std::fs::write(folder.path().join("t.json"), task).expect("the folder is ours");
+    let said = fail_in(folder.path(), 1, &["validate", "t.json"]);
+    for place in [
+        "/parameters/light/default",
+        "/require/0",
+        "/world/max_steps",
+        "/world/environment_params/light_intensity",
+        "/groups/0/object/class",
+        "/variants/a/extends",
+    ] {
+        assert!(said.contains(place), "{place}: {said}");
+    }
+}
+
+#[test]
+fn an_unknown_class_is_told_the_nearest_known() {
+    let folder = scratch();
+    let world = |class: &str| format!(r#"{{ "objects": [{{ "class": "{class}", "coordinates": [3, 4] }}] }}"#);
+    for (class, near) in [("tre", "tree"), ("rok", "rock"), ("barrell", "barrel")] {
+        std::fs::write(folder.path().join("w.json"), world(class)).expect("the folder is ours");
+        let said = fail_in(folder.path(), 1, &["validate", "w.json"]);
+        assert!(said.contains(&format!("did you mean {near:?}?")), "{said}");
+    }
+}
+
+#[test]
+fn what_can_be_read_is_judged_beside_what_cannot() {
+    let folder = with_berries();
+    let done = output(&mut driftworld_in(
+        folder.path(),
+        &["validate", "missing.json", "bush.json"],
+    ));
+    let [shown, said] = [done.stdout, done.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+    assert!(shown.contains("bush.json: a valid task spec"), "{shown}");
+    assert!(
+        said.contains("missing.json: cannot be read") && said.contains("1 of 2 files refused"),
+        "{said}"
+    );
+}
+
+#[test]
+fn run_on_a_task_says_how_to_make_a_scenario() {
+    let folder = with_berries();
+    for task in ["bush.json", "find_objects", "find_objects#red"] {
+        let said = fail_in(folder.path(), 1, &["run", task]);
+        assert!(
+            said.contains(&format!("driftworld curriculum {task} -o scenario.json")),
+            "{said}"
+        );
+    }
+}
+
+// 10. Answers that help.
+
+#[test]
+fn a_byte_order_mark_a_negative_seed_and_three_numbers_are_answered() {
+    let folder = scratch();
+    std::fs::write(folder.path().join("bom.json"), format!("\u{feff}{BERRIES}")).expect("the folder is ours");
+    succeed_in(folder.path(), &["validate", "bom.json"]);
+    succeed_in(folder.path(), &["sample", "bom.json"]);
+    let seed = fail(2, &["sample", "find_objects", "--seed", "-1"]);
+    assert!(seed.contains("expected a whole number from 0 to"), "{seed}");
+    let (_, _, said) = fed(folder.path(), "step 1 2.5 0\n", &["console", "find_objects"]);
+    assert!(said.contains("write: step 1 1 2.5 0"), "{said}");
+}
+
+#[test]
+fn converting_a_task_warns_once_of_each_thing() {
+    let folder = scratch();
+    let done = output(&mut driftworld_in(
+        folder.path(),
+        &["convert", "find_objects", "--to", "l2explorer", "-o", "c.json"],
+    ));
+    let said = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert!(said.lines().count() <= 3, "{said}");
+}
+
+// 11. The order of what is named.
+
+#[test]
+fn the_variant_named_first_is_learned_first() {
+    let folder = scratch();
+    for names in [
+        ["red", "blue", "dusk"],
+        ["dusk", "red", "blue"],
+        ["blue", "dusk", "red"],
+    ] {
+        let named: Vec<String> = names.iter().map(|name| format!("find_objects#{name}")).collect();
+        let mut arguments = vec!["curriculum"];
+        arguments.extend(named.iter().map(String::as_str));
+        arguments.extend(["--worlds", "0", "-o", "s.json", "--json"]);
+        let shown = succeed_in(folder.path(), &arguments);
+        let found: serde_json::Value = serde_json::from_str(&shown).expect("it is JSON");
+        assert_eq!(found["variants"][0]["variant"], names[0], "{shown}");
+    }
+}
+
+#[test]
+fn a_probe_takes_the_variants_that_were_named_and_prints_what_made_ones_set() {
+    let folder = scratch();
+    let probe = ["--probe", "O", "--worlds", "0", "-o", "s.json"];
+    let named = ["curriculum", "find_objects#red", "blue", "dusk"];
+    let shown = succeed_in(folder.path(), &[&named[..], &probe].concat());
+    let declared = shown.lines().filter(|line| line.contains(" declared ")).count();
+    assert_eq!(declared, 3, "{shown}");
+    let made = [
+        "curriculum",
+        "find_objects#red",
+        "--step-distance",
+        "0.2",
+        "--steps",
+        "2",
+    ];
+    let shown = succeed_in(folder.path(), &[&made[..], &probe].concat());
+    assert_eq!(
+        shown
+            .lines()
+            .filter(|line| line.contains(" sets ") && line.contains(" = "))
+            .count(),
+        2,
+        "{shown}"
+    );
+}
+
+// 12. One spelling of a variant.
+
+#[test]
+fn a_variant_has_one_spelling_in_all_tables() {
+    let folder = with_berries();
+    let path = folder.path();
+    let all = ["bush.json#plain", "bush.json#l2-n3"];
+    let order = succeed_in(path, &["order", all[0], all[1]]);
+    let design = [
+        "curriculum",
+        all[0],
+        all[1],
+        "--learn",
+        "1",
+        "--eval-episodes",
+        "1",
+        "-o",
+        "s.json",
+    ];
+    let design = succeed_in(path, &design);
+    let run = succeed_in(path, &["run", "s.json", "--agent", "random", "-o", "log"]);
+    let metrics = succeed_in(path, &["metrics", "log"]);
+    let scales = succeed_in(path, &["scales", all[0], all[1], "--worlds", "2"]);
+    for shown in [order, design, run, metrics, scales] {
+        assert!(
+            shown.contains("berries#plain") && shown.contains("berries#l2-n3"),
+            "{shown}"
+        );
+        assert!(!shown.contains("bush.json#") && !shown.contains("berries_"), "{shown}");
+    }
+    // The log's own key is in the files alone.
+    let rows = succeed_in(path, &["logs", "aggregate", "log", "--format", "csv", "-o", "-"]);
+    assert!(rows.contains("berries_l2n3"), "{rows}");
+}
+
+#[test]
+fn a_matrix_of_a_task_file_fits_the_log_of_its_variants() {
+    let folder = with_berries();
+    let path = folder.path();
+    let design = [
+        "curriculum",
+        "bush.json#all",
+        "--learn",
+        "1",
+        "--eval-episodes",
+        "1",
+        "-o",
+        "s.json",
+    ];
+    succeed_in(path, &design);
+    succeed_in(path, &["run", "s.json", "--agent", "random", "-o", "log"]);
+    succeed_in(path, &["order", "bush.json", "--matrix", "m.csv"]);
+    let matrix = std::fs::read_to_string(path.join("m.csv")).expect("it was written");
+    assert!(matrix.contains("berries#plain"), "{matrix}");
+    succeed_in(path, &["transfer-report", "log", "--distances", "m.csv"]);
+}

@@ -1,0 +1,72 @@
+//! Tables at 80 and at 120 columns: every line fits and no word is broken. The pictures of the tables are snapshots.
+
+use crate::terminal::{driftworld_in, output, scratch, succeed_in};
+
+/// What a command prints for people, at a width.
+fn at(columns: usize, folder: &std::path::Path, arguments: &str) -> String {
+    let arguments: Vec<&str> = arguments.split(' ').collect();
+    let mut command = driftworld_in(folder, &arguments);
+    let done = output(command.env("COLUMNS", columns.to_string()));
+    let error = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert_eq!(done.status.code(), Some(0), "{arguments:?}: {error}");
+    String::from_utf8(done.stdout).expect("the command prints UTF-8")
+}
+
+/// A lifetime that is soon lived, in a folder: `scenario.json`, `log`.
+fn lifetime(folder: &std::path::Path) {
+    let task = include_str!("../../examples/tasks/blue_red_green.json");
+    std::fs::write(folder.join("mine.json"), task.replace("\"blue_red_green\"", "\"mine\""))
+        .expect("the folder is ours");
+    let design = "curriculum mine.json --learn 2 --eval-episodes 2 -o scenario.json";
+    succeed_in(folder, &design.split(' ').collect::<Vec<_>>());
+    let run = "run scenario.json --agent random -o log";
+    succeed_in(folder, &run.split(' ').collect::<Vec<_>>());
+}
+
+/// The commands whose tables are looked at, each with the name of its snapshot.
+const TABLES: [(&str, &str); 11] = [
+    ("help", "--help"),
+    ("tasks", "tasks"),
+    ("tasks_show", "tasks show find_objects"),
+    ("tasks_show_one", "tasks show find_objects#turned"),
+    ("distance", "distance find_objects#blue dusk --explain"),
+    ("order", "order get_to_goal#plain soft dusk far"),
+    ("order_compare", "order get_to_goal#plain soft dusk far --compare"),
+    (
+        "curriculum",
+        "curriculum mine.json --learn 2 --eval-episodes 2 -o again.json",
+    ),
+    ("run", "run scenario.json --agent random -o log --resume"),
+    ("metrics", "metrics log"),
+    ("validate", "validate mine.json --worlds 2"),
+];
+
+#[test]
+fn tables_fit_80_and_120_columns_and_break_no_word() {
+    let folder = scratch();
+    lifetime(folder.path());
+    for (name, arguments) in TABLES {
+        let words = |text: &str| -> Vec<String> { text.split_whitespace().map(str::to_owned).collect() };
+        let whole = words(&at(10_000, folder.path(), arguments));
+        for columns in [80, 120] {
+            let shown = at(columns, folder.path(), arguments);
+            for line in shown.lines() {
+                assert!(line.chars().count() <= columns, "{arguments} at {columns}: {line}");
+            }
+            // A cell that is broken behind a comma is two words where it was one.
+            let known = |word: &str| {
+                whole.iter().any(|one| {
+                    one == word
+                        || one.contains(&format!("{word},"))
+                        || one.ends_with(&format!(",{word}"))
+                        || one.contains(&format!(",{word}"))
+                        || word.ends_with(',') && one.contains(word)
+                })
+            };
+            for word in words(&shown) {
+                assert!(known(&word), "{arguments} at {columns}: {word:?} is no whole word");
+            }
+            insta::assert_snapshot!(format!("{name}_{columns}"), shown);
+        }
+    }
+}
