@@ -61,7 +61,8 @@ impl Classes {
             format!("the unknown class {class:?}"),
             format!("one of {listed}{rest}"),
         );
-        let near = nearest(class, &self.names).map(|near| format!("did you mean {near:?}?"));
+        let near = nearest(class, &self.names).or_else(|| self.called_otherwise(class));
+        let near = near.map(|near| format!("did you mean {near:?}?"));
         Some(match (near, &self.advice) {
             (Some(near), Some(advice)) => problem.advise(format!("{near} Otherwise {advice}")),
             (Some(near), None) => problem.advise(near),
@@ -71,6 +72,56 @@ impl Classes {
     }
 }
 
+impl Classes {
+    /// The class that a word of everyday language means, where there is one.
+    fn called_otherwise(&self, word: &str) -> Option<String> {
+        let near = nearest(word, OTHER_WORDS.map(|(other, _)| other))?;
+        let meant = OTHER_WORDS.iter().find(|(other, _)| *other == near)?.1;
+        self.has(meant).then(|| meant.to_owned())
+    }
+}
+
+/// What things are called where they are not called by their class, each with the class.
+const OTHER_WORDS: [(&str, &str); 22] = [
+    ("ball", "icosphere"),
+    ("barrier", "roadblock"),
+    ("bookcase", "shelf"),
+    ("boulder", "rock"),
+    ("box", "cube"),
+    ("bush", "shrub"),
+    ("castle", "castleruin"),
+    ("cylinder", "geometric"),
+    ("flower", "nature"),
+    ("gate", "door"),
+    ("house", "building"),
+    ("lever", "switch"),
+    ("plant", "nature"),
+    ("ruin", "castleruin"),
+    ("sack", "bag"),
+    ("seat", "chair"),
+    ("sign", "streetsign"),
+    ("sphere", "icosphere"),
+    ("stone", "rock"),
+    ("toadstool", "mushroom"),
+    ("vase", "pot"),
+    ("vehicle", "car"),
+];
+
 fn plain(class: &str) -> String {
     class.trim().to_lowercase()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_word_of_everyday_language_is_told_the_class_that_it_means() {
+        let classes = Classes::new(["shrub", "rock"]);
+        let near = |class: &str| classes.problem("/", class).and_then(|problem| problem.advice);
+        assert_eq!(near("bushh").as_deref(), Some("did you mean \"shrub\"?"));
+        assert_eq!(near("rok").as_deref(), Some("did you mean \"rock\"?"));
+        assert_eq!(near("house"), None, "no such class is known here");
+        assert_eq!(near("zeppelin"), None);
+    }
 }

@@ -49,6 +49,9 @@ impl Tasks {
     }
 }
 
+/// The most variants of a task that the list of tasks names.
+const LISTED: usize = 6;
+
 fn list(as_json: bool) -> Result<(), Failure> {
     let tasks = tasks::built_in_names()
         .into_iter()
@@ -62,7 +65,11 @@ fn list(as_json: bool) -> Result<(), Failure> {
         return output::json(&list);
     }
     let rows = tasks.iter().map(|task| {
-        let variants = task.variant_names().join(", ");
+        let names = task.variant_names();
+        let variants = match names.get(LISTED..) {
+            Some(more) if !more.is_empty() => format!("{} and {} more", names[..LISTED].join(", "), more.len()),
+            _ => names.join(", "),
+        };
         [task.name().to_owned(), task.description().to_owned(), variants]
     });
     output::line(table(["task", "what it is", "variants"], rows.collect(), &[]))?;

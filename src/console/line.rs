@@ -199,7 +199,7 @@ mod tests {
             },
         );
         refuse("step 0", "1 to 100000");
-        refuse("step 1 2 3", "step: expected [N]");
+        refuse("step 1 2 3", "write: step 1 1 2 3");
         refuse("step 1 2 nan 3", "found \"nan\", expected a number");
         refuse("action 2 0 1", "action: expected [-c N] -a");
     }

@@ -5,7 +5,7 @@ use std::process::Stdio;
 use crate::terminal::{driftworld_in, root, scratch, succeed, succeed_in};
 
 /// Every subcommand, as it prints something: results, messages, or both.
-const COMMANDS: [&str; 37] = [
+const COMMANDS: [&str; 39] = [
     "--help",
     "run --help",
     "nonsense",
@@ -38,6 +38,8 @@ const COMMANDS: [&str; 37] = [
     "transfer-report log --distances matrix.json",
     "transfer-report nowhere --distances matrix.json",
     "schema task",
+    "new closed_pipe --force",
+    "export find_objects -o -",
     "unity --list",
     "completions zsh",
     "bench nothing",

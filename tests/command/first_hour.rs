@@ -476,7 +476,13 @@ fn all_mistakes_are_reported_in_one_round() {
 fn an_unknown_class_is_told_the_nearest_known() {
     let folder = scratch();
     let world = |class: &str| format!(r#"{{ "objects": [{{ "class": "{class}", "coordinates": [3, 4] }}] }}"#);
-    for (class, near) in [("tre", "tree"), ("rok", "rock"), ("barrell", "barrel")] {
+    for (class, near) in [
+        ("tre", "tree"),
+        ("rok", "rock"),
+        ("barrell", "barrel"),
+        ("bushh", "shrub"),
+        ("house", "building"),
+    ] {
         std::fs::write(folder.path().join("w.json"), world(class)).expect("the folder is ours");
         let said = fail_in(folder.path(), 1, &["validate", "w.json"]);
         assert!(said.contains(&format!("did you mean {near:?}?")), "{said}");

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use crate::env::{Asset, Catalogue, ColliderShape, LibraryModel, classes};
 use crate::spec::Model;
 use clap::Args;
+use serde_json::{Value, json};
 
 use super::super::{Failure, output};
 use crate::table::table;
@@ -17,10 +18,16 @@ pub(crate) struct List {
     /// Libraries to list [default: the built-in classes].
     #[arg(value_name = "LIBRARY")]
     libraries: Vec<PathBuf>,
+    /// Print the list as JSON.
+    #[arg(long)]
+    json: bool,
 }
 
 impl List {
     pub(crate) fn run(self) -> Result<(), Failure> {
+        if self.json {
+            return output::json(&self.described()?);
+        }
         if self.libraries.is_empty() {
             return output::line(built_in());
         }
@@ -29,6 +36,30 @@ impl List {
             output::line(models(library.models()))?;
         }
         Ok(())
+    }
+}
+
+impl List {
+    /// What the tables say, for programs.
+    fn described(&self) -> Result<Vec<Value>, Failure> {
+        if self.libraries.is_empty() {
+            let catalogue = Catalogue::default();
+            let class =
+                |(class, models)| json!({ "class": class, "number": catalogue.class_number(class), "models": models });
+            return Ok(classes().map(class).collect());
+        }
+        let mut found = Vec::new();
+        for path in &self.libraries {
+            for model in crate::libraries::library(path)?.models() {
+                let asset = model.asset();
+                let triangles: Vec<usize> = asset.levels().map(|(triangles, _)| triangles).collect();
+                found.push(json!({
+                    "library": path, "class": model.class(), "model": model.name(), "triangles": triangles,
+                    "height": asset.height, "width": 2.0 * asset.radius, "body": name(&asset.collider),
+                }));
+            }
+        }
+        Ok(found)
     }
 }
 
