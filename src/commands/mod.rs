@@ -72,8 +72,8 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> u8 {
         Ok(command) => {
             notes.iter().for_each(|note| output::note(format!("note: {note}")));
             let done = interrupt::watch().and_then(|_watch| command.run());
-            let told = output::tell_what_was_written();
-            done.and(told).map_or_else(|failure| report(&failure), |()| 0)
+            let reported = output::tell_what_was_written();
+            done.and(reported).map_or_else(|failure| report(&failure), |()| 0)
         }
         Err(help) => {
             // Where nobody reads, there is nobody to tell of it.

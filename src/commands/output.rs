@@ -21,7 +21,7 @@ use crate::wrap::{columns_of_stderr, columns_of_stdout, wrap_lines};
 /// Whether data for a program went to standard output: then nothing else does.
 static IS_DATA: AtomicBool = AtomicBool::new(false);
 
-/// What was written, each with what it is, and was not told yet.
+/// What was written, each with what it is, and was not reported yet.
 static WRITTEN: Mutex<Vec<(PathBuf, String)>> = Mutex::new(Vec::new());
 
 fn written() -> MutexGuard<'static, Vec<(PathBuf, String)>> {
@@ -31,7 +31,7 @@ fn written() -> MutexGuard<'static, Vec<(PathBuf, String)>> {
 /// Remembers that a file or a folder was written; `what` says more in a few words, or nothing. At the end of the command a line
 /// `wrote FILE` says so.
 pub(crate) fn wrote(path: &Path, what: impl Into<String>) {
-    // Whoever is told by standard output has seen it.
+    // Whoever reads standard output has seen it.
     if !is_stdout(path) {
         written().push((path.to_owned(), what.into()));
     }

@@ -265,12 +265,12 @@ fn pattern_of<'a>(spec: &'a VariantSpec, axes: &[Axis], pointer: &str) -> Result
         rest = behind;
     }
     pieces.push(Piece::Text(rest));
-    let is_told = |axis: usize| {
+    let is_named = |axis: usize| {
         pieces
             .iter()
-            .any(|piece| matches!(piece, Piece::Value(told) if *told == axis))
+            .any(|piece| matches!(piece, Piece::Value(named) if *named == axis))
     };
-    match (0..axes.len()).find(|axis| axes[*axis].1.len() > 1 && !is_told(*axis)) {
+    match (0..axes.len()).find(|axis| axes[*axis].1.len() > 1 && !is_named(*axis)) {
         None => Ok(Some(pieces)),
         Some(axis) => Err(refused(
             format!("{name:?}"),
