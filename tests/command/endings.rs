@@ -82,7 +82,8 @@ fn an_episode_is_drawn_frame_by_frame() {
     let size = |more: &[&str]| {
         let said = succeed(&[&episode[..], &["--view", "episode"], more].concat());
         assert!(path.exists(), "{said}");
-        said.rsplit(": ").next().expect("it says the size").trim().to_owned()
+        let size = said.trim().trim_end_matches(')').rsplit(" (").next();
+        size.expect("it says the size").to_owned()
     };
     // Rows of two frames, each of two pictures and a head.
     assert_eq!(size(&[]), "316 × 500 pixels");

@@ -375,7 +375,7 @@ fn shards_put_together_are_what_one_run_gives_and_tables_hold_the_same_worlds() 
     for name in tables {
         let path = folder.path().join(name);
         let said = sample(&["-o", text(&path)]);
-        assert!(said.starts_with("100 worlds in "), "{said}");
+        assert!(said.starts_with("wrote ") && said.ends_with("(100 worlds)\n"), "{said}");
         let first = std::fs::read(&path).expect("the table was written");
         sample(&["-o", text(&path)]);
         assert_eq!(

@@ -135,7 +135,7 @@ fn rows_are_written_as_text_under_l2loggers_columns() {
     let base = scratch();
     write_log(&base.path().join("run"));
     let (out, _) = run(base.path(), 0, &["logs", "aggregate", "run", "-o", "table.csv"]);
-    assert_eq!(out, "2 rows of 1 log in table.csv\n");
+    assert_eq!(out, "wrote table.csv (2 rows of 1 log)\n");
     let text = fs::read_to_string(base.path().join("table.csv")).expect("it was written");
     let expected = format!(
         "{COLUMNS}\n0,0,0,w,train,wake,a_b,\"{{\"\"size\"\": 0.1}}\",complete,20200101T000001.250000,\"a, b\",0.1\n\

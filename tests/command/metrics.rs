@@ -137,7 +137,7 @@ fn experts_are_stored_replaced_and_found() {
     };
     assert_eq!(
         store("w", &["one"]),
-        "experts/find_red/one: stored as an expert of find_red\n"
+        "wrote experts/find_red/one (an expert of find_red)\n"
     );
     assert_eq!(relative(), Some(1));
     store("a", &["two"]);

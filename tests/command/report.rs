@@ -34,8 +34,8 @@ fn a_lifetime_becomes_a_page_and_figures_with_the_distances_of_its_scenario() {
         folder.path(),
         &["report", "log", "-o", "out/page.html", "--plots", "figures"],
     );
-    assert!(said.starts_with("out/page.html: 1 lifetime, "), "{said}");
-    assert!(said.contains("figures: 8 figures, "), "{said}");
+    assert!(said.starts_with("wrote out/page.html (1 lifetime, "), "{said}");
+    assert!(said.contains("wrote figures (8 figures, "), "{said}");
     let page = read(folder.path().join("out/page.html"));
     assert!(
         page.contains("as measured by parameters from the scenario in the log"),
@@ -159,7 +159,7 @@ fn several_lifetimes_have_intervals_and_steps_are_counted_where_asked_for() {
         "timeline",
     ];
     let said = succeed_in(folder.path(), &arguments);
-    assert!(said.starts_with("report.html: 2 lifetimes, "), "{said}");
+    assert!(said.starts_with("wrote report.html (2 lifetimes, "), "{said}");
     let page = read(folder.path().join("report.html"));
     for part in [
         "<h1>All of it</h1>",

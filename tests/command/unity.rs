@@ -60,7 +60,7 @@ fn two_lines_for_eval_lead_to_a_program_that_starts() {
     assert_eq!(lines.lines().count(), 2, "{lines}");
     assert!(lines.ends_with("\nexport L2EXPLORER_WORKER_ID=0\n"), "{lines}");
     assert!(
-        notes.contains("l2explorer.x86_64 is a copy of driftworld-unity"),
+        notes.contains("l2explorer.x86_64 (a copy of driftworld-unity"),
         "{notes}"
     );
     assert!(!notes.contains("warning"), "{notes}");
