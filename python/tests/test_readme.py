@@ -1,7 +1,8 @@
-"""Every block of Python in README.md and in the guide runs as it stands. Blocks of other languages are run elsewhere.
+"""Every block of Python in README.md and on the pages of `docs/` runs as it stands. Other blocks are run by `tests/pages/`.
 
 The blocks of a page run one after the other in one interpreter, as a reader would type them, in an empty folder. One that begins
-with ```` ```python learners ```` needs packages of gigabytes and runs with those.
+with ```` ```python learners ```` needs packages of gigabytes and runs with those, after the blocks above it; one with
+```` ```python by-hand ```` needs a client of ML-Agents, which the stage `unity` has.
 """
 
 from __future__ import annotations
@@ -16,7 +17,11 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 BLOCK = re.compile(r"^```python( learners)?\n(.*?)^```", re.DOTALL | re.MULTILINE)
-PAGES = [ROOT / "docs" / "python.md", ROOT / "README.md"]
+PAGES = [
+    page
+    for page in [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+    if BLOCK.search(page.read_text(encoding="utf-8"))
+]
 
 
 def run(program: str, folder: Path) -> None:
@@ -32,18 +37,27 @@ def run(program: str, folder: Path) -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def name(page: Path) -> str:
+    return page.relative_to(ROOT).as_posix()
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name)
 def test_the_blocks_of_a_page_run(page: Path, tmp_path: Path) -> None:
     blocks = [text for large, text in BLOCK.findall(page.read_text(encoding="utf-8")) if not large]
-    if page.name == "python.md":
-        assert len(blocks) >= 7
-    if blocks:
-        run("\n".join(blocks), tmp_path)
+    assert blocks
+    run("\n".join(blocks), tmp_path)
+
+
+def test_pages_with_python_are_found() -> None:
+    assert {"README.md", "docs/python.md", "docs/how-to/python.md"} <= {name(page) for page in PAGES}
 
 
 @pytest.mark.learners
-def test_the_blocks_for_learners_run(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "page", [page for page in PAGES if "```python learners" in page.read_text(encoding="utf-8")], ids=name
+)
+def test_the_blocks_for_learners_run(page: Path, tmp_path: Path) -> None:
     pytest.importorskip("stable_baselines3", reason="the guide trains with it")
-    blocks = [text for large, text in BLOCK.findall(PAGES[0].read_text(encoding="utf-8")) if large]
-    assert len(blocks) >= 2
+    blocks = [text for large, text in BLOCK.findall(page.read_text(encoding="utf-8")) if large]
+    assert blocks
     run("\n".join(blocks), tmp_path)

@@ -2,18 +2,28 @@
 //! link of it. It has a build folder of its own, for it asks other features of the crates that it shares with us.
 
 use std::path::PathBuf;
+use std::process::Command;
 
 use crate::error::XtaskError;
 use crate::process::{cargo, run};
+use crate::virtual_environment::interpreter;
 use crate::workspace::Workspace;
 
-/// Formats, tests and runs the builder; returns where the book is.
+/// Compares the pages of the Python API with their sources, where there is a Python; then formats, tests and runs the
+/// builder. Returns where the book is.
 pub(crate) fn build(workspace: &Workspace) -> Result<String, XtaskError> {
     let builder = |arguments: &[&str]| {
         let mut command = cargo(workspace, arguments);
         command.env("CARGO_TARGET_DIR", workspace.target.join("book-builder"));
         command
     };
+    if let Some(python) = interpreter() {
+        let mut check = Command::new(python);
+        check
+            .args(["python/api_pages.py", "--check"])
+            .current_dir(&workspace.root);
+        run(check)?;
+    }
     let manifest = ["--manifest-path", "book/Cargo.toml"];
     let locked = [&manifest[..], &["--quiet", "--locked"]].concat();
     run(builder(&[&["fmt", "--check"], &manifest[..]].concat()))?;

@@ -172,9 +172,9 @@ class Drift:
         from_: Where it begins.
         to: Where it leads: a variant of the same task, unless whole variants switch.
         schedule: ``"linear"``, ``"cosine"``, ``{"steps": n}`` or ``{"sawtooth": n}``, with n from 1 on.
-        switch: When values with nothing in between change: ``"at_point"``, or by chance, more likely as the drift goes on,
-            with ``"mixture"``. With ``"task"`` the whole variant is one of the two by chance; they may be of two tasks.
-        seed: What chance draws from.
+        switch: When values with nothing in between change: ``"at_point"``, or at random, more likely as the drift goes on,
+            with ``"mixture"``. With ``"task"`` the whole variant is one of the two at random; they may be of two tasks.
+        seed: The seed of what is drawn at random.
 
     Raises:
         GeneratorError: If the variants are of different tasks.

@@ -56,7 +56,7 @@ class Experience:
         seed: The seed of its world; ``None`` for a world from a file.
         index: The number of its world under the seed.
         progress: How far on its way a drift is, in 0..=1; 0 where nothing drifts.
-        chance: The number that the agent's own chance should be drawn from.
+        chance: The seed that the agent's own random numbers should be drawn from.
         label: Where the scenario tells the task: ``number``, ``of``, ``name``, and ``observed``, whether in observations.
     """
 
@@ -78,7 +78,7 @@ class Experience:
         return self.variant.rpartition("#")[0]
 
     def world(self) -> dict[str, Any]:
-        """Its world, as it is lived: with the scenario's limit of steps laid over it."""
+        """Its world, as it is run: with the scenario's limit of steps laid over it."""
         world: dict[str, Any] = json.loads(self._plan.world(self.number).text())
         return world
 
@@ -323,7 +323,7 @@ class Curriculum(Sequence[Block]):
 
     @property
     def blocks(self) -> list[Block]:
-        """The blocks, in the order in which they are lived."""
+        """The blocks, in the order in which they are run."""
         return list(self._blocks)
 
     @property
@@ -363,7 +363,7 @@ class Curriculum(Sequence[Block]):
         return self._plan.try_worlds(count)
 
     def environment(self, **options: Any) -> gymnasium.Env[Any, Any]:
-        """The environment that :meth:`run` lives it in, for agents that are made for its spaces.
+        """The environment that :meth:`run` uses, for agents that are made for its spaces.
 
         Args:
             options: As for :class:`driftworld.DriftworldEnv`, without what the curriculum says itself.
@@ -383,11 +383,11 @@ class Curriculum(Sequence[Block]):
         watch: Callable[[Experience, float], Any] | None = None,
         **options: Any,
     ) -> Summary:
-        """Lives the curriculum with an agent, and logs every experience as ``driftworld run`` does.
+        """Runs an agent through the curriculum, and logs every experience as ``driftworld run`` does.
 
         Interrupted in whatever way, it goes on with the same call at the first experience that is not in the log. An agent that
         has ``save`` and ``load`` is saved after each learning block, into a folder beside the log, ``LOG.agent``, and loaded when the
-        log is taken up; what it learned since then it lives again, unlogged. Without them, hand over one that has learned
+        log is taken up; what it learned since then it runs through again, unlogged. Without them, hand over one that has learned
         what is in the log.
 
         Args:
@@ -397,12 +397,12 @@ class Curriculum(Sequence[Block]):
             skip_undrawable: Leave out experiences whose worlds cannot be drawn: each has a row without numbers in the log, and is
                 counted in the summary. If not, the run stops there; the same call with this goes on.
             check_frozen: Run the first 4 evaluations of each block once more at its end, unlogged, and refuse an agent that does not
-                earn the same in them: evaluations change it, or its chance is not drawn from the seed of the experience.
+                earn the same in them: evaluations change it, or its random numbers are not drawn from the seed of the experience.
             seed: What the agent begins experiences with follows from it, too: another seed is a repeat in the same worlds. 0 is the
                 run that the curriculum has of itself.
             paired_chance: Give ``begin`` the same number in every evaluation of a world, so that an agent that has not changed
                 earns the same in it. An agent can know a world by that number; by default it is another one in every block.
-            watch: Told each experience and its reward as soon as it is logged, NaN for one that is left out; ``False`` from it ends
+            watch: Called with each experience and its reward as soon as it is logged, NaN for one that is left out; ``False`` from it ends
                 the run there.
             options: Options of the environment, as for :class:`driftworld.DriftworldEnv`: ``modalities``, ``size``, ``actions`` and
                 so on. A log is taken up only with the same ones. Infos name neither variant nor world, and have no ``events``,
@@ -440,7 +440,7 @@ class Curriculum(Sequence[Block]):
         watch: Callable[[Experience, float], Any] | None = None,
         **options: Any,
     ) -> Summary:
-        """Lives the curriculum as :meth:`run` does, many experiences of a block at the same time.
+        """Runs through the curriculum as :meth:`run` does, many experiences of a block at the same time.
 
         Each environment takes the block's next experience when its last one has ended; a block begins when all of the one before are
         over. The log has the same columns, in the order of the curriculum, and is of the same worlds. An agent that does in each

@@ -80,4 +80,4 @@ class MetricsError(DriftworldError):
 
 
 class CurriculumError(DriftworldError):
-    """A curriculum cannot be designed or lived."""
+    """A curriculum cannot be designed or run."""

@@ -62,13 +62,13 @@ class Transition:
 
 @runtime_checkable
 class Agent(Protocol):
-    """Who lives a curriculum.
+    """Who runs through a curriculum.
 
     Beside these three methods an agent may have
 
     - ``name``, what logs call it; its class's name if not;
     - ``begin(label, seed)``, called before each experience with the name of its variant where the scenario tells it, else
-      ``None``, and the number that its chance should be drawn from: another one in every block, so that no world is known by it,
+      ``None``, and the seed of its random numbers: another one in every block, so that no world is known by it,
       unless ``paired_chance`` is asked for;
     - ``policy``, how it chooses its actions in evaluations, such as ``"sampled"`` or ``"greedy"``; it is noted in the log;
     - ``save(path)`` and ``load(path)``, called with a path that nothing is at, respectively with the last that was saved at: after
@@ -98,11 +98,11 @@ class Summary:
     """What a lifetime came to.
 
     Attributes:
-        experiences: How many were lived, those of earlier runs included.
+        experiences: How many were run, those of earlier runs included.
         skipped: How many were left out because their worlds cannot be drawn.
         left_out: The first 100 of those: dictionaries with ``experience``, ``block``, ``variant``, ``progress`` and ``reason``.
-        steps: Steps in all that were lived.
-        finished: Whether the whole curriculum was lived.
+        steps: Steps of all that were run.
+        finished: Whether the whole curriculum was run.
         ended_by: How many were ended by what, by the words of the log: ``touch``, ``zone``, ``steps``, …; ``unknown`` where the log
             does not say.
         regimes: One dictionary for each regime that was begun: ``block``, ``kind``, ``variant``, ``experiences``, ``skipped``,
@@ -238,7 +238,7 @@ class Rollout:
         experience: Finds an experience by its number.
         options: Options of the environment.
         paired_chance: Give every evaluation of a world the same number in all blocks.
-        watch: Told each experience and what it paid, as soon as it is logged; may say ``False`` to end there.
+        watch: Called with each experience and what it paid, as soon as it is logged; may say ``False`` to end there.
         save: Saves the agent after so many experiences.
     """
 

@@ -46,7 +46,7 @@ class VectorTransition:
 
 @runtime_checkable
 class VectorAgent(Protocol):
-    """Who lives a curriculum in many environments at the same time (:meth:`driftworld.Curriculum.run_vector`).
+    """Who runs through a curriculum in many environments at the same time (:meth:`driftworld.Curriculum.run_vector`).
 
     It may have ``name``, ``policy``, ``save`` and ``load`` as :class:`driftworld.Agent` has them, and ``begin(env, label, seed)``, called
     before each experience with the number of its environment, and what ``Agent.begin`` gets.
@@ -76,7 +76,7 @@ class VectorRollout(Rollout):
         experience: Finds an experience by its number.
         options: Options of the environments.
         paired_chance: Give every evaluation of a world the same number in all blocks.
-        watch: Told each experience and what it paid, as soon as it is logged; may say ``False`` to end there.
+        watch: Called with each experience and what it paid, as soon as it is logged; may say ``False`` to end there.
         save: Saves the agent after so many experiences.
     """
 

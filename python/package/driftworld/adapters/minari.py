@@ -44,7 +44,7 @@ def collect(
     code_permalink: str | None = None,
     description: str | None = None,
 ) -> Any:
-    """Lives episodes and writes each down as soon as it is over, so that memory holds one at a time.
+    """Runs episodes and writes each down as soon as it is over, so that memory holds one at a time.
 
     Images are kept as they are (Minari's own default, JPEG, loses a little).
 

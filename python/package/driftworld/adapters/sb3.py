@@ -61,7 +61,7 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
     """The native vector environment behind Stable-Baselines3's interface.
 
     An episode's end is followed by the next episode's first observation, as Stable-Baselines3 expects; ``info`` then says
-    ``"terminal_observation"`` and ``"TimeLimit.truncated"``, and the rest of it is what the step itself told. ``set_options`` takes what
+    ``"terminal_observation"`` and ``"TimeLimit.truncated"``, and the rest of it is what the step itself returned. ``set_options`` takes what
     ``reset(options=…)`` of a single environment takes, for all or one by one, such as ``[{"variant": "red"}, {"variant": "blue"}]``.
 
     Args:

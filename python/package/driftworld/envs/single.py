@@ -44,7 +44,7 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         supersampling: Points per pixel along each side, 1 to 4; more is smoother and slower.
         renderer: ``"cpu"``, ``"gpu"``, or ``"auto"`` for a graphics card if there is one.
         drift: The way to another variant, such as ``{"to": "dusk", "episodes": 500, "schedule": "cosine"}``.
-        task_label: Whether the agent is told its variant: ``"none"``, in ``"info"``, or as a part of ``"obs"``, one-hot.
+        task_label: Whether the agent gets the label of its variant: ``"none"``, in ``"info"``, or as a part of ``"obs"``, one-hot.
         info: ``"agent"``: infos name task and variant only where ``task_label`` tells the agent. ``"full"``: always, for records.
         assets: Paths of asset libraries (``driftworld assets pack``).
         render_mode: ``"rgb_array"``, ``"human"`` or ``None``.
