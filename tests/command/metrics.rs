@@ -109,7 +109,8 @@ fn the_references_example_gives_its_files() {
         .to_string();
     let mut again = vec!["metrics", "-c", &settings, "--ste"];
     again.extend(experts.iter().map(String::as_str));
-    assert_eq!(succeed_in(folder.path(), &again), shown);
+    // Behind them are the files that were written.
+    assert!(shown.starts_with(&succeed_in(folder.path(), &again)), "{shown}");
 }
 
 #[test]
