@@ -1,7 +1,10 @@
 //! An episode as a few frames: which steps are shown, what is said of them, and their pictures. How rows of pictures
 //! become a sheet is `report`'s.
 
-use driftworld_env::{Agent, Effect, EndedBy, Environment, Event, MAX_EXPERT_STEPS, Step, top_down_with_way};
+use driftworld_env::{
+    Agent, Catalogue, Effect, EndedBy, Environment, Event, MAX_EXPERT_STEPS, Recorder, Recording, Renderer, Replay,
+    Step, top_down_with_way,
+};
 use driftworld_report::picture::{Picture, SheetRow};
 use driftworld_spec::{Stimulus, World};
 
@@ -9,55 +12,72 @@ use crate::Failure;
 
 /// What one step did, in words, and how much it matters: 0 for a step on the way.
 #[derive(Clone, Debug, Default, PartialEq)]
-struct Deed {
-    words: Vec<String>,
+pub(crate) struct Deed {
+    pub(crate) words: Vec<String>,
     weight: u8,
 }
 
-/// An agent's episode in a world, as rows of a sheet: what the agent sees, and the map with the way since the row
-/// before. Where something was done, it is what the agent saw when it did it, and the map after that.
+/// An agent's episode in a world, to its end; one without an end is cut off.
+pub(crate) fn recorded(
+    world: &World,
+    catalogue: &Catalogue,
+    agent: &mut dyn Agent,
+    seed: u64,
+) -> Result<Recording, Failure> {
+    let mut environment = Environment::with_catalogue(world.clone(), catalogue.clone());
+    let mut recorder = Recorder::default();
+    recorder.begin(world.clone());
+    agent.begin(seed);
+    let mut ended_by = None;
+    while !environment.ended() && recorder.num_steps() < MAX_EXPERT_STEPS {
+        let action = agent.act(&environment);
+        ended_by = environment.step(action)?.ended_by;
+        recorder.step(action);
+    }
+    Ok(recorder.recording(&environment, ended_by))
+}
+
+/// A recorded episode as rows of a sheet: what the agent sees, and the map with the way since the row before. Where something was done,
+/// it is what the agent saw when it did it, and the map after that.
 ///
 /// The start and the end are among the rows, and of what happened as much as `most` rows have room for; where little
 /// happened, steps on the way.
 pub(crate) fn rows(
-    environment: &mut Environment,
-    world: &World,
-    agent: &mut dyn Agent,
+    recording: &Recording,
+    catalogue: &Catalogue,
+    renderer: Renderer,
     size: u32,
     most: usize,
 ) -> Result<Vec<SheetRow>, Failure> {
+    let mut replay = Replay::new(recording, catalogue);
+    replay.environment().set_renderer(renderer);
     let mut deeds = vec![Deed::default()];
-    environment.reset(world.clone());
-    agent.begin(0);
     let mut last = None;
-    while !environment.ended() && (deeds.len() as u32) <= MAX_EXPERT_STEPS {
-        let action = agent.act(environment);
-        let step = environment.step(action)?;
-        deeds.push(deed(world, &step));
+    while let Some(step) = replay.step()? {
+        deeds.push(deed(replay.environment().world(), &step));
         last = Some(step);
     }
     // Once more, to the same bits, for the pictures of the steps that are shown.
-    environment.reset(world.clone());
-    agent.begin(0);
-    let (mut rows, mut way, mut taken) = (Vec::new(), vec![environment.agent().position], 0);
+    replay.restart();
+    let (mut rows, mut way, mut taken) = (Vec::new(), vec![replay.environment().agent().position], 0);
     for number in chosen(&deeds, most) {
         let mut seen = None;
         while taken < number {
             if taken + 1 == number && deeds[number].weight > 0 {
-                seen = Some(seen_by(environment, size)?);
+                seen = Some(seen_by(replay.environment(), size)?);
             }
-            let action = agent.act(environment);
-            environment.step(action)?;
-            way.push(environment.agent().position);
+            replay.step()?;
+            way.push(replay.environment().agent().position);
             taken += 1;
         }
+        let environment = replay.environment();
         let end = last.as_ref().filter(|_| number + 1 == deeds.len());
         rows.push(SheetRow {
             title: title(number, &deeds[number]),
             words: words(environment, end),
             pictures: vec![
-                seen.map_or_else(|| seen_by(environment, size), Ok)?,
-                map_of(environment, size, &way),
+                seen.map_or_else(|| seen_by(environment, size), Ok)?.into(),
+                map_of(environment, size, &way).into(),
             ],
         });
         way.drain(..way.len() - 1);
@@ -68,6 +88,9 @@ pub(crate) fn rows(
 /// Which steps are shown: the first, the last, those that matter most, then the middles of the longest ways between.
 fn chosen(deeds: &[Deed], most: usize) -> Vec<usize> {
     let last = deeds.len() - 1;
+    if last == 0 {
+        return vec![0];
+    }
     let mut shown = vec![0, last];
     let mut done: Vec<usize> = (1..last).filter(|number| deeds[*number].weight > 0).collect();
     done.sort_by_key(|number| std::cmp::Reverse(deeds[*number].weight));
@@ -87,7 +110,8 @@ fn chosen(deeds: &[Deed], most: usize) -> Vec<usize> {
     shown
 }
 
-fn deed(world: &World, step: &Step) -> Deed {
+/// What a step did.
+pub(crate) fn deed(world: &World, step: &Step) -> Deed {
     let mut deed = Deed::default();
     for event in &step.events {
         let own = match event.effect {
@@ -138,13 +162,13 @@ fn title(step: usize, deed: &Deed) -> String {
 }
 
 /// A number with one decimal and its sign.
-fn number(value: f64, plus: &str) -> String {
+pub(crate) fn number(value: f64, plus: &str) -> String {
     let sign = if value < 0.0 { "−" } else { plus };
     format!("{sign}{:.1}", value.abs())
 }
 
 /// The time, the return, what is carried, and why the episode ended.
-fn words(environment: &Environment, end: Option<&Step>) -> String {
+pub(crate) fn words(environment: &Environment, end: Option<&Step>) -> String {
     let mut parts = vec![
         format!("{:.1} s", environment.seconds()),
         format!("return {}", number(environment.episode_return(), "")),
@@ -179,14 +203,14 @@ fn finished(width: u32, height: u32, rgb: Vec<u8>, size: u32) -> Picture {
 }
 
 /// What the agent sees.
-fn seen_by(environment: &mut Environment, size: u32) -> Result<Picture, Failure> {
+pub(crate) fn seen_by(environment: &mut Environment, size: u32) -> Result<Picture, Failure> {
     let side = size * oversize(size);
     let frame = environment.observe_at(side, side)?;
     Ok(finished(frame.width, frame.height, frame.rgb, size))
 }
 
 /// The map with the agent, and a way to it.
-fn map_of(environment: &Environment, size: u32, way: &[[f32; 2]]) -> Picture {
+pub(crate) fn map_of(environment: &Environment, size: u32, way: &[[f32; 2]]) -> Picture {
     let side = size * oversize(size);
     let agent = environment.agent();
     let agent = Some((agent.position, agent.heading_deg));

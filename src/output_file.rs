@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::Path;
 
 use driftworld_atomic_files::AtomicFile;
-use driftworld_report::picture::Picture;
+use driftworld_report::picture::Drawing;
 use driftworld_text::ShownPath;
 
 use crate::{Failure, overwrite};
@@ -27,18 +27,21 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     written.map_err(|error| unwritable(path, &error))
 }
 
-/// Writes a picture as a PNG file.
+/// Writes a picture: as SVG where the name ends in `.svg`, else as PNG.
 ///
 /// A name that ends like another kind of file is refused: it would lie.
-pub(crate) fn write_picture(path: &Path, picture: &Picture) -> Result<(), Failure> {
-    const OTHERS: [&str; 16] = [
-        "jpg", "jpeg", "gif", "bmp", "webp", "tif", "tiff", "svg", "pdf", "csv", "html", "json", "jsonl", "npy",
-        "parquet", "txt",
+pub(crate) fn write_picture(path: &Path, picture: &Drawing) -> Result<(), Failure> {
+    const OTHERS: [&str; 15] = [
+        "jpg", "jpeg", "gif", "bmp", "webp", "tif", "tiff", "pdf", "csv", "html", "json", "jsonl", "npy", "parquet",
+        "txt",
     ];
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    if ending.eq_ignore_ascii_case("svg") {
+        return write(path, picture.to_svg()?.as_bytes());
+    }
     if OTHERS.iter().any(|other| ending.eq_ignore_ascii_case(other)) {
         return Err(Failure::usage(format!(
-            "{}: found a name that ends in .{ending}, expected .png; pictures are written as PNG",
+            "{}: found a name that ends in .{ending}, expected .png or .svg; pictures are written as PNG or SVG",
             path.shown()
         )));
     }

@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use driftworld_curriculum::RECORDINGS_FILE;
 use driftworld_text::ShownPath;
 
 use crate::contents::Contents;
@@ -11,7 +12,12 @@ use crate::tasks;
 use crate::Failure;
 
 /// The files of which a log is made.
-const LOG_FILES: [&str; 3] = ["data-log.tsv", "logger_info.json", "scenario_info.json"];
+const LOG_FILES: [&str; 4] = [
+    "data-log.tsv",
+    "logger_info.json",
+    "scenario_info.json",
+    RECORDINGS_FILE,
+];
 
 /// Refuses a file that a log is made of, and one that would be read as such a file if it were there.
 pub(crate) fn refuse_log_files(target: &Path) -> Result<(), Failure> {

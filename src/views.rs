@@ -5,11 +5,15 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
-use driftworld_env::{Camera, Catalogue, Frame, Renderer, Scene, category_color, depth_to_gray, top_down};
-use driftworld_report::picture::Picture;
+use driftworld_env::{
+    CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE, CATEGORY_SKY, Camera,
+    Catalogue, Environment, Frame, Renderer, Scene, category_color, depth_to_gray,
+};
+use driftworld_report::picture::{Drawing, Level, Picture, Side, TextLine, text_width};
 use driftworld_spec::World;
 
 use crate::Failure;
+use crate::map_drawing::{self, Moves};
 
 /// The pictures of one world.
 pub(crate) struct Views<'a> {
@@ -25,6 +29,121 @@ pub(crate) struct Seen {
     pub(crate) rgb: Picture,
     pub(crate) depth: Picture,
     pub(crate) segmentation: Picture,
+    /// The reward categories that are in it.
+    categories: Vec<u8>,
+}
+
+impl Seen {
+    /// The picture of distances with what its greys mean below it.
+    pub(crate) fn depth_with_legend(&self) -> Drawing {
+        let (width, height) = (self.depth.width, self.depth.height);
+        let letters = letters(width);
+        let bar = (letters * 0.9).round();
+        let mut drawing = Drawing::blank(width, height + (letters * 1.4 + bar + 12.0) as u32);
+        drawing.put(self.depth.clone(), [0, 0]);
+        let (left, top) = (letters, height as f32 + 5.0);
+        let long = (width as f32 - 2.0 * letters).max(10.0);
+        let mut greys = Picture::blank(long as u32, bar as u32);
+        for (index, pixel) in greys.rgb.chunks_exact_mut(3).enumerate() {
+            let share = (index as u32 % greys.width) as f32 / (greys.width - 1).max(1) as f32;
+            pixel.fill(depth_to_gray(&[share * DEPTH_METRES])[0]);
+        }
+        let right = left + long.floor();
+        drawing.put(greys, [left as u32, top as u32]);
+        let rim = [
+            [left, top],
+            [right, top],
+            [right, top + bar],
+            [left, top + bar],
+            [left, top],
+        ];
+        drawing.line(rim, 1.0, INK);
+        for quarter in 0..=4_u8 {
+            let share = f32::from(quarter) / 4.0;
+            let x = left + share * (right - left);
+            let end = if quarter == 4 { " m and more" } else { "" };
+            let side = match quarter {
+                0 => Side::Left,
+                4 => Side::Right,
+                _ => Side::Middle,
+            };
+            let words = TextLine::new(
+                format!("{}{end}", share * DEPTH_METRES),
+                [x, top + bar + 4.0],
+                letters,
+                INK,
+            );
+            if quarter % 2 == 0 || text_width("100 m and more", letters) * 3.0 < long {
+                drawing.write(words.anchored(side, Level::Top));
+            }
+        }
+        drawing
+    }
+
+    /// The picture of reward categories with the names of those in it below.
+    pub(crate) fn segmentation_with_legend(&self) -> Drawing {
+        let (width, height) = (self.segmentation.width, self.segmentation.height);
+        let letters = letters(width);
+        let line = (letters * 1.5).round();
+        let wide = |name: &str| text_width(name, letters) + letters * 2.6;
+        let (mut places, mut x, mut row) = (Vec::new(), 0.0, 0.0);
+        for category in &self.categories {
+            let name = category_name(*category);
+            if x > 0.0 && x + wide(name) > width as f32 {
+                (x, row) = (0.0, row + 1.0);
+            }
+            places.push((*category, name, [x, row]));
+            x += wide(name);
+        }
+        let mut drawing = Drawing::blank(width, height + (line * (row + 1.0) + 8.0) as u32);
+        drawing.put(self.segmentation.clone(), [0, 0]);
+        for (category, name, [x, row]) in places {
+            let middle = height as f32 + 4.0 + line * (row + 0.5);
+            let half = letters * 0.45;
+            drawing.rectangle([x + 5.0, middle - half - 1.0, 2.0 * half + 2.0, 2.0 * half + 2.0], INK);
+            drawing.rectangle(
+                [x + 6.0, middle - half, 2.0 * half, 2.0 * half],
+                category_color(category),
+            );
+            let words = TextLine::new(name, [x + letters * 1.1 + 10.0, middle], letters, INK);
+            drawing.write(words.anchored(Side::Left, Level::Middle));
+        }
+        drawing
+    }
+}
+
+const INK: [u8; 3] = [38, 42, 48];
+
+/// Metres at which pictures of distances are white.
+const DEPTH_METRES: f32 = 100.0;
+
+/// The size of a legend's letters below a picture of this width.
+fn letters(width: u32) -> f32 {
+    (width as f32 / 28.0).clamp(8.0, 15.0)
+}
+
+/// What a reward category is.
+fn category_name(category: u8) -> &'static str {
+    match category {
+        CATEGORY_SKY => "sky",
+        CATEGORY_MAP => "ground and walls",
+        CATEGORY_BUILDING => "building",
+        CATEGORY_POSITIVE => "pays",
+        CATEGORY_NEUTRAL => "worth nothing",
+        CATEGORY_NEGATIVE => "costs",
+        _ => "other",
+    }
+}
+
+/// The camera of the agent of a world at its start, turned clockwise.
+pub(crate) fn agent_camera(world: &World, turn: f32) -> Camera {
+    let agent = &world.agent_params;
+    Camera::first_person(
+        agent.coordinates.map(|metres| metres as f32),
+        agent.heading as f32 + turn,
+        agent.agent_height as f32,
+        agent.field_of_view as f32,
+    )
 }
 
 impl<'a> Views<'a> {
@@ -36,7 +155,10 @@ impl<'a> Views<'a> {
     pub(crate) fn with_catalogue(world: &'a World, catalogue: &Catalogue, size: u32, turn: f32) -> Self {
         Self {
             world,
-            scene: Scene::from_world_with(world, catalogue),
+            // With doors open that are.
+            scene: Environment::with_catalogue(world.clone(), catalogue.clone())
+                .scene()
+                .clone(),
             size,
             turn,
             renderer: Rc::default(),
@@ -112,6 +234,12 @@ impl<'a> Views<'a> {
                     .flat_map(|category| category_color(*category))
                     .collect(),
             ),
+            categories: {
+                let mut categories = frame.category;
+                categories.sort_unstable();
+                categories.dedup();
+                categories
+            },
         })
     }
 
@@ -173,28 +301,23 @@ impl<'a> Views<'a> {
         }
     }
 
-    /// The map with the agent's start on it.
+    /// The map with the agent's start on it, in even light.
     pub(crate) fn top_down(&self) -> Picture {
-        let agent = &self.world.agent_params;
-        let marker = Some((agent.coordinates.map(|metres| metres as f32), agent.heading as f32));
-        let twice = if self.size <= 2048 { 2 } else { 1 };
-        let image = top_down(&self.scene, self.size * twice, self.size * twice, marker);
-        let picture = Picture {
-            width: image.width,
-            height: image.height,
-            rgb: image.rgb,
-        };
-        if twice == 2 { picture.halved() } else { picture }
+        self.map(&Moves::none(self.world)).to_picture()
+    }
+
+    /// The map with scale, north, triggers, what pays and what costs, and ways.
+    pub(crate) fn map(&self, moves: &Moves) -> Drawing {
+        map_drawing::map(self.world, &self.scene, moves, self.size)
+    }
+
+    /// The same with a legend to its right.
+    pub(crate) fn map_with_legend(&self, moves: &Moves) -> Drawing {
+        map_drawing::map_with_legend(self.world, &self.scene, moves, self.size)
     }
 
     fn agent_camera(&self, turn: f32) -> Camera {
-        let agent = &self.world.agent_params;
-        Camera::first_person(
-            agent.coordinates.map(|metres| metres as f32),
-            agent.heading as f32 + turn,
-            agent.agent_height as f32,
-            agent.field_of_view as f32,
-        )
+        agent_camera(self.world, turn)
     }
 
     /// A colour picture with smooth edges: drawn at twice the size where that is allowed.

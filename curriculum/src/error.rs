@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use driftworld_env::EnvError;
+use driftworld_files::FileError;
 use driftworld_generator::GeneratorError;
 use driftworld_metrics::MetricsError;
 use driftworld_similarity::SimilarityError;
@@ -382,6 +383,44 @@ pub enum CurriculumError {
     Relabelling {
         /// What the test says.
         source: SimilarityError,
+    },
+    /// A file of recordings is damaged, or of another kind.
+    #[error("{}: {source}", path.shown())]
+    Recording {
+        /// The file.
+        path: PathBuf,
+        /// Where, and what was found.
+        source: EnvError,
+    },
+    /// A file of recordings cannot be opened.
+    #[error(transparent)]
+    UnreadableRecordings {
+        /// Why.
+        source: FileError,
+    },
+    /// A file of recordings cannot be read or written.
+    #[error("{}: cannot {doing}: {source}", path.shown())]
+    Recordings {
+        /// The file or folder.
+        path: PathBuf,
+        /// What was to be done.
+        doing: &'static str,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// What was recorded is no longer there.
+    #[error(
+        "{}: found {found}, expected the {expected} bytes that were recorded: the file was removed, replaced or cut while the run went \
+         on; put it back, or go on without recordings",
+        path.shown()
+    )]
+    RecordingsLost {
+        /// The file.
+        path: PathBuf,
+        /// What is there.
+        found: String,
+        /// Bytes that were written.
+        expected: u64,
     },
     /// The log cannot be written.
     #[error(transparent)]

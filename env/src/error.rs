@@ -125,6 +125,35 @@ pub enum EnvError {
         /// What the batch makes.
         expected: String,
     },
+    /// A file of recordings that is damaged, cut off or of another kind.
+    #[error("line {line}: found {found}, expected {expected}", found = one_line(found), expected = one_line(expected))]
+    Recording {
+        /// The line, from 1.
+        line: u64,
+        /// What was found there.
+        found: String,
+        /// What was expected.
+        expected: String,
+    },
+    /// A recorded episode that does not come out as it was recorded.
+    #[error(
+        "experience {experience}, {what}: found {found}, expected {expected} as recorded by driftworld {recorded_by:.40}; this is \
+         driftworld {now}: replay it with the version and the asset libraries that it was recorded with"
+    )]
+    Replay {
+        /// The number of the experience.
+        experience: u64,
+        /// What differs: the reward, what ended it, or a step that cannot be made.
+        what: &'static str,
+        /// What came of the replay.
+        found: String,
+        /// What was recorded.
+        expected: String,
+        /// The version that recorded it.
+        recorded_by: String,
+        /// This version.
+        now: &'static str,
+    },
     /// A new object is not sound.
     #[error("spawn: {problem}; nothing was changed")]
     BadObject {
@@ -413,6 +442,19 @@ mod tests {
                 env: 2,
                 found: "64 × 64 pixels of Rgb".to_owned(),
                 expected: "84 × 84 pixels of Rgb, Depth".to_owned(),
+            },
+            EnvError::Recording {
+                line: 3,
+                found: "the checksum 9a0b1c2d".to_owned(),
+                expected: "0a0b1c2d, as the line says".to_owned(),
+            },
+            EnvError::Replay {
+                experience: 17,
+                what: "reward",
+                found: "3.5".to_owned(),
+                expected: "4".to_owned(),
+                recorded_by: "0.1.0".to_owned(),
+                now: "0.2.0",
             },
             EnvError::BadLibrary {
                 byte: 56,

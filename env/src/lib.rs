@@ -16,6 +16,7 @@ mod experiment;
 mod ground;
 mod photograph;
 mod polygon;
+mod recording;
 mod render;
 mod scene;
 mod sim;
@@ -46,10 +47,14 @@ pub use channel::{Category, Channel, Channels, Level, MAX_MESSAGE_BYTES, Outgoin
 pub use error::EnvError;
 pub use experiment::{Experiment, Findings, MAX_EXPERIMENT_STEPS, Policy, Proof, Witness};
 pub use photograph::{MAX_PHOTOGRAPHS, Photograph, Studio};
+pub use recording::{
+    Edit, EpisodeOrigin, MAX_RECORDED_STEPS, MAX_RECORDING_LINE, RECORDING_FORMAT, RecordedEpisode, Recorder,
+    Recording, RecordingLines, RecordingMark, RecordingReader, Replay,
+};
 pub use render::{
     AdapterReport, CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE,
     CATEGORY_SKY, CpuRenderer, FAR_DEPTH, Frame, Image, Picture, Renderer, RendererKind, RendererReport, Target,
-    category_color, depth_to_gray, top_down, top_down_with_way,
+    category_color, depth_to_gray, top_down, top_down_scale, top_down_with_way,
 };
 #[cfg(feature = "gpu")]
 pub use render::{GpuChoice, GpuRenderer};

@@ -189,6 +189,17 @@ impl Scene {
         self
     }
 
+    /// The same scene in even white daylight without fog, in which maps can be read: whatever light the world has.
+    #[must_use]
+    pub fn in_neutral_light(mut self) -> Self {
+        self.light.direction = [0.0, 0.0, 1.0];
+        self.light.color = [1.0; 3];
+        self.light.exposure = 1.0;
+        self.light.ambient = 0.35;
+        self.light.fog_distance = None;
+        self
+    }
+
     /// Where the assets of its objects come from.
     pub fn catalogue(&self) -> &Catalogue {
         &self.catalogue

@@ -19,6 +19,7 @@ use pyo3::types::{PyDict, PyTuple};
 use crate::action::{no_row, number_action, row_action};
 use crate::errors::{Error, Result};
 use crate::interruptible::run_between_envs;
+use crate::recordings::PyRecording;
 use crate::supply::{PyStream, Stream, Supply, overrides_of};
 use crate::views::views;
 
@@ -252,6 +253,17 @@ impl PyBatch {
         let events = stepping.batch.events(env).unwrap_or_default();
         let events: PyResult<Vec<_>> = events.iter().map(|event| to_py(py, event)).collect();
         Ok(PyTuple::new(py, events?)?)
+    }
+
+    /// Takes down what is done from now on, or no longer.
+    fn record(&self, records: bool) -> Result<()> {
+        self.lock()?.batch.set_recording(records);
+        Ok(())
+    }
+
+    /// What was done in an environment's episode so far; before its first step in the one before. `None` unless it is taken down.
+    fn recording(&self, env: usize) -> Result<Option<PyRecording>> {
+        Ok(self.lock()?.batch.recording(env).map(PyRecording::from))
     }
 
     /// The JSON of an environment's world as it is now.

@@ -12,7 +12,7 @@ use driftworld_curriculum::{
     CurriculumError, Experience, FoundWorld, Journal, MOST_STEPS, Plan, Progress, REPEATED_EVALUATIONS, Rollout, Tried,
     Undrawable, run_rollout,
 };
-use driftworld_env::EndedBy;
+use driftworld_env::{EndedBy, Recording};
 use driftworld_spec::{BlockKind, Scenario, TaskSpec, World};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -20,6 +20,7 @@ use serde_json::json;
 
 use crate::document::{Whole, from_python, json_to_py, to_py};
 use crate::errors::{Error, Result};
+use crate::recordings::PyRecording;
 use crate::supply::{PyStream, Stream};
 
 /// A scenario with everything that it names.
@@ -198,16 +199,32 @@ pub(crate) struct PyJournal(Option<Journal>);
 impl PyJournal {
     /// Begins a log, or takes one up.
     #[new]
-    fn new(py: Python<'_>, folder: PathBuf, plan: &Bound<'_, PyPlan>, agent: &str, resume: bool) -> Result<Self> {
+    fn new(
+        py: Python<'_>,
+        folder: PathBuf,
+        plan: &Bound<'_, PyPlan>,
+        agent: &str,
+        resume: bool,
+        record: bool,
+    ) -> Result<Self> {
         let plan = &plan.borrow().plan;
-        let journal = py.detach(|| {
+        let mut journal = py.detach(|| {
             if resume {
                 Journal::resume(&folder, plan, agent)
             } else {
                 Journal::create(&folder, plan, agent)
             }
         })?;
+        if record {
+            journal.record();
+        }
         Ok(Self(Some(journal)))
+    }
+
+    /// Whether it keeps what is done: then the rollout is asked for it.
+    #[getter]
+    fn records(&mut self) -> Result<bool> {
+        Ok(self.open()?.records())
     }
 
     /// Runs the plan from the first experience that is not in the log, and says what it came to, as a dictionary. `learned`:
@@ -293,6 +310,16 @@ impl Rollout for PythonRollout<'_> {
             seconds,
             truncated,
             ended_by: ended_by.and_then(|word| EndedBy::ALL.into_iter().find(|one| one.word() == word)),
+        }))
+    }
+
+    fn recording(&mut self, number: u64, experience: &Experience) -> Result<Option<Recording>> {
+        let found = self.rollout.call_method1("recording", (number,))?;
+        let found: Option<Bound<'_, PyRecording>> = found.extract()?;
+        // What ended it is said by whoever set a limit, too.
+        Ok(found.map(|recording| Recording {
+            ended_by: experience.ended_by,
+            ..recording.get().recording().clone()
         }))
     }
 

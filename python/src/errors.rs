@@ -77,6 +77,24 @@ impl From<CurriculumError> for Error {
     }
 }
 
+/// A failure by its cause, where that is one of the crates' errors; else as what is wrong with an argument.
+impl From<Failure> for Error {
+    fn from(failure: Failure) -> Self {
+        let class = match failure.cause().as_deref() {
+            Some(cause) if cause.is::<EnvError>() => "EnvError",
+            Some(cause) if cause.is::<MetricsError>() => "MetricsError",
+            Some(cause) if cause.is::<CurriculumError>() => "CurriculumError",
+            None if matches!(failure, Failure::Usage(_)) => {
+                return Self::Python(PyValueError::new_err(
+                    printable_lines(&failure.to_string()).into_owned(),
+                ));
+            }
+            _ => "DriftworldError",
+        };
+        refused(class, &failure)
+    }
+}
+
 impl From<TaskError> for Error {
     fn from(source: TaskError) -> Self {
         match source {

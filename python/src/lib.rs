@@ -20,6 +20,7 @@ mod logs;
 mod options;
 mod overrides;
 mod portions;
+mod recordings;
 mod scores;
 mod supply;
 mod task;
@@ -54,6 +55,8 @@ mod native {
     use super::files::write_file;
     #[pymodule_export]
     use super::logs::{PyLogFile, read_log, validate_log};
+    #[pymodule_export]
+    use super::recordings::{PyRecording, png, read_recording};
     #[pymodule_export]
     use super::scores::{PyScores, report};
     #[pymodule_export]

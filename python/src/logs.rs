@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use driftworld::clock::Clock;
+use driftworld_curriculum::Recordings;
 use driftworld_metrics::{
     BlockType, LogWriter, LoggerInfo, Record, Rows, ScenarioInfo, SharedColumn, TaskParams, Timestamp,
 };
@@ -16,10 +17,24 @@ use serde_json::{Map, Value, json};
 
 use crate::document::{Whole, from_python, json_to_py, to_py};
 use crate::errors::Result;
+use crate::recordings::PyRecording;
 
 /// An open log. Threads that write into it take turns.
 #[pyclass(name = "LogFile", module = "driftworld._native", frozen)]
-pub(crate) struct PyLogFile(Mutex<Option<LogWriter>>);
+pub(crate) struct PyLogFile(Mutex<Option<OpenLog>>);
+
+/// A log with the recordings beside its rows.
+struct OpenLog {
+    writer: LogWriter,
+    recordings: Recordings,
+}
+
+impl OpenLog {
+    fn new(writer: LogWriter) -> Self {
+        let recordings = Recordings::new(writer.dir());
+        Self { writer, recordings }
+    }
+}
 
 #[pymethods]
 impl PyLogFile {
@@ -28,16 +43,19 @@ impl PyLogFile {
     fn create(folder: PathBuf, columns: Vec<String>, info: &Bound<'_, PyAny>) -> Result<Self> {
         let info = scenario_info(from_python(info)?)?;
         let writer = LogWriter::create(folder, &LoggerInfo::new(columns)?, &info)?;
-        Ok(Self(Mutex::new(Some(writer))))
+        Ok(Self(Mutex::new(Some(OpenLog::new(writer)))))
     }
 
     /// Goes on with a log.
     #[staticmethod]
     fn resume(folder: PathBuf) -> Result<Self> {
-        Ok(Self(Mutex::new(Some(LogWriter::resume(folder)?))))
+        Ok(Self(Mutex::new(Some(OpenLog::new(LogWriter::resume(folder)?)))))
     }
 
-    /// Writes one row and flushes it. The time is now.
+    /// Writes one row and flushes it, and before it what was done in its experience, if that is given. The time is now.
+    #[pyo3(signature = (
+        block_num, exp_num, block_type, block_subtype, task_name, task_params, exp_status, worker_id, metrics, recording=None
+    ))]
     #[expect(
         clippy::too_many_arguments,
         reason = "a row has these cells; called from one place, by name"
@@ -53,6 +71,7 @@ impl PyLogFile {
         exp_status: &str,
         worker_id: &str,
         metrics: BTreeMap<String, f64>,
+        recording: Option<&Bound<'_, PyRecording>>,
     ) -> Result<()> {
         let params = match from_python(task_params)? {
             Value::Object(params) => params,
@@ -77,16 +96,25 @@ impl PyLogFile {
         };
         // Locked only while nothing of Python's runs, so that no thread waits that holds the interpreter's lock.
         let mut writer = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let writer = writer.as_mut().ok_or_else(|| {
+        let log = writer.as_mut().ok_or_else(|| {
             PyValueError::new_err("log: found it closed, expected an open one; begin another, or resume it")
         })?;
-        Ok(writer.write(&record)?)
+        if let Some(recording) = recording {
+            // First: whenever the run is stopped, each row that should have a recording has it.
+            let recording = recording.get().of_row(&record);
+            log.recordings
+                .append(&record.worker_id, (record.block_num, record.block_type), &recording)?;
+        }
+        Ok(log.writer.write(&record)?)
     }
 
     /// Ends the log: asks the disk to have all of it. Does nothing a second time.
     fn close(&self) -> Result<()> {
-        let writer = self.0.lock().unwrap_or_else(PoisonError::into_inner).take();
-        writer.map_or(Ok(()), |writer| Ok(writer.finish()?))
+        let log = self.0.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let Some(mut log) = log else { return Ok(()) };
+        let synced = log.recordings.sync();
+        log.writer.finish()?;
+        Ok(synced?)
     }
 }
 

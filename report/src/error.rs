@@ -24,6 +24,19 @@ pub enum ReportError {
     #[error("picture: cannot be written as PNG: {0}")]
     Png(#[from] png::EncodingError),
 
+    /// A film cannot be written as GIF.
+    #[error("film: cannot be written as GIF: {0}")]
+    Gif(#[from] gif::EncodingError),
+
+    /// A film of no pictures, or of some that do not fit.
+    #[error("film: found {found}, expected {expected}")]
+    FilmSize {
+        /// What was found.
+        found: String,
+        /// What was expected.
+        expected: String,
+    },
+
     /// A name of a figure that is none.
     #[error("plot type: found {found:?}, expected one of all, raw, lb, eb, ste, timeline")]
     UnknownFigure {
@@ -95,6 +108,11 @@ mod tests {
                 source: "no font".into(),
             },
             ReportError::Png(png::EncodingError::LimitsExceeded),
+            ReportError::Gif(gif::EncodingError::OutOfMemory),
+            ReportError::FilmSize {
+                found: "a picture of 2 × 3 pixels".to_owned(),
+                expected: "2 × 2, as the film's first".to_owned(),
+            },
             ReportError::UnknownFigure {
                 found: "pie".to_owned(),
             },

@@ -27,8 +27,10 @@
 //!
 //! Not here: scoring, which is `driftworld_metrics`'; distances and clocks, which are handed in; files, which are the command's.
 
+mod drawing;
 mod error;
 mod figure;
+pub mod film;
 mod page;
 pub mod picture;
 mod words;

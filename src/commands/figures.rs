@@ -42,7 +42,7 @@ impl FigureChoice {
         Ok(FigureOptions {
             unit: self.unit.parse::<Unit>().map_err(|error| in_arguments(&error))?,
             show_eval_lines: !self.no_show_eval_lines,
-            distances: None,
+            ..FigureOptions::default()
         })
     }
 }

@@ -16,6 +16,8 @@ mod doctor;
 mod draw_maps;
 mod elements;
 mod figures;
+mod film;
+mod film_choice;
 mod help;
 mod interrupt;
 mod logs;
@@ -28,7 +30,10 @@ mod optional;
 mod order;
 mod output;
 mod photograph;
+mod play;
+mod recording_file;
 mod render;
+mod replay;
 mod report;
 mod run;
 mod sample;
@@ -148,6 +153,8 @@ enum Command {
     Vary(vary::Vary),
     Convert(convert::Convert),
     Render(render::Render),
+    Film(film::Film),
+    Play(play::Play),
     Sheet(sheet::Sheet),
     Assets(assets::Assets),
     Console(console::Console),
@@ -157,6 +164,7 @@ enum Command {
     Order(order::Order),
     Curriculum(curriculum::Curriculum),
     Run(run::Run),
+    Replay(replay::Replay),
     Audit(audit::Audit),
     Scales(scales::Scales),
     // No words here: they would take the place of the long ones that stand with the command.
@@ -184,6 +192,8 @@ impl Command {
             Self::Vary(command) => command.run(),
             Self::Convert(command) => command.run(),
             Self::Render(command) => command.run(),
+            Self::Film(command) => command.run(),
+            Self::Play(command) => command.run(),
             Self::Sheet(command) => command.run(),
             Self::Assets(command) => command.run(),
             Self::Console(command) => command.run(),
@@ -193,6 +203,7 @@ impl Command {
             Self::Order(command) => command.run(),
             Self::Curriculum(command) => command.run(),
             Self::Run(command) => command.run(),
+            Self::Replay(command) => command.run(),
             Self::Audit(command) => command.run(),
             Self::Scales(command) => command.run(),
             Self::Logs(command) => command.run(),

@@ -14,7 +14,7 @@ use serde_json::json;
 
 use crate::Failure;
 pub(crate) use crate::output_file::{create, unwritable, write, write_picture};
-use crate::report::picture::Picture;
+use crate::report::picture::Drawing;
 use crate::style::{self, Style};
 use crate::wrap::{columns_of_stderr, columns_of_stdout, wrap_lines};
 
@@ -155,8 +155,8 @@ pub(crate) fn write_or_print(path: &Path, json: &str) -> Result<(), Failure> {
     }
 }
 
-/// Writes a picture as a PNG file, and says so with its size.
-pub(crate) fn write_picture_and_tell(path: &Path, picture: &Picture) -> Result<(), Failure> {
+/// Writes a picture as PNG or SVG, and says so with its size.
+pub(crate) fn write_picture_and_tell(path: &Path, picture: &Drawing) -> Result<(), Failure> {
     write_picture(path, picture)?;
     wrote(path, format!("{} × {} pixels", picture.width, picture.height));
     Ok(())

@@ -10,8 +10,9 @@ use super::agent::AgentArg;
 use super::assets::LibraryChoice;
 use super::world_choice::WorldChoice;
 use super::{Failure, output};
-use crate::episode_frames::rows;
-use crate::report::picture::{Picture, SheetRow, sheet};
+use crate::contact_sheet::ways;
+use crate::episode_frames::{recorded, rows};
+use crate::report::picture::{Drawing, SheetRow, sheet};
 use crate::views::Views;
 
 /// Draw a world: the agent's view, from above, or an episode.
@@ -45,7 +46,11 @@ pub(crate) struct Render {
     /// Maps are always drawn on the CPU.
     #[arg(long, default_value_t, value_name = "RENDERER")]
     renderer: RendererKind,
-    /// PNG file to write.
+    /// Draw depth, segmentation and the map alone, in exactly the size asked for: without legends, the map without its
+    /// legend.
+    #[arg(long)]
+    plain: bool,
+    /// PNG or SVG file to write.
     #[arg(short, long, default_value = "world.png", value_name = "FILE")]
     output: PathBuf,
     /// Print what was written as JSON.
@@ -90,56 +95,67 @@ impl Render {
         }
     }
 
-    fn picture(&self, world: &World, catalogue: &Catalogue) -> Result<Picture, Failure> {
+    fn picture(&self, world: &World, catalogue: &Catalogue) -> Result<Drawing, Failure> {
         let views = Views::with_catalogue(world, catalogue, self.size, self.turn as f32)
             .drawn_by(Renderer::new(self.renderer)?);
         Ok(match self.view {
-            View::Overview => views.overview((self.size * 16 / 9).min(4096))?,
-            View::TopDown => views.top_down(),
-            View::Rgb => views.first_person()?.rgb,
-            View::Depth => views.first_person()?.depth,
-            View::Segmentation => views.first_person()?.segmentation,
-            View::Sheet => self.sheet(&views)?,
+            View::Overview => views.overview((self.size * 16 / 9).min(4096))?.into(),
+            View::TopDown if self.plain => views.top_down().into(),
+            View::TopDown => views.map_with_legend(&ways(world)?),
+            View::Rgb => views.first_person()?.rgb.into(),
+            View::Depth if self.plain => views.first_person()?.depth.into(),
+            View::Depth => views.first_person()?.depth_with_legend(),
+            View::Segmentation if self.plain => views.first_person()?.segmentation.into(),
+            View::Segmentation => views.first_person()?.segmentation_with_legend(),
+            View::Sheet => self.sheet(world, &views)?,
             View::Episode => self.episode(world, catalogue)?,
         })
     }
 
     /// Two frames side by side.
-    fn episode(&self, world: &World, catalogue: &Catalogue) -> Result<Picture, Failure> {
+    fn episode(&self, world: &World, catalogue: &Catalogue) -> Result<Drawing, Failure> {
         let mut agent = self.agent.as_ref().unwrap_or(&AgentArg::Onrails).agent()?.agent;
-        let mut environment = Environment::with_catalogue(world.clone(), catalogue.clone());
-        environment.set_renderer(Renderer::new(self.renderer)?);
+        let recording = recorded(world, catalogue, agent.as_mut(), 0)?;
         let most = usize::from(self.frames.unwrap_or(8));
-        Ok(sheet(
-            &rows(&mut environment, world, agent.as_mut(), self.size, most)?,
-            2,
-        )?)
+        let renderer = Renderer::new(self.renderer)?;
+        Ok(sheet(&rows(&recording, catalogue, renderer, self.size, most)?, 2)?)
     }
 
-    fn sheet(&self, views: &Views) -> Result<Picture, Failure> {
+    fn sheet(&self, world: &World, views: &Views) -> Result<Drawing, Failure> {
         let small = views.of_size((self.size * 2 / 3).max(1));
         let seen = views.first_person()?;
-        let row = |title: &str, words: String, pictures| SheetRow {
+        let row = |title: &str, words: String, pictures: Vec<Drawing>| SheetRow {
             title: title.into(),
             words,
             pictures,
         };
-        let (classes, close_ups): (Vec<String>, Vec<Picture>) = small.close_ups(5)?.into_iter().unzip();
+        let close_ups = small.close_ups(5)?;
+        let (classes, close_ups): (Vec<String>, Vec<Drawing>) = close_ups
+            .into_iter()
+            .map(|(class, picture)| (class, picture.into()))
+            .unzip();
         let mut rows = vec![
             row(
                 "The world",
                 "from outside, and from above: the arrow is the agent, small things are drawn larger".into(),
-                vec![views.overview((self.size * 16 / 9).min(4096))?, views.top_down()],
+                vec![
+                    views.overview((self.size * 16 / 9).min(4096))?.into(),
+                    views.map_with_legend(&ways(world)?),
+                ],
             ),
             row(
                 "What the agent sees",
-                "colour, depth (white at 100 m), reward category".into(),
-                vec![seen.rgb, seen.depth, seen.segmentation],
+                "colour, depth, reward category".into(),
+                vec![
+                    seen.rgb.clone().into(),
+                    seen.depth_with_legend(),
+                    seen.segmentation_with_legend(),
+                ],
             ),
             row(
                 "All around the agent",
                 "ahead, right, behind, left; 90° each".into(),
-                small.all_around()?,
+                small.all_around()?.into_iter().map(Into::into).collect(),
             ),
         ];
         if !close_ups.is_empty() {

@@ -40,7 +40,7 @@ const MAX_JOBS: usize = 256;
 #[command(after_help = "Example:
   driftworld run scenario.json --agent onrails -o logs/first
   driftworld run scenario.json --agent onrails -o logs/first --resume
-  driftworld run scenario.json --agent scripted:keep_away.txt -o logs/second
+  driftworld run scenario.json --agent scripted:keep_away.txt -o logs/second --record
   driftworld metrics logs/first")]
 pub(crate) struct Run {
     /// The scenario file.
@@ -53,6 +53,11 @@ pub(crate) struct Run {
     /// Continue the log in the folder, or start a new one if there is none.
     #[arg(long)]
     resume: bool,
+    /// Keep what is done in each experience, in an actions.jsonl beside its rows, for `driftworld replay`.
+    ///
+    /// A log that was begun so goes on so.
+    #[arg(long)]
+    record: bool,
     /// Number of experiences to run in parallel, 1 to 256 [default: one per processor].
     ///
     /// The log does not depend on it.
@@ -152,6 +157,7 @@ impl Run {
             start: if self.resume { Start::Resumed } else { Start::New },
             jobs: self.jobs.unwrap_or_else(processors),
             catalogue: self.libraries.catalogue()?,
+            records: self.record,
         };
         let summary = run.run()?;
         output::wrote(
@@ -241,6 +247,8 @@ pub(crate) struct LifetimeRun<'a> {
     pub(crate) start: Start,
     pub(crate) jobs: NonZeroUsize,
     pub(crate) catalogue: Catalogue,
+    /// Whether what is done is kept.
+    pub(crate) records: bool,
 }
 
 impl LifetimeRun<'_> {
@@ -255,6 +263,9 @@ impl LifetimeRun<'_> {
         ));
         let clock = Clock::from_environment()?;
         let mut journal = self.journal()?;
+        if self.records {
+            journal.record();
+        }
         let bar = output::progress(self.plan.num_experiences(), "living");
         bar.set_position(journal.num_experiences());
         let mut context = RunContext {

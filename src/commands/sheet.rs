@@ -2,18 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::generator::Sampler;
 use crate::spec::{BlockKind, Regime, Scenario, Value, Variant};
 use crate::tasks;
 use clap::Args;
 use driftworld_text::ShownPath;
 
 use super::{Failure, output};
+use crate::contact_sheet::{Look, Shown, contact_sheet};
 use crate::contents::Contents;
 use crate::documents;
-use crate::report::picture::{SheetRow, sheet};
 use crate::scenarios::is_original;
-use crate::views::Views;
 
 /// The most variants that one picture shows.
 const MOST_VARIANTS: usize = 60;
@@ -40,19 +38,19 @@ pub(crate) struct Sheet {
     /// Seed of the worlds [default: 0; in a scenario, each block's own].
     #[arg(long, allow_negative_numbers = true, value_parser = super::numbers::seed)]
     seed: Option<u64>,
-    /// Index of each variant's world [default: 0; in a scenario, the first of each block].
+    /// Index of each variant's world [default: of the first few, the one that shows most of what the variants are about].
     #[arg(long)]
     index: Option<u64>,
-    /// Turn the first-person cameras clockwise from the agent's heading, in degrees.
-    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
-    turn: f64,
+    /// Turn the first-person cameras clockwise from the agent's heading, in degrees [default: as shows most].
+    #[arg(long, allow_negative_numbers = true)]
+    turn: Option<f64>,
     /// Height of each picture in pixels.
     #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u32).range(32..=480))]
     size: u32,
     /// Number of variants per row.
     #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=8))]
     columns: u8,
-    /// PNG file to write.
+    /// PNG or SVG file to write.
     #[arg(short, long, default_value = "sheet.png", value_name = "FILE")]
     output: PathBuf,
     /// Print what was written as JSON.
@@ -62,91 +60,61 @@ pub(crate) struct Sheet {
 
 impl Sheet {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let variants = match &self.scenario {
+        let mut variants = match &self.scenario {
             Some(file) => learned(file)?,
             None => tasks::variants_of(&self.tasks)?
                 .into_iter()
-                .map(|(_, variant)| Shown::declared(variant))
+                .map(|(_, variant)| Shown::declared(variant, 0))
                 .collect(),
         };
+        if let Some(seed) = self.seed {
+            variants.iter_mut().for_each(|shown| shown.seed = seed);
+        }
         if variants.is_empty() || variants.len() > MOST_VARIANTS {
             return Err(Failure::input(format!(
                 "found {} variants, expected 1 to {MOST_VARIANTS} in one picture; name some as TASK#VARIANT",
                 variants.len()
             )));
         }
-        let bar = output::progress(variants.len() as u64, "drawing");
-        let row = |shown: &Shown| {
-            bar.inc(1);
-            self.row(shown)
+        let look = Look {
+            index: self.index,
+            turn: self.turn.map(|degrees| degrees as f32),
+            size: self.size,
+            columns: usize::from(self.columns),
         };
-        let rows = variants.iter().map(row).collect::<Result<Vec<_>, _>>()?;
+        let bar = output::progress(variants.len() as u64, "drawing");
+        let drawing = contact_sheet(&variants, look, &|| bar.inc(1))?;
         bar.finish_and_clear();
-        output::write_picture_and_tell(&self.output, &sheet(&rows, usize::from(self.columns))?)?;
+        output::write_picture_and_tell(&self.output, &drawing)?;
         if self.json {
             output::json_of_what_was_written()
         } else {
             Ok(())
         }
     }
-
-    fn row(&self, shown: &Shown) -> Result<SheetRow, Failure> {
-        let (seed, index) = (self.seed.unwrap_or(shown.seed), self.index.unwrap_or(shown.index));
-        let world = Sampler::new(&shown.variant, seed).world(index)?;
-        let views = Views::new(&world, self.size, self.turn as f32);
-        Ok(SheetRow {
-            title: shown.variant.id(),
-            words: shown.words.clone(),
-            pictures: vec![views.first_person()?.rgb, views.top_down()],
-        })
-    }
 }
 
-/// A variant, and which of its worlds is drawn if nothing is said.
-struct Shown {
+/// What a regime shows: the values that make a variant that no task declares are its words.
+fn of_regime<'a>(
     variant: Variant,
-    words: String,
-    seed: u64,
+    values: impl IntoIterator<Item = (&'a String, &'a Value)>,
+    regime: &Regime,
     index: u64,
-}
-
-impl Shown {
-    fn declared(variant: Variant) -> Self {
-        let words = variant
-            .task()
-            .variant_description(variant.name())
-            .unwrap_or_default()
-            .to_owned();
-        Self {
-            variant,
-            words,
-            seed: 0,
-            index: 0,
-        }
-    }
-
-    /// What a regime shows: the values that make a variant that no task declares are its words.
-    fn of_regime<'a>(
-        variant: Variant,
-        values: impl IntoIterator<Item = (&'a String, &'a Value)>,
-        regime: &Regime,
-        index: u64,
-    ) -> Self {
-        let listed: Vec<String> = values
-            .into_iter()
-            .map(|(name, value)| format!("{name} {value}"))
-            .collect();
-        let declared = Self::declared(variant);
-        Self {
-            words: if listed.is_empty() {
-                declared.words
-            } else {
-                listed.join(", ")
-            },
-            seed: regime.seed,
-            index,
-            ..declared
-        }
+) -> Shown {
+    let listed: Vec<String> = values
+        .into_iter()
+        .map(|(name, value)| format!("{name} {value}"))
+        .collect();
+    let declared = Shown::declared(variant, regime.seed);
+    Shown {
+        words: if listed.is_empty() {
+            declared.words
+        } else {
+            listed.join(", ")
+        },
+        index,
+        count: u64::from(regime.count),
+        ..declared
     }
 }
 
@@ -175,7 +143,7 @@ fn learned(file: &Path) -> Result<Vec<Shown>, Failure> {
                 )));
             }
             let task = tasks::task(&regime.task)?;
-            shown.push(Shown::of_regime(
+            shown.push(of_regime(
                 regime.resolve(&task)?,
                 &regime.values,
                 regime,
@@ -184,7 +152,10 @@ fn learned(file: &Path) -> Result<Vec<Shown>, Failure> {
             let end_task = tasks::task(regime.end_task())?;
             if let (Some(end), Some(drift)) = (regime.resolve_end(&end_task)?, &regime.drift) {
                 let last = regime.first_index + u64::from(regime.count) - 1;
-                shown.push(Shown::of_regime(end, &drift.values, regime, last));
+                shown.push(Shown {
+                    count: 1,
+                    ..of_regime(end, &drift.values, regime, last)
+                });
             }
         }
     }

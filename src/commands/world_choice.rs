@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use crate::Failure;
+use crate::env::EpisodeOrigin;
 use crate::spec::World;
-use crate::worlds::WorldRequest;
+use crate::worlds::{WorldRequest, is_world_file};
 use clap::Args;
 
 use super::output;
@@ -42,6 +43,19 @@ impl WorldChoice {
             index: self.index,
             l2explorer: self.l2explorer,
             maps: self.maps.clone(),
+        }
+    }
+
+    /// What names an episode in this world.
+    pub(crate) fn origin(&self) -> EpisodeOrigin {
+        let (task, variant) = self.world.split_once('#').unwrap_or((&self.world, ""));
+        let is_drawn = !self.l2explorer && !is_world_file(&self.world);
+        EpisodeOrigin {
+            task: Some(task.to_owned()),
+            variant: Some(variant.to_owned()).filter(|variant| !variant.is_empty()),
+            seed: is_drawn.then_some(self.seed),
+            index: is_drawn.then_some(self.index),
+            ..EpisodeOrigin::default()
         }
     }
 

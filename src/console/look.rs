@@ -8,6 +8,7 @@ use super::line::Picture;
 use super::map;
 use super::screen::{colors, half_blocks, letters};
 use super::session::{Session, plain};
+use crate::map_drawing::{self, Moves};
 use crate::modality::{Kind, target};
 use crate::report::picture;
 
@@ -37,7 +38,9 @@ impl Session<'_> {
     fn bird_view(&self, width: u32, height: u32) -> Image {
         let agent = self.environment.agent();
         let agent = Some((agent.position, agent.heading_deg));
-        top_down(self.environment.scene(), width, height, agent)
+        // In even light: a map of a dark world can be read.
+        let scene = self.environment.scene().clone().in_neutral_light();
+        top_down(&scene, width, height, agent)
     }
 
     pub(super) fn show(&mut self, picture: Picture, columns: Option<u32>) -> Result<String, String> {
@@ -67,6 +70,16 @@ impl Session<'_> {
         });
         let bytes = match picture {
             Picture::Seen(kind) => kind.to_png(&self.seen(kind, size)?, METRES_PER_LEVEL).map_err(plain)?,
+            // A square one with scale, north, triggers and signs.
+            Picture::Map if size[0] == size[1] && (1..=4096).contains(&size[0]) => {
+                let agent = self.environment.agent();
+                let moves = Moves {
+                    agent: (agent.position, agent.heading_deg),
+                    ..Moves::default()
+                };
+                let drawing = map_drawing::map(self.environment.world(), self.environment.scene(), &moves, size[0]);
+                drawing.to_png().map_err(plain)?
+            }
             Picture::Map if size.iter().all(|side| (1..=4096).contains(side)) => {
                 let Image { width, height, rgb } = self.bird_view(size[0], size[1]);
                 picture::Picture { width, height, rgb }.to_png().map_err(plain)?

@@ -11,6 +11,7 @@ use driftworld_report::{
 };
 
 use crate::figure_files::{Files, drawn};
+use crate::log_names::called_in;
 use crate::scoring::{ScoredLog, ScoringRequest, Setup, own_scale, score_logs};
 use crate::{Failure, Warn, log_folders};
 use neighbours::Neighbours;
@@ -150,6 +151,7 @@ fn chapter_options(
     ChapterOptions {
         figures: FigureOptions {
             distances,
+            names: called_in(&log.log),
             ..request.figure_options.clone()
         },
         shown: request.figures.clone(),

@@ -36,4 +36,5 @@ mod text_maps;
 mod transfer_report;
 mod undrawable;
 mod unity;
+mod watch;
 mod widths;

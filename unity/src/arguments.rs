@@ -31,6 +31,7 @@ Options:
   --assets LIB            a library of models that worlds may use beside the built-in ones, made by `driftworld assets pack`;
                           may be given again, the last one holds where two have the same model
   --screenshots DIR       the folder that screenshots are written into, and nowhere else [default: screenshots]
+  --record FILE           keep the world and the actions of every episode, for `driftworld replay`; goes on in a file that is there
   --raw-observations      pictures as floats instead of PNG: depth keeps its fractions, messages are twenty times as long
   -logFile [FILE]         where to write what is said on the terminal otherwise; without FILE or with - the terminal
   --help, --version
@@ -68,6 +69,8 @@ pub struct Options {
     pub screenshots: PathBuf,
     /// The form of pictures.
     pub pictures: PictureForm,
+    /// The file that episodes are recorded in, if they are.
+    pub record: Option<PathBuf>,
     /// The file that remarks go to; the terminal if absent.
     pub log: Option<PathBuf>,
 }
@@ -83,13 +86,14 @@ impl Default for Options {
             assets: Vec::new(),
             screenshots: PathBuf::from("screenshots"),
             pictures: PictureForm::Png,
+            record: None,
             log: None,
         }
     }
 }
 
 /// Options of ours.
-const OURS: [&str; 10] = [
+const OURS: [&str; 11] = [
     "--assets",
     "--mlagents-port",
     "--host",
@@ -97,6 +101,7 @@ const OURS: [&str; 10] = [
     "--world",
     "--maps",
     "--screenshots",
+    "--record",
     "--raw-observations",
     "--help",
     "--version",
@@ -159,6 +164,7 @@ impl Request {
                 "--assets" => options.assets.push(value("a file")?.into()),
                 "--maps" => options.maps = Some(value("a file")?.into()),
                 "--screenshots" => options.screenshots = value("a folder")?.into(),
+                "--record" => options.record = Some(value("a file")?.into()),
                 "--raw-observations" => match &inline {
                     None => options.pictures = PictureForm::Floats,
                     Some(found) => {

@@ -40,6 +40,14 @@ pub enum UnityError {
         /// What the system says.
         source: std::io::Error,
     },
+    /// A file of recordings that holds something else, or is damaged.
+    #[error("--record {}: {source}", path.shown())]
+    Recording {
+        /// Its path.
+        path: PathBuf,
+        /// Where, and what was found.
+        source: EnvError,
+    },
     /// The system gives us no network.
     #[error("network: cannot be used: {source}", source = one_line(source))]
     Network {

@@ -19,6 +19,7 @@ use crate::error::UnityError;
 use crate::journal::Journal;
 use crate::outbox::MAX_OUTGOING_BYTES;
 use crate::protocol::{HeaderProto, UnityInputProto, UnityMessageProto, UnityOutputProto};
+use crate::recordings::RecordingFile;
 use crate::screenshots::Screenshots;
 use crate::session::{Session, Setup, Turn};
 
@@ -55,6 +56,10 @@ pub fn run(options: &Options, journal: &mut Journal) -> Result<(), UnityError> {
     // Always with three digits of the second: readers of one fixed form do not take fewer.
     let clock = || format!("{:.3}", jiff::Timestamp::now());
     let mut session = Session::new(setup, Screenshots::new(&options.screenshots), clock);
+    let mut recordings = options.record.as_deref().map(RecordingFile::open).transpose()?;
+    if recordings.is_some() {
+        session.record();
+    }
     for remark in session.take_remarks() {
         journal.note(&remark);
     }
@@ -62,10 +67,22 @@ pub fn run(options: &Options, journal: &mut Journal) -> Result<(), UnityError> {
         .enable_all()
         .build()
         .map_err(|source| UnityError::Network { source })?;
-    let ended = runtime.block_on(serve(session, options, journal));
+    let ended = runtime.block_on(serve(&mut session, options, journal, recordings.as_mut()));
+    // However it ended: the episode under way is kept, too.
+    session.end_recording();
+    let kept = write(&mut session, recordings.as_mut());
     // What the network still has to do for a client that is gone is not waited for.
     runtime.shutdown_background();
-    ended
+    ended.and(kept)
+}
+
+/// Writes down the episodes that are over.
+fn write(session: &mut Session, recordings: Option<&mut RecordingFile>) -> Result<(), UnityError> {
+    let Some(recordings) = recordings else { return Ok(()) };
+    session
+        .take_recordings()
+        .into_iter()
+        .try_for_each(|recording| recordings.write(recording))
 }
 
 /// A world file, in our form or in the original's. What the original's reader made sense of is noted: a misspelt key reads as one
@@ -126,7 +143,12 @@ fn read(option: &'static str, path: &Path) -> Result<String, UnityError> {
     driftworld_files::text(path, MAX_BYTES as u64).map_err(|source| UnityError::Reading { option, source })
 }
 
-async fn serve(mut session: Session, options: &Options, journal: &mut Journal) -> Result<(), UnityError> {
+async fn serve(
+    session: &mut Session,
+    options: &Options,
+    journal: &mut Journal,
+    mut recordings: Option<&mut RecordingFile>,
+) -> Result<(), UnityError> {
     let mut connection = Connection::open(&options.host, options.port, options.wait).await?;
     let greeting = message(Session::greeting());
     let first = connection.greet(greeting, options.wait).await?;
@@ -172,6 +194,7 @@ async fn serve(mut session: Session, options: &Options, journal: &mut Journal) -
         for remark in session.take_remarks() {
             journal.note(&printable(&remark));
         }
+        let turn = write(session, recordings.as_deref_mut()).and(turn);
         next = match turn {
             Ok(Turn::Output(output)) => Ok(*output),
             Ok(Turn::Quit) => return Ok(()),

@@ -27,6 +27,14 @@ fn errors() -> Vec<UnityError> {
             path: "log.txt".into(),
             source: io::Error::new(io::ErrorKind::PermissionDenied, "permission denied"),
         },
+        UnityError::Recording {
+            path: "episodes.jsonl".into(),
+            source: driftworld_env::EnvError::Recording {
+                line: 1,
+                found: "another line".to_owned(),
+                expected: "the first line of a file of recordings".to_owned(),
+            },
+        },
         UnityError::Network {
             source: io::Error::new(io::ErrorKind::QuotaExceeded, "too many open files"),
         },

@@ -18,6 +18,7 @@ mod error;
 mod examples;
 mod finding;
 mod fuzz;
+mod images;
 mod layers;
 mod lock;
 mod metadata;
@@ -56,6 +57,8 @@ Usage:
   cargo xtask STAGE                 the same as `test --only STAGE`, but for `schemas` and `protocol`
   cargo xtask schemas               rewrite schemas/*.json and docs/reference/*.md from the Rust types
   cargo xtask docs                  the documentation of the crates, and the book of docs/ as target/book/index.html
+  cargo xtask images [--command FILE] [WORD]...
+                                    draw docs/images anew, or those whose names hold a WORD; FILE is a driftworld that is built
   cargo xtask protocol              rewrite unity/src/protocol.rs from unity/proto/*.proto
   cargo xtask advisories            check advisories, and write xtask/advisories-checked.txt
   cargo xtask fuzz SECONDS [TARGET]...
@@ -82,12 +85,19 @@ enum Request {
     RewriteSchemas,
     RewriteProtocol,
     Advisories,
+    Images {
+        command: Option<PathBuf>,
+        words: Vec<String>,
+    },
     Dist,
     Fuzz(Fuzz),
     Chaos(chaos::Options),
     Soundness(Vec<Tool>),
     Bench(Vec<Suite>),
-    Peers { python: String, scripts: PathBuf },
+    Peers {
+        python: String,
+        scripts: PathBuf,
+    },
 }
 
 fn main() -> ExitCode {
@@ -109,6 +119,14 @@ fn parse(arguments: &[String]) -> Result<Request, String> {
         ["-h" | "--help" | "help", ..] => Ok(Request::Help),
         ["schemas"] => Ok(Request::RewriteSchemas),
         ["protocol"] => Ok(Request::RewriteProtocol),
+        ["images", "--command", file, rest @ ..] => Ok(Request::Images {
+            command: Some(file.into()),
+            words: rest.iter().map(|word| (*word).to_owned()).collect(),
+        }),
+        ["images", rest @ ..] => Ok(Request::Images {
+            command: None,
+            words: rest.iter().map(|word| (*word).to_owned()).collect(),
+        }),
         ["advisories"] => Ok(Request::Advisories),
         ["dist"] => Ok(Request::Dist),
         ["fuzz", rest @ ..] => Fuzz::parse(rest).map(Request::Fuzz),
@@ -184,6 +202,9 @@ fn execute(request: Request) -> ExitCode {
         Request::RewriteSchemas => Workspace::load().and_then(|workspace| schemas::rewrite(&workspace)),
         Request::RewriteProtocol => Workspace::load().and_then(|workspace| protocol::rewrite(&workspace)),
         Request::Chaos(options) => Workspace::load().and_then(|workspace| chaos::unleash(&workspace, &options)),
+        Request::Images { command, words } => {
+            Workspace::load().and_then(|workspace| images::draw(&workspace, command.as_deref(), &words))
+        }
         Request::Advisories => Workspace::load().and_then(|workspace| deny::write_down(&workspace)),
         Request::Dist => Workspace::load().and_then(|workspace| dist::make(&workspace)),
         Request::Fuzz(wanted) => Workspace::load().and_then(|workspace| fuzz::search(&workspace, &wanted)),

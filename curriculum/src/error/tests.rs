@@ -153,6 +153,29 @@ fn every_error_has_its_message() {
                 limit: 9,
             },
         },
+        CurriculumError::Recording {
+            path: "logs/a/worker-default/0-test/actions.jsonl".into(),
+            source: driftworld_env::EnvError::Recording {
+                line: 3,
+                found: "the end of the file".into(),
+                expected: "a line end".into(),
+            },
+        },
+        CurriculumError::UnreadableRecordings {
+            source: driftworld_files::open(std::path::Path::new("no/such/actions.jsonl"), 1)
+                .err()
+                .unwrap(),
+        },
+        CurriculumError::Recordings {
+            path: "logs/a".into(),
+            doing: "list this folder",
+            source: std::io::Error::other("the disk is gone"),
+        },
+        CurriculumError::RecordingsLost {
+            path: "logs/a/worker-default/0-test/actions.jsonl".into(),
+            found: "no file".into(),
+            expected: 1234,
+        },
         CurriculumError::Log(MetricsError::LogExists {
             path: "logs/run".into(),
         }),

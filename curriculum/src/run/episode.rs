@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use driftworld_env::{Agent, EndedBy, EnvError, Environment, Label, Step};
+use driftworld_env::{Agent, EndedBy, EnvError, Environment, Label, Recorder, Step};
 
 /// Steps after which an experience in a world without a limit is over.
 pub const MOST_STEPS: u32 = 100_000;
@@ -53,6 +53,7 @@ impl Experience {
 pub(super) fn run_episode(
     agent: &mut dyn Agent,
     environment: &mut Environment,
+    mut recorder: Option<&mut Recorder>,
     context: &EpisodeContext,
 ) -> Result<Option<Experience>, EnvError> {
     if let Some(label) = context.label {
@@ -68,6 +69,9 @@ pub(super) fn run_episode(
         }
         let action = agent.act(environment);
         last = environment.step(action)?;
+        if let Some(recorder) = &mut recorder {
+            recorder.step(action);
+        }
         if !last.terminated && environment.num_steps() >= limit {
             last.truncated = true;
             last.ended_by.get_or_insert(EndedBy::Steps);

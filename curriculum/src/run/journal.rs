@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use driftworld_env::EndedBy;
+use driftworld_env::{EndedBy, EpisodeOrigin, Recording};
 use driftworld_metrics::{
-    Complexity, Difficulty, LogWriter, LoggerInfo, MetricsError, Record, Row, Rows, ScenarioInfo, ScenarioType,
-    TaskParams, Timestamp, begun_log, read_log_with_texts,
+    Complexity, DEFAULT_WORKER, Difficulty, LogWriter, LoggerInfo, MetricsError, Record, Row, Rows, ScenarioInfo,
+    ScenarioType, TaskParams, Timestamp, begun_log, read_log_with_texts,
 };
 use driftworld_spec::{ScenarioComplexity, ScenarioDifficulty, ScenarioForm, Variant};
 use serde_json::{Map, Value, json};
@@ -14,6 +14,7 @@ use super::columns::{self, COLUMNS, ENDED_BY, ENDING, block_type};
 use super::episode::Experience;
 use super::gap::{Gap, Gaps};
 use super::plan::Plan;
+use super::recordings::Recordings;
 use super::summary::{Progress, Summary};
 use crate::CurriculumError;
 
@@ -25,6 +26,18 @@ pub struct Journal {
     gaps: Gaps,
     /// A learning regime, and the variant at the end of its drift if it has one.
     learned: Option<(usize, Option<Variant>)>,
+    /// What was done, beside the rows, if that is kept.
+    recordings: Option<Recordings>,
+}
+
+/// An experience that is over.
+#[derive(Clone, Copy)]
+pub(super) struct LoggedExperience<'a> {
+    pub(super) experience: Experience,
+    /// Its variant where its regime drifts.
+    pub(super) between: Option<&'a Variant>,
+    /// What was done in it, if that is kept.
+    pub(super) recording: Option<&'a Recording>,
 }
 
 impl Journal {
@@ -84,7 +97,11 @@ impl Journal {
             count_row(plan, &mut summary, number, row).map_err(|(found, expected)| wrong(found, expected))?;
         }
         summary.finished = summary.num_over() == plan.num_experiences();
-        Ok(Self::new(writer, summary))
+        let mut journal = Self::new(writer, summary);
+        if Recordings::exist(folder)? {
+            journal.record();
+        }
+        Ok(journal)
     }
 
     fn new(writer: LogWriter, summary: Summary) -> Self {
@@ -93,7 +110,20 @@ impl Journal {
             summary,
             gaps: Gaps::default(),
             learned: None,
+            recordings: None,
         }
+    }
+
+    /// From now on keeps what is done in each experience, in a file beside the rows of its block, so that it can be drawn once more.
+    ///
+    /// A log that was begun so goes on so by itself.
+    pub fn record(&mut self) {
+        self.recordings = Some(Recordings::new(self.writer.dir()));
+    }
+
+    /// Whether it keeps what is done.
+    pub fn records(&self) -> bool {
+        self.recordings.is_some()
     }
 
     /// Logs that experience `number`, which is the next, is left out.
@@ -140,17 +170,26 @@ impl Journal {
         }
     }
 
-    /// Logs experience `number`, which is the next; `between` is its variant where its regime drifts.
+    /// Logs experience `number`, which is the next.
     pub(super) fn append(
         &mut self,
         plan: &Plan,
         number: u64,
-        experience: &Experience,
-        between: Option<&Variant>,
+        logged: LoggedExperience<'_>,
         now: Timestamp,
     ) -> Result<Progress, CurriculumError> {
         let planned = &plan.regimes[plan.regime_of(number)];
-        let gap = self.gap(plan, number, between);
+        let experience = &logged.experience;
+        let gap = self.gap(plan, number, logged.between);
+        if let (Some(recordings), Some(recording)) = (&mut self.recordings, logged.recording) {
+            // First: whenever the run is stopped, each row has its recording.
+            let recording = Recording {
+                origin: origin(plan, number)?,
+                ..recording.clone()
+            };
+            let block = (planned.block as u64, block_type(planned.kind));
+            recordings.append(DEFAULT_WORKER, block, &recording)?;
+        }
         let record = columns::record(planned, number, experience, &gap, now);
         let ended_by = experience.ended_by.map_or(UNKNOWN, EndedBy::word);
         let record = self.with_words(record, experience.ending(), ended_by);
@@ -192,8 +231,24 @@ impl Journal {
     /// # Errors
     /// [`CurriculumError::Log`].
     pub fn finish(self) -> Result<(), CurriculumError> {
-        Ok(self.writer.finish()?)
+        let synced = self.recordings.map_or(Ok(()), |mut recordings| recordings.sync());
+        self.writer.finish()?;
+        synced
     }
+}
+
+/// What names the episode of an experience.
+fn origin(plan: &Plan, number: u64) -> Result<EpisodeOrigin, CurriculumError> {
+    let spec = plan.experience_spec(number)?;
+    let (task, variant) = spec.variant.split_once('#').unwrap_or((spec.variant, ""));
+    Ok(EpisodeOrigin {
+        experience: number,
+        block: Some(spec.block as u64),
+        task: Some(task.to_owned()),
+        variant: Some(variant.to_owned()),
+        seed: spec.seed,
+        index: spec.index,
+    })
 }
 
 /// The word for what ended an experience where nobody said.

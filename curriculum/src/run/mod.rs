@@ -11,6 +11,7 @@ mod journal;
 mod log_names;
 mod plan;
 mod planned;
+mod recordings;
 mod rollout;
 mod shuffle;
 mod simulated;
@@ -23,7 +24,7 @@ use std::num::NonZeroUsize;
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use driftworld_env::{Agent, Catalogue, Environment};
+use driftworld_env::{Agent, Catalogue, Environment, Recorder, Recording};
 use driftworld_metrics::Timestamp;
 use driftworld_spec::{BlockKind, Variant, World};
 
@@ -33,6 +34,9 @@ pub use finishing::{Finished, try_expert};
 pub use journal::Journal;
 pub use log_names::same_log_name;
 pub use plan::{ExperienceSpec, FoundWorld, Plan, Sources, log_name};
+pub use recordings::{
+    MAX_RECORDINGS_BYTES, RECORDINGS_FILE, Recordings, list_recordings, read_recording, read_recording_file,
+};
 pub use rollout::{Rollout, run_rollout};
 pub(crate) use simulated::Meeting;
 pub use summary::{LeftOut, Progress, RegimeSummary, Summary};
@@ -40,6 +44,7 @@ pub use undrawable::{Failed, Trial, Tried, Undrawable, try_worlds};
 
 use crate::CurriculumError;
 use episode::EpisodeContext;
+use journal::LoggedExperience;
 use worlds::{Drawn, Worlds};
 
 /// What a run is handed, since it does not look at the clock.
@@ -87,7 +92,8 @@ pub fn run(
 ) -> Result<Summary, CurriculumError> {
     let total = plan.num_experiences();
     let (jobs, catalogue, stop) = (context.jobs.get(), context.catalogue.clone(), context.stop);
-    let worker = || Worker::new(plan, catalogue.clone(), stop);
+    let records = journal.records();
+    let worker = || Worker::new(plan, catalogue.clone(), stop).recording_if(records);
     let mut own = worker();
     let (mut worlds, mut block) = (Worlds::new(plan), None);
     let mut next = journal.num_experiences();
@@ -188,9 +194,18 @@ fn run_in_parallel(
                 return Ok(ControlFlow::Continue(()));
             }
             Outcome::LeftOut { .. } if is_repeat => return Ok(ControlFlow::Continue(())),
-            Outcome::Over { experience, between } => {
+            Outcome::Over {
+                experience,
+                between,
+                recording,
+            } => {
                 earned.insert(number, experience.reward);
-                journal.append(plan, number, &experience, between.as_deref(), (context.now)())?
+                let logged = LoggedExperience {
+                    experience,
+                    between: between.as_deref(),
+                    recording: recording.as_deref(),
+                };
+                journal.append(plan, number, logged, (context.now)())?
             }
             Outcome::LeftOut { reason } => journal.leave_out(plan, number, &reason, (context.now)())?,
         };
@@ -204,6 +219,8 @@ enum Outcome {
     Over {
         experience: Experience,
         between: Option<Box<Variant>>,
+        /// What was done in it, if that is wanted.
+        recording: Option<Box<Recording>>,
     },
     /// It was left out, since its world cannot be drawn.
     LeftOut { reason: String },
@@ -218,6 +235,8 @@ struct Worker<'a> {
     stop: &'a AtomicBool,
     worlds: Worlds<'a>,
     environment: Option<Environment>,
+    /// Takes down what is done, if that is wanted.
+    recorder: Option<Recorder>,
 }
 
 impl<'a> Worker<'a> {
@@ -228,7 +247,21 @@ impl<'a> Worker<'a> {
             stop,
             worlds: Worlds::new(plan),
             environment: None,
+            recorder: None,
         }
+    }
+
+    fn recording_if(self, records: bool) -> Self {
+        Self {
+            recorder: records.then(Recorder::default),
+            ..self
+        }
+    }
+
+    /// The recording of the last experience that was run to its end.
+    fn recording(&self, experience: &Experience) -> Option<Box<Recording>> {
+        let (recorder, environment) = self.recorder.as_ref().zip(self.environment.as_ref())?;
+        Some(Box::new(recorder.recording(environment, experience.ended_by)))
     }
 
     fn draw_and_run(&mut self, agent: &mut dyn Agent, number: u64) -> Result<Outcome, CurriculumError> {
@@ -240,7 +273,11 @@ impl<'a> Worker<'a> {
             Drawn::LeftOut { reason } => return Ok(Outcome::LeftOut { reason }),
         };
         let experience = self.run(agent, number, world)?;
-        Ok(experience.map_or(Outcome::CutOff, |experience| Outcome::Over { experience, between }))
+        Ok(experience.map_or(Outcome::CutOff, |experience| Outcome::Over {
+            experience,
+            between,
+            recording: self.recording(&experience),
+        }))
     }
 
     /// Runs one experience in its world; nothing if it was stopped on its way.
@@ -255,6 +292,9 @@ impl<'a> Worker<'a> {
             experience: number,
             source,
         };
+        if let Some(recorder) = &mut self.recorder {
+            recorder.begin(world.clone());
+        }
         let environment = match &mut self.environment {
             Some(environment) => {
                 environment.reset(world);
@@ -268,7 +308,7 @@ impl<'a> Worker<'a> {
             learn: planned.kind == BlockKind::Learning,
             stop: self.stop,
         };
-        episode::run_episode(agent, environment, &episode).map_err(failed)
+        episode::run_episode(agent, environment, self.recorder.as_mut(), &episode).map_err(failed)
     }
 }
 
@@ -289,6 +329,10 @@ impl Rollout for OneByOne<'_, '_> {
 
     fn experience(&mut self, number: u64, world: World) -> Result<Option<Experience>, CurriculumError> {
         self.worker.run(self.agent, number, world)
+    }
+
+    fn recording(&mut self, _number: u64, experience: &Experience) -> Result<Option<Recording>, CurriculumError> {
+        Ok(self.worker.recording(experience).map(|recording| *recording))
     }
 
     fn logged(&mut self, progress: &Progress, _reward: Option<f64>) -> Result<ControlFlow<()>, CurriculumError> {

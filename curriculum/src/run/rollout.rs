@@ -2,9 +2,11 @@
 
 use std::ops::{ControlFlow, Range};
 
+use driftworld_env::Recording;
 use driftworld_metrics::Timestamp;
 use driftworld_spec::{BlockKind, World};
 
+use super::journal::LoggedExperience;
 use super::worlds::{Drawn, Worlds};
 use super::{Experience, Journal, Plan, Progress, Summary};
 use crate::CurriculumError;
@@ -34,6 +36,15 @@ pub trait Rollout {
     /// # Errors
     /// Ends the run.
     fn experience(&mut self, number: u64, world: World) -> Result<Option<Experience>, Self::Error>;
+
+    /// What was done in the experience that was run last, for a log that keeps that. Nothing by default.
+    ///
+    /// # Errors
+    /// Ends the run.
+    fn recording(&mut self, number: u64, experience: &Experience) -> Result<Option<Recording>, Self::Error> {
+        let _ = (number, experience);
+        Ok(None)
+    }
 
     /// After the last experience of a learning block, when so many are in the log.
     ///
@@ -121,7 +132,17 @@ pub(super) fn run_range<R: Rollout>(
                 let Some(experience) = rollout.experience(number, world)? else {
                     return Ok(ControlFlow::Break(()));
                 };
-                let progress = journal.append(plan, number, &experience, between.as_deref(), now())?;
+                let recording = if journal.records() {
+                    rollout.recording(number, &experience)?
+                } else {
+                    None
+                };
+                let logged = LoggedExperience {
+                    experience,
+                    between: between.as_deref(),
+                    recording: recording.as_ref(),
+                };
+                let progress = journal.append(plan, number, logged, now())?;
                 if planned.kind == BlockKind::Evaluation && evaluated.len() < rollout.repeated_evaluations() {
                     evaluated.push((number, experience.reward));
                 }

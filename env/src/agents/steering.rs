@@ -4,7 +4,7 @@
 use driftworld_spec::{ActionModel, ActionSpace, MotionModel, Object, Zone};
 
 use super::route::Route;
-use crate::sim::{Action, SimRef};
+use crate::sim::{Action, Environment, SimRef};
 
 /// Metres within which an object is walked at straight, whatever the way.
 const NEAR: f32 = 2.0;
@@ -181,6 +181,13 @@ pub(super) fn in_space_where(numbers: [f64; 3], sim: SimRef, is_allowed: impl Fn
     });
     let nearest = misses.min_by(|(_, a), (_, b)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
     Action::Discrete(nearest.map_or(0, |(row, _)| row))
+}
+
+impl Environment {
+    /// The action of this world that comes nearest to a speed in m/s, a turn rate in °/s, clockwise, and whether to interact.
+    pub fn action_near(&self, speed: f64, turn: f64, interact: bool) -> Action {
+        in_space([speed, turn, if interact { 1.0 } else { 0.0 }], self.sim())
+    }
 }
 
 /// A speed and a turn as a point to walk to: that which the velocity leads to in one step.

@@ -22,6 +22,7 @@ use self::part::{Drawing, Part, Work};
 use self::slot::Slot;
 use crate::EnvError;
 use crate::assets::Catalogue;
+use crate::recording::Recording;
 use crate::render::{CpuRenderer, Renderer, RendererKind};
 use crate::sim::{Action, EndedBy, Environment, Event};
 
@@ -185,6 +186,19 @@ impl Batch {
     /// Why the last step of an environment ended its episode, if it did.
     pub fn ended_by(&self, env: usize) -> Option<EndedBy> {
         self.slots.get(env)?.step.ended_by
+    }
+
+    /// Takes down what is done in each environment from now on, or no longer. Steps take memory then.
+    pub fn set_recording(&mut self, records: bool) {
+        for slot in &mut self.slots {
+            slot.set_recording(records);
+        }
+    }
+
+    /// What was done in an environment's episode so far; before its first step, and where it began by itself in the step that ended
+    /// another, what was done in the one before. `None` unless [`Batch::set_recording`] asks for it.
+    pub fn recording(&self, env: usize) -> Option<Recording> {
+        self.slots.get(env)?.recording()
     }
 
     /// Which episode an environment is in.

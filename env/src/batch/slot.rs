@@ -8,6 +8,7 @@ use super::options::{Autoreset, Episode, WorldSource};
 use super::outputs::OutputsMut;
 use crate::EnvError;
 use crate::assets::Catalogue;
+use crate::recording::{Recorder, Recording};
 use crate::render::CpuRenderer;
 use crate::sim::{Action, EndedBy, Environment, Step};
 
@@ -26,6 +27,9 @@ pub(super) struct Slot {
     /// Steps of the episode that runs, and how many it may have.
     steps: u32,
     limit: Option<NonZeroU32>,
+    /// Takes the episode down, if that is wanted, and the episode before.
+    recorder: Option<Recorder>,
+    before: Option<Recording>,
 }
 
 impl Slot {
@@ -56,7 +60,24 @@ impl Slot {
             is_over: false,
             steps: 0,
             limit,
+            recorder: None,
+            before: None,
         })
+    }
+
+    /// Takes down what is done from now on, or no longer.
+    pub(super) fn set_recording(&mut self, records: bool) {
+        self.recorder = records.then(|| Recorder::from_now(&self.environment));
+        self.before = None;
+    }
+
+    /// The episode so far; before its first step the one before, if there is one.
+    pub(super) fn recording(&self) -> Option<Recording> {
+        let recorder = self.recorder.as_ref()?;
+        if recorder.num_steps() == 0 && self.before.is_some() {
+            return self.before.clone();
+        }
+        Some(recorder.recording(&self.environment, self.step.ended_by))
     }
 
     pub(super) fn episode(&self) -> Episode {
@@ -137,6 +158,9 @@ impl Slot {
             return self.reset(index, outputs, renderer);
         }
         self.environment.step_into(action, &mut self.step)?;
+        if let Some(recorder) = &mut self.recorder {
+            recorder.step(action);
+        }
         self.steps = self.steps.saturating_add(1);
         if self.limit.is_some_and(|limit| self.steps >= limit.get()) {
             self.step.truncated = true;
@@ -168,6 +192,12 @@ impl Slot {
             reason,
         })?;
         self.layout.check(self.env, &world)?;
+        if let Some(recorder) = &mut self.recorder {
+            if recorder.num_steps() > 0 {
+                self.before = Some(recorder.recording(&self.environment, self.step.ended_by));
+            }
+            recorder.begin(world.clone());
+        }
         self.environment.reset(world);
         self.current = self.next;
         self.next = self.next.saturating_add(1);

@@ -39,4 +39,4 @@ pub use picture::Picture;
 pub use renderer::Renderer;
 pub use report::{AdapterReport, RendererReport};
 pub use target::Target;
-pub use top_down::{Image, top_down, top_down_with_way};
+pub use top_down::{Image, top_down, top_down_scale, top_down_with_way};

@@ -85,6 +85,11 @@ pub fn top_down_with_way(
     image
 }
 
+/// Pixels in each metre of the map that [`top_down`] draws of a scene in this size; the arena's middle is the picture's.
+pub fn top_down_scale(scene: &Scene, width: u32, height: u32) -> f32 {
+    height as f32 / span(scene, width as f32 / height as f32)
+}
+
 /// Height of the ground that the map shows, in metres: arena and objects, with a margin of 6 %.
 fn span(scene: &Scene, aspect: f32) -> f32 {
     let [mut wide, mut deep] = scene.arena_size();

@@ -23,6 +23,7 @@ from driftworld.errors import (
 from driftworld.experiments import elements
 from driftworld.lifetimes import Agent, Summary, Transition
 from driftworld.logs import Log, LogWriter, read_log, validate_log
+from driftworld.recordings import Recording, replay
 from driftworld.scores import Metrics, metrics, report
 from driftworld.specs import Drift, TaskSpec, Variant, built_in_tasks, validate, variant, variants
 from driftworld.vector_lifetimes import VectorAgent, VectorTransition
@@ -47,6 +48,7 @@ __all__ = [
     "Metrics",
     "MetricsError",
     "Order",
+    "Recording",
     "SimilarityError",
     "SpecError",
     "Summary",
@@ -64,6 +66,7 @@ __all__ = [
     "metrics",
     "order",
     "read_log",
+    "replay",
     "report",
     "segmentation_classes",
     "spread_seeds",

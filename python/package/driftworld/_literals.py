@@ -16,6 +16,7 @@ RendererName: TypeAlias = Literal["cpu", "gpu", "auto"]
 LabelPlace: TypeAlias = Literal["none", "info", "obs"]
 InfoFor: TypeAlias = Literal["agent", "full"]
 CameraName: TypeAlias = Literal["agent", "above", "both"]
+FilmModality: TypeAlias = Literal["rgb", "depth", "segmentation"]
 RenderMode: TypeAlias = Literal["human", "rgb_array"]
 AutoresetName: TypeAlias = Literal["next_step", "same_step", "disabled"]
 

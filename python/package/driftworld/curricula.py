@@ -380,6 +380,7 @@ class Curriculum(Sequence[Block]):
         check_frozen: bool = True,
         seed: int = 0,
         paired_chance: bool = False,
+        record: bool = False,
         watch: Callable[[Experience, float], Any] | None = None,
         **options: Any,
     ) -> Summary:
@@ -402,6 +403,8 @@ class Curriculum(Sequence[Block]):
                 run that the curriculum has of itself.
             paired_chance: Give ``begin`` the same number in every evaluation of a world, so that an agent that has not changed
                 earns the same in it. An agent can know a world by that number; by default it is another one in every block.
+            record: Keep what is done in each experience, in an ``actions.jsonl`` beside its rows, so that :func:`driftworld.replay` and
+                ``driftworld replay`` draw it once more. A log that was begun so goes on so.
             watch: Called with each experience and its reward as soon as it is logged, NaN for one that is left out; ``False`` from it ends
                 the run there.
             options: Options of the environment, as for :class:`driftworld.DriftworldEnv`: ``modalities``, ``size``, ``actions`` and
@@ -423,7 +426,7 @@ class Curriculum(Sequence[Block]):
             return Rollout(agent, env, lambda number: _experience(plan, number), options, paired_chance, watch, save)
 
         made_with = {"environment": noted(options), **({"paired_chance": True} if paired_chance else {})}
-        return Lifetime(plan, agent, log, resume, check_frozen).live(made_with, rollout)
+        return Lifetime(plan, agent, log, resume, check_frozen, record).live(made_with, rollout)
 
     def run_vector(
         self,
@@ -437,6 +440,7 @@ class Curriculum(Sequence[Block]):
         check_frozen: bool = True,
         seed: int = 0,
         paired_chance: bool = False,
+        record: bool = False,
         watch: Callable[[Experience, float], Any] | None = None,
         **options: Any,
     ) -> Summary:
@@ -472,7 +476,7 @@ class Curriculum(Sequence[Block]):
 
         made_with = {"environment": noted(options), "num_envs": int(num_envs)}
         made_with |= {"paired_chance": True} if paired_chance else {}
-        return Lifetime(plan, agent, log, resume, check_frozen).live(made_with, rollout)
+        return Lifetime(plan, agent, log, resume, check_frozen, record).live(made_with, rollout)
 
     def _own_plan(self, skip_undrawable: bool, seed: int) -> _native.Plan:
         """A plan of one run: what that depends on is noted in it. Of the same tasks, whatever became of their files since."""

@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from driftworld import _native
 from driftworld._files import write_whole
+from driftworld._html import number, table
 from driftworld._literals import ComparedBy, OrderMethod, Scale
 from driftworld.envs.options import library_bytes
 from driftworld.logs import _pandas
@@ -29,6 +30,9 @@ if TYPE_CHECKING:
 
 #: The elements of the decision process, by letter.
 ELEMENTS = {"S": "state", "A": "action", "T": "transition", "R": "reward", "O": "observation"}
+
+#: Rows and columns of a matrix that a notebook shows.
+SHOWN = 20
 
 Weights = Mapping[str, float]
 PathLike = str | os.PathLike[str]
@@ -80,6 +84,16 @@ class Distance(float):
 
     def __str__(self) -> str:
         return str(self.total)
+
+    def _repr_html_(self) -> str:
+        elements = [(f"{letter} {ELEMENTS[letter]}", number(value)) for letter, value in self.elements.items()]
+        told = table(("element", "distance"), [("all", number(self.total)), *elements], self.compared)
+        head = ("part", "element", "measure", "raw", "weight", "share")
+        rows = [
+            (part["name"], part["element"], part["measure"], number(part["raw"]), f"{part['weight']:g}", f"{part['share']:.1%}")
+            for part in self.parts
+        ]
+        return told + (table(head, rows) if rows else "")
 
     def __getnewargs__(self) -> tuple[Any, ...]:
         return (self.total, self.elements, self.parts, self.by, self.compared)
@@ -349,6 +363,12 @@ class DistanceMatrix:
 
     def __repr__(self) -> str:
         return f"<DistanceMatrix of {len(self)} items>"
+
+    def _repr_html_(self) -> str:
+        labels, shown = self.labels, min(len(self), SHOWN)
+        more = f"; the first {shown} are shown" if shown < len(self) else ""
+        rows = [(labels[row], *(number(float(value)) for value in self.values[row, :shown])) for row in range(shown)]
+        return table(("", *labels[:shown]), rows, f"{len(self)} items{more}")
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (_matrix_again, (self._native.to_json(),))

@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 
 from driftworld import _native
 from driftworld._files import write_whole
+from driftworld._html import table
 from driftworld._plain import plain
 from driftworld.envs import DriftworldEnv
 from driftworld.errors import CurriculumError
@@ -119,6 +120,21 @@ class Summary:
     left_out: list[dict[str, Any]] = field(default_factory=list)
     ended_by: dict[str, int] = field(default_factory=dict)
 
+    def _repr_html_(self) -> str:
+        head = ("variant", "block", "kind", "experiences", "mean reward", "success")
+        rows = [
+            (
+                regime["variant"],
+                str(regime["block"]),
+                regime["kind"],
+                str(regime["experiences"]),
+                f"{regime['mean_reward']:.1f}",
+                f"{regime['success_rate']:.0%}",
+            )
+            for regime in self.regimes
+        ]
+        return table(head, rows, f"{self.experiences} experiences, {self.steps} steps")
+
     def __str__(self) -> str:
         rows = [("block", "kind", "variant", "experiences", "mean reward", "success")]
         for regime in self.regimes:
@@ -140,10 +156,17 @@ class Lifetime:
         log: The folder to log into; without one the log is forgotten.
         resume: Go on with the log in the folder if there is one.
         check_frozen: Run the first evaluations of each block once more, and refuse an agent that earns something else in them.
+        record: Keep what is done in each experience, beside its row.
     """
 
     def __init__(
-        self, plan: _native.Plan, agent: Any, log: str | PathLike[str] | None, resume: bool, check_frozen: bool
+        self,
+        plan: _native.Plan,
+        agent: Any,
+        log: str | PathLike[str] | None,
+        resume: bool,
+        check_frozen: bool,
+        record: bool,
     ) -> None:
         missing = [name for name in ("act", "learn", "freeze") if not callable(getattr(agent, name, None))]
         if missing:
@@ -151,7 +174,7 @@ class Lifetime:
             raise TypeError(f"agent: found {found}, expected act, learn and freeze; see driftworld.Agent")
         self._plan, self._agent = plan, agent
         self._log = None if log is None else Path(log)
-        self._resume, self._check_frozen = resume, check_frozen
+        self._resume, self._check_frozen, self._record = resume, check_frozen, record
         # What is saved lies beside the log: a log holds rows, nothing else.
         self._saves = None if self._log is None else _beside(self._log)
         self._whose = ""
@@ -173,8 +196,10 @@ class Lifetime:
             for what, print in notes.items():
                 self._plan.add_fingerprint(what, print)
             name = str(getattr(self._agent, "name", type(self._agent).__name__))
-            journal = _native.Journal(folder, self._plan, name, self._resume)
+            journal = _native.Journal(folder, self._plan, name, self._resume, self._record)
             stack.callback(journal.close)
+            if journal.records:
+                lived.record()
             done = len(journal)
             self._own_saves(done, {"scenario": self._plan.scenario(), "agent": name, **notes})
             said = journal.run(self._plan, lived, self._load(done), self._check_frozen)
@@ -309,6 +334,15 @@ class Rollout:
         cut_off = truncated and not terminated
         ended_by = info.get("ended_by") or ("steps" if cut_off else None)
         return earned, bool(info["is_success"]), steps, self._seconds(steps, time), cut_off, ended_by
+
+    def record(self) -> None:
+        """Takes down what is done in each experience from now on."""
+        self._env.unwrapped.record()
+
+    def recording(self, number: int) -> _native.RecordingHandle:
+        """What was done in the experience that was asked for last."""
+        handle: _native.RecordingHandle = self._env.unwrapped.recording()._handle
+        return handle
 
     def logged(self, number: int, reward: float) -> bool:
         """After an experience was logged, NaN for one that was left out; whether to go on."""

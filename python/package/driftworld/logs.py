@@ -17,6 +17,7 @@ from driftworld._literals import BlockSubtype, BlockType, Status
 
 if TYPE_CHECKING:
     import pandas
+    from driftworld.recordings import Recording
     from typing_extensions import Self
 
 #: Columns that hold whole numbers or numbers as they are; all others of a log but its metrics hold words.
@@ -69,6 +70,7 @@ class LogWriter:
         block_subtype: BlockSubtype = "wake",
         exp_status: Status = "complete",
         worker_id: str = "worker-default",
+        recording: Recording | None = None,
         **metrics: float,
     ) -> None:
         """Writes one row, stamped with the time now.
@@ -82,6 +84,7 @@ class LogWriter:
             block_subtype: ``"wake"`` or ``"sleep"``.
             exp_status: ``"complete"`` or ``"incomplete"``.
             worker_id: Who gathered the experience.
+            recording: What was done in it, as ``env.recording()`` has it: it is kept beside the row, for :func:`driftworld.replay`.
             metrics: The numbers: at least every metrics column, the same names in every row; NaN for no value.
 
         Raises:
@@ -90,8 +93,9 @@ class LogWriter:
         """
         numbers = {name: float(value) for name, value in metrics.items()}
         params = dict(task_params or {})
+        kept = None if recording is None else recording._handle
         self._file.write(
-            block_num, exp_num, block_type, block_subtype, task_name, params, exp_status, worker_id, numbers
+            block_num, exp_num, block_type, block_subtype, task_name, params, exp_status, worker_id, numbers, kept
         )
 
     def close(self) -> None:

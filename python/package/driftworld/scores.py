@@ -26,6 +26,7 @@ from driftworld._literals import (
     Unit,
     VariantMode,
 )
+from driftworld._html import number, table
 from driftworld.logs import _pandas
 
 if TYPE_CHECKING:
@@ -50,7 +51,7 @@ LIFETIME = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Metrics:
     """The scores of one lifetime or of several.
 
@@ -82,6 +83,23 @@ class Metrics:
     varied: dict[str, bool | None] = field(default_factory=dict, repr=False)
     _asked: tuple[list[str], dict[str, Any]] = field(default=([], {}), repr=False, compare=False)
     _scores: _native.Scores | None = field(default=None, repr=False, compare=False)
+
+    def __repr__(self) -> str:
+        count = len(self.lifetimes)
+        told = ", ".join(f"{name} {number(value)}" for name, value in self.lifetime.items())
+        return f"<Metrics of {count} {'lifetime' if count == 1 else 'lifetimes'}: {told}>"
+
+    def _repr_html_(self) -> str:
+        if len(self.lifetimes) != 1:
+            rows = [(name, number(value)) for name, value in self.lifetime.items()]
+            return table(("metric", "mean"), rows, f"{len(self.lifetimes)} lifetimes")
+        bands = self.lifetimes[0].get("null", {})
+        rows = []
+        for name, value in self.lifetime.items():
+            band = bands.get(name)
+            told = "" if band is None else f"{number(band['low'])} … {number(band['high'])}"
+            rows.append((name, number(value), told))
+        return table(("metric", "value", "if the agent never changed"), rows)
 
     @property
     def lifetime(self) -> dict[str, Any]:

@@ -105,14 +105,24 @@ class VectorRollout(Rollout):
             with_label(envs.single_observation_space, label)
         self._labels: list[Mapping[str, Any] | None] = [label] * num_envs
         self._names: list[dict[str, Any]] = [{}] * num_envs
-        self._has_begun = self._learning = False
+        self._has_begun = self._learning = self._records = False
         self._abandon()
+
+    def record(self) -> None:
+        """Takes down what is done in each experience from now on."""
+        self._env.record()
+        self._records = True
+
+    def recording(self, number: int) -> _native.RecordingHandle:
+        """What was done in an experience that is over; it is handed out once."""
+        return self._recordings.pop(number)
 
     def _abandon(self) -> None:
         """Forgets what is under way."""
         self._next, self._block = 0, -1
         self._running: list[int | None] = [None] * self._num_envs
         self._over: dict[int, tuple[float, bool, int, bool, str | None]] = {}
+        self._recordings: dict[int, _native.RecordingHandle] = {}
         self._earned = np.zeros(self._num_envs)
         self._steps = np.zeros(self._num_envs, dtype=np.int64)
         self._observations: Any = None
@@ -167,6 +177,8 @@ class VectorRollout(Rollout):
             earned, success, steps = float(self._earned[env]), bool(self._success[env]), int(self._steps[env])
             ended_by = infos["ended_by"][env] or ("steps" if cut_off else None)
             self._over[number] = (earned, success, steps, cut_off, ended_by)
+            if self._records:
+                self._recordings[number] = self._env.recording(env)._handle
             self._running[env] = None
 
     def _begin(self, env: int) -> bool:

@@ -47,7 +47,10 @@ fn clusters(scene: &Scene) -> Vec<Cluster> {
     };
     let panels = |(name, tasks): (&str, Vec<usize>)| match tasks.len() {
         2..=MOST_VARIANTS => vec![Cluster {
-            name: crate::words::shown(name),
+            name: match scene.names[tasks[0]].split_once('#') {
+                Some((task, _)) => task.to_owned(),
+                None => crate::words::shown(name),
+            },
             tasks,
         }],
         _ => tasks.into_iter().map(alone).collect(),

@@ -15,6 +15,7 @@ mod strip;
 mod thinning;
 mod timeline;
 
+use std::collections::BTreeMap;
 use std::str::FromStr;
 
 use driftworld_metrics::Lifetime;
@@ -25,6 +26,7 @@ pub(crate) use paper::load_font;
 pub(crate) use strip::{strip, thinned_count};
 
 use crate::ReportError;
+use crate::drawing::{Drawing, Recorder};
 use crate::words::shown;
 use paper::{Area, Drawn, Paper};
 use scene::Scene;
@@ -126,6 +128,8 @@ pub struct FigureOptions {
     /// How far apart each two neighbouring learning blocks are, as [`neighbours`](crate::neighbours) lists them; `None` within
     /// where a distance is not known. Default none: the timeline stands alone.
     pub distances: Option<Vec<Option<f64>>>,
+    /// What tasks are called in legends, by their names in the log, which hold letters and digits alone; others keep theirs.
+    pub names: BTreeMap<String, String>,
 }
 
 impl Default for FigureOptions {
@@ -134,6 +138,7 @@ impl Default for FigureOptions {
             unit: Unit::Experiences,
             show_eval_lines: true,
             distances: None,
+            names: BTreeMap::new(),
         }
     }
 }
@@ -259,27 +264,17 @@ fn vectors(
 fn pixels(
     figure: &'static str,
     (width, height): (i32, i32),
-    draw: impl for<'b> FnOnce(&Area<BitMapBackend<'b>>) -> Drawn<BitMapBackend<'b>>,
+    draw: impl for<'b> FnOnce(&Area<Recorder<'b>>) -> Drawn<Recorder<'b>>,
 ) -> Result<Vec<u8>, ReportError> {
     paper::load_font();
-    let (width, height) = (Paper::dots(width) as u32, Paper::dots(height) as u32);
-    let mut rgb = vec![255; width as usize * height as usize * 3];
+    let mut drawing = Drawing::blank(Paper::dots(width) as u32, Paper::dots(height) as u32);
     {
-        let area = BitMapBackend::with_buffer(&mut rgb, (width, height)).into_drawing_area();
+        let area = Recorder::onto(&mut drawing, 1.0).into_drawing_area();
         draw(&area)
             .and_then(|()| area.present())
             .map_err(|error| failed(figure, error))?;
     }
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, width, height);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
-    let written = encoder.write_header().and_then(|mut writer| {
-        writer.write_image_data(&rgb)?;
-        writer.finish()
-    });
-    written.map_err(|error| failed(figure, error))?;
-    Ok(bytes)
+    drawing.to_png()
 }
 
 fn failed(figure: &'static str, source: impl std::error::Error + Send + Sync + 'static) -> ReportError {

@@ -102,7 +102,9 @@ impl<'a> Scene<'a> {
             lifetime,
             column,
             options,
-            names: lifetime.tasks().iter().map(|task| shown(task)).collect(),
+            names: (lifetime.tasks().iter())
+                .map(|task| shown(options.names.get(task).unwrap_or(task)))
+                .collect(),
             stretches,
             span: if first < last { first..last } else { 0.0..1.0 },
         })

@@ -9,7 +9,7 @@ use driftworld_spec::{BlockKind, Phase, Regime, Scenario};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::{FAINT, INK, Picture};
+use super::{Drawing, FAINT, INK, text_width};
 use crate::ReportError;
 
 /// Colours of the rows, told apart by most colour-blind eyes too (Okabe and Ito).
@@ -26,6 +26,9 @@ const ROW: i32 = 40;
 const BAR: i32 = 24;
 const TOP: i32 = 84;
 const WIDTH: i32 = 1200;
+/// Size of the rows' names as the plotting library counts it, and how much more that is than the letters' size.
+const NAME: f32 = 17.5;
+const LIBRARY_SIZE: f32 = 1.24;
 /// The most rows that are drawn; the variants beyond share the last.
 const MOST_ROWS: usize = 60;
 
@@ -45,25 +48,28 @@ struct Stretch {
 ///
 /// # Errors
 /// [`ReportError::Drawing`].
-pub fn blocks(scenario: &Scenario) -> Result<Picture, ReportError> {
+pub fn blocks(scenario: &Scenario) -> Result<Drawing, ReportError> {
     let (rows, stretches) = stretches(scenario);
     let total = scenario.num_experiences().max(1) as f64;
-    let longest = rows.iter().map(|row| row.chars().count()).max().unwrap_or(0) as i32;
-    let left = (28 + 8 * longest).min(WIDTH / 2);
+    let longest = rows
+        .iter()
+        .map(|row| text_width(row, NAME / LIBRARY_SIZE))
+        .fold(0.0, f32::max);
+    let left = (32 + longest.ceil() as i32).min(WIDTH / 2);
     let bottom = TOP + ROW * rows.len() as i32;
-    let mut picture = Picture::blank((WIDTH + 28) as u32, (bottom + 56) as u32);
+    let mut picture = Drawing::blank((WIDTH + 28) as u32, (bottom + 56) as u32);
     let x = |experience: f64| left + (f64::from(WIDTH - left) * experience / total).round() as i32;
     let y = |row: f64| TOP + (f64::from(ROW) * (row + 0.5)).round() as i32;
-    picture.draw(|area| {
-        let write = |text: &str, at: (i32, i32), size: u32, color: &RGBColor, anchor: Pos| {
+    picture.draw(1.0, |area| {
+        let write = |text: &str, at: (i32, i32), size: f32, color: &RGBColor, anchor: Pos| {
             let style = ("sans-serif", size).into_font().color(color).pos(anchor);
             area.draw_text(text, &style, at)
         };
         let from_left = Pos::new(HPos::Left, VPos::Top);
-        write(&scenario.name, (16, 12), 24, &INK, from_left)?;
+        write(&scenario.name, (16, 12), 26.0, &INK, from_left)?;
         legend(
             left,
-            |text, at| write(text, at, 15, &FAINT, from_left),
+            |text, at| write(text, at, 16.5, &FAINT, from_left),
             |shape, style| area.draw(&Rectangle::new(shape, style)),
         )?;
         for (index, row) in rows.iter().enumerate() {
@@ -72,7 +78,13 @@ pub fn blocks(scenario: &Scenario) -> Result<Picture, ReportError> {
                 [(left, middle), (WIDTH, middle)],
                 RGBColor(228, 230, 233),
             ))?;
-            write(row, (left - 12, middle), 16, &INK, Pos::new(HPos::Right, VPos::Center))?;
+            write(
+                row,
+                (left - 12, middle),
+                NAME,
+                &INK,
+                Pos::new(HPos::Right, VPos::Center),
+            )?;
         }
         for stretch in &stretches {
             // A stretch too short to be seen is drawn a pixel wide.
@@ -124,12 +136,12 @@ pub fn blocks(scenario: &Scenario) -> Result<Picture, ReportError> {
             write(
                 &format!("{tick}"),
                 (at, bottom + 8),
-                14,
+                15.5,
                 &FAINT,
                 Pos::new(HPos::Center, VPos::Top),
             )?;
         }
-        write("experiences", (left, bottom + 28), 15, &FAINT, from_left)?;
+        write("experiences", (left, bottom + 28), 16.5, &FAINT, from_left)?;
         Ok(())
     })?;
     Ok(picture)

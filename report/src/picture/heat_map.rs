@@ -3,22 +3,33 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::{INK, Label, Picture};
+use super::{Drawing, INK, Label, Level, Side, TextLine, text_width};
 use crate::ReportError;
+
+/// Sizes of the letters of names and of the title, in pixels.
+const LABEL: f32 = 14.0;
+const TITLE: f32 = 20.0;
 
 /// A square table of distances as coloured cells with their numbers; `labels` name rows and columns.
 ///
 /// # Errors
 /// [`ReportError::Drawing`].
-pub fn heat_map(title: &str, labels: &[String], value: impl Fn(usize, usize) -> f64) -> Result<Picture, ReportError> {
+pub fn heat_map(title: &str, labels: &[String], value: impl Fn(usize, usize) -> f64) -> Result<Drawing, ReportError> {
     let n = labels.len() as i32;
-    let longest = labels.iter().map(|label| label.chars().count()).max().unwrap_or(0) as i32;
+    let longest = labels
+        .iter()
+        .map(|label| text_width(label, LABEL).ceil() as i32)
+        .max()
+        .unwrap_or(0);
     let cell = (640 / n.max(1)).clamp(16, 92);
-    let (left, top) = (24 + 9 * longest, 88);
-    let mut picture = Picture::blank((left + cell * n + 24) as u32, (top + cell * n + 24) as u32);
+    // Names that are wider than a column stand upright.
+    let upright = longest > cell - 6;
+    let (left, top) = (26 + longest, if upright { 64 + longest } else { 88 });
+    let width = (left + cell * n).max(16 + text_width(title, TITLE).ceil() as i32) + 24;
+    let mut picture = Drawing::blank(width as u32, (top + cell * n + 24) as u32);
     let numbers: Vec<f64> = (0..n * n).map(|k| value((k / n) as usize, (k % n) as usize)).collect();
     let largest = numbers.iter().copied().fold(0.0, f64::max);
-    picture.draw(|area| {
+    picture.draw(1.0, |area| {
         for (k, number) in numbers.iter().enumerate() {
             let (row, column) = (k as i32 / n, k as i32 % n);
             let (x, y) = (left + column * cell, top + row * cell);
@@ -29,7 +40,7 @@ pub fn heat_map(title: &str, labels: &[String], value: impl Fn(usize, usize) -> 
             ))?;
             if cell >= 36 {
                 let color = if share > 0.55 { WHITE } else { INK };
-                let style = ("sans-serif", 16)
+                let style = ("sans-serif", 17)
                     .into_font()
                     .color(&color)
                     .pos(Pos::new(HPos::Center, VPos::Center));
@@ -41,7 +52,7 @@ pub fn heat_map(title: &str, labels: &[String], value: impl Fn(usize, usize) -> 
     let mut texts = vec![Label {
         text: title,
         at: (16, 14),
-        size: 22,
+        size: TITLE as u32,
         color: INK,
         anchor: Pos::new(HPos::Left, VPos::Top),
     }];
@@ -51,22 +62,30 @@ pub fn heat_map(title: &str, labels: &[String], value: impl Fn(usize, usize) -> 
         texts.push(Label {
             text: label,
             at: (left - 10, top + middle),
-            size: 16,
+            size: LABEL as u32,
             color: INK,
             anchor: right,
         });
-        if cell >= 56 {
+        if !upright {
             let above = Pos::new(HPos::Center, VPos::Bottom);
             texts.push(Label {
                 text: label,
-                at: (left + middle, top - 8),
-                size: 16,
+                at: (left + middle, top - 6),
+                size: LABEL as u32,
                 color: INK,
                 anchor: above,
             });
         }
     }
-    picture.label(&texts)?;
+    picture.label(&texts);
+    if upright {
+        for (label, index) in labels.iter().zip(0..) {
+            let RGBColor(r, g, b) = INK;
+            let at = [(left + index * cell + cell / 2) as f32, (top - 8) as f32];
+            let words = TextLine::new(label, at, LABEL, [r, g, b]).anchored(Side::Left, Level::Middle);
+            picture.write(TextLine { turns: 3, ..words });
+        }
+    }
     Ok(picture)
 }
 

@@ -7,17 +7,17 @@
 
 use driftworld_similarity::{DistanceMatrix, Method, Ordering, classical_map};
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::{FAINT, INK, Label, Picture};
+use super::{Drawing, FAINT, INK, Level, Side, TextLine, text_width};
 use crate::ReportError;
 
-/// Twice the size of the picture, which is halved in the end so that slanted lines are smooth.
+/// Twice the size of the picture: the plotting library knows whole numbers only.
 const SIZE: (i32, i32) = (2000, 1600);
 /// Free of items at the left and right, above, and below.
 const MARGINS: [i32; 3] = [220, 240, 120];
-/// The size of the items' names, and their width for each letter.
-const TEXT: (i32, i32) = (28, 14);
+/// The size of the items' names, and below which height they stand, in pixels of the picture.
+const TEXT: f32 = 13.0;
+const TITLES: f32 = 66.0;
 /// With more items than this only the ends are named.
 const MAX_NAMED: usize = 60;
 
@@ -25,15 +25,15 @@ const MAX_NAMED: usize = 60;
 ///
 /// # Errors
 /// [`ReportError::Drawing`].
-pub fn path_map(matrix: &DistanceMatrix, method: Method, ordering: &Ordering) -> Result<Picture, ReportError> {
+pub fn path_map(matrix: &DistanceMatrix, method: Method, ordering: &Ordering) -> Result<Drawing, ReportError> {
     let map = classical_map(matrix);
     let places = on_paper(&map.points);
     let path: Vec<(i32, i32)> = ordering.indices.iter().map(|index| places[*index]).collect();
-    let mut picture = Picture::blank(SIZE.0 as u32, SIZE.1 as u32);
+    let mut picture = Drawing::blank(SIZE.0 as u32 / 2, SIZE.1 as u32 / 2);
     let last = path.len().saturating_sub(1);
     let many = path.len() > MAX_NAMED;
     let (width, radius) = if many { (3, 7) } else { (5, 13) };
-    picture.draw(|area| {
+    picture.draw(0.5, |area| {
         for (step, pair) in path.windows(2).enumerate() {
             let color = along(step, last.saturating_sub(1));
             area.draw(&PathElement::new(pair.to_vec(), color.stroke_width(width)))?;
@@ -65,18 +65,24 @@ pub fn path_map(matrix: &DistanceMatrix, method: Method, ordering: &Ordering) ->
             (100.0 * map.explained).floor()
         ),
     ];
-    let names = names(matrix, ordering, &path, many);
-    let mut labels = vec![
-        label(&titles[0], (40, 36), 44, INK, HPos::Left),
-        label(&titles[1], (40, 96), 30, FAINT, HPos::Left),
-    ];
-    labels.extend(
-        names
-            .iter()
-            .map(|name| label(&name.text, name.at, TEXT.0 as u32, INK, name.side)),
-    );
-    picture.label(&labels)?;
-    Ok(picture.halved())
+    let rgb_of = |color: RGBColor| [color.0, color.1, color.2];
+    picture.write(TextLine::new(&titles[0], [20.0, 18.0], 19.0, rgb_of(INK)));
+    picture.write(TextLine::new(&titles[1], [20.0, 47.0], 13.0, rgb_of(FAINT)));
+    let path: Vec<[f32; 2]> = path.into_iter().map(halved).collect();
+    for name in names(matrix, ordering, &path, many) {
+        if let Some(leader) = name.leader {
+            picture.line(leader, 1.0, rgb_of(FAINT));
+        }
+        let [left, top, _, bottom] = name.place;
+        let words = TextLine::new(name.text, [left + 2.0, f32::midpoint(top, bottom)], TEXT, rgb_of(INK));
+        picture.write(words.anchored(Side::Left, Level::Middle));
+    }
+    Ok(picture)
+}
+
+/// A place on the doubled paper in pixels of the picture.
+fn halved((x, y): (i32, i32)) -> [f32; 2] {
+    [x as f32 / 2.0, y as f32 / 2.0]
 }
 
 /// What all labels begin with, up to the `#` behind a task's name; nothing if they are of several tasks.
@@ -88,17 +94,6 @@ fn common_task(labels: &[String]) -> &str {
         common
     } else {
         ""
-    }
-}
-
-fn label(text: &str, at: (i32, i32), size: u32, color: RGBColor, side: HPos) -> Label<'_> {
-    let anchor = Pos::new(side, VPos::Top);
-    Label {
-        text,
-        at,
-        size,
-        color,
-        anchor,
     }
 }
 
@@ -154,84 +149,108 @@ fn arrow(from: (i32, i32), to: (i32, i32), size: i32) -> Option<[(i32, i32); 3]>
     Some([at(1.0, 0.0), at(-0.7, 0.8), at(-0.7, -0.8)])
 }
 
-/// A name in the picture.
+/// A name in the picture: its box (left, top, right, bottom), and where a line leads from it to its point if it is far off.
 struct Name {
     text: String,
-    at: (i32, i32),
-    side: HPos,
+    place: [f32; 4],
+    leader: Option<[[f32; 2]; 2]>,
 }
 
 /// Each item's place in the order and its name, beside its point where they cover nothing else; all items, or the two ends.
-fn names(matrix: &DistanceMatrix, ordering: &Ordering, path: &[(i32, i32)], ends_only: bool) -> Vec<Name> {
-    // What is taken: left, top, right, bottom.
-    let mut taken: Vec<[i32; 4]> = path.iter().map(|(x, y)| [x - 12, y - 12, x + 12, y + 12]).collect();
-    taken.extend(path.windows(2).flat_map(|pair| along_step(pair[0], pair[1])));
+/// What finds no room beside its point stands farther off, with a line to it.
+fn names(matrix: &DistanceMatrix, ordering: &Ordering, path: &[[f32; 2]], ends_only: bool) -> Vec<Name> {
     let last = path.len().saturating_sub(1);
     let task = common_task(matrix.labels());
-    let short = |label: &str| label[task.len()..].to_owned();
-    let mut names = Vec::new();
-    for (place, (x, y)) in path.iter().enumerate() {
+    let dots: Vec<[f32; 4]> = path.iter().map(|[x, y]| [x - 6.0, y - 6.0, x + 6.0, y + 6.0]).collect();
+    let steps: Vec<[f32; 4]> = path
+        .windows(2)
+        .flat_map(|pair| along_line(pair[0], pair[1], 2.0))
+        .collect();
+    let mut names: Vec<Name> = Vec::new();
+    for (place, point) in path.iter().enumerate() {
         if ends_only && place != 0 && place != last {
             continue;
         }
-        let text = format!("{} {}", place + 1, short(&matrix.labels()[ordering.indices[place]]));
-        let wide = TEXT.1 * text.chars().count() as i32;
-        let (gap, high) = (18, TEXT.0 + 4);
-        // Right, left, below and above, and then the same farther off.
-        let spots = (0..6).flat_map(|ring| {
-            let off = ring * high;
-            [
-                (x + gap, y - high / 2 - off, HPos::Left),
-                (x + gap, y - high / 2 + off, HPos::Left),
-                (x - gap, y - high / 2 - off, HPos::Right),
-                (x - gap, y - high / 2 + off, HPos::Right),
-                (*x, y + gap + off, HPos::Center),
-                (*x, y - gap - high - off, HPos::Center),
-            ]
+        let label = &matrix.labels()[ordering.indices[place]];
+        let text = format!("{} {}", place + 1, &label[task.len()..]);
+        let size = [text_width(&text, TEXT) + 4.0, TEXT * 1.25];
+        let cost = |name: &Name| {
+            let [left, top, right, bottom] = name.place;
+            let paper = [
+                left,
+                top - TITLES,
+                SIZE.0 as f32 / 2.0 - right,
+                SIZE.1 as f32 / 2.0 - bottom,
+            ];
+            let outside: f32 = paper.map(|room| (-room).max(0.0)).iter().sum();
+            let line: Vec<[f32; 4]> = name.leader.iter().flat_map(|[a, b]| along_line(*a, *b, 1.0)).collect();
+            let covered = |others: &[[f32; 4]]| others.iter().map(|other| overlap(&name.place, other)).sum::<f32>();
+            let crossed: f32 = names
+                .iter()
+                .map(|other| {
+                    let met = line.iter().map(|square| overlap(square, &other.place)).sum::<f32>();
+                    let theirs = other.leader.iter().flat_map(|[a, b]| along_line(*a, *b, 1.0));
+                    overlap(&name.place, &other.place)
+                        + met
+                        + theirs.map(|square| overlap(&name.place, &square)).sum::<f32>()
+                })
+                .sum();
+            let away = name
+                .leader
+                .map_or(0.0, |[a, b]| 40.0 + (b[0] - a[0]).hypot(b[1] - a[1]));
+            1000.0 * (outside + crossed) + 20.0 * covered(&dots) + covered(&steps) + away
+        };
+        let spots = spots(*point, size).map(|(place, leader)| Name {
+            text: text.clone(),
+            place,
+            leader,
         });
-        let boxed = |(x, y, side): &(i32, i32, HPos)| {
-            let left = match side {
-                HPos::Left => *x,
-                HPos::Right => x - wide,
-                HPos::Center => x - wide / 2,
-            };
-            [left, *y, left + wide, y + high]
-        };
-        let covered = |spot: &(i32, i32, HPos)| -> i64 {
-            let mine = boxed(spot);
-            let beyond = [-mine[0], mine[2] - SIZE.0, 130 - mine[1], mine[3] - SIZE.1];
-            let outside = i64::from(beyond.map(|pixels| pixels.max(0)).iter().sum::<i32>()) * 100;
-            // A little overlap is better than a name far from its point.
-            let off = i64::from((spot.1 - y).abs()) * 3;
-            outside + off + taken.iter().map(|other| overlap(&mine, other)).sum::<i64>()
-        };
-        if let Some(best) = spots.min_by_key(covered) {
-            taken.push(boxed(&best));
-            names.push(Name {
-                text,
-                at: (best.0, best.1),
-                side: best.2,
-            });
+        let priced = spots.map(|name| (cost(&name), name));
+        if let Some((_, best)) = priced.min_by(|a, b| a.0.total_cmp(&b.0)) {
+            names.push(best);
         }
     }
     names
 }
 
-/// Small squares along a step, which names had better not cover.
-fn along_step(from: (i32, i32), to: (i32, i32)) -> impl Iterator<Item = [i32; 4]> {
-    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
-    let parts = (dx.abs().max(dy.abs()) / 24).max(1);
+/// Where a name of this size may stand: at each side of its point, then in rings around it.
+fn spots([x, y]: [f32; 2], [wide, high]: [f32; 2]) -> impl Iterator<Item = ([f32; 4], Option<[[f32; 2]; 2]>)> {
+    const DIRECTIONS: u16 = 24;
+    let ring = move |number: u16| {
+        let off = 10.0 + 9.0 * f32::from(number);
+        (0..DIRECTIONS).map(move |direction| {
+            let angle = std::f32::consts::TAU * f32::from(direction) / f32::from(DIRECTIONS);
+            let (dx, dy) = (angle.cos(), angle.sin());
+            // The box touches the ring with the side or the corner that is next to the point.
+            let (near_x, near_y) = (x + dx * off, y + dy * off);
+            let left = near_x - wide * (0.5 - 0.5 * (2.0 * dx).clamp(-1.0, 1.0));
+            let top = near_y - high * (0.5 - 0.5 * dy);
+            let leader = (number > 1).then(|| {
+                let end = [x.clamp(left, left + wide), y.clamp(top, top + high)];
+                [[x + dx * 7.0, y + dy * 7.0], end]
+            });
+            ([left, top, left + wide, top + high], leader)
+        })
+    };
+    (0..24).flat_map(ring)
+}
+
+/// Small squares along a line, which names had better not cover.
+fn along_line(from: [f32; 2], to: [f32; 2], half: f32) -> impl Iterator<Item = [f32; 4]> {
+    let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+    let parts = ((dx.abs().max(dy.abs()) / 6.0) as u16).max(1);
     (0..=parts).map(move |part| {
-        let (x, y) = (from.0 + dx * part / parts, from.1 + dy * part / parts);
-        [x - 5, y - 5, x + 5, y + 5]
+        let share = f32::from(part) / f32::from(parts);
+        let (x, y) = (from[0] + dx * share, from[1] + dy * share);
+        [x - half, y - half, x + half, y + half]
     })
 }
 
 /// How many pixels two rectangles share.
-fn overlap(a: &[i32; 4], b: &[i32; 4]) -> i64 {
+fn overlap(a: &[f32; 4], b: &[f32; 4]) -> f32 {
     let wide = a[2].min(b[2]) - a[0].max(b[0]);
     let high = a[3].min(b[3]) - a[1].max(b[1]);
-    i64::from(wide.max(0)) * i64::from(high.max(0))
+    wide.max(0.0) * high.max(0.0)
 }
 
 #[cfg(test)]
@@ -249,7 +268,54 @@ mod tests {
 
     #[test]
     fn rectangles_share_what_lies_in_both() {
-        assert_eq!(overlap(&[0, 0, 10, 10], &[5, 8, 20, 20]), 10);
-        assert_eq!(overlap(&[0, 0, 10, 10], &[10, 0, 20, 10]), 0);
+        let shared = |b: [f32; 4]| overlap(&[0.0, 0.0, 10.0, 10.0], &b);
+        assert!((shared([5.0, 8.0, 20.0, 20.0]) - 10.0).abs() < 1e-6);
+        assert!(shared([10.0, 0.0, 20.0, 10.0]) < 1e-6);
+    }
+
+    /// Twenty items of which most lie in one place: no name covers another, and all are on the paper.
+    #[test]
+    fn names_of_a_crowd_do_not_pile_up() {
+        let labels: Vec<String> = (0..20).map(|index| format!("task#a_variant_{index}")).collect();
+        let far = |a: usize, b: usize| {
+            if a == b {
+                0.0
+            } else if a.max(b) > 17 {
+                1.0
+            } else {
+                0.01
+            }
+        };
+        let matrix = DistanceMatrix::measure(labels, |a, b| {
+            Ok::<_, driftworld_similarity::SimilarityError>(far(a, b))
+        })
+        .expect("they are distances");
+
+        let ordering = driftworld_similarity::order(
+            &matrix,
+            Method::Nearest,
+            &driftworld_similarity::OrderOptions::default(),
+        )
+        .expect("it can be ordered");
+        let places = on_paper(&classical_map(&matrix).points);
+        let path: Vec<[f32; 2]> = ordering.indices.iter().map(|index| halved(places[*index])).collect();
+        let names = names(&matrix, &ordering, &path, false);
+        assert_eq!(names.len(), 20);
+        for (index, name) in names.iter().enumerate() {
+            let [left, top, right, bottom] = name.place;
+            assert!(
+                left >= 0.0 && top >= 0.0 && right <= 1000.0 && bottom <= 800.0,
+                "{}",
+                name.text
+            );
+            for other in &names[..index] {
+                assert!(
+                    overlap(&name.place, &other.place) < 1e-3,
+                    "{} and {}",
+                    name.text,
+                    other.text
+                );
+            }
+        }
     }
 }

@@ -8,8 +8,9 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::{FAINT, INK, Picture};
+use super::{Drawing, FAINT, INK};
 use crate::ReportError;
+use crate::drawing::Recorder;
 
 /// A point with a name.
 #[derive(Clone, Debug)]
@@ -43,7 +44,7 @@ const WIDTH: u32 = 720;
 const HEIGHT: u32 = 580;
 /// Room around the axes: left, right, above, below.
 const ROOM: [i32; 4] = [84, 24, 104, 58];
-const LABEL_PX: u32 = 14;
+const LABEL_PX: u32 = 16;
 const DOT: RGBColor = RGBColor(22, 72, 130);
 const RIM: RGBColor = RGBColor(205, 209, 214);
 
@@ -51,15 +52,15 @@ const RIM: RGBColor = RGBColor(205, 209, 214);
 ///
 /// # Errors
 /// [`ReportError::Drawing`].
-pub fn scatter(panels: &[Panel]) -> Result<Picture, ReportError> {
-    let mut picture = Picture::blank(WIDTH * panels.len().max(1) as u32, HEIGHT);
+pub fn scatter(panels: &[Panel]) -> Result<Drawing, ReportError> {
+    let mut picture = Drawing::blank(WIDTH * panels.len().max(1) as u32, HEIGHT);
     for (index, panel) in panels.iter().enumerate() {
-        picture.draw(|area| panel.draw(area, index as i32 * WIDTH as i32))?;
+        picture.draw(1.0, |area| panel.draw(area, index as i32 * WIDTH as i32))?;
     }
     Ok(picture)
 }
 
-type Area<'a> = DrawingArea<BitMapBackend<'a>, plotters::coord::Shift>;
+type Area<'a> = DrawingArea<Recorder<'a>, plotters::coord::Shift>;
 type Outcome = Result<(), Box<dyn std::error::Error>>;
 
 /// A rectangle in pixels: left, top, right, bottom.
@@ -120,15 +121,15 @@ impl Panel {
         let (y0, y1) = (room_above, HEIGHT as i32 - room_below);
         let x = |value: f64| x0 + (x_axis.share(value) * f64::from(x1 - x0)).round() as i32;
         let y = |value: f64| y1 - (y_axis.share(value) * f64::from(y1 - y0)).round() as i32;
-        write(area, &self.title, (left + 16, 14), 22, INK, HPos::Left)?;
-        write(area, &self.words, (left + 16, 44), 15, FAINT, HPos::Left)?;
+        write(area, &self.title, (left + 16, 14), 24, INK, HPos::Left)?;
+        write(area, &self.words, (left + 16, 44), 17, FAINT, HPos::Left)?;
         for (value, word) in x_axis.marks() {
             area.draw(&PathElement::new([(x(value), y0), (x(value), y1)], RIM))?;
-            write(area, &word, (x(value), y1 + 8), 15, FAINT, HPos::Center)?;
+            write(area, &word, (x(value), y1 + 8), 17, FAINT, HPos::Center)?;
         }
         for (value, word) in y_axis.marks() {
             area.draw(&PathElement::new([(x0, y(value)), (x1, y(value))], RIM))?;
-            write(area, &word, (x0 - 8, y(value) - 8), 15, FAINT, HPos::Right)?;
+            write(area, &word, (x0 - 8, y(value) - 8), 17, FAINT, HPos::Right)?;
         }
         area.draw(&PathElement::new(
             [(x0, y(self.neutral)), (x1, y(self.neutral))],
@@ -138,11 +139,11 @@ impl Panel {
             area,
             &self.across,
             (i32::midpoint(x0, x1), y1 + 30),
-            16,
+            18,
             INK,
             HPos::Center,
         )?;
-        write(area, &self.up, (x0, y0 - 22), 16, INK, HPos::Left)?;
+        write(area, &self.up, (x0, y0 - 24), 18, INK, HPos::Left)?;
         let dots: Vec<(i32, i32)> = self.points.iter().map(|point| (x(point.x), y(point.y))).collect();
         for dot in &dots {
             area.draw(&Circle::new(*dot, 4, DOT.filled()))?;
@@ -151,7 +152,7 @@ impl Panel {
         let unnamed = self.name(area, &dots, line, [x0, y0, x1, y1])?;
         if unnamed > 0 {
             let label = format!("{unnamed} of {} without room for a name", dots.len());
-            write(area, &label, (x1, y0 - 20), 14, FAINT, HPos::Right)?;
+            write(area, &label, (x1, y0 - 22), 16, FAINT, HPos::Right)?;
         }
         Ok(())
     }

@@ -87,7 +87,7 @@ impl Show {
             SheetRow {
                 title: format!("{class} {}", names.join(", ")),
                 words: format!("{} triangles; {} m high", counts.join(", "), heights.join(", ")),
-                pictures: assets.iter().map(|asset| self.picture(asset, 210.0)).collect(),
+                pictures: assets.iter().map(|asset| self.picture(asset, 210.0).into()).collect(),
             }
         });
         Ok(rows.collect())
@@ -130,7 +130,7 @@ impl Show {
                 )
             },
             pictures: [180.0, 270.0, 0.0, 90.0]
-                .map(|heading| self.picture(asset, heading))
+                .map(|heading| self.picture(asset, heading).into())
                 .to_vec(),
         };
         Ok(forms.iter().enumerate().map(row).collect())

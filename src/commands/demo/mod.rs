@@ -26,7 +26,8 @@ use effects::effects_table;
 
 use super::run::{LifetimeRun, Start, processors};
 use super::{Failure, output};
-use crate::report::picture::{SheetRow, heat_map, sheet};
+use crate::contact_sheet::{self, ways};
+use crate::report::picture::heat_map;
 use crate::table::wide_table;
 use crate::variant_names::VariantNames;
 use crate::views::Views;
@@ -156,24 +157,22 @@ impl Demo {
     }
 
     fn pictures(&self, shown: &[Shown]) -> Result<(), Failure> {
-        let row = |shown: &Shown| {
-            let views = Views::new(&shown.world, 240, 0.0);
-            let map = views.top_down();
-            let name = shown.variant.name();
-            output::write_picture(&self.output.join("maps").join(format!("{name}.png")), &map)?;
-            Ok(SheetRow {
-                title: shown.variant.id(),
-                words: shown
-                    .variant
-                    .task()
-                    .variant_description(name)
-                    .unwrap_or_default()
-                    .to_owned(),
-                pictures: vec![views.first_person()?.rgb, map],
-            })
+        for shown in shown {
+            let map = Views::new(&shown.world, 480, 0.0).map_with_legend(&ways(&shown.world)?);
+            let name = format!("{}.png", shown.variant.name());
+            output::write_picture(&self.output.join("maps").join(name), &map)?;
+        }
+        let cells: Vec<contact_sheet::Shown> = (shown.iter())
+            .map(|shown| contact_sheet::Shown::declared(shown.variant.clone(), self.seed))
+            .collect();
+        let look = contact_sheet::Look {
+            index: None,
+            turn: None,
+            size: 240,
+            columns: 2,
         };
-        let rows = shown.iter().map(row).collect::<Result<Vec<_>, Failure>>()?;
-        output::write_picture(&self.output.join("contact-sheet.png"), &sheet(&rows, 2)?)
+        let drawing = contact_sheet::contact_sheet(&cells, look, &|| ())?;
+        output::write_picture(&self.output.join("contact-sheet.png"), &drawing)
     }
 
     fn scenario(
@@ -215,6 +214,7 @@ fn run_lifetime(scenario: &Scenario, agent: &AgentArg, logs: &Path) -> Result<Su
         start: Start::New,
         jobs: processors(),
         catalogue: Catalogue::default(),
+        records: false,
     };
     run.run()
 }

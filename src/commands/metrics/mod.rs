@@ -10,7 +10,9 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::Failure;
 use crate::figure_files::{Files, drawn};
+use crate::log_names::called_in;
 use crate::metrics::SteStoreMode;
+use crate::report::FigureOptions;
 use crate::scoring::{Scores, ScoringRequest, score, score_looking};
 use clap::Args;
 
@@ -149,6 +151,10 @@ impl Metrics {
         let folder = self.plots.clone().unwrap_or_else(|| self.folder().join("plots"));
         let files = Mutex::new(Files::new(&folder));
         let scores = score_looking(request, &|text| output::warning(text), |log| {
+            let options = FigureOptions {
+                names: called_in(&log.log),
+                ..options.clone()
+            };
             let drawn = drawn(&log.lifetime, &log.metrics.metrics_column, &shown, &options)?;
             // Whoever panics with the lock has ended the process.
             files.lock().unwrap_or_else(PoisonError::into_inner).write(&drawn)

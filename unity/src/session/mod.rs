@@ -7,7 +7,7 @@ mod messages;
 
 use std::collections::BTreeMap;
 
-use driftworld_env::{Action, Catalogue, Channels, Environment, Event, Step, Warning};
+use driftworld_env::{Action, Catalogue, Channels, EndedBy, Environment, Event, Recorder, Recording, Step, Warning};
 use driftworld_spec::maps::MapLibrary;
 use driftworld_spec::{GameMode, World};
 use prost::Message;
@@ -104,6 +104,9 @@ pub struct Session {
     remarks: Remarks,
     /// What the client knows of the behaviour.
     announced: Option<Announced>,
+    /// Takes the episode down, if that is wanted, and the episodes that are over.
+    recorder: Option<Recorder>,
+    recordings: Vec<Recording>,
 }
 
 impl Session {
@@ -132,6 +135,8 @@ impl Session {
             outbox: Outbox::default(),
             remarks: Remarks::default(),
             announced: None,
+            recorder: None,
+            recordings: Vec::new(),
         };
         // Of worlds that messages reset to, the channels have remarks of their own.
         for warning in session.environment.warnings() {
@@ -194,7 +199,12 @@ impl Session {
         if command == CommandProto::Reset {
             self.restart();
         }
+        let before = self.recorder.as_ref().filter(|_| !messages.is_empty());
+        let before = before.map(|recorder| (recorder.recording(&self.environment, None), self.environment.state()));
         let is_renewed = self.receive(&messages);
+        if let Some((recording, state)) = before {
+            self.note_change(recording, &state, is_renewed);
+        }
         let agent_params = &self.environment.world().agent_params;
         let agents = match command {
             CommandProto::Quit => return Ok(Turn::Quit),
@@ -212,6 +222,44 @@ impl Session {
         Ok(Turn::Output(Box::new(self.output(agents))))
     }
 
+    /// Takes down what is done from now on; [`Session::take_recordings`] has it. Photographs are no episode.
+    pub fn record(&mut self) {
+        self.recorder = Some(Recorder::from_now(&self.environment));
+    }
+
+    /// The episodes that are over since the last time.
+    pub fn take_recordings(&mut self) -> Vec<Recording> {
+        std::mem::take(&mut self.recordings)
+    }
+
+    /// Ends the episode that is under way, where no step follows.
+    pub fn end_recording(&mut self) {
+        self.keep_recording(None);
+    }
+
+    /// Notes what messages did to the world: nothing, a change in the midst of the episode, or another world.
+    fn note_change(&mut self, recording: Recording, before: &World, is_renewed: bool) {
+        if is_renewed {
+            if !recording.actions.is_empty() {
+                self.recordings.push(recording);
+            }
+            self.recorder = Some(Recorder::from_now(&self.environment));
+        } else if self.environment.state() != *before
+            && let Some(recorder) = &mut self.recorder
+        {
+            recorder.edit(&self.environment);
+        }
+    }
+
+    /// Keeps the episode that is under way, if it has a step, and begins the next one in the world as it is now.
+    fn keep_recording(&mut self, ended_by: Option<EndedBy>) {
+        let Some(recorder) = &self.recorder else { return };
+        if recorder.num_steps() > 0 {
+            self.recordings.push(recorder.recording(&self.environment, ended_by));
+        }
+        self.recorder = Some(Recorder::from_now(&self.environment));
+    }
+
     /// What the user of the executable should know since the last time, a line each.
     pub fn take_remarks(&mut self) -> Vec<String> {
         self.remarks.take()
@@ -219,6 +267,8 @@ impl Session {
 
     /// Begins the world anew, with what has been set.
     fn restart(&mut self) {
+        // An episode that is left before its end; of one that has ended nothing is left.
+        self.keep_recording(None);
         let mut world = self.start.clone();
         if !self.parameters.is_empty() {
             // Each number alone is sound; together with this world they may not be.
@@ -230,6 +280,9 @@ impl Session {
                     self.remarks.make(About::Worlds, &remark);
                 }
             }
+        }
+        if let Some(recorder) = &mut self.recorder {
+            recorder.begin(world.clone());
         }
         self.environment.reset(world);
         self.open_album();
@@ -265,6 +318,9 @@ impl Session {
             return Ok(vec![agent, self.decision(0.0, 0)?]);
         }
         let step = self.environment.step(action)?;
+        if let Some(recorder) = &mut self.recorder {
+            recorder.step(action);
+        }
         let time = (self.clock)();
         for message in self.channels.after_step(&self.environment, &step, &time) {
             self.send(&message);
@@ -275,6 +331,7 @@ impl Session {
         }
         agent.done = true;
         agent.max_step_reached = step.truncated;
+        self.keep_recording(step.ended_by);
         self.restart();
         self.episodes += 1;
         Ok(vec![agent, self.decision(0.0, 0)?])

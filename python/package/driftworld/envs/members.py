@@ -172,6 +172,17 @@ class Members:
             return [seed_in_range(one, "index") for one in index]
         return [seed_in_range(index, "index")] * self.num_envs
 
+    def recording(self, env: int) -> _native.RecordingHandle:
+        """What was done in an environment's episode.
+
+        Raises:
+            RuntimeError: Unless it is taken down.
+        """
+        found = self.batch.recording(env)
+        if found is None:
+            raise RuntimeError("recording: found an environment that takes nothing down, expected record() before it")
+        return found
+
     def origin(self, env: int) -> dict[str, Any]:
         """Where an environment's world comes from."""
         keys = ("task_id", "variant_id", "seed", "index", "world_hash")

@@ -12,6 +12,7 @@ import numpy as np
 from gymnasium.error import ResetNeeded
 from numpy.typing import NDArray
 
+from driftworld import _native
 from driftworld._literals import CameraName, RenderMode
 from driftworld.envs.conversion import teach_conversions
 from driftworld.envs.members import Members
@@ -19,6 +20,7 @@ from driftworld.envs.options import EnvOptions, Options, refuse_unknown, shows_o
 from driftworld.envs.origin import MAX_SEED, Home
 from driftworld.envs.picture import Camera
 from driftworld.envs.window import Window
+from driftworld.recordings import Recording
 
 if TYPE_CHECKING:
     from typing_extensions import Self, Unpack
@@ -175,6 +177,24 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         """The world as it is now, as a document: a reset to it (``options={"world": …}``) goes on to the last bit."""
         state: dict[str, Any] = json.loads(self._members.batch.state(0))
         return state
+
+    def record(self, records: bool = True) -> None:
+        """Takes down what is done from now on, or no longer: :meth:`recording` has it."""
+        self._members.batch.record(records)
+
+    def recording(self) -> Recording:
+        """What was done in the episode so far; after a reset, before the first step, in the one before.
+
+        Raises:
+            RuntimeError: Unless :meth:`record` was called.
+        """
+        return Recording(self._members.recording(0))
+
+    def _repr_png_(self) -> bytes | None:
+        """What a notebook shows of it: the agent's view, and the world from above."""
+        if not self._members.has_begun[0]:
+            return None
+        return _native.png(Camera("both", (240, 240)).picture(self._members.batch, 0))
 
     def origin(self) -> dict[str, Any]:
         """Where the world comes from, for records and not for agents: ``task_id``, ``variant_id``, ``seed``, ``index``, ``world_hash``."""

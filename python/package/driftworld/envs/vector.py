@@ -22,6 +22,7 @@ from driftworld.envs.options import EnvOptions, Options, refuse_unknown, shows_o
 from driftworld.envs.origin import Home, seed_in_range, spread_seeds
 from driftworld.envs.picture import Camera
 from driftworld.errors import EnvError
+from driftworld.recordings import Recording
 
 if TYPE_CHECKING:
     from typing_extensions import Self, Unpack
@@ -316,6 +317,22 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
             raise IndexError(f"state: found environment {env}, expected 0 to {self.num_envs - 1}")
         state: dict[str, Any] = json.loads(self._members.batch.state(env))
         return state
+
+    def record(self, records: bool = True) -> None:
+        """Takes down what is done in all environments from now on, or no longer: :meth:`recording` has it."""
+        self._members.batch.record(records)
+
+    def recording(self, env: int) -> Recording:
+        """What was done in an environment's episode so far; before its first step, so also in the step that ended an episode with the
+        autoreset mode ``"same_step"``, in the one before.
+
+        Raises:
+            IndexError: If there is no such environment.
+            RuntimeError: Unless :meth:`record` was called.
+        """
+        if not 0 <= env < self.num_envs:
+            raise IndexError(f"recording: found environment {env}, expected 0 to {self.num_envs - 1}")
+        return Recording(self._members.recording(env))
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
         """What each environment answers: ``state`` and ``warnings`` one by one, anything else is the same for all."""

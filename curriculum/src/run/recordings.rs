@@ -1,0 +1,283 @@
+//! [`Recordings`]: what was done in each episode, in a file beside the rows of its block. What a line says is `env`'s.
+//!
+//! A recording is written before the row of its experience, so that every row of a recorded log has one, whenever the run is stopped.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{BufReader, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use driftworld_env::{EnvError, EpisodeOrigin, Recording, RecordingLines, RecordingReader};
+use driftworld_metrics::BlockType;
+
+use crate::CurriculumError;
+
+/// The name of the files, each beside a `data-log.tsv`.
+pub const RECORDINGS_FILE: &str = "actions.jsonl";
+
+/// The largest file that is read, in bytes.
+pub const MAX_RECORDINGS_BYTES: u64 = 1 << 32;
+
+/// The most files that are open at a time, one for each worker of a block.
+const MAX_OPEN: usize = 64;
+
+/// The recordings of a log that is written.
+#[derive(Debug)]
+pub struct Recordings {
+    folder: PathBuf,
+    /// The files of the block that is written.
+    open: Vec<OpenFile>,
+}
+
+#[derive(Debug)]
+struct OpenFile {
+    /// The folder of its block, inside the log's.
+    inside: PathBuf,
+    path: PathBuf,
+    file: File,
+    length: u64,
+    lines: RecordingLines,
+    /// The experience that comes next, or a later one.
+    next: u64,
+}
+
+impl Recordings {
+    /// Recordings of the log in this folder, which is there.
+    pub fn new(folder: &Path) -> Self {
+        Self {
+            // The process may turn to another directory.
+            folder: std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned()),
+            open: Vec::new(),
+        }
+    }
+
+    /// Whether a log has any: then it goes on with them.
+    ///
+    /// # Errors
+    /// [`CurriculumError::Recordings`] if its folder cannot be listed.
+    pub fn exist(folder: &Path) -> Result<bool, CurriculumError> {
+        let list = |folder: &Path| match fs::read_dir(folder) {
+            Ok(entries) => Ok(entries.flatten().map(|entry| entry.path()).collect::<Vec<_>>()),
+            Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => Ok(Vec::new()),
+            Err(error) => Err(failed(folder, "list this folder")(error)),
+        };
+        for worker in list(folder)? {
+            if (list(&worker)?.iter()).any(|block| block.join(RECORDINGS_FILE).is_file()) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// Writes the recording of an experience whose row comes next. `worker` and the block are those of the row.
+    ///
+    /// What an earlier run left behind the row before is cut off.
+    ///
+    /// # Errors
+    /// [`CurriculumError::Recordings`] if the disk refuses; [`CurriculumError::Recording`] if the file that is there is none of
+    /// recordings.
+    pub fn append(
+        &mut self,
+        worker: &str,
+        block: (u64, BlockType),
+        recording: &Recording,
+    ) -> Result<(), CurriculumError> {
+        let name = format!("{}-{}", block.0, block.1);
+        let inside = Path::new(worker).join(&name);
+        let experience = recording.origin.experience;
+        if self.open.first().is_some_and(|open| !open.inside.ends_with(&name)) || self.open.len() == MAX_OPEN {
+            self.sync()?;
+        }
+        // A row that was refused left its recording: its number comes once more.
+        self.open
+            .retain(|open| open.inside != inside || open.next <= experience);
+        let known = self.open.iter().position(|open| open.inside == inside);
+        let place = known.unwrap_or(self.open.len());
+        if known.is_none() {
+            self.open.push(self.turn_to(inside, experience)?);
+        }
+        let open = &mut self.open[place];
+        match fs::metadata(&open.path) {
+            Ok(found) if found.len() == open.length => {}
+            Ok(found) => {
+                let found = format!("{} bytes", found.len());
+                return Err(lost(&open.path, found, open.length));
+            }
+            Err(_) => return Err(lost(&open.path, "no file".to_owned(), open.length)),
+        }
+        let lines = open.lines.lines(recording);
+        if let Err(error) = open.file.write_all(lines.as_bytes()) {
+            // Where even this fails, whoever goes on with the log cuts the torn line off.
+            let _ = open.file.set_len(open.length);
+            return Err(failed(&open.path, "append to this file")(error));
+        }
+        open.length += lines.len() as u64;
+        open.next = experience + 1;
+        Ok(())
+    }
+
+    /// Asks the disk to have what was written.
+    ///
+    /// # Errors
+    /// [`CurriculumError::Recordings`].
+    pub fn sync(&mut self) -> Result<(), CurriculumError> {
+        for open in self.open.drain(..) {
+            open.file.sync_all().map_err(failed(&open.path, "write this file"))?;
+        }
+        Ok(())
+    }
+
+    /// Opens the file of a block, in which this experience comes next.
+    fn turn_to(&self, inside: PathBuf, experience: u64) -> Result<OpenFile, CurriculumError> {
+        let mut folder = self.folder.clone();
+        for part in &inside {
+            folder.push(part);
+            match fs::create_dir(&folder) {
+                Err(error) if error.kind() != ErrorKind::AlreadyExists => {
+                    return Err(failed(&folder, "make this folder")(error));
+                }
+                _ => {}
+            }
+        }
+        let path = folder.join(RECORDINGS_FILE);
+        let (kept, lines) = kept(&path, experience)?;
+        let open = OpenOptions::new().append(true).create(true).open(&path);
+        let mut file = open.map_err(failed(&path, "open this file"))?;
+        file.set_len(kept).map_err(failed(&path, "cut this file"))?;
+        let mut length = kept;
+        if kept == 0 {
+            let header = RecordingLines::header();
+            file.write_all(header.as_bytes())
+                .map_err(failed(&path, "append to this file"))?;
+            length = header.len() as u64;
+        }
+        Ok(OpenFile {
+            inside,
+            path,
+            file,
+            length,
+            lines,
+            next: experience,
+        })
+    }
+}
+
+/// How many bytes of a file hold recordings of experiences before this one, and what goes on behind them.
+fn kept(path: &Path, experience: u64) -> Result<(u64, RecordingLines), CurriculumError> {
+    // To be gone on with, not by driftworld-files: it is ours, and as long as it is.
+    let file = match File::open(path) {
+        Ok(file) => file,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok((0, RecordingLines::default())),
+        Err(error) => return Err(failed(path, "read this file")(error)),
+    };
+    let length = file.metadata().map_err(failed(path, "measure this file"))?.len();
+    let wrong = |source| wrong(path, source);
+    let mut reader = match RecordingReader::new(BufReader::new(file)) {
+        Ok(reader) => reader,
+        // Its first line was being written.
+        Err(_) if length < RecordingLines::header().len() as u64 => return Ok((0, RecordingLines::default())),
+        Err(error) => return Err(wrong(error)),
+    };
+    loop {
+        let before = reader.mark();
+        match reader.next_episode() {
+            Ok(Some(episode)) if episode.origin.experience < experience => {}
+            Ok(Some(_)) => return Ok(reader.into_lines_at(before)),
+            Ok(None) => {
+                let end = reader.mark();
+                return Ok(reader.into_lines_at(end));
+            }
+            // A line without its end is the last one.
+            Err(_) if reader.is_torn() => return Ok(reader.into_lines_at(before)),
+            Err(error) => return Err(wrong(error)),
+        }
+    }
+}
+
+/// The recording of an experience beside the rows of its block; nothing where it was not recorded.
+///
+/// # Errors
+/// [`CurriculumError::Recording`] if its line, or that of its world, is damaged; a damaged line of another is passed over.
+/// [`CurriculumError::Recordings`] if the file cannot be read.
+pub fn read_recording(
+    log: &Path,
+    worker: &str,
+    block: (u64, BlockType),
+    experience: u64,
+) -> Result<Option<Recording>, CurriculumError> {
+    let folder = log.join(worker).join(format!("{}-{}", block.0, block.1));
+    read_recording_file(&folder.join(RECORDINGS_FILE), experience)
+}
+
+/// The recording of an episode in a file of its own, by its number; nothing where there is no such file or episode.
+///
+/// # Errors
+/// As [`read_recording`].
+pub fn read_recording_file(path: &Path, experience: u64) -> Result<Option<Recording>, CurriculumError> {
+    let Some((mut reader, mut damage)) = open(path)? else {
+        return Ok(None);
+    };
+    loop {
+        match reader.next_episode() {
+            Ok(Some(episode)) if episode.origin.experience == experience => {
+                let read = reader.recording(&episode);
+                return read.map(Some).map_err(|source| wrong(path, source));
+            }
+            Ok(Some(_)) => {}
+            Ok(None) => return damage.map_or(Ok(None), |source| Err(wrong(path, source))),
+            Err(error) => damage = damage.or(Some(error)),
+        }
+    }
+}
+
+/// The episodes of a file: which there are, without making them out, and the first damage among them.
+///
+/// # Errors
+/// As [`read_recording`]; a file that is not there is one.
+pub fn list_recordings(path: &Path) -> Result<(Vec<EpisodeOrigin>, Option<CurriculumError>), CurriculumError> {
+    let Some((mut reader, mut damage)) = open(path)? else {
+        return Err(failed(path, "read this file")(ErrorKind::NotFound.into()));
+    };
+    let mut found = Vec::new();
+    loop {
+        match reader.next_episode() {
+            Ok(Some(episode)) => found.push(episode.origin),
+            Ok(None) => return Ok((found, damage.map(|source| wrong(path, source)))),
+            Err(error) => damage = damage.or(Some(error)),
+        }
+    }
+}
+
+type Opened = (RecordingReader<BufReader<File>>, Option<EnvError>);
+
+fn open(path: &Path) -> Result<Option<Opened>, CurriculumError> {
+    let opened = match driftworld_files::open(path, MAX_RECORDINGS_BYTES) {
+        Ok(opened) => opened,
+        Err(error) if error.missing().is_some() => return Ok(None),
+        Err(source) => return Err(CurriculumError::UnreadableRecordings { source }),
+    };
+    let reader = RecordingReader::new(BufReader::new(opened.file)).map_err(|source| wrong(path, source))?;
+    Ok(Some((reader, None)))
+}
+
+fn wrong(path: &Path, source: EnvError) -> CurriculumError {
+    CurriculumError::Recording {
+        path: path.to_owned(),
+        source,
+    }
+}
+
+fn failed(path: &Path, doing: &'static str) -> impl FnOnce(std::io::Error) -> CurriculumError {
+    move |source| CurriculumError::Recordings {
+        path: path.to_owned(),
+        doing,
+        source,
+    }
+}
+
+fn lost(path: &Path, found: String, expected: u64) -> CurriculumError {
+    CurriculumError::RecordingsLost {
+        path: path.to_owned(),
+        found,
+        expected,
+    }
+}

@@ -1,0 +1,136 @@
+//! [`RecordingLines`]: recordings as lines of JSON. The first line says what the file is; a world has a line of its own, before the first
+//! episode that began in it; each line ends with the checksum of what stands before it. Reading them is in `reader.rs`.
+
+use std::collections::BTreeSet;
+
+use driftworld_spec::World;
+use serde::{Deserialize, Serialize};
+
+use super::packed::{PackedActions, deflated};
+use super::{EpisodeOrigin, Recording};
+
+/// The version of the format, which the first line of a file says.
+pub const RECORDING_FORMAT: u32 = 1;
+
+/// What the first line says.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct HeaderLine {
+    /// The version of the format.
+    pub(super) recording_format: u32,
+    /// The version of the program.
+    pub(super) driftworld: String,
+}
+
+/// A world.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct WorldLine {
+    /// Its hash.
+    pub(super) world_hash: String,
+    /// Its JSON, deflated.
+    pub(super) world: String,
+}
+
+/// An episode.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct EpisodeLine {
+    #[serde(flatten)]
+    pub(super) origin: EpisodeOrigin,
+    /// The hash of its world.
+    pub(super) world_hash: String,
+    /// For those who read it without running it: seconds of a time step, and how many of these an action is held.
+    pub(super) time_step: f64,
+    pub(super) frame_skip: u32,
+    pub(super) steps: u32,
+    pub(super) reward: f64,
+    pub(super) ended_by: Option<String>,
+    pub(super) driftworld: String,
+    /// Steps and hashes of worlds.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) edits: Vec<(u32, String)>,
+    pub(super) actions: PackedActions,
+}
+
+/// Writes recordings down as lines, each with its line end.
+#[derive(Clone, Debug, Default)]
+pub struct RecordingLines {
+    /// The hashes of worlds that have a line.
+    known: BTreeSet<String>,
+}
+
+impl RecordingLines {
+    /// The first line of a file.
+    pub fn header() -> String {
+        sealed(&HeaderLine {
+            recording_format: RECORDING_FORMAT,
+            driftworld: env!("CARGO_PKG_VERSION").to_owned(),
+        })
+    }
+
+    /// Goes on in a file that holds these worlds.
+    pub(super) fn with_worlds(known: impl IntoIterator<Item = String>) -> Self {
+        Self {
+            known: known.into_iter().collect(),
+        }
+    }
+
+    /// The lines of a recording: its worlds where they are new, then the episode.
+    pub fn lines(&mut self, recording: &Recording) -> String {
+        let mut lines = String::new();
+        let mut hash_of = |world: &World| {
+            let json = world.to_json();
+            let hash = world.hash();
+            if self.known.insert(hash.clone()) {
+                lines.push_str(&sealed(&WorldLine {
+                    world_hash: hash.clone(),
+                    world: deflated(json.into_bytes()),
+                }));
+            }
+            hash
+        };
+        let agent = &recording.world.agent_params;
+        let episode = EpisodeLine {
+            origin: recording.origin.clone(),
+            world_hash: hash_of(&recording.world),
+            time_step: agent.time_step,
+            frame_skip: agent.frame_skip.max(1),
+            steps: u32::try_from(recording.actions.len()).unwrap_or(u32::MAX),
+            reward: recording.reward,
+            ended_by: recording.ended_by.map(|word| word.word().to_owned()),
+            driftworld: recording.recorded_by.clone(),
+            edits: (recording.edits.iter())
+                .map(|edit| (edit.step, hash_of(&edit.world)))
+                .collect(),
+            actions: PackedActions::new(&recording.actions),
+        };
+        lines.push_str(&sealed(&episode));
+        lines
+    }
+}
+
+/// The key of the checksum, which is the last of a line.
+const SEAL: &str = ",\"crc32\":\"";
+
+/// A line of JSON that ends with the checksum of what stands before it, and with a line end.
+fn sealed(line: &impl Serialize) -> String {
+    let mut json = serde_json::to_string(line).expect("lines have string keys only, which always serialise");
+    let end = json.pop();
+    debug_assert_eq!(end, Some('}'), "a line is an object");
+    let sum = crc32fast::hash(json.as_bytes());
+    json + &format!("{SEAL}{sum:08x}\"}}\n")
+}
+
+/// What is wrong with the checksum of a line without its end: what was found, and what was expected.
+pub(super) fn unsealed(line: &[u8]) -> Result<(), (String, String)> {
+    let expected = || "a line of JSON that ends with its checksum".to_owned();
+    let text = std::str::from_utf8(line).map_err(|_| ("bytes that are no text".to_owned(), expected()))?;
+    let (body, said) = text
+        .rsplit_once(SEAL)
+        .and_then(|(body, rest)| Some((body, rest.strip_suffix("\"}")?)))
+        .ok_or_else(|| ("a line without a checksum at its end".to_owned(), expected()))?;
+    let sum = format!("{:08x}", crc32fast::hash(body.as_bytes()));
+    if said == sum {
+        Ok(())
+    } else {
+        Err((format!("the checksum {sum}"), format!("{said:.12}, as the line says")))
+    }
+}

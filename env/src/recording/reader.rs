@@ -1,0 +1,222 @@
+//! [`RecordingReader`]: recordings out of the lines that they were written down as. A damaged line is an error with its number, and hides
+//! no other; writing is in `lines.rs`.
+
+use std::collections::BTreeMap;
+use std::io::{BufRead, ErrorKind, Read};
+
+use driftworld_spec::{MAX_BYTES, World};
+
+use super::lines::{EpisodeLine, HeaderLine, RECORDING_FORMAT, RecordingLines, WorldLine, unsealed};
+use super::packed::inflated;
+use super::{Edit, EpisodeOrigin, Recording};
+use crate::EnvError;
+use crate::sim::EndedBy;
+
+/// The longest line that is read, in bytes.
+pub const MAX_RECORDING_LINE: u64 = 1 << 27;
+
+/// Reads the episodes of a file, one after the other.
+#[derive(Debug)]
+pub struct RecordingReader<R> {
+    reader: R,
+    line: u64,
+    offset: u64,
+    /// Worlds as they are written, with their lines, by their hashes.
+    worlds: BTreeMap<String, (u64, String)>,
+    is_torn: bool,
+}
+
+/// A place in a file between two lines.
+#[derive(Clone, Copy, Debug)]
+pub struct RecordingMark {
+    line: u64,
+    offset: u64,
+}
+
+/// An episode as it stands in a file; [`RecordingReader::recording`] makes it out.
+#[derive(Debug)]
+pub struct RecordedEpisode {
+    /// Which it is.
+    pub origin: EpisodeOrigin,
+    /// Steps that it says it has.
+    pub steps: u32,
+    /// What it says its steps paid.
+    pub reward: f64,
+    /// Its line in the file, from 1.
+    pub line: u64,
+    said: EpisodeLine,
+}
+
+impl<R: BufRead> RecordingReader<R> {
+    /// A reader at the first line.
+    ///
+    /// # Errors
+    /// [`EnvError::Recording`] if that is not the first line of a file of recordings of this version.
+    pub fn new(reader: R) -> Result<Self, EnvError> {
+        let mut this = Self {
+            reader,
+            line: 0,
+            offset: 0,
+            worlds: BTreeMap::new(),
+            is_torn: false,
+        };
+        let expected = "the first line of a file of recordings, as run --record writes it";
+        let Some(line) = this.line()? else {
+            return Err(this.wrong("an empty file", expected));
+        };
+        let header: HeaderLine = serde_json::from_slice(&line).map_err(|_| this.wrong("another line", expected))?;
+        if header.recording_format != RECORDING_FORMAT {
+            let expected = format!("format {RECORDING_FORMAT}; use the version of Driftworld that wrote it");
+            return Err(this.wrong(
+                format!(
+                    "format {} of driftworld {:.40}",
+                    header.recording_format, header.driftworld
+                ),
+                expected,
+            ));
+        }
+        Ok(this)
+    }
+
+    /// The next episode; nothing at the end.
+    ///
+    /// # Errors
+    /// [`EnvError::Recording`] for a line that is damaged or cut off; the next call goes on behind it.
+    pub fn next_episode(&mut self) -> Result<Option<RecordedEpisode>, EnvError> {
+        loop {
+            let Some(line) = self.line()? else { return Ok(None) };
+            let wrong = |this: &Self, error: &serde_json::Error| {
+                this.wrong(error.to_string(), "a line of a world or of an episode")
+            };
+            if line.starts_with(b"{\"world_hash\":") {
+                let world: WorldLine = serde_json::from_slice(&line).map_err(|error| wrong(self, &error))?;
+                let line = self.line;
+                // The first stays: a line that is repeated says nothing new.
+                self.worlds.entry(world.world_hash).or_insert((line, world.world));
+                continue;
+            }
+            let said: EpisodeLine = serde_json::from_slice(&line).map_err(|error| wrong(self, &error))?;
+            return Ok(Some(RecordedEpisode {
+                origin: said.origin.clone(),
+                steps: said.steps,
+                reward: said.reward,
+                line: self.line,
+                said,
+            }));
+        }
+    }
+
+    /// Makes an episode out.
+    ///
+    /// # Errors
+    /// [`EnvError::Recording`] if its actions or its worlds cannot be read.
+    pub fn recording(&self, episode: &RecordedEpisode) -> Result<Recording, EnvError> {
+        let said = &episode.said;
+        let at = |line: u64, (found, expected): (String, String)| EnvError::Recording { line, found, expected };
+        let actions = said
+            .actions
+            .unpack(said.steps)
+            .map_err(|error| at(episode.line, error))?;
+        let ended_by = said.ended_by.as_deref().map(|word| {
+            let known = EndedBy::ALL.into_iter().find(|known| known.word() == word);
+            known.ok_or_else(|| {
+                at(
+                    episode.line,
+                    (format!("ended_by {word:.40}"), "a word of this version".to_owned()),
+                )
+            })
+        });
+        let edits = said.edits.iter().map(|(step, hash)| {
+            Ok(Edit {
+                step: *step,
+                world: self.world(episode.line, hash)?,
+            })
+        });
+        Ok(Recording {
+            origin: episode.origin.clone(),
+            recorded_by: said.driftworld.clone(),
+            world: self.world(episode.line, &said.world_hash)?,
+            edits: edits.collect::<Result<_, _>>()?,
+            actions,
+            reward: said.reward,
+            ended_by: ended_by.transpose()?,
+        })
+    }
+
+    /// Where the reader stands.
+    pub fn mark(&self) -> RecordingMark {
+        RecordingMark {
+            line: self.line,
+            offset: self.offset,
+        }
+    }
+
+    /// Whether the last line had no end: its writer was stopped in the midst of it.
+    pub fn is_torn(&self) -> bool {
+        self.is_torn
+    }
+
+    /// Bytes before a place, and what goes on writing there.
+    pub fn into_lines_at(self, place: RecordingMark) -> (u64, RecordingLines) {
+        let before = self.worlds.into_iter().filter(|(_, (line, _))| *line <= place.line);
+        (place.offset, RecordingLines::with_worlds(before.map(|(hash, _)| hash)))
+    }
+
+    fn world(&self, line: u64, hash: &str) -> Result<World, EnvError> {
+        let missing = || EnvError::Recording {
+            line,
+            found: format!("world {hash:.16}, which has no line before it"),
+            expected: "its line: it is damaged, or gone".to_owned(),
+        };
+        let (line, packed) = self.worlds.get(hash).ok_or_else(missing)?;
+        let wrong = |(found, expected): (String, String)| EnvError::Recording {
+            line: *line,
+            found,
+            expected,
+        };
+        let bytes = inflated(packed, MAX_BYTES as u64).map_err(wrong)?;
+        let text = String::from_utf8(bytes).map_err(|_| wrong(("bytes that are no text".into(), "a world".into())))?;
+        let world = World::from_json("world", &text)
+            .map_err(|error| wrong((error.to_string(), "a world of this version".to_owned())))?;
+        let found = world.hash();
+        if found != hash {
+            let expected = format!("{hash:.64}: the world means something else in this version");
+            return Err(wrong((format!("the hash {found}"), expected)));
+        }
+        Ok(world)
+    }
+
+    /// The next line without its end, once its checksum holds.
+    fn line(&mut self) -> Result<Option<Vec<u8>>, EnvError> {
+        let mut line = Vec::new();
+        let read = self
+            .reader
+            .by_ref()
+            .take(MAX_RECORDING_LINE)
+            .read_until(b'\n', &mut line);
+        self.line += 1;
+        match read {
+            Err(error) if error.kind() != ErrorKind::UnexpectedEof => {
+                return Err(self.wrong(error.to_string(), "a file that can be read"));
+            }
+            _ if line.is_empty() => return Ok(None),
+            _ => {}
+        }
+        self.offset += line.len() as u64;
+        if line.pop() != Some(b'\n') {
+            self.is_torn = true;
+            let advice = "a line end: the writer was stopped in the midst of it; what stands before it is whole";
+            return Err(self.wrong("the end of the file", advice));
+        }
+        unsealed(&line).map_err(|(found, expected)| self.wrong(found, expected))?;
+        Ok(Some(line))
+    }
+
+    fn wrong(&self, found: impl Into<String>, expected: impl Into<String>) -> EnvError {
+        EnvError::Recording {
+            line: self.line,
+            found: found.into(),
+            expected: expected.into(),
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! [`Replay`]: an episode run once more from its recording, and compared with it. Pictures of it are the callers'.
+
+use super::Recording;
+use crate::EnvError;
+use crate::assets::Catalogue;
+use crate::sim::{EndedBy, Environment, Step};
+
+/// A recorded episode that runs.
+pub struct Replay<'a> {
+    recording: &'a Recording,
+    environment: Environment,
+    /// Steps and changes from outside that were made.
+    steps: usize,
+    edits: usize,
+    /// What ended it, if anything did.
+    ended_by: Option<EndedBy>,
+}
+
+impl<'a> Replay<'a> {
+    /// An episode at its start, its assets from a catalogue: the one that it was recorded with.
+    pub fn new(recording: &'a Recording, catalogue: &Catalogue) -> Self {
+        let mut replay = Self {
+            recording,
+            environment: Environment::with_catalogue(recording.world.clone(), catalogue.clone()),
+            steps: 0,
+            edits: 0,
+            ended_by: None,
+        };
+        replay.edit();
+        replay
+    }
+
+    /// Goes back to the start.
+    pub fn restart(&mut self) {
+        self.environment.reset(self.recording.world.clone());
+        (self.steps, self.edits, self.ended_by) = (0, 0, None);
+        self.edit();
+    }
+
+    /// The environment as it is now, to be looked at.
+    pub fn environment(&mut self) -> &mut Environment {
+        &mut self.environment
+    }
+
+    /// Steps that were made.
+    pub fn num_steps(&self) -> usize {
+        self.steps
+    }
+
+    /// Makes the next step; nothing after the last.
+    ///
+    /// # Errors
+    /// [`EnvError::Replay`] if the action cannot be carried out any more.
+    pub fn step(&mut self) -> Result<Option<Step>, EnvError> {
+        let Some(action) = self.recording.actions.get(self.steps) else {
+            return Ok(None);
+        };
+        let step = self.environment.step(*action).map_err(|error| {
+            let step = self.steps;
+            self.differs("step", format!("{step}: {error}"), "one that goes on".to_owned())
+        })?;
+        self.steps += 1;
+        self.ended_by = step.ended_by;
+        self.edit();
+        Ok(Some(step))
+    }
+
+    /// After the last step: whether it paid what was recorded, and ended as it did.
+    ///
+    /// # Errors
+    /// [`EnvError::Replay`] that says what differs.
+    pub fn check(&self) -> Result<(), EnvError> {
+        let (found, expected) = (self.environment.episode_return(), self.recording.reward);
+        if found.to_bits() != expected.to_bits() {
+            return Err(self.differs("reward", found.to_string(), expected.to_string()));
+        }
+        let (found, expected) = (self.ended_by, self.recording.ended_by);
+        // A limit of steps may have been set from outside.
+        if found != expected && (found, expected) != (None, Some(EndedBy::Steps)) {
+            let word = |ended_by: Option<EndedBy>| ended_by.map_or("nothing", EndedBy::word).to_owned();
+            return Err(self.differs("ended_by", word(found), word(expected)));
+        }
+        Ok(())
+    }
+
+    /// Lays over the world what was changed from outside before the next step.
+    fn edit(&mut self) {
+        while let Some(edit) = self.recording.edits.get(self.edits)
+            && edit.step as usize == self.steps
+        {
+            self.environment.reset(edit.world.clone());
+            self.edits += 1;
+        }
+    }
+
+    fn differs(&self, what: &'static str, found: String, expected: String) -> EnvError {
+        EnvError::Replay {
+            experience: self.recording.origin.experience,
+            what,
+            found,
+            expected,
+            recorded_by: self.recording.recorded_by.clone(),
+            now: env!("CARGO_PKG_VERSION"),
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! Recorded episodes in Python's hands: read, run once more, drawn. What a recording holds is `env`'s, what a frame shows the library's.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+use std::sync::Arc;
+
+use driftworld::film::{FilmOptions, film, write_film};
+use driftworld::recordings::RecordedEpisodes;
+use driftworld_env::{Action, Catalogue, EndedBy, EpisodeOrigin, Library, Recording};
+use driftworld_metrics::Record;
+use driftworld_report::picture::Picture;
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray3};
+use pyo3::exceptions::{PyMemoryError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyTuple};
+use serde_json::json;
+
+use crate::document::{Whole, json_to_py};
+use crate::errors::{Error, Result};
+
+/// The most bytes of frames that are handed out at once.
+const MAX_FRAME_BYTES: usize = 1 << 34;
+
+/// An episode as it was recorded.
+#[pyclass(name = "RecordingHandle", module = "driftworld._native", frozen)]
+pub(crate) struct PyRecording(Arc<Recording>);
+
+impl From<Recording> for PyRecording {
+    fn from(recording: Recording) -> Self {
+        Self(Arc::new(recording))
+    }
+}
+
+impl PyRecording {
+    pub(crate) fn recording(&self) -> &Recording {
+        &self.0
+    }
+
+    /// The same as the episode that a row of a log is about.
+    pub(crate) fn of_row(&self, row: &Record) -> Recording {
+        Recording {
+            origin: EpisodeOrigin {
+                experience: row.exp_num,
+                block: Some(row.block_num),
+                ..self.0.origin.clone()
+            },
+            ..Recording::clone(&self.0)
+        }
+    }
+}
+
+/// How an episode is shown, by words.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Shown {
+    view: String,
+    modality: String,
+    size: u32,
+    every: u32,
+    captions: bool,
+    renderer: String,
+    libraries: Vec<Vec<u8>>,
+}
+
+impl Shown {
+    fn options(&self) -> Result<(FilmOptions, Catalogue)> {
+        let mut catalogue = Catalogue::default();
+        for bytes in &self.libraries {
+            catalogue = catalogue.with_library(&Library::from_bytes(bytes)?);
+        }
+        let options = FilmOptions {
+            view: word("view", &self.view)?,
+            modality: word("modality", &self.modality)?,
+            size: self.size,
+            every: self.every,
+            captions: self.captions,
+            renderer: self.renderer.parse()?,
+        };
+        Ok((options, catalogue))
+    }
+}
+
+fn word<T: FromStr<Err = String>>(option: &str, found: &str) -> PyResult<T> {
+    found
+        .parse()
+        .map_err(|error| PyValueError::new_err(format!("{option}: {error}")))
+}
+
+#[pymethods]
+impl PyRecording {
+    /// What names the episode, and what it came to, as a dictionary.
+    fn about<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
+        let Recording {
+            origin,
+            recorded_by,
+            reward,
+            ended_by,
+            edits,
+            ..
+        } = &*self.0;
+        let about = json!({
+            "experience": origin.experience, "block": origin.block, "task": origin.task, "variant": origin.variant,
+            "seed": origin.seed, "index": origin.index, "recorded_by": recorded_by, "steps": self.0.actions.len(),
+            "reward": reward, "ended_by": ended_by.map(EndedBy::word), "edits": edits.len(),
+            "seconds_per_step": self.0.seconds_per_step(),
+        });
+        Ok(json_to_py(py, &about)?)
+    }
+
+    /// The JSON of the world that it began in.
+    fn world(&self) -> String {
+        self.0.world.to_json()
+    }
+
+    /// What was done: rows of the action table int64 `(steps,)`, or numbers float64 `(steps, 3)`.
+    fn actions<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
+        let rows: Option<Vec<i64>> = (self.0.actions.iter())
+            .map(|action| match action {
+                Action::Discrete(row) => Some(*row as i64),
+                Action::Continuous(_) => None,
+            })
+            .collect();
+        if let Some(rows) = rows.filter(|rows| !rows.is_empty()) {
+            return Ok(PyArray1::from_vec(py, rows).into_any());
+        }
+        let numbers = self.0.actions.iter().flat_map(|action| match action {
+            Action::Discrete(row) => [*row as f64, f64::NAN, f64::NAN],
+            Action::Continuous(numbers) => *numbers,
+        });
+        let numbers = PyArray1::from_iter(py, numbers);
+        Ok(numbers.reshape([self.0.actions.len(), 3])?.into_any())
+    }
+
+    /// The frames, uint8 `(frames, height, width, 3)`; the episode is run once more, and must come out as it was recorded.
+    fn frames<'py>(&self, py: Python<'py>, shown: Shown) -> Result<Bound<'py, PyAny>> {
+        let (options, catalogue) = shown.options()?;
+        let num_frames = options.num_frames(self.0.actions.len());
+        let expected = num_frames * (options.size as usize).pow(2) * 6;
+        if expected > MAX_FRAME_BYTES {
+            return Err(PyMemoryError::new_err(format!(
+                "frames: found {num_frames} of {} pixels, expected at most {} GiB in all; show fewer (every=…), make them smaller, or \
+                 write a file",
+                options.size,
+                MAX_FRAME_BYTES >> 30
+            ))
+            .into());
+        }
+        let (pixels, size) = py.detach(|| {
+            let (mut pixels, mut size) = (Vec::new(), [0, 0]);
+            film(&self.0, &catalogue, &options, &mut |picture, _| {
+                size = [picture.height as usize, picture.width as usize];
+                pixels.extend_from_slice(&picture.rgb);
+                Ok(())
+            })?;
+            Ok::<_, Error>((pixels, size))
+        })?;
+        let frames = PyArray1::from_vec(py, pixels);
+        Ok(frames.reshape([num_frames, size[0], size[1], 3])?.into_any())
+    }
+
+    /// Writes a film or a sheet; says how many frames, pixels and seconds it has.
+    fn write(&self, py: Python<'_>, path: PathBuf, shown: Shown, fps: Option<f64>) -> Result<(u32, u32, u32, f64)> {
+        let (options, catalogue) = shown.options()?;
+        let film = py.detach(|| write_film(&path, &self.0, &catalogue, &options, fps, &mut |_| {}))?;
+        Ok((film.frames, film.height, film.width, film.seconds))
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let text =
+            driftworld_env::RecordingLines::header() + &driftworld_env::RecordingLines::default().lines(&slf.get().0);
+        Ok((slf.get_type().getattr("from_text")?, PyTuple::new(slf.py(), [text])?))
+    }
+
+    /// A recording of the text that it is written down as.
+    #[staticmethod]
+    fn from_text(text: &str) -> Result<Self> {
+        let mut reader = driftworld_env::RecordingReader::new(text.as_bytes())?;
+        let episode = reader.next_episode()?;
+        let episode = episode.ok_or_else(|| PyValueError::new_err("recording: found no episode, expected one"))?;
+        Ok(Self::from(reader.recording(&episode)?))
+    }
+}
+
+/// The recording of an episode of a log, or of a file of recordings; it is compared with its row in the log.
+#[pyfunction]
+pub(crate) fn read_recording(
+    py: Python<'_>,
+    path: PathBuf,
+    episode: Whole,
+    worker: Option<&str>,
+) -> Result<PyRecording> {
+    let worker = worker.map(str::to_owned);
+    let recording = py.detach(|| {
+        let episodes = RecordedEpisodes::open(&path)?;
+        let recording = episodes.recording(episode.0, worker.as_deref())?;
+        let recording = recording.ok_or_else(|| episodes.unrecorded(episode.0))?;
+        episodes.check_row(&recording, worker.as_deref())?;
+        Ok::<_, Error>(recording)
+    })?;
+    Ok(PyRecording::from(recording))
+}
+
+/// A picture, uint8 `(height, width, 3)`, as the bytes of a PNG file.
+#[pyfunction]
+pub(crate) fn png<'py>(py: Python<'py>, picture: PyReadonlyArray3<'py, u8>) -> Result<Bound<'py, PyBytes>> {
+    let picture = picture.as_array();
+    let (height, width, _) = picture.dim();
+    let picture = Picture {
+        width: width as u32,
+        height: height as u32,
+        rgb: picture.iter().copied().collect(),
+    };
+    let bytes = picture.to_png();
+    let bytes = bytes.map_err(|error| PyValueError::new_err(error.to_string()))?;
+    Ok(PyBytes::new(py, &bytes))
+}

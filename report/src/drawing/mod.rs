@@ -1,0 +1,312 @@
+//! [`Drawing`]s: shapes, words and pixels in one list, of which both kinds of file are made: PNG and SVG.
+//!
+//! Not here: what is drawn, see `picture` and `figure`.
+
+mod fill;
+mod pixels;
+mod recorder;
+mod svg;
+mod text;
+
+pub use pixels::{Gray, Picture};
+pub(crate) use recorder::Recorder;
+pub use text::text_width;
+
+use crate::ReportError;
+
+/// A colour of a drawing, sRGB.
+pub type Rgb = [u8; 3];
+
+/// Where a text's anchor lies along its line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// At its first letter.
+    Left,
+    /// In the middle.
+    Middle,
+    /// Behind its last letter.
+    Right,
+}
+
+/// Where a text's anchor lies across its line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Level {
+    /// At the top of capital letters.
+    Top,
+    /// In the middle of small letters.
+    Middle,
+    /// Below the line.
+    Bottom,
+}
+
+/// A text in a drawing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TextLine {
+    /// What it says, in one line.
+    pub text: String,
+    /// Where its anchor is, in pixels from the left and from the top.
+    pub at: [f32; 2],
+    /// Size of the letters in pixels, as pages count it.
+    pub size: f32,
+    /// Its colour.
+    pub color: Rgb,
+    /// The anchor along the line.
+    pub side: Side,
+    /// The anchor across the line.
+    pub level: Level,
+    /// A rim around the letters in this colour, so that they can be read on a picture.
+    pub rim: Option<Rgb>,
+    /// Quarter turns clockwise around the anchor.
+    pub turns: u8,
+}
+
+impl TextLine {
+    /// A text with its anchor at its upper left.
+    pub fn new(text: impl Into<String>, at: [f32; 2], size: f32, color: Rgb) -> Self {
+        Self {
+            text: text.into(),
+            at,
+            size,
+            color,
+            side: Side::Left,
+            level: Level::Top,
+            rim: None,
+            turns: 0,
+        }
+    }
+
+    /// The same with another anchor.
+    #[must_use]
+    pub fn anchored(self, side: Side, level: Level) -> Self {
+        Self { side, level, ..self }
+    }
+
+    /// The same with a rim.
+    #[must_use]
+    pub fn rimmed(self, color: Rgb) -> Self {
+        Self {
+            rim: Some(color),
+            ..self
+        }
+    }
+
+    /// Its width in pixels, as the font has it.
+    pub fn width(&self) -> f32 {
+        text_width(&self.text, self.size)
+    }
+
+    /// How far the beginning of the line lies from the anchor: to the right, and downwards to the line that letters stand on.
+    fn offset(&self) -> [f32; 2] {
+        let along = match self.side {
+            Side::Left => 0.0,
+            Side::Middle => -0.5,
+            Side::Right => -1.0,
+        };
+        let down = match self.level {
+            Level::Top => 0.76,
+            Level::Middle => 0.26,
+            Level::Bottom => -0.26,
+        };
+        [along * self.width(), down * self.size]
+    }
+}
+
+/// What a drawing is made of. Lengths are in pixels, alphas in 0..=1.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// A filled polygon.
+    Area {
+        /// Its corners.
+        points: Vec<[f32; 2]>,
+        /// Its colour.
+        color: Rgb,
+        /// How much of what is below it hides.
+        alpha: f32,
+    },
+    /// A line through points.
+    Line {
+        /// Where it goes.
+        points: Vec<[f32; 2]>,
+        /// How thick it is.
+        width: f32,
+        /// Its colour.
+        color: Rgb,
+        /// How much of what is below it hides.
+        alpha: f32,
+        /// Length of its dashes and of the gaps between; none is a whole line.
+        dash: Option<f32>,
+    },
+    /// A filled circle.
+    Disc {
+        /// Its middle.
+        middle: [f32; 2],
+        /// Its radius.
+        radius: f32,
+        /// Its colour.
+        color: Rgb,
+        /// How much of what is below it hides.
+        alpha: f32,
+    },
+    /// A text.
+    Text(TextLine),
+    /// Another drawing, with its top left corner here; what lies outside it is cut off.
+    Inner {
+        /// Pixels from the left and from the top.
+        at: [u32; 2],
+        /// What is drawn there.
+        drawing: Drawing,
+    },
+    /// Pixels, with their top left corner at the drawing's.
+    Pixels(Picture),
+}
+
+/// A list of shapes on white paper, the first lowest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drawing {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// What is drawn, the lowest first.
+    pub shapes: Vec<Shape>,
+}
+
+impl From<Picture> for Drawing {
+    fn from(picture: Picture) -> Self {
+        Self {
+            width: picture.width,
+            height: picture.height,
+            shapes: vec![Shape::Pixels(picture)],
+        }
+    }
+}
+
+impl Drawing {
+    /// White paper.
+    pub fn blank(width: u32, height: u32) -> Self {
+        Self {
+            width,
+            height,
+            shapes: Vec::new(),
+        }
+    }
+
+    /// Adds a filled polygon.
+    pub fn area(&mut self, points: impl Into<Vec<[f32; 2]>>, color: Rgb) {
+        self.shapes.push(Shape::Area {
+            points: points.into(),
+            color,
+            alpha: 1.0,
+        });
+    }
+
+    /// Adds a filled rectangle: left, top, width, height.
+    pub fn rectangle(&mut self, [left, top, width, height]: [f32; 4], color: Rgb) {
+        let (right, bottom) = (left + width, top + height);
+        self.area([[left, top], [right, top], [right, bottom], [left, bottom]], color);
+    }
+
+    /// Adds a line.
+    pub fn line(&mut self, points: impl Into<Vec<[f32; 2]>>, width: f32, color: Rgb) {
+        self.shapes.push(Shape::Line {
+            points: points.into(),
+            width,
+            color,
+            alpha: 1.0,
+            dash: None,
+        });
+    }
+
+    /// Adds a filled circle.
+    pub fn disc(&mut self, middle: [f32; 2], radius: f32, color: Rgb) {
+        self.shapes.push(Shape::Disc {
+            middle,
+            radius,
+            color,
+            alpha: 1.0,
+        });
+    }
+
+    /// Adds a text; what cannot be printed is escaped.
+    pub fn write(&mut self, words: TextLine) {
+        let text = driftworld_text::printable(&words.text).to_string();
+        self.shapes.push(Shape::Text(TextLine { text, ..words }));
+    }
+
+    /// Adds another drawing, cut off where it ends.
+    pub fn put(&mut self, drawing: impl Into<Self>, at: [u32; 2]) {
+        self.shapes.push(Shape::Inner {
+            at,
+            drawing: drawing.into(),
+        });
+    }
+
+    /// The drawing as pixels.
+    pub fn to_picture(&self) -> Picture {
+        let mut picture = Picture::blank(self.width, self.height);
+        for shape in &self.shapes {
+            match shape {
+                Shape::Area { points, color, alpha } => {
+                    fill::fill(&mut picture, std::slice::from_ref(points), *color, *alpha);
+                }
+                Shape::Line {
+                    points,
+                    width,
+                    color,
+                    alpha,
+                    dash,
+                } => {
+                    let dashes = fill::dashes(points, *dash);
+                    let pieces: Vec<_> = dashes.iter().flat_map(|piece| fill::stroke(piece, *width)).collect();
+                    fill::fill(&mut picture, &pieces, *color, *alpha);
+                }
+                Shape::Disc {
+                    middle,
+                    radius,
+                    color,
+                    alpha,
+                } => fill::fill(&mut picture, &[fill::circle(*middle, *radius)], *color, *alpha),
+                Shape::Text(words) => text::draw(&mut picture, words),
+                Shape::Inner { at, drawing } => picture.paste(&drawing.to_picture(), at[0], at[1]),
+                Shape::Pixels(pixels) => picture.paste(pixels, 0, 0),
+            }
+        }
+        picture
+    }
+
+    /// The drawing as a PNG file's bytes.
+    ///
+    /// # Errors
+    /// [`ReportError::Png`] for a drawing without pixels.
+    pub fn to_png(&self) -> Result<Vec<u8>, ReportError> {
+        self.to_picture().to_png()
+    }
+
+    /// The drawing as an SVG file: shapes as vectors, words as text, pixels as embedded PNG.
+    ///
+    /// # Errors
+    /// [`ReportError::Png`] for pixels that are none.
+    pub fn to_svg(&self) -> Result<String, ReportError> {
+        svg::file(self)
+    }
+
+    /// All texts that are written on it, those of inner drawings among them.
+    pub fn texts(&self) -> Vec<&str> {
+        let mut texts = Vec::new();
+        for shape in &self.shapes {
+            match shape {
+                Shape::Text(words) => texts.push(words.text.as_str()),
+                Shape::Inner { drawing, .. } => texts.extend(drawing.texts()),
+                _ => {}
+            }
+        }
+        texts
+    }
+}
+
+/// A closed line around a middle, for rings.
+pub fn ring(middle: [f32; 2], radius: f32) -> Vec<[f32; 2]> {
+    let mut points = fill::circle(middle, radius);
+    points.extend(points.first().copied());
+    points
+}

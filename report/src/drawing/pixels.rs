@@ -1,0 +1,122 @@
+//! Pictures of pixels, and their files.
+
+use crate::ReportError;
+
+/// A picture in memory: 8-bit RGB, row 0 on top.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// `(height, width, 3)`.
+    pub rgb: Vec<u8>,
+}
+
+/// A picture of numbers in memory: 16 bits each, row 0 on top.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Gray {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// `(height, width)`.
+    pub levels: Vec<u16>,
+}
+
+impl Gray {
+    /// The picture as a PNG file's bytes.
+    ///
+    /// # Errors
+    /// [`ReportError::Png`] for a picture without pixels, or with others than its size says.
+    pub fn to_png(&self) -> Result<Vec<u8>, ReportError> {
+        let bytes: Vec<u8> = self.levels.iter().flat_map(|level| level.to_be_bytes()).collect();
+        png_of(
+            [self.width, self.height],
+            png::ColorType::Grayscale,
+            png::BitDepth::Sixteen,
+            &bytes,
+        )
+    }
+}
+
+/// A PNG file's bytes.
+fn png_of(size: [u32; 2], color: png::ColorType, depth: png::BitDepth, data: &[u8]) -> Result<Vec<u8>, ReportError> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, size[0], size[1]);
+    encoder.set_color(color);
+    encoder.set_depth(depth);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(data)?;
+    writer.finish()?;
+    Ok(bytes)
+}
+
+impl Picture {
+    /// A white picture.
+    pub fn blank(width: u32, height: u32) -> Self {
+        Self {
+            width,
+            height,
+            rgb: vec![255; width as usize * height as usize * 3],
+        }
+    }
+
+    /// Puts a picture into this one with its top left corner at `(x, y)`; what does not fit is cut off.
+    pub fn paste(&mut self, other: &Self, x: u32, y: u32) {
+        let columns = other.width.min(self.width.saturating_sub(x)) as usize * 3;
+        if columns == 0 {
+            return;
+        }
+        for row in 0..other.height.min(self.height.saturating_sub(y)) {
+            let from = row as usize * other.width as usize * 3;
+            let to = ((y + row) as usize * self.width as usize + x as usize) * 3;
+            self.rgb[to..to + columns].copy_from_slice(&other.rgb[from..from + columns]);
+        }
+    }
+
+    /// The picture at half the size, each pixel the mean of four: smooth edges for what was drawn too large.
+    #[must_use]
+    pub fn halved(&self) -> Self {
+        let (width, height) = (self.width / 2, self.height / 2);
+        let mut half = Self::blank(width, height);
+        let at =
+            |x: u32, y: u32, k: usize| u32::from(self.rgb[(y as usize * self.width as usize + x as usize) * 3 + k]);
+        for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+            for k in 0..3 {
+                let sum = at(2 * x, 2 * y, k)
+                    + at(2 * x + 1, 2 * y, k)
+                    + at(2 * x, 2 * y + 1, k)
+                    + at(2 * x + 1, 2 * y + 1, k);
+                half.rgb[(y as usize * width as usize + x as usize) * 3 + k] = ((sum + 2) / 4) as u8;
+            }
+        }
+        half
+    }
+
+    /// The picture as a PNG file's bytes.
+    ///
+    /// # Errors
+    /// [`ReportError::Png`] for a picture without pixels, or with others than its size says.
+    pub fn to_png(&self) -> Result<Vec<u8>, ReportError> {
+        png_of(
+            [self.width, self.height],
+            png::ColorType::Rgb,
+            png::BitDepth::Eight,
+            &self.rgb,
+        )
+    }
+
+    /// Mixes a colour into a pixel, with this share.
+    pub(crate) fn blend(&mut self, x: usize, y: usize, color: [u8; 3], share: f32) {
+        let start = (y * self.width as usize + x) * 3;
+        if share >= 1.0 {
+            self.rgb[start..start + 3].copy_from_slice(&color);
+            return;
+        }
+        for (level, new) in self.rgb[start..start + 3].iter_mut().zip(color) {
+            let mixed = f32::from(*level) + (f32::from(new) - f32::from(*level)) * share;
+            *level = (mixed + 0.5) as u8;
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! Drawings as SVG files.
+
+use std::fmt::Write;
+
+use base64::prelude::{BASE64_STANDARD, Engine as _};
+
+use super::{Drawing, Rgb, Shape, Side, TextLine};
+use crate::ReportError;
+
+/// A whole file.
+pub(super) fn file(drawing: &Drawing) -> Result<String, ReportError> {
+    let (width, height) = (drawing.width, drawing.height);
+    let mut text = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
+         font-family=\"Ubuntu, 'Segoe UI', Helvetica, Arial, sans-serif\">\n\
+         <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n"
+    );
+    shapes(&mut text, drawing)?;
+    text.push_str("</svg>\n");
+    Ok(text)
+}
+
+fn shapes(text: &mut String, drawing: &Drawing) -> Result<(), ReportError> {
+    // Writing to a string cannot fail.
+    for shape in &drawing.shapes {
+        match shape {
+            Shape::Area { points, color, alpha } => {
+                let _ = writeln!(
+                    text,
+                    "<polygon points=\"{}\" fill=\"{}\"{}/>",
+                    places(points),
+                    hex(*color),
+                    opacity("fill", *alpha)
+                );
+            }
+            Shape::Line {
+                points,
+                width,
+                color,
+                alpha,
+                dash,
+            } => {
+                let dash = dash.map_or(String::new(), |dash| format!(" stroke-dasharray=\"{}\"", short(dash)));
+                let _ = writeln!(
+                    text,
+                    "<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" \
+                     stroke-linejoin=\"round\"{dash}{}/>",
+                    places(points),
+                    hex(*color),
+                    short(*width),
+                    opacity("stroke", *alpha)
+                );
+            }
+            Shape::Disc {
+                middle: [x, y],
+                radius,
+                color,
+                alpha,
+            } => {
+                let _ = writeln!(
+                    text,
+                    "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"{}\"{}/>",
+                    short(*x),
+                    short(*y),
+                    short(*radius),
+                    hex(*color),
+                    opacity("fill", *alpha)
+                );
+            }
+            Shape::Text(words) => write_words(text, words),
+            Shape::Inner { at: [x, y], drawing } => {
+                let (width, height) = (drawing.width, drawing.height);
+                let _ = writeln!(text, "<svg x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\">");
+                shapes(text, drawing)?;
+                text.push_str("</svg>\n");
+            }
+            Shape::Pixels(picture) => {
+                let _ = writeln!(
+                    text,
+                    "<image width=\"{}\" height=\"{}\" href=\"data:image/png;base64,{}\"/>",
+                    picture.width,
+                    picture.height,
+                    BASE64_STANDARD.encode(picture.to_png()?)
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A text that takes the room that was measured, whatever font its reader has.
+fn write_words(text: &mut String, words: &TextLine) {
+    let width = words.width();
+    if width <= 0.0 {
+        return;
+    }
+    let [x, y] = [words.at[0], words.at[1] + words.offset()[1]];
+    let anchor = match words.side {
+        Side::Left => "",
+        Side::Middle => " text-anchor=\"middle\"",
+        Side::Right => " text-anchor=\"end\"",
+    };
+    let turn = match words.turns % 4 {
+        0 => String::new(),
+        turns => format!(
+            " transform=\"rotate({} {} {})\"",
+            90 * u32::from(turns),
+            short(words.at[0]),
+            short(words.at[1])
+        ),
+    };
+    let rim = words.rim.map_or(String::new(), |rim| {
+        format!(
+            " stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\" paint-order=\"stroke\"",
+            hex(rim),
+            short(0.22 * words.size)
+        )
+    });
+    let _ = writeln!(
+        text,
+        "<text x=\"{}\" y=\"{}\" font-size=\"{}\" fill=\"{}\" textLength=\"{}\" lengthAdjust=\"spacingAndGlyphs\"{anchor}{turn}{rim}>{}</text>",
+        short(x),
+        short(y),
+        short(words.size),
+        hex(words.color),
+        short(width),
+        escaped(&words.text)
+    );
+}
+
+fn escaped(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '&' => safe.push_str("&amp;"),
+            '<' => safe.push_str("&lt;"),
+            '>' => safe.push_str("&gt;"),
+            '\u{fffe}' | '\u{ffff}' => safe.push('\u{fffd}'),
+            letter => safe.push(letter),
+        }
+    }
+    safe
+}
+
+fn places(points: &[[f32; 2]]) -> String {
+    let place = |point: &[f32; 2]| format!("{},{}", short(point[0]), short(point[1]));
+    points.iter().map(place).collect::<Vec<_>>().join(" ")
+}
+
+fn opacity(what: &str, alpha: f32) -> String {
+    if alpha >= 1.0 {
+        String::new()
+    } else {
+        format!(" {what}-opacity=\"{}\"", short(alpha))
+    }
+}
+
+fn hex([red, green, blue]: Rgb) -> String {
+    format!("#{red:02x}{green:02x}{blue:02x}")
+}
+
+/// A number with at most two decimals.
+fn short(number: f32) -> String {
+    let text = format!("{number:.2}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drawing::Picture;
+
+    #[test]
+    fn words_are_text_and_cannot_break_out_of_it() {
+        let mut drawing = Drawing::blank(90, 20);
+        drawing.write(TextLine::new("a<b>&\u{0}\"c\"", [1.0, 2.0], 12.0, [1, 2, 3]));
+        drawing.put(Picture::blank(2, 2), [3, 4]);
+        let svg = drawing.to_svg().expect("it can be written");
+        assert!(svg.contains(">a&lt;b&gt;&amp;"), "{svg}");
+        assert!(!svg.contains('\u{0}') && !svg.contains("<b>"), "{svg}");
+        assert!(svg.contains("<svg x=\"3\" y=\"4\" width=\"2\" height=\"2\">") && svg.contains("base64,iVBOR"));
+    }
+}

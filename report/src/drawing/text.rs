@@ -1,0 +1,201 @@
+//! Texts as pixels: every letter where the font puts it, to a fraction of a pixel.
+//!
+//! The plotting library draws each letter at a whole pixel and leaves out the room that the font has to its left: words
+//! fell apart ("ob jects").
+
+use std::sync::LazyLock;
+
+use ab_glyph::{Font, FontRef, Glyph, GlyphId, PxScale, ScaleFont, point};
+
+use super::{Picture, TextLine};
+
+static FONT: LazyLock<FontRef<'static>> = LazyLock::new(|| {
+    FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT).expect("the embedded font is a valid one")
+});
+
+/// Thickness of a rim around letters, as a share of their size.
+const RIM: f32 = 0.11;
+
+/// The library counts a font's size from its lowest line to its highest.
+fn scale(size: f32) -> PxScale {
+    let em = FONT.units_per_em().unwrap_or(1000.0);
+    PxScale::from(size * FONT.height_unscaled() / em)
+}
+
+/// The letters of a text, each with its place on the line that begins at 0.
+fn letters(text: &str, size: f32) -> (Vec<(GlyphId, f32)>, f32) {
+    let font = FONT.as_scaled(scale(size));
+    let (mut letters, mut x) = (Vec::new(), 0.0);
+    let mut before: Option<GlyphId> = None;
+    for letter in text.chars() {
+        let glyph = font.glyph_id(letter);
+        x += before.map_or(0.0, |before| font.kern(before, glyph));
+        letters.push((glyph, x));
+        x += font.h_advance(glyph);
+        before = Some(glyph);
+    }
+    (letters, x)
+}
+
+/// The width of a text in pixels, in letters of `size` pixels, as the font has it.
+pub fn text_width(text: &str, size: f32) -> f32 {
+    letters(text, size).1
+}
+
+/// Draws a text, turned around its anchor.
+pub(super) fn draw(picture: &mut Picture, words: &TextLine) {
+    if let Some(rim) = words.rim {
+        let off = RIM * words.size;
+        let slanted = off * 0.7;
+        for by in [
+            [off, 0.0],
+            [-off, 0.0],
+            [0.0, off],
+            [0.0, -off],
+            [slanted, slanted],
+            [-slanted, slanted],
+            [slanted, -slanted],
+            [-slanted, -slanted],
+        ] {
+            let at = [words.at[0] + by[0], words.at[1] + by[1]];
+            draw_once(
+                picture,
+                &TextLine {
+                    at,
+                    color: rim,
+                    rim: None,
+                    ..words.clone()
+                },
+            );
+        }
+    }
+    draw_once(picture, words);
+}
+
+fn draw_once(picture: &mut Picture, words: &TextLine) {
+    let [along, down] = words.offset();
+    let turned = words.turns % 4 != 0;
+    // A turned text is drawn at 0 and its pixels are turned.
+    let origin = if turned { [0.0, 0.0] } else { words.at };
+    for (id, x) in letters(&words.text, words.size).0 {
+        let glyph: Glyph =
+            id.with_scale_and_position(scale(words.size), point(origin[0] + along + x, origin[1] + down));
+        let Some(outline) = FONT.outline_glyph(glyph) else {
+            continue;
+        };
+        let bounds = outline.px_bounds();
+        let (left, top) = (bounds.min.x as i64, bounds.min.y as i64);
+        outline.draw(|dx, dy, share| {
+            let (x, y) = (left + i64::from(dx), top + i64::from(dy));
+            let [ax, ay] = words.at.map(|at| at as i64);
+            let (x, y) = match words.turns % 4 {
+                1 => (ax - y - 1, ay + x),
+                2 => (ax - x - 1, ay - y - 1),
+                3 => (ax + y, ay - x - 1),
+                _ => (x, y),
+            };
+            if let (Ok(x), Ok(y)) = (usize::try_from(x), usize::try_from(y)) {
+                // A light font on white looks lighter than it is.
+                let share = share.clamp(0.0, 1.0);
+                let share = share + 0.4 * share * (1.0 - share);
+                if x < picture.width as usize && y < picture.height as usize {
+                    picture.blend(x, y, words.color, share);
+                }
+            }
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// First and last column with ink of each run of columns with ink.
+    fn runs(picture: &Picture) -> Vec<[usize; 2]> {
+        let width = picture.width as usize;
+        let inked = |x: usize| (0..picture.height as usize).any(|y| picture.rgb[(y * width + x) * 3] < 240);
+        let mut runs: Vec<[usize; 2]> = Vec::new();
+        for x in (0..width).filter(|x| inked(*x)) {
+            match runs.last_mut() {
+                Some(run) if run[1] + 1 == x => run[1] = x,
+                _ => runs.push([x, x]),
+            }
+        }
+        runs
+    }
+
+    /// Each letter's outline from left to right, as the font has it, in pixels.
+    fn outlines(text: &str, size: f32) -> Vec<[f32; 2]> {
+        let placed = letters(text, size).0.into_iter();
+        let outline = |(id, x): (GlyphId, f32)| {
+            let bounds = FONT.outline(id)?.bounds;
+            let unit = size / FONT.units_per_em().expect("it has a unit");
+            Some([x + bounds.min.x * unit, x + bounds.max.x * unit])
+        };
+        placed.filter_map(outline).collect()
+    }
+
+    /// No gap between letters is wider than the font's, by more than the pixel that ink may fall short of at each side.
+    #[test]
+    fn words_do_not_fall_apart() {
+        for text in [
+            "find_objects",
+            "fit it",
+            "Blue cubes close together",
+            "the map of distances",
+            "1.0.11,5",
+        ] {
+            for size in [9.0, 10.5, 12.0, 13.0, 16.0, 22.0, 31.0] {
+                let mut picture = Picture::blank(500, 60);
+                draw(&mut picture, &TextLine::new(text, [4.3, 10.0], size, [0, 0, 0]));
+                let (runs, outlines) = (runs(&picture), outlines(text, size));
+                // The font's own gap in which the middle of the empty columns lies; below 0 where letters reach over another.
+                let fonts_gap = |middle: f32| {
+                    let gaps = outlines.windows(2).map(|pair| [pair[0][1], pair[1][0]]);
+                    let here = gaps.filter(|[end, start]| *end - 1.5 < middle && middle < *start + 1.5);
+                    here.map(|[end, start]| start - end).fold(0.0, f32::max)
+                };
+                for pair in runs.windows(2) {
+                    let gap = (pair[1][0] - pair[0][1] - 1) as f32;
+                    let expected = fonts_gap((pair[0][1] + pair[1][0] + 1) as f32 / 2.0 - 4.3);
+                    assert!(
+                        gap <= expected + 2.0,
+                        "{text} at {size}: {gap} for {expected} at {pair:?}"
+                    );
+                }
+                let (first, last) = (runs[0][0] as f32, runs[runs.len() - 1][1] as f32);
+                let whole = outlines[outlines.len() - 1][1] - outlines[0][0];
+                assert!((last - first + 1.0 - whole).abs() < 2.0, "{text} at {size}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_text_is_as_wide_as_its_letters_and_grows_with_its_size() {
+        let one = text_width("objects", 10.0);
+        assert!((text_width("objects", 30.0) - 3.0 * one).abs() < 1e-3);
+        assert!(one > 25.0 && one < 45.0, "{one}");
+        assert!(text_width("", 10.0).abs() < f32::EPSILON);
+    }
+
+    #[test]
+    fn a_text_stays_where_its_anchor_is() {
+        for turns in 0..4 {
+            let mut picture = Picture::blank(120, 120);
+            let words = TextLine::new("anchored", [60.0, 60.0], 14.0, [0, 0, 0]);
+            let words = TextLine {
+                turns,
+                ..words.anchored(super::super::Side::Middle, super::super::Level::Middle)
+            };
+            draw(&mut picture, &words);
+            let inked = |index: &usize| picture.rgb[index * 3] < 128;
+            let all: Vec<usize> = (0..120 * 120).filter(inked).collect();
+            let mean =
+                |of: fn(usize) -> usize| all.iter().map(|index| of(*index) as f32).sum::<f32>() / all.len() as f32;
+            assert!(
+                (mean(|i| i % 120) - 60.0).abs() < 4.0 && (mean(|i| i / 120) - 60.0).abs() < 4.0,
+                "{turns}"
+            );
+        }
+    }
+}

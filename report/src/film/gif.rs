@@ -1,0 +1,99 @@
+//! [`GifFilm`]: a film as a GIF. Each picture holds what changed since the one before, in colours of its own; which colours is said in
+//! `palette.rs`. A GIF is written by the crate `gif`.
+
+use std::io::Write;
+
+use gif::{DisposalMethod, Encoder, Frame, Repeat};
+
+use super::clock::Delays;
+use super::expect_size;
+use super::palette::Palette;
+use crate::ReportError;
+use crate::picture::Picture;
+
+/// Colours of a picture; one more stands for what stays as it was.
+const COLORS: usize = 255;
+
+/// A film as a GIF.
+pub struct GifFilm<W: Write> {
+    encoder: Encoder<W>,
+    size: [u32; 2],
+    delays: Delays,
+    last: Option<Picture>,
+}
+
+impl<W: Write> GifFilm<W> {
+    pub(super) fn new(to: W, size: [u32; 2]) -> Result<Self, ReportError> {
+        // Films have sides that fit.
+        let [width, height] = size.map(|side| side as u16);
+        let mut encoder = Encoder::new(to, width, height, &[])?;
+        encoder.set_repeat(Repeat::Infinite)?;
+        Ok(Self {
+            encoder,
+            size,
+            delays: Delays::new(100.0),
+            last: None,
+        })
+    }
+
+    pub(super) fn add(&mut self, picture: &Picture, seconds: f64) -> Result<(), ReportError> {
+        expect_size(picture, self.size)?;
+        let last = self.last.as_ref();
+        let [left, top, right, bottom] = last.map_or([0, 0, self.size[0], self.size[1]], |last| changed(last, picture));
+        let at = |picture: &Picture, x: u32, y: u32| {
+            let place = 3 * (y as usize * picture.width as usize + x as usize);
+            [picture.rgb[place], picture.rgb[place + 1], picture.rgb[place + 2]]
+        };
+        let places = (top..bottom).flat_map(|y| (left..right).map(move |x| (x, y)));
+        // What stays as it was has no colour.
+        let pixels: Vec<Option<[u8; 3]>> = places
+            .map(|(x, y)| {
+                let now = at(picture, x, y);
+                last.is_none_or(|last| at(last, x, y) != now).then_some(now)
+            })
+            .collect();
+        let palette = Palette::new(pixels.iter().flatten().copied(), COLORS);
+        let colors = palette.colors();
+        let clear = colors.len() as u8;
+        let buffer: Vec<u8> = pixels
+            .iter()
+            .map(|pixel| pixel.map_or(clear, |color| palette.place(color)))
+            .collect();
+        let mut table: Vec<u8> = colors.iter().flatten().copied().collect();
+        table.extend([0; 3]);
+        self.encoder.write_frame(&Frame {
+            delay: self.delays.next(seconds),
+            dispose: DisposalMethod::Keep,
+            transparent: Some(clear),
+            left: left as u16,
+            top: top as u16,
+            width: (right - left) as u16,
+            height: (bottom - top) as u16,
+            palette: Some(table),
+            buffer: buffer.into(),
+            ..Frame::default()
+        })?;
+        self.last = Some(picture.clone());
+        Ok(())
+    }
+
+    pub(super) fn finish(self) -> Result<(), ReportError> {
+        let mut to = self.encoder.into_inner()?;
+        to.flush().map_err(|error| ReportError::Gif(error.into()))
+    }
+}
+
+/// The smallest rectangle that holds every pixel which differs: left, top, and behind them right and bottom; one pixel if none does.
+fn changed(last: &Picture, now: &Picture) -> [u32; 4] {
+    let row = 3 * now.width as usize;
+    let mut bounds: Option<[u32; 4]> = None;
+    for (y, (before, after)) in (0..).zip(last.rgb.chunks_exact(row).zip(now.rgb.chunks_exact(row))) {
+        let differs = |byte: &usize| before[*byte] != after[*byte];
+        let Some(first) = (0..row).find(differs) else { continue };
+        let end = (0..row).rfind(differs).unwrap_or(first);
+        let (left, right) = ((first / 3) as u32, (end / 3) as u32 + 1);
+        let [old_left, top, old_right, _] = bounds.unwrap_or([left, y, right, y]);
+        bounds = Some([old_left.min(left), top, old_right.max(right), y + 1]);
+    }
+    bounds.unwrap_or([0, 0, 1, 1])
+}

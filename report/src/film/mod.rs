@@ -1,0 +1,273 @@
+//! Films: pictures one after the other, as GIF or animated PNG. Which pictures, and files, are the callers'.
+
+mod apng;
+mod clock;
+mod gif;
+mod palette;
+
+use std::io::Write;
+
+pub use apng::ApngFilm;
+pub use gif::GifFilm;
+
+use crate::ReportError;
+use crate::picture::Picture;
+
+/// The kinds of films.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FilmKind {
+    /// At most 256 colours in what changes from one picture to the next; times in hundredths of a second. Shown everywhere.
+    Gif,
+    /// Animated PNG: every colour as it is, times in milliseconds. Shown by browsers; larger.
+    Apng,
+}
+
+impl FilmKind {
+    /// The kind of film that a file's ending stands for: `gif`, `apng`.
+    pub fn of_ending(ending: &str) -> Option<Self> {
+        [("gif", Self::Gif), ("apng", Self::Apng)]
+            .into_iter()
+            .find_map(|(known, kind)| ending.eq_ignore_ascii_case(known).then_some(kind))
+    }
+
+    /// The shortest time in seconds that viewers show a picture for.
+    pub fn shortest(self) -> f64 {
+        match self {
+            // Of a shorter time browsers make a tenth of a second.
+            Self::Gif => 0.02,
+            Self::Apng => 0.01,
+        }
+    }
+}
+
+/// A film that is written, picture by picture.
+pub enum Film<W: Write> {
+    /// See [`FilmKind::Gif`].
+    Gif(GifFilm<W>),
+    /// See [`FilmKind::Apng`].
+    Apng(ApngFilm<W>),
+}
+
+impl<W: Write> Film<W> {
+    /// Begins a film of pictures of this size, which is shown over and over.
+    ///
+    /// # Errors
+    /// [`ReportError::FilmSize`] for a size that a film cannot have, or no pictures; [`ReportError::Gif`], [`ReportError::Png`] if
+    /// it cannot be written.
+    pub fn new(kind: FilmKind, to: W, [width, height]: [u32; 2], num_pictures: u32) -> Result<Self, ReportError> {
+        let sides = 1..=u32::from(u16::MAX);
+        if !sides.contains(&width) || !sides.contains(&height) || num_pictures == 0 {
+            return Err(ReportError::FilmSize {
+                found: format!("{num_pictures} pictures of {width} × {height} pixels"),
+                expected: "at least one, each side 1 to 65535 pixels".to_owned(),
+            });
+        }
+        let size = [width, height];
+        Ok(match kind {
+            FilmKind::Gif => Self::Gif(GifFilm::new(to, size)?),
+            FilmKind::Apng => Self::Apng(ApngFilm::new(to, size, num_pictures)?),
+        })
+    }
+
+    /// Adds a picture that is shown for so many seconds.
+    ///
+    /// # Errors
+    /// [`ReportError::FilmSize`] for a picture of another size; as [`Film::new`].
+    pub fn add(&mut self, picture: &Picture, seconds: f64) -> Result<(), ReportError> {
+        match self {
+            Self::Gif(film) => film.add(picture, seconds),
+            Self::Apng(film) => film.add(picture, seconds),
+        }
+    }
+
+    /// Ends the film; hands back what it was written to.
+    ///
+    /// # Errors
+    /// As [`Film::new`]; also where fewer pictures were added than it was to have.
+    pub fn finish(self) -> Result<(), ReportError> {
+        match self {
+            Self::Gif(film) => film.finish(),
+            Self::Apng(film) => film.finish(),
+        }
+    }
+}
+
+/// Refuses a picture of another size than the film's.
+fn expect_size(picture: &Picture, [width, height]: [u32; 2]) -> Result<(), ReportError> {
+    let pixels = width as usize * height as usize;
+    if [picture.width, picture.height] == [width, height] && picture.rgb.len() == 3 * pixels {
+        return Ok(());
+    }
+    Err(ReportError::FilmSize {
+        found: format!("a picture of {} × {} pixels", picture.width, picture.height),
+        expected: format!("{width} × {height}, as the film's first"),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const SIZE: [u32; 2] = [12, 9];
+
+    /// Pictures of which each changes the one before in some of its pixels, and how long each is shown.
+    fn film() -> impl Strategy<Value = Vec<(Picture, f64)>> {
+        let pixels = (SIZE[0] * SIZE[1]) as usize;
+        let change = (0..pixels, 1..pixels, prop::array::uniform3(any::<u8>()), 1u8..9);
+        let picture = (prop::collection::vec(change, 0..4), 0.02..0.5f64);
+        prop::collection::vec(picture, 1..8).prop_map(move |changes| {
+            let mut now = Picture::blank(SIZE[0], SIZE[1]);
+            let mut shown = Vec::new();
+            for (changes, seconds) in changes {
+                for (first, count, color, step) in changes {
+                    for pixel in first..(first + count).min(pixels) {
+                        let shift = (pixel as u8).wrapping_mul(step);
+                        for (k, value) in color.iter().enumerate() {
+                            now.rgb[3 * pixel + k] = value.wrapping_add(shift);
+                        }
+                    }
+                }
+                shown.push((now.clone(), seconds));
+            }
+            shown
+        })
+    }
+
+    fn written(kind: FilmKind, pictures: &[(Picture, f64)]) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let mut film = Film::new(kind, &mut bytes, SIZE, pictures.len() as u32).unwrap();
+        for (picture, seconds) in pictures {
+            film.add(picture, *seconds).unwrap();
+        }
+        film.finish().unwrap();
+        bytes
+    }
+
+    /// The pictures of a GIF as a viewer composes them, and their hundredths of a second.
+    fn seen_in_gif(bytes: &[u8]) -> Vec<(Vec<u8>, u16)> {
+        let mut options = ::gif::DecodeOptions::new();
+        options.set_color_output(::gif::ColorOutput::RGBA);
+        let mut decoder = options.read_info(bytes).unwrap();
+        assert_eq!(decoder.repeat(), ::gif::Repeat::Infinite);
+        let width = usize::from(decoder.width());
+        let mut canvas = vec![0; 3 * width * usize::from(decoder.height())];
+        let mut seen = Vec::new();
+        while let Some(frame) = decoder.read_next_frame().unwrap() {
+            let across = usize::from(frame.width);
+            for (place, pixel) in frame.buffer.chunks_exact(4).enumerate() {
+                let (x, y) = (
+                    usize::from(frame.left) + place % across,
+                    usize::from(frame.top) + place / across,
+                );
+                if pixel[3] != 0 {
+                    canvas[3 * (y * width + x)..][..3].copy_from_slice(&pixel[..3]);
+                }
+            }
+            seen.push((canvas.clone(), frame.delay));
+        }
+        seen
+    }
+
+    /// The same of an animated PNG, in milliseconds.
+    fn seen_in_apng(bytes: &[u8]) -> Vec<(Vec<u8>, u16)> {
+        let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
+        let frames = reader
+            .info()
+            .animation_control()
+            .map_or(1, |control| control.num_frames);
+        let mut seen = Vec::new();
+        for _ in 0..frames {
+            let mut rgb = vec![0; reader.output_buffer_size().unwrap()];
+            reader.next_frame(&mut rgb).unwrap();
+            let delay = reader.info().frame_control().map_or(0, |control| {
+                assert_eq!(control.delay_den, 1000);
+                control.delay_num
+            });
+            seen.push((rgb, delay));
+        }
+        seen
+    }
+
+    /// The largest difference of a channel.
+    fn error(a: &[u8], b: &[u8]) -> u8 {
+        a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
+        /// As many pictures as there were, each shown so long that no sum of times is off by more than half a unit.
+        #[test]
+        fn films_show_what_was_put_into_them(pictures in film()) {
+            for kind in [FilmKind::Gif, FilmKind::Apng] {
+                let bytes = written(kind, &pictures);
+                let (seen, unit) = match kind {
+                    FilmKind::Gif => (seen_in_gif(&bytes), 0.01),
+                    FilmKind::Apng => (seen_in_apng(&bytes), 0.001),
+                };
+                prop_assert_eq!(seen.len(), pictures.len());
+                let (mut shown, mut wanted) = (0.0, 0.0);
+                for (place, ((rgb, delay), (picture, seconds))) in seen.iter().zip(&pictures).enumerate() {
+                    // So few pixels have no more colours than a palette has.
+                    prop_assert_eq!(error(rgb, &picture.rgb), 0, "{:?}, picture {}", kind, place);
+                    shown += f64::from(*delay) * unit;
+                    wanted += seconds;
+                    if seen.len() > 1 {
+                        prop_assert!((shown - wanted).abs() <= unit / 2.0 + 1e-9, "{} s, {} s", shown, wanted);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn many_colors_are_near_what_they_were_in_a_gif_and_the_same_in_a_png() {
+        let (width, height) = (96, 96);
+        let picture = |shift: u32| Picture {
+            width,
+            height,
+            rgb: (0..width * height)
+                .flat_map(|pixel| {
+                    let (x, y) = (pixel % width, pixel / width);
+                    [(2 * x) as u8, (2 * y) as u8, (x + y + shift) as u8]
+                })
+                .collect(),
+        };
+        let pictures = [picture(0), picture(9)];
+        for (kind, most) in [(FilmKind::Gif, 24), (FilmKind::Apng, 0)] {
+            let mut bytes = Vec::new();
+            let mut film = Film::new(kind, &mut bytes, [width, height], 2).unwrap();
+            for picture in &pictures {
+                film.add(picture, 0.1).unwrap();
+            }
+            film.finish().unwrap();
+            let seen = match kind {
+                FilmKind::Gif => seen_in_gif(&bytes),
+                FilmKind::Apng => seen_in_apng(&bytes),
+            };
+            for ((rgb, _), picture) in seen.iter().zip(&pictures) {
+                let found = error(rgb, &picture.rgb);
+                assert!(found <= most, "{kind:?}: a channel is off by {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_film_is_refused() {
+        let code = |size, count| {
+            let film = Film::new(FilmKind::Gif, Vec::new(), size, count);
+            film.err().map(|error| error.code())
+        };
+        assert_eq!(code([1, 1], 1), None);
+        assert_eq!(code([0, 1], 1), Some("report/film-size"));
+        assert_eq!(code([1, 65_536], 1), Some("report/film-size"));
+        assert_eq!(code([1, 1], 0), Some("report/film-size"));
+        let mut film = Film::new(FilmKind::Apng, Vec::new(), [2, 2], 2).unwrap();
+        assert_eq!(
+            film.add(&Picture::blank(2, 3), 0.1).unwrap_err().code(),
+            "report/film-size"
+        );
+        film.add(&Picture::blank(2, 2), 0.1).unwrap();
+        assert!(film.finish().is_err(), "a picture is missing");
+    }
+}

@@ -1,0 +1,163 @@
+//! [`Palette`]: the few colours that stand for many. Boxes of colours are cut in two where that takes away most of the error, until there
+//! are as many as colours are wanted.
+//!
+//! Source: Wan, Wong and Prusinkiewicz 1988, variance-based cuts, each at the mean.
+
+/// A few colours, and which of them stands for each of many.
+#[derive(Debug)]
+pub(super) struct Palette {
+    colors: Vec<[u8; 3]>,
+    /// Every colour with its place in the palette, rising.
+    places: Vec<([u8; 3], u8)>,
+}
+
+/// Colours that one will stand for: a range of a list.
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    start: usize,
+    end: usize,
+    /// The channel in which they differ most, where it is cut, and the sum of squared differences from the mean in it.
+    channel: usize,
+    mean: f64,
+    error: f64,
+}
+
+/// A colour, and how many pixels have it.
+type Counted = ([u8; 3], u32);
+
+impl Palette {
+    /// At most `most` colours, 1 to 256, for pixels of these; the very same where there are no more.
+    pub(super) fn new(pixels: impl Iterator<Item = [u8; 3]>, most: usize) -> Self {
+        let mut sorted: Vec<[u8; 3]> = pixels.collect();
+        sorted.sort_unstable();
+        let mut counted: Vec<Counted> = Vec::new();
+        for color in sorted {
+            match counted.last_mut() {
+                Some((last, count)) if *last == color => *count += 1,
+                _ => counted.push((color, 1)),
+            }
+        }
+        if counted.is_empty() {
+            return Self {
+                colors: Vec::new(),
+                places: Vec::new(),
+            };
+        }
+        let mut cells = vec![Cell::of(&counted, 0, counted.len())];
+        while cells.len() < most {
+            let worst = (0..cells.len()).max_by(|a, b| cells[*a].error.total_cmp(&cells[*b].error));
+            // There is at least one cell.
+            let Some(worst) = worst.filter(|worst| cells[*worst].error > 0.0) else {
+                break;
+            };
+            let Cell {
+                start,
+                end,
+                channel,
+                mean,
+                ..
+            } = cells[worst];
+            let within = &mut counted[start..end];
+            within.sort_by_key(|(color, _)| (color[channel], *color));
+            // Some lie above the mean and some below, since they differ.
+            let middle = start + within.partition_point(|(color, _)| f64::from(color[channel]) <= mean);
+            cells[worst] = Cell::of(&counted, start, middle);
+            cells.push(Cell::of(&counted, middle, end));
+        }
+        let colors: Vec<[u8; 3]> = cells.iter().map(|cell| mean(&counted[cell.start..cell.end])).collect();
+        let mut places: Vec<([u8; 3], u8)> = (0..=u8::MAX)
+            .zip(&cells)
+            .flat_map(|(place, cell)| {
+                counted[cell.start..cell.end]
+                    .iter()
+                    .map(move |(color, _)| (*color, place))
+            })
+            .collect();
+        places.sort_unstable();
+        Self { colors, places }
+    }
+
+    pub(super) fn colors(&self) -> &[[u8; 3]] {
+        &self.colors
+    }
+
+    /// The place of the colour that stands for one of those that the palette was made for.
+    pub(super) fn place(&self, color: [u8; 3]) -> u8 {
+        let found = self.places.binary_search_by_key(&color, |(known, _)| *known);
+        found.map_or(0, |place| self.places[place].1)
+    }
+}
+
+impl Cell {
+    fn of(counted: &[Counted], start: usize, end: usize) -> Self {
+        let within = &counted[start..end];
+        let weight: f64 = within.iter().map(|(_, count)| f64::from(*count)).sum();
+        let mut cell = Self {
+            start,
+            end,
+            channel: 0,
+            mean: 0.0,
+            error: 0.0,
+        };
+        for channel in 0..3 {
+            let moment = |power: i32| -> f64 {
+                let value = |(color, count): &Counted| f64::from(*count) * f64::from(color[channel]).powi(power);
+                within.iter().map(value).sum()
+            };
+            let mean = moment(1) / weight;
+            // All of one value: the sums may leave a little.
+            let is_one = within.iter().all(|(color, _)| color[channel] == within[0].0[channel]);
+            let error = if is_one { 0.0 } else { moment(2) - mean * mean * weight };
+            if error > cell.error {
+                (cell.channel, cell.mean, cell.error) = (channel, mean, error);
+            }
+        }
+        cell
+    }
+}
+
+fn mean(within: &[Counted]) -> [u8; 3] {
+    let weight: f64 = within.iter().map(|(_, count)| f64::from(*count)).sum();
+    [0, 1, 2].map(|channel| {
+        let sum: f64 = within
+            .iter()
+            .map(|(color, count)| f64::from(*count) * f64::from(color[channel]))
+            .sum();
+        (sum / weight).round() as u8
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// No more colours than are wanted; the very same where they are enough; and each colour stands nearer to its own, on the whole,
+        /// than to the mean of all.
+        #[test]
+        fn few_colors_stand_for_many(
+            pixels in prop::collection::vec(prop::array::uniform3(any::<u8>()), 0..300),
+            most in 1usize..256,
+        ) {
+            let palette = Palette::new(pixels.iter().copied(), most);
+            let mut distinct = pixels.clone();
+            distinct.sort_unstable();
+            distinct.dedup();
+            prop_assert!(palette.colors().len() <= most);
+            let shown = |color: [u8; 3]| palette.colors()[usize::from(palette.place(color))];
+            if distinct.len() <= most {
+                for color in distinct {
+                    prop_assert_eq!(shown(color), color);
+                }
+            } else {
+                let all = Palette::new(pixels.iter().copied(), 1);
+                let far = |a: [u8; 3], b: [u8; 3]| (0..3).map(|k| f64::from(a[k].abs_diff(b[k])).powi(2)).sum::<f64>();
+                let own: f64 = pixels.iter().map(|color| far(*color, shown(*color))).sum();
+                let one: f64 = pixels.iter().map(|color| far(*color, all.colors()[0])).sum();
+                // Rounding means to whole numbers costs at most a quarter in each channel.
+                prop_assert!(own <= one + 0.75 * pixels.len() as f64, "{} > {}", own, one);
+            }
+        }
+    }
+}

@@ -1,0 +1,260 @@
+//! [`Game`]: a world that goes on by the keys that are pressed and the time that goes by. Which key is which is in `keys.rs`.
+
+use crate::Failure;
+use crate::env::{Catalogue, EndedBy, Environment, EpisodeOrigin, Recorder, Recording, Renderer, Step};
+use crate::episode_frames::{deed, map_of, number, words};
+use crate::report::picture::Picture;
+use crate::spec::World;
+
+use super::keys::{Held, Key};
+
+/// From where the world is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Shown {
+    Agent,
+    Both,
+    Above,
+}
+
+/// A world that is played in.
+pub(super) struct Game {
+    world: World,
+    origin: EpisodeOrigin,
+    environment: Environment,
+    recorder: Recorder,
+    /// Episodes that are over.
+    recordings: Vec<Recording>,
+    held: Held,
+    shown: Shown,
+    /// Seconds between two steps, and when the next is due.
+    pace: f64,
+    due: f64,
+    way: Vec<[f32; 2]>,
+    last: Option<Step>,
+    said: String,
+    /// Whether the world stands while no key is held: where there is no action that does nothing.
+    waits: bool,
+}
+
+impl Game {
+    /// A game at its start, which goes on with a step every `pace` seconds.
+    pub(super) fn new(
+        world: World,
+        origin: EpisodeOrigin,
+        catalogue: Catalogue,
+        renderer: Renderer,
+        pace: f64,
+    ) -> Self {
+        let mut environment = Environment::with_catalogue(world.clone(), catalogue);
+        environment.set_renderer(renderer);
+        let agent = &world.agent_params;
+        let rows = (0..agent.num_actions().unwrap_or(0)).filter_map(|row| agent.action_row(row));
+        let does_nothing = |row: [f64; 3]| row[0] == 0.0 && row[1] == 0.0 && row[2] <= 0.5;
+        let waits = agent.num_actions().is_some() && !rows.into_iter().any(does_nothing);
+        let mut game = Self {
+            world,
+            origin,
+            environment,
+            recorder: Recorder::default(),
+            recordings: Vec::new(),
+            held: Held::default(),
+            shown: Shown::Agent,
+            pace,
+            due: 0.0,
+            way: Vec::new(),
+            last: None,
+            said: String::new(),
+            waits,
+        };
+        game.begin();
+        game
+    }
+
+    fn begin(&mut self) {
+        self.environment.reset(self.world.clone());
+        self.recorder.begin(self.world.clone());
+        self.way = vec![self.environment.agent().position];
+        (self.last, self.said) = (None, String::new());
+    }
+
+    /// Takes a key that was pressed at a time in seconds; whether the picture is another then.
+    pub(super) fn press(&mut self, key: Key, now: f64) -> bool {
+        match key {
+            Key::View => {
+                self.shown = match self.shown {
+                    Shown::Agent => Shown::Both,
+                    Shown::Both => Shown::Above,
+                    Shown::Above => Shown::Agent,
+                };
+            }
+            Key::Restart => {
+                self.keep();
+                self.begin();
+            }
+            _ => {
+                self.held.press(key, now);
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Makes the step that is due, if one is; whether it did.
+    pub(super) fn go_on(&mut self, now: f64) -> Result<bool, Failure> {
+        if now < self.due || self.environment.ended() {
+            return Ok(false);
+        }
+        let Some((along, turn, interact)) = self.held.take(now).or((!self.waits).then_some((0.0, 0.0, false))) else {
+            return Ok(false);
+        };
+        // A pause is not made up for.
+        self.due = (self.due + self.pace).max(now);
+        let agent = &self.world.agent_params;
+        let (speed, rate) = (agent.max_linear_speed, agent.max_angular_speed);
+        let action = self.environment.action_near(along * speed, turn * rate, interact);
+        let step = self.environment.step(action)?;
+        self.recorder.step(action);
+        self.way.push(self.environment.agent().position);
+        let deed = deed(self.environment.world(), &step).words.join(", ");
+        if !deed.is_empty() {
+            self.said = deed;
+        }
+        self.last = Some(step);
+        Ok(true)
+    }
+
+    /// What there is to see, at most so many pixels across and down.
+    pub(super) fn picture(&mut self, width: u32, height: u32) -> Result<Picture, Failure> {
+        let size = width.min(height);
+        match self.shown {
+            Shown::Agent => self.seen(width, height),
+            Shown::Above => Ok(map_of(&self.environment, size, &self.way)),
+            Shown::Both => {
+                let side = (width / 2).min(height).max(1);
+                let (seen, map) = (self.seen(side, side)?, map_of(&self.environment, side, &self.way));
+                let mut both = Picture::blank(2 * side, side);
+                both.paste(&seen, 0, 0);
+                both.paste(&map, side, 0);
+                Ok(both)
+            }
+        }
+    }
+
+    fn seen(&mut self, width: u32, height: u32) -> Result<Picture, Failure> {
+        let frame = self.environment.observe_at(2 * width, 2 * height)?;
+        let (width, height) = (frame.width, frame.height);
+        let rgb = frame.rgb;
+        Ok(Picture { width, height, rgb }.halved())
+    }
+
+    /// The line below the picture: steps, time, return, what is carried, what happened last.
+    pub(super) fn status(&self) -> String {
+        let end = self.last.as_ref().filter(|step| step.ended());
+        let mut parts = vec![
+            format!("step {}", self.environment.num_steps()),
+            words(&self.environment, end),
+        ];
+        if let Some(step) = &self.last {
+            parts.insert(1, format!("reward {}", number(step.reward, "+")));
+        }
+        if !self.said.is_empty() {
+            parts.push(self.said.clone());
+        }
+        parts.join(" · ")
+    }
+
+    /// The episodes that were played, the one under way included.
+    pub(super) fn into_recordings(mut self) -> Vec<Recording> {
+        self.keep();
+        self.recordings
+    }
+
+    fn keep(&mut self) {
+        let ended_by: Option<EndedBy> = self.last.as_ref().and_then(|step| step.ended_by);
+        let mut recording = self.recorder.recording(&self.environment, ended_by);
+        recording.origin = EpisodeOrigin {
+            experience: self.recordings.len() as u64,
+            ..self.origin.clone()
+        };
+        self.recordings.push(recording);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::env::Replay;
+    use crate::generator::Sampler;
+    use crate::spec::ActionSpace;
+    use crate::tasks;
+
+    fn game(actions: ActionSpace) -> Game {
+        let world = Sampler::new(&tasks::variant("find_objects#red").unwrap(), 0)
+            .world(0)
+            .unwrap();
+        let world = world.edit(|world| world.agent_params.actions = actions).unwrap();
+        let pace = world.agent_params.time_step;
+        Game::new(
+            world,
+            EpisodeOrigin::default(),
+            Catalogue::default(),
+            Renderer::default(),
+            pace,
+        )
+    }
+
+    #[test]
+    fn keys_walk_and_what_was_played_comes_out_once_more() {
+        let mut game = game(ActionSpace::Normalized);
+        let start = game.environment.agent().position;
+        assert!(!game.press(Key::Ahead, 0.0), "a key alone changes no picture");
+        assert!(game.go_on(0.0).unwrap());
+        assert!(!game.go_on(0.04).unwrap(), "the next step is not due");
+        assert!(game.go_on(0.1).unwrap());
+        let walked = game.environment.agent().position;
+        assert_ne!(start, walked);
+        // The key is no longer held, and the world goes on.
+        assert!(game.go_on(1.0).unwrap());
+        assert_eq!(game.environment.agent().position, walked);
+        assert_eq!(game.environment.num_steps(), 3);
+        assert!(
+            game.status().starts_with("step 3 · reward −0.1 · 0.3 s · return −0.3"),
+            "{}",
+            game.status()
+        );
+        assert!(game.press(Key::View, 1.0) && game.press(Key::Restart, 1.0));
+        assert_eq!(
+            (game.environment.num_steps(), game.environment.agent().position),
+            (0, start)
+        );
+        game.press(Key::Left, 2.0);
+        game.go_on(2.0).unwrap();
+        for (width, height) in [(40, 22), (9, 30), (1, 1)] {
+            let picture = game.picture(width, height).unwrap();
+            assert!(picture.width <= width.max(2) && picture.height <= height);
+        }
+        let recordings = game.into_recordings();
+        assert_eq!(recordings.len(), 2);
+        for (place, recording) in (0..).zip(&recordings) {
+            assert_eq!(
+                (recording.origin.experience, recording.actions.len()),
+                (place, [3, 1][place as usize])
+            );
+            let mut replay = Replay::new(recording, &Catalogue::default());
+            while replay.step().unwrap().is_some() {}
+            replay.check().unwrap();
+        }
+    }
+
+    #[test]
+    fn a_world_in_which_nothing_cannot_be_done_waits_for_keys() {
+        let mut game = game(ActionSpace::Discrete(vec![[5.0, 0.0, 0.0], [0.0, 45.0, 0.0]]));
+        assert!(!game.go_on(0.0).unwrap());
+        game.press(Key::Right, 0.5);
+        assert!(game.go_on(0.5).unwrap());
+        assert_eq!(
+            game.recorder.recording(&game.environment, None).actions,
+            [crate::env::Action::Discrete(1)]
+        );
+    }
+}

@@ -1,0 +1,141 @@
+//! `driftworld play`: walking through a world with the keys of a terminal. What keys do is in `game.rs`, how pictures become characters in
+//! `cells.rs`.
+
+mod cells;
+mod game;
+mod keys;
+mod terminal;
+
+use std::fmt::Write;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use crate::env::{RecordingLines, Renderer, RendererKind};
+use clap::Args;
+use driftworld_text::{ShownPath, printable};
+
+use self::cells::Cells;
+use self::game::Game;
+use self::keys::Key;
+use self::terminal::RawTerminal;
+use super::assets::LibraryChoice;
+use super::film_choice::summary;
+use super::interrupt::Interrupt;
+use super::world_choice::WorldChoice;
+use super::{Failure, output};
+
+/// How often the terminal is looked at and drawn.
+const FRAME: Duration = Duration::from_millis(50);
+
+/// What the last line says.
+const HELP: &str = "arrows or wasd: walk · space: use · v: view · r: again · q: quit";
+
+/// Walk through a world with the keys, in a terminal of true colour.
+///
+/// Arrows or wasd walk and turn, the space bar uses what is ahead, v looks from above, r begins again, q quits. The world goes on in its
+/// own time; where its actions cannot do nothing, it waits for keys.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  driftworld play find_objects#red
+  driftworld play examples/worlds/key_corridor.json --seed 3 --record mine.jsonl
+  driftworld replay mine.jsonl --episode 0 -o mine.gif")]
+pub(crate) struct Play {
+    #[command(flatten)]
+    choice: WorldChoice,
+    #[command(flatten)]
+    libraries: LibraryChoice,
+    /// Steps per second, 20 at most [default: the world's own time].
+    #[arg(long, value_name = "RATE", value_parser = rate)]
+    fps: Option<f64>,
+    /// Keep what was played in this file, for `driftworld replay`.
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+    /// Where to render: cpu, gpu, or auto (gpu if there is one).
+    #[arg(long, default_value_t, value_name = "RENDERER")]
+    renderer: RendererKind,
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    let rate = text.parse().ok().filter(|rate: &f64| (0.1..=20.0).contains(rate));
+    rate.ok_or_else(|| format!("found {text:?}, expected 0.1 to 20 steps per second"))
+}
+
+impl Play {
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let world = self.choice.world()?;
+        let agent = &world.agent_params;
+        let own = agent.time_step * f64::from(agent.frame_skip.max(1));
+        let pace = self.fps.map_or(own, |rate| 1.0 / rate);
+        let renderer = Renderer::new(self.renderer)?;
+        let mut game = Game::new(world, self.choice.origin(), self.libraries.catalogue()?, renderer, pace);
+        let interrupt = Interrupt::listen("interrupted");
+        let terminal = RawTerminal::open()?;
+        let played = play(&mut game, &terminal, &interrupt);
+        drop(terminal);
+        played?;
+        let recordings = game.into_recordings();
+        for recording in &recordings {
+            output::line(summary(recording))?;
+        }
+        if let Some(path) = &self.record {
+            let mut lines = RecordingLines::default();
+            let episodes: String = recordings.iter().map(|recording| lines.lines(recording)).collect();
+            output::write(path, (RecordingLines::header() + &episodes).as_bytes())?;
+            output::line(format!("wrote {}", path.shown()))?;
+        }
+        Ok(())
+    }
+}
+
+/// Plays until somebody quits.
+fn play(game: &mut Game, terminal: &RawTerminal, interrupt: &Interrupt) -> Result<(), Failure> {
+    let begun = Instant::now();
+    let (mut before, mut status): (Option<Cells>, String) = (None, String::new());
+    let mut size = None;
+    let mut is_new = true;
+    for frame in 1.. {
+        let now = begun.elapsed().as_secs_f64();
+        let Some(typed) = terminal.typed() else { return Ok(()) };
+        for key in Key::all(&typed) {
+            if key == Key::Quit {
+                return Ok(());
+            }
+            is_new |= game.press(key, now);
+        }
+        if interrupt.is_asked() {
+            return Ok(());
+        }
+        is_new |= game.go_on(now)?;
+        let found = terminal_size::terminal_size().map_or((80, 24), |(columns, rows)| (columns.0, rows.0));
+        if size.replace(found) != Some(found) {
+            terminal.show("\x1b[0m\x1b[2J")?;
+            (before, status, is_new) = (None, String::new(), true);
+        }
+        if is_new {
+            // Two lines below are words.
+            let (columns, rows) = (
+                usize::from(found.0.clamp(2, 1000)),
+                usize::from(found.1.clamp(3, 500)) - 2,
+            );
+            let cells = Cells::new(&game.picture(columns as u32, 2 * rows as u32)?, columns, rows);
+            let mut sent = cells.drawn_over(before.as_ref());
+            let said = game.status();
+            if said != status {
+                let line = |text: &str| printable(text).chars().take(columns).collect::<String>();
+                let (first, second) = (rows + 1, rows + 2);
+                // Writing into a text cannot fail.
+                let _ = write!(
+                    sent,
+                    "\x1b[{first};1H\x1b[K{}\x1b[{second};1H\x1b[K\x1b[2m{}\x1b[0m",
+                    line(&said),
+                    line(HELP)
+                );
+                status = said;
+            }
+            terminal.show(&sent)?;
+            (before, is_new) = (Some(cells), false);
+        }
+        std::thread::sleep((FRAME * frame).saturating_sub(begun.elapsed()));
+    }
+    Ok(())
+}

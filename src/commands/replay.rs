@@ -1,0 +1,132 @@
+//! `driftworld replay`: recorded episodes run once more, compared with their log, and filmed. Where they are found is `recordings`'.
+
+use std::path::PathBuf;
+
+use crate::env::Catalogue;
+use crate::film::expect_film;
+use crate::recordings::RecordedEpisodes;
+use clap::Args;
+use driftworld_text::ShownPath;
+use serde_json::json;
+
+use super::assets::LibraryChoice;
+use super::film_choice::{FilmChoice, summary, tell};
+use super::{Failure, output};
+
+/// Run recorded episodes once more: check them against their log, and draw them.
+///
+/// Reads what `run --record`, `film --record`, `play --record`, Python's `record=True` and `driftworld-unity --record` wrote. An episode
+/// is run once more from its world and its actions, and must earn what the log says, to the last bit. Without --episode, all are checked.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  driftworld run scenario.json --agent random --logs logs/first --record
+  driftworld replay logs/first
+  driftworld replay logs/first --episode 17 -o episode.gif
+  driftworld replay logs/first --episode 17 -o episode.png --size 320")]
+pub(crate) struct Replay {
+    /// The folder of a log, or a file of recordings.
+    log: PathBuf,
+    /// The number of the episode: exp_num in the log, from 0.
+    #[arg(long, value_name = "N")]
+    episode: Option<u64>,
+    /// Whose episode it is, where several workers have one of this number.
+    #[arg(long, value_name = "WORKER", requires = "episode")]
+    worker: Option<String>,
+    /// File to draw it into: .gif or .apng for a film, .png for a sheet of the frames that matter.
+    #[arg(short, long, value_name = "FILE", requires = "episode")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    film: FilmChoice,
+    #[command(flatten)]
+    libraries: LibraryChoice,
+    /// Print what came of it as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+impl Replay {
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        if let Some(path) = &self.output {
+            expect_film(path)?;
+        }
+        let episodes = RecordedEpisodes::open(&self.log)?;
+        let catalogue = self.libraries.catalogue()?;
+        match self.episode {
+            Some(number) => self.one(&episodes, number, &catalogue),
+            None => self.all(&episodes, &catalogue),
+        }
+    }
+
+    fn one(&self, episodes: &RecordedEpisodes, number: u64, catalogue: &Catalogue) -> Result<(), Failure> {
+        let worker = self.worker.as_deref();
+        let recording = episodes.recording(number, worker)?;
+        let recording = recording.ok_or_else(|| episodes.unrecorded(number))?;
+        episodes.check(&recording, worker, catalogue)?;
+        let written = match &self.output {
+            Some(path) => Some((path, self.film.write(path, &recording, catalogue)?)),
+            None => None,
+        };
+        if self.json {
+            let origin = serde_json::to_value(&recording.origin)?;
+            return output::json(&json!({
+                "episode": origin, "steps": recording.actions.len(), "reward": recording.reward,
+                "ended_by": recording.ended_by.map(|word| word.word()), "recorded_by": recording.recorded_by,
+                "file": written.as_ref().map(|(path, _)| path), "film": written.as_ref().map(|(_, film)| film),
+            }));
+        }
+        output::line(format!(
+            "episode {number}: {}; comes out as recorded",
+            summary(&recording)
+        ))?;
+        written.map_or(Ok(()), |(path, film)| tell(path, &film))
+    }
+
+    fn all(&self, episodes: &RecordedEpisodes, catalogue: &Catalogue) -> Result<(), Failure> {
+        let numbers = episodes.numbers();
+        let bar = output::progress(numbers.len() as u64, "replaying");
+        let (mut checked, mut steps, mut unrecorded) = (0_u64, 0_u64, Vec::new());
+        let mut failures = Vec::new();
+        for number in numbers {
+            let checked_one = episodes.recording(number, None).and_then(|recording| match recording {
+                Some(recording) => {
+                    episodes.check(&recording, None, catalogue)?;
+                    Ok(Some(recording.actions.len()))
+                }
+                None => Ok(None),
+            });
+            match checked_one {
+                Ok(Some(count)) => {
+                    checked += 1;
+                    steps += count as u64;
+                }
+                Ok(None) => unrecorded.push(number),
+                Err(failure) => failures.push(failure),
+            }
+            bar.inc(1);
+        }
+        bar.finish_and_clear();
+        if self.json && failures.is_empty() {
+            return output::json(&json!({ "checked": checked, "steps": steps, "not_recorded": unrecorded }));
+        }
+        if !failures.is_empty() {
+            const SHOWN: usize = 10;
+            let shown: Vec<&Failure> = failures.iter().take(SHOWN).collect();
+            output::note(format!(
+                "{checked} episodes come out as recorded, {} do not",
+                failures.len()
+            ));
+            return Err(Failure::of_several(&shown));
+        }
+        if checked == 0 {
+            return Err(episodes.unrecorded(unrecorded.first().copied().unwrap_or(0)));
+        }
+        let without = match unrecorded.len() {
+            0 => String::new(),
+            count => format!("; {count} were not recorded"),
+        };
+        output::line(format!(
+            "{}: {checked} episodes of {steps} steps in all come out as recorded{without}",
+            self.log.shown()
+        ))
+    }
+}

@@ -1,0 +1,441 @@
+//! Contact sheets: of each of several variants the agent's view and the map, from the world and the camera that show what
+//! they are about, with what makes it differ from the first in words. How rows become a sheet is `report`'s.
+
+use driftworld_env::{Agent, Environment, Renderer, Scene, StillAgent};
+use driftworld_generator::Sampler;
+use driftworld_report::picture::{Drawing, SheetRow, TextLine, sheet, text_width};
+use driftworld_spec::{Element, MotionModel, Variant, World};
+
+use crate::Failure;
+use crate::map_drawing::Moves;
+use crate::subject::{Sight, sight, subjects};
+use crate::views::{Views, agent_camera};
+
+/// Worlds of each variant that are tried.
+const WORLDS: u64 = 4;
+
+/// Turns of the camera that are tried, in degrees clockwise from the agent's heading.
+const TURNS: [f32; 12] = [
+    0.0, 30.0, -30.0, 60.0, -60.0, 90.0, -90.0, 120.0, -120.0, 150.0, -150.0, 180.0,
+];
+
+/// For how many seconds moving objects draw their ways.
+const SECONDS: f64 = 5.0;
+
+/// The most letters of a value in a caption.
+const LONGEST_VALUE: usize = 28;
+
+/// A variant, what is said of it, and which of its worlds may be drawn.
+#[derive(Clone)]
+pub(crate) struct Shown {
+    pub(crate) variant: Variant,
+    pub(crate) words: String,
+    pub(crate) seed: u64,
+    /// The first index, and how many there are.
+    pub(crate) index: u64,
+    pub(crate) count: u64,
+}
+
+impl Shown {
+    /// A variant as its task declares it.
+    pub(crate) fn declared(variant: Variant, seed: u64) -> Self {
+        let words = variant.task().variant_description(variant.name());
+        Self {
+            words: words.unwrap_or_default().to_owned(),
+            variant,
+            seed,
+            index: 0,
+            count: WORLDS,
+        }
+    }
+}
+
+/// How a sheet is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Look {
+    /// Which world of each variant; chosen if absent.
+    pub(crate) index: Option<u64>,
+    /// By how much cameras are turned, in degrees; chosen if absent.
+    pub(crate) turn: Option<f32>,
+    /// Height of each picture in pixels.
+    pub(crate) size: u32,
+    /// Variants in each line.
+    pub(crate) columns: usize,
+}
+
+/// The place of a world among those that are tried, and of a camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Choice {
+    world: u64,
+    turn: f32,
+}
+
+/// A world with what there is to see of it.
+struct Candidate {
+    world: World,
+    scene: Scene,
+    subjects: Vec<usize>,
+}
+
+/// What a sheet shows of one variant.
+pub(crate) struct Cell {
+    row: SheetRow,
+    /// Whether a reader finds what it is about.
+    #[cfg_attr(not(test), expect(dead_code, reason = "what tests count"))]
+    pub(crate) is_seen: bool,
+}
+
+/// The sheet of variants. `tick` is called after each.
+pub(crate) fn contact_sheet(shown: &[Shown], look: Look, tick: &dyn Fn()) -> Result<Drawing, Failure> {
+    let (cells, said) = cells(shown, look, tick)?;
+    let rows: Vec<SheetRow> = cells.into_iter().map(|cell| cell.row).collect();
+    let mut drawing = sheet(&rows, look.columns)?;
+    for line in said {
+        // Below the pictures, if it is not too long.
+        let size = (13.0 * (drawing.width as f32 - 24.0) / text_width(&line, 13.0)).min(13.0);
+        drawing.height += 18;
+        let at = [12.0, drawing.height as f32 - 18.0];
+        drawing.write(TextLine::new(line, at, size, [110, 116, 124]));
+    }
+    drawing.height += 4;
+    Ok(drawing)
+}
+
+/// What is shown of each variant, and what is said below all of them.
+pub(crate) fn cells(shown: &[Shown], look: Look, tick: &dyn Fn()) -> Result<(Vec<Cell>, Vec<String>), Failure> {
+    let mut renderer = Renderer::default();
+    let worlds = shown
+        .iter()
+        .map(|shown| Candidates::of(shown, look.index))
+        .collect::<Result<Vec<_>, Failure>>()?;
+    let joint = joint_choice(&mut renderer, &worlds, look)?;
+    let mut cells: Vec<Cell> = Vec::new();
+    let mut drawn: Vec<(Choice, Drawing, Drawing)> = Vec::new();
+    for (number, (shown_here, candidates)) in shown.iter().zip(&worlds).enumerate() {
+        let (choice, is_seen) = candidates.own_choice(&mut renderer, joint, look)?;
+        let candidate = candidates.at(choice.world)?;
+        let views = Views::new(&candidate.world, look.size, choice.turn);
+        let seen: Drawing = views.first_person()?.rgb.into();
+        let map = views.map_with_legend(&ways(&candidate.world)?);
+        let base = (0..number).find(|base| shown[*base].variant.task().name() == shown_here.variant.task().name());
+        let mut words = vec![shown_here.words.trim().to_owned()];
+        if let Some(base) = base {
+            words.push(differences(&shown[base].variant, &shown_here.variant));
+            let (their_choice, their_view, their_map) = &drawn[base];
+            let same = [*their_view == seen, *their_map == map];
+            if *their_choice == choice {
+                words.push(alike(&shown[base].variant, &shown_here.variant, same));
+            }
+        }
+        if choice != joint {
+            words.push(placed(shown_here, choice, look));
+        }
+        words.retain(|part| !part.is_empty());
+        cells.push(Cell {
+            row: SheetRow {
+                title: shown_here.variant.id(),
+                words: words.join(" "),
+                pictures: vec![seen.clone(), map.clone()],
+            },
+            is_seen,
+        });
+        drawn.push((choice, seen, map));
+        tick();
+    }
+    let mut said = Vec::new();
+    if let Some(first) = shown.first().filter(|_| shown.len() > 1) {
+        said.push(format!(
+            "In brackets: the values of {}, the first of its task. Each cell: {}",
+            first.variant.id(),
+            placed(first, joint, look)
+        ));
+    }
+    Ok((cells, said))
+}
+
+/// The worlds of a variant that are tried, drawn when they are asked for.
+struct Candidates {
+    all: Vec<Option<Candidate>>,
+}
+
+impl Candidates {
+    fn of(shown: &Shown, index: Option<u64>) -> Result<Self, Failure> {
+        let sampler = Sampler::new(&shown.variant, shown.seed);
+        let draw = |index: u64| -> Result<Candidate, Failure> {
+            let world = sampler.world(index)?;
+            Ok(Candidate {
+                subjects: subjects(&world),
+                scene: Environment::new(world.clone()).scene().clone(),
+                world,
+            })
+        };
+        if let Some(index) = index {
+            return Ok(Self {
+                all: vec![Some(draw(index)?)],
+            });
+        }
+        let mut all = vec![Some(draw(shown.index)?)];
+        let others = 1..WORLDS.min(shown.count.max(1));
+        // A world that cannot be drawn is not shown.
+        all.extend(others.map(|place| draw(shown.index + place).ok()));
+        Ok(Self { all })
+    }
+
+    /// The world at a place; where there are fewer, they are taken in turn.
+    fn at(&self, place: u64) -> Result<&Candidate, Failure> {
+        let found = self.all.get(place as usize % self.all.len());
+        let found = found.and_then(Option::as_ref).or_else(|| self.all[0].as_ref());
+        found.ok_or_else(|| Failure::input("found no world to draw"))
+    }
+
+    fn sight(&self, renderer: &mut Renderer, choice: Choice) -> Result<Sight, Failure> {
+        let candidate = self.at(choice.world)?;
+        let camera = agent_camera(&candidate.world, choice.turn);
+        sight(renderer, &candidate.scene, &camera, &candidate.subjects)
+    }
+
+    /// The choice of all if it shows what this variant is about; else another camera, else another world.
+    fn own_choice(&self, renderer: &mut Renderer, joint: Choice, look: Look) -> Result<(Choice, bool), Failure> {
+        if self.sight(renderer, joint)?.is_enough() {
+            return Ok((joint, true));
+        }
+        let worlds = std::iter::once(joint.world).chain(0..self.all.len() as u64);
+        for world in worlds {
+            let mut best = (Sight::default(), joint);
+            for turn in turns(look) {
+                let choice = Choice { world, turn };
+                let seen = self.sight(renderer, choice)?;
+                if seen > best.0 {
+                    best = (seen, choice);
+                }
+            }
+            if best.0.is_enough() {
+                return Ok((best.1, true));
+            }
+        }
+        Ok((joint, false))
+    }
+}
+
+fn turns(look: Look) -> Vec<f32> {
+    look.turn.map_or_else(|| TURNS.to_vec(), |turn| vec![turn])
+}
+
+/// The world and the camera that show what most of the variants are about, and of each as many things as possible up to
+/// three; of equals the first.
+fn joint_choice(renderer: &mut Renderer, worlds: &[Candidates], look: Look) -> Result<Choice, Failure> {
+    let most = worlds.iter().map(|candidates| candidates.all.len()).max().unwrap_or(1) as u64;
+    let mut best = (
+        (0, 0),
+        Choice {
+            world: 0,
+            turn: look.turn.unwrap_or(0.0),
+        },
+    );
+    for world in 0..most {
+        for turn in turns(look) {
+            let choice = Choice { world, turn };
+            let (mut cells, mut things) = (0, 0);
+            for candidates in worlds {
+                let seen = candidates.sight(renderer, choice)?;
+                cells += u32::from(seen.is_enough());
+                things += seen.seen.min(3);
+            }
+            if (cells, things) > best.0 {
+                best = ((cells, things), choice);
+            }
+            // Two things in each cell are enough.
+            if cells as usize == worlds.len() && things >= 2 * cells {
+                return Ok(best.1);
+            }
+        }
+    }
+    Ok(best.1)
+}
+
+/// Which world and which camera, in words.
+fn placed(shown: &Shown, choice: Choice, look: Look) -> String {
+    let index = look.index.unwrap_or(shown.index + choice.world % shown.count.max(1));
+    let side = if choice.turn < 0.0 { "left" } else { "right" };
+    let turn = match choice.turn.abs() {
+        0.0 => "the agent's view".to_owned(),
+        180.0 => "the view behind the agent".to_owned(),
+        degrees => format!("the view {degrees}° to the agent's {side}"),
+    };
+    format!("World {index}, {turn}.")
+}
+
+/// The values that a variant has and another one has not, with those in brackets.
+fn differences(base: &Variant, variant: &Variant) -> String {
+    let of_base = |name: &str| {
+        base.value(name)
+            .map_or_else(|| "none".to_owned(), |value| cut(&value.to_string()))
+    };
+    let parts: Vec<String> = (variant.values().iter())
+        .filter(|(name, value)| base.value(name) != Some(value))
+        .map(|(name, value)| format!("{name} {} ({})", cut(&value.to_string()), of_base(name)))
+        .collect();
+    parts.join(", ") + if parts.is_empty() { "" } else { "." }
+}
+
+fn cut(text: &str) -> String {
+    let plain: String = text.chars().filter(|letter| *letter != '"').collect();
+    if plain.chars().count() <= LONGEST_VALUE {
+        return plain;
+    }
+    plain.chars().take(LONGEST_VALUE - 1).chain(['…']).collect()
+}
+
+/// What is the same in the pictures of two variants, and what is not in them.
+fn alike(base: &Variant, variant: &Variant, [view, map]: [bool; 2]) -> String {
+    let what = match (view, map) {
+        (true, true) => "Looks the same, and so does the map",
+        (true, false) => "Looks the same from here",
+        (false, _) => return String::new(),
+    };
+    let parameters = variant.task().parameters();
+    let differing = variant
+        .values()
+        .iter()
+        .filter(|(name, value)| base.value(name) != Some(value));
+    let mut elements: Vec<Element> = differing
+        .filter_map(|(name, _)| parameters.get(name))
+        .flat_map(|parameter| parameter.affects.iter().copied())
+        .collect();
+    elements.sort_by_key(|element| element.name());
+    elements.dedup();
+    let names: Vec<&str> = elements.iter().map(|element| element.name()).collect();
+    match names.len() {
+        0 => format!("{what}."),
+        1 => format!("{what}: only {} differs.", names[0]),
+        _ => format!("{what}: {} differ.", names.join(" and ")),
+    }
+}
+
+/// The ways of what moves in a world while the agent stands still.
+pub(crate) fn ways(world: &World) -> Result<Moves, Failure> {
+    let mut moves = Moves::none(world);
+    let moving: Vec<usize> = (world.objects.iter().enumerate())
+        .filter(|(_, object)| object.motion_model != MotionModel::Stationary && object.speed > 0.0)
+        .map(|(index, _)| index)
+        .collect();
+    if moving.is_empty() {
+        return Ok(moves);
+    }
+    let mut environment = Environment::new(world.clone());
+    let mut agent = StillAgent;
+    agent.begin(0);
+    let mut trails: Vec<Vec<[f32; 2]>> = moving
+        .iter()
+        .map(|index| vec![environment.objects()[*index].position])
+        .collect();
+    while !environment.ended() && environment.seconds() < SECONDS {
+        let action = agent.act(&environment);
+        environment.step(action)?;
+        for (trail, index) in trails.iter_mut().zip(&moving) {
+            let object = &environment.objects()[*index];
+            let near =
+                |from: &[f32; 2]| (from[0] - object.position[0]).abs() + (from[1] - object.position[1]).abs() < 3.0;
+            // What was taken away comes back elsewhere: that is no way.
+            if object.present && trail.last().is_some_and(near) {
+                trail.push(object.position);
+            }
+        }
+    }
+    moves.seconds = environment.seconds();
+    moves.trails = trails.into_iter().filter(|trail| trail.len() > 1).collect();
+    Ok(moves)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use driftworld_spec::TaskSpec;
+
+    use super::*;
+    use crate::tasks;
+
+    const LOOK: Look = Look {
+        index: None,
+        turn: None,
+        size: 48,
+        columns: 2,
+    };
+
+    fn of_task(task: &Arc<TaskSpec>, most: usize) -> Vec<Shown> {
+        let variants = task.all_variants().into_iter().take(most);
+        variants.map(|variant| Shown::declared(variant, 0)).collect()
+    }
+
+    fn seen(task: &Arc<TaskSpec>) -> (usize, usize) {
+        let (cells, _) = cells(&of_task(task, 8), LOOK, &|| ()).expect("they can be drawn");
+        (cells.iter().filter(|cell| cell.is_seen).count(), cells.len())
+    }
+
+    /// Each picture of the built-in tasks shows what it is about.
+    #[test]
+    fn every_cell_of_the_built_in_tasks_shows_its_subject() {
+        for name in tasks::built_in_names() {
+            let (shown, all) = seen(&tasks::task(name).expect("it is built in"));
+            assert_eq!(shown, all, "{name}");
+        }
+    }
+
+    /// In mazes and rooms walls may hide what a world is about from its start: nine of ten are enough.
+    #[test]
+    fn most_cells_of_the_example_worlds_show_their_subject() {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/worlds");
+        let (mut shown, mut all) = (0, 0);
+        for entry in std::fs::read_dir(folder).expect("the examples are there") {
+            let path = entry.expect("it can be read").path();
+            if path.extension().is_some_and(|ending| ending == "json") {
+                let task = tasks::task(&path.display().to_string()).expect("it is a task");
+                let (own, of) = seen(&task);
+                (shown, all) = (shown + own, all + of);
+            }
+        }
+        assert!(10 * shown >= 9 * all, "{shown} of {all}");
+    }
+
+    #[test]
+    fn captions_say_what_differs_and_what_looks_the_same() {
+        let task = tasks::task("moving_object").expect("it is built in");
+        let named = ["wandering", "fast", "modest", "waypoints", "dusk"];
+        let shown: Vec<Shown> = named
+            .map(|name| Shown::declared(task.variant(name).expect("it is declared"), 0))
+            .to_vec();
+        let (cells, said) = cells(&shown, LOOK, &|| ()).expect("they can be drawn");
+        let mut captions: Vec<String> = cells
+            .iter()
+            .map(|cell| format!("{}: {}", cell.row.title, cell.row.words))
+            .collect();
+        captions.extend(said);
+        insta::assert_snapshot!(captions.join("\n"));
+    }
+
+    #[test]
+    fn what_moves_leaves_a_way_and_what_stands_none() {
+        let world = |name: &str| {
+            let variant = tasks::variant(name).expect("it is built in");
+            Sampler::new(&variant, 0).world(0).expect("it can be drawn")
+        };
+        let moves = ways(&world("moving_object#fast")).expect("it runs");
+        let length = |trail: &Vec<[f32; 2]>| -> f32 {
+            trail
+                .windows(2)
+                .map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]))
+                .sum()
+        };
+        assert!(!moves.trails.is_empty());
+        // Six metres a second, for as long as said.
+        assert!(
+            moves
+                .trails
+                .iter()
+                .all(|trail| length(trail) <= 6.0 * moves.seconds as f32 * 1.01)
+        );
+        assert!(moves.trails.iter().map(length).fold(0.0, f32::max) > 10.0);
+        assert!(ways(&world("find_objects#blue")).expect("it runs").trails.is_empty());
+    }
+}

@@ -1,0 +1,331 @@
+//! [`film`]: a recorded episode as pictures one after the other, and as a file. How films are written is `report`'s, how an episode is run
+//! once more `env`'s; what a frame shows is decided here.
+
+use std::path::Path;
+use std::str::FromStr;
+
+use clap::ValueEnum;
+use driftworld_env::{
+    Catalogue, Environment, Recording, Renderer, RendererKind, Replay, category_color, depth_to_gray,
+};
+use driftworld_report::film::{Film, FilmKind};
+use driftworld_report::picture::{Picture, sheet};
+use driftworld_text::ShownPath;
+use serde::Serialize;
+
+use crate::episode_frames::{deed, map_of, rows, seen_by, words};
+use crate::{Failure, output_file};
+
+/// Most pixels along a side of the agent's view, and of the map.
+pub const MAX_FILM_SIZE: u32 = 2048;
+
+/// Rows of a sheet.
+const SHEET_ROWS: usize = 12;
+
+/// From where an episode is looked at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum FilmView {
+    /// What the agent sees.
+    #[default]
+    Agent,
+    /// The map, with the way so far.
+    Above,
+    /// Both, side by side.
+    Both,
+}
+
+/// What of the agent's view is shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum FilmModality {
+    /// Colours.
+    #[default]
+    Rgb,
+    /// Distance, white at 100 m.
+    Depth,
+    /// Reward categories.
+    Segmentation,
+}
+
+/// What a word stands for, or which words there are.
+fn of_word<T: ValueEnum>(word: &str) -> Result<T, String> {
+    T::from_str(word, false).map_err(|_| {
+        let words = T::value_variants().iter().filter_map(ValueEnum::to_possible_value);
+        let words: Vec<String> = words.map(|word| word.get_name().to_owned()).collect();
+        format!("found {word:?}, expected one of {}", words.join(", "))
+    })
+}
+
+impl FromStr for FilmView {
+    type Err = String;
+
+    fn from_str(word: &str) -> Result<Self, String> {
+        of_word(word)
+    }
+}
+
+impl FromStr for FilmModality {
+    type Err = String;
+
+    fn from_str(word: &str) -> Result<Self, String> {
+        of_word(word)
+    }
+}
+
+/// How an episode is shown.
+#[derive(Clone, Debug)]
+pub struct FilmOptions {
+    /// From where.
+    pub view: FilmView,
+    /// What of the agent's view.
+    pub modality: FilmModality,
+    /// Pixels along each side of the agent's view, and of the map: 1 to [`MAX_FILM_SIZE`].
+    pub size: u32,
+    /// One frame for so many steps, at least 1. The start and the end are always shown.
+    pub every: u32,
+    /// Whether a line above each frame says time, return and what happened.
+    pub captions: bool,
+    /// What draws.
+    pub renderer: RendererKind,
+}
+
+impl Default for FilmOptions {
+    fn default() -> Self {
+        Self {
+            view: FilmView::default(),
+            modality: FilmModality::default(),
+            size: 240,
+            every: 1,
+            captions: false,
+            renderer: RendererKind::default(),
+        }
+    }
+}
+
+/// What a film came to.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FilmSummary {
+    /// Frames.
+    pub frames: u32,
+    /// Pixels across, and down.
+    pub width: u32,
+    /// See `width`.
+    pub height: u32,
+    /// How long it lasts; 0 for a sheet.
+    pub seconds: f64,
+}
+
+impl FilmOptions {
+    /// How many frames an episode of so many steps has.
+    pub fn num_frames(&self, steps: usize) -> usize {
+        1 + steps.div_ceil(self.every.max(1) as usize)
+    }
+
+    fn check(&self) -> Result<(), Failure> {
+        if (1..=MAX_FILM_SIZE).contains(&self.size) && self.every >= 1 {
+            return Ok(());
+        }
+        Err(Failure::usage(format!(
+            "film: found size {} and every {}, expected 1 to {MAX_FILM_SIZE} pixels, and each step or fewer",
+            self.size, self.every
+        )))
+    }
+}
+
+/// Runs an episode once more and hands out its frames, each with how many steps lie before it; then whether it came out as recorded is
+/// checked.
+///
+/// # Errors
+/// A step that cannot be made any more, or another reward or ending than was recorded; what `take` says.
+pub fn film(
+    recording: &Recording,
+    catalogue: &Catalogue,
+    options: &FilmOptions,
+    take: &mut dyn FnMut(Picture, usize) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    options.check()?;
+    let mut replay = Replay::new(recording, catalogue);
+    replay.environment().set_renderer(Renderer::new(options.renderer)?);
+    let steps_of_a_second = (1.0 / recording.seconds_per_step()).ceil() as usize;
+    let mut way = vec![replay.environment().agent().position];
+    // What happened last, and when.
+    let mut said: Option<(String, usize)> = None;
+    take(frame(&mut replay, options, &way, "")?, 0)?;
+    while let Some(step) = replay.step()? {
+        let number = replay.num_steps();
+        let environment = replay.environment();
+        way.push(environment.agent().position);
+        let deed = deed(environment.world(), &step).words.join(", ");
+        if !deed.is_empty() {
+            said = Some((deed, number));
+        }
+        let is_last = number == recording.actions.len();
+        if number % options.every as usize == 0 || is_last {
+            let mut caption = words(environment, is_last.then_some(&step));
+            if let Some((deed, when)) = &said
+                && number - when <= steps_of_a_second
+            {
+                caption = format!("{caption} · {deed}");
+            }
+            take(frame(&mut replay, options, &way, &caption)?, number)?;
+        }
+    }
+    Ok(replay.check()?)
+}
+
+fn frame(replay: &mut Replay<'_>, options: &FilmOptions, way: &[[f32; 2]], caption: &str) -> Result<Picture, Failure> {
+    let environment = replay.environment();
+    let pictures = match options.view {
+        FilmView::Agent => vec![agent_view(environment, options)?],
+        FilmView::Above => vec![map_of(environment, options.size, way)],
+        FilmView::Both => vec![
+            agent_view(environment, options)?,
+            map_of(environment, options.size, way),
+        ],
+    };
+    let mut frame = Picture::blank(pictures.iter().map(|picture| picture.width).sum(), options.size);
+    let mut left = 0;
+    for picture in &pictures {
+        frame.paste(picture, left, 0);
+        left += picture.width;
+    }
+    if options.captions {
+        let caption = if caption.is_empty() {
+            words(environment, None)
+        } else {
+            caption.to_owned()
+        };
+        return Ok(frame.captioned(&caption));
+    }
+    Ok(frame)
+}
+
+fn agent_view(environment: &mut Environment, options: &FilmOptions) -> Result<Picture, Failure> {
+    let size = options.size;
+    if options.modality == FilmModality::Rgb {
+        return seen_by(environment, size);
+    }
+    let frame = environment.observe_at(size, size)?;
+    let rgb = match options.modality {
+        FilmModality::Segmentation => frame.category.iter().flat_map(|it| category_color(*it)).collect(),
+        _ => depth_to_gray(&frame.depth)
+            .into_iter()
+            .flat_map(|gray| [gray; 3])
+            .collect(),
+    };
+    Ok(Picture {
+        width: size,
+        height: size,
+        rgb,
+    })
+}
+
+/// What a file's ending stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Ending {
+    Film(FilmKind),
+    /// One picture of the frames that matter.
+    Sheet,
+}
+
+fn ending(path: &Path) -> Result<Ending, Failure> {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    if let Some(kind) = FilmKind::of_ending(ending) {
+        return Ok(Ending::Film(kind));
+    }
+    if ending.eq_ignore_ascii_case("png") {
+        return Ok(Ending::Sheet);
+    }
+    let advice = if ["mp4", "webm", "mkv", "mov"]
+        .iter()
+        .any(|video| ending.eq_ignore_ascii_case(video))
+    {
+        format!("; write an .apng, and make a video of it: ffmpeg -i e.apng -pix_fmt yuv420p e.{ending}")
+    } else {
+        String::new()
+    };
+    Err(Failure::usage(format!(
+        "{}: found a name that ends in {ending:?}, expected .gif or .apng for a film, or .png for a sheet of its frames{advice}",
+        path.shown()
+    )))
+}
+
+/// Refuses a name that ends like no film and no sheet.
+///
+/// # Errors
+/// That says which endings there are.
+pub fn expect_film(path: &Path) -> Result<(), Failure> {
+    ending(path).map(drop)
+}
+
+/// Writes an episode as a film (`.gif`, `.apng`), or as one picture of the frames that matter (`.png`). Without `frames_per_second`
+/// it goes by in the world's own time, but no faster than viewers show. `watch` is told the frames that are done.
+///
+/// # Errors
+/// As [`film`], and if the file cannot be written: then there is none.
+pub fn write_film(
+    path: &Path,
+    recording: &Recording,
+    catalogue: &Catalogue,
+    options: &FilmOptions,
+    frames_per_second: Option<f64>,
+    watch: &mut dyn FnMut(u64),
+) -> Result<FilmSummary, Failure> {
+    options.check()?;
+    let kind = match ending(path)? {
+        Ending::Film(kind) => kind,
+        Ending::Sheet => return write_sheet(path, recording, catalogue, options),
+    };
+    let num_frames = options.num_frames(recording.actions.len()) as u32;
+    let own = recording.seconds_per_step() * f64::from(options.every);
+    let seconds = frames_per_second.map_or(own, |rate| 1.0 / rate).max(kind.shortest());
+    let mut file = output_file::create(path)?;
+    let mut writer = None;
+    let mut summary = FilmSummary {
+        frames: 0,
+        width: 0,
+        height: 0,
+        seconds: 0.0,
+    };
+    let last = recording.actions.len();
+    let mut to = Some(&mut file);
+    film(recording, catalogue, options, &mut |picture, number| {
+        let size = [picture.width, picture.height];
+        if let Some(to) = to.take() {
+            (summary.width, summary.height) = (size[0], size[1]);
+            writer = Some(Film::new(kind, std::io::BufWriter::new(to), size, num_frames)?);
+        }
+        // The end stays a while.
+        let shown = if number == last { seconds.max(1.0) } else { seconds };
+        if let Some(writer) = &mut writer {
+            writer.add(&picture, shown)?;
+        }
+        summary.frames += 1;
+        summary.seconds += shown;
+        watch(u64::from(summary.frames));
+        Ok(())
+    })?;
+    writer.map_or(Ok(()), Film::finish)?;
+    file.commit().map_err(|error| output_file::unwritable(path, &error))?;
+    Ok(summary)
+}
+
+fn write_sheet(
+    path: &Path,
+    recording: &Recording,
+    catalogue: &Catalogue,
+    options: &FilmOptions,
+) -> Result<FilmSummary, Failure> {
+    let renderer = Renderer::new(options.renderer)?;
+    let rows = rows(recording, catalogue, renderer, options.size, SHEET_ROWS)?;
+    let mut replay = Replay::new(recording, catalogue);
+    while replay.step()?.is_some() {}
+    replay.check()?;
+    let picture = sheet(&rows, 2)?;
+    output_file::write_picture(path, &picture)?;
+    Ok(FilmSummary {
+        frames: rows.len() as u32,
+        width: picture.width,
+        height: picture.height,
+        seconds: 0.0,
+    })
+}

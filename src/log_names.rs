@@ -1,0 +1,68 @@
+//! What tasks in a log are called: `task#variant` as its scenario has it, where the log's own names hold letters and digits
+//! alone. How a log's names are made is `curriculum`'s.
+
+use std::collections::BTreeMap;
+
+use driftworld_curriculum::log_name;
+use driftworld_metrics::Log;
+use serde_json::Value;
+
+/// The names of the tasks of a log's scenario, by the log's own; none without a scenario. Names that two of them share are left out.
+pub(crate) fn called_in(log: &Log) -> BTreeMap<String, String> {
+    log.scenario_info.extra.get("scenario").map(called).unwrap_or_default()
+}
+
+fn called(scenario: &Value) -> BTreeMap<String, String> {
+    let mut names: BTreeMap<String, Option<String>> = BTreeMap::new();
+    let blocks = scenario.get("blocks").and_then(Value::as_array).into_iter().flatten();
+    let regimes = blocks.filter_map(|block| block.get("regimes")?.as_array()).flatten();
+    for regime in regimes {
+        let word = |key: &str| regime.get(key).and_then(Value::as_str);
+        let Some(task) = word("task") else { continue };
+        let file = task.rsplit(['/', '\\']).next().unwrap_or(task);
+        let task = file.strip_suffix(".json").unwrap_or(file);
+        // A drift is called by both of its ends, and is left as it is.
+        let Some(variant) = word("name")
+            .or_else(|| word("variant"))
+            .filter(|_| regime.get("drift").is_none())
+        else {
+            continue;
+        };
+        let name = format!("{task}#{variant}");
+        let known = names
+            .entry(log_name(task, variant))
+            .or_insert_with(|| Some(name.clone()));
+        if known.as_ref().is_some_and(|known| *known != name) {
+            *known = None;
+        }
+    }
+    names.into_iter().filter_map(|(log, name)| Some((log, name?))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn families_keep_the_names_of_their_members() {
+        let scenario = serde_json::json!({ "blocks": [
+            { "regimes": [{ "task": "a/berries.json", "variant": "all-106-gold", "count": 1 }] },
+            { "regimes": [
+                { "task": "berries", "variant": "x", "values": { "n": 1 }, "name": "two words", "count": 1 },
+                { "task": "berries", "variant": "x", "drift": { "to": "y" }, "count": 1 },
+                { "task": "t", "variant": "a_b", "count": 1 }, { "task": "t", "variant": "ab", "count": 1 }
+            ] }
+        ] });
+        let found = called(&scenario);
+        let expected = [
+            ("berries_all106gold", "berries#all-106-gold"),
+            ("berries_twowords", "berries#two words"),
+        ];
+        let expected: BTreeMap<String, String> = expected
+            .into_iter()
+            .map(|(log, name)| (log.to_owned(), name.to_owned()))
+            .collect();
+        assert_eq!(found, expected);
+        assert!(called(&Value::Null).is_empty());
+    }
+}

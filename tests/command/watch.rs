@@ -1,0 +1,327 @@
+//! Episodes that are watched: `run --record`, `replay`, `film`. That a recorded episode comes out to the bit whatever acts in it is tested
+//! in `tests/recordings.rs`.
+
+use std::fs;
+use std::path::Path;
+
+use crate::run_files::{files, write};
+use crate::terminal::{driftworld, fail, output, read, root, scratch, succeed, succeed_in, text};
+
+/// A lifetime of 3 blocks and 14 experiences in two tasks, the last block shuffled.
+fn scenario(folder: &Path) -> std::path::PathBuf {
+    scenario_with(folder, "examples/worlds/key_corridor.json")
+}
+
+/// The same with another second task that has a variant `red`.
+fn scenario_with(folder: &Path, second: &str) -> std::path::PathBuf {
+    let path = folder.join("scenario.json");
+    let regime = |task: &str, variant: &str, count: u32| {
+        format!(r#"{{ "task": "{task}", "variant": "{variant}", "count": {count}, "seed": 5, "max_steps": 30 }}"#)
+    };
+    let (red, doors) = (regime("find_objects", "red", 3), regime(second, "red", 2));
+    let drift = r#"{ "task": "find_objects", "variant": "red", "drift": { "to": "blue" }, "count": 4, "seed": 1, "max_steps": 25 }"#;
+    let text = format!(
+        r#"{{ "name": "watched", "blocks": [
+            {{ "type": "evaluation", "regimes": [{red}, {doors}] }},
+            {{ "type": "learning", "regimes": [{drift}] }},
+            {{ "type": "evaluation", "mix": "shuffled", "regimes": [{red}, {doors}] }} ] }}"#
+    );
+    write(&path, &text);
+    path
+}
+
+/// Where a log keeps what was done in a block.
+fn recordings(log: &Path, block: &str) -> std::path::PathBuf {
+    log.join("worker-default").join(block).join("actions.jsonl")
+}
+
+#[test]
+fn a_recorded_run_is_the_same_run_and_each_episode_comes_out_once_more() {
+    let folder = scratch();
+    let scenario = scenario(folder.path());
+    let (plain, kept) = (folder.path().join("plain"), folder.path().join("kept"));
+    for agent in ["random", "onrails", "sarsa"] {
+        let run = |log: &Path, more: &[&str]| {
+            succeed(
+                &[
+                    &["run", text(&scenario), "--agent", agent, "--json", "--logs", text(log)],
+                    more,
+                ]
+                .concat(),
+            )
+        };
+        assert_eq!(run(&plain, &[]), run(&kept, &["--record", "--jobs", "2"]), "{agent}");
+        let mut found = files(&kept);
+        found.retain(|name, _| !name.ends_with("actions.jsonl"));
+        assert_eq!(found, files(&plain), "{agent}: recording changes no row");
+        let said = succeed(&["replay", text(&kept)]);
+        assert!(
+            said.contains("14 episodes of") && said.ends_with("come out as recorded\n"),
+            "{said}"
+        );
+        fs::remove_dir_all(&plain).unwrap();
+        fs::remove_dir_all(&kept).unwrap();
+    }
+}
+
+#[test]
+fn a_recorded_run_that_is_killed_goes_on_and_keeps_every_byte() {
+    let folder = scratch();
+    let scenario = scenario_with(folder.path(), "find_objects");
+    let whole = folder.path().join("whole");
+    let all = ["run", text(&scenario), "--agent", "random"];
+    succeed(&[&all[..], &["--record", "--logs", text(&whole)]].concat());
+    let expected = files(&whole);
+    // As a killed run leaves it: the recording of the next experience is there, whole or in part, and its row is not.
+    let table = |log: &Path, block: &str| log.join("worker-default").join(block).join("data-log.tsv");
+    for (rows, cut) in [(0, 3), (2, 700), (5, 0)] {
+        let log = folder.path().join(format!("killed-{rows}-{cut}"));
+        succeed(&[&all[..], &["--record", "--logs", text(&log)]].concat());
+        for block in ["1-train", "2-test"] {
+            fs::remove_dir_all(log.join("worker-default").join(block)).unwrap();
+        }
+        let rows_kept = fs::read_to_string(table(&log, "0-test")).unwrap();
+        let rows_kept: String = rows_kept
+            .lines()
+            .take(1 + rows)
+            .map(|line| format!("{line}\n"))
+            .collect();
+        fs::write(table(&log, "0-test"), rows_kept).unwrap();
+        let done = fs::read(recordings(&log, "0-test")).unwrap();
+        fs::write(recordings(&log, "0-test"), &done[..done.len() - cut]).unwrap();
+        // Not told once more to record: a log that was recorded goes on so.
+        succeed(&[&all[..], &["--resume", "--logs", text(&log)]].concat());
+        assert_eq!(files(&log), expected, "{rows} rows, {cut} bytes less");
+    }
+    // The next block was just begun.
+    let log = folder.path().join("begun");
+    succeed(&[&all[..], &["--record", "--logs", text(&log)]].concat());
+    fs::remove_dir_all(log.join("worker-default/2-test")).unwrap();
+    fs::remove_file(table(&log, "1-train")).unwrap();
+    fs::write(recordings(&log, "1-train"), "{\"recording_fo").unwrap();
+    succeed(&[&all[..], &["--resume", "--logs", text(&log)]].concat());
+    assert_eq!(files(&log), expected);
+}
+
+#[test]
+fn a_log_that_was_begun_without_recordings_gets_them_from_then_on() {
+    let folder = scratch();
+    let scenario = scenario_with(folder.path(), "find_objects");
+    let log = folder.path().join("log");
+    let all = ["run", text(&scenario), "--agent", "random", "--logs", text(&log)];
+    succeed(&all);
+    for block in ["1-train", "2-test"] {
+        fs::remove_dir_all(log.join("worker-default").join(block)).unwrap();
+    }
+    let none = fail(1, &["replay", text(&log)]);
+    assert!(none.contains("run with --record"), "{none}");
+    succeed(&[&all[..], &["--resume", "--record"]].concat());
+    let said = succeed(&["replay", text(&log)]);
+    assert!(
+        said.contains("9 episodes of") && said.contains("; 5 were not recorded"),
+        "{said}"
+    );
+    let said = fail(1, &["replay", text(&log), "--episode", "4"]);
+    assert!(said.contains("no recording of episode 4"), "{said}");
+}
+
+#[test]
+fn a_damaged_recording_is_told_by_its_place_and_hides_no_other() {
+    let folder = scratch();
+    let scenario = scenario_with(folder.path(), "find_objects");
+    let log = folder.path().join("log");
+    succeed(&[
+        "run",
+        text(&scenario),
+        "--agent",
+        "random",
+        "--logs",
+        text(&log),
+        "--record",
+    ]);
+    let path = recordings(&log, "0-test");
+    let whole = fs::read_to_string(&path).unwrap();
+    // The line of the first episode: behind the header and its world.
+    let damaged = whole.replacen("\"experience\":0", "\"experience\":7", 1);
+    fs::write(&path, damaged).unwrap();
+    let said = fail(1, &["replay", text(&log), "--episode", "0"]);
+    assert!(said.contains("actions.jsonl: line 3: found the checksum"), "{said}");
+    succeed(&["replay", text(&log), "--episode", "1"]);
+    let said = fail(1, &["replay", text(&log)]);
+    assert!(said.contains("13 episodes come out as recorded, 1 do not"), "{said}");
+    fs::write(&path, &whole[..whole.len() - 20]).unwrap();
+    let said = fail(1, &["replay", text(&log), "--episode", "4"]);
+    assert!(said.contains("found the end of the file"), "{said}");
+    succeed(&["replay", text(&log), "--episode", "3"]);
+    // Rows that say something else.
+    fs::write(&path, &whole).unwrap();
+    let table = log.join("worker-default/0-test/data-log.tsv");
+    let rows = fs::read_to_string(&table).unwrap();
+    let steps = rows
+        .lines()
+        .nth(1)
+        .unwrap()
+        .split('\t')
+        .position(|cell| cell == "30.0")
+        .expect("30 steps");
+    let changed: Vec<String> = (rows.lines().enumerate())
+        .map(|(number, line)| {
+            let cell = |(place, cell): (usize, &str)| {
+                if number == 1 && place == steps {
+                    "29.0".to_owned()
+                } else {
+                    cell.to_owned()
+                }
+            };
+            line.split('\t').enumerate().map(cell).collect::<Vec<_>>().join("\t")
+        })
+        .collect();
+    fs::write(&table, changed.join("\n") + "\n").unwrap();
+    let said = fail(1, &["replay", text(&log), "--episode", "0"]);
+    assert!(
+        said.contains("experience 0, steps: found 30 in its recording, expected 29"),
+        "{said}"
+    );
+}
+
+#[test]
+fn an_episode_becomes_a_film_or_a_sheet() {
+    let folder = scratch();
+    let scenario = scenario_with(folder.path(), "find_objects");
+    let log = folder.path().join("log");
+    succeed(&[
+        "run",
+        text(&scenario),
+        "--agent",
+        "random",
+        "--logs",
+        text(&log),
+        "--record",
+    ]);
+    let at = |name: &str| folder.path().join(name);
+    let first_bytes = |path: &Path| fs::read(path).unwrap()[..4].to_vec();
+    let replay = |name: &str, more: &[&str]| {
+        let path = at(name);
+        let begin = ["replay", text(&log), "--episode", "1", "--size", "48", "-o"];
+        succeed(&[&begin[..], &[text(&path)], more].concat())
+    };
+    let said = replay("e.gif", &[]);
+    assert!(
+        said.contains("episode 1: find_objects#red, world 1 under seed 5: 30 steps"),
+        "{said}"
+    );
+    assert!(said.contains(": 31 frames of 96 × 72 pixels, 4.0 s"), "{said}");
+    assert_eq!(first_bytes(&at("e.gif")), b"GIF8");
+    let said = replay(
+        "e.apng",
+        &[
+            "--view",
+            "agent",
+            "--no-captions",
+            "--every",
+            "7",
+            "--fps",
+            "4",
+            "--modality",
+            "depth",
+        ],
+    );
+    assert!(said.contains(": 6 frames of 48 × 48 pixels, 2.2 s"), "{said}");
+    assert_eq!(&first_bytes(&at("e.apng"))[1..], b"PNG");
+    let said = replay("e.png", &["--json"]);
+    assert!(said.contains("\"frames\": 12"), "{said}");
+    assert_eq!(&first_bytes(&at("e.png"))[1..], b"PNG");
+    // The same bytes when it is drawn once more.
+    let before = fs::read(at("e.gif")).unwrap();
+    replay("e.gif", &[]);
+    assert!(fs::read(at("e.gif")).unwrap() == before);
+    let said = fail(2, &["replay", text(&log), "--episode", "1", "-o", text(&at("e.mp4"))]);
+    assert!(
+        said.contains("expected .gif or .apng") && said.contains("ffmpeg -i"),
+        "{said}"
+    );
+    assert!(!at("e.mp4").exists());
+    let said = fail(1, &["replay", text(&log), "--episode", "99"]);
+    assert!(
+        said.contains("found no episode 99, expected one of episodes 0 to 13"),
+        "{said}"
+    );
+    assert!(fail(1, &["replay", "nowhere"]).contains("nowhere"));
+}
+
+#[test]
+fn an_agent_is_filmed_and_kept() {
+    let folder = scratch();
+    let at = |name: &str| folder.path().join(name);
+    let (film, kept) = (at("a.gif"), at("a.jsonl"));
+    let said = succeed(&[
+        "film",
+        "examples/worlds/key_corridor.json#red",
+        "--agent",
+        "onrails",
+        "--size",
+        "32",
+        "--every",
+        "20",
+        "-o",
+        text(&film),
+        "--record",
+        text(&kept),
+    ]);
+    assert!(said.contains("wrote ") && said.contains("a.jsonl"), "{said}");
+    let replayed = at("b.gif");
+    succeed(&[
+        "replay",
+        text(&kept),
+        "--episode",
+        "0",
+        "--size",
+        "32",
+        "--every",
+        "20",
+        "-o",
+        text(&replayed),
+    ]);
+    assert!(
+        fs::read(&film).unwrap() == fs::read(&replayed).unwrap(),
+        "the same film"
+    );
+    // What a log is made of is not written over, nor is anything left where a name is wrong.
+    let output = output(&mut driftworld(&["film", "find_objects", "-o", text(&at("x.jpg"))]));
+    assert_eq!(output.status.code(), Some(2));
+    assert!(!at("x.jpg").exists());
+}
+
+#[test]
+fn the_commands_of_the_page_do_what_it_says() {
+    let page = read(root().join("docs/watch.md"));
+    let folder = scratch();
+    let commands: Vec<&str> = page
+        .lines()
+        .filter_map(|line| line.strip_prefix("    $ driftworld "))
+        .collect();
+    for command in &commands {
+        let words: Vec<&str> = command.split(' ').collect();
+        let said = succeed_in(folder.path(), &words);
+        if let Some(place) = words.iter().position(|word| *word == "-o") {
+            let file = folder.path().join(words[place + 1]);
+            assert!(file.is_file(), "{command}: {said}");
+            if words[0] != "curriculum" {
+                assert!(
+                    said.contains(&format!("wrote {}", words[place + 1])),
+                    "{command}: {said}"
+                );
+            }
+        }
+    }
+    assert_eq!(commands.len(), 6, "{commands:?}");
+}
+
+#[test]
+fn playing_needs_a_terminal_and_says_so() {
+    let said = fail(1, &["play", "find_objects"]);
+    assert!(
+        said.contains("standard output: found no terminal") && said.contains("driftworld film"),
+        "{said}"
+    );
+}

@@ -1,0 +1,314 @@
+//! A recorded episode comes out once more to the last bit: what is seen, what is paid, and how it ends; in all built-in tasks and example
+//! worlds, whatever acts in them and however they are acted in. That each row of a log has its recording is tested with the command.
+
+use std::io::BufReader;
+use std::sync::LazyLock;
+
+use driftworld::env::{
+    Action, Agent, Catalogue, EndedBy, EnvError, Environment, OnRailsAgent, RandomAgent, Recorder, Recording,
+    RecordingLines, RecordingReader, Replay,
+};
+use driftworld::generator::Sampler;
+use driftworld::spec::{ActionModel, ActionSpace, Variant, World};
+use driftworld::tasks;
+use proptest::prelude::*;
+use proptest::sample::Index;
+
+/// What a step showed, paid and said.
+#[derive(Debug, PartialEq)]
+struct Seen {
+    pixels: Vec<u8>,
+    state: Vec<u32>,
+    reward: u64,
+    ended_by: Option<EndedBy>,
+}
+
+fn seen(environment: &mut Environment, reward: f64, ended_by: Option<EndedBy>) -> Seen {
+    let frame = environment.observe_at(16, 16).expect("the size is allowed");
+    let depth = frame.depth.iter().flat_map(|metres| metres.to_bits().to_le_bytes());
+    Seen {
+        pixels: frame
+            .rgb
+            .iter()
+            .copied()
+            .chain(depth)
+            .chain(frame.category.iter().copied())
+            .collect(),
+        state: environment.state_vector().into_iter().map(f32::to_bits).collect(),
+        reward: reward.to_bits(),
+        ended_by,
+    }
+}
+
+/// Lives an episode, and takes it down.
+fn live(world: &World, agent: &mut dyn Agent, seed: u64, most: u32) -> (Vec<Seen>, Recording) {
+    let mut environment = Environment::new(world.clone());
+    let mut recorder = Recorder::default();
+    recorder.begin(world.clone());
+    agent.begin(seed);
+    let mut course = vec![seen(&mut environment, 0.0, None)];
+    let mut ended_by = None;
+    while !environment.ended() && recorder.num_steps() < most {
+        let action = agent.act(&environment);
+        let step = environment.step(action).expect("agents act as the world allows");
+        recorder.step(action);
+        ended_by = step.ended_by;
+        course.push(seen(&mut environment, step.reward, step.ended_by));
+    }
+    let recording = recorder.recording(&environment, ended_by);
+    (course, recording)
+}
+
+fn written(recordings: &[Recording]) -> String {
+    let mut lines = RecordingLines::default();
+    let episodes = recordings.iter().map(|recording| lines.lines(recording));
+    RecordingLines::header() + &episodes.collect::<String>()
+}
+
+/// All recordings of a text, or the first error.
+fn read(text: &str) -> Result<Vec<Recording>, EnvError> {
+    let mut reader = RecordingReader::new(BufReader::new(text.as_bytes()))?;
+    let mut found = Vec::new();
+    while let Some(episode) = reader.next_episode()? {
+        found.push(reader.recording(&episode)?);
+    }
+    Ok(found)
+}
+
+fn replayed(recording: &Recording) -> Vec<Seen> {
+    let mut replay = Replay::new(recording, &Catalogue::default());
+    let mut course = vec![seen(replay.environment(), 0.0, None)];
+    while let Some(step) = replay.step().expect("it goes as it went") {
+        course.push(seen(replay.environment(), step.reward, step.ended_by));
+    }
+    replay.check().expect("it comes out as it was recorded");
+    course
+}
+
+/// Lives an episode, writes it down, reads it, runs it once more: all is the same.
+#[track_caller]
+fn check(name: &str, world: &World, agent: &mut dyn Agent, seed: u64, most: u32) {
+    let (course, recording) = live(world, agent, seed, most);
+    let text = written(std::slice::from_ref(&recording));
+    let back = read(&text).unwrap_or_else(|error| panic!("{name}: {error}"));
+    assert_eq!(back, [recording], "{name}");
+    assert!(replayed(&back[0]) == course, "{name}: what is seen or paid differs");
+}
+
+static ALL_VARIANTS: LazyLock<Vec<Variant>> = LazyLock::new(|| {
+    let examples =
+        std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/worlds")).expect("it can be listed");
+    let paths = examples.map(|entry| entry.expect("it can be listed").path().display().to_string());
+    let mut names: Vec<String> = paths.filter(|path| path.ends_with(".json")).collect();
+    names.sort();
+    names.extend(tasks::built_in_names().iter().map(ToString::to_string));
+    let variants = names
+        .iter()
+        .map(|name| tasks::variants(name).unwrap_or_else(|error| panic!("{error}")));
+    variants.flatten().collect()
+});
+
+/// A world that is acted in in another way, where that is asked for.
+fn acted_in(world: World, actions: Option<ActionSpace>, frame_skip: u32, interact: bool) -> World {
+    let edited = world.edit(|world| {
+        let agent = &mut world.agent_params;
+        agent.frame_skip = frame_skip;
+        agent.interact |= interact;
+        if let Some(actions) = actions
+            && agent.action_model == ActionModel::ByVelocity
+        {
+            agent.actions = actions;
+        }
+    });
+    edited.expect("any world may be acted in so")
+}
+
+#[test]
+fn every_task_and_every_example_world_comes_out_once_more() {
+    let mut names = Vec::new();
+    for variant in &*ALL_VARIANTS {
+        let task = variant.task().name().to_owned();
+        // The first two variants of each: the others are drawn below.
+        if names.iter().filter(|name| **name == task).count() >= 2 {
+            continue;
+        }
+        names.push(task);
+        let world = Sampler::new(&variant, 3)
+            .world(1)
+            .unwrap_or_else(|error| panic!("{error}"));
+        check(&variant.id(), &world, &mut RandomAgent::new(0), 7, 60);
+        check(&variant.id(), &world, &mut OnRailsAgent::new(), 0, 150);
+    }
+    assert!(names.len() > 12, "{names:?}");
+}
+
+/// Three short episodes.
+static THREE: LazyLock<Vec<Recording>> = LazyLock::new(|| {
+    let variant = tasks::variant("find_objects#red").expect("it is built in");
+    let episode = |number| {
+        let world = Sampler::new(&variant, number).world(0).expect("it can be drawn");
+        live(&world, &mut RandomAgent::new(0), number, 4).1
+    };
+    (0..3).map(episode).collect()
+});
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
+    #[test]
+    fn whatever_acts_and_however_it_comes_out_once_more(
+        variant in any::<Index>(),
+        (seed, index) in (any::<u64>(), 0u64..1000),
+        space in 0usize..4,
+        frame_skip in 1u32..4,
+        interact in any::<bool>(),
+        most in 0u32..50,
+    ) {
+        let variant = variant.get(&ALL_VARIANTS);
+        let world = Sampler::new(variant, seed).world(index);
+        prop_assume!(world.is_ok());
+        let actions = match space {
+            0 => None,
+            1 => Some(ActionSpace::Continuous),
+            2 => Some(ActionSpace::Normalized),
+            _ => Some(ActionSpace::Discrete(vec![[5.0, 0.0, 0.0], [0.0, 90.0, 1.0], [3.3, -45.0, 0.0]])),
+        };
+        let world = acted_in(world.expect("there is one"), actions, frame_skip, interact);
+        check(&variant.id(), &world, &mut RandomAgent::new(0), seed ^ index, most);
+    }
+
+    /// Any byte that changes is noticed, with its line; episodes on other lines are read all the same. A text that is cut off anywhere
+    /// gives the episodes before.
+    #[test]
+    fn damage_is_told_by_its_line_and_hides_no_other_episode(place in any::<Index>(), flip in 1u8..128) {
+        let recordings: &[Recording] = &THREE;
+        let text = written(recordings);
+        let place = place.index(text.len());
+        let line = 1 + text[..place].matches('\n').count() as u64;
+
+        let mut bytes = text.clone().into_bytes();
+        bytes[place] ^= flip;
+        let read_all = |bytes: &[u8]| {
+            let mut reader = RecordingReader::new(bytes)?;
+            let (mut found, mut errors) = (Vec::new(), Vec::new());
+            loop {
+                match reader.next_episode() {
+                    Ok(Some(episode)) => match reader.recording(&episode) {
+                        Ok(recording) => found.push(recording),
+                        Err(error) => errors.push(error),
+                    },
+                    Ok(None) => return Ok::<_, EnvError>((found, errors)),
+                    Err(error) => errors.push(error),
+                }
+            }
+        };
+        let line_of = |error: &EnvError| match error {
+            EnvError::Recording { line, .. } => *line,
+            other => panic!("{other}"),
+        };
+        match read_all(&bytes) {
+            // A line that is put in two, or made one with the next, has another number of lines behind it.
+            Ok((found, errors)) => {
+                prop_assert!(!errors.is_empty() && found.len() < 3, "a change is noticed");
+                prop_assert_eq!(line_of(&errors[0]), line);
+                prop_assert!(found.iter().all(|recording| recordings.contains(recording)));
+                // Each episode has a world of its own, so that one line costs one episode, a line end two.
+                let lost = if text.as_bytes()[place] == b'\n' { 2 } else { 1 };
+                prop_assert!(found.len() + lost >= 3, "{} are left", found.len());
+            }
+            Err(error) => prop_assert_eq!(line_of(&error), 1),
+        }
+
+        let cut = &text.as_bytes()[..place];
+        if let Ok((found, errors)) = read_all(cut) {
+            let whole = cut.iter().filter(|byte| **byte == b'\n').count();
+            // A header, then a world and an episode each.
+            prop_assert_eq!(found.len(), whole.saturating_sub(1) / 2);
+            prop_assert_eq!(&found[..], &recordings[..found.len()]);
+            prop_assert_eq!(errors.len(), usize::from(cut.last() != Some(&b'\n')));
+        } else {
+            prop_assert_eq!(line, 1);
+        }
+    }
+}
+
+#[test]
+fn what_is_changed_from_outside_is_a_part_of_the_episode() {
+    let world = Sampler::new(&tasks::variant("find_objects#red").unwrap(), 5)
+        .world(2)
+        .unwrap();
+    let mut environment = Environment::new(world.clone());
+    let mut recorder = Recorder::default();
+    recorder.begin(world.clone());
+    let mut agent = RandomAgent::new(4);
+    let mut course = Vec::new();
+    for number in 0..30 {
+        if number == 0 || number == 12 {
+            let mut object = world.objects[number / 6].clone();
+            object.unique_name = Some(format!("new {number}"));
+            object.coordinates = [20.0 - number as f64, 18.0];
+            environment.spawn(object).expect("there is room");
+            recorder.edit(&environment);
+        }
+        let action = agent.act(&environment);
+        let step = environment.step(action).unwrap();
+        recorder.step(action);
+        course.push(seen(&mut environment, step.reward, step.ended_by));
+        assert!(!environment.ended(), "the episode is long enough");
+    }
+    let recording = recorder.recording(&environment, None);
+    let back = read(&written(&[recording])).unwrap();
+    assert_eq!(back[0].edits.len(), 2);
+    assert!(replayed(&back[0])[1..] == course[..], "what is seen or paid differs");
+}
+
+#[test]
+fn what_comes_out_otherwise_is_told() {
+    let world = Sampler::new(&tasks::variant("find_objects#red").unwrap(), 5)
+        .world(2)
+        .unwrap();
+    let (_, recording) = live(&world, &mut OnRailsAgent::new(), 0, 4000);
+    assert_eq!(recording.ended_by, Some(EndedBy::AllCollected));
+    let outcome = |change: &dyn Fn(&mut Recording)| {
+        let mut changed = recording.clone();
+        change(&mut changed);
+        let mut replay = Replay::new(&changed, &Catalogue::default());
+        loop {
+            match replay.step() {
+                Ok(Some(_)) => {}
+                Ok(None) => return replay.check().map_err(|error| error.to_string()),
+                Err(error) => return Err(error.to_string()),
+            }
+        }
+    };
+    assert_eq!(outcome(&|_| {}), Ok(()));
+    let told = |change: &dyn Fn(&mut Recording), words: &str| {
+        let error = outcome(change).expect_err("it differs");
+        assert!(error.contains(words), "{error}");
+        assert!(error.contains("recorded by driftworld"), "{error}");
+    };
+    told(&|recording| recording.reward += 1.0, "reward: found");
+    told(
+        &|recording| recording.ended_by = Some(EndedBy::Zone),
+        "ended_by: found all_collected, expected zone",
+    );
+    told(
+        &|recording| recording.actions.push(Action::Continuous([0.0; 3])),
+        "the episode has ended",
+    );
+    told(
+        &|recording| {
+            recording.actions.pop();
+        },
+        "found",
+    );
+    told(
+        &|recording| {
+            let moved = recording
+                .world
+                .clone()
+                .edit(|world| world.objects[0].coordinates[0] += 5.0);
+            recording.world = moved.expect("it is sound");
+        },
+        "found",
+    );
+}

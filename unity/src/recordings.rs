@@ -1,0 +1,103 @@
+//! [`RecordingFile`]: the file that a session's episodes are written into, one behind the other. What a line says is `driftworld-env`'s.
+
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{BufReader, Seek, Write};
+use std::path::{Path, PathBuf};
+
+use driftworld_env::{Recording, RecordingLines, RecordingReader};
+
+use crate::error::UnityError;
+
+/// A file of recordings that is added to. Clients that start this program again and again go on in the same file.
+#[derive(Debug)]
+pub struct RecordingFile {
+    path: PathBuf,
+    file: File,
+    lines: RecordingLines,
+    /// The number of the next episode.
+    next: u64,
+}
+
+impl RecordingFile {
+    /// A new file, or one behind whose last whole episode it goes on.
+    ///
+    /// # Errors
+    /// [`UnityError::Writing`] where it cannot be written, or another process writes it; [`UnityError::Recording`] where it holds
+    /// something else, or is damaged.
+    pub fn open(path: &Path) -> Result<Self, UnityError> {
+        let failed = |source: std::io::Error| UnityError::Writing {
+            option: "--record",
+            path: path.to_owned(),
+            source,
+        };
+        // To be read and written at once, not by driftworld-files: what is no regular file is refused here.
+        let mut options = OpenOptions::new();
+        let mut file = options
+            .read(true)
+            .append(true)
+            .create(true)
+            .open(path)
+            .map_err(failed)?;
+        if !file.metadata().map_err(failed)?.is_file() {
+            return Err(failed(std::io::Error::other("found no regular file, expected one")));
+        }
+        match file.try_lock() {
+            Err(TryLockError::WouldBlock) => {
+                return Err(failed(std::io::Error::other(
+                    "another driftworld-unity writes it; name another file",
+                )));
+            }
+            // Where the system has no locks, there is none.
+            Ok(()) | Err(TryLockError::Error(_)) => {}
+        }
+        let length = file.metadata().map_err(failed)?.len();
+        let (mut kept, mut lines, mut next) = (0, RecordingLines::default(), 0);
+        // A shorter one holds no more than the beginning of the first line.
+        if length >= RecordingLines::header().len() as u64 {
+            let damaged = |source| UnityError::Recording {
+                path: path.to_owned(),
+                source,
+            };
+            let read = BufReader::new(file.try_clone().map_err(failed)?);
+            let mut reader = RecordingReader::new(read).map_err(damaged)?;
+            let end = loop {
+                let before = reader.mark();
+                match reader.next_episode() {
+                    Ok(Some(episode)) => next = episode.origin.experience + 1,
+                    Ok(None) => break reader.mark(),
+                    Err(_) if reader.is_torn() => break before,
+                    Err(error) => return Err(damaged(error)),
+                }
+            };
+            (kept, lines) = reader.into_lines_at(end);
+        }
+        file.set_len(kept).map_err(failed)?;
+        file.rewind().map_err(failed)?;
+        if kept == 0 {
+            file.write_all(RecordingLines::header().as_bytes()).map_err(failed)?;
+        }
+        Ok(Self {
+            path: path.to_owned(),
+            file,
+            lines,
+            next,
+        })
+    }
+
+    /// Writes an episode down, under the next number.
+    ///
+    /// # Errors
+    /// [`UnityError::Writing`].
+    pub fn write(&mut self, mut recording: Recording) -> Result<(), UnityError> {
+        recording.origin.experience = self.next;
+        let lines = self.lines.lines(&recording);
+        self.next += 1;
+        self.file
+            .write_all(lines.as_bytes())
+            .map_err(|source| UnityError::Writing {
+                option: "--record",
+                path: self.path.clone(),
+                source,
+            })
+    }
+}

@@ -1,0 +1,192 @@
+//! What a client does is recorded: each episode comes out once more to the bit, also where the client changes the world while it runs.
+
+use std::collections::BTreeMap;
+use std::io::BufReader;
+
+use driftworld_env::{Catalogue, Recording, RecordingReader, Replay};
+use driftworld_spec::{Object, Stimulus, World, WorldDraft};
+use driftworld_unity::protocol::unity_rl_input_proto::ListAgentActionProto;
+use driftworld_unity::protocol::{AgentActionProto, CommandProto, UnityRlInitializationInputProto, UnityRlInputProto};
+use driftworld_unity::{BEHAVIOR, RecordingFile, Screenshots, Session, Setup, Turn};
+use proptest::prelude::*;
+
+/// The channel on which worlds are reset and objects are made, as it travels.
+const RESET: [u8; 16] = [
+    0x70, 0x0a, 0x1f, 0x62, 0x87, 0x4f, 0xea, 0x11, 0xa6, 0xbf, 0x78, 0x4f, 0x43, 0x87, 0xd1, 0xf7,
+];
+
+/// A cube that pays, on the agent's way.
+fn cube(x: f64, y: f64) -> Object {
+    let mut object = Object::new("cube", [x, y]);
+    object.reward = 5.0;
+    object.reward_stimulus = vec![Stimulus::AgentCollide];
+    object
+}
+
+fn session() -> Session {
+    let mut world = WorldDraft::default();
+    world.agent_params.observation_size = 4;
+    world.max_steps = 12;
+    world.objects.push(cube(0.0, 30.0));
+    let setup = Setup {
+        world: world.check().expect("the world is sound"),
+        ..Setup::default()
+    };
+    let mut session = Session::new(setup, Screenshots::new("none"), || "2026-01-01T00:00:00Z".to_owned());
+    let said = UnityRlInitializationInputProto {
+        communication_version: "1.0.0".to_owned(),
+        package_version: "0.16.0".to_owned(),
+        ..UnityRlInitializationInputProto::default()
+    };
+    session.begin(&said).expect("the client is of version 1");
+    session.record();
+    session
+}
+
+/// A message on the channel for resets.
+fn told(text: &str) -> Vec<u8> {
+    let payload = [&(text.len() as i32).to_le_bytes(), text.as_bytes()].concat();
+    [&RESET[..], &(payload.len() as i32).to_le_bytes(), &payload].concat()
+}
+
+/// What a client does.
+#[derive(Clone, Debug)]
+enum Act {
+    Step([f32; 3]),
+    /// A step with an object that is made before it.
+    Create([f32; 3], f64, f64),
+    Reset,
+}
+
+fn act() -> impl Strategy<Value = Act> {
+    let numbers = || (0.0..10.0f32, -60.0..60.0f32, 0.0..1.0f32).prop_map(|(a, b, c)| [a, b, c]);
+    prop_oneof![
+        8 => numbers().prop_map(Act::Step),
+        1 => (numbers(), -20.0..20.0f64, 3.0..20.0f64).prop_map(|(action, x, y)| Act::Create(action, x, y)),
+        1 => Just(Act::Reset),
+    ]
+}
+
+/// Does it; hands back what the steps paid, the last one of an episode first where another has begun.
+fn carry_out(session: &mut Session, act: &Act) -> Vec<(f32, bool)> {
+    let (command, action, side_channel) = match act {
+        Act::Step(action) => (CommandProto::Step, Some(action), Vec::new()),
+        Act::Create(action, x, y) => {
+            let payload = format!(
+                r#"{{ "token": "t", "action": "object_create", "payload": {{ "class": "cube", "coordinates": [{x}, {y}],
+                    "reward": 2, "reward_stimulus": ["AgentCollide"] }} }}"#
+            );
+            (CommandProto::Step, Some(action), told(&payload))
+        }
+        Act::Reset => (CommandProto::Reset, None, Vec::new()),
+    };
+    let agent_actions = action.map(|numbers| {
+        let action = AgentActionProto {
+            vector_actions: numbers.to_vec(),
+            ..AgentActionProto::default()
+        };
+        (BEHAVIOR.to_owned(), ListAgentActionProto { value: vec![action] })
+    });
+    let input = UnityRlInputProto {
+        command: command.into(),
+        agent_actions: agent_actions.into_iter().collect::<BTreeMap<_, _>>(),
+        side_channel,
+    };
+    let Turn::Output(output) = session.answer(&input).expect("the command is sound") else {
+        panic!("nobody quits")
+    };
+    let output = output.rl_output.expect("there is an agent");
+    let agents = &output.agent_infos[BEHAVIOR].value;
+    agents.iter().map(|agent| (agent.reward, agent.done)).collect()
+}
+
+fn read(path: &std::path::Path) -> Vec<Recording> {
+    let file = std::fs::File::open(path).expect("it was written");
+    let mut reader = RecordingReader::new(BufReader::new(file)).expect("it is whole");
+    let mut found = Vec::new();
+    while let Some(episode) = reader.next_episode().expect("it is whole") {
+        found.push(reader.recording(&episode).expect("it is whole"));
+    }
+    found
+}
+
+/// What each step of a recording pays when it is run once more.
+fn paid(recording: &Recording) -> Vec<f32> {
+    let mut replay = Replay::new(recording, &Catalogue::default());
+    let mut paid = Vec::new();
+    while let Some(step) = replay.step().expect("it goes as it went") {
+        paid.push(step.reward as f32);
+    }
+    replay.check().expect("it comes out as it was recorded");
+    paid
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    #[test]
+    fn what_a_client_does_comes_out_once_more(acts in prop::collection::vec(act(), 1..60)) {
+        let mut session = session();
+        carry_out(&mut session, &Act::Reset);
+        let mut episodes: Vec<Vec<f32>> = vec![Vec::new()];
+        let mut edits = 0;
+        for act in &acts {
+            let agents = carry_out(&mut session, act);
+            edits += usize::from(matches!(act, Act::Create(..)));
+            match (act, &agents[..]) {
+                (Act::Reset, _) => episodes.push(Vec::new()),
+                (_, [(reward, false)]) => episodes.last_mut().expect("there is one").push(*reward),
+                (_, [(reward, true), _]) => {
+                    episodes.last_mut().expect("there is one").push(*reward);
+                    episodes.push(Vec::new());
+                }
+                other => panic!("{other:?}"),
+            }
+        }
+        session.end_recording();
+        // Episodes without a step are none.
+        episodes.retain(|rewards| !rewards.is_empty());
+
+        let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
+        let path = folder.path().join("episodes.jsonl");
+        let recordings = session.take_recordings();
+        let mut half = recordings.len() / 2;
+        // A client that starts the program again goes on in the same file.
+        let mut file = RecordingFile::open(&path).expect("it can be made");
+        for recording in recordings {
+            if half == 0 {
+                drop(file);
+                let torn = std::fs::OpenOptions::new().append(true).open(&path).expect("it is there");
+                std::io::Write::write_all(&mut &torn, b"{\"experi").expect("it can be written");
+                file = RecordingFile::open(&path).expect("it goes on");
+            }
+            half = half.wrapping_sub(1);
+            file.write(recording).expect("it can be written");
+        }
+        drop(file);
+        let back = read(&path);
+        prop_assert_eq!(back.len(), episodes.len());
+        for (number, (recording, expected)) in (0..).zip(back.iter().zip(&episodes)) {
+            prop_assert_eq!(recording.origin.experience, number);
+            prop_assert_eq!(&paid(recording), expected);
+        }
+        prop_assert!(back.iter().map(|recording| recording.edits.len()).sum::<usize>() <= edits);
+    }
+}
+
+#[test]
+fn two_programs_do_not_write_one_file() {
+    let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
+    let path = folder.path().join("episodes.jsonl");
+    let first = RecordingFile::open(&path).expect("it can be made");
+    let error = RecordingFile::open(&path).expect_err("it is written already");
+    assert!(
+        error.to_string().contains("another driftworld-unity writes it"),
+        "{error}"
+    );
+    drop(first);
+    std::fs::write(&path, World::default().to_json_pretty()).expect("it can be written");
+    assert_eq!(
+        RecordingFile::open(&path).expect_err("it is a world").code(),
+        "unity/recording"
+    );
+}
