@@ -9,7 +9,7 @@ use crate::process::{cargo, run};
 use crate::virtual_environment::interpreter;
 use crate::workspace::Workspace;
 
-/// Compares the pages of the Python API with their sources, where there is a Python; then formats, tests and runs the
+/// Compares the pages of the Python API and the recording with their sources, where there is a Python; then formats, tests and runs the
 /// builder. Returns where the book is.
 pub(crate) fn build(workspace: &Workspace) -> Result<String, XtaskError> {
     let builder = |arguments: &[&str]| {
@@ -18,11 +18,11 @@ pub(crate) fn build(workspace: &Workspace) -> Result<String, XtaskError> {
         command
     };
     if let Some(python) = interpreter() {
-        let mut check = Command::new(python);
-        check
-            .args(["python/api_pages.py", "--check"])
-            .current_dir(&workspace.root);
-        run(check)?;
+        for program in ["python/api_pages.py", "book/record.py"] {
+            let mut check = Command::new(&python);
+            check.args([program, "--check"]).current_dir(&workspace.root);
+            run(check)?;
+        }
     }
     let manifest = ["--manifest-path", "book/Cargo.toml"];
     let locked = [&manifest[..], &["--quiet", "--locked"]].concat();
