@@ -54,11 +54,7 @@ const BY_HAND: &[(&str, usize, &str)] = &[
     ("docs/curricula.md", 1, "half a minute, and tests of `curriculum`"),
     ("docs/first-hour.md", 1, "how the command is installed"),
     ("docs/l2explorer.md", 5, "the stage `unity`, with the published clients"),
-    (
-        "docs/python.md",
-        4,
-        "`python/tests/`: the wheel, windows and the checker",
-    ),
+    ("docs/python.md", 2, "`python/tests/`: windows and the checker"),
     ("docs/worlds.md", 1, "how its figures were measured"),
     ("docs/similarity.md", 1, "minutes: six matrices of 38 variants"),
 ];
