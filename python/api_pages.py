@@ -70,6 +70,8 @@ LAYOUT: dict[str, tuple[str, str, dict[str, list[str]]]] = {
                 "VectorAgent",
                 "VectorTransition",
                 "Summary",
+                "Recording",
+                "replay",
             ]
         },
     ),

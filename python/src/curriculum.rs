@@ -315,7 +315,7 @@ impl Rollout for PythonRollout<'_> {
 
     fn recording(&mut self, number: u64, experience: &Experience) -> Result<Option<Recording>> {
         let found = self.rollout.call_method1("recording", (number,))?;
-        let found: Option<Bound<'_, PyRecording>> = found.extract()?;
+        let found: Option<Bound<'_, PyRecording>> = found.extract().map_err(PyErr::from)?;
         // What ended it is said by whoever set a limit, too.
         Ok(found.map(|recording| Recording {
             ended_by: experience.ended_by,

@@ -95,7 +95,7 @@ fn run_block(page: &str, block: &Block, folder: &Path) -> String {
         done.status,
         block.text
     );
-    printed.lines().map(|line| format!("{}\n", line.trim_end())).collect()
+    printed.lines().flat_map(|line| [line.trim_end(), "\n"]).collect()
 }
 
 /// Whether a page shows what was printed, apart from what it leaves out. How wide columns are does not matter.
