@@ -14,6 +14,7 @@ mod channel;
 mod error;
 mod experiment;
 mod ground;
+mod looks;
 mod photograph;
 mod polygon;
 mod recording;

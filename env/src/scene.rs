@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use driftworld_spec::{Object, Style, World};
+use driftworld_spec::{Object, Style, Surface, World};
 
 use crate::assets::{Asset, Block, Catalogue, ColliderShape, Mesh};
 use crate::ground;
+use crate::looks::NaturalLooks;
 use crate::wall_tops::tops;
 
 /// Everything that a picture of a world depends on, but for the camera.
@@ -15,6 +16,8 @@ pub struct Scene {
     pub items: Vec<Item>,
     /// The light.
     pub light: Light,
+    /// The natural style; absent in the plain one.
+    pub(crate) natural: Option<NaturalLooks>,
     /// Colour of the ground, sRGB.
     pub ground_color: [f32; 3],
     /// Walls: the arena's own and regions that cannot be entered.
@@ -64,6 +67,8 @@ pub struct Item {
     pub scale: f32,
     /// Its main colour, sRGB; the asset's own if absent.
     pub color: Option<[f32; 3]>,
+    /// What covers it in the natural style.
+    pub surface: Surface,
     /// Whether its class is `building`, which has a category of its own.
     pub building: bool,
     /// What it is worth now: decides its category.
@@ -93,7 +98,7 @@ impl Item {
 }
 
 /// The light of a scene.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
     /// Towards the sun, length 1.
     pub direction: [f32; 3],
@@ -107,6 +112,8 @@ pub struct Light {
     pub sky_color: [f32; 3],
     /// Distance in metres at which half of what is seen is fog; no fog if absent.
     pub fog_distance: Option<f32>,
+    /// Whether depth sees the fog.
+    pub fog_in_depth: bool,
 }
 
 /// An upright rectangle on the ground, seen from its right-hand side when walking from `from` to `to`.
@@ -140,6 +147,7 @@ impl Scene {
         let mut scene = Self {
             items: Vec::with_capacity(world.objects.len()),
             light: light(world),
+            natural: NaturalLooks::of(world),
             ground_color: environment.ground_color.to_f32(),
             walls: Vec::new(),
             arena_size: environment.arena_size().map(|side| side as f32),
@@ -175,6 +183,7 @@ impl Scene {
             heading_deg: object.heading as f32,
             scale: object.scale as f32,
             color,
+            surface: object.surface,
             building: class == "building",
             reward: object.reward as f32,
             class_id,
@@ -309,5 +318,6 @@ fn light(world: &World) -> Light {
         ambient: environment.ambient_light as f32,
         sky_color: environment.sky_color.to_f32(),
         fog_distance: environment.fog_distance.map(|metres| metres as f32),
+        fog_in_depth: environment.looks.fog_in_depth,
     }
 }

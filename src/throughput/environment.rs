@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use crate::env::{Action, Autoreset, Batch, BatchOptions, Environment, Renderer, RendererKind};
 use crate::generator::Sampler;
-use crate::spec::{Modality, TaskSpec, World};
+use crate::spec::{Looks, Modality, Style, TaskSpec, World};
 use serde_json::json;
 
 use crate::Failure;
@@ -66,6 +66,14 @@ pub(crate) fn measure(round: Duration, renderer: RendererKind) -> Result<Figures
             steps(&mazes.world(0)?, NUM_ENVS, 1, round)?,
         ),
         (
+            "steps_per_second_per_core_84_natural",
+            steps(&in_natural_looks(&square)?, NUM_ENVS, 1, round)?,
+        ),
+        (
+            "steps_per_second_per_core_maze_84_natural",
+            steps(&in_natural_looks(&mazes.world(0)?)?, NUM_ENVS, 1, round)?,
+        ),
+        (
             "resets_per_second_per_core_maze",
             rate(round, |index| {
                 environment.reset(mazes.world(index)?);
@@ -102,6 +110,12 @@ fn measure_graphics(round: Duration) -> Result<Figures, Failure> {
 fn mazes() -> Result<Sampler, Failure> {
     let task = TaskSpec::from_json("maze.json", MAZE)?;
     Ok(Sampler::new(&task.variant("default")?, 7))
+}
+
+/// A scene with surfaces, shadows, sky and, in mazes, a ceiling.
+fn in_natural_looks(world: &World) -> Result<World, Failure> {
+    let looks = Looks::of(Style::Natural);
+    Ok(world.clone().edit(|world| world.environment_params.looks = looks)?)
 }
 
 /// A scene with colour alone.

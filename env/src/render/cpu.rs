@@ -10,6 +10,7 @@ use super::hidden::Hidden;
 #[cfg(target_arch = "x86_64")]
 use super::lanes::{Avx2, Avx512};
 use super::lanes::{Lanes, MOST_LANES, Portable};
+use super::natural::Natural;
 use super::raster::{ShadingParams, draw_block};
 use super::shade::Shader;
 use super::target::Target;
@@ -27,18 +28,19 @@ use crate::scene::{Item, PanelGroup, Scene};
 #[derive(Clone, Debug)]
 pub struct CpuRenderer {
     set: Set,
-    canvas: Canvas,
+    pub(super) canvas: Canvas,
     backdrop: Backdrop,
-    order: Vec<Visible>,
-    offsets: Vec<f32>,
-    classes: Vec<u16>,
-    scratch: Scratch,
+    pub(super) natural: Natural,
+    pub(super) order: Vec<Visible>,
+    pub(super) offsets: Vec<f32>,
+    pub(super) classes: Vec<u16>,
+    pub(super) scratch: Scratch,
     /// Colours of all points, where there are several in a pixel.
     points: Vec<u8>,
     hand: Hand,
-    hidden: Hidden,
+    pub(super) hidden: Hidden,
     /// Whether what walls hide is left out.
-    hides: bool,
+    pub(super) hides: bool,
 }
 
 /// An instruction set that this processor has.
@@ -80,6 +82,7 @@ impl CpuRenderer {
             set,
             canvas: Canvas::default(),
             backdrop: Backdrop::default(),
+            natural: Natural::default(),
             order: Vec::new(),
             offsets: Vec::new(),
             classes: Vec::new(),
@@ -154,6 +157,11 @@ impl CpuRenderer {
     }
 
     fn run(&mut self, scene: &Scene, camera: &Camera, target: &mut Target<'_>) {
+        self.run_with_set(scene, camera, target);
+        target.see_fog(&scene.light);
+    }
+
+    fn run_with_set(&mut self, scene: &Scene, camera: &Camera, target: &mut Target<'_>) {
         match self.set {
             Set::Portable(lanes) => self.draw_any(lanes, scene, camera, target),
             #[cfg(target_arch = "x86_64")]
@@ -187,6 +195,14 @@ impl CpuRenderer {
 
     #[inline(always)]
     fn draw_any<L: Lanes>(&mut self, lanes: L, scene: &Scene, camera: &Camera, target: &mut Target<'_>) {
+        if let Some(looks) = &scene.natural {
+            if target.instance.is_some() || target.class.is_some() {
+                self.draw_natural::<L, true>(lanes, scene, looks, camera, target);
+            } else {
+                self.draw_natural::<L, false>(lanes, scene, looks, camera, target);
+            }
+            return;
+        }
         // Where class and category do not fit into a label together, pixels remember their item.
         let fits = scene.highest_class() < 1 << (8 - CATEGORY_BITS);
         if target.instance.is_some() || (target.class.is_some() && !fits) {
@@ -257,7 +273,7 @@ impl CpuRenderer {
     }
 
     /// How far columns are from the picture's middle, padded to whole vectors.
-    fn measure_columns(&mut self, view: &View, width: usize) {
+    pub(super) fn measure_columns(&mut self, view: &View, width: usize) {
         self.offsets.clear();
         let padded = width.next_multiple_of(MOST_LANES);
         self.offsets
@@ -296,7 +312,7 @@ impl CpuRenderer {
             };
             params.color = shader.in_light(color);
             for block in &material.blocks {
-                draw_block::<L, ITEMS>(lanes, &mut self.canvas, block, &at, &params);
+                draw_block::<L, ITEMS, _>(lanes, &mut self.canvas, block, &at, &params);
             }
         }
     }
@@ -320,7 +336,7 @@ impl CpuRenderer {
             may_be_cut: visible.nearest < NEAR,
         };
         for block in &group.blocks {
-            draw_block::<L, ITEMS>(lanes, &mut self.canvas, block, &at, &params);
+            draw_block::<L, ITEMS, _>(lanes, &mut self.canvas, block, &at, &params);
         }
     }
 }

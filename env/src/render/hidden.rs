@@ -96,8 +96,10 @@ impl Hidden {
             columns: [f32::INFINITY, f32::NEG_INFINITY],
             nearest: f32::INFINITY,
         };
-        for [from, _] in &group.edges {
-            let [right, ahead] = place(view, *from);
+        // Around a region each edge begins where another ends; a wall of the arena is one edge with two ends.
+        let last = group.edges.last().map(|[_, to]| to);
+        for corner in group.edges.iter().map(|[from, _]| from).chain(last) {
+            let [right, ahead] = place(view, *corner);
             if ahead < 2.0 * NEAR {
                 return false;
             }

@@ -21,35 +21,77 @@ pub(super) struct ShadingParams {
     pub(super) may_be_cut: bool,
 }
 
+/// How triangles of a material become pixels.
+pub(super) trait Shading: Copy {
+    /// Number of the item.
+    fn item(&self) -> u32;
+
+    /// Whether some of it may be nearer than the near plane.
+    fn may_be_cut(&self) -> bool;
+
+    /// Which of a block's faces are drawn: those that look at the camera. `behind` is how far their planes are behind the
+    /// origin.
+    #[inline(always)]
+    fn facing<L: Lanes>(&self, l: L, normal: [L::Float; 3], behind: L::Float, at: &Placement) -> L::Mask {
+        l.above(dot(l, normal, at.eye, behind), l.splat(0.0))
+    }
+
+    /// Packed pixels of a block's faces, each with its label.
+    fn pixels<L: Lanes>(&self, l: L, normal: [L::Float; 3], at: &Placement) -> [u32; BLOCK];
+
+    /// Draws a triangle.
+    #[inline(always)]
+    fn fill<L: Lanes, const ITEMS: bool>(&self, l: L, canvas: &mut Canvas, triangle: &Triangle) {
+        canvas.fill::<L, ITEMS>(l, triangle);
+    }
+}
+
+impl Shading for ShadingParams {
+    #[inline(always)]
+    fn item(&self) -> u32 {
+        self.item
+    }
+
+    #[inline(always)]
+    fn may_be_cut(&self) -> bool {
+        self.may_be_cut
+    }
+
+    #[inline(always)]
+    fn pixels<L: Lanes>(&self, l: L, normal: [L::Float; 3], at: &Placement) -> [u32; BLOCK] {
+        packed_pixels(l, normal, at, self)
+    }
+}
+
 /// One value of every lane, for going through lanes one by one.
 type PerLane = [f32; BLOCK];
 
 /// Draws the triangles of a block that face the camera.
 #[inline(always)]
-pub(super) fn draw_block<L: Lanes, const ITEMS: bool>(
+pub(super) fn draw_block<L: Lanes, const ITEMS: bool, S: Shading>(
     lanes: L,
     canvas: &mut Canvas,
     block: &Block,
     at: &Placement,
-    params: &ShadingParams,
+    params: &S,
 ) {
     for first in (0..BLOCK).step_by(L::N) {
-        draw_lanes::<L, ITEMS>(lanes, canvas, block, first, at, params);
+        draw_lanes::<L, ITEMS, S>(lanes, canvas, block, first, at, params);
     }
 }
 
 #[inline(always)]
-fn draw_lanes<L: Lanes, const ITEMS: bool>(
+fn draw_lanes<L: Lanes, const ITEMS: bool, S: Shading>(
     l: L,
     canvas: &mut Canvas,
     block: &Block,
     first: usize,
     at: &Placement,
-    params: &ShadingParams,
+    params: &S,
 ) {
     let normal = load3(l, &block.normal, 0, first);
     let behind = l.sub(l.splat(0.0), l.load(&block.offset[first..]));
-    let facing = l.above(dot(l, normal, at.eye, behind), l.splat(0.0));
+    let facing = params.facing(l, normal, behind, at);
     if l.bits(facing) == 0 {
         return;
     }
@@ -59,12 +101,12 @@ fn draw_lanes<L: Lanes, const ITEMS: bool>(
         load3(l, &block.corners, 6, first),
     ];
     let depth = project(l, corners, &at.depth);
-    let pixels = packed_pixels(l, normal, at, params);
+    let pixels = params.pixels(l, normal, at);
     // Which way a triangle goes must not depend on its neighbours: how many there are depends on the instruction set.
     let mut cut = 0;
-    if params.may_be_cut {
+    if params.may_be_cut() {
         cut = l.bits(l.both(facing, l.above(l.splat(NEAR), least(l, depth))));
-        draw_all_cut::<L, ITEMS>(l, canvas, block, (first, cut), at, (&pixels, params.item));
+        draw_all_cut::<L, ITEMS, S>(l, canvas, block, (first, cut), at, (&pixels, params));
     }
     let one = l.splat(1.0);
     let inverse = [l.div(one, depth[0]), l.div(one, depth[1]), l.div(one, depth[2])];
@@ -101,7 +143,7 @@ fn draw_lanes<L: Lanes, const ITEMS: bool>(
     while seen != 0 {
         let lane = seen.trailing_zeros() as usize;
         seen &= seen - 1;
-        canvas.fill::<L, ITEMS>(l, &triangle(&rows, lane, pixels[lane], params.item));
+        params.fill::<L, ITEMS>(l, canvas, &triangle(&rows, lane, pixels[lane], params.item()));
     }
 }
 
@@ -173,7 +215,7 @@ fn edge<L: Lanes>(l: L, x: [L::Float; 3], y: [L::Float; 3], p: usize, q: usize) 
 }
 
 #[inline(always)]
-fn dot<L: Lanes>(l: L, point: [L::Float; 3], by: [f32; 3], plus: L::Float) -> L::Float {
+pub(super) fn dot<L: Lanes>(l: L, point: [L::Float; 3], by: [f32; 3], plus: L::Float) -> L::Float {
     l.mul_add(
         point[0],
         l.splat(by[0]),
@@ -210,13 +252,13 @@ fn byte<L: Lanes>(l: L, share: L::Float, full: f32) -> L::Word {
 
 /// Draws what of these lanes' triangles lies beyond the near plane: one by one, since few are ever so near.
 #[inline(always)]
-fn draw_all_cut<L: Lanes, const ITEMS: bool>(
+fn draw_all_cut<L: Lanes, const ITEMS: bool, S: Shading>(
     lanes: L,
     canvas: &mut Canvas,
     block: &Block,
     (first, mut lanes_to_cut): (usize, u32),
     at: &Placement,
-    (pixels, item): (&[u32; BLOCK], u32),
+    (pixels, params): (&[u32; BLOCK], &S),
 ) {
     while lanes_to_cut != 0 {
         let lane = lanes_to_cut.trailing_zeros() as usize;
@@ -224,8 +266,8 @@ fn draw_all_cut<L: Lanes, const ITEMS: bool>(
         let (polygon, count) = cut(block, first + lane, at);
         for k in 2..count {
             let corners = [polygon[0], polygon[k - 1], polygon[k]];
-            if let Some(triangle) = set_up(corners, [canvas.width, canvas.height], pixels[lane], item) {
-                canvas.fill::<L, ITEMS>(lanes, &triangle);
+            if let Some(triangle) = set_up(corners, [canvas.width, canvas.height], pixels[lane], params.item()) {
+                params.fill::<L, ITEMS>(lanes, canvas, &triangle);
             }
         }
     }

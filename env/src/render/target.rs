@@ -5,6 +5,7 @@ use driftworld_spec::MAX_POINTS;
 
 use super::frame::Frame;
 use crate::EnvError;
+use crate::scene::Light;
 
 /// The images that a render is to fill; what is `None` is not computed. Row 0 is on top.
 #[derive(Debug, Default)]
@@ -67,6 +68,16 @@ impl Target<'_> {
             && fits(self.category.as_ref().map(|category| category.len()), 1)
             && fits(self.class.as_ref().map(|class| class.len()), 1)
             && fits(self.instance.as_ref().map(|instance| instance.len()), 1)
+    }
+
+    /// Shortens distances to what is seen of them through fog, if depth sees it.
+    pub(super) fn see_fog(&mut self, light: &Light) {
+        let (Some(depth), Some(fog), true) = (&mut self.depth, light.fog_distance, light.fog_in_depth) else {
+            return;
+        };
+        for metres in depth.iter_mut() {
+            *metres = *metres * fog / (*metres * *metres + fog * fog).sqrt();
+        }
     }
 
     /// Whether nothing is wanted.

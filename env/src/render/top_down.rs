@@ -49,6 +49,8 @@ pub fn top_down_with_way(
         field_of_view_deg: 2.0 * libm::atanf(span / 2.0 / camera_height).to_degrees(),
     };
     let mut scene = scene.clone().with_wall_tops();
+    // A map is a drawing: nothing in it has a surface or a shadow.
+    scene.natural = None;
     for item in &mut scene.items {
         item.scale = item.scale.max(LEAST_SIZE * span / item.asset.radius);
     }

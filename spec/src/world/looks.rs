@@ -103,7 +103,6 @@ fields! {
 /// The ceiling's colour if none is said.
 const CEILING: Color = Color([0.86, 0.85, 0.82]);
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
 fn is_white_enough(color: &Color) -> bool {
     *color == CEILING
 }

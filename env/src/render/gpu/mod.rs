@@ -25,7 +25,7 @@ use self::device::Device;
 use self::instances::{Labels, TileContents};
 use self::pass::{Pass, Stage, most_in_a_pass};
 use super::compose::CATEGORY_BITS;
-use super::cpu::average;
+use super::cpu::{CpuRenderer, average};
 use super::frame::Frame;
 use super::hand::Hand;
 use super::picture::Picture;
@@ -129,7 +129,7 @@ impl GpuRenderer {
         self.hand.draw(scene, carried, target);
     }
 
-    /// Draws many pictures, those of one size together.
+    /// Draws many pictures, those of one size together. Those in the natural style the processor draws.
     ///
     /// # Errors
     /// [`EnvError::PictureSize`] as for [`CpuRenderer::draw`](super::CpuRenderer::draw), and [`EnvError::GpuPicture`]
@@ -139,7 +139,9 @@ impl GpuRenderer {
         let mut jobs = Vec::with_capacity(pictures.len());
         for (index, picture) in pictures.iter().enumerate() {
             picture.target.check()?;
-            jobs.extend(jobs_for(index, picture));
+            if picture.scene.natural.is_none() {
+                jobs.extend(jobs_for(index, picture));
+            }
         }
         let most = self.device.limits.max_texture_dimension_2d;
         for job in &jobs {
@@ -167,7 +169,16 @@ impl GpuRenderer {
                 rest = later;
             }
         }
-        Ok(())
+        let is_natural = |picture: &&mut Picture<'_>| picture.scene.natural.is_some();
+        let (mut natural, plain): (Vec<_>, Vec<_>) = pictures.iter_mut().partition(is_natural);
+        for picture in plain {
+            picture.target.see_fog(&picture.scene.light);
+        }
+        natural
+            .par_iter_mut()
+            .try_for_each_init(CpuRenderer::new, |renderer, picture| {
+                renderer.draw(picture.scene, &picture.camera, &mut picture.target)
+            })
     }
 
     /// Draws jobs that are alike and fit into one pass; or in halves, if they hold too many objects.

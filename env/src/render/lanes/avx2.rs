@@ -5,13 +5,16 @@
 )]
 
 use std::arch::x86_64::{
-    __m256, __m256i, _CMP_GE_OQ, _CMP_GT_OQ, _mm_storel_epi64, _mm_storeu_si128, _mm256_add_ps, _mm256_and_ps,
-    _mm256_and_si256, _mm256_blendv_epi8, _mm256_blendv_ps, _mm256_castps_si256, _mm256_castsi256_ps,
-    _mm256_castsi256_si128, _mm256_cmp_ps, _mm256_cmpeq_epi32, _mm256_cvtepi32_ps, _mm256_cvttps_epi32, _mm256_div_ps,
-    _mm256_extracti128_si256, _mm256_loadu_ps, _mm256_loadu_si256, _mm256_maskstore_epi32, _mm256_maskstore_ps,
-    _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_si256, _mm256_permutevar8x32_epi32,
-    _mm256_set1_epi32, _mm256_set1_ps, _mm256_setr_epi8, _mm256_setr_epi32, _mm256_setr_ps, _mm256_shuffle_epi8,
-    _mm256_slli_epi32, _mm256_sqrt_ps, _mm256_storeu_ps, _mm256_storeu_si256, _mm256_sub_ps, _mm256_xor_si256,
+    __m256, __m256i, _CMP_GE_OQ, _CMP_GT_OQ, _mm_cvtsi32_si128, _mm_storel_epi64, _mm_storeu_si128, _mm256_add_epi16,
+    _mm256_add_ps, _mm256_and_ps, _mm256_and_si256, _mm256_blendv_epi8, _mm256_blendv_ps, _mm256_castps_si256,
+    _mm256_castsi256_ps, _mm256_castsi256_si128, _mm256_cmp_ps, _mm256_cmpeq_epi32, _mm256_cvtepi32_ps,
+    _mm256_cvttps_epi32, _mm256_div_ps, _mm256_extracti128_si256, _mm256_i32gather_epi32, _mm256_loadu_ps,
+    _mm256_loadu_si256, _mm256_maskstore_epi32, _mm256_maskstore_ps, _mm256_max_ps, _mm256_min_epu32, _mm256_min_ps,
+    _mm256_movemask_ps, _mm256_mul_ps, _mm256_mullo_epi16, _mm256_or_si256, _mm256_packus_epi16,
+    _mm256_permutevar8x32_epi32, _mm256_set1_epi8, _mm256_set1_epi16, _mm256_set1_epi32, _mm256_set1_ps,
+    _mm256_setr_epi8, _mm256_setr_epi32, _mm256_setr_ps, _mm256_setzero_si256, _mm256_shuffle_epi8, _mm256_sll_epi32,
+    _mm256_slli_epi32, _mm256_sqrt_ps, _mm256_srli_epi16, _mm256_storeu_ps, _mm256_storeu_si256, _mm256_sub_ps,
+    _mm256_unpackhi_epi8, _mm256_unpacklo_epi8, _mm256_xor_si256,
 };
 
 use super::Lanes;
@@ -44,6 +47,7 @@ lanes_by_intrinsics! {
         max(a: __m256, b: __m256) -> __m256 = _mm256_max_ps(a, b);
         or(a: __m256i, b: __m256i) -> __m256i = _mm256_or_si256(a, b);
         xor(a: __m256i, b: __m256i) -> __m256i = _mm256_xor_si256(a, b);
+        and(a: __m256i, b: __m256i) -> __m256i = _mm256_and_si256(a, b);
         shift_byte(value: __m256i) -> __m256i = _mm256_slli_epi32::<8>(value);
         at_least(a: __m256, b: __m256) -> __m256 = _mm256_cmp_ps::<_CMP_GE_OQ>(a, b);
         above(a: __m256, b: __m256) -> __m256 = _mm256_cmp_ps::<_CMP_GT_OQ>(a, b);
@@ -72,6 +76,67 @@ lanes_by_intrinsics! {
         unsafe {
             let only = _mm256_set1_epi32(1 << bit);
             _mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_and_si256(value, only), only))
+        }
+    }
+    #[inline(always)]
+    fn equal(self, a: __m256i, b: __m256i) -> __m256 {
+        // SAFETY: as in the macro.
+        unsafe { _mm256_castsi256_ps(_mm256_cmpeq_epi32(a, b)) }
+    }
+    #[inline(always)]
+    fn shift_left(self, value: __m256i, bits: u32) -> __m256i {
+        // SAFETY: as in the macro.
+        unsafe { _mm256_sll_epi32(value, _mm_cvtsi32_si128(bits as i32)) }
+    }
+    #[inline(always)]
+    fn modulate(self, a: __m256i, b: __m256i) -> __m256i {
+        // SAFETY: as in the macro.
+        unsafe {
+            let (zero, half) = (_mm256_setzero_si256(), _mm256_set1_epi16(64));
+            let low = _mm256_mullo_epi16(_mm256_unpacklo_epi8(a, zero), _mm256_unpacklo_epi8(b, zero));
+            let high = _mm256_mullo_epi16(_mm256_unpackhi_epi8(a, zero), _mm256_unpackhi_epi8(b, zero));
+            _mm256_packus_epi16(
+                _mm256_srli_epi16::<7>(_mm256_add_epi16(low, half)),
+                _mm256_srli_epi16::<7>(_mm256_add_epi16(high, half)),
+            )
+        }
+    }
+    #[inline(always)]
+    fn mix(self, a: __m256i, b: __m256i, share: __m256i) -> __m256i {
+        // SAFETY: as in the macro.
+        unsafe {
+            let (zero, most) = (_mm256_setzero_si256(), _mm256_set1_epi16(255));
+            let rest = _mm256_xor_si256(share, _mm256_set1_epi8(-1));
+            let low = _mm256_add_epi16(
+                _mm256_mullo_epi16(_mm256_unpacklo_epi8(a, zero), _mm256_unpacklo_epi8(rest, zero)),
+                _mm256_mullo_epi16(_mm256_unpacklo_epi8(b, zero), _mm256_unpacklo_epi8(share, zero)),
+            );
+            let high = _mm256_add_epi16(
+                _mm256_mullo_epi16(_mm256_unpackhi_epi8(a, zero), _mm256_unpackhi_epi8(rest, zero)),
+                _mm256_mullo_epi16(_mm256_unpackhi_epi8(b, zero), _mm256_unpackhi_epi8(share, zero)),
+            );
+            _mm256_packus_epi16(
+                _mm256_srli_epi16::<8>(_mm256_add_epi16(low, most)),
+                _mm256_srli_epi16::<8>(_mm256_add_epi16(high, most)),
+            )
+        }
+    }
+    #[inline(always)]
+    fn gather(self, table: &[u32], at: __m256i) -> __m256i {
+        assert!(!table.is_empty(), "a table has words");
+        let last = self.splat_word((table.len() - 1).min(i32::MAX as usize) as u32);
+        // SAFETY: as in the macro; no place is beyond the last word of the table.
+        unsafe {
+            let at = _mm256_min_epu32(at, last);
+            _mm256_i32gather_epi32::<4>(table.as_ptr().cast(), at)
+        }
+    }
+    #[inline(always)]
+    fn power_of_two(self, value: __m256) -> __m256 {
+        // SAFETY: as in the macro.
+        unsafe {
+            let exponent = _mm256_set1_epi32(0x7F80_0000);
+            _mm256_castsi256_ps(_mm256_and_si256(_mm256_castps_si256(value), exponent))
         }
     }
     #[inline(always)]

@@ -5,12 +5,16 @@
 )]
 
 use std::arch::x86_64::{
-    __m512, __m512i, __mmask16, _CMP_GE_OQ, _CMP_GT_OQ, _mm_setr_epi8, _mm512_add_ps, _mm512_broadcast_i32x4,
-    _mm512_cmp_ps_mask, _mm512_cvtepi32_ps, _mm512_cvttps_epi32, _mm512_div_ps, _mm512_loadu_ps, _mm512_loadu_si512,
-    _mm512_mask_blend_epi32, _mm512_mask_blend_ps, _mm512_mask_storeu_epi32, _mm512_mask_storeu_ps, _mm512_max_ps,
-    _mm512_min_ps, _mm512_mul_ps, _mm512_or_si512, _mm512_permutexvar_epi32, _mm512_set1_epi32, _mm512_set1_ps,
-    _mm512_setr_epi32, _mm512_setr_ps, _mm512_shuffle_epi8, _mm512_slli_epi32, _mm512_sqrt_ps, _mm512_storeu_ps,
-    _mm512_storeu_si512, _mm512_sub_ps, _mm512_test_epi32_mask, _mm512_xor_si512,
+    __m512, __m512i, __mmask16, _CMP_GE_OQ, _CMP_GT_OQ, _mm_cvtsi32_si128, _mm_setr_epi8, _mm512_add_epi16,
+    _mm512_add_ps, _mm512_and_si512, _mm512_broadcast_i32x4, _mm512_castps_si512, _mm512_castsi512_ps,
+    _mm512_cmp_ps_mask, _mm512_cmpeq_epi32_mask, _mm512_cvtepi32_ps, _mm512_cvttps_epi32, _mm512_div_ps,
+    _mm512_i32gather_epi32, _mm512_loadu_ps, _mm512_loadu_si512, _mm512_mask_blend_epi32, _mm512_mask_blend_ps,
+    _mm512_mask_storeu_epi32, _mm512_mask_storeu_ps, _mm512_max_ps, _mm512_min_epu32, _mm512_min_ps, _mm512_mul_ps,
+    _mm512_mullo_epi16, _mm512_or_si512, _mm512_packus_epi16, _mm512_permutexvar_epi32, _mm512_set1_epi8,
+    _mm512_set1_epi16, _mm512_set1_epi32, _mm512_set1_ps, _mm512_setr_epi32, _mm512_setr_ps, _mm512_setzero_si512,
+    _mm512_shuffle_epi8, _mm512_sll_epi32, _mm512_slli_epi32, _mm512_sqrt_ps, _mm512_srli_epi16, _mm512_storeu_ps,
+    _mm512_storeu_si512, _mm512_sub_ps, _mm512_test_epi32_mask, _mm512_unpackhi_epi8, _mm512_unpacklo_epi8,
+    _mm512_xor_si512,
 };
 
 use super::Lanes;
@@ -44,6 +48,7 @@ lanes_by_intrinsics! {
         max(a: __m512, b: __m512) -> __m512 = _mm512_max_ps(a, b);
         or(a: __m512i, b: __m512i) -> __m512i = _mm512_or_si512(a, b);
         xor(a: __m512i, b: __m512i) -> __m512i = _mm512_xor_si512(a, b);
+        and(a: __m512i, b: __m512i) -> __m512i = _mm512_and_si512(a, b);
         shift_byte(value: __m512i) -> __m512i = _mm512_slli_epi32::<8>(value);
         at_least(a: __m512, b: __m512) -> __mmask16 = _mm512_cmp_ps_mask::<_CMP_GE_OQ>(a, b);
         above(a: __m512, b: __m512) -> __mmask16 = _mm512_cmp_ps_mask::<_CMP_GT_OQ>(a, b);
@@ -72,6 +77,67 @@ lanes_by_intrinsics! {
     fn has_bit(self, value: __m512i, bit: u32) -> __mmask16 {
         // SAFETY: as in the macro.
         unsafe { _mm512_test_epi32_mask(value, _mm512_set1_epi32(1 << bit)) }
+    }
+    #[inline(always)]
+    fn equal(self, a: __m512i, b: __m512i) -> __mmask16 {
+        // SAFETY: as in the macro.
+        unsafe { _mm512_cmpeq_epi32_mask(a, b) }
+    }
+    #[inline(always)]
+    fn shift_left(self, value: __m512i, bits: u32) -> __m512i {
+        // SAFETY: as in the macro.
+        unsafe { _mm512_sll_epi32(value, _mm_cvtsi32_si128(bits as i32)) }
+    }
+    #[inline(always)]
+    fn modulate(self, a: __m512i, b: __m512i) -> __m512i {
+        // SAFETY: as in the macro.
+        unsafe {
+            let (zero, half) = (_mm512_setzero_si512(), _mm512_set1_epi16(64));
+            let low = _mm512_mullo_epi16(_mm512_unpacklo_epi8(a, zero), _mm512_unpacklo_epi8(b, zero));
+            let high = _mm512_mullo_epi16(_mm512_unpackhi_epi8(a, zero), _mm512_unpackhi_epi8(b, zero));
+            _mm512_packus_epi16(
+                _mm512_srli_epi16::<7>(_mm512_add_epi16(low, half)),
+                _mm512_srli_epi16::<7>(_mm512_add_epi16(high, half)),
+            )
+        }
+    }
+    #[inline(always)]
+    fn mix(self, a: __m512i, b: __m512i, share: __m512i) -> __m512i {
+        // SAFETY: as in the macro.
+        unsafe {
+            let (zero, most) = (_mm512_setzero_si512(), _mm512_set1_epi16(255));
+            let rest = _mm512_xor_si512(share, _mm512_set1_epi8(-1));
+            let low = _mm512_add_epi16(
+                _mm512_mullo_epi16(_mm512_unpacklo_epi8(a, zero), _mm512_unpacklo_epi8(rest, zero)),
+                _mm512_mullo_epi16(_mm512_unpacklo_epi8(b, zero), _mm512_unpacklo_epi8(share, zero)),
+            );
+            let high = _mm512_add_epi16(
+                _mm512_mullo_epi16(_mm512_unpackhi_epi8(a, zero), _mm512_unpackhi_epi8(rest, zero)),
+                _mm512_mullo_epi16(_mm512_unpackhi_epi8(b, zero), _mm512_unpackhi_epi8(share, zero)),
+            );
+            _mm512_packus_epi16(
+                _mm512_srli_epi16::<8>(_mm512_add_epi16(low, most)),
+                _mm512_srli_epi16::<8>(_mm512_add_epi16(high, most)),
+            )
+        }
+    }
+    #[inline(always)]
+    fn gather(self, table: &[u32], at: __m512i) -> __m512i {
+        assert!(!table.is_empty(), "a table has words");
+        let last = self.splat_word((table.len() - 1).min(i32::MAX as usize) as u32);
+        // SAFETY: as in the macro; no place is beyond the last word of the table.
+        unsafe {
+            let at = _mm512_min_epu32(at, last);
+            _mm512_i32gather_epi32::<4>(at, table.as_ptr().cast())
+        }
+    }
+    #[inline(always)]
+    fn power_of_two(self, value: __m512) -> __m512 {
+        // SAFETY: as in the macro.
+        unsafe {
+            let exponent = _mm512_set1_epi32(0x7F80_0000);
+            _mm512_castsi512_ps(_mm512_and_si512(_mm512_castps_si512(value), exponent))
+        }
     }
     #[inline(always)]
     fn store_rgb(self, value: __m512i, to: &mut [u8]) {

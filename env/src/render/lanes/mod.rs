@@ -66,10 +66,26 @@ pub(super) trait Lanes: Copy {
     fn select_words(self, mask: Self::Mask, a: Self::Word, b: Self::Word) -> Self::Word;
     fn or(self, a: Self::Word, b: Self::Word) -> Self::Word;
     fn xor(self, a: Self::Word, b: Self::Word) -> Self::Word;
+    fn and(self, a: Self::Word, b: Self::Word) -> Self::Word;
+    /// Where both are the same.
+    fn equal(self, a: Self::Word, b: Self::Word) -> Self::Mask;
+    /// So many bits to the left, less than 32.
+    fn shift_left(self, value: Self::Word, bits: u32) -> Self::Word;
     /// One byte to the left.
     fn shift_byte(self, value: Self::Word) -> Self::Word;
     /// Where the bit of this number is set.
     fn has_bit(self, value: Self::Word, bit: u32) -> Self::Mask;
+    /// Each byte of `a` times that of `b`, which is 1 at 128; at most 255.
+    fn modulate(self, a: Self::Word, b: Self::Word) -> Self::Word;
+    /// Each byte of `a`, or that of `b`, or between them: `a` where the byte of `share` is 0, `b` where it is 255.
+    fn mix(self, a: Self::Word, b: Self::Word, share: Self::Word) -> Self::Word;
+    /// The words of a table at these places; the last one for places beyond it.
+    ///
+    /// # Panics
+    /// On an empty table.
+    fn gather(self, table: &[u32], at: Self::Word) -> Self::Word;
+    /// The power of two that is next below each float, which is above 0.
+    fn power_of_two(self, value: Self::Float) -> Self::Float;
     /// Floats cut to whole numbers; they must be within ±2³¹.
     fn truncate(self, value: Self::Float) -> Self::Word;
     /// Words, as signed numbers, as floats.
@@ -82,6 +98,12 @@ pub(super) trait Lanes: Copy {
     #[inline(always)]
     fn mul_add(self, a: Self::Float, b: Self::Float, c: Self::Float) -> Self::Float {
         self.add(self.mul(a, b), c)
+    }
+
+    /// The lowest byte of each word, of which the rest is 0, in the lowest three.
+    #[inline(always)]
+    fn three_times(self, value: Self::Word) -> Self::Word {
+        self.or(value, self.shift_byte(self.or(value, self.shift_byte(value))))
     }
 
     /// Stores where the mask holds and keeps the rest.
@@ -104,6 +126,8 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+
+    const TABLE: [u32; 12] = [3, 1, 4, 1, 5, 9, 2, 6, 5, 3, 5, 8];
 
     /// What every operation makes of these numbers, one vector after another: the same for all sets.
     fn all_operations<L: Lanes>(lanes: L, a: &[f32], b: &[f32], words: &[u32]) -> Vec<Vec<u32>> {
@@ -137,6 +161,7 @@ mod tests {
                 lanes.select(lanes.both(above, at_least), b, a),
                 lanes.float(lanes.truncate(small)),
                 lanes.float(word),
+                lanes.power_of_two(lanes.max(a, lanes.splat(0.125))),
             ] {
                 floats(value);
             }
@@ -156,6 +181,17 @@ mod tests {
                 lanes.or(word, lanes.splat_word(0x0F0F_00FF)),
                 lanes.xor(word, lanes.truncate(small)),
                 lanes.shift_byte(word),
+                lanes.and(word, lanes.truncate(small)),
+                lanes.shift_left(word, 5),
+                lanes.modulate(word, lanes.xor(word, lanes.splat_word(0x8055_AAFF))),
+                lanes.mix(word, lanes.splat_word(0x00FF_8001), lanes.shift_byte(word)),
+                lanes.gather(&TABLE, lanes.and(word, lanes.splat_word(15))),
+                lanes.select_words(
+                    lanes.equal(lanes.and(word, lanes.splat_word(1)), lanes.splat_word(1)),
+                    word,
+                    lanes.splat_word(2),
+                ),
+                lanes.three_times(lanes.and(word, lanes.splat_word(255))),
                 lanes.select_words(lanes.has_bit(word, 3), word, lanes.splat_word(1)),
             ] {
                 words(value);
@@ -178,6 +214,24 @@ mod tests {
             }
         }
         made
+    }
+
+    #[test]
+    fn bytes_are_scaled_and_mixed_as_bytes_are() {
+        let one = |word: [u32; 4]| word[0];
+        let splat = |word: u32| Portable.splat_word(word);
+        for byte in 0..=255 {
+            assert_eq!(one(Portable.modulate(splat(byte), splat(128))), byte, "a factor of 1");
+            assert_eq!(
+                one(Portable.modulate(splat(byte), splat(255))),
+                ((byte * 255 + 64) / 128).min(255)
+            );
+            let share = |share: u32| one(Portable.mix(splat(byte), splat(200), splat(share)));
+            assert_eq!((share(0), share(255)), (byte, 200));
+            assert!(share(128).abs_diff(u32::midpoint(byte, 200)) <= 1);
+        }
+        assert_eq!(one(Portable.gather(&TABLE, splat(u32::MAX))), 8, "the last word");
+        assert_eq!(Portable.power_of_two([1.0, 1.9, 2.0, 300.0]), [1.0, 1.0, 2.0, 256.0]);
     }
 
     proptest! {

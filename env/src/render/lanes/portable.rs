@@ -117,6 +117,43 @@ impl Lanes for Portable {
         map(a, b, |a, b| a ^ b)
     }
     #[inline(always)]
+    fn and(self, a: [u32; N], b: [u32; N]) -> [u32; N] {
+        map(a, b, |a, b| a & b)
+    }
+    #[inline(always)]
+    fn equal(self, a: [u32; N], b: [u32; N]) -> [bool; N] {
+        map(a, b, |a, b| a == b)
+    }
+    #[inline(always)]
+    fn shift_left(self, value: [u32; N], bits: u32) -> [u32; N] {
+        value.map(|word| word << bits)
+    }
+    #[inline(always)]
+    fn modulate(self, a: [u32; N], b: [u32; N]) -> [u32; N] {
+        map(a, b, |a, b| {
+            let byte = |shift: u32| (((a >> shift & 255) * (b >> shift & 255) + 64) >> 7).min(255) << shift;
+            byte(0) | byte(8) | byte(16) | byte(24)
+        })
+    }
+    #[inline(always)]
+    fn mix(self, a: [u32; N], b: [u32; N], share: [u32; N]) -> [u32; N] {
+        std::array::from_fn(|k| {
+            let byte = |shift: u32| {
+                let (a, b, share) = (a[k] >> shift & 255, b[k] >> shift & 255, share[k] >> shift & 255);
+                ((a * (255 - share) + b * share + 255) >> 8) << shift
+            };
+            byte(0) | byte(8) | byte(16) | byte(24)
+        })
+    }
+    #[inline(always)]
+    fn gather(self, table: &[u32], at: [u32; N]) -> [u32; N] {
+        at.map(|at| table[(at as usize).min(table.len() - 1)])
+    }
+    #[inline(always)]
+    fn power_of_two(self, value: [f32; N]) -> [f32; N] {
+        value.map(|float| f32::from_bits(float.to_bits() & 0x7F80_0000))
+    }
+    #[inline(always)]
     fn shift_byte(self, value: [u32; N]) -> [u32; N] {
         value.map(|word| word << 8)
     }

@@ -1,0 +1,190 @@
+//! Light of the natural style: sun and sky by the height of the sun, or the even light under a ceiling. What it falls on is
+//! in `natural.rs`; the light of the plain style in `shade.rs`.
+//!
+//! A face gets the sun by its angle, and light from above and below by how far it looks up. Together they come to about 1 at
+//! full daylight: saturated colours keep their shading. As in the plain style all of it is in gamma space.
+
+use super::shade::FULL_LEVEL;
+use crate::scene::Light;
+
+/// What light does to colours.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Daylight {
+    /// Towards the sun, length 1.
+    pub(super) direction: [f32; 3],
+    /// For each channel: the share of a colour that the sun gives a face that looks at it, and the shares from all around for a
+    /// face that stands upright, and what a face gets more that looks up.
+    pub(super) sun: [f32; 3],
+    pub(super) around: [f32; 3],
+    pub(super) above: [f32; 3],
+    /// Levels 0 to 255 of the sky: at the zenith, at the horizon away from the sun, and towards it.
+    pub(super) zenith: [f32; 3],
+    pub(super) horizon: [f32; 3],
+    pub(super) sunward: [f32; 3],
+    /// Level of clouds.
+    pub(super) cloud: [f32; 3],
+    /// How much the horizon differs towards the sun, 0..1.
+    pub(super) glow: f32,
+}
+
+/// From 0 at `from` to 1 at `to`, smoothly.
+fn rise(value: f32, from: f32, to: f32) -> f32 {
+    let share = ((value - from) / (to - from)).clamp(0.0, 1.0);
+    share * share * (3.0 - 2.0 * share)
+}
+
+fn between(a: [f32; 3], b: [f32; 3], share: f32) -> [f32; 3] {
+    std::array::from_fn(|k| a[k] + (b[k] - a[k]) * share)
+}
+
+impl Daylight {
+    pub(super) fn new(light: &Light, is_inside: bool) -> Self {
+        let height = light.direction[2];
+        // Dim light reads as a low sun, too.
+        let low = (1.0 - rise(height, 0.04, 0.5)).max(0.9 * (1.0 - rise(light.exposure, 0.1, 0.8)));
+        let exposure = if light.exposure < 1.0 {
+            light.exposure.sqrt()
+        } else {
+            1.0 + 0.3 * (light.exposure - 1.0)
+        };
+        let color: [f32; 3] = std::array::from_fn(|k| light.color[k] * exposure);
+        let sky = Self::sky(light, exposure, low, height);
+        if is_inside {
+            return Self::inside(color, sky);
+        }
+        let warm = between([1.0; 3], [1.0, 0.66, 0.36], low);
+        let cold = between([0.94, 1.0, 1.1], [0.84, 0.84, 1.06], low);
+        let strength = (1.0 - light.ambient) * rise(height, -0.06, 0.1) * (1.1 - 0.1 * low);
+        let around = light.ambient * (1.1 + 0.35 * low);
+        let top: [f32; 3] = std::array::from_fn(|k| color[k] * cold[k] * around);
+        let bottom = [0, 1, 2].map(|k| color[k] * around * [0.62, 0.60, 0.55][k]);
+        Self {
+            direction: light.direction,
+            sun: [0, 1, 2].map(|k| color[k] * warm[k] * strength),
+            around: [0, 1, 2].map(|k| f32::midpoint(top[k], bottom[k])),
+            above: [0, 1, 2].map(|k| (top[k] - bottom[k]) / 2.0),
+            ..sky
+        }
+    }
+
+    /// Lamps everywhere under the ceiling: a little more from one side, so that corners are seen.
+    fn inside(color: [f32; 3], sky: Self) -> Self {
+        const LAMPS: [f32; 3] = [0.48, -0.36, 0.8];
+        Self {
+            direction: LAMPS,
+            sun: color.map(|level| 0.3 * level),
+            around: color.map(|level| 0.72 * level),
+            above: color.map(|level| 0.06 * level),
+            ..sky
+        }
+    }
+
+    /// The sky alone.
+    fn sky(light: &Light, exposure: f32, low: f32, height: f32) -> Self {
+        let bright = exposure * (0.62 + 0.38 * rise(height, -0.1, 0.35)) * FULL_LEVEL;
+        let tint = between([1.0; 3], [0.7, 0.62, 0.74], low);
+        let away = between([1.0; 3], [0.88, 0.72, 0.76], low);
+        let toward = between([1.0; 3], [1.5, 0.92, 0.4], low);
+        let pale: [f32; 3] = light.sky_color.map(|channel| channel * 0.42 + 0.55);
+        let level = |own: [f32; 3], by: [f32; 3]| std::array::from_fn(|k| (own[k] * by[k] * bright).min(FULL_LEVEL));
+        let white = between([0.98; 3], [1.0, 0.74, 0.62], low);
+        Self {
+            direction: light.direction,
+            sun: [0.0; 3],
+            around: [0.0; 3],
+            above: [0.0; 3],
+            zenith: level(light.sky_color, tint),
+            horizon: level(pale, away),
+            sunward: level(pale, toward),
+            cloud: level([1.0; 3], white),
+            glow: low,
+        }
+    }
+
+    /// Levels 0 to 255 and above of a colour on a face by its normal of length 1.
+    pub(super) fn levels(&self, color: [f32; 3], normal: [f32; 3]) -> [f32; 3] {
+        let sun = crate::vector::dot(normal, self.direction).max(0.0);
+        std::array::from_fn(|k| {
+            color[k] * FULL_LEVEL * (sun * self.sun[k] + normal[2] * self.above[k] + self.around[k])
+        })
+    }
+
+    /// What is left of the ground's light in shadow, as a texel: 128 for all of it.
+    pub(super) fn shade(&self) -> u32 {
+        let sun = self.direction[2].max(0.0);
+        let left = [0, 1, 2].map(|k| {
+            let shaded = self.around[k] + self.above[k];
+            let share = shaded / (shaded + sun * self.sun[k]).max(1e-6);
+            (share * 128.0 + 0.5).clamp(0.0, 128.0) as u32
+        });
+        0x80 << 24 | left[2] << 16 | left[1] << 8 | left[0]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn light(height: f32, exposure: f32) -> Light {
+        let across = (1.0 - height * height).sqrt();
+        Light {
+            direction: [0.0, across, height],
+            color: [1.0; 3],
+            exposure,
+            ambient: 0.35,
+            sky_color: [0.36, 0.62, 0.9],
+            fog_distance: None,
+            fog_in_depth: false,
+        }
+    }
+
+    /// A low sun is warm, and so is the sky towards it; a high one is white.
+    #[test]
+    fn a_low_sun_warms_light_and_sky() {
+        let warmth = |levels: [f32; 3]| levels[0] / levels[2];
+        let mut before = [f32::INFINITY; 2];
+        for height in [0.08, 0.2, 0.35, 0.6, 0.9] {
+            let day = Daylight::new(&light(height, 1.0), false);
+            let here = [warmth(day.sun), warmth(day.sunward)];
+            assert!(
+                here[0] <= before[0] && here[1] <= before[1],
+                "{height}: {here:?} after {before:?}"
+            );
+            before = here;
+        }
+        assert!((before[0] - 1.0).abs() < 1e-5);
+        assert!(warmth(Daylight::new(&light(0.08, 1.0), false).sun) > 1.7);
+    }
+
+    /// A saturated colour in full daylight is not cut off: faces that look elsewhere have other levels.
+    #[test]
+    fn saturated_colours_keep_their_shading() {
+        let day = Daylight::new(&light(0.6, 1.0), false);
+        let faces = [
+            [0.0, 0.8, 0.6],
+            [0.0, 0.0, 1.0],
+            [0.0, 1.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [0.0, -1.0, 0.0],
+        ];
+        let levels: Vec<f32> = faces
+            .iter()
+            .map(|normal| day.levels([1.0, 0.0, 0.0], *normal)[0])
+            .collect();
+        assert!(levels[0] < 1.06 * FULL_LEVEL, "{levels:?}");
+        let distinct = levels.windows(2).filter(|pair| (pair[0] - pair[1]).abs() > 8.0).count();
+        assert!(distinct >= 3, "{levels:?}");
+    }
+
+    #[test]
+    fn more_light_is_brighter_and_shadow_is_darker() {
+        let mut before = 0.0;
+        for exposure in [0.05, 0.2, 0.6, 1.0, 1.5] {
+            let day = Daylight::new(&light(0.7, exposure), false);
+            let ground = day.levels([0.5; 3], [0.0, 0.0, 1.0])[1];
+            assert!(ground > before);
+            assert!(day.shade() >> 8 & 255 < 110);
+            before = ground;
+        }
+    }
+}

@@ -1,0 +1,680 @@
+//! The natural style on the processor: what is drawn gets the number of what covers it, and texels are laid over it when the
+//! picture is composed. What lies behind everything is in `rows.rs`, patterns in `surfaces.rs`, light in `daylight.rs`,
+//! shadows in `shadows.rs`. The plain style is in `cpu.rs` and `compose.rs`.
+
+use std::ops::Range;
+
+use driftworld_spec::{Covering, Surface};
+
+use super::canvas::Canvas;
+use super::compose::{Scratch, metres, narrow};
+use super::cpu::{CpuRenderer, category};
+use super::daylight::Daylight;
+use super::frame::CATEGORY_MAP;
+use super::lanes::Lanes;
+use super::raster::{Shading, dot, draw_block};
+use super::rows::{Row, Rows, Shows, packed};
+use super::shade::{FULL_LEVEL, ROUNDING};
+use super::shadows::{Cast, ShadowParams};
+use super::surfaces::{self, NEUTRAL, SIDE};
+use super::target::Target;
+use super::view::{NEAR, Placement, Pose, View};
+use super::visibility::{Drawable, Visible, find, level, sort};
+use crate::assets::{BLOCK, Material, Paint};
+use crate::camera::Camera;
+use crate::looks::NaturalLooks;
+use crate::scene::{ARENA_WALLS, Item, PanelGroup, Scene};
+
+/// Where in a packed pixel the number of what covers it stands, above its category; 0 is nothing.
+pub(super) const MATERIAL_SHIFT: u32 = 27;
+pub(super) const MATERIAL: u32 = 31 << MATERIAL_SHIFT;
+
+/// Bare ground in shadow, for which nothing was drawn but the shadow.
+pub(super) const BARE: u32 = 1;
+/// What lies on the ground; the next number is that in shadow.
+pub(super) const GROUND: u32 = 2;
+const GROUND_IN_SHADOW: u32 = GROUND + 1;
+/// Walls that face along x; the next number is those along y.
+const WALLS: u32 = 4;
+/// Three for each object that is covered: its faces along x, y and z.
+const OBJECTS: u32 = 6;
+const MATERIALS: u32 = 32;
+
+/// Metres along a wall or an object are never so many tiles.
+const SHIFT: f32 = 4096.0;
+
+/// How much finer than a pixel texels may be, and the steepest angle that counts.
+const SHARPNESS: f32 = 1.0;
+const GRAZING: f32 = 0.06;
+
+/// What the style keeps from picture to picture.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Natural {
+    rows: Rows,
+    patches: Vec<Option<Patch>>,
+    /// For each column how much it shows of the sky towards the sun: a byte, in the three of a colour.
+    glow: Vec<u32>,
+}
+
+/// What covers faces that lie in one direction: how texels are found from a place on the screen.
+#[derive(Clone, Copy, Debug)]
+struct Patch {
+    texels: &'static [u32],
+    /// Tiles along each side: at the camera; and for each metre of depth at the picture's middle, to the right and up.
+    u: [f32; 4],
+    v: [f32; 4],
+    /// How much the faces look at the camera: at the middle, to the right and up.
+    facing: [f32; 3],
+    /// Texels to a side for a metre of 1 / depth.
+    sharpness: f32,
+}
+
+impl Patch {
+    /// Of a surface on faces of this normal, along these axes from an origin: all in the world's frame.
+    fn new(covering: Covering, view: &View, origin: [f32; 3], axes: [[f32; 3]; 2], normal: [f32; 3]) -> Option<Self> {
+        let tile = surfaces::tile(covering.surface)?;
+        let period = tile.period * covering.scale as f32;
+        let from = crate::vector::sub(view.position, origin);
+        let along = |axis: [f32; 3]| {
+            let rows = [from, view.axes.forward, view.axes.right, view.axes.up];
+            rows.map(|row| crate::vector::dot(row, axis) / period)
+        };
+        Some(Self {
+            texels: &tile.texels,
+            u: along(axes[0]),
+            v: along(axes[1]),
+            facing: [view.axes.forward, view.axes.right, view.axes.up].map(|axis| crate::vector::dot(axis, normal)),
+            sharpness: SHARPNESS * period / view.step,
+        })
+    }
+
+    /// Texels at these columns of a row so far up at 1 m, for 1 / depth.
+    #[inline(always)]
+    fn texel<L: Lanes>(&self, l: L, up: f32, offset: L::Float, inverse: L::Float) -> L::Word {
+        let (zero, one) = (l.splat(0.0), l.splat(1.0));
+        let depth = l.div(one, l.max(inverse, l.splat(1e-4)));
+        let [middle, right, above] = self.facing;
+        let facing = l.mul_add(l.splat(right), offset, l.splat(middle + up * above));
+        let facing = l.max(l.max(facing, l.sub(zero, facing)), l.splat(GRAZING));
+        let side = l.mul(l.mul(inverse, facing), l.splat(self.sharpness));
+        let side = l.power_of_two(l.min(l.max(side, one), l.splat(SIDE as f32)));
+        let u = part_of_tile(l, self.u, up, offset, depth, side);
+        let v = part_of_tile(l, self.v, up, offset, depth, side);
+        l.gather(self.texels, l.truncate(l.mul_add(side, l.add(side, v), u)))
+    }
+}
+
+/// The number of a texel along a side of a tile of so many.
+#[inline(always)]
+fn part_of_tile<L: Lanes>(
+    l: L,
+    [at, ahead, right, above]: [f32; 4],
+    up: f32,
+    offset: L::Float,
+    depth: L::Float,
+    side: L::Float,
+) -> L::Float {
+    let slope = l.mul_add(l.splat(right), offset, l.splat(ahead + up * above));
+    let tiles = l.mul_add(depth, slope, l.splat(at + SHIFT));
+    let part = l.sub(tiles, l.float(l.truncate(tiles)));
+    l.float(l.truncate(l.mul(part, side)))
+}
+
+/// What all triangles of a material share.
+#[derive(Clone, Copy, Debug)]
+struct NaturalParams {
+    /// Levels 0 to 255 that the sun gives; that come from around; that a face gets more which looks up.
+    sun: [f32; 3],
+    around: [f32; 3],
+    above: [f32; 3],
+    /// Labels of faces along x, y and z, in the highest byte.
+    labels: [u32; 3],
+    item: u32,
+    may_be_cut: bool,
+}
+
+impl NaturalParams {
+    fn new(color: [f32; 3], daylight: &Daylight, category: u8, materials: [u32; 3]) -> Self {
+        let full = color.map(|channel| channel * FULL_LEVEL);
+        let by = |light: [f32; 3]| [0, 1, 2].map(|k| full[k] * light[k]);
+        Self {
+            sun: by(daylight.sun),
+            around: by(daylight.around),
+            above: by(daylight.above),
+            labels: materials.map(|number| number << MATERIAL_SHIFT | u32::from(category) << 24),
+            item: 0,
+            may_be_cut: false,
+        }
+    }
+}
+
+impl Shading for NaturalParams {
+    #[inline(always)]
+    fn item(&self) -> u32 {
+        self.item
+    }
+
+    #[inline(always)]
+    fn may_be_cut(&self) -> bool {
+        self.may_be_cut
+    }
+
+    #[inline(always)]
+    fn pixels<L: Lanes>(&self, l: L, normal: [L::Float; 3], at: &Placement) -> [u32; BLOCK] {
+        let zero = l.splat(0.0);
+        let sun = l.max(dot(l, normal, at.sun, zero), zero);
+        let (red, green, blue) = (
+            self.byte(l, 0, sun, normal[2]),
+            self.byte(l, 1, sun, normal[2]),
+            self.byte(l, 2, sun, normal[2]),
+        );
+        let rgb = l.or(red, l.shift_byte(l.or(green, l.shift_byte(blue))));
+        let [along_x, along_y, along_z] = self.labels;
+        let mut label = l.splat_word(along_x);
+        if along_x != along_y {
+            let x = l.max(normal[0], l.sub(zero, normal[0]));
+            let y = l.max(normal[1], l.sub(zero, normal[1]));
+            let z = l.max(normal[2], l.sub(zero, normal[2]));
+            label = l.select_words(l.above(y, x), l.splat_word(along_y), label);
+            label = l.select_words(l.above(z, l.max(x, y)), l.splat_word(along_z), label);
+        }
+        let mut pixels = [0; BLOCK];
+        l.store_words(l.or(rgb, label), &mut pixels);
+        pixels
+    }
+}
+
+impl NaturalParams {
+    #[inline(always)]
+    fn byte<L: Lanes>(&self, l: L, channel: usize, sun: L::Float, up: L::Float) -> L::Word {
+        let around = l.splat(self.around[channel] + ROUNDING);
+        let level = l.mul_add(
+            sun,
+            l.splat(self.sun[channel]),
+            l.mul_add(up, l.splat(self.above[channel]), around),
+        );
+        l.truncate(l.min(level, l.splat(FULL_LEVEL)))
+    }
+}
+
+/// One picture: where its camera is and how light falls.
+struct Picture<'a> {
+    scene: &'a Scene,
+    looks: &'a NaturalLooks,
+    view: View,
+    daylight: Daylight,
+    /// Whether the canvas keeps items' classes instead of their numbers.
+    keeps_classes: bool,
+}
+
+impl CpuRenderer {
+    #[inline(always)]
+    pub(super) fn draw_natural<L: Lanes, const ITEMS: bool>(
+        &mut self,
+        lanes: L,
+        scene: &Scene,
+        looks: &NaturalLooks,
+        camera: &Camera,
+        target: &mut Target<'_>,
+    ) {
+        let (width, height) = (target.width as usize, target.height as usize);
+        let view = View::new(camera, width, height);
+        let daylight = self.natural.rows.prepare(scene, looks, &view);
+        let picture = Picture {
+            scene,
+            looks,
+            view,
+            daylight,
+            keeps_classes: target.instance.is_none(),
+        };
+        self.canvas.clear(width, height, ITEMS);
+        self.natural.cover_walls(&picture);
+        let mut order = std::mem::take(&mut self.order);
+        find(scene, &view, false, &mut order);
+        sort(&mut order);
+        self.hidden.clear(&view);
+        for &visible in &order {
+            match visible.drawable {
+                Drawable::Item(index) => self.draw_natural_item::<L, ITEMS>(lanes, index, visible, &picture),
+                Drawable::Panels(index) => {
+                    let group = &scene.panels()[index as usize];
+                    if self.hides && self.hidden.hides_panels(group, &view) {
+                        continue;
+                    }
+                    self.draw_natural_panels::<L, ITEMS>(lanes, group, visible, &picture);
+                    if self.hides {
+                        self.hidden.note(group, &view);
+                    }
+                }
+            }
+        }
+        self.order = order;
+        if looks.has_shadows {
+            self.draw_shadows::<L, ITEMS>(lanes, &picture);
+        }
+        self.measure_columns(&view, width);
+        self.natural.measure_glow(lanes, &picture, &self.offsets);
+        self.classes.clear();
+        if ITEMS && target.class.is_some() && !picture.keeps_classes {
+            self.classes.extend(scene.items.iter().map(|item| item.class_id));
+        }
+        let composition = Composition {
+            canvas: &self.canvas,
+            natural: &self.natural,
+            view,
+            offsets: &self.offsets,
+            fog: scene.light.fog_distance,
+            fog_words: [daylight.horizon, fog_towards_sun(&daylight)].map(|levels| packed(levels, 0)),
+            shade: if looks.ceiling.is_some() {
+                BELOW_THINGS
+            } else {
+                daylight.shade()
+            },
+            keeps_classes: picture.keeps_classes,
+            classes: &self.classes,
+        };
+        composition.write::<L, ITEMS>(lanes, &mut self.scratch, target);
+    }
+
+    #[inline(always)]
+    fn draw_natural_item<L: Lanes, const ITEMS: bool>(
+        &mut self,
+        lanes: L,
+        index: u32,
+        visible: Visible,
+        picture: &Picture<'_>,
+    ) {
+        let (item, view) = (&picture.scene.items[index as usize], &picture.view);
+        let [x, y] = item.position;
+        let top = item.asset.height * item.scale;
+        let radius = item.asset.ball_radius() * item.scale;
+        if self.hides && self.hidden.hides_ball([x, y, top / 2.0], radius, top, view) {
+            return;
+        }
+        let materials = self.natural.cover_item(item, view);
+        let at = view.placement(&Pose::of(item), picture.daylight.direction);
+        for material in level(item, visible, view) {
+            let color = color_of(item, material);
+            let params = NaturalParams {
+                item: if picture.keeps_classes {
+                    u32::from(item.class_id)
+                } else {
+                    index + 1
+                },
+                may_be_cut: visible.nearest < NEAR,
+                ..NaturalParams::new(color, &picture.daylight, category(item), materials)
+            };
+            for block in &material.blocks {
+                draw_block::<L, ITEMS, _>(lanes, &mut self.canvas, block, &at, &params);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn draw_natural_panels<L: Lanes, const ITEMS: bool>(
+        &mut self,
+        lanes: L,
+        group: &PanelGroup,
+        visible: Visible,
+        picture: &Picture<'_>,
+    ) {
+        let (view, daylight) = (&picture.view, &picture.daylight);
+        let is_upright = !group.edges.is_empty();
+        let materials = match self.natural.patches[WALLS as usize] {
+            _ if !is_upright => [GROUND; 3],
+            Some(_) => [WALLS, WALLS + 1, 0],
+            None => [0; 3],
+        };
+        let at = view.placement(&Pose::of_panels(group, view), daylight.direction);
+        let params = NaturalParams {
+            may_be_cut: visible.nearest < NEAR,
+            ..NaturalParams::new(group.color, daylight, CATEGORY_MAP, materials)
+        };
+        for block in &group.blocks {
+            draw_block::<L, ITEMS, _>(lanes, &mut self.canvas, block, &at, &params);
+        }
+    }
+
+    #[inline(always)]
+    fn draw_shadows<L: Lanes, const ITEMS: bool>(&mut self, lanes: L, picture: &Picture<'_>) {
+        let Picture {
+            scene,
+            looks,
+            view,
+            daylight,
+            ..
+        } = picture;
+        let is_inside = looks.ceiling.is_some();
+        let cast = if is_inside {
+            Some(Cast::below())
+        } else {
+            Cast::of_sun(daylight.direction)
+        };
+        let Some(cast) = cast.filter(|_| view.position[2] > 0.0) else {
+            return;
+        };
+        for item in scene.items.iter().filter(|item| item.visible) {
+            let (radius, height) = (item.asset.radius * item.scale, item.asset.height * item.scale);
+            let (middle, reach) = cast.ball(item.position, radius, height);
+            let Some(nearest) = self.shadow_is_seen(middle, reach, view) else {
+                continue;
+            };
+            let at = cast.placement(view, &Pose::of(item));
+            let params = ShadowParams {
+                may_be_cut: nearest < NEAR,
+            };
+            let pixels_per_metre = view.scale * item.scale / nearest.max(NEAR);
+            for material in item.asset.level(SHADOW_TOLERANCE / pixels_per_metre) {
+                for block in &material.blocks {
+                    draw_block::<L, ITEMS, _>(lanes, &mut self.canvas, block, &at, &params);
+                }
+            }
+        }
+        for group in scene.panels().iter().skip(ARENA_WALLS).filter(|_| !is_inside) {
+            if group.edges.is_empty() {
+                continue;
+            }
+            let [x, y, _] = group.middle;
+            let (middle, reach) = cast.ball([x, y], group.radius, group.height);
+            let Some(nearest) = self.shadow_is_seen(middle, reach, view) else {
+                continue;
+            };
+            let at = cast.placement(view, &Pose::WORLD);
+            let params = ShadowParams {
+                may_be_cut: nearest < NEAR,
+            };
+            for block in &group.blocks {
+                draw_block::<L, ITEMS, _>(lanes, &mut self.canvas, block, &at, &params);
+            }
+        }
+    }
+
+    /// Depth of the nearest point of a ball that holds a shadow, if any of it may be seen.
+    fn shadow_is_seen(&self, middle: [f32; 3], reach: f32, view: &View) -> Option<f32> {
+        let there = view.view_from_world(middle);
+        let is_hidden = || self.hides && self.hidden.hides_ball(middle, reach, 0.0, view);
+        let is_seen = view.sees(there, reach) && !Cast::is_too_flat(view, there[2], reach) && !is_hidden();
+        is_seen.then_some(there[2] - reach)
+    }
+}
+
+/// Largest error of a simplified mesh that casts a shadow, in pixels.
+const SHADOW_TOLERANCE: f32 = 2.5;
+
+/// What is left of light on the ground right below things under a ceiling.
+const BELOW_THINGS: u32 = 0x8062_6262;
+
+fn color_of(item: &Item, material: &Material) -> [f32; 3] {
+    match material.paint {
+        Paint::Main(own) => item.color.unwrap_or(own),
+        Paint::Fixed(color) => color,
+    }
+}
+
+fn fog_towards_sun(daylight: &Daylight) -> [f32; 3] {
+    [0, 1, 2].map(|k| daylight.horizon[k] + (daylight.sunward[k] - daylight.horizon[k]) * daylight.glow)
+}
+
+impl Natural {
+    /// Forgets what covered objects, and finds what covers walls.
+    fn cover_walls(&mut self, picture: &Picture<'_>) {
+        let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
+        let wall = |axis, normal| Patch::new(picture.looks.walls, &picture.view, [0.0; 3], [axis, z], normal);
+        self.patches.clear();
+        self.patches.resize(WALLS as usize, None);
+        self.patches.extend([wall(y, x), wall(x, y)]);
+    }
+
+    /// The numbers of what covers an object; of nothing if it is plain, or if there are no numbers left.
+    fn cover_item(&mut self, item: &Item, view: &View) -> [u32; 3] {
+        let first = self.patches.len() as u32;
+        if item.surface == Surface::Plain || first + 3 > MATERIALS {
+            return [0; 3];
+        }
+        let heading = item.heading_deg.to_radians();
+        let (sine, cosine) = (libm::sinf(heading), libm::cosf(heading));
+        let (x, y, z) = ([cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]);
+        let origin = [item.position[0], item.position[1], 0.0];
+        for (axes, normal) in [([y, z], x), ([x, z], y), ([x, y], z)] {
+            self.patches
+                .push(Patch::new(Covering::of(item.surface), view, origin, axes, normal));
+        }
+        debug_assert!(first >= OBJECTS, "walls are covered first");
+        [first, first + 1, first + 2]
+    }
+
+    /// How much each column shows of the sky towards the sun.
+    #[inline(always)]
+    fn measure_glow<L: Lanes>(&mut self, l: L, picture: &Picture<'_>, offsets: &[f32]) {
+        self.glow.clear();
+        self.glow.resize(offsets.len(), 0);
+        let [x, y, _] = picture.daylight.direction;
+        let length = (x * x + y * y).sqrt();
+        if length < 0.05 || picture.looks.ceiling.is_some() {
+            return;
+        }
+        let axes = &picture.view.axes;
+        let sun = [x / length, y / length];
+        let (half, one) = (l.splat(0.5), l.splat(1.0));
+        for first in (0..offsets.len()).step_by(L::N) {
+            let offset = l.load(&offsets[first..]);
+            let east = l.mul_add(l.splat(axes.right[0]), offset, l.splat(axes.forward[0]));
+            let north = l.mul_add(l.splat(axes.right[1]), offset, l.splat(axes.forward[1]));
+            let toward = l.mul_add(east, l.splat(sun[0]), l.mul(north, l.splat(sun[1])));
+            let length = l.root(l.max(l.mul_add(east, east, l.mul(north, north)), l.splat(1e-6)));
+            let share = l.mul(l.add(l.div(toward, length), one), half);
+            let share = l.max(l.mul(share, l.mul(share, share)), l.splat(0.0));
+            let byte = l.truncate(l.min(l.mul(share, l.splat(FULL_LEVEL)), l.splat(FULL_LEVEL)));
+            l.store_words(l.three_times(byte), &mut self.glow[first..]);
+        }
+    }
+}
+
+/// Everything that one picture is composed of.
+struct Composition<'a> {
+    canvas: &'a Canvas,
+    natural: &'a Natural,
+    view: View,
+    offsets: &'a [f32],
+    fog: Option<f32>,
+    /// Colour of the fog away from the sun and towards it.
+    fog_words: [u32; 2],
+    /// What shadow leaves of the ground's light.
+    shade: u32,
+    /// Whether items are classes; else these are the classes of items.
+    keeps_classes: bool,
+    classes: &'a [u16],
+}
+
+/// What lies behind a vector: its pixels, and the texels in them.
+#[derive(Clone, Copy)]
+struct Behind<W> {
+    word: W,
+    texel: W,
+}
+
+impl Composition<'_> {
+    #[inline(always)]
+    fn write<L: Lanes, const ITEMS: bool>(&self, l: L, scratch: &mut Scratch, target: &mut Target<'_>) {
+        let width = self.canvas.width;
+        scratch.words.resize(self.canvas.stride, 0);
+        scratch.items.resize(self.canvas.stride, 0);
+        let labelled = target.has_labels();
+        for y in 0..self.canvas.height {
+            let row = &self.natural.rows.seen[y];
+            let texels = self.natural.rows.texels(row.shows);
+            let up = -self.view.offset(1, y as f32);
+            let out = y * width;
+            let mut x = 0;
+            while x < width {
+                // The last vector of a row goes back over pixels that are done, where there are enough.
+                let start = if x + L::N > width {
+                    width.saturating_sub(L::N)
+                } else {
+                    x
+                };
+                let pixel = y * self.canvas.stride + start;
+                let drawn = l.load(&self.canvas.inverse_depth[pixel..]);
+                let in_front = l.above(drawn, l.splat(row.inverse));
+                let (mut word, inverse) = self.colors(l, row, texels, up, start, pixel, (drawn, in_front));
+                if let Some(distance) = self.fog {
+                    word = self.in_fog(l, word, inverse, distance, start);
+                }
+                if width < L::N {
+                    narrow(l, word, inverse, target, out..out + width);
+                } else {
+                    if let Some(rgb) = &mut target.rgb {
+                        l.store_rgb(word, &mut rgb[3 * (out + start)..]);
+                    }
+                    if let Some(depth) = &mut target.depth {
+                        l.store(metres(l, inverse), &mut depth[out + start..]);
+                    }
+                }
+                if labelled {
+                    l.store_words(word, &mut scratch.words[start..]);
+                    if ITEMS {
+                        let item = l.load_words(&self.canvas.items[pixel..]);
+                        l.store_words(
+                            l.select_words(in_front, item, l.splat_word(0)),
+                            &mut scratch.items[start..],
+                        );
+                    }
+                }
+                x = start + L::N;
+            }
+            if labelled {
+                self.label(scratch, out..out + width, target);
+            }
+        }
+    }
+
+    /// Packed pixels and 1 / depth of a vector.
+    #[inline(always)]
+    #[expect(clippy::too_many_arguments, reason = "a vector, and all that its row has said of it")]
+    fn colors<L: Lanes>(
+        &self,
+        l: L,
+        row: &Row,
+        texels: &[u32],
+        up: f32,
+        start: usize,
+        pixel: usize,
+        (drawn, in_front): (L::Float, L::Mask),
+    ) -> (L::Word, L::Float) {
+        let front = l.bits(in_front);
+        if front == 0 {
+            return (self.behind(l, row, texels, start).word, l.splat(row.inverse));
+        }
+        let pixels = l.load_words(&self.canvas.pixels[pixel..]);
+        let material = l.and(pixels, l.splat_word(MATERIAL));
+        let mut left = front & !l.bits(l.equal(material, l.splat_word(0)));
+        let all = (1_u64 << L::N) - 1;
+        if left == 0 && u64::from(front) == all {
+            return (pixels, drawn);
+        }
+        let behind = self.behind(l, row, texels, start);
+        let mut word = l.select_words(in_front, pixels, behind.word);
+        let mut inverse = l.max(drawn, l.splat(row.inverse));
+        while left != 0 {
+            let number = self.canvas.pixels[pixel + left.trailing_zeros() as usize] >> MATERIAL_SHIFT;
+            let same = l.both(in_front, l.equal(material, l.splat_word(number << MATERIAL_SHIFT)));
+            left &= !l.bits(same);
+            let shade = l.splat_word(self.shade);
+            let made = match number {
+                BARE => {
+                    inverse = l.select(same, l.splat(row.inverse), inverse);
+                    l.modulate(behind.word, shade)
+                }
+                GROUND => l.modulate(pixels, behind.texel),
+                GROUND_IN_SHADOW => l.modulate(l.modulate(pixels, behind.texel), shade),
+                _ => match &self.natural.patches[number as usize] {
+                    Some(patch) => {
+                        let offset = l.load(&self.offsets[start..]);
+                        l.modulate(pixels, patch.texel(l, up, offset, drawn))
+                    }
+                    None => pixels,
+                },
+            };
+            word = l.select_words(same, made, word);
+        }
+        (word, inverse)
+    }
+
+    #[inline(always)]
+    fn behind<L: Lanes>(&self, l: L, row: &Row, texels: &[u32], start: usize) -> Behind<L::Word> {
+        let base = l.splat_word(row.base);
+        let neutral = l.splat_word(NEUTRAL);
+        if row.shows == Shows::Sky {
+            let mut word = base;
+            if row.sunward != row.base {
+                let glow = l.load_words(&self.natural.glow[start..]);
+                word = l.mix(base, l.splat_word(row.sunward), glow);
+            }
+            if row.side > 1 {
+                word = l.mix(word, l.splat_word(row.cloud), self.found(l, row, texels, start, 1.0));
+            }
+            return Behind { word, texel: neutral };
+        }
+        if row.side <= 1 || texels.is_empty() {
+            return Behind {
+                word: base,
+                texel: neutral,
+            };
+        }
+        let mut texel = self.found(l, row, texels, start, 1.0);
+        if row.detail > 0.0 {
+            texel = l.modulate(texel, self.found(l, row, texels, start, row.detail));
+        }
+        Behind {
+            word: l.modulate(base, texel),
+            texel,
+        }
+    }
+
+    /// A row's texels, of a tile that is so many times as fine.
+    #[inline(always)]
+    fn found<L: Lanes>(&self, l: L, row: &Row, texels: &[u32], start: usize, finer: f32) -> L::Word {
+        let offset = l.load(&self.offsets[start..]);
+        let mask = l.splat_word(row.side - 1);
+        let u = l.mul_add(l.splat(row.u[1] * finer), offset, l.splat(row.u[0] * finer));
+        let v = l.mul_add(l.splat(row.v[1] * finer), offset, l.splat(row.v[0] * finer));
+        let (u, v) = (l.and(l.truncate(u), mask), l.and(l.truncate(v), mask));
+        let place = l.or(u, l.shift_left(v, row.side.ilog2()));
+        l.gather(texels, l.or(place, l.splat_word(row.side * row.side)))
+    }
+
+    /// Colours turned into the fog's with distance; the sky stays.
+    #[inline(always)]
+    fn in_fog<L: Lanes>(&self, l: L, word: L::Word, inverse: L::Float, distance: f32, start: usize) -> L::Word {
+        let (zero, one) = (l.splat(0.0), l.splat(1.0));
+        let reach = l.mul(inverse, l.splat(distance));
+        let share = l.div(one, l.mul_add(reach, reach, one));
+        let share = l.select(l.at_least(zero, inverse), zero, share);
+        let byte = l.truncate(l.mul_add(share, l.splat(FULL_LEVEL), l.splat(ROUNDING)));
+        let [away, toward] = self.fog_words.map(|word| l.splat_word(word));
+        let fog = l.mix(away, toward, l.load_words(&self.natural.glow[start..]));
+        l.mix(word, fog, l.three_times(byte))
+    }
+
+    /// Writes a row's categories, classes and instances.
+    fn label(&self, scratch: &Scratch, row: Range<usize>, target: &mut Target<'_>) {
+        if let Some(category) = &mut target.category {
+            for (out, word) in category[row.clone()].iter_mut().zip(&scratch.words) {
+                *out = (word >> 24) as u8 & !((MATERIAL >> 24) as u8);
+            }
+        }
+        if let Some(class) = &mut target.class {
+            for (out, item) in class[row.clone()].iter_mut().zip(&scratch.items) {
+                *out = if self.keeps_classes {
+                    *item as u16
+                } else {
+                    (*item as usize).checked_sub(1).map_or(0, |item| self.classes[item])
+                };
+            }
+        }
+        if let Some(instance) = &mut target.instance {
+            let count = row.len();
+            instance[row].copy_from_slice(&scratch.items[..count]);
+        }
+    }
+}

@@ -1,0 +1,274 @@
+//! What lies behind all objects in the natural style, row by row: ground, sky with its clouds, or a ceiling. Ground and
+//! ceiling are planes: a row of a picture, whose camera never tilts to a side, is equally far away all along, so that its
+//! texels follow each other evenly and are of one level. Objects are laid over it in `natural.rs`.
+
+use super::daylight::Daylight;
+use super::frame::{CATEGORY_MAP, CATEGORY_SKY};
+use super::shade::{FULL_LEVEL, ROUNDING};
+use super::surfaces::{self, SIDE, Tile};
+use super::view::View;
+use crate::looks::NaturalLooks;
+use crate::scene::{Light, Scene};
+
+/// Added to the numbers of texels so that none is negative; a multiple of every side of a tile.
+const SHIFT: f32 = 65536.0;
+
+/// How much coarser than a pixel texels may be: a pixel shows less than one texel of its level, and none is skipped.
+const SHARPNESS: f32 = 1.25;
+
+/// A layer of clouds: metres above the eye, metres to a side of its tile, and from which rise on it is seen in full.
+const CLOUDS: [f32; 3] = [40.0, 150.0, 0.22];
+
+/// How high fog reaches above the eye, in metres.
+const FOG_HEIGHT: f32 = 30.0;
+
+/// What a row shows, whatever the place and heading of the camera.
+#[derive(Clone, Copy, Debug, Default)]
+struct RowLook {
+    /// Metres along the view axis to what it shows: to the plane, or to the clouds.
+    metres: f32,
+    /// How far up a ray through it leads at 1 m.
+    offset: f32,
+    /// Texels per metre at its level, and texels to a side.
+    density: f32,
+    row: Row,
+}
+
+/// A row of one picture.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Row {
+    /// 1 / depth; 0 where it shows sky.
+    pub(super) inverse: f32,
+    /// Packed pixel without pattern; of the sky, away from the sun.
+    pub(super) base: u32,
+    /// Of the sky towards the sun; of clouds. As `base` where there is no difference.
+    pub(super) sunward: u32,
+    pub(super) cloud: u32,
+    /// How a texel is found: at `texels[(v & mask) << bits | u & mask | first]`, each at the middle and how it changes to the
+    /// right at 1 m. A side of 1 has nothing to find.
+    pub(super) u: [f32; 2],
+    pub(super) v: [f32; 2],
+    pub(super) side: u32,
+    /// Texels of the same tile, enlarged, laid over it, where a texel is larger than a pixel: by how much they are finer.
+    pub(super) detail: f32,
+    pub(super) shows: Shows,
+}
+
+/// What a row shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Shows {
+    Floor,
+    Ceiling,
+    #[default]
+    Sky,
+}
+
+/// All that rows depend on, but for the camera's place and heading.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Key {
+    size: [f32; 2],
+    step: f32,
+    height: f32,
+    forward: f32,
+    up: f32,
+    light: Light,
+    ground: [f32; 3],
+    looks: NaturalLooks,
+}
+
+/// The rows of a picture, kept to the next: those of one camera in one light differ only in where texels lie.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Rows {
+    key: Option<Key>,
+    daylight: Option<Daylight>,
+    looks: Vec<RowLook>,
+    pub(super) seen: Vec<Row>,
+    ground: Option<&'static Tile>,
+    ceiling: Option<&'static Tile>,
+}
+
+impl Rows {
+    /// Makes the rows ready for a picture, and says how light falls in it.
+    pub(super) fn prepare(&mut self, scene: &Scene, looks: &NaturalLooks, view: &View) -> Daylight {
+        let ceiling = looks.ceiling.filter(|ceiling| view.position[2] < ceiling.height);
+        let key = Key {
+            size: view.size,
+            step: view.step,
+            height: view.position[2],
+            forward: view.axes.forward[2],
+            up: view.axes.up[2],
+            light: scene.light,
+            ground: scene.ground_color,
+            looks: NaturalLooks { ceiling, ..*looks },
+        };
+        let daylight = match self.daylight {
+            Some(daylight) if self.key == Some(key) => daylight,
+            _ => {
+                let daylight = Daylight::new(&scene.light, looks.ceiling.is_some());
+                self.paint(&key, &daylight);
+                (self.key, self.daylight) = (Some(key), Some(daylight));
+                daylight
+            }
+        };
+        self.seen.clear();
+        let axes = &view.axes;
+        for look in &self.looks {
+            let mut row = look.row;
+            if row.side > 1 {
+                let is_sky = row.shows == Shows::Sky;
+                let place = |axis: usize| {
+                    let from = if is_sky { 0.0 } else { view.position[axis] };
+                    let ahead = axes.forward[axis] + look.offset * axes.up[axis];
+                    let at = (from + ahead * look.metres) * look.density;
+                    // Numbers of texels stay small, so that they are exact.
+                    let side = row.side as f32;
+                    let turns = (at / side) as i32 as f32;
+                    [at - turns * side + SHIFT, axes.right[axis] * look.metres * look.density]
+                };
+                (row.u, row.v) = (place(0), place(1));
+            }
+            self.seen.push(row);
+        }
+        daylight
+    }
+
+    /// The texels of what a row shows; none where it has no pattern.
+    pub(super) fn texels(&self, shows: Shows) -> &'static [u32] {
+        let tile = match shows {
+            Shows::Floor => self.ground,
+            Shows::Ceiling => self.ceiling,
+            Shows::Sky => Some(surfaces::clouds()),
+        };
+        tile.map_or(&[], |tile| &tile.texels)
+    }
+
+    fn paint(&mut self, key: &Key, daylight: &Daylight) {
+        self.ground = surfaces::tile(key.looks.ground.surface);
+        self.ceiling = surfaces::tile(driftworld_spec::Surface::Tile);
+        self.looks.clear();
+        let rows = key.size[1] as usize;
+        for y in 0..rows {
+            let offset = (key.size[1] / 2.0 - 0.5 - y as f32) * key.step;
+            let rise = key.forward + offset * key.up;
+            self.looks.push(match key.looks.ceiling {
+                _ if rise < 0.0 => {
+                    let scale = key.looks.ground.scale as f32;
+                    let color = daylight.levels(key.ground, [0.0, 0.0, 1.0]);
+                    let plane = Plane {
+                        rise,
+                        below: key.height.max(0.01),
+                        color,
+                        scale,
+                    };
+                    plane.look(key, offset, Shows::Floor, self.ground)
+                }
+                Some(ceiling) => {
+                    let color = daylight.levels(ceiling.color, [0.0, 0.0, -1.0]);
+                    let plane = Plane {
+                        rise,
+                        below: ceiling.height - key.height,
+                        color,
+                        scale: 2.0,
+                    };
+                    plane.look(key, offset, Shows::Ceiling, self.ceiling)
+                }
+                None => sky(key, daylight, offset, rise),
+            });
+        }
+    }
+}
+
+/// A plane that a row shows: how steeply the row's rays go, and how far the plane is from the eye's height.
+struct Plane {
+    rise: f32,
+    below: f32,
+    color: [f32; 3],
+    scale: f32,
+}
+
+impl Plane {
+    fn look(&self, key: &Key, offset: f32, shows: Shows, tile: Option<&Tile>) -> RowLook {
+        let inverse = self.rise.abs() / self.below;
+        let base = packed(self.color, CATEGORY_MAP);
+        let metres = 1.0 / inverse.max(1e-6);
+        let mut look = RowLook {
+            metres,
+            offset,
+            density: 0.0,
+            row: Row {
+                inverse,
+                base,
+                sunward: base,
+                cloud: base,
+                side: 1,
+                shows,
+                ..Row::default()
+            },
+        };
+        if let Some(tile) = tile {
+            let period = tile.period * self.scale;
+            // A pixel is longer than it is wide.
+            let length = metres * metres * key.step * key.up.abs().max(0.05) / self.below;
+            look.sharpen(period, length);
+            let width = metres * key.step;
+            if tile.is_grain && width * SIDE as f32 / period < 0.5 {
+                look.row.detail = 5.0;
+            }
+        }
+        look
+    }
+}
+
+impl RowLook {
+    /// Chooses the level whose texels are about as large as a pixel, both in metres.
+    fn sharpen(&mut self, period: f32, pixel: f32) {
+        let texels = (SHARPNESS * period / pixel.max(1e-9)).clamp(1.0, SIDE as f32);
+        let side = 1 << (texels as u32).ilog2();
+        self.row.side = side;
+        self.density = side as f32 / period;
+    }
+}
+
+fn sky(key: &Key, daylight: &Daylight, offset: f32, rise: f32) -> RowLook {
+    let steepness = rise / (rise * rise + 1.0).sqrt();
+    let left = 1.0 - steepness;
+    let share = 1.0 - left * left * left;
+    let fog = key.light.fog_distance.map_or(0.0, |distance| {
+        let reach = rise / FOG_HEIGHT * distance;
+        1.0 / (1.0 + reach * reach)
+    });
+    let mix = |a: [f32; 3], b: [f32; 3], share: f32| [0, 1, 2].map(|k| a[k] + (b[k] - a[k]) * share);
+    let of = |horizon: [f32; 3]| mix(mix(horizon, daylight.zenith, share), horizon, fog);
+    let (away, toward) = (
+        of(daylight.horizon),
+        of(mix(daylight.horizon, daylight.sunward, daylight.glow)),
+    );
+    let base = packed(away, CATEGORY_SKY);
+    let mut look = RowLook {
+        offset,
+        row: Row {
+            base,
+            sunward: packed(toward, CATEGORY_SKY),
+            cloud: base,
+            side: 1,
+            shows: Shows::Sky,
+            ..Row::default()
+        },
+        ..RowLook::default()
+    };
+    let [height, period, full] = CLOUDS;
+    let seen = (rise / full).min(1.0) * (1.0 - fog);
+    if key.looks.has_clouds && seen > 0.02 {
+        look.metres = height / rise;
+        look.row.cloud = packed(mix(away, daylight.cloud, 0.85 * seen), CATEGORY_SKY);
+        let pixel = look.metres * look.metres * key.step * key.up.abs().max(0.05) / height;
+        look.sharpen(period, pixel);
+    }
+    look
+}
+
+/// Levels as a packed pixel with a category.
+pub(super) fn packed(levels: [f32; 3], category: u8) -> u32 {
+    let [red, green, blue] = levels.map(|level| (level + ROUNDING).clamp(0.0, FULL_LEVEL) as u8);
+    u32::from_le_bytes([red, green, blue, category])
+}

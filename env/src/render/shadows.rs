@@ -1,0 +1,165 @@
+//! Shadows on the ground: what casts them is flattened along the light onto the ground, and drawn where ground is seen. How
+//! much darker it is there is `daylight.rs`'s to say. Nothing else gets shadows.
+
+use super::canvas::{Canvas, Triangle};
+use super::lanes::Lanes;
+use super::natural::{BARE, GROUND, MATERIAL, MATERIAL_SHIFT};
+use super::raster::Shading;
+use super::view::{Placement, Pose, View};
+use crate::assets::BLOCK;
+
+/// How far above the ground shadows are drawn, as a share of the camera's height: more than zones are.
+const LIFT: f32 = 2e-3;
+
+/// Metres that a shadow is longer than what casts it is high, at most.
+const LONGEST: f32 = 2.5;
+
+/// How many times as wide as a thing the dark below it is where light comes from everywhere.
+const SPREAD: f32 = 1.2;
+
+/// Where shadows fall: against this direction, of height 1.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cast {
+    pub(super) toward: [f32; 3],
+    spread: f32,
+}
+
+impl Cast {
+    /// The shadows of a sun in this direction; none if it is too low.
+    pub(super) fn of_sun([x, y, z]: [f32; 3]) -> Option<Self> {
+        if z < 0.02 {
+            return None;
+        }
+        let length = (x * x + y * y).sqrt() / z;
+        let shorter = (LONGEST / length.max(1e-6)).min(1.0) / z;
+        Some(Self {
+            toward: [x * shorter, y * shorter, 1.0],
+            spread: 1.0,
+        })
+    }
+
+    /// The dark right below things, where light comes from everywhere.
+    pub(super) fn below() -> Self {
+        Self {
+            toward: [0.0, 0.0, 1.0],
+            spread: SPREAD,
+        }
+    }
+
+    /// A ball around the shadow of a thing that stands in the middle of a circle.
+    pub(super) fn ball(&self, [x, y]: [f32; 2], radius: f32, height: f32) -> ([f32; 3], f32) {
+        let away = [self.toward[0], self.toward[1]].map(|part| part * height / 2.0);
+        let length = (away[0] * away[0] + away[1] * away[1]).sqrt();
+        ([x - away[0], y - away[1], 0.0], radius * self.spread + length)
+    }
+
+    /// Whether a shadow is too flat to be seen: less than a pixel high.
+    pub(super) fn is_too_flat(view: &View, depth: f32, radius: f32) -> bool {
+        depth > radius && 2.0 * radius * view.position[2].abs() * view.scale < 1.2 * depth * depth
+    }
+
+    /// The way from an object's frame to its shadow on the screen.
+    pub(super) fn placement(&self, view: &View, pose: &Pose) -> Placement {
+        let mut at = view.placement(pose, self.toward);
+        let lift = LIFT * view.position[2].clamp(0.0, 1000.0) / pose.scale;
+        let [x, y, _] = at.sun;
+        for row in [&mut at.column, &mut at.row, &mut at.depth] {
+            row[3] += row[2] * lift;
+            row[2] = -(row[0] * x + row[1] * y);
+            row[0] *= self.spread;
+            row[1] *= self.spread;
+        }
+        at
+    }
+}
+
+/// What all triangles of a shadow share.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ShadowParams {
+    pub(super) may_be_cut: bool,
+}
+
+impl Shading for ShadowParams {
+    #[inline(always)]
+    fn item(&self) -> u32 {
+        0
+    }
+
+    #[inline(always)]
+    fn may_be_cut(&self) -> bool {
+        self.may_be_cut
+    }
+
+    /// Those that look at the light: from above, they turn as the triangles that they become.
+    #[inline(always)]
+    fn facing<L: Lanes>(&self, l: L, normal: [L::Float; 3], _behind: L::Float, at: &Placement) -> L::Mask {
+        let zero = l.splat(0.0);
+        l.above(super::raster::dot(l, normal, at.sun, zero), zero)
+    }
+
+    #[inline(always)]
+    fn pixels<L: Lanes>(&self, _l: L, _normal: [L::Float; 3], _at: &Placement) -> [u32; BLOCK] {
+        [BARE << MATERIAL_SHIFT; BLOCK]
+    }
+
+    #[inline(always)]
+    fn fill<L: Lanes, const ITEMS: bool>(&self, l: L, canvas: &mut Canvas, triangle: &Triangle) {
+        shade::<L, ITEMS>(l, canvas, triangle);
+    }
+}
+
+/// Notes a shadow where there is bare ground or a zone.
+#[inline(always)]
+fn shade<L: Lanes, const ITEMS: bool>(l: L, canvas: &mut Canvas, triangle: &Triangle) {
+    let Triangle { columns, rows, .. } = *triangle;
+    let zero = l.splat(0.0);
+    let bare = l.splat_word(triangle.pixel);
+    let (material, zone) = (l.splat_word(MATERIAL), l.splat_word(GROUND << MATERIAL_SHIFT));
+    let shaded = l.splat_word(1 << MATERIAL_SHIFT);
+    let top = rows[0] as f32;
+    let last_start = canvas.stride - L::N;
+    let mut start = columns[0].min(last_start);
+    loop {
+        let x = l.add(l.count_up(), l.splat(start as f32));
+        let mut edges = [
+            at_top(l, triangle.edges[0], x, top),
+            at_top(l, triangle.edges[1], x, top),
+            at_top(l, triangle.edges[2], x, top),
+        ];
+        let mut inverse = at_top(l, triangle.inverse_depth, x, top);
+        let mut pixel = rows[0] * canvas.stride + start;
+        for _ in rows[0]..=rows[1] {
+            let place = pixel..pixel + L::N;
+            let inside = l.at_least(l.min(edges[0], l.min(edges[1], edges[2])), zero);
+            let depths = l.load(&canvas.inverse_depth[place.clone()]);
+            let taken = l.both(inside, l.above(inverse, depths));
+            if l.bits(taken) != 0 {
+                let old = l.load_words(&canvas.pixels[place.clone()]);
+                let on_zone = l.both(taken, l.equal(l.and(old, material), zone));
+                let on_ground = l.both(taken, l.at_least(zero, depths));
+                l.store_words_where(on_zone, l.or(old, shaded), &mut canvas.pixels[place.clone()]);
+                l.store_words_where(on_ground, bare, &mut canvas.pixels[place.clone()]);
+                l.store_where(on_ground, inverse, &mut canvas.inverse_depth[place.clone()]);
+                if ITEMS {
+                    l.store_words_where(on_ground, l.splat_word(0), &mut canvas.items[place]);
+                }
+            }
+            for (edge, line) in edges.iter_mut().zip(triangle.edges) {
+                *edge = l.add(*edge, l.splat(line[2]));
+            }
+            inverse = l.add(inverse, l.splat(triangle.inverse_depth[2]));
+            pixel += canvas.stride;
+        }
+        start += L::N;
+        if start > columns[1] {
+            return;
+        }
+        start = start.min(last_start);
+    }
+}
+
+/// `c + a·x + b·y` in one row.
+#[inline(always)]
+fn at_top<L: Lanes>(l: L, [c, a, b]: [f32; 3], x: L::Float, y: f32) -> L::Float {
+    l.mul_add(l.splat(a), x, l.splat(c + b * y))
+}

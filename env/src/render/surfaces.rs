@@ -1,0 +1,263 @@
+//! Patterns of the natural style as tiles that repeat: brighter and darker than the colour that they cover, from fine to
+//! coarse. Who covers what with them is in `natural.rs`.
+//!
+//! A tile is computed once, when it is first needed. Its finest level has 256 × 256 texels, each next one half as many to a
+//! side, down to one, which is the colour as it is: what is so far away that a pixel holds a whole tile shows no pattern.
+
+use std::sync::LazyLock;
+
+use driftworld_spec::Surface;
+
+/// Texels to a side of a tile's finest level.
+pub(super) const SIDE: usize = 256;
+
+/// The factor of 1 in each byte of a texel.
+pub(super) const NEUTRAL: u32 = 0x8080_8080;
+
+/// A pattern.
+#[derive(Debug)]
+pub(super) struct Tile {
+    /// Texels: a factor for each channel, 128 for 1; the highest byte is 128. The level whose side is s begins at s².
+    pub(super) texels: Vec<u32>,
+    /// Metres to a side.
+    pub(super) period: f32,
+    /// Whether it looks like itself when it is enlarged, so that it serves as its own detail.
+    pub(super) is_grain: bool,
+}
+
+/// The tile of a surface; none of a plain one.
+pub(super) fn tile(surface: Surface) -> Option<&'static Tile> {
+    macro_rules! baked {
+        ($period:literal, $is_grain:literal, $texel:expr) => {{
+            static TILE: LazyLock<Tile> = LazyLock::new(|| Tile::baked($period, $is_grain, $texel));
+            Some(&*TILE)
+        }};
+    }
+    match surface {
+        Surface::Plain => None,
+        Surface::Noise => baked!(8.0, true, noise),
+        Surface::Brick => baked!(2.0, false, brick),
+        Surface::Plank => baked!(2.0, false, plank),
+        Surface::Tile => baked!(2.0, false, floor_tile),
+        Surface::Stripes => baked!(2.0, false, stripes),
+        Surface::Checker => baked!(2.0, false, checker),
+    }
+}
+
+/// How much of the sky clouds hide: the same in each byte but the highest, 0 to 255.
+pub(super) fn clouds() -> &'static Tile {
+    static TILE: LazyLock<Tile> = LazyLock::new(|| {
+        let cover = |x: f32, y: f32| smooth((fractal(x, y, 3, 6, 0.55, 71) + 0.02) / 0.34);
+        let levels = levels(|x, y| [cover(x, y); 3]);
+        Tile {
+            texels: words(&levels, |share| (share * 255.0 + 0.5) as u32, 0),
+            period: 1.0,
+            is_grain: false,
+        }
+    });
+    &TILE
+}
+
+impl Tile {
+    fn baked(period: f32, is_grain: bool, texel: fn(f32, f32) -> [f32; 3]) -> Self {
+        let mut levels = levels(texel);
+        // On the whole no channel is brighter or darker than the colour.
+        let mean = levels.last().map_or([1.0; 3], |coarsest| coarsest[0]);
+        for texel in levels.iter_mut().flatten() {
+            (0..3).for_each(|channel| texel[channel] /= mean[channel]);
+        }
+        Self {
+            texels: words(&levels, |factor| (factor * 128.0 + 0.5).clamp(0.0, 255.0) as u32, 0x80),
+            period,
+            is_grain,
+        }
+    }
+}
+
+/// All levels of a pattern, the finest first; it is given by where in the tile, 0..1 along each side.
+fn levels(texel: impl Fn(f32, f32) -> [f32; 3]) -> Vec<Vec<[f32; 3]>> {
+    let at = |k: usize| (k as f32 + 0.5) / SIDE as f32;
+    let finest = (0..SIDE * SIDE).map(|k| texel(at(k % SIDE), at(k / SIDE))).collect();
+    let mut levels: Vec<Vec<[f32; 3]>> = vec![finest];
+    let mut side = SIDE / 2;
+    while side > 0 {
+        let finer = &levels[levels.len() - 1];
+        let mean = |k: usize| {
+            let first = 2 * (k % side) + 4 * side * (k / side);
+            let four = [0, 1, 2 * side, 2 * side + 1].map(|step| finer[first + step]);
+            [0, 1, 2].map(|channel| four.iter().map(|texel| texel[channel]).sum::<f32>() / 4.0)
+        };
+        levels.push((0..side * side).map(mean).collect());
+        side /= 2;
+    }
+    levels
+}
+
+/// Levels as the words of a tile.
+fn words(levels: &[Vec<[f32; 3]>], byte: impl Fn(f32) -> u32, highest: u32) -> Vec<u32> {
+    let mut words = vec![0; 2 * SIDE * SIDE];
+    for level in levels {
+        for (word, texel) in words[level.len()..].iter_mut().zip(level) {
+            let [red, green, blue] = texel.map(&byte);
+            *word = highest << 24 | blue << 16 | green << 8 | red;
+        }
+    }
+    words
+}
+
+/// A number in 0..1 that depends on its arguments alone.
+fn hash(x: u32, y: u32, seed: u32) -> f32 {
+    let mut bits = x.wrapping_mul(0x9E37_79B9) ^ y.wrapping_mul(0x85EB_CA6B) ^ seed.wrapping_mul(0xC2B2_AE35);
+    bits ^= bits >> 15;
+    bits = bits.wrapping_mul(0x2C1B_3C6D);
+    bits ^= bits >> 12;
+    bits = bits.wrapping_mul(0x297A_2D39);
+    bits ^= bits >> 15;
+    (bits >> 8) as f32 / (1 << 24) as f32
+}
+
+/// 0 to 1 as a curve that begins and ends level.
+fn smooth(share: f32) -> f32 {
+    let share = share.clamp(0.0, 1.0);
+    share * share * (3.0 - 2.0 * share)
+}
+
+/// Numbers −1..1 between those of the corners of a lattice of so many cells along x and y, which repeats.
+fn lattice(x: f32, y: f32, cells: [u32; 2], seed: u32) -> f32 {
+    let place = [x * cells[0] as f32, y * cells[1] as f32];
+    let cell = place.map(|at| at as u32);
+    let share = [0, 1].map(|axis| smooth(place[axis] - cell[axis] as f32));
+    let corner = |dx: u32, dy: u32| hash((cell[0] + dx) % cells[0], (cell[1] + dy) % cells[1], seed);
+    let row = |dy: u32| corner(0, dy) + (corner(1, dy) - corner(0, dy)) * share[0];
+    2.0 * (row(0) + (row(1) - row(0)) * share[1]) - 1.0
+}
+
+/// Lattices each twice as fine as the one before, and so much weaker.
+fn fractal(x: f32, y: f32, cells: u32, octaves: u32, gain: f32, seed: u32) -> f32 {
+    let mut sum = 0.0;
+    let mut strength = 1.0;
+    for octave in 0..octaves {
+        let count = cells << octave;
+        sum += strength * lattice(x, y, [count; 2], seed + octave);
+        strength *= gain;
+    }
+    sum * (1.0 - gain)
+}
+
+/// A factor, warmer or colder by a share.
+fn tinted(factor: f32, warmth: f32) -> [f32; 3] {
+    [factor * (1.0 + warmth), factor, factor * (1.0 - warmth)]
+}
+
+fn noise(x: f32, y: f32) -> [f32; 3] {
+    let coarse = fractal(x, y, 4, 3, 0.7, 1);
+    let fine = fractal(x, y, 32, 3, 0.9, 5);
+    tinted(1.0 + 0.4 * coarse + 0.7 * fine, 0.14 * fractal(x, y, 5, 3, 0.6, 9))
+}
+
+/// Which of so many pieces along an axis, and where in it, 0..1.
+fn piece(at: f32, count: u32) -> (u32, f32) {
+    let scaled = at * count as f32;
+    (scaled as u32 % count, scaled - scaled as u32 as f32)
+}
+
+/// 1 within a piece, 0 in the joint around it, which is this share of the piece wide.
+fn within(at: f32, joint: f32) -> f32 {
+    smooth((at.min(1.0 - at) - joint / 2.0) / (joint / 2.0) + 0.5)
+}
+
+fn brick(x: f32, y: f32) -> [f32; 3] {
+    let (course, up) = piece(y, 8);
+    let shifted = x + if course.is_multiple_of(2) { 0.0 } else { 0.125 };
+    let (number, along) = piece(shifted - shifted as u32 as f32, 4);
+    let body = within(along, 0.05) * within(up, 0.1);
+    let rough = fractal(x, y, 32, 3, 0.8, 17);
+    let own = 1.0 + 0.42 * (hash(number, course, 3) - 0.5) + 0.25 * rough;
+    let joint = 0.62 + 0.1 * rough;
+    tinted(
+        joint + (own - joint) * body,
+        0.14 * (hash(number, course, 4) - 0.4) * body,
+    )
+}
+
+fn plank(x: f32, y: f32) -> [f32; 3] {
+    let (board, across) = piece(y, 8);
+    let shifted = x + hash(board, 0, 21);
+    let along = shifted - shifted as u32 as f32;
+    let grain = lattice(x, y, [6, 64], 23) + 0.7 * lattice(x, y, [12, 128], 24) + 0.4 * fractal(x, y, 16, 2, 0.7, 25);
+    let body = within(across, 0.06) * within(along, 0.008);
+    let own = 1.0 + 0.34 * (hash(board, 1, 22) - 0.5) + 0.11 * grain;
+    tinted(0.5 + (own - 0.5) * body, 0.1 * (hash(board, 2, 22) - 0.5))
+}
+
+fn floor_tile(x: f32, y: f32) -> [f32; 3] {
+    let ((column, along), (row, up)) = (piece(x, 4), piece(y, 4));
+    let body = within(along, 0.045) * within(up, 0.045);
+    let own = 1.0 + 0.14 * (hash(column, row, 31) - 0.5) + 0.1 * fractal(x, y, 8, 5, 0.7, 33);
+    tinted(0.66 + (own - 0.66) * body, 0.05 * (hash(column, row, 32) - 0.5))
+}
+
+fn stripes(x: f32, y: f32) -> [f32; 3] {
+    let (number, _) = piece(x, 8);
+    let side = if number.is_multiple_of(2) { 0.22 } else { -0.22 };
+    [1.0 + side + 0.05 * fractal(x, y, 16, 4, 0.7, 41); 3]
+}
+
+fn checker(x: f32, y: f32) -> [f32; 3] {
+    let side = if (piece(x, 4).0 + piece(y, 4).0).is_multiple_of(2) {
+        0.24
+    } else {
+        -0.24
+    };
+    [1.0 + side + 0.05 * fractal(x, y, 16, 4, 0.7, 43); 3]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALL: [Surface; 6] = [
+        Surface::Noise,
+        Surface::Brick,
+        Surface::Plank,
+        Surface::Tile,
+        Surface::Stripes,
+        Surface::Checker,
+    ];
+
+    /// From afar a surface is its colour: at every level its mean is 1, and the coarsest level has no pattern.
+    #[test]
+    fn every_level_of_every_surface_is_on_the_whole_its_colour() {
+        for surface in ALL {
+            let tile = tile(surface).expect("it is not plain");
+            let mut side = 1;
+            while side <= SIDE {
+                let level = &tile.texels[side * side..2 * side * side];
+                for channel in 0..3 {
+                    let sum: u32 = level.iter().map(|texel| texel >> (8 * channel) & 255).sum();
+                    let mean = f64::from(sum) / level.len() as f64;
+                    assert!((mean - 128.0).abs() < 0.6, "{surface:?} at side {side}: {mean}");
+                }
+                assert!(level.iter().all(|texel| texel >> 24 == 128));
+                side *= 2;
+            }
+            assert_eq!(tile.texels[1], NEUTRAL, "{surface:?}");
+            let differs = tile.texels[SIDE * SIDE..]
+                .iter()
+                .any(|texel| texel.abs_diff(NEUTRAL) & 255 > 20);
+            assert!(differs, "{surface:?} shows from near");
+        }
+        assert!(tile(Surface::Plain).is_none());
+    }
+
+    /// The next texel beyond an edge of a tile is that of the other edge: no seam is seen.
+    #[test]
+    fn grain_repeats_without_a_seam() {
+        let tile = tile(Surface::Noise).expect("it is not plain");
+        let side = 32;
+        let at = |x: usize, y: usize| i64::from(tile.texels[side * side + y * side + x] >> 8 & 255);
+        let inside = (0..side).map(|y| (at(15, y) - at(16, y)).abs()).sum::<i64>();
+        let across = (0..side).map(|y| (at(side - 1, y) - at(0, y)).abs()).sum::<i64>();
+        assert!(across < 2 * inside + 64, "{across} beside {inside}");
+    }
+}

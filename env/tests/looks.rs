@@ -1,0 +1,282 @@
+//! What pictures of the natural style owe: the same things at the same places as in the plain one, the same pixels with every
+//! instruction set, and surfaces that are their colour from afar. What surfaces and light are by themselves is tested beside
+//! them.
+
+use driftworld_env::{Action, Camera, CpuRenderer, Environment, FAR_DEPTH, Frame, Scene, Target};
+use driftworld_spec::{Covering, Layout, Looks, Maze, Object, Rooms, Style, Surface, World, WorldDraft, Zone};
+
+fn natural() -> Looks {
+    Looks::of(Style::Natural)
+}
+
+fn checked(world: &WorldDraft) -> World {
+    world.clone().check().expect("the world is sound")
+}
+
+fn draw_with(renderer: &mut CpuRenderer, world: &WorldDraft, camera: &Camera, [width, height]: [u32; 2]) -> Frame {
+    let mut frame = Frame::new(width, height);
+    renderer.render(&Scene::from_world(&checked(world)), camera, &mut frame);
+    frame
+}
+
+fn draw(world: &WorldDraft, camera: &Camera, size: [u32; 2]) -> Frame {
+    draw_with(&mut CpuRenderer::new(), world, camera, size)
+}
+
+fn eyes(heading_deg: f32) -> Camera {
+    Camera::first_person([0.3, -0.2], heading_deg, 1.0, 60.0)
+}
+
+/// Things of several forms, some covered, and zones.
+fn park() -> WorldDraft {
+    let mut world = WorldDraft::default();
+    let environment = &mut world.environment_params;
+    environment.looks = natural();
+    environment.map_size = [40.0, 40.0];
+    environment.zones = vec![Zone::disc([0.0, 6.0], 2.0)];
+    let places = [
+        [2.0, 6.0],
+        [-3.0, 7.0],
+        [0.5, 9.0],
+        [5.0, 12.0],
+        [-8.0, 3.0],
+        [0.6, 0.4],
+    ];
+    let classes = ["tree", "cube", "barrel", "geometric", "bench", "cube"];
+    for (class, place) in classes.into_iter().zip(places) {
+        let mut object = Object::new(class, place);
+        object.heading = 30.0;
+        if class == "cube" {
+            object.surface = Surface::Brick;
+        }
+        world.objects.push(object);
+    }
+    world
+}
+
+/// One world of each kind: under the sky, at dusk in fog, in rooms, in a maze.
+fn worlds() -> [WorldDraft; 4] {
+    let mut dusk = park();
+    dusk.environment_params.sun_direction = [0.9, 0.3, 0.2];
+    dusk.environment_params.fog_distance = Some(20.0);
+    let mut rooms = park();
+    rooms.environment_params.layout = Some(Layout {
+        rooms: Some(Rooms::default()),
+        ..Layout::default()
+    });
+    let mut maze = park();
+    maze.environment_params.looks.ceiling = Some(false);
+    maze.environment_params.layout = Some(Layout {
+        maze: Some(Maze {
+            seed: Some(3),
+            ..Maze::default()
+        }),
+        ..Layout::default()
+    });
+    [park(), dusk, rooms, maze]
+}
+
+#[test]
+fn every_instruction_set_draws_the_same_pixels() {
+    for (number, world) in worlds().iter().enumerate() {
+        let scene = Scene::from_world(&checked(world));
+        for (heading, size) in [(0.0, [84, 84]), (200.0, [33, 20]), (75.0, [5, 3])] {
+            let mut first: Option<(Frame, Vec<u8>)> = None;
+            for (name, mut renderer) in CpuRenderer::each_instruction_set() {
+                let mut frame = Frame::new(size[0], size[1]);
+                renderer.render(&scene, &eyes(heading), &mut frame);
+                // Without instances the renderer keeps no items.
+                let mut rgb = vec![0; frame.rgb.len()];
+                let mut target = Target {
+                    width: size[0],
+                    height: size[1],
+                    rgb: Some(&mut rgb),
+                    ..Target::default()
+                };
+                renderer.draw(&scene, &eyes(heading), &mut target).expect("it draws");
+                assert_eq!(rgb, frame.rgb, "{name}: with and without items");
+                let Some((expected, _)) = &first else {
+                    first = Some((frame, rgb));
+                    continue;
+                };
+                assert_eq!(frame.rgb, expected.rgb, "world {number}, {name}, heading {heading}");
+                let bits = |frame: &Frame| frame.depth.iter().map(|metres| metres.to_bits()).collect::<Vec<_>>();
+                assert_eq!(bits(&frame), bits(expected), "world {number}, {name}");
+                assert_eq!(
+                    (&frame.category, &frame.class, &frame.instance),
+                    (&expected.category, &expected.class, &expected.instance),
+                    "world {number}, {name}"
+                );
+            }
+        }
+    }
+}
+
+/// Where there is no ceiling, depth, categories and objects are those of the plain style, but for pixels on edges.
+#[test]
+fn only_colours_differ_from_the_plain_style() {
+    let [park, dusk, _, maze] = worlds();
+    for mut world in [park, dusk, maze] {
+        // Others have a model of their own in each style.
+        world
+            .objects
+            .retain(|object| ["cube", "geometric"].contains(&object.class.as_str()));
+        let world = &world;
+        let mut plain = world.clone();
+        plain.environment_params.looks = Looks::default();
+        for heading in [0.0, 130.0] {
+            let [a, b] = [world, &plain].map(|world| draw(world, &eyes(heading), [84, 84]));
+            let differing = (0..a.depth.len()).filter(|pixel| {
+                let near = (a.depth[*pixel] - b.depth[*pixel]).abs() <= 1e-3 * b.depth[*pixel];
+                !near || a.category[*pixel] != b.category[*pixel] || a.instance[*pixel] != b.instance[*pixel]
+            });
+            let differing = differing.count();
+            assert!(differing * 400 <= a.depth.len(), "{differing} pixels");
+            assert!(a.rgb != b.rgb);
+        }
+    }
+}
+
+/// The colour and the number of these rows' pixels, on the whole.
+fn mean(frame: &Frame, rows: std::ops::Range<usize>) -> [f64; 3] {
+    let width = frame.width as usize;
+    let pixels = &frame.rgb[3 * width * rows.start..3 * width * rows.end];
+    [0, 1, 2].map(|channel| {
+        let sum: u32 = pixels
+            .iter()
+            .skip(channel)
+            .step_by(3)
+            .map(|byte| u32::from(*byte))
+            .sum();
+        f64::from(sum) / (pixels.len() / 3) as f64
+    })
+}
+
+fn ground(surface: Surface) -> WorldDraft {
+    let mut world = WorldDraft::default();
+    world.environment_params.map_size = [300.0, 300.0];
+    world.environment_params.wall_height = 0.0;
+    world.environment_params.looks = Looks {
+        ground: Some(Covering::of(surface)),
+        ..natural()
+    };
+    world
+}
+
+const SURFACES: [Surface; 6] = [
+    Surface::Noise,
+    Surface::Brick,
+    Surface::Plank,
+    Surface::Tile,
+    Surface::Stripes,
+    Surface::Checker,
+];
+
+#[test]
+fn a_surface_is_its_colour_from_afar() {
+    let flat = draw(&ground(Surface::Plain), &eyes(20.0), [84, 84]);
+    for surface in SURFACES {
+        let covered = draw(&ground(surface), &eyes(20.0), [84, 84]);
+        // From 7 m on, and from 36 m on.
+        for (rows, bound) in [(43..53, 4.0), (43..45, 1.0)] {
+            let (a, b) = (mean(&flat, rows.clone()), mean(&covered, rows));
+            for channel in 0..3 {
+                let off = (a[channel] - b[channel]).abs();
+                assert!(off < bound, "{surface:?}: {a:?} and {b:?}");
+            }
+        }
+        assert!(covered.rgb != flat.rgb, "{surface:?} shows from near");
+    }
+}
+
+/// Turning by a tenth of a pixel changes distant ground by next to nothing: surfaces do not shimmer.
+#[test]
+fn a_surface_does_not_shimmer() {
+    for surface in SURFACES {
+        let world = ground(surface);
+        let [a, b] = [20.0, 20.0 + 0.07].map(|heading| draw(&world, &eyes(heading), [84, 84]));
+        let rows = 3 * 84 * 43..3 * 84 * 50;
+        let changes = a.rgb[rows.clone()]
+            .iter()
+            .zip(&b.rgb[rows])
+            .map(|(a, b)| a.abs_diff(*b));
+        let (sum, most) = changes
+            .clone()
+            .fold((0, 0), |(sum, most), by| (sum + u32::from(by), by.max(most)));
+        let mean = f64::from(sum) / changes.count() as f64;
+        assert!(
+            mean < 1.5 && most < 40,
+            "{surface:?}: {mean} on the whole, {most} at most"
+        );
+    }
+}
+
+#[test]
+fn shadows_darken_ground_and_nothing_else() {
+    let mut with = park();
+    with.environment_params.sun_direction = [0.9, 0.1, 0.5];
+    let mut without = with.clone();
+    without.environment_params.looks.shadows = Some(false);
+    let [a, b] = [&with, &without].map(|world| draw(world, &eyes(0.0), [84, 84]));
+    assert_eq!(a.instance, b.instance);
+    assert!(a.depth == b.depth && a.category == b.category);
+    let mut darker = 0;
+    for pixel in 0..84 * 84 {
+        let [of, than] = [&a, &b].map(|frame| &frame.rgb[3 * pixel..3 * pixel + 3]);
+        if of != than {
+            darker += 1;
+            assert!(of.iter().zip(than).all(|(of, than)| of <= than));
+            assert_eq!(a.instance[pixel], 0, "things have none");
+        }
+    }
+    assert!(darker > 20, "{darker} pixels");
+}
+
+#[test]
+fn depth_sees_fog_only_if_told_to() {
+    let mut clear = park();
+    let mut foggy = park();
+    foggy.environment_params.fog_distance = Some(15.0);
+    let mut shortened = foggy.clone();
+    shortened.environment_params.looks.fog_in_depth = true;
+    for style in [Style::Natural, Style::Plain] {
+        for world in [&mut clear, &mut foggy, &mut shortened] {
+            world.environment_params.looks.style = style;
+        }
+        let [clear, foggy, shortened] = [&clear, &foggy, &shortened].map(|world| draw(world, &eyes(0.0), [40, 40]));
+        assert_eq!(clear.depth, foggy.depth);
+        for (metres, seen) in foggy.depth.iter().zip(&shortened.depth) {
+            let expected = metres * 15.0 / (metres * metres + 225.0).sqrt();
+            assert!((seen - expected).abs() < 1e-4 && *seen < 15.0, "{metres}: {seen}");
+        }
+        assert!(foggy.depth.contains(&FAR_DEPTH));
+    }
+}
+
+/// The same actions lead along the same way, to the last bit, whatever the world looks like.
+#[test]
+fn looks_change_no_way() {
+    for world in worlds() {
+        let mut plain = world.clone();
+        plain.environment_params.looks = Looks::default();
+        plain
+            .objects
+            .iter_mut()
+            .for_each(|object| object.surface = Surface::Plain);
+        let [mut a, mut b] = [world, plain].map(|world| Environment::new(checked(&world)));
+        for step in 0..60 {
+            let action = Action::Continuous([6.0, 60.0 * libm::sin(f64::from(step)), 0.0]);
+            let [one, other] = [&mut a, &mut b].map(|environment| environment.step(action).expect("it goes on"));
+            assert_eq!(one.reward.to_bits(), other.reward.to_bits());
+            let place = |environment: &Environment| {
+                let agent = environment.agent();
+                [agent.position[0], agent.position[1], agent.heading_deg].map(f32::to_bits)
+            };
+            assert_eq!(place(&a), place(&b), "step {step}");
+            if a.ended() || b.ended() {
+                assert_eq!(a.ended(), b.ended());
+                break;
+            }
+        }
+    }
+}
