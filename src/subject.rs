@@ -9,8 +9,8 @@ use crate::Failure;
 /// Pixels along each side of the pictures that are counted.
 const SIDE: u32 = 64;
 
-/// From so many pixels on an object counts as seen: a four-hundredth of the picture, a cube of 1 m from 20 m.
-pub(crate) const ENOUGH: u32 = SIDE * SIDE / 400;
+/// From so many pixels on an object counts as seen: a thousandth of the picture, a cube of 1 m from 30 m.
+pub(crate) const ENOUGH: u32 = SIDE * SIDE / 1000;
 
 /// The objects that a picture is about: those that pay, cost, move or are used; where there are none, all.
 pub(crate) fn subjects(world: &World) -> Vec<usize> {

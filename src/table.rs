@@ -239,7 +239,7 @@ mod tests {
     proptest! {
         #[test]
         fn no_line_is_wider_than_it_may_be_and_every_word_is_whole(
-            rows in proptest::collection::vec(proptest::collection::vec("([a-z#_]{1,8} ?){0,6}", 4), 1..6),
+            rows in proptest::collection::vec(proptest::collection::vec("([a-z#_]{1,8} ){0,6}", 4), 1..6),
             width in 40_usize..130,
         ) {
             let headings = ["a", "some heading", "c", "d"].map(str::to_owned).to_vec();

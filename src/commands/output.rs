@@ -31,8 +31,8 @@ fn written() -> MutexGuard<'static, Vec<(PathBuf, String)>> {
 /// Remembers that a file or a folder was written; `what` says more in a few words, or nothing. At the end of the command a line
 /// `wrote FILE` says so.
 pub(crate) fn wrote(path: &Path, what: impl Into<String>) {
-    // Whoever reads standard output has seen it.
-    if !is_stdout(path) {
+    // Whoever reads standard output has seen it; a device is no file, and it may be standard output by another name.
+    if !is_stdout(path) && !path.starts_with("/dev") {
         written().push((path.to_owned(), what.into()));
     }
 }

@@ -13,7 +13,7 @@ use super::assets::LibraryChoice;
 use super::film_choice::{FilmChoice, summary, tell};
 use super::{Failure, output};
 
-/// Run recorded episodes once more: check them against their log, and draw them.
+/// Run recorded episodes once more, check them, and draw them.
 ///
 /// Reads what `run --record`, `film --record`, `play --record`, Python's `record=True` and `driftworld-unity --record` wrote. An episode
 /// is run once more from its world and its actions, and must earn what the log says, to the last bit. Without --episode, all are checked.

@@ -5,7 +5,7 @@ use std::process::Stdio;
 use crate::terminal::{driftworld_in, root, scratch, succeed, succeed_in};
 
 /// Every subcommand, as it prints something: results, messages, or both.
-const COMMANDS: [&str; 39] = [
+const COMMANDS: [&str; 42] = [
     "--help",
     "run --help",
     "nonsense",
@@ -31,6 +31,9 @@ const COMMANDS: [&str; 39] = [
     "run scenario.json --agent random -o new",
     "audit scenario.json --lifetimes 1 --repeats 2",
     "scales find_objects#red --worlds 2",
+    "film find_objects#red --agent still --size 32 -o f.gif",
+    "replay log",
+    "play find_objects",
     "logs validate log",
     "logs aggregate log --format csv -o -",
     "metrics log",

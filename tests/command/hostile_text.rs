@@ -151,7 +151,16 @@ fn write_log(folder: &Path, column: &str, task: &str) {
 }
 
 /// Subcommands that say nothing of what others wrote, but for names of files and arguments.
-const OF_ARGUMENTS: [&str; 4] = ["bench", "demo", "doctor", "schema"];
+const OF_ARGUMENTS: [&str; 8] = [
+    "bench",
+    "completions",
+    "demo",
+    "doctor",
+    "export",
+    "new",
+    "play",
+    "schema",
+];
 
 /// Subcommands that are tried with logs.
 const OF_LOGS: [&str; 4] = ["logs", "metrics", "report", "transfer-report"];
@@ -307,6 +316,9 @@ fn worlds(stage: &mut Stage) {
     serde_json::from_str::<Value>(&shown).expect("it is JSON");
     stage.run(&["render", &world, "--size", "32"]);
     stage.run(&["photograph", &world, "--output", "photos"]);
+    stage.run(&["film", &world, "--agent", "still", "--size", "32", "-o", "film.gif"]);
+    let recordings = stage.document("r.jsonl", &sound_world());
+    stage.fail(&["replay", &recordings]);
     write(
         &stage.path().join("script.txt"),
         &format!("objects\ninfo\nstate\nlog\nstep 3\nsend {{\"{HOSTILE}\"\n{HOSTILE}\ndestroy {HOSTILE}\nagent\n"),

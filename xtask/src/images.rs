@@ -15,7 +15,39 @@ const FOLDER: &str = "docs/images";
 
 /// Pictures that are made elsewhere, and how.
 #[cfg_attr(not(test), expect(dead_code, reason = "what is not made here is only listed"))]
-const ORIGINS: [(&str, &str); 2] = [
+const ORIGINS: [(&str, &str); 10] = [
+    (
+        "looks.png",
+        "first views in natural looks: a park, a dusk, a room and a maze, as docs/looks.md has them",
+    ),
+    (
+        "first-hour-berries.png",
+        "docs/first-hour.md: DRIFTWORLD_UPDATE_PAGES=1 cargo test --test pages",
+    ),
+    (
+        "first-hour-curriculum.png",
+        "docs/first-hour.md: DRIFTWORLD_UPDATE_PAGES=1 cargo test --test pages",
+    ),
+    (
+        "first-hour-empty.png",
+        "docs/first-hour.md: DRIFTWORLD_UPDATE_PAGES=1 cargo test --test pages",
+    ),
+    (
+        "first-hour-episode.png",
+        "docs/first-hour.md: DRIFTWORLD_UPDATE_PAGES=1 cargo test --test pages",
+    ),
+    (
+        "first-hour-order.png",
+        "docs/first-hour.md: DRIFTWORLD_UPDATE_PAGES=1 cargo test --test pages",
+    ),
+    (
+        "first-hour-report.png",
+        "docs/first-hour.md: a browser's picture of its report",
+    ),
+    (
+        "first-hour-variants.png",
+        "docs/first-hour.md: DRIFTWORLD_UPDATE_PAGES=1 cargo test --test pages",
+    ),
     ("speed.svg", "cargo xtask bench peers PYTHON SCRIPTS"),
     (
         "report.png",

@@ -33,7 +33,7 @@ impl PackedActions {
             return Self::Rows(deflated(rows.iter().flat_map(|row| row.to_le_bytes())));
         }
         let numbers = || actions.iter().flat_map(|action| numbers(*action));
-        if numbers().all(|number| f64::from(number as f32).to_bits() == number.to_bits()) {
+        if numbers().all(|number| !number.is_nan() && f64::from(number as f32).to_bits() == number.to_bits()) {
             return Self::F32(deflated(numbers().flat_map(|number| (number as f32).to_le_bytes())));
         }
         Self::F64(deflated(numbers().flat_map(f64::to_le_bytes)))

@@ -30,7 +30,7 @@ const FRAME: Duration = Duration::from_millis(50);
 /// What the last line says.
 const HELP: &str = "arrows or wasd: walk · space: use · v: view · r: again · q: quit";
 
-/// Walk through a world with the keys, in a terminal of true colour.
+/// Walk through a world with the keys, in a terminal.
 ///
 /// Arrows or wasd walk and turn, the space bar uses what is ahead, v looks from above, r begins again, q quits. The world goes on in its
 /// own time; where its actions cannot do nothing, it waits for keys.
