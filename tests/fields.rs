@@ -102,6 +102,7 @@ fn other(place: &FieldPlace, now: &Json) -> Json {
             "ends" => "success",
             "range_trigger" | "contact_trigger" => "edge",
             "style" => "plain",
+            "surface" if *now == json!("stripes") => "tile",
             "surface" => "stripes",
             "text" => "EXIT",
             _ => "word",
