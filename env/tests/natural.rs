@@ -128,7 +128,7 @@ fn levels_of_detail_keep_outlines_where_they_take_over() {
         let model = Model(number.to_string());
         let asset = asset_in(Style::Natural, class, &model);
         let (_, error) = asset.levels().nth(1).expect("there is a coarse form");
-        let pixels_per_metre_at_1_m = 42.0 / 30_f32.to_radians().tan();
+        let pixels_per_metre_at_1_m = 42.0 / libm::tanf(30_f32.to_radians());
         let ball = (asset.radius * asset.radius + asset.height * asset.height / 4.0).sqrt();
         let far = 2.0 * pixels_per_metre_at_1_m * error + ball;
         let outline = |metres: f32, side: u32| {

@@ -230,7 +230,10 @@ fn a_sheet_shows_variants_or_what_a_scenario_learns() {
     succeed(&[&scenario[..], &small[..]].concat());
     let svg = drawn();
     assert_eq!(svg.matches("<image ").count(), 8, "four variants");
-    assert!(svg.contains("([-10.0,10.0,-10.0,-10.0])"), "values that differ are said");
+    assert!(
+        svg.contains("([-10.0,10.0,-10.0,-10.0])"),
+        "values that differ are said"
+    );
     let error = fail(
         1,
         &["sheet", "find_objects", "get_to_goal", "select_object", "moving_object"],

@@ -228,6 +228,10 @@ impl Drawing {
     }
 
     /// Adds a text; what cannot be printed is escaped.
+    #[expect(
+        clippy::needless_pass_by_value,
+        reason = "a line of text is handed over, as every other shape"
+    )]
     pub fn write(&mut self, words: TextLine) {
         let text = driftworld_text::printable(&words.text).to_string();
         self.shapes.push(Shape::Text(TextLine { text, ..words }));

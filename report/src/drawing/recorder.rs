@@ -36,7 +36,7 @@ impl<'a> Recorder<'a> {
     }
 
     fn on_line(&self, place: BackendCoord, style: &impl BackendStyle) -> [f32; 2] {
-        if style.stroke_width() % 2 == 0 {
+        if style.stroke_width().is_multiple_of(2) {
             self.corner(place)
         } else {
             self.place(place)

@@ -74,7 +74,7 @@ pub(super) fn draw(picture: &mut Picture, words: &TextLine) {
 
 fn draw_once(picture: &mut Picture, words: &TextLine) {
     let [along, down] = words.offset();
-    let turned = words.turns % 4 != 0;
+    let turned = !words.turns.is_multiple_of(4);
     // A turned text is drawn at 0 and its pixels are turned.
     let origin = if turned { [0.0, 0.0] } else { words.at };
     for (id, x) in letters(&words.text, words.size).0 {

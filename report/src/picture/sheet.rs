@@ -28,6 +28,7 @@ const RIM: Rgb = [150, 154, 160];
 ///
 /// # Errors
 /// None yet.
+#[expect(clippy::unnecessary_wraps, reason = "as with the other pictures")]
 pub fn sheet(rows: &[SheetRow], columns: usize) -> Result<Drawing, ReportError> {
     let width_of = |row: &SheetRow| row.pictures.iter().map(|picture| picture.width + GAP).sum::<u32>();
     let cell_width = rows.iter().map(width_of).max().unwrap_or(0);
@@ -59,16 +60,8 @@ struct Cell<'a> {
 impl<'a> Cell<'a> {
     fn of(row: &'a SheetRow, width: u32) -> Self {
         Self {
-            title: cut(
-                &driftworld_text::printable(&row.title).to_string(),
-                TITLE.0,
-                width as f32,
-            ),
-            lines: lines(
-                &driftworld_text::printable(&row.words).to_string(),
-                WORDS.0,
-                width as f32,
-            ),
+            title: cut(driftworld_text::printable(&row.title).as_ref(), TITLE.0, width as f32),
+            lines: lines(driftworld_text::printable(&row.words).as_ref(), WORDS.0, width as f32),
             pictures: &row.pictures,
         }
     }
