@@ -35,6 +35,7 @@ pub enum DocumentError {
 }
 
 /// What stands for standard input where the command was told so: what was read of it already.
+#[expect(clippy::option_option, reason = "whether it may be read, and whether it was")]
 static STANDARD_INPUT: Mutex<Option<Option<Result<String, String>>>> = Mutex::new(None);
 
 /// From now on `-` and `/dev/stdin` are the text of standard input, which is read once however often it is asked for.

@@ -36,6 +36,7 @@ pub(crate) struct Film {
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     #[command(flatten)]
+    #[expect(clippy::struct_field_names, reason = "what a film is like, as replay has it")]
     film: FilmChoice,
     #[command(flatten)]
     libraries: LibraryChoice,
@@ -59,7 +60,7 @@ impl Film {
         if self.json {
             return output::json(&json!({
                 "file": self.output, "film": film, "record": self.record, "steps": recording.actions.len(),
-                "reward": recording.reward, "ended_by": recording.ended_by.map(|word| word.word()),
+                "reward": recording.reward, "ended_by": recording.ended_by.map(driftworld_env::EndedBy::word),
             }));
         }
         output::line(summary(&recording))?;

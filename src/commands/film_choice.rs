@@ -65,7 +65,7 @@ impl FilmChoice {
         let options = self.options();
         let bar = output::progress(options.num_frames(recording.actions.len()) as u64, "filming");
         let written = write_film(path, recording, catalogue, &options, self.fps, &mut |done| {
-            bar.set_position(done)
+            bar.set_position(done);
         });
         bar.finish_and_clear();
         written

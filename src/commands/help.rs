@@ -1,5 +1,7 @@
 //! The list of commands in `driftworld --help`, in groups by what one wants to do. What each command does stands with it.
 
+use std::fmt::Write;
+
 use clap::Command;
 
 use crate::style;
@@ -81,9 +83,9 @@ fn groups(command: &Command) -> String {
         if found.is_empty() {
             continue;
         }
-        text += &format!("{}:\n", heading(title));
+        let _ = writeln!(text, "{}:", heading(title));
         for (name, about) in found {
-            text += &format!("{:GAP$}{}{:GAP$}{about}\n", "", command_name(name, width), "");
+            let _ = writeln!(text, "{:GAP$}{}{:GAP$}{about}", "", command_name(name, width), "");
         }
         text.push('\n');
     }

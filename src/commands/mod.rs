@@ -75,7 +75,9 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> u8 {
     style::follow(asked_color(&args));
     match parse(&args) {
         Ok(command) => {
-            notes.iter().for_each(|note| output::note(format!("note: {note}")));
+            for note in &notes {
+                output::note(format!("note: {note}"));
+            }
             let done = interrupt::watch().and_then(|_watch| command.run());
             let reported = output::tell_what_was_written();
             done.and(reported).map_or_else(|failure| report(&failure), |()| 0)
@@ -137,7 +139,7 @@ fn parse(args: &[OsString]) -> Result<Command, clap::Error> {
 struct Driftworld {
     #[command(subcommand)]
     command: Command,
-    /// When to colour what is printed: on a terminal (auto, unless NO_COLOR is set), always or never.
+    /// When to colour what is printed: on a terminal (auto, unless `NO_COLOR` is set), always or never.
     #[arg(long, global = true, value_enum, default_value_t = ColorChoice::Auto, value_name = "WHEN", hide_possible_values = true)]
     color: ColorChoice,
 }

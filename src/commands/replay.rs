@@ -26,7 +26,7 @@ use super::{Failure, output};
 pub(crate) struct Replay {
     /// The folder of a log, or a file of recordings.
     log: PathBuf,
-    /// The number of the episode: exp_num in the log, from 0.
+    /// The number of the episode: `exp_num` in the log, from 0.
     #[arg(long, value_name = "N")]
     episode: Option<u64>,
     /// Whose episode it is, where several workers have one of this number.
@@ -70,7 +70,7 @@ impl Replay {
             let origin = serde_json::to_value(&recording.origin)?;
             return output::json(&json!({
                 "episode": origin, "steps": recording.actions.len(), "reward": recording.reward,
-                "ended_by": recording.ended_by.map(|word| word.word()), "recorded_by": recording.recorded_by,
+                "ended_by": recording.ended_by.map(driftworld_env::EndedBy::word), "recorded_by": recording.recorded_by,
                 "file": written.as_ref().map(|(path, _)| path), "film": written.as_ref().map(|(_, film)| film),
             }));
         }

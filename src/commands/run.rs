@@ -42,6 +42,7 @@ const MAX_JOBS: usize = 256;
   driftworld run scenario.json --agent onrails -o logs/first --resume
   driftworld run scenario.json --agent scripted:keep_away.txt -o logs/second --record
   driftworld metrics logs/first")]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag of the command line")]
 pub(crate) struct Run {
     /// The scenario file.
     scenario: PathBuf,

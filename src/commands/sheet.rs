@@ -68,7 +68,9 @@ impl Sheet {
                 .collect(),
         };
         if let Some(seed) = self.seed {
-            variants.iter_mut().for_each(|shown| shown.seed = seed);
+            for shown in &mut variants {
+                shown.seed = seed;
+            }
         }
         if variants.is_empty() || variants.len() > MOST_VARIANTS {
             return Err(Failure::input(format!(

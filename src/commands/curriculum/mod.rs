@@ -44,6 +44,7 @@ pub(crate) use tables::{blocks, choices};
   driftworld curriculum find_objects#blue find_objects#dusk --form alternating --blocks 6 --drift cosine -o drift.json
   driftworld curriculum find_objects#blue find_objects#red --lifetimes 5 --experts experts -o lifetimes
   driftworld run scenario.json --agent random -o log")]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag of the command line")]
 pub(crate) struct Curriculum {
     /// Variants, or tasks, which stand for all their variants.
     #[arg(required = true, value_name = "TASK")]

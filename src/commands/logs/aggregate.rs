@@ -27,6 +27,7 @@ use crate::table::cells;
   driftworld logs aggregate demo-out/log -o demo.tsv
   driftworld logs aggregate logs --recursive -o all.parquet
   driftworld logs aggregate demo-out/log --format csv -o - | head")]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag of the command line")]
 pub(crate) struct Aggregate {
     /// Folders of logs.
     #[arg(required = true, value_name = "DIR")]

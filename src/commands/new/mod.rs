@@ -101,7 +101,8 @@ fn renamed((old, text): (&str, &str), name: &str) -> Result<String, Failure> {
     let lines = text
         .lines()
         .filter(|line| !line.trim_start().starts_with("\"$schema\""));
-    let text: String = lines.map(|line| format!("{line}\n")).collect();
+    let mut text = lines.collect::<Vec<_>>().join("\n");
+    text.push('\n');
     let text = text.replacen(&format!("\"name\": \"{old}\""), &format!("\"name\": \"{name}\""), 1);
     // In descriptions, too, a file is called by its name.
     let text = text.replace(&format!("{old}.json#"), &format!("{name}.json#"));
