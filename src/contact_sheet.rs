@@ -424,7 +424,7 @@ mod tests {
         let length = |trail: &Vec<[f32; 2]>| -> f32 {
             trail
                 .windows(2)
-                .map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]))
+                .map(|pair| ((pair[1][0] - pair[0][0]).powi(2) + (pair[1][1] - pair[0][1]).powi(2)).sqrt())
                 .sum()
         };
         assert!(!moves.trails.is_empty());

@@ -159,7 +159,7 @@ pub fn film(
             said = Some((deed, number));
         }
         let is_last = number == recording.actions.len();
-        if number % options.every as usize == 0 || is_last {
+        if number.is_multiple_of(options.every as usize) || is_last {
             let mut caption = words(environment, is_last.then_some(&step));
             if let Some((deed, when)) = &said
                 && number - when <= steps_of_a_second

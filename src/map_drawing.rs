@@ -290,6 +290,7 @@ enum Mark {
 }
 
 /// What is on a map: the objects by class, colour and pay, then walls, zones, reach and ways.
+#[expect(clippy::too_many_lines, reason = "one entry after the other")]
 fn entries(world: &World, scene: &Scene, moves: &Moves, ground: &Picture) -> Vec<Entry> {
     let places = Places::of(scene, ground.width);
     let mut entries = vec![Entry {

@@ -42,7 +42,7 @@ fn fitted(headings: Vec<String>, rows: Vec<Vec<String>>, numbers: &[usize], widt
     let headings = shown(headings);
     let rows: Vec<Vec<String>> = rows.into_iter().map(shown).collect();
     let Some(widths) = widths(&headings, &rows, width) else {
-        return narrow(headings, rows, numbers, width.unwrap_or(usize::MAX));
+        return narrow(&headings, &rows, numbers, width.unwrap_or(usize::MAX));
     };
     let mut lines: Vec<String> = lines(&headings, &widths, numbers)
         .iter()
@@ -56,7 +56,7 @@ fn fitted(headings: Vec<String>, rows: Vec<Vec<String>>, numbers: &[usize], widt
 
 /// A table that has no room as it is: without columns in which no row says anything; else with the last column below each row;
 /// else each row as a list.
-fn narrow(headings: Vec<String>, rows: Vec<Vec<String>>, numbers: &[usize], width: usize) -> String {
+fn narrow(headings: &[String], rows: &[Vec<String>], numbers: &[usize], width: usize) -> String {
     let says = |column: &usize| rows.iter().any(|row| !matches!(row[*column].as_str(), "" | "-"));
     let kept: Vec<usize> = (0..headings.len()).filter(says).collect();
     if kept.len() < headings.len() {
@@ -65,13 +65,13 @@ fn narrow(headings: Vec<String>, rows: Vec<Vec<String>>, numbers: &[usize], widt
             .filter(|place| numbers.contains(&kept[*place]))
             .collect();
         let rows = rows.iter().map(|row| only(row)).collect();
-        return fitted(only(&headings), rows, &numbers, Some(width));
+        return fitted(only(headings), rows, &numbers, Some(width));
     }
     let last = headings.len() - 1;
     let firsts: Vec<Vec<String>> = rows.iter().map(|row| row[..last].to_vec()).collect();
     let is_text = !numbers.contains(&last);
     let Some(widths) = widths(&headings[..last], &firsts, Some(width)).filter(|_| is_text && last > 1) else {
-        return listed(&headings, &rows, width);
+        return listed(headings, rows, width);
     };
     let mut shown: Vec<String> = lines(&headings[..last], &widths, numbers)
         .iter()

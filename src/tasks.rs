@@ -127,15 +127,14 @@ pub fn variants(name: &str) -> Result<Vec<Variant>, TaskError> {
 /// # Errors
 /// [`SpecError::UnknownVariant`] if there is none.
 pub fn variants_called(task: &Arc<TaskSpec>, name: &str) -> Result<Vec<Variant>, SpecError> {
-    let members: Vec<&str> = match task.family(name) {
-        Some(members) => members,
-        None => {
-            let fitting = || task.variant_names().into_iter().filter(|known| fits(name, known));
-            if name.contains('*') && fitting().next().is_some() {
-                fitting().collect()
-            } else {
-                vec![name]
-            }
+    let members: Vec<&str> = if let Some(members) = task.family(name) {
+        members
+    } else {
+        let fitting = || task.variant_names().into_iter().filter(|known| fits(name, known));
+        if name.contains('*') && fitting().next().is_some() {
+            fitting().collect()
+        } else {
+            vec![name]
         }
     };
     members.into_iter().map(|member| task.variant(member)).collect()
@@ -208,10 +207,10 @@ pub(crate) fn labels_of(variants: &[(String, Variant)]) -> Vec<String> {
 
 /// The name of a task that was called by its path or its name; the path itself where no task is there.
 pub(crate) fn name_of(called: &str) -> String {
-    match BUILT_IN.iter().any(|(name, _)| *name == called) {
-        true => called.to_owned(),
-        false => task(called).map_or_else(|_| called.to_owned(), |task| task.name().to_owned()),
+    if BUILT_IN.iter().any(|(name, _)| *name == called) {
+        return called.to_owned();
     }
+    task(called).map_or_else(|_| called.to_owned(), |task| task.name().to_owned())
 }
 
 /// A variant as tables call it, whatever its task was called by; a bare name as it is.

@@ -156,7 +156,7 @@ mod tests {
 
     #[test]
     fn held_actions_take_little_room() {
-        let held = [Action::Continuous([10.0, 30.0, 0.0]); 1000];
+        let held = vec![Action::Continuous([10.0, 30.0, 0.0]); 1000];
         let PackedActions::F32(text) = PackedActions::new(&held) else {
             panic!("these are numbers of 32 bits")
         };
