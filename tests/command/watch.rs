@@ -81,11 +81,7 @@ fn a_recorded_run_that_is_killed_goes_on_and_keeps_every_byte() {
             fs::remove_dir_all(log.join("worker-default").join(block)).unwrap();
         }
         let rows_kept = fs::read_to_string(table(&log, "0-test")).unwrap();
-        let rows_kept: String = rows_kept
-            .lines()
-            .take(1 + rows)
-            .map(|line| format!("{line}\n"))
-            .collect();
+        let rows_kept = rows_kept.split_inclusive('\n').take(1 + rows).collect::<String>();
         fs::write(table(&log, "0-test"), rows_kept).unwrap();
         let done = fs::read(recordings(&log, "0-test")).unwrap();
         fs::write(recordings(&log, "0-test"), &done[..done.len() - cut]).unwrap();
