@@ -17,8 +17,9 @@ from driftworld._literals import BlockSubtype, BlockType, Status
 
 if TYPE_CHECKING:
     import pandas
-    from driftworld.recordings import Recording
     from typing_extensions import Self
+
+    from driftworld.recordings import Recording
 
 #: Columns that hold whole numbers or numbers as they are; all others of a log but its metrics hold words.
 _WORDS = ("worker_id", "block_type", "block_subtype", "task_name", "task_params", "exp_status")

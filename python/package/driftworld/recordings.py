@@ -132,7 +132,7 @@ class Recording:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Recording):
             return NotImplemented
-        return self._handle.__reduce__()[1] == other._handle.__reduce__()[1]
+        return bool(self._handle.__reduce__()[1] == other._handle.__reduce__()[1])
 
     __hash__ = None  # type: ignore[assignment]
 

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from driftworld import _native
+from driftworld._html import number, table
 from driftworld._literals import (
     Aggregation,
     Maintenance,
@@ -26,7 +27,6 @@ from driftworld._literals import (
     Unit,
     VariantMode,
 )
-from driftworld._html import number, table
 from driftworld.logs import _pandas
 
 if TYPE_CHECKING:
@@ -91,8 +91,8 @@ class Metrics:
 
     def _repr_html_(self) -> str:
         if len(self.lifetimes) != 1:
-            rows = [(name, number(value)) for name, value in self.lifetime.items()]
-            return table(("metric", "mean"), rows, f"{len(self.lifetimes)} lifetimes")
+            means = [(name, number(value)) for name, value in self.lifetime.items()]
+            return table(("metric", "mean"), means, f"{len(self.lifetimes)} lifetimes")
         bands = self.lifetimes[0].get("null", {})
         rows = []
         for name, value in self.lifetime.items():
