@@ -355,7 +355,9 @@ CLOSED: dict[str, tuple[Any, Callable[[str], Any]]] = {
 def test_the_words_of_a_closed_set_are_its_type(name: str) -> None:
     (value, parameter), call = CLOSED[name]
     # Experts are made by a method of their own.
-    assert closed(value, parameter) == known(call) - {"expert"}
+    # A letter may stand for the name of an element.
+    letters = {word for word in known(call) if len(word) == 1 or word.startswith("or the letter")}
+    assert closed(value, parameter) == known(call) - {"expert"} - letters
 
 
 def test_methods_of_ordering_are_the_librarys() -> None:

@@ -223,7 +223,7 @@ class LogFile:
         exp_status: str,
         worker_id: str,
         metrics: dict[str, float],
-        recording: RecordingHandle | None = ...,
+        recording: RecordingHandle | None = None,
     ) -> None: ...
     def close(self) -> None: ...
 
