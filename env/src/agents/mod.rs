@@ -24,6 +24,5 @@ pub(crate) use rails_policy::RailsPolicy;
 pub use random::RandomAgent;
 pub use sarsa::SarsaAgent;
 pub use scripted::ScriptedAgent;
-pub(crate) use shield::shielded_in_space;
 pub(crate) use steering::in_space;
 pub use still::StillAgent;

@@ -6,11 +6,11 @@ use driftworld_spec::{EndCondition, Object, RailsProgress, Stimulus, World, Zone
 use super::errands::Errands;
 use super::nearest::Goal;
 use super::route::Route;
-use super::shield::shielded;
+use super::shield::Shield;
 use super::steering::{Purpose, Target, avoided, distance, walk};
 use crate::ground;
 use crate::scene::Scene;
-use crate::sim::SimRef;
+use crate::sim::{Action, SimRef};
 
 /// Steps after which a target that was not reached is left for later.
 const PATIENCE: u32 = 150;
@@ -187,7 +187,18 @@ impl RailsPolicy {
         } else {
             self.tour(sim)
         };
-        shielded(sim, step)
+        self.shield().slowed(sim, step)
+    }
+
+    /// The same as an action of the world.
+    pub(crate) fn act(&mut self, sim: SimRef) -> Action {
+        let step = self.steer(sim);
+        self.shield().in_space(step, sim)
+    }
+
+    /// Which zones the step that was steered last keeps out of.
+    fn shield(&self) -> Shield {
+        self.errands.shield()
     }
 
     fn tour(&mut self, sim: SimRef) -> [f64; 3] {

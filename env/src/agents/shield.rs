@@ -1,7 +1,7 @@
-//! Keeps who walks by a plan out of zones that end the episode as a failure: a plan leads around them, but steps are as long as
-//! the world's actions make them. Where ways lead is found in `flood.rs` and `errands/`.
+//! Keeps who walks by a plan out of zones that end the episode as a failure, and of those that cost: a plan leads around them, but
+//! steps are as long as the world's actions make them. Where ways lead is found in `flood.rs` and `errands/`.
 
-use driftworld_spec::ZoneEnd;
+use driftworld_spec::{Zone, ZoneEnd};
 
 use super::steering::in_space_where;
 use crate::sim::{Action, SimRef};
@@ -9,28 +9,51 @@ use crate::sim::{Action, SimRef};
 /// The shares of a speed that are tried.
 const SHARES: [f64; 4] = [1.0, 0.5, 0.25, 0.0];
 
-/// A step as speed, turn rate and interaction, slower where it would lead into a zone that fails.
-pub(super) fn shielded(sim: SimRef, [speed, turn, interact]: [f64; 3]) -> [f64; 3] {
-    let mut steps = SHARES.into_iter().map(|share| [speed * share, turn, interact]);
-    if !can_fail(sim) {
-        return [speed, turn, interact];
+/// Which zones a step keeps out of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Shield {
+    /// Those that end the episode as a failure.
+    #[default]
+    Failure,
+    /// Those too that cost: the plan does not lead through one.
+    Cost,
+}
+
+impl Shield {
+    fn shuns(self, zone: &Zone) -> bool {
+        zone.ends == Some(ZoneEnd::Failure) || self == Self::Cost && zone.is_costly()
     }
-    steps.find(|step| is_safe(sim, *step)).unwrap_or([0.0, turn, interact])
+
+    fn has_use(self, sim: SimRef) -> bool {
+        sim.world.environment_params.zones.iter().any(|zone| self.shuns(zone))
+    }
+
+    /// A step as speed, turn rate and interaction, slower where it would lead into a zone that is shunned.
+    pub(super) fn slowed(self, sim: SimRef, [speed, turn, interact]: [f64; 3]) -> [f64; 3] {
+        if !self.has_use(sim) {
+            return [speed, turn, interact];
+        }
+        let mut steps = SHARES.into_iter().map(|share| [speed * share, turn, interact]);
+        steps
+            .find(|step| self.is_safe(sim, *step))
+            .unwrap_or([0.0, turn, interact])
+    }
+
+    /// Such a step as an action of the world: of its table, a row that does not lead into a zone that is shunned, where there
+    /// is one.
+    pub(super) fn in_space(self, numbers: [f64; 3], sim: SimRef) -> Action {
+        let has_use = self.has_use(sim);
+        in_space_where(numbers, sim, |row| !has_use || self.is_safe(sim, row))
+    }
+
+    /// Whether a step by a velocity enters no zone that is shunned, as far as nothing stands in the way.
+    fn is_safe(self, sim: SimRef, step: [f64; 3]) -> bool {
+        !sim.views.zones.are_entered(&path(sim, step), |zone| self.shuns(zone))
+    }
 }
 
-/// Such a step as an action of the world: of its table, a row that does not lead into a zone that fails, where there is one.
-pub(crate) fn shielded_in_space(numbers: [f64; 3], sim: SimRef) -> Action {
-    let can_fail = can_fail(sim);
-    in_space_where(numbers, sim, |row| !can_fail || is_safe(sim, row))
-}
-
-fn can_fail(sim: SimRef) -> bool {
-    let mut zones = sim.world.environment_params.zones.iter();
-    zones.any(|zone| zone.ends == Some(ZoneEnd::Failure))
-}
-
-/// Whether a step by a velocity stays out of zones that fail, as far as nothing stands in the way.
-fn is_safe(sim: SimRef, [speed, turn, _]: [f64; 3]) -> bool {
+/// Where a step by a velocity leads, if nothing stands in the way: a place for each time step.
+fn path(sim: SimRef, [speed, turn, _]: [f64; 3]) -> Vec<[f64; 2]> {
     let (agent, params) = (sim.agent(), &sim.world.agent_params);
     let turn = turn.clamp(-params.max_angular_speed, params.max_angular_speed);
     let mut heading = f64::from(agent.heading_deg);
@@ -42,5 +65,5 @@ fn is_safe(sim: SimRef, [speed, turn, _]: [f64; 3]) -> bool {
         let reach = speed * params.time_step;
         path.push([x + sine * reach, y + cosine * reach]);
     }
-    !sim.views.zones.fails_on(&path)
+    path
 }

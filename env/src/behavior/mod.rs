@@ -8,7 +8,7 @@ mod tests;
 use driftworld_spec::World;
 
 use crate::EnvError;
-use crate::agents::{RailsPolicy, in_space, shielded_in_space};
+use crate::agents::{RailsPolicy, in_space};
 use crate::assets::Catalogue;
 use crate::sim::{Environment, Step};
 use belief::Belief;
@@ -91,12 +91,10 @@ impl Expertise {
         let mut truth = Environment::with_catalogue(world.clone(), self.catalogue.clone());
         let (mut policy, mut step, mut lived) = (RailsPolicy::default(), Step::default(), ExpertRun::default());
         while !truth.ended() && lived.steps < self.steps.min(MAX_EXPERT_STEPS) {
-            let seen = belief.as_mut().map_or(&truth, |belief| belief.at(&truth));
-            let command = policy.steer(seen.sim());
             // Who believes something else does not know where zones are.
-            let action = match &belief {
-                Some(_) => in_space(command, truth.sim()),
-                None => shielded_in_space(command, truth.sim()),
+            let action = match &mut belief {
+                Some(belief) => in_space(policy.steer(belief.at(&truth).sim()), truth.sim()),
+                None => policy.act(truth.sim()),
             };
             truth.step_into(action, &mut step)?;
             if let Some(belief) = &mut belief {

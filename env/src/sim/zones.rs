@@ -73,11 +73,13 @@ impl Zones {
         state.inside.extend(self.0.iter().map(is_entered));
     }
 
-    /// Whether a way leads into a zone that ends the episode as a failure.
-    pub(crate) fn fails_on(&self, path: &[Point]) -> bool {
-        let fails = |area: &&Area| area.zone.ends == Some(ZoneEnd::Failure);
-        let is_in = |area: &Area| path.last().is_some_and(|end| area.contains(*end)) || area.is_crossed(path);
-        self.0.iter().filter(fails).any(is_in)
+    /// Whether a way leads into one of some zones from outside.
+    pub(crate) fn are_entered(&self, path: &[Point], is_meant: impl Fn(&Zone) -> bool) -> bool {
+        let (Some(start), Some(end)) = (path.first(), path.last()) else {
+            return false;
+        };
+        let is_entered = |area: &Area| !area.contains(*start) && (area.contains(*end) || area.is_crossed(path));
+        self.0.iter().any(|area| is_meant(&area.zone) && is_entered(area))
     }
 
     /// The zones that a place is in.

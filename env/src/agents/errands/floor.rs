@@ -70,6 +70,8 @@ pub(super) struct Floor {
     pub(super) open: Waiting,
     /// What `field` leads to, and in which version.
     pub(super) leads: Option<(u64, Vec<u32>)>,
+    /// Whether the way that was looked at last leads into no zone that costs, as far as it was looked at.
+    pub(super) keeps_out: bool,
     /// For what it leads there, if for a thing that is put down.
     pub(super) brings: Option<(u64, Bringing)>,
 }

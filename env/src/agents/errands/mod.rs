@@ -21,13 +21,15 @@ use floor::Floor;
 use plan::Plan;
 use wishes::{Wish, wishes};
 
+use crate::agents::shield::Shield;
 use crate::sim::SimRef;
 
 /// Steps after which a wish that did not come true is left for later.
 const PATIENCE: u32 = 3000;
 
-/// Of every so many steps on a target, those from here on are steps back: who got caught somewhere gets free.
-const STUCK: (u32, u32) = (196, 200);
+/// Of every so many steps on a target, the last few are steps back, and as many more each time: who got caught somewhere gets
+/// free, and does not come back to the very same place for ever.
+const STUCK: (u32, u32) = (200, 4);
 
 /// The errands of an agent.
 #[derive(Clone, Debug, Default)]
@@ -77,9 +79,19 @@ impl Errands {
         wishes(sim).iter().all(Vec::is_empty)
     }
 
+    /// Which zones the last step keeps out of.
+    pub(super) fn shield(&self) -> Shield {
+        if self.floor.keeps_out {
+            Shield::Cost
+        } else {
+            Shield::Failure
+        }
+    }
+
     /// What is done next, as speed, turn rate and interaction.
     pub(super) fn steer(&mut self, sim: SimRef) -> [f64; 3] {
         self.floor.update(sim);
+        self.floor.keeps_out = false;
         let wishes = wishes(sim);
         let find = |target: u32| wishes.iter().flatten().copied().find(|wish| wish.object() == target);
         let mut wish = self.target.and_then(find);
@@ -106,7 +118,9 @@ impl Errands {
                 task = self.rest(sim, &wishes);
             }
         }
-        let is_stuck = !is_waiting && self.steps_on_target % STUCK.1 >= STUCK.0;
+        let (round, more) = STUCK;
+        let back = (more * (1 + self.steps_on_target / round)).min(round / 2);
+        let is_stuck = !is_waiting && self.steps_on_target % round >= round - back;
         if is_stuck && task.is_some() {
             return [-sim.world.agent_params.max_linear_speed / 2.0, 0.0, 0.0];
         }

@@ -25,9 +25,14 @@ const MOST_WEIGHT: f64 = 4000.0;
 /// Slower than this nobody gets out of a zone.
 const STUCK: f64 = 0.01;
 
-/// For each cell what entering the zones that it is in costs, in fifths of a cell; empty if nothing does.
+/// What zones do to ways beside making the ground dear.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Tolls(Vec<u32>);
+pub(super) struct Tolls {
+    /// For each cell what entering the zones that it is in costs, in fifths of a cell; empty if nothing does.
+    entering: Vec<u32>,
+    /// Whether a cell is in a zone that costs; empty if none does.
+    costs: Vec<bool>,
+}
 
 impl Tolls {
     /// Makes ground dearer by the zones that it is in, and takes away that of zones that end an episode as failures.
@@ -55,15 +60,21 @@ impl Tolls {
                 pay if metre > 0.0 => (pay / metre / f64::from(grid.side()) * 5.0).min(MOST_TOLL),
                 _ => MOST_TOLL,
             };
-            for cell in cells(zone, 0.0, grid) {
+            if zone.is_costly() {
+                tolls.costs.resize(weight.len(), false);
+                cells(zone, 0.0, grid).for_each(|cell| tolls.costs[cell] = true);
+            }
+            // What costs does so from where a step to the next cell could lead into it.
+            let margin = if zone.is_costly() { seal(grid) } else { 0.0 };
+            for cell in cells(zone, margin, grid) {
                 pay[cell] -= zone.reward_per_second;
                 pace[cell] *= zone.speed_factor;
                 if is_trap {
                     weight[cell] = weight[cell].saturating_mul(COSTS);
                 }
                 if toll > 0.0 {
-                    tolls.0.resize(weight.len(), 0);
-                    tolls.0[cell] = (tolls.0[cell] + toll as u32).min(MOST_TOLL as u32);
+                    tolls.entering.resize(weight.len(), 0);
+                    tolls.entering[cell] = (tolls.entering[cell] + toll as u32).min(MOST_TOLL as u32);
                 }
             }
         }
@@ -85,10 +96,15 @@ impl Tolls {
 
     /// What a step from a cell to another costs beside the ground, in fifths of a cell.
     pub(super) fn of(&self, from: usize, to: usize) -> u32 {
-        match (self.0.get(from), self.0.get(to)) {
+        match (self.entering.get(from), self.entering.get(to)) {
             (Some(from), Some(to)) => to.saturating_sub(*from),
             _ => 0,
         }
+    }
+
+    /// Whether a cell is in a zone that costs.
+    pub(super) fn is_in_what_costs(&self, cell: usize) -> bool {
+        self.costs.get(cell).is_some_and(|costs| *costs)
     }
 }
 
@@ -97,11 +113,14 @@ fn shun(zone: &Zone, fails: bool, grid: Grid, weight: &mut [u16]) {
     for cell in cells(zone, LIKED, grid) {
         weight[cell] = weight[cell].saturating_mul(NEAR);
     }
-    // So far from its border that no step from cell to cell crosses it.
-    let seal = 0.71 * grid.side();
     if fails {
-        cells(zone, seal, grid).for_each(|cell| weight[cell] = 0);
+        cells(zone, seal(grid), grid).for_each(|cell| weight[cell] = 0);
     }
+}
+
+/// So far from a border, in metres, no step from cell to cell crosses it.
+fn seal(grid: Grid) -> f32 {
+    0.71 * grid.side()
 }
 
 /// The cells whose middles are in a zone, or nearer to it than this.

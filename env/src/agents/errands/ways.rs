@@ -155,17 +155,19 @@ impl Floor {
             return None;
         }
         let (mut cell, mut best) = (start, self.grid.centre(start));
+        self.keeps_out = true;
         let mut beside = None;
         for _ in 0..15 {
             let around = self.grid.around().into_iter();
             let open = around.filter(|(step, is_slanting)| !is_slanting || self.is_corner_open(cell, *step));
             let nearest = open
                 .map(|(step, _)| cell.wrapping_add_signed(step))
-                .min_by_key(|other| self.field[*other]);
+                .min_by_key(|other| self.field[*other].saturating_add(self.tolls.of(cell, *other)));
             let Some(nearest) = nearest.filter(|other| self.field[*other] < self.field[cell]) else {
                 break;
             };
             cell = nearest;
+            self.keeps_out &= !self.tolls.is_in_what_costs(cell);
             beside.get_or_insert(nearest);
             if self.is_clear(from, self.grid.centre(cell)) {
                 best = self.grid.centre(cell);
