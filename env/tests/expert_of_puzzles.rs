@@ -321,8 +321,8 @@ proptest! {
         fails in any::<bool>(),
         is_discrete in any::<bool>(),
     ) {
-        let lived = carried_past_lava([ford, key_x, thickness], fails, is_discrete);
-        prop_assert_eq!(lived, (0.0, Some(EndedBy::Delivered)), "no zone was entered");
+        let came_of_it = carried_past_lava([ford, key_x, thickness], fails, is_discrete);
+        prop_assert_eq!(came_of_it, (0.0, Some(EndedBy::Delivered)), "no zone was entered");
     }
 
     /// Where nothing but a way through what costs is left, it is taken; through what fails, none.
@@ -334,8 +334,8 @@ proptest! {
     ) {
         let (paid, ended_by) = carried_past_lava([100.0, key_x, thickness], false, is_discrete);
         prop_assert!(ended_by == Some(EndedBy::Delivered) && paid <= -40.0, "{:?} {}", ended_by, paid);
-        let lived = carried_past_lava([100.0, key_x, thickness], true, is_discrete);
-        prop_assert_eq!(lived, (0.0, Some(EndedBy::Steps)), "who is shut in stays there");
+        let came_of_it = carried_past_lava([100.0, key_x, thickness], true, is_discrete);
+        prop_assert_eq!(came_of_it, (0.0, Some(EndedBy::Steps)), "who is shut in stays there");
     }
 
     /// Nothing is left but a zone: behind a door it is got to, and stayed in.
