@@ -139,7 +139,7 @@ impl LayoutShape {
     /// places that do not overlap is as large however near they are. From a layout without walls, where nothing can be moved,
     /// each other one is √2 away. It is not part of [`LayoutShape::distance`].
     ///
-    /// Exact, by network simplex; ten milliseconds or so for two mazes.
+    /// Exact, by network simplex.
     ///
     /// # Errors
     /// None for shapes made by [`LayoutShape::of`]: [`SimilarityError::BadMass`] for heights that are not finite.

@@ -42,6 +42,10 @@ fn parameters() -> Vec<(&'static str, Json, Json)> {
         ("string", choices("string", json!("a"), json!("b"))),
         ("color", choices("color", json!("red"), json!("blue"))),
         ("point", choices("point", json!([0, 0]), json!([3, 4]))),
+        (
+            "layout",
+            choices("layout", json!({ "predefined": 1 }), json!({ "predefined": 3 })),
+        ),
     ];
     let normal = |mean: f64| json!({ "normal": { "mean": mean, "std": 2 } });
     let disc = |radius: f64| json!({ "disc": { "center": [0, 0], "radius": radius } });

@@ -10,6 +10,12 @@ use crate::layout_shape::LayoutShape;
 use crate::scalar::{CostTable, choice_mismatch, circular_difference, relative_difference};
 use crate::{ColorMeasure, MetricProperties};
 
+/// Names of the measures of layouts.
+const WHOLE_LAYOUT: &str = "layout / widest choice";
+const WALL_JACCARD: &str = "wall jaccard / widest choice";
+const WALKING_DISTANCE: &str = "walking distance / widest choice";
+const WALL_TRANSPORT: &str = "wall transport / widest choice";
+
 /// How two values of one parameter are compared.
 #[derive(Clone, Debug)]
 pub(super) enum ValueMeasure {
@@ -27,8 +33,12 @@ pub(super) enum ValueMeasure {
         of: ColorMeasure,
         widest: f64,
     },
-    /// What differs of two layouts, number by number and word by word, over that of the widest pair of choices.
-    Layout { widest: f64 },
+    /// What differs of two layouts, over that of the widest pair of choices.
+    Layout {
+        measure: &'static str,
+        apart: fn(&Value, &Value) -> f64,
+        widest: f64,
+    },
     /// A table of costs, by the words for the choices, over the largest of them.
     Costs(CostTable),
     /// 0 or 1.
@@ -58,6 +68,13 @@ impl ValueMeasure {
             Some(MeasureName::Cie76) => color("cie76 / widest choice", ColorMeasure::Cie76),
             Some(MeasureName::Ciede2000) => color("ciede2000 / widest choice", ColorMeasure::Ciede2000),
             Some(MeasureName::Hyab) => color("hyab / widest choice", ColorMeasure::Hyab),
+            Some(MeasureName::WallJaccard) => layout(parameter, WALL_JACCARD, |a, b| {
+                by_shape(a, b, LayoutShape::walls_distance)
+            }),
+            Some(MeasureName::WalkingDistance) => layout(parameter, WALKING_DISTANCE, |a, b| {
+                by_shape(a, b, LayoutShape::ways_distance)
+            }),
+            Some(MeasureName::WallTransport) => layout(parameter, WALL_TRANSPORT, |a, b| by_shape(a, b, transport)),
             _ => Self::of_type(parameter),
         }
     }
@@ -84,9 +101,7 @@ impl ValueMeasure {
                 widest: widest_turn(parameter),
             },
             ParameterType::Color => color(parameter, "oklab / widest choice", ColorMeasure::Oklab),
-            ParameterType::Layout => Self::Layout {
-                widest: widest_pair(parameter, |value| Some(value.clone()), layouts_apart),
-            },
+            ParameterType::Layout => layout(parameter, WHOLE_LAYOUT, layouts_apart),
             ParameterType::Boolean | ParameterType::String | ParameterType::Distribution | ParameterType::Json => {
                 Self::SameOrNot
             }
@@ -96,11 +111,10 @@ impl ValueMeasure {
     /// The measure's name.
     pub(super) fn name(&self) -> &'static str {
         match self {
-            Self::Difference { measure, .. } | Self::Color { measure, .. } => measure,
+            Self::Difference { measure, .. } | Self::Color { measure, .. } | Self::Layout { measure, .. } => measure,
             Self::LogRatio { .. } => "log ratio / range",
             Self::Relative { .. } => "relative difference / widest",
             Self::Turn { .. } => "turn / widest",
-            Self::Layout { .. } => "layout / widest choice",
             Self::Costs(_) => "cost / largest",
             Self::SameOrNot => "same or not",
         }
@@ -111,6 +125,7 @@ impl ValueMeasure {
         match self {
             Self::Color { of, .. } => of.properties(),
             Self::Costs(table) => table.properties(),
+            Self::Layout { measure, .. } if *measure != WHOLE_LAYOUT => MetricProperties::Pseudometric,
             _ => MetricProperties::Metric,
         }
     }
@@ -145,8 +160,8 @@ impl ValueMeasure {
                 }
                 _ => same_or_not(),
             },
-            Self::Layout { widest } => {
-                let raw = layouts_apart(a, b);
+            Self::Layout { apart, widest, .. } => {
+                let raw = apart(a, b);
                 (raw, share(raw, *widest))
             }
             // What lies between the choices, as on the way of a drift, is the same or not.
@@ -168,6 +183,27 @@ fn layouts_apart(a: &Value, b: &Value) -> f64 {
     let doors = f64::from(u8::from(doors(Some(a)) != doors(Some(b))));
     let sides = sides(a).into_iter().zip(sides(b));
     shape(a).distance(&shape(b)) + doors + sides.map(|(a, b)| relative_difference(a, b)).sum::<f64>()
+}
+
+/// How far two layouts are apart by their shapes alone.
+fn by_shape(a: &Value, b: &Value, between: fn(&LayoutShape, &LayoutShape) -> f64) -> f64 {
+    match (a, b) {
+        (Value::Layout(a), Value::Layout(b)) => between(&shape(a), &shape(b)),
+        _ => choice_mismatch(a, b),
+    }
+}
+
+fn transport(a: &LayoutShape, b: &LayoutShape) -> f64 {
+    // Shapes that layouts make have finite heights.
+    a.transport_distance(b).unwrap_or(f64::NAN)
+}
+
+fn layout(parameter: &Parameter, measure: &'static str, apart: fn(&Value, &Value) -> f64) -> ValueMeasure {
+    ValueMeasure::Layout {
+        measure,
+        apart,
+        widest: widest_pair(parameter, |value| Some(value.clone()), apart),
+    }
 }
 
 /// The shape of a layout. The last that were asked for are kept: the same few choices are compared again and again.

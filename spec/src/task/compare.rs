@@ -93,6 +93,12 @@ pub enum MeasureName {
     MaximumMeanDiscrepancy,
     /// Distributions of points: least squared work between normal distributions of the same means and spreads, its root.
     BuresWasserstein,
+    /// Layouts: what stands of the walls in one alone, as a share of what stands in either. Doors and letters do not count.
+    WallJaccard,
+    /// Layouts: how much the lengths of ways differ, as a share of the longer. Doors and letters do not count.
+    WalkingDistance,
+    /// Layouts: how far the mass of walls has to be moved, in sides of the arena. Doors and letters do not count.
+    WallTransport,
 }
 
 impl MeasureName {
@@ -182,6 +188,10 @@ impl MeasureName {
             Self::Srgb | Self::Cie76 | Self::Ciede2000 | Self::Oklab | Self::Hyab => (
                 parameter.kind == ParameterType::Color || by_distribution,
                 "a parameter of type color, or one whose distributions draw colours, for it",
+            ),
+            Self::WallJaccard | Self::WalkingDistance | Self::WallTransport => (
+                parameter.kind == ParameterType::Layout,
+                "a variant parameter of type layout for it",
             ),
             Self::Wasserstein1
             | Self::Wasserstein2

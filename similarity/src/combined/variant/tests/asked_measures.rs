@@ -75,6 +75,30 @@ fn hyab_of_colours_and_of_drawn_ones_is_over_the_widest_choice() {
 }
 
 #[test]
+fn layouts_are_measured_by_what_is_asked_for_alone() {
+    // One wall of 4 m in the arena of 100 m, so many metres east.
+    let wall = |x: f64| format!(r#"{{ "walls": [{{ "from": [{x}, -2], "to": [{x}, 2], "thickness": 0.5 }}] }}"#);
+    let ask = |measure: &str, choices: [String; 3]| found("layout", measure, &choices.each_ref().map(String::as_str));
+    let three = || [-30.0, -5.0, 20.0].map(wall);
+    assert_found(
+        ask("wall_transport", three()),
+        "wall transport / widest choice",
+        0.25,
+        0.5,
+    );
+    // Where they do not overlap, how far they are apart does not count.
+    assert_found(ask("wall_jaccard", three()), "wall jaccard / widest choice", 1.0, 1.0);
+    let rooms = |rows: [&str; 5]| format!(r#"{{ "text": {}, "cell": 2 }}"#, serde_json::to_string(&rows).unwrap());
+    let doorway = ["#######", "#..#..#", "#.....#", "#..#..#", "#######"];
+    let with_door = ["#######", "#..#..#", "#..D..#", "#..#..#", "#######"];
+    let shut = ["#######", "#..#..#", "#..#..#", "#..#..#", "#######"];
+    let (_, ways, share) = ask("walking_distance", [rooms(doorway), rooms(with_door), rooms(shut)]);
+    assert_eq!((ways, share), (0.0, 0.0), "a door is a way");
+    let (_, ways, share) = ask("walking_distance", [rooms(doorway), rooms(shut), rooms(with_door)]);
+    assert!(ways > 0.0 && share == 1.0, "{ways} {share}: the widest pair");
+}
+
+#[test]
 fn relative_differences_are_over_the_most_that_the_domain_allows() {
     let check = |domain: &str, other: &str, raw: f64, normalised: f64| {
         let text = format!(
@@ -195,6 +219,11 @@ fn each_says_which_laws_it_keeps() {
         r#"{ "disc": { "center": [0, 0], "radius": 2 } }"#,
         r#"{ "gaussian": { "mean": [0, 0], "std": 1 } }"#,
     ];
+    let walls = [1, 3].map(|number| format!(r#"{{ "predefined": {number} }}"#));
+    assert_eq!(
+        properties("layout", "wall_jaccard", walls.each_ref().map(String::as_str)),
+        MetricProperties::Pseudometric
+    );
     assert_eq!(
         properties("color", "hyab", ["\"red\"", "\"tan\""]),
         MetricProperties::Metric
