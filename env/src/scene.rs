@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use driftworld_spec::{Object, Style, Surface, World};
 
-use crate::assets::{Asset, Block, Catalogue, ColliderShape, Mesh};
+use crate::assets::{Asset, Block, Catalogue, ColliderShape, Mesh, lowercase};
 use crate::ground;
 use crate::looks::NaturalLooks;
 use crate::wall_tops::tops;
@@ -166,7 +166,7 @@ impl Scene {
 
     /// Puts one more object into the scene, as it is at its start.
     pub(crate) fn add(&mut self, object: &Object) {
-        let class = object.class.to_lowercase();
+        let class = lowercase(&object.class);
         let class_id = self.catalogue.class_number(&class);
         self.highest_class = self.highest_class.max(class_id);
         let color = object.color.map(driftworld_spec::Color::to_f32);
@@ -174,6 +174,7 @@ impl Scene {
         let body = self.catalogue.asset(&class, body);
         let asset = match &object.text {
             Some(text) => self.catalogue.asset_with_text(&class, &object.model, text, color),
+            None if self.style == Style::Plain && object.body_model.is_none() => Arc::clone(&body),
             None => self.catalogue.asset_in(self.style, &class, &object.model),
         };
         self.items.push(Item {

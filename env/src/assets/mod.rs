@@ -20,6 +20,7 @@ mod structures;
 mod things;
 mod trees;
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
@@ -187,32 +188,52 @@ pub fn asset(class: &str, model: &Model) -> Arc<Asset> {
 
 /// The built-in asset of a class and model in a style. The body is the same in all styles, so that looks change what is seen alone.
 pub fn asset_in(style: Style, class: &str, model: &Model) -> Arc<Asset> {
-    type Made = HashMap<(bool, String, u32), Arc<Asset>>;
+    /// By class, by the number of the model, plain and natural.
+    type Made = HashMap<String, Vec<[Option<Arc<Asset>>; 2]>>;
     static MADE: LazyLock<Mutex<Made>> = LazyLock::new(Mutex::default);
-    let class = class.to_lowercase();
+    let class = lowercase(class);
     let number = builtin::number(&class, model).unwrap_or(0);
-    let is_natural = style == Style::Natural;
+    let looks = usize::from(style == Style::Natural);
     // What was made before a panic elsewhere is whole: assets are inserted when they are finished.
     let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(asset) = made.get(&(is_natural, class.clone(), number)) {
+    let kept = made.get(&*class).and_then(|models| models.get(number as usize));
+    if let Some(asset) = kept.and_then(|styles| styles[looks].as_ref()) {
         return Arc::clone(asset);
     }
-    let known = builtin::has(&class, number);
     // Names that nobody knows share one placeholder, so that strangers cannot fill the memory.
-    let (class, number) = if known { (class, number) } else { (String::new(), 0) };
-    let plain = made.entry((false, class.clone(), number));
-    let plain = Arc::clone(plain.or_insert_with(|| Arc::new(builtin::make(&class, number))));
-    if !is_natural {
-        return plain;
+    let (class, number) = if builtin::has(&class, number) {
+        (class, number)
+    } else {
+        (Cow::Borrowed(""), 0)
+    };
+    let models = made.entry(class.to_string()).or_default();
+    if models.len() <= number as usize {
+        models.resize(number as usize + 1, [None, None]);
     }
-    let asset = natural::make(&class, number).map(|asset| Asset {
-        collider: plain.collider.clone(),
-        known: plain.known,
-        ..asset
-    });
-    let asset = asset.map_or(plain, Arc::new);
-    made.insert((is_natural, class, number), Arc::clone(&asset));
-    asset
+    let [plain, natural] = &mut models[number as usize];
+    let plain = plain.get_or_insert_with(|| Arc::new(builtin::make(&class, number)));
+    if style != Style::Natural {
+        return Arc::clone(plain);
+    }
+    let of_nature = || {
+        let asset = natural::make(&class, number)?;
+        Some(Arc::new(Asset {
+            collider: plain.collider.clone(),
+            known: plain.known,
+            ..asset
+        }))
+    };
+    Arc::clone(natural.get_or_insert_with(|| of_nature().unwrap_or_else(|| Arc::clone(plain))))
+}
+
+/// In small letters; what is written so is not copied.
+pub(crate) fn lowercase(class: &str) -> Cow<'_, str> {
+    let is_small = |byte: u8| byte.is_ascii() && !byte.is_ascii_uppercase();
+    if class.bytes().all(is_small) {
+        Cow::Borrowed(class)
+    } else {
+        Cow::Owned(class.to_lowercase())
+    }
 }
 
 /// The built-in sign of a model with a text; made when it is first asked for, then shared for a while.

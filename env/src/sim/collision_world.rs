@@ -4,7 +4,7 @@
 use driftworld_spec::World;
 use rapier3d::prelude::*;
 
-use super::body_shape::{body_shape, shows_heading};
+use super::body_shape::{area_of, body_shape, shows_heading};
 use super::broad_phase::BroadPhase;
 use super::budget::Budget;
 use super::footprint::{Footprint, Point};
@@ -155,7 +155,7 @@ impl CollisionWorld {
     /// Notes where a body is now, and where it faces.
     pub(super) fn note_place(&mut self, handle: ColliderHandle, heading_deg: f32) {
         let collider = &self.colliders[handle];
-        let area = collider.compute_aabb();
+        let area = area_of(collider.shape(), collider.position());
         let slot = slot(handle);
         self.places
             .put(collider.collision_groups().memberships, slot as u32, area);
