@@ -112,6 +112,44 @@ fn every_instruction_set_draws_the_same_pixels() {
     }
 }
 
+/// Labels hold classes where no object is covered and no instances are asked for; else a buffer of items does.
+#[test]
+fn classes_are_the_same_however_they_are_kept() {
+    let uncovered = worlds().map(|mut world| {
+        for object in &mut world.objects {
+            object.surface = Surface::Plain;
+        }
+        world
+    });
+    for (number, world) in worlds().iter().chain(&uncovered).enumerate() {
+        let scene = Scene::from_world(&checked(world));
+        let (mut found, mut of_things) = (0, 0);
+        for heading in [0.0, 75.0, 200.0, 290.0] {
+            let expected = draw(world, &eyes(heading), [84, 84]);
+            for (name, mut renderer) in CpuRenderer::each_instruction_set() {
+                let (mut rgb, mut depth) = (vec![0; expected.rgb.len()], vec![0.0; expected.depth.len()]);
+                let (mut category, mut class) = (vec![9; expected.category.len()], vec![9; expected.class.len()]);
+                let mut target = Target {
+                    width: 84,
+                    height: 84,
+                    rgb: Some(&mut rgb),
+                    depth: Some(&mut depth),
+                    category: Some(&mut category),
+                    class: Some(&mut class),
+                    ..Target::default()
+                };
+                renderer.draw(&scene, &eyes(heading), &mut target).expect("it draws");
+                assert_eq!(class, expected.class, "classes of world {number}, {name}");
+                assert_eq!(category, expected.category, "categories of world {number}, {name}");
+                assert!(rgb == expected.rgb && depth == expected.depth, "world {number}, {name}");
+                found += class.len();
+                of_things += class.iter().filter(|class| **class > 0).count();
+            }
+        }
+        assert!(of_things * 500 > found, "things are seen in world {number}");
+    }
+}
+
 /// Where there is no ceiling, depth, categories and objects are those of the plain style, but for pixels on edges.
 #[test]
 fn only_colours_differ_from_the_plain_style() {

@@ -10,7 +10,7 @@ use super::hidden::Hidden;
 #[cfg(target_arch = "x86_64")]
 use super::lanes::{Avx2, Avx512};
 use super::lanes::{Lanes, MOST_LANES, Portable};
-use super::natural::Natural;
+use super::natural::{Natural, labels_hold_classes};
 use super::raster::{ShadingParams, draw_block};
 use super::shade::Shader;
 use super::target::Target;
@@ -196,7 +196,7 @@ impl CpuRenderer {
     #[inline(always)]
     fn draw_any<L: Lanes>(&mut self, lanes: L, scene: &Scene, camera: &Camera, target: &mut Target<'_>) {
         if let Some(looks) = &scene.natural {
-            if target.instance.is_some() || target.class.is_some() {
+            if target.instance.is_some() || (target.class.is_some() && !labels_hold_classes(scene)) {
                 self.draw_natural::<L, true>(lanes, scene, looks, camera, target);
             } else {
                 self.draw_natural::<L, false>(lanes, scene, looks, camera, target);

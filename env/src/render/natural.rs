@@ -29,6 +29,10 @@ use crate::scene::{ARENA_WALLS, Item, PanelGroup, Scene};
 pub(super) const MATERIAL_SHIFT: u32 = 27;
 pub(super) const MATERIAL: u32 = 31 << MATERIAL_SHIFT;
 
+/// Bits of a category that no part of the map has: where they are all 0, the number above them is of what covers it; else it may be
+/// the item's class.
+pub(super) const NO_MAP: u32 = 6 << 24;
+
 /// Bare ground in shadow, for which nothing was drawn but the shadow.
 pub(super) const BARE: u32 = 1;
 /// What lies on the ground; the next number is that in shadow.
@@ -205,6 +209,13 @@ struct Picture<'a> {
     daylight: Daylight,
     /// Whether the canvas keeps items' classes instead of their numbers.
     keeps_classes: bool,
+    /// Whether labels hold items' classes where those of the map hold what covers it.
+    labels_classes: bool,
+}
+
+/// Whether a label has room for the classes of a scene's items: each has five bits, and none is covered by a surface.
+pub(super) fn labels_hold_classes(scene: &Scene) -> bool {
+    scene.highest_class() < MATERIALS as u16 && scene.items.iter().all(|item| item.surface == Surface::Plain)
 }
 
 impl CpuRenderer {
@@ -226,6 +237,7 @@ impl CpuRenderer {
             view,
             daylight,
             keeps_classes: target.instance.is_none(),
+            labels_classes: !ITEMS && target.class.is_some(),
         };
         self.canvas.clear(width, height, ITEMS);
         self.natural.cover_walls(&picture);
@@ -271,6 +283,7 @@ impl CpuRenderer {
                 daylight.shade()
             },
             keeps_classes: picture.keeps_classes,
+            labels_classes: picture.labels_classes,
             classes: &self.classes,
         };
         composition.write::<L, ITEMS>(lanes, &mut self.scratch, target);
@@ -291,7 +304,11 @@ impl CpuRenderer {
         if self.hides && self.hidden.hides_ball([x, y, top / 2.0], radius, top, view) {
             return;
         }
-        let materials = self.natural.cover_item(item, view);
+        let materials = if picture.labels_classes {
+            [u32::from(item.class_id); 3]
+        } else {
+            self.natural.cover_item(item, view)
+        };
         let at = view.placement(&Pose::of(item), picture.daylight.direction);
         for material in level(item, visible, view) {
             let color = color_of(item, material);
@@ -483,6 +500,8 @@ struct Composition<'a> {
     shade: u32,
     /// Whether items are classes; else these are the classes of items.
     keeps_classes: bool,
+    /// Whether classes stand in labels.
+    labels_classes: bool,
     classes: &'a [u16],
 }
 
@@ -504,6 +523,8 @@ impl Composition<'_> {
             let row = &self.natural.rows.seen[y];
             let texels = self.natural.rows.texels(row.shows);
             let up = -self.view.offset(1, y as f32);
+            // Dividing takes long: what all of a row shares is divided once.
+            let row_metres = metres(l, l.splat(row.inverse));
             let out = y * width;
             let mut x = 0;
             while x < width {
@@ -527,7 +548,12 @@ impl Composition<'_> {
                         l.store_rgb(word, &mut rgb[3 * (out + start)..]);
                     }
                     if let Some(depth) = &mut target.depth {
-                        l.store(metres(l, inverse), &mut depth[out + start..]);
+                        let metres = if l.bits(in_front) == 0 {
+                            row_metres
+                        } else {
+                            metres(l, inverse)
+                        };
+                        l.store(metres, &mut depth[out + start..]);
                     }
                 }
                 if labelled {
@@ -567,7 +593,12 @@ impl Composition<'_> {
         }
         let pixels = l.load_words(&self.canvas.pixels[pixel..]);
         let material = l.and(pixels, l.splat_word(MATERIAL));
-        let mut left = front & !l.bits(l.equal(material, l.splat_word(0)));
+        let mut may_be_covered = in_front;
+        if self.labels_classes {
+            let is_map = l.equal(l.and(pixels, l.splat_word(NO_MAP)), l.splat_word(0));
+            may_be_covered = l.both(in_front, is_map);
+        }
+        let mut left = l.bits(may_be_covered) & !l.bits(l.equal(material, l.splat_word(0)));
         let all = (1_u64 << L::N) - 1;
         if left == 0 && u64::from(front) == all {
             return (pixels, drawn);
@@ -577,7 +608,10 @@ impl Composition<'_> {
         let mut inverse = l.max(drawn, l.splat(row.inverse));
         while left != 0 {
             let number = self.canvas.pixels[pixel + left.trailing_zeros() as usize] >> MATERIAL_SHIFT;
-            let same = l.both(in_front, l.equal(material, l.splat_word(number << MATERIAL_SHIFT)));
+            let same = l.both(
+                may_be_covered,
+                l.equal(material, l.splat_word(number << MATERIAL_SHIFT)),
+            );
             left &= !l.bits(same);
             let shade = l.splat_word(self.shade);
             let made = match number {
@@ -657,6 +691,7 @@ impl Composition<'_> {
     }
 
     /// Writes a row's categories, classes and instances.
+    #[inline(always)]
     fn label(&self, scratch: &Scratch, row: Range<usize>, target: &mut Target<'_>) {
         if let Some(category) = &mut target.category {
             for (out, word) in category[row.clone()].iter_mut().zip(&scratch.words) {
@@ -664,6 +699,13 @@ impl Composition<'_> {
             }
         }
         if let Some(class) = &mut target.class {
+            if self.labels_classes {
+                for (out, word) in class[row.clone()].iter_mut().zip(&scratch.words) {
+                    let is_item = word & NO_MAP != 0;
+                    *out = if is_item { (word >> MATERIAL_SHIFT) as u16 } else { 0 };
+                }
+                return;
+            }
             for (out, item) in class[row.clone()].iter_mut().zip(&scratch.items) {
                 *out = if self.keeps_classes {
                     *item as u16

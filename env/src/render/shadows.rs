@@ -3,7 +3,7 @@
 
 use super::canvas::{Canvas, Triangle};
 use super::lanes::Lanes;
-use super::natural::{BARE, GROUND, MATERIAL, MATERIAL_SHIFT};
+use super::natural::{BARE, GROUND, MATERIAL, MATERIAL_SHIFT, NO_MAP};
 use super::raster::Shading;
 use super::view::{Placement, Pose, View};
 use crate::assets::BLOCK;
@@ -114,7 +114,7 @@ fn shade<L: Lanes, const ITEMS: bool>(l: L, canvas: &mut Canvas, triangle: &Tria
     let Triangle { columns, rows, .. } = *triangle;
     let zero = l.splat(0.0);
     let bare = l.splat_word(triangle.pixel);
-    let (material, zone) = (l.splat_word(MATERIAL), l.splat_word(GROUND << MATERIAL_SHIFT));
+    let (material, zone) = (l.splat_word(MATERIAL | NO_MAP), l.splat_word(GROUND << MATERIAL_SHIFT));
     let shaded = l.splat_word(1 << MATERIAL_SHIFT);
     let top = rows[0] as f32;
     let last_start = canvas.stride - L::N;
