@@ -104,6 +104,7 @@ impl CollisionWorld {
         };
         let edges = world.obstacles().map(<[_]>::len).sum::<usize>();
         let count = 4 + edges + scene.items.len();
+        bodies.colliders = ColliderSet::with_capacity(count + 1);
         bodies.standing.reserve(count);
         bodies.low.reserve(count);
         bodies.whole.reserve(count);
