@@ -243,7 +243,7 @@ mod tests {
             variant("find_objects#rde").unwrap_err().to_string(),
             "find_objects: found variant \"rde\", expected one of blue, red, green, dusk, huddle, penalty, \
              spheres, clearing, wide, modest, poor, half, turned, interact, near, held, long_held, slim, slow, \
-             stiff and 16 more; did you mean \"red\"?"
+             stiff and 17 more; did you mean \"red\"?"
         );
     }
 

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use driftworld::env::{Action, Agent, Environment, RandomAgent};
 use driftworld::generator::Sampler;
 use driftworld::spec::{
-    ActionModel, MotionModel, Object, Pushable, Respawn, Stimulus, Variant, Wall, World, WorldDraft,
+    ActionModel, Looks, MotionModel, Object, Pushable, Respawn, Stimulus, Variant, Wall, World, WorldDraft,
 };
 use driftworld::tasks;
 use serde_json::Value;
@@ -178,6 +178,9 @@ fn worlds() -> Vec<World> {
             spice(world);
             // Every other one has none, so that the places of things decide.
             world.seed = world.seed.filter(|_| number % 2 == 0);
+            if number % 2 == 0 {
+                world.environment_params.looks = Looks::default();
+            }
         });
         worlds.push(world.expect("the world is sound"));
     }

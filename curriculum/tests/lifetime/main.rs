@@ -306,7 +306,7 @@ fn what_cannot_be_lived_says_where() {
         error.to_string(),
         "block 1, regime 0: find_objects#bleu: find_objects: found variant \"bleu\", expected one of blue, red, green, \
          dusk, huddle, penalty, spheres, clearing, wide, modest, poor, half, turned, interact, near, held, long_held, slim, slow, \
-         stiff and 16 more; did you mean \"blue\"?"
+         stiff and 17 more; did you mean \"blue\"?"
     );
     let log = folder.path().join("b");
     live(&scenario(&["blue"]), &mut RandomAgent::new(0), &log, 1).unwrap_or_else(|error| panic!("{error}"));
