@@ -4,7 +4,7 @@
 use driftworld_env::{Agent, Environment, Renderer, Scene, StillAgent};
 use driftworld_generator::Sampler;
 use driftworld_report::picture::{Drawing, SheetRow, TextLine, sheet, text_width};
-use driftworld_spec::{Element, MotionModel, Variant, World};
+use driftworld_spec::{Element, MotionModel, Value, Variant, World};
 
 use crate::Failure;
 use crate::map_drawing::Moves;
@@ -267,15 +267,21 @@ fn placed(shown: &Shown, choice: Choice, look: Look) -> String {
 
 /// The values that a variant has and another one has not, with those in brackets.
 fn differences(base: &Variant, variant: &Variant) -> String {
-    let of_base = |name: &str| {
-        base.value(name)
-            .map_or_else(|| "none".to_owned(), |value| cut(&value.to_string()))
-    };
+    let of_base = |name: &str| base.value(name).map_or_else(|| "none".to_owned(), short);
     let parts: Vec<String> = (variant.values().iter())
         .filter(|(name, value)| base.value(name) != Some(value))
-        .map(|(name, value)| format!("{name} {} ({})", cut(&value.to_string()), of_base(name)))
+        .map(|(name, value)| format!("{name} {} ({})", short(value), of_base(name)))
         .collect();
     parts.join(", ") + if parts.is_empty() { "" } else { "." }
+}
+
+/// A value as a caption has room for it: numbers with four digits.
+fn short(value: &Value) -> String {
+    let rounded = match value {
+        Value::Number(number) => format!("{number:.3e}").parse::<f64>().ok(),
+        _ => None,
+    };
+    rounded.map_or_else(|| cut(&value.to_string()), |number| number.to_string())
 }
 
 fn cut(text: &str) -> String {
@@ -412,6 +418,14 @@ mod tests {
             .collect();
         captions.extend(said);
         insta::assert_snapshot!(captions.join("\n"));
+    }
+
+    #[test]
+    fn captions_have_four_digits() {
+        let shown =
+            [21.899_414, 0.642_968_750_000_000_1, -100.0, 12_345.0, 0.0].map(|number| short(&Value::Number(number)));
+        assert_eq!(shown, ["21.9", "0.643", "-100", "12350", "0"]);
+        assert_eq!(short(&Value::Text("red".to_owned())), "red");
     }
 
     #[test]

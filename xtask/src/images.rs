@@ -82,8 +82,8 @@ const IMAGES: &[(&str, &[&str])] = &[
         "distances-apart.png",
         &[
             "vary find_objects#red --element S --distance 0.05 --name at_0.05 -o {tmp}/apart.json",
-            "vary {tmp}/apart.json#red --element O --distance 0.2 --name at_0.2 -o {tmp}/apart.json --force",
-            "vary {tmp}/apart.json#red --element O --distance 1 --name at_1 -o {tmp}/apart.json --force",
+            "vary {tmp}/apart.json#red --parameters light --distance 0.2 --name at_0.2 -o {tmp}/apart.json --force",
+            "vary {tmp}/apart.json#red --parameters target_color --distance 1 --name at_1 -o {tmp}/apart.json --force",
             "vary {tmp}/apart.json#red --parameters target_color,target_model,light,agent_width --distance 3 --name at_3 \
              -o {tmp}/apart.json --force",
             "vary {tmp}/apart.json#red --element R --distance 1 --name unseen_1 -o {tmp}/apart.json --force",
