@@ -19,7 +19,7 @@ use super::shadows::{Cast, ShadowParams};
 use super::surfaces::{self, NEUTRAL, SIDE};
 use super::target::Target;
 use super::view::{NEAR, Placement, Pose, View};
-use super::visibility::{Drawable, Visible, find, level, sort};
+use super::visibility::{Drawable, Visible, find, level, sort_arena_last};
 use crate::assets::{BLOCK, Material, Paint};
 use crate::camera::Camera;
 use crate::looks::NaturalLooks;
@@ -243,7 +243,7 @@ impl CpuRenderer {
         self.natural.cover_walls(&picture);
         let mut order = std::mem::take(&mut self.order);
         find(scene, &view, false, &mut order);
-        sort(&mut order);
+        sort_arena_last(&mut order);
         self.hidden.clear(&view);
         for &visible in &order {
             match visible.drawable {

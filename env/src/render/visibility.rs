@@ -57,6 +57,20 @@ pub(super) fn sort(found: &mut [Visible]) {
     found.sort_unstable_by(|a, b| a.nearest.total_cmp(&b.nearest).then(a.drawable.cmp(&b.drawable)));
 }
 
+/// The same, with the arena's own walls at the end: they are long, so that some of each is near, but all else stands before
+/// them.
+pub(super) fn sort_arena_last(found: &mut [Visible]) {
+    found.sort_unstable_by(|a, b| {
+        let of_arena =
+            |visible: &Visible| matches!(visible.drawable, Drawable::Panels(k) if (k as usize) < ARENA_WALLS);
+        let by_depth = || a.nearest.total_cmp(&b.nearest);
+        of_arena(a)
+            .cmp(&of_arena(b))
+            .then_with(by_depth)
+            .then(a.drawable.cmp(&b.drawable))
+    });
+}
+
 /// The mesh of an item that is fine enough for how near it is.
 pub(super) fn level<'a>(item: &'a Item, visible: Visible, view: &View) -> &'a [Material] {
     let pixels_per_metre = view.scale * item.scale / visible.nearest.max(NEAR);
