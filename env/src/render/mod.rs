@@ -8,6 +8,7 @@
 mod backdrop;
 mod canvas;
 mod compose;
+mod compose_natural;
 mod cpu;
 mod daylight;
 mod frame;
@@ -18,6 +19,7 @@ mod hidden;
 mod kind;
 mod lanes;
 mod natural;
+mod patch;
 mod picture;
 mod raster;
 mod renderer;

@@ -1,22 +1,19 @@
 //! The natural style on the processor: what is drawn gets the number of what covers it, and texels are laid over it when the
-//! picture is composed. What lies behind everything is in `rows.rs`, patterns in `surfaces.rs`, light in `daylight.rs`,
-//! shadows in `shadows.rs`. The plain style is in `cpu.rs` and `compose.rs`.
-
-use std::ops::Range;
+//! picture is composed, in `compose_natural.rs`. What lies behind everything is in `rows.rs`, patterns in `surfaces.rs`,
+//! light in `daylight.rs`, shadows in `shadows.rs`. The plain style is in `cpu.rs` and `compose.rs`.
 
 use driftworld_spec::{Covering, Surface};
 
-use super::canvas::Canvas;
-use super::compose::{Scratch, metres, narrow};
+use super::compose_natural::Composition;
 use super::cpu::{CpuRenderer, category};
 use super::daylight::Daylight;
 use super::frame::CATEGORY_MAP;
 use super::lanes::Lanes;
+use super::patch::Patch;
 use super::raster::{Shading, dot, draw_block};
-use super::rows::{Row, Rows, Shows, packed};
+use super::rows::{Rows, packed};
 use super::shade::{FULL_LEVEL, ROUNDING};
 use super::shadows::{Cast, ShadowParams};
-use super::surfaces::{self, NEUTRAL, SIDE};
 use super::target::Target;
 use super::view::{NEAR, Placement, Pose, View};
 use super::visibility::{Drawable, Visible, find, level, sort_arena_last};
@@ -37,91 +34,20 @@ pub(super) const NO_MAP: u32 = 6 << 24;
 pub(super) const BARE: u32 = 1;
 /// What lies on the ground; the next number is that in shadow.
 pub(super) const GROUND: u32 = 2;
-const GROUND_IN_SHADOW: u32 = GROUND + 1;
+pub(super) const GROUND_IN_SHADOW: u32 = GROUND + 1;
 /// Walls that face along x; the next number is those along y.
-const WALLS: u32 = 4;
+pub(super) const WALLS: u32 = 4;
 /// Three for each object that is covered: its faces along x, y and z.
 const OBJECTS: u32 = 6;
 const MATERIALS: u32 = 32;
 
-/// Metres along a wall or an object are never so many tiles.
-const SHIFT: f32 = 4096.0;
-
-/// How much finer than a pixel texels may be, and the steepest angle that counts.
-const SHARPNESS: f32 = 1.0;
-const GRAZING: f32 = 0.06;
-
 /// What the style keeps from picture to picture.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Natural {
-    rows: Rows,
-    patches: Vec<Option<Patch>>,
+    pub(super) rows: Rows,
+    pub(super) patches: Vec<Option<Patch>>,
     /// For each column how much it shows of the sky towards the sun: a byte, in the three of a colour.
-    glow: Vec<u32>,
-}
-
-/// What covers faces that lie in one direction: how texels are found from a place on the screen.
-#[derive(Clone, Copy, Debug)]
-struct Patch {
-    texels: &'static [u32],
-    /// Tiles along each side: at the camera; and for each metre of depth at the picture's middle, to the right and up.
-    u: [f32; 4],
-    v: [f32; 4],
-    /// How much the faces look at the camera: at the middle, to the right and up.
-    facing: [f32; 3],
-    /// Texels to a side for a metre of 1 / depth.
-    sharpness: f32,
-}
-
-impl Patch {
-    /// Of a surface on faces of this normal, along these axes from an origin: all in the world's frame.
-    fn new(covering: Covering, view: &View, origin: [f32; 3], axes: [[f32; 3]; 2], normal: [f32; 3]) -> Option<Self> {
-        let tile = surfaces::tile(covering.surface)?;
-        let period = tile.period * covering.scale as f32;
-        let from = crate::vector::sub(view.position, origin);
-        let along = |axis: [f32; 3]| {
-            let rows = [from, view.axes.forward, view.axes.right, view.axes.up];
-            rows.map(|row| crate::vector::dot(row, axis) / period)
-        };
-        Some(Self {
-            texels: &tile.texels,
-            u: along(axes[0]),
-            v: along(axes[1]),
-            facing: [view.axes.forward, view.axes.right, view.axes.up].map(|axis| crate::vector::dot(axis, normal)),
-            sharpness: SHARPNESS * period / view.step,
-        })
-    }
-
-    /// Texels at these columns of a row so far up at 1 m, for 1 / depth.
-    #[inline(always)]
-    fn texel<L: Lanes>(&self, l: L, up: f32, offset: L::Float, inverse: L::Float) -> L::Word {
-        let (zero, one) = (l.splat(0.0), l.splat(1.0));
-        let depth = l.div(one, l.max(inverse, l.splat(1e-4)));
-        let [middle, right, above] = self.facing;
-        let facing = l.mul_add(l.splat(right), offset, l.splat(middle + up * above));
-        let facing = l.max(l.max(facing, l.sub(zero, facing)), l.splat(GRAZING));
-        let side = l.mul(l.mul(inverse, facing), l.splat(self.sharpness));
-        let side = l.power_of_two(l.min(l.max(side, one), l.splat(SIDE as f32)));
-        let u = part_of_tile(l, self.u, up, offset, depth, side);
-        let v = part_of_tile(l, self.v, up, offset, depth, side);
-        l.gather(self.texels, l.truncate(l.mul_add(side, l.add(side, v), u)))
-    }
-}
-
-/// The number of a texel along a side of a tile of so many.
-#[inline(always)]
-fn part_of_tile<L: Lanes>(
-    l: L,
-    [at, ahead, right, above]: [f32; 4],
-    up: f32,
-    offset: L::Float,
-    depth: L::Float,
-    side: L::Float,
-) -> L::Float {
-    let slope = l.mul_add(l.splat(right), offset, l.splat(ahead + up * above));
-    let tiles = l.mul_add(depth, slope, l.splat(at + SHIFT));
-    let part = l.sub(tiles, l.float(l.truncate(tiles)));
-    l.float(l.truncate(l.mul(part, side)))
+    pub(super) glow: Vec<u32>,
 }
 
 /// What all triangles of a material share.
@@ -286,7 +212,7 @@ impl CpuRenderer {
             labels_classes: picture.labels_classes,
             classes: &self.classes,
         };
-        composition.write::<L, ITEMS>(lanes, &mut self.scratch, target);
+        composition.write::<L, ITEMS>(lanes, target);
     }
 
     #[inline(always)]
@@ -442,6 +368,14 @@ impl Natural {
         self.patches.extend([wall(y, x), wall(x, y)]);
     }
 
+    /// What covers walls, if each column of the picture shows it from top to bottom: up a wall it is the same for all.
+    pub(super) fn upright_walls(&self) -> Option<&Patch> {
+        let [Some(along_x), Some(along_y)] = &self.patches[WALLS as usize..OBJECTS as usize] else {
+            return None;
+        };
+        (along_x.is_upright() && along_y.is_upright()).then_some(along_x)
+    }
+
     /// The numbers of what covers an object; of nothing if it is plain, or if there are no numbers left.
     fn cover_item(&mut self, item: &Item, view: &View) -> [u32; 3] {
         let first = self.patches.len() as u32;
@@ -483,240 +417,6 @@ impl Natural {
             let share = l.max(l.mul(share, l.mul(share, share)), l.splat(0.0));
             let byte = l.truncate(l.min(l.mul(share, l.splat(FULL_LEVEL)), l.splat(FULL_LEVEL)));
             l.store_words(l.three_times(byte), &mut self.glow[first..]);
-        }
-    }
-}
-
-/// Everything that one picture is composed of.
-struct Composition<'a> {
-    canvas: &'a Canvas,
-    natural: &'a Natural,
-    view: View,
-    offsets: &'a [f32],
-    fog: Option<f32>,
-    /// Colour of the fog away from the sun and towards it.
-    fog_words: [u32; 2],
-    /// What shadow leaves of the ground's light.
-    shade: u32,
-    /// Whether items are classes; else these are the classes of items.
-    keeps_classes: bool,
-    /// Whether classes stand in labels.
-    labels_classes: bool,
-    classes: &'a [u16],
-}
-
-/// What lies behind a vector: its pixels, and the texels in them.
-#[derive(Clone, Copy)]
-struct Behind<W> {
-    word: W,
-    texel: W,
-}
-
-impl Composition<'_> {
-    #[inline(always)]
-    fn write<L: Lanes, const ITEMS: bool>(&self, l: L, scratch: &mut Scratch, target: &mut Target<'_>) {
-        let width = self.canvas.width;
-        scratch.words.resize(self.canvas.stride, 0);
-        scratch.items.resize(self.canvas.stride, 0);
-        let labelled = target.has_labels();
-        for y in 0..self.canvas.height {
-            let row = &self.natural.rows.seen[y];
-            let texels = self.natural.rows.texels(row.shows);
-            let up = -self.view.offset(1, y as f32);
-            // Dividing takes long: what all of a row shares is divided once.
-            let row_metres = metres(l, l.splat(row.inverse));
-            let out = y * width;
-            let mut x = 0;
-            while x < width {
-                // The last vector of a row goes back over pixels that are done, where there are enough.
-                let start = if x + L::N > width {
-                    width.saturating_sub(L::N)
-                } else {
-                    x
-                };
-                let pixel = y * self.canvas.stride + start;
-                let drawn = l.load(&self.canvas.inverse_depth[pixel..]);
-                let in_front = l.above(drawn, l.splat(row.inverse));
-                let (mut word, inverse) = self.colors(l, row, texels, up, start, pixel, (drawn, in_front));
-                if let Some(distance) = self.fog {
-                    word = self.in_fog(l, word, inverse, distance, start);
-                }
-                if width < L::N {
-                    narrow(l, word, inverse, target, out..out + width);
-                } else {
-                    if let Some(rgb) = &mut target.rgb {
-                        l.store_rgb(word, &mut rgb[3 * (out + start)..]);
-                    }
-                    if let Some(depth) = &mut target.depth {
-                        let metres = if l.bits(in_front) == 0 {
-                            row_metres
-                        } else {
-                            metres(l, inverse)
-                        };
-                        l.store(metres, &mut depth[out + start..]);
-                    }
-                }
-                if labelled {
-                    l.store_words(word, &mut scratch.words[start..]);
-                    if ITEMS {
-                        let item = l.load_words(&self.canvas.items[pixel..]);
-                        l.store_words(
-                            l.select_words(in_front, item, l.splat_word(0)),
-                            &mut scratch.items[start..],
-                        );
-                    }
-                }
-                x = start + L::N;
-            }
-            if labelled {
-                self.label(scratch, out..out + width, target);
-            }
-        }
-    }
-
-    /// Packed pixels and 1 / depth of a vector.
-    #[inline(always)]
-    #[expect(clippy::too_many_arguments, reason = "a vector, and all that its row has said of it")]
-    fn colors<L: Lanes>(
-        &self,
-        l: L,
-        row: &Row,
-        texels: &[u32],
-        up: f32,
-        start: usize,
-        pixel: usize,
-        (drawn, in_front): (L::Float, L::Mask),
-    ) -> (L::Word, L::Float) {
-        let front = l.bits(in_front);
-        if front == 0 {
-            return (self.behind(l, row, texels, start).word, l.splat(row.inverse));
-        }
-        let pixels = l.load_words(&self.canvas.pixels[pixel..]);
-        let material = l.and(pixels, l.splat_word(MATERIAL));
-        let mut may_be_covered = in_front;
-        if self.labels_classes {
-            let is_map = l.equal(l.and(pixels, l.splat_word(NO_MAP)), l.splat_word(0));
-            may_be_covered = l.both(in_front, is_map);
-        }
-        let mut left = l.bits(may_be_covered) & !l.bits(l.equal(material, l.splat_word(0)));
-        let all = (1_u64 << L::N) - 1;
-        if left == 0 && u64::from(front) == all {
-            return (pixels, drawn);
-        }
-        let behind = self.behind(l, row, texels, start);
-        let mut word = l.select_words(in_front, pixels, behind.word);
-        let mut inverse = l.max(drawn, l.splat(row.inverse));
-        while left != 0 {
-            let number = self.canvas.pixels[pixel + left.trailing_zeros() as usize] >> MATERIAL_SHIFT;
-            let same = l.both(
-                may_be_covered,
-                l.equal(material, l.splat_word(number << MATERIAL_SHIFT)),
-            );
-            left &= !l.bits(same);
-            let shade = l.splat_word(self.shade);
-            let made = match number {
-                BARE => {
-                    inverse = l.select(same, l.splat(row.inverse), inverse);
-                    l.modulate(behind.word, shade)
-                }
-                GROUND => l.modulate(pixels, behind.texel),
-                GROUND_IN_SHADOW => l.modulate(l.modulate(pixels, behind.texel), shade),
-                _ => match &self.natural.patches[number as usize] {
-                    Some(patch) => {
-                        let offset = l.load(&self.offsets[start..]);
-                        l.modulate(pixels, patch.texel(l, up, offset, drawn))
-                    }
-                    None => pixels,
-                },
-            };
-            word = l.select_words(same, made, word);
-        }
-        (word, inverse)
-    }
-
-    #[inline(always)]
-    fn behind<L: Lanes>(&self, l: L, row: &Row, texels: &[u32], start: usize) -> Behind<L::Word> {
-        let base = l.splat_word(row.base);
-        let neutral = l.splat_word(NEUTRAL);
-        if row.shows == Shows::Sky {
-            let mut word = base;
-            if row.sunward != row.base {
-                let glow = l.load_words(&self.natural.glow[start..]);
-                word = l.mix(base, l.splat_word(row.sunward), glow);
-            }
-            if row.side > 1 {
-                word = l.mix(word, l.splat_word(row.cloud), self.found(l, row, texels, start, 1.0));
-            }
-            return Behind { word, texel: neutral };
-        }
-        if row.side <= 1 || texels.is_empty() {
-            return Behind {
-                word: base,
-                texel: neutral,
-            };
-        }
-        let mut texel = self.found(l, row, texels, start, 1.0);
-        if row.detail > 0.0 {
-            texel = l.modulate(texel, self.found(l, row, texels, start, row.detail));
-        }
-        Behind {
-            word: l.modulate(base, texel),
-            texel,
-        }
-    }
-
-    /// A row's texels, of a tile that is so many times as fine.
-    #[inline(always)]
-    fn found<L: Lanes>(&self, l: L, row: &Row, texels: &[u32], start: usize, finer: f32) -> L::Word {
-        let offset = l.load(&self.offsets[start..]);
-        let mask = l.splat_word(row.side - 1);
-        let u = l.mul_add(l.splat(row.u[1] * finer), offset, l.splat(row.u[0] * finer));
-        let v = l.mul_add(l.splat(row.v[1] * finer), offset, l.splat(row.v[0] * finer));
-        let (u, v) = (l.and(l.truncate(u), mask), l.and(l.truncate(v), mask));
-        let place = l.or(u, l.shift_left(v, row.side.ilog2()));
-        l.gather(texels, l.or(place, l.splat_word(row.side * row.side)))
-    }
-
-    /// Colours turned into the fog's with distance; the sky stays.
-    #[inline(always)]
-    fn in_fog<L: Lanes>(&self, l: L, word: L::Word, inverse: L::Float, distance: f32, start: usize) -> L::Word {
-        let (zero, one) = (l.splat(0.0), l.splat(1.0));
-        let reach = l.mul(inverse, l.splat(distance));
-        let share = l.div(one, l.mul_add(reach, reach, one));
-        let share = l.select(l.at_least(zero, inverse), zero, share);
-        let byte = l.truncate(l.mul_add(share, l.splat(FULL_LEVEL), l.splat(ROUNDING)));
-        let [away, toward] = self.fog_words.map(|word| l.splat_word(word));
-        let fog = l.mix(away, toward, l.load_words(&self.natural.glow[start..]));
-        l.mix(word, fog, l.three_times(byte))
-    }
-
-    /// Writes a row's categories, classes and instances.
-    #[inline(always)]
-    fn label(&self, scratch: &Scratch, row: Range<usize>, target: &mut Target<'_>) {
-        if let Some(category) = &mut target.category {
-            for (out, word) in category[row.clone()].iter_mut().zip(&scratch.words) {
-                *out = (word >> 24) as u8 & !((MATERIAL >> 24) as u8);
-            }
-        }
-        if let Some(class) = &mut target.class {
-            if self.labels_classes {
-                for (out, word) in class[row.clone()].iter_mut().zip(&scratch.words) {
-                    let is_item = word & NO_MAP != 0;
-                    *out = if is_item { (word >> MATERIAL_SHIFT) as u16 } else { 0 };
-                }
-                return;
-            }
-            for (out, item) in class[row.clone()].iter_mut().zip(&scratch.items) {
-                *out = if self.keeps_classes {
-                    *item as u16
-                } else {
-                    (*item as usize).checked_sub(1).map_or(0, |item| self.classes[item])
-                };
-            }
-        }
-        if let Some(instance) = &mut target.instance {
-            let count = row.len();
-            instance[row].copy_from_slice(&scratch.items[..count]);
         }
     }
 }

@@ -3,7 +3,7 @@
 //! texels follow each other evenly and are of one level. Objects are laid over it in `natural.rs`.
 
 use super::daylight::Daylight;
-use super::frame::{CATEGORY_MAP, CATEGORY_SKY};
+use super::frame::{CATEGORY_MAP, CATEGORY_SKY, FAR_DEPTH};
 use super::shade::{FULL_LEVEL, ROUNDING};
 use super::surfaces::{self, SIDE, Tile};
 use super::view::View;
@@ -39,6 +39,8 @@ struct RowLook {
 pub(super) struct Row {
     /// 1 / depth; 0 where it shows sky.
     pub(super) inverse: f32,
+    /// Depth in metres.
+    pub(super) metres: f32,
     /// Packed pixel without pattern; of the sky, away from the sun.
     pub(super) base: u32,
     /// Of the sky towards the sun; of clouds. As `base` where there is no difference.
@@ -150,7 +152,7 @@ impl Rows {
         for y in 0..rows {
             let offset = (key.size[1] / 2.0 - 0.5 - y as f32) * key.step;
             let rise = key.forward + offset * key.up;
-            self.looks.push(match key.looks.ceiling {
+            let mut look = match key.looks.ceiling {
                 _ if rise < 0.0 => {
                     let scale = key.looks.ground.scale as f32;
                     let color = daylight.levels(key.ground, [0.0, 0.0, 1.0]);
@@ -173,7 +175,14 @@ impl Rows {
                     plane.look(key, offset, Shows::Ceiling, self.ceiling)
                 }
                 None => sky(key, daylight, offset, rise),
-            });
+            };
+            let inverse = look.row.inverse;
+            look.row.metres = if inverse > 1.0 / FAR_DEPTH {
+                1.0 / inverse
+            } else {
+                FAR_DEPTH
+            };
+            self.looks.push(look);
         }
     }
 }

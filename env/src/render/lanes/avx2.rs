@@ -5,16 +5,16 @@
 )]
 
 use std::arch::x86_64::{
-    __m256, __m256i, _CMP_GE_OQ, _CMP_GT_OQ, _mm_cvtsi32_si128, _mm_storel_epi64, _mm_storeu_si128, _mm256_add_epi16,
-    _mm256_add_ps, _mm256_and_ps, _mm256_and_si256, _mm256_blendv_epi8, _mm256_blendv_ps, _mm256_castps_si256,
-    _mm256_castsi256_ps, _mm256_castsi256_si128, _mm256_cmp_ps, _mm256_cmpeq_epi32, _mm256_cvtepi32_ps,
-    _mm256_cvttps_epi32, _mm256_div_ps, _mm256_extracti128_si256, _mm256_i32gather_epi32, _mm256_loadu_ps,
-    _mm256_loadu_si256, _mm256_maskstore_epi32, _mm256_maskstore_ps, _mm256_max_ps, _mm256_min_epu32, _mm256_min_ps,
-    _mm256_movemask_ps, _mm256_mul_ps, _mm256_mullo_epi16, _mm256_or_si256, _mm256_packus_epi16,
-    _mm256_permutevar8x32_epi32, _mm256_set1_epi8, _mm256_set1_epi16, _mm256_set1_epi32, _mm256_set1_ps,
-    _mm256_setr_epi8, _mm256_setr_epi32, _mm256_setr_ps, _mm256_setzero_si256, _mm256_shuffle_epi8, _mm256_sll_epi32,
-    _mm256_slli_epi32, _mm256_sqrt_ps, _mm256_srli_epi16, _mm256_storeu_ps, _mm256_storeu_si256, _mm256_sub_ps,
-    _mm256_unpackhi_epi8, _mm256_unpacklo_epi8, _mm256_xor_si256,
+    __m256, __m256i, _CMP_EQ_OQ, _CMP_GE_OQ, _CMP_GT_OQ, _mm_cvtsi32_si128, _mm_storel_epi64, _mm_storeu_si128,
+    _mm256_add_epi16, _mm256_add_ps, _mm256_and_ps, _mm256_and_si256, _mm256_blendv_epi8, _mm256_blendv_ps,
+    _mm256_castps_si256, _mm256_castsi256_ps, _mm256_castsi256_si128, _mm256_cmp_ps, _mm256_cmpeq_epi32,
+    _mm256_cvtepi32_ps, _mm256_cvttps_epi32, _mm256_div_ps, _mm256_extracti128_si256, _mm256_i32gather_epi32,
+    _mm256_loadu_ps, _mm256_loadu_si256, _mm256_maskstore_epi32, _mm256_maskstore_ps, _mm256_max_ps, _mm256_min_epu32,
+    _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_mullo_epi16, _mm256_or_si256, _mm256_packus_epi16,
+    _mm256_packus_epi32, _mm256_permute4x64_epi64, _mm256_permutevar8x32_epi32, _mm256_set1_epi8, _mm256_set1_epi16,
+    _mm256_set1_epi32, _mm256_set1_ps, _mm256_setr_epi8, _mm256_setr_epi32, _mm256_setr_ps, _mm256_setzero_si256,
+    _mm256_shuffle_epi8, _mm256_sll_epi32, _mm256_slli_epi32, _mm256_sqrt_ps, _mm256_srl_epi32, _mm256_srli_epi16,
+    _mm256_storeu_ps, _mm256_storeu_si256, _mm256_sub_ps, _mm256_unpackhi_epi8, _mm256_unpacklo_epi8, _mm256_xor_si256,
 };
 
 use super::Lanes;
@@ -51,6 +51,7 @@ lanes_by_intrinsics! {
         shift_byte(value: __m256i) -> __m256i = _mm256_slli_epi32::<8>(value);
         at_least(a: __m256, b: __m256) -> __m256 = _mm256_cmp_ps::<_CMP_GE_OQ>(a, b);
         above(a: __m256, b: __m256) -> __m256 = _mm256_cmp_ps::<_CMP_GT_OQ>(a, b);
+        same(a: __m256, b: __m256) -> __m256 = _mm256_cmp_ps::<_CMP_EQ_OQ>(a, b);
         both(a: __m256, b: __m256) -> __m256 = _mm256_and_ps(a, b);
         select(mask: __m256, a: __m256, b: __m256) -> __m256 = _mm256_blendv_ps(b, a, mask);
     }
@@ -87,6 +88,22 @@ lanes_by_intrinsics! {
     fn shift_left(self, value: __m256i, bits: u32) -> __m256i {
         // SAFETY: as in the macro.
         unsafe { _mm256_sll_epi32(value, _mm_cvtsi32_si128(bits as i32)) }
+    }
+    #[inline(always)]
+    fn shift_right(self, value: __m256i, bits: u32) -> __m256i {
+        // SAFETY: as in the macro.
+        unsafe { _mm256_srl_epi32(value, _mm_cvtsi32_si128(bits as i32)) }
+    }
+    #[inline(always)]
+    fn has_any(self, value: __m256i, bits: u32) -> __m256 {
+        // SAFETY: as in the macro.
+        unsafe {
+            let none = _mm256_cmpeq_epi32(
+                _mm256_and_si256(value, _mm256_set1_epi32(bits as i32)),
+                _mm256_setzero_si256(),
+            );
+            _mm256_castsi256_ps(_mm256_xor_si256(none, _mm256_set1_epi32(-1)))
+        }
     }
     #[inline(always)]
     fn modulate(self, a: __m256i, b: __m256i) -> __m256i {
@@ -155,6 +172,26 @@ lanes_by_intrinsics! {
             );
             _mm_storeu_si128(to.as_mut_ptr().cast(), _mm256_castsi256_si128(packed));
             _mm_storel_epi64(to[16..].as_mut_ptr().cast(), _mm256_extracti128_si256::<1>(packed));
+        }
+    }
+    #[inline(always)]
+    fn store_bytes(self, value: __m256i, to: &mut [u8]) {
+        let to: &mut [u8; N] = first_mut(to);
+        // SAFETY: as in the macro; 8 bytes are written.
+        unsafe {
+            // Each half's bytes into its first word, and the words together.
+            let halves = _mm256_shuffle_epi8(value, _mm256_set1_epi32(0x0C08_0400));
+            let packed = _mm256_permutevar8x32_epi32(halves, _mm256_setr_epi32(0, 4, 0, 4, 0, 4, 0, 4));
+            _mm_storel_epi64(to.as_mut_ptr().cast(), _mm256_castsi256_si128(packed));
+        }
+    }
+    #[inline(always)]
+    fn store_halves(self, value: __m256i, to: &mut [u16]) {
+        let to: &mut [u16; N] = first_mut(to);
+        // SAFETY: as in the macro; 16 bytes are written.
+        unsafe {
+            let packed = _mm256_permute4x64_epi64::<0b1000>(_mm256_packus_epi32(value, value));
+            _mm_storeu_si128(to.as_mut_ptr().cast(), _mm256_castsi256_si128(packed));
         }
     }
     #[inline(always)]

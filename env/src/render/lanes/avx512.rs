@@ -5,14 +5,15 @@
 )]
 
 use std::arch::x86_64::{
-    __m512, __m512i, __mmask16, _CMP_GE_OQ, _CMP_GT_OQ, _mm_cvtsi32_si128, _mm_setr_epi8, _mm512_add_epi16,
-    _mm512_add_ps, _mm512_and_si512, _mm512_broadcast_i32x4, _mm512_castps_si512, _mm512_castsi512_ps,
-    _mm512_cmp_ps_mask, _mm512_cmpeq_epi32_mask, _mm512_cvtepi32_ps, _mm512_cvttps_epi32, _mm512_div_ps,
-    _mm512_i32gather_epi32, _mm512_loadu_ps, _mm512_loadu_si512, _mm512_mask_blend_epi32, _mm512_mask_blend_ps,
-    _mm512_mask_storeu_epi32, _mm512_mask_storeu_ps, _mm512_max_ps, _mm512_min_epu32, _mm512_min_ps, _mm512_mul_ps,
-    _mm512_mullo_epi16, _mm512_or_si512, _mm512_packus_epi16, _mm512_permutexvar_epi32, _mm512_set1_epi8,
-    _mm512_set1_epi16, _mm512_set1_epi32, _mm512_set1_ps, _mm512_setr_epi32, _mm512_setr_ps, _mm512_setzero_si512,
-    _mm512_shuffle_epi8, _mm512_sll_epi32, _mm512_slli_epi32, _mm512_sqrt_ps, _mm512_srli_epi16, _mm512_storeu_ps,
+    __m512, __m512i, __mmask16, _CMP_EQ_OQ, _CMP_GE_OQ, _CMP_GT_OQ, _mm_cvtsi32_si128, _mm_setr_epi8, _mm_storeu_si128,
+    _mm256_storeu_si256, _mm512_add_epi16, _mm512_add_ps, _mm512_and_si512, _mm512_broadcast_i32x4,
+    _mm512_castps_si512, _mm512_castsi512_ps, _mm512_cmp_ps_mask, _mm512_cmpeq_epi32_mask, _mm512_cvtepi32_epi8,
+    _mm512_cvtepi32_epi16, _mm512_cvtepi32_ps, _mm512_cvttps_epi32, _mm512_div_ps, _mm512_i32gather_epi32,
+    _mm512_loadu_ps, _mm512_loadu_si512, _mm512_mask_blend_epi32, _mm512_mask_blend_ps, _mm512_mask_storeu_epi32,
+    _mm512_mask_storeu_ps, _mm512_max_ps, _mm512_min_epu32, _mm512_min_ps, _mm512_mul_ps, _mm512_mullo_epi16,
+    _mm512_or_si512, _mm512_packus_epi16, _mm512_permutexvar_epi32, _mm512_set1_epi8, _mm512_set1_epi16,
+    _mm512_set1_epi32, _mm512_set1_ps, _mm512_setr_epi32, _mm512_setr_ps, _mm512_setzero_si512, _mm512_shuffle_epi8,
+    _mm512_sll_epi32, _mm512_slli_epi32, _mm512_sqrt_ps, _mm512_srl_epi32, _mm512_srli_epi16, _mm512_storeu_ps,
     _mm512_storeu_si512, _mm512_sub_ps, _mm512_test_epi32_mask, _mm512_unpackhi_epi8, _mm512_unpacklo_epi8,
     _mm512_xor_si512,
 };
@@ -52,6 +53,7 @@ lanes_by_intrinsics! {
         shift_byte(value: __m512i) -> __m512i = _mm512_slli_epi32::<8>(value);
         at_least(a: __m512, b: __m512) -> __mmask16 = _mm512_cmp_ps_mask::<_CMP_GE_OQ>(a, b);
         above(a: __m512, b: __m512) -> __mmask16 = _mm512_cmp_ps_mask::<_CMP_GT_OQ>(a, b);
+        same(a: __m512, b: __m512) -> __mmask16 = _mm512_cmp_ps_mask::<_CMP_EQ_OQ>(a, b);
         select(mask: __mmask16, a: __m512, b: __m512) -> __m512 = _mm512_mask_blend_ps(mask, b, a);
         select_words(mask: __mmask16, a: __m512i, b: __m512i) -> __m512i = _mm512_mask_blend_epi32(mask, b, a);
     }
@@ -87,6 +89,16 @@ lanes_by_intrinsics! {
     fn shift_left(self, value: __m512i, bits: u32) -> __m512i {
         // SAFETY: as in the macro.
         unsafe { _mm512_sll_epi32(value, _mm_cvtsi32_si128(bits as i32)) }
+    }
+    #[inline(always)]
+    fn shift_right(self, value: __m512i, bits: u32) -> __m512i {
+        // SAFETY: as in the macro.
+        unsafe { _mm512_srl_epi32(value, _mm_cvtsi32_si128(bits as i32)) }
+    }
+    #[inline(always)]
+    fn has_any(self, value: __m512i, bits: u32) -> __mmask16 {
+        // SAFETY: as in the macro.
+        unsafe { _mm512_test_epi32_mask(value, _mm512_set1_epi32(bits as i32)) }
     }
     #[inline(always)]
     fn modulate(self, a: __m512i, b: __m512i) -> __m512i {
@@ -152,6 +164,16 @@ lanes_by_intrinsics! {
             );
             _mm512_mask_storeu_epi32(to.as_mut_ptr().cast(), 0x0fff, packed);
         }
+    }
+    #[inline(always)]
+    fn store_bytes(self, value: __m512i, to: &mut [u8]) {
+        // SAFETY: as in the macro.
+        unsafe { _mm_storeu_si128(first_mut(to).as_mut_ptr().cast(), _mm512_cvtepi32_epi8(value)) }
+    }
+    #[inline(always)]
+    fn store_halves(self, value: __m512i, to: &mut [u16]) {
+        // SAFETY: as in the macro.
+        unsafe { _mm256_storeu_si256(first_mut(to).as_mut_ptr().cast(), _mm512_cvtepi32_epi16(value)) }
     }
     #[inline(always)]
     fn store_where(self, mask: __mmask16, value: __m512, to: &mut [f32]) {

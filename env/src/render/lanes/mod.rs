@@ -53,6 +53,8 @@ pub(super) trait Lanes: Copy {
     fn max(self, a: Self::Float, b: Self::Float) -> Self::Float;
     fn at_least(self, a: Self::Float, b: Self::Float) -> Self::Mask;
     fn above(self, a: Self::Float, b: Self::Float) -> Self::Mask;
+    /// Where both are the same number.
+    fn same(self, a: Self::Float, b: Self::Float) -> Self::Mask;
     fn root(self, a: Self::Float) -> Self::Float;
     fn both(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
     /// One bit for each lane, the first lane's lowest.
@@ -71,10 +73,14 @@ pub(super) trait Lanes: Copy {
     fn equal(self, a: Self::Word, b: Self::Word) -> Self::Mask;
     /// So many bits to the left, less than 32.
     fn shift_left(self, value: Self::Word, bits: u32) -> Self::Word;
+    /// So many bits to the right, less than 32; zeros come in.
+    fn shift_right(self, value: Self::Word, bits: u32) -> Self::Word;
     /// One byte to the left.
     fn shift_byte(self, value: Self::Word) -> Self::Word;
     /// Where the bit of this number is set.
     fn has_bit(self, value: Self::Word, bit: u32) -> Self::Mask;
+    /// Where any of these bits is set.
+    fn has_any(self, value: Self::Word, bits: u32) -> Self::Mask;
     /// Each byte of `a` times that of `b`, which is 1 at 128; at most 255.
     fn modulate(self, a: Self::Word, b: Self::Word) -> Self::Word;
     /// Each byte of `a`, or that of `b`, or between them: `a` where the byte of `share` is 0, `b` where it is 255.
@@ -93,6 +99,12 @@ pub(super) trait Lanes: Copy {
 
     /// The lowest three bytes of each word, `3 * N` bytes in all.
     fn store_rgb(self, value: Self::Word, to: &mut [u8]);
+
+    /// The lowest byte of each word.
+    fn store_bytes(self, value: Self::Word, to: &mut [u8]);
+
+    /// The lower half of each word, which is less than 65,536.
+    fn store_halves(self, value: Self::Word, to: &mut [u16]);
 
     /// `a * b + c`, rounded twice.
     #[inline(always)]
@@ -159,6 +171,7 @@ mod tests {
                 lanes.mul_add(a, b, a),
                 lanes.select(above, a, b),
                 lanes.select(lanes.both(above, at_least), b, a),
+                lanes.select(lanes.same(a, lanes.float(lanes.truncate(a))), b, a),
                 lanes.float(lanes.truncate(small)),
                 lanes.float(word),
                 lanes.power_of_two(lanes.max(a, lanes.splat(0.125))),
@@ -183,6 +196,8 @@ mod tests {
                 lanes.shift_byte(word),
                 lanes.and(word, lanes.truncate(small)),
                 lanes.shift_left(word, 5),
+                lanes.shift_right(word, 27),
+                lanes.select_words(lanes.has_any(word, 0x0081_0100), word, lanes.splat_word(1)),
                 lanes.modulate(word, lanes.xor(word, lanes.splat_word(0x8055_AAFF))),
                 lanes.mix(word, lanes.splat_word(0x00FF_8001), lanes.shift_byte(word)),
                 lanes.gather(&TABLE, lanes.and(word, lanes.splat_word(15))),
@@ -208,6 +223,20 @@ mod tests {
                 "three bytes a lane, and no more"
             );
             results.push(bytes[..3 * L::N].iter().map(|byte| u32::from(*byte)).collect());
+            let mut bytes = [7_u8; MOST_LANES];
+            lanes.store_bytes(word, &mut bytes);
+            assert!(
+                bytes[L::N..].iter().all(|kept| *kept == 7),
+                "a byte a lane, and no more"
+            );
+            results.push(bytes[..L::N].iter().map(|byte| u32::from(*byte)).collect());
+            let mut halves = [7_u16; MOST_LANES];
+            lanes.store_halves(lanes.and(word, lanes.splat_word(0xFFFF)), &mut halves);
+            assert!(
+                halves[L::N..].iter().all(|kept| *kept == 7),
+                "two bytes a lane, and no more"
+            );
+            results.push(halves[..L::N].iter().map(|half| u32::from(*half)).collect());
             made.resize(results.len(), Vec::new());
             for (made, result) in made.iter_mut().zip(results) {
                 made.extend(result);

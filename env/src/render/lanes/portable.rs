@@ -76,6 +76,10 @@ impl Lanes for Portable {
         map(a, b, |a, b| a > b)
     }
     #[inline(always)]
+    fn same(self, a: [f32; N], b: [f32; N]) -> [bool; N] {
+        map(a, b, |a, b| a == b)
+    }
+    #[inline(always)]
     fn root(self, a: [f32; N]) -> [f32; N] {
         a.map(f32::sqrt)
     }
@@ -129,6 +133,10 @@ impl Lanes for Portable {
         value.map(|word| word << bits)
     }
     #[inline(always)]
+    fn shift_right(self, value: [u32; N], bits: u32) -> [u32; N] {
+        value.map(|word| word >> bits)
+    }
+    #[inline(always)]
     fn modulate(self, a: [u32; N], b: [u32; N]) -> [u32; N] {
         map(a, b, |a, b| {
             let byte = |shift: u32| (((a >> shift & 255) * (b >> shift & 255) + 64) >> 7).min(255) << shift;
@@ -162,6 +170,10 @@ impl Lanes for Portable {
         value.map(|word| word & (1 << bit) != 0)
     }
     #[inline(always)]
+    fn has_any(self, value: [u32; N], bits: u32) -> [bool; N] {
+        value.map(|word| word & bits != 0)
+    }
+    #[inline(always)]
     fn truncate(self, value: [f32; N]) -> [u32; N] {
         value.map(|float| float as i32 as u32)
     }
@@ -176,5 +188,13 @@ impl Lanes for Portable {
             let [red, green, blue, _] = word.to_le_bytes();
             *pixel = [red, green, blue];
         }
+    }
+    #[inline(always)]
+    fn store_bytes(self, value: [u32; N], to: &mut [u8]) {
+        to[..N].copy_from_slice(&value.map(|word| word as u8));
+    }
+    #[inline(always)]
+    fn store_halves(self, value: [u32; N], to: &mut [u16]) {
+        to[..N].copy_from_slice(&value.map(|word| word as u16));
     }
 }

@@ -1,0 +1,362 @@
+//! From packed pixels to images in the natural style: what was drawn gets its texels and is laid over ground, sky or ceiling.
+//! What was drawn is in `canvas.rs`, by `natural.rs`; what lies behind it in `rows.rs`; how texels of walls and objects are
+//! found in `patch.rs`. The plain style is in `compose.rs`.
+//!
+//! A picture is gone through by columns as wide as a vector, each from top to bottom: there sky, wall and ground follow each
+//! other, and what a column shows of a wall changes in one coordinate alone.
+
+use std::ops::Range;
+
+use super::canvas::Canvas;
+use super::compose::metres;
+use super::lanes::{Lanes, MOST_LANES};
+use super::natural::{BARE, GROUND, GROUND_IN_SHADOW, MATERIAL, MATERIAL_SHIFT, NO_MAP, Natural, WALLS};
+use super::patch::{Patch, Run};
+use super::rows::{Row, Shows};
+use super::shade::{FULL_LEVEL, ROUNDING};
+use super::surfaces::NEUTRAL;
+use super::target::Target;
+use super::view::View;
+
+/// Rows that are gone through before the next columns: what they lie in stays near the processor.
+const BAND: usize = 128;
+
+/// Everything that one picture is composed of.
+pub(super) struct Composition<'a> {
+    pub(super) canvas: &'a Canvas,
+    pub(super) natural: &'a Natural,
+    pub(super) view: View,
+    pub(super) offsets: &'a [f32],
+    pub(super) fog: Option<f32>,
+    /// Colour of the fog away from the sun and towards it.
+    pub(super) fog_words: [u32; 2],
+    /// What shadow leaves of the ground's light.
+    pub(super) shade: u32,
+    /// Whether items are classes; else these are the classes of items.
+    pub(super) keeps_classes: bool,
+    /// Whether classes stand in labels.
+    pub(super) labels_classes: bool,
+    pub(super) classes: &'a [u16],
+}
+
+/// A vector's columns, from top to bottom.
+struct Columns<'a, L: Lanes> {
+    offset: L::Float,
+    glow: L::Word,
+    /// What covers walls, if columns show it all the way down.
+    wall: Option<&'a Patch>,
+    run: Run<L>,
+}
+
+/// What lies behind a vector: its pixels, and the texels in them.
+#[derive(Clone, Copy)]
+struct Behind<W> {
+    word: W,
+    texel: W,
+}
+
+/// What a vector shows.
+#[derive(Clone, Copy)]
+struct Seen<L: Lanes> {
+    word: L::Word,
+    /// 1 / depth, and depth.
+    inverse: L::Float,
+    metres: L::Float,
+    in_front: L::Mask,
+}
+
+impl Composition<'_> {
+    /// Writes all images that the target asks for.
+    #[inline(always)]
+    pub(super) fn write<L: Lanes, const ITEMS: bool>(&self, l: L, target: &mut Target<'_>) {
+        let Canvas { width, height, .. } = *self.canvas;
+        for first_row in (0..height).step_by(BAND) {
+            let rows = first_row..(first_row + BAND).min(height);
+            let mut first = 0;
+            while first < width {
+                // The last columns are a vector, too, where there are enough: some are gone through again.
+                let start = first.min(width.saturating_sub(L::N));
+                self.write_columns::<L, ITEMS>(l, start, rows.clone(), target);
+                first = start + L::N;
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn write_columns<L: Lanes, const ITEMS: bool>(
+        &self,
+        l: L,
+        start: usize,
+        rows: Range<usize>,
+        target: &mut Target<'_>,
+    ) {
+        let Canvas { width, stride, .. } = *self.canvas;
+        let mut columns = self.columns(l, start);
+        let count = width.min(L::N);
+        for y in rows {
+            let row = &self.natural.rows.seen[y];
+            let up = -self.view.offset(1, y as f32);
+            let mut seen = self.seen(l, &mut columns, row, up, y * stride + start);
+            if let Some(distance) = self.fog {
+                seen.word = self.in_fog(l, seen.word, seen.inverse, distance, columns.glow);
+            }
+            let mut item = l.splat_word(0);
+            if ITEMS {
+                let drawn = l.load_words(&self.canvas.items[y * stride + start..]);
+                item = l.select_words(seen.in_front, drawn, item);
+            }
+            let out = y * width + start;
+            if count == L::N {
+                self.put(l, &seen, item, target, out);
+            } else {
+                self.put_narrow(l, &seen, item, target, out..out + count);
+            }
+        }
+    }
+
+    /// Writes a vector to all images.
+    #[inline(always)]
+    fn put<L: Lanes>(&self, l: L, seen: &Seen<L>, item: L::Word, target: &mut Target<'_>, out: usize) {
+        if let Some(rgb) = &mut target.rgb {
+            l.store_rgb(seen.word, &mut rgb[3 * out..]);
+        }
+        if let Some(depth) = &mut target.depth {
+            l.store(seen.metres, &mut depth[out..]);
+        }
+        if let Some(category) = &mut target.category {
+            let label = l.and(l.shift_right(seen.word, 24), l.splat_word(!(MATERIAL >> 24)));
+            l.store_bytes(label, &mut category[out..]);
+        }
+        if let Some(class) = &mut target.class {
+            self.put_classes(l, seen.word, item, &mut class[out..]);
+        }
+        if let Some(instance) = &mut target.instance {
+            l.store_words(item, &mut instance[out..]);
+        }
+    }
+
+    #[inline(always)]
+    fn put_classes<L: Lanes>(&self, l: L, word: L::Word, item: L::Word, class: &mut [u16]) {
+        if self.labels_classes {
+            let is_item = l.has_any(word, NO_MAP);
+            let number = l.shift_right(word, MATERIAL_SHIFT);
+            l.store_halves(l.select_words(is_item, number, l.splat_word(0)), class);
+        } else if self.keeps_classes {
+            l.store_halves(item, class);
+        } else {
+            let mut items = [0; MOST_LANES];
+            l.store_words(item, &mut items);
+            for (out, item) in class[..L::N].iter_mut().zip(items) {
+                *out = (item as usize).checked_sub(1).map_or(0, |item| self.classes[item]);
+            }
+        }
+    }
+
+    /// Writes a row that is shorter than a vector.
+    #[inline(never)]
+    fn put_narrow<L: Lanes>(&self, l: L, seen: &Seen<L>, item: L::Word, target: &mut Target<'_>, row: Range<usize>) {
+        let (mut rgb, mut depth) = ([0; 3 * MOST_LANES], [0.0; MOST_LANES]);
+        let (mut category, mut class, mut instance) = ([0; MOST_LANES], [0; MOST_LANES], [0; MOST_LANES]);
+        let mut wide = Target {
+            rgb: Some(&mut rgb),
+            depth: Some(&mut depth),
+            category: Some(&mut category),
+            class: target.class.is_some().then_some(&mut class),
+            instance: Some(&mut instance),
+            ..Target::default()
+        };
+        self.put(l, seen, item, &mut wide, 0);
+        let count = row.len();
+        copy(target.rgb.as_deref_mut(), &rgb[..3 * count], 3 * row.start);
+        copy(target.depth.as_deref_mut(), &depth[..count], row.start);
+        copy(target.category.as_deref_mut(), &category[..count], row.start);
+        copy(target.class.as_deref_mut(), &class[..count], row.start);
+        copy(target.instance.as_deref_mut(), &instance[..count], row.start);
+    }
+
+    #[inline(always)]
+    fn columns<L: Lanes>(&self, l: L, start: usize) -> Columns<'_, L> {
+        let mut columns = Columns {
+            offset: l.load(&self.offsets[start..]),
+            glow: l.load_words(&self.natural.glow[start..]),
+            wall: self.natural.upright_walls(),
+            run: Run::new(l),
+        };
+        if columns.wall.is_some() {
+            // Where walls are higher than the eye, all are seen in the row at its height.
+            let pixel = self.canvas.height / 2 * self.canvas.stride + start;
+            let drawn = l.load(&self.canvas.inverse_depth[pixel..]);
+            let pixels = l.load_words(&self.canvas.pixels[pixel..]);
+            let in_front = l.above(drawn, l.splat(0.0));
+            let is_map = l.equal(l.and(pixels, l.splat_word(NO_MAP)), l.splat_word(0));
+            let material = l.and(pixels, l.splat_word(MATERIAL));
+            for number in [WALLS, WALLS + 1] {
+                let same = l.both(is_map, l.equal(material, l.splat_word(number << MATERIAL_SHIFT)));
+                let same = l.both(in_front, same);
+                if let (true, Some(patch)) = (l.bits(same) != 0, &self.natural.patches[number as usize]) {
+                    columns.run.note(l, same, patch, columns.offset, (drawn, material));
+                }
+            }
+        }
+        columns
+    }
+
+    #[inline(always)]
+    fn seen<L: Lanes>(&self, l: L, columns: &mut Columns<'_, L>, row: &Row, up: f32, pixel: usize) -> Seen<L> {
+        let all = u32::MAX >> (32 - L::N);
+        let drawn = l.load(&self.canvas.inverse_depth[pixel..]);
+        let in_front = l.above(drawn, l.splat(row.inverse));
+        let front = l.bits(in_front);
+        if front == 0 {
+            return Seen {
+                word: self.behind(l, row, columns).word,
+                inverse: l.splat(row.inverse),
+                metres: l.splat(row.metres),
+                in_front,
+            };
+        }
+        let pixels = l.load_words(&self.canvas.pixels[pixel..]);
+        let mut is_covered = l.both(in_front, l.has_any(pixels, MATERIAL));
+        if self.labels_classes {
+            let is_map = l.equal(l.and(pixels, l.splat_word(NO_MAP)), l.splat_word(0));
+            is_covered = l.both(is_covered, is_map);
+        }
+        let covered = l.bits(is_covered);
+        let material = l.and(pixels, l.splat_word(MATERIAL));
+        let on_run = l.both(is_covered, columns.run.goes_on(l, drawn, material));
+        if l.bits(on_run) != covered {
+            return self.seen_of_many(l, columns, row, up, (drawn, in_front), (pixels, is_covered));
+        }
+        let mut seen = Seen {
+            word: pixels,
+            inverse: drawn,
+            metres: columns.run.metres,
+            in_front,
+        };
+        if front != all {
+            seen.word = l.select_words(in_front, pixels, self.behind(l, row, columns).word);
+            seen.inverse = l.max(drawn, l.splat(row.inverse));
+        }
+        if let (true, Some(wall)) = (covered != 0, columns.wall) {
+            let made = l.modulate(pixels, columns.run.texel(l, wall, up));
+            seen.word = l.select_words(on_run, made, seen.word);
+        }
+        if covered == front {
+            seen.metres = l.select(in_front, seen.metres, l.splat(row.metres));
+        } else {
+            seen.metres = metres(l, seen.inverse);
+        }
+        seen
+    }
+
+    /// What a vector shows of which more is covered than walls that go on.
+    #[inline(always)]
+    fn seen_of_many<L: Lanes>(
+        &self,
+        l: L,
+        columns: &mut Columns<'_, L>,
+        row: &Row,
+        up: f32,
+        (drawn, in_front): (L::Float, L::Mask),
+        (pixels, is_covered): (L::Word, L::Mask),
+    ) -> Seen<L> {
+        let behind = self.behind(l, row, columns);
+        let material = l.and(pixels, l.splat_word(MATERIAL));
+        let mut numbers = [0; MOST_LANES];
+        l.store_words(material, &mut numbers);
+        let mut word = l.select_words(in_front, pixels, behind.word);
+        let mut inverse = l.max(drawn, l.splat(row.inverse));
+        let shade = l.splat_word(self.shade);
+        let mut left = l.bits(is_covered);
+        while left != 0 {
+            let number = numbers[left.trailing_zeros() as usize] >> MATERIAL_SHIFT;
+            let same = l.both(is_covered, l.equal(material, l.splat_word(number << MATERIAL_SHIFT)));
+            left &= !l.bits(same);
+            let made = match number {
+                BARE => {
+                    inverse = l.select(same, l.splat(row.inverse), inverse);
+                    l.modulate(behind.word, shade)
+                }
+                GROUND => l.modulate(pixels, behind.texel),
+                GROUND_IN_SHADOW => l.modulate(l.modulate(pixels, behind.texel), shade),
+                _ => match &self.natural.patches[number as usize] {
+                    Some(patch) => {
+                        if columns.wall.is_some() && number <= WALLS + 1 {
+                            columns.run.note(l, same, patch, columns.offset, (drawn, material));
+                        }
+                        l.modulate(pixels, patch.texel(l, up, columns.offset, drawn))
+                    }
+                    None => pixels,
+                },
+            };
+            word = l.select_words(same, made, word);
+        }
+        Seen {
+            word,
+            inverse,
+            metres: metres(l, inverse),
+            in_front,
+        }
+    }
+
+    #[inline(always)]
+    fn behind<L: Lanes>(&self, l: L, row: &Row, columns: &Columns<'_, L>) -> Behind<L::Word> {
+        let base = l.splat_word(row.base);
+        let neutral = l.splat_word(NEUTRAL);
+        let texels = self.natural.rows.texels(row.shows);
+        if row.shows == Shows::Sky {
+            let mut word = base;
+            if row.sunward != row.base {
+                word = l.mix(base, l.splat_word(row.sunward), columns.glow);
+            }
+            if row.side > 1 {
+                word = l.mix(word, l.splat_word(row.cloud), found(l, row, texels, columns, 1.0));
+            }
+            return Behind { word, texel: neutral };
+        }
+        if row.side <= 1 || texels.is_empty() {
+            return Behind {
+                word: base,
+                texel: neutral,
+            };
+        }
+        let mut texel = found(l, row, texels, columns, 1.0);
+        if row.detail > 0.0 {
+            texel = l.modulate(texel, found(l, row, texels, columns, row.detail));
+        }
+        Behind {
+            word: l.modulate(base, texel),
+            texel,
+        }
+    }
+
+    /// Colours turned into the fog's with distance; the sky stays.
+    #[inline(always)]
+    fn in_fog<L: Lanes>(&self, l: L, word: L::Word, inverse: L::Float, distance: f32, glow: L::Word) -> L::Word {
+        let (zero, one) = (l.splat(0.0), l.splat(1.0));
+        let reach = l.mul(inverse, l.splat(distance));
+        let share = l.div(one, l.mul_add(reach, reach, one));
+        let share = l.select(l.at_least(zero, inverse), zero, share);
+        let byte = l.truncate(l.mul_add(share, l.splat(FULL_LEVEL), l.splat(ROUNDING)));
+        let [away, toward] = self.fog_words.map(|word| l.splat_word(word));
+        let fog = l.mix(away, toward, glow);
+        l.mix(word, fog, l.three_times(byte))
+    }
+}
+
+/// A row's texels, of a tile that is so many times as fine.
+#[inline(always)]
+fn found<L: Lanes>(l: L, row: &Row, texels: &[u32], columns: &Columns<'_, L>, finer: f32) -> L::Word {
+    let mask = l.splat_word(row.side - 1);
+    let u = l.mul_add(l.splat(row.u[1] * finer), columns.offset, l.splat(row.u[0] * finer));
+    let v = l.mul_add(l.splat(row.v[1] * finer), columns.offset, l.splat(row.v[0] * finer));
+    let (u, v) = (l.and(l.truncate(u), mask), l.and(l.truncate(v), mask));
+    let place = l.or(u, l.shift_left(v, row.side.ilog2()));
+    l.gather(texels, l.or(place, l.splat_word(row.side * row.side)))
+}
+
+fn copy<T: Copy>(to: Option<&mut [T]>, from: &[T], start: usize) {
+    if let Some(to) = to {
+        to[start..start + from.len()].copy_from_slice(from);
+    }
+}

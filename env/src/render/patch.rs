@@ -1,0 +1,221 @@
+//! How texels are found from places on the screen where walls or objects are covered: which tile, which level, which texel. The
+//! patterns are in `surfaces.rs`; those of ground, ceiling and clouds are found row by row, in `rows.rs`.
+
+use driftworld_spec::Covering;
+
+use super::compose::metres;
+use super::lanes::Lanes;
+use super::surfaces::{self, SIDE};
+use super::view::View;
+
+/// Metres along a wall or an object are never so many tiles.
+const SHIFT: f32 = 4096.0;
+
+/// How much finer than a pixel texels may be, and the steepest angle that counts.
+const SHARPNESS: f32 = 1.0;
+const GRAZING: f32 = 0.06;
+
+/// What covers faces that lie in one direction: how texels are found from a place on the screen.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Patch {
+    texels: &'static [u32],
+    /// Tiles along each side: at the camera; and for each metre of depth at the picture's middle, to the right and up.
+    u: [f32; 4],
+    v: [f32; 4],
+    /// How much the faces look at the camera: at the middle, to the right and up.
+    facing: [f32; 3],
+    /// Texels to a side for a metre of 1 / depth.
+    sharpness: f32,
+}
+
+impl Patch {
+    /// Of a surface on faces of this normal, along these axes from an origin: all in the world's frame.
+    pub(super) fn new(
+        covering: Covering,
+        view: &View,
+        origin: [f32; 3],
+        axes: [[f32; 3]; 2],
+        normal: [f32; 3],
+    ) -> Option<Self> {
+        let tile = surfaces::tile(covering.surface)?;
+        let period = tile.period * covering.scale as f32;
+        let from = crate::vector::sub(view.position, origin);
+        let along = |axis: [f32; 3]| {
+            let rows = [from, view.axes.forward, view.axes.right, view.axes.up];
+            rows.map(|row| crate::vector::dot(row, axis) / period)
+        };
+        Some(Self {
+            texels: &tile.texels,
+            u: along(axes[0]),
+            v: along(axes[1]),
+            facing: [view.axes.forward, view.axes.right, view.axes.up].map(|axis| crate::vector::dot(axis, normal)),
+            sharpness: SHARPNESS * period / view.step,
+        })
+    }
+
+    /// Texels at these columns of a row so far up at 1 m, for 1 / depth.
+    #[inline(always)]
+    pub(super) fn texel<L: Lanes>(&self, l: L, up: f32, offset: L::Float, inverse: L::Float) -> L::Word {
+        let depth = depth(l, inverse);
+        let side = self.side(l, up, offset, inverse);
+        let u = part_of_tile(l, self.u, up, offset, depth, side);
+        let v = part_of_tile(l, self.v, up, offset, depth, side);
+        l.gather(self.texels, l.truncate(l.mul_add(side, l.add(side, v), u)))
+    }
+
+    /// Texels to a side of the level whose texels are about as large as a pixel.
+    #[inline(always)]
+    fn side<L: Lanes>(&self, l: L, up: f32, offset: L::Float, inverse: L::Float) -> L::Float {
+        let (zero, one) = (l.splat(0.0), l.splat(1.0));
+        let [middle, right, above] = self.facing;
+        let facing = l.mul_add(l.splat(right), offset, l.splat(middle + up * above));
+        let facing = l.max(l.max(facing, l.sub(zero, facing)), l.splat(GRAZING));
+        let side = l.mul(l.mul(inverse, facing), l.splat(self.sharpness));
+        l.power_of_two(l.min(l.max(side, one), l.splat(SIDE as f32)))
+    }
+
+    /// Whether each column of a picture shows it along the tile's v alone: an upright face before a level camera.
+    pub(super) fn is_upright(&self) -> bool {
+        [self.u[3], self.v[1], self.v[2], self.facing[2]] == [0.0; 4]
+    }
+}
+
+#[inline(always)]
+fn depth<L: Lanes>(l: L, inverse: L::Float) -> L::Float {
+    l.div(l.splat(1.0), l.max(inverse, l.splat(1e-4)))
+}
+
+/// The number of a texel along a side of a tile of so many.
+#[inline(always)]
+fn part_of_tile<L: Lanes>(
+    l: L,
+    [at, ahead, right, above]: [f32; 4],
+    up: f32,
+    offset: L::Float,
+    depth: L::Float,
+    side: L::Float,
+) -> L::Float {
+    let slope = l.mul_add(l.splat(right), offset, l.splat(ahead + up * above));
+    texel_of(l, l.mul_add(depth, slope, l.splat(at + SHIFT)), side)
+}
+
+#[inline(always)]
+fn texel_of<L: Lanes>(l: L, tiles: L::Float, side: L::Float) -> L::Float {
+    let part = l.sub(tiles, l.float(l.truncate(tiles)));
+    l.float(l.truncate(l.mul(part, side)))
+}
+
+/// What columns show of walls all the way down: as long as neither 1 / depth nor what covers it changes, level and column of
+/// texels stay as well.
+#[derive(Clone, Copy)]
+pub(super) struct Run<L: Lanes> {
+    /// 1 / depth; below 0 where nothing is known.
+    inverse: L::Float,
+    /// The bits of a packed pixel that say what covers it.
+    material: L::Word,
+    /// Metres for the image of depths, and in formulas.
+    pub(super) metres: L::Float,
+    depth: L::Float,
+    side: L::Float,
+    /// The first texel of the column.
+    first: L::Float,
+}
+
+impl<L: Lanes> Run<L> {
+    #[inline(always)]
+    pub(super) fn new(l: L) -> Self {
+        Self {
+            inverse: l.splat(-1.0),
+            material: l.splat_word(0),
+            metres: l.splat(0.0),
+            depth: l.splat(0.0),
+            side: l.splat(1.0),
+            first: l.splat(1.0),
+        }
+    }
+
+    /// Where columns show what they are known to show.
+    #[inline(always)]
+    pub(super) fn goes_on(&self, l: L, inverse: L::Float, material: L::Word) -> L::Mask {
+        l.both(l.same(inverse, self.inverse), l.equal(material, self.material))
+    }
+
+    /// Notes what these columns show; the patch is an upright one.
+    #[inline(always)]
+    pub(super) fn note(
+        &mut self,
+        l: L,
+        columns: L::Mask,
+        patch: &Patch,
+        offset: L::Float,
+        (inverse, material): (L::Float, L::Word),
+    ) {
+        let depth = depth(l, inverse);
+        let side = patch.side(l, 0.0, offset, inverse);
+        let u = part_of_tile(l, patch.u, 0.0, offset, depth, side);
+        self.inverse = l.select(columns, inverse, self.inverse);
+        self.material = l.select_words(columns, material, self.material);
+        self.metres = l.select(columns, metres(l, inverse), self.metres);
+        self.depth = l.select(columns, depth, self.depth);
+        self.side = l.select(columns, side, self.side);
+        self.first = l.select(columns, l.mul_add(side, side, u), self.first);
+    }
+
+    /// Texels of a row so far up at 1 m, of the tile of an upright patch: the same as [`Patch::texel`] finds.
+    #[inline(always)]
+    pub(super) fn texel(&self, l: L, patch: &Patch, up: f32) -> L::Word {
+        let [at, _, _, above] = patch.v;
+        let tiles = l.mul_add(self.depth, l.splat(up * above), l.splat(at + SHIFT));
+        let v = texel_of(l, tiles, self.side);
+        l.gather(patch.texels, l.truncate(l.mul_add(self.side, v, self.first)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use driftworld_spec::Surface;
+    use proptest::prelude::*;
+
+    use super::super::lanes::Portable;
+    use super::*;
+    use crate::camera::Camera;
+
+    proptest! {
+        /// A run is a shorter way to the same texels, and says which columns it does not know.
+        #[test]
+        fn a_run_finds_the_texels_of_its_patch(
+            (at, heading, eye) in (prop::array::uniform2(-50.0_f32..50.0), 0.0_f32..360.0, 0.1_f32..3.0),
+            distances in prop::array::uniform4(0.05_f32..90.0),
+            (first, rows) in (0_usize..80, prop::collection::vec(0..84_u16, 1..8)),
+        ) {
+            let view = View::new(&Camera::first_person(at, heading, eye, 60.0), 84, 84);
+            let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
+            let patch = Patch::new(Covering::of(Surface::Brick), &view, [0.0; 3], [y, z], x).expect("bricks have a tile");
+            prop_assert!(patch.is_upright());
+            let l = Portable;
+            let offset: [f32; 4] = std::array::from_fn(|k| view.offset(0, (first + k) as f32));
+            let inverse = distances.map(|metres| 1.0 / metres);
+            let material = [4 << 27; 4];
+            let mut run = Run::new(l);
+            run.note(l, [true, true, true, false], &patch, offset, (inverse, material));
+            prop_assert_eq!(run.goes_on(l, inverse, material), [true, true, true, false]);
+            prop_assert_eq!(run.goes_on(l, inverse.map(|inverse| inverse * 1.01), material), [false; 4]);
+            prop_assert_eq!(run.goes_on(l, inverse, [5 << 27; 4]), [false; 4]);
+            for row in rows {
+                let up = -view.offset(1, f32::from(row));
+                let (found, expected) = (run.texel(l, &patch, up), patch.texel(l, up, offset, inverse));
+                prop_assert_eq!(found[..3].to_vec(), expected[..3].to_vec());
+            }
+            prop_assert_eq!(run.metres[..3].to_vec(), metres(l, inverse)[..3].to_vec());
+        }
+
+        /// A camera that looks up or down sees no wall column by column.
+        #[test]
+        fn only_a_level_camera_sees_upright_patches(heading in 0.0_f32..360.0, pitch in prop_oneof![1.0_f32..80.0, -80.0_f32..-1.0]) {
+            let camera = Camera { pitch_deg: pitch, ..Camera::first_person([0.0; 2], heading, 1.0, 60.0) };
+            let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
+            let patch = Patch::new(Covering::of(Surface::Brick), &View::new(&camera, 84, 84), [0.0; 3], [x, z], y);
+            prop_assert!(!patch.expect("bricks have a tile").is_upright());
+        }
+    }
+}
