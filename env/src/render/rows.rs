@@ -112,24 +112,21 @@ impl Rows {
                 daylight
             }
         };
-        self.seen.clear();
         let axes = &view.axes;
-        for look in &self.looks {
-            let mut row = look.row;
-            if row.side > 1 {
-                let is_sky = row.shows == Shows::Sky;
+        for (look, row) in self.looks.iter().zip(&mut self.seen) {
+            if look.row.side > 1 {
+                let is_sky = look.row.shows == Shows::Sky;
+                let side = look.row.side as f32;
                 let place = |axis: usize| {
                     let from = if is_sky { 0.0 } else { view.position[axis] };
                     let ahead = axes.forward[axis] + look.offset * axes.up[axis];
                     let at = (from + ahead * look.metres) * look.density;
                     // Numbers of texels stay small, so that they are exact.
-                    let side = row.side as f32;
                     let turns = (at / side) as i32 as f32;
                     [at - turns * side + SHIFT, axes.right[axis] * look.metres * look.density]
                 };
                 (row.u, row.v) = (place(0), place(1));
             }
-            self.seen.push(row);
         }
         daylight
     }
@@ -184,6 +181,8 @@ impl Rows {
             };
             self.looks.push(look);
         }
+        self.seen.clear();
+        self.seen.extend(self.looks.iter().map(|look| look.row));
     }
 }
 
