@@ -13,14 +13,14 @@ use super::patch::Patch;
 use super::raster::{Shading, dot, draw_block};
 use super::rows::{Rows, packed};
 use super::shade::{FULL_LEVEL, ROUNDING};
-use super::shadows::{Cast, ShadowParams};
+use super::shadows::{self, Cast, ShadowParams};
 use super::target::Target;
 use super::view::{NEAR, Placement, Pose, View};
 use super::visibility::{Drawable, Visible, find, level, sort_arena_last};
 use crate::assets::{BLOCK, Material, Paint};
 use crate::camera::Camera;
 use crate::looks::NaturalLooks;
-use crate::scene::{ARENA_WALLS, Item, PanelGroup, Scene};
+use crate::scene::{Item, PanelGroup, Scene};
 
 /// Where in a packed pixel the number of what covers it stands, above its category; 0 is nothing.
 pub(super) const MATERIAL_SHIFT: u32 = 27;
@@ -38,8 +38,8 @@ pub(super) const GROUND_IN_SHADOW: u32 = GROUND + 1;
 /// Walls that face along x; the next number is those along y.
 pub(super) const WALLS: u32 = 4;
 /// Three for each object that is covered: its faces along x, y and z.
-const OBJECTS: u32 = 6;
-const MATERIALS: u32 = 32;
+pub(super) const OBJECTS: u32 = 6;
+pub(super) const MATERIALS: u32 = 32;
 
 /// What the style keeps from picture to picture.
 #[derive(Clone, Debug, Default)]
@@ -166,7 +166,7 @@ impl CpuRenderer {
             labels_classes: !ITEMS && target.class.is_some(),
         };
         self.canvas.clear(width, height, ITEMS);
-        self.natural.cover_walls(&picture);
+        self.natural.cover_walls(looks, &view);
         let mut order = std::mem::take(&mut self.order);
         find(scene, &view, false, &mut order);
         sort_arena_last(&mut order);
@@ -187,9 +187,7 @@ impl CpuRenderer {
             }
         }
         self.order = order;
-        if looks.has_shadows {
-            self.draw_shadows::<L, ITEMS>(lanes, &picture);
-        }
+        self.draw_shadows::<L, ITEMS>(lanes, &picture);
         self.measure_columns(&view, width);
         self.natural.measure_glow(lanes, &picture, &self.offsets);
         self.classes.clear();
@@ -202,12 +200,8 @@ impl CpuRenderer {
             view,
             offsets: &self.offsets,
             fog: scene.light.fog_distance,
-            fog_words: [daylight.horizon, fog_towards_sun(&daylight)].map(|levels| packed(levels, 0)),
-            shade: if looks.ceiling.is_some() {
-                BELOW_THINGS
-            } else {
-                daylight.shade()
-            },
+            fog_words: fog_words(&daylight),
+            shade: shade(looks, &daylight),
             keeps_classes: picture.keeps_classes,
             labels_classes: picture.labels_classes,
             classes: &self.classes,
@@ -287,65 +281,62 @@ impl CpuRenderer {
             daylight,
             ..
         } = picture;
-        let is_inside = looks.ceiling.is_some();
-        let cast = if is_inside {
-            Some(Cast::below())
-        } else {
-            Cast::of_sun(daylight.direction)
-        };
-        let Some(cast) = cast.filter(|_| view.position[2] > 0.0) else {
+        let Some(cast) = Cast::of(looks, daylight, view) else {
             return;
         };
-        for item in scene.items.iter().filter(|item| item.visible) {
-            let (radius, height) = (item.asset.radius * item.scale, item.asset.height * item.scale);
-            let (middle, reach) = cast.ball(item.position, radius, height);
-            let Some(nearest) = self.shadow_is_seen(middle, reach, view) else {
-                continue;
-            };
-            let at = cast.placement(view, &Pose::of(item));
+        let mut found = std::mem::take(&mut self.order);
+        let hidden = self.hides.then_some(&self.hidden);
+        shadows::find(scene, looks, &cast, view, hidden, &mut found);
+        for &shadow in &found {
             let params = ShadowParams {
-                may_be_cut: nearest < NEAR,
+                may_be_cut: shadow.nearest < NEAR,
             };
-            let pixels_per_metre = view.scale * item.scale / nearest.max(NEAR);
-            for material in item.asset.level(SHADOW_TOLERANCE / pixels_per_metre) {
-                for block in &material.blocks {
-                    draw_block::<L, ITEMS, _>(lanes, &mut self.canvas, block, &at, &params);
+            match shadow.drawable {
+                Drawable::Item(index) => {
+                    let item = &scene.items[index as usize];
+                    let at = cast.placement(view, &Pose::of(item));
+                    for block in shadows::level(item, shadow, view)
+                        .iter()
+                        .flat_map(|material| &material.blocks)
+                    {
+                        draw_block::<L, ITEMS, _>(lanes, &mut self.canvas, block, &at, &params);
+                    }
+                }
+                Drawable::Panels(index) => {
+                    let at = cast.placement(view, &Pose::WORLD);
+                    for block in &scene.panels()[index as usize].blocks {
+                        draw_block::<L, ITEMS, _>(lanes, &mut self.canvas, block, &at, &params);
+                    }
                 }
             }
         }
-        for group in scene.panels().iter().skip(ARENA_WALLS).filter(|_| !is_inside) {
-            if group.edges.is_empty() {
-                continue;
-            }
-            let [x, y, _] = group.middle;
-            let (middle, reach) = cast.ball([x, y], group.radius, group.height);
-            let Some(nearest) = self.shadow_is_seen(middle, reach, view) else {
-                continue;
-            };
-            let at = cast.placement(view, &Pose::WORLD);
-            let params = ShadowParams {
-                may_be_cut: nearest < NEAR,
-            };
-            for block in &group.blocks {
-                draw_block::<L, ITEMS, _>(lanes, &mut self.canvas, block, &at, &params);
-            }
-        }
-    }
-
-    /// Depth of the nearest point of a ball that holds a shadow, if any of it may be seen.
-    fn shadow_is_seen(&self, middle: [f32; 3], reach: f32, view: &View) -> Option<f32> {
-        let there = view.view_from_world(middle);
-        let is_hidden = || self.hides && self.hidden.hides_ball(middle, reach, 0.0, view);
-        let is_seen = view.sees(there, reach) && !Cast::is_too_flat(view, there[2], reach) && !is_hidden();
-        is_seen.then_some(there[2] - reach)
+        self.order = found;
     }
 }
 
-/// Largest error of a simplified mesh that casts a shadow, in pixels.
-const SHADOW_TOLERANCE: f32 = 2.5;
-
 /// What is left of light on the ground right below things under a ceiling.
 const BELOW_THINGS: u32 = 0x8062_6262;
+
+/// What shadow leaves of the ground's light, as a texel.
+pub(super) fn shade(looks: &NaturalLooks, daylight: &Daylight) -> u32 {
+    if looks.ceiling.is_some() {
+        BELOW_THINGS
+    } else {
+        daylight.shade()
+    }
+}
+
+/// Colours of the fog away from the sun and towards it, packed.
+pub(super) fn fog_words(daylight: &Daylight) -> [u32; 2] {
+    [daylight.horizon, fog_towards_sun(daylight)].map(|levels| packed(levels, 0))
+}
+
+/// Where over the ground the sky glows, length 1; nowhere under a ceiling or with the sun overhead.
+pub(super) fn glow_towards(looks: &NaturalLooks, daylight: &Daylight) -> Option<[f32; 2]> {
+    let [x, y, _] = daylight.direction;
+    let length = (x * x + y * y).sqrt();
+    (length >= 0.05 && looks.ceiling.is_none()).then(|| [x / length, y / length])
+}
 
 fn color_of(item: &Item, material: &Material) -> [f32; 3] {
     match material.paint {
@@ -360,9 +351,9 @@ fn fog_towards_sun(daylight: &Daylight) -> [f32; 3] {
 
 impl Natural {
     /// Forgets what covered objects, and finds what covers walls.
-    fn cover_walls(&mut self, picture: &Picture<'_>) {
+    pub(super) fn cover_walls(&mut self, looks: &NaturalLooks, view: &View) {
         let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
-        let wall = |axis, normal| Patch::new(picture.looks.walls, &picture.view, [0.0; 3], [axis, z], normal);
+        let wall = |axis, normal| Patch::new(looks.walls, view, [0.0; 3], [axis, z], normal);
         self.patches.clear();
         self.patches.resize(WALLS as usize, None);
         self.patches.extend([wall(y, x), wall(x, y)]);
@@ -377,7 +368,7 @@ impl Natural {
     }
 
     /// The numbers of what covers an object; of nothing if it is plain, or if there are no numbers left.
-    fn cover_item(&mut self, item: &Item, view: &View) -> [u32; 3] {
+    pub(super) fn cover_item(&mut self, item: &Item, view: &View) -> [u32; 3] {
         let first = self.patches.len() as u32;
         if item.surface == Surface::Plain || first + 3 > MATERIALS {
             return [0; 3];
@@ -399,13 +390,10 @@ impl Natural {
     fn measure_glow<L: Lanes>(&mut self, l: L, picture: &Picture<'_>, offsets: &[f32]) {
         self.glow.clear();
         self.glow.resize(offsets.len(), 0);
-        let [x, y, _] = picture.daylight.direction;
-        let length = (x * x + y * y).sqrt();
-        if length < 0.05 || picture.looks.ceiling.is_some() {
+        let Some(sun) = glow_towards(picture.looks, &picture.daylight) else {
             return;
-        }
+        };
         let axes = &picture.view.axes;
-        let sun = [x / length, y / length];
         let (half, one) = (l.splat(0.5), l.splat(1.0));
         for first in (0..offsets.len()).step_by(L::N) {
             let offset = l.load(&offsets[first..]);

@@ -9,23 +9,23 @@ use super::surfaces::{self, SIDE};
 use super::view::View;
 
 /// Metres along a wall or an object are never so many tiles.
-const SHIFT: f32 = 4096.0;
+pub(super) const SHIFT: f32 = 4096.0;
 
 /// How much finer than a pixel texels may be, and the steepest angle that counts.
 const SHARPNESS: f32 = 1.0;
-const GRAZING: f32 = 0.06;
+pub(super) const GRAZING: f32 = 0.06;
 
 /// What covers faces that lie in one direction: how texels are found from a place on the screen.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Patch {
     texels: &'static [u32],
     /// Tiles along each side: at the camera; and for each metre of depth at the picture's middle, to the right and up.
-    u: [f32; 4],
-    v: [f32; 4],
+    pub(super) u: [f32; 4],
+    pub(super) v: [f32; 4],
     /// How much the faces look at the camera: at the middle, to the right and up.
-    facing: [f32; 3],
+    pub(super) facing: [f32; 3],
     /// Texels to a side for a metre of 1 / depth.
-    sharpness: f32,
+    pub(super) sharpness: f32,
 }
 
 impl Patch {

@@ -2,6 +2,8 @@
 //! ceiling are planes: a row of a picture, whose camera never tilts to a side, is equally far away all along, so that its
 //! texels follow each other evenly and are of one level. Objects are laid over it in `natural.rs`.
 
+use driftworld_spec::Surface;
+
 use super::daylight::Daylight;
 use super::frame::{CATEGORY_MAP, CATEGORY_SKY, FAR_DEPTH};
 use super::shade::{FULL_LEVEL, ROUNDING};
@@ -18,6 +20,9 @@ const SHARPNESS: f32 = 1.25;
 
 /// A layer of clouds: metres above the eye, metres to a side of its tile, and from which rise on it is seen in full.
 const CLOUDS: [f32; 3] = [40.0, 150.0, 0.22];
+
+/// What covers the ceiling.
+pub(super) const CEILING: Surface = Surface::Tile;
 
 /// How high fog reaches above the eye, in metres.
 const FOG_HEIGHT: f32 = 30.0;
@@ -143,7 +148,7 @@ impl Rows {
 
     fn paint(&mut self, key: &Key, daylight: &Daylight) {
         self.ground = surfaces::tile(key.looks.ground.surface);
-        self.ceiling = surfaces::tile(driftworld_spec::Surface::Tile);
+        self.ceiling = surfaces::tile(CEILING);
         self.looks.clear();
         let rows = key.size[1] as usize;
         for y in 0..rows {

@@ -2,11 +2,16 @@
 //! much darker it is there is `daylight.rs`'s to say. Nothing else gets shadows.
 
 use super::canvas::{Canvas, Triangle};
+use super::daylight::Daylight;
+use super::hidden::Hidden;
 use super::lanes::Lanes;
 use super::natural::{BARE, GROUND, MATERIAL, MATERIAL_SHIFT, NO_MAP};
 use super::raster::Shading;
-use super::view::{Placement, Pose, View};
-use crate::assets::BLOCK;
+use super::view::{NEAR, Placement, Pose, View};
+use super::visibility::{Drawable, Visible};
+use crate::assets::{BLOCK, Material};
+use crate::looks::NaturalLooks;
+use crate::scene::{ARENA_WALLS, Item, Scene};
 
 /// How far above the ground shadows are drawn, as a share of the camera's height: more than zones are.
 const LIFT: f32 = 2e-3;
@@ -17,16 +22,30 @@ const LONGEST: f32 = 2.5;
 /// How many times as wide as a thing the dark below it is where light comes from everywhere.
 const SPREAD: f32 = 1.2;
 
+/// Largest error of a simplified mesh that casts a shadow, in pixels.
+const TOLERANCE: f32 = 2.5;
+
 /// Where shadows fall: against this direction, of height 1.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cast {
-    pub(super) toward: [f32; 3],
+    toward: [f32; 3],
     spread: f32,
 }
 
 impl Cast {
+    /// The shadows of a picture, if there are any.
+    pub(super) fn of(looks: &NaturalLooks, daylight: &Daylight, view: &View) -> Option<Self> {
+        if !looks.has_shadows || view.position[2] <= 0.0 {
+            return None;
+        }
+        match looks.ceiling {
+            Some(_) => Some(Self::below()),
+            None => Self::of_sun(daylight.direction),
+        }
+    }
+
     /// The shadows of a sun in this direction; none if it is too low.
-    pub(super) fn of_sun([x, y, z]: [f32; 3]) -> Option<Self> {
+    fn of_sun([x, y, z]: [f32; 3]) -> Option<Self> {
         if z < 0.02 {
             return None;
         }
@@ -39,7 +58,7 @@ impl Cast {
     }
 
     /// The dark right below things, where light comes from everywhere.
-    pub(super) fn below() -> Self {
+    fn below() -> Self {
         Self {
             toward: [0.0, 0.0, 1.0],
             spread: SPREAD,
@@ -47,14 +66,14 @@ impl Cast {
     }
 
     /// A ball around the shadow of a thing that stands in the middle of a circle.
-    pub(super) fn ball(&self, [x, y]: [f32; 2], radius: f32, height: f32) -> ([f32; 3], f32) {
+    fn ball(&self, [x, y]: [f32; 2], radius: f32, height: f32) -> ([f32; 3], f32) {
         let away = [self.toward[0], self.toward[1]].map(|part| part * height / 2.0);
         let length = (away[0] * away[0] + away[1] * away[1]).sqrt();
         ([x - away[0], y - away[1], 0.0], radius * self.spread + length)
     }
 
     /// Whether a shadow is too flat to be seen: less than a pixel high.
-    pub(super) fn is_too_flat(view: &View, depth: f32, radius: f32) -> bool {
+    fn is_too_flat(view: &View, depth: f32, radius: f32) -> bool {
         depth > radius && 2.0 * radius * view.position[2].abs() * view.scale < 1.2 * depth * depth
     }
 
@@ -71,6 +90,50 @@ impl Cast {
         }
         at
     }
+}
+
+/// Finds what casts shadows that may be seen: things, and under the sky the walls within the arena. Without `hidden`, what
+/// walls hide is found, too. How near each is, is how near its shadow is.
+pub(super) fn find(
+    scene: &Scene,
+    looks: &NaturalLooks,
+    cast: &Cast,
+    view: &View,
+    hidden: Option<&Hidden>,
+    found: &mut Vec<Visible>,
+) {
+    found.clear();
+    let mut note = |(middle, reach): ([f32; 3], f32), drawable: Drawable| {
+        let there = view.view_from_world(middle);
+        let is_hidden = || hidden.is_some_and(|hidden| hidden.hides_ball(middle, reach, 0.0, view));
+        if view.sees(there, reach) && !Cast::is_too_flat(view, there[2], reach) && !is_hidden() {
+            found.push(Visible {
+                nearest: there[2] - reach,
+                drawable,
+            });
+        }
+    };
+    for (index, item) in (0..).zip(&scene.items) {
+        if item.visible {
+            let (radius, height) = (item.asset.radius * item.scale, item.asset.height * item.scale);
+            note(cast.ball(item.position, radius, height), Drawable::Item(index));
+        }
+    }
+    if looks.ceiling.is_some() {
+        return;
+    }
+    for (index, group) in (0..).zip(scene.panels()).skip(ARENA_WALLS) {
+        if !group.edges.is_empty() {
+            let [x, y, _] = group.middle;
+            note(cast.ball([x, y], group.radius, group.height), Drawable::Panels(index));
+        }
+    }
+}
+
+/// The mesh of an item that is fine enough for its shadow.
+pub(super) fn level<'a>(item: &'a Item, shadow: Visible, view: &View) -> &'a [Material] {
+    let pixels_per_metre = view.scale * item.scale / shadow.nearest.max(NEAR);
+    item.asset.level(TOLERANCE / pixels_per_metre)
 }
 
 /// What all triangles of a shadow share.
