@@ -6,32 +6,18 @@
 #![cfg(feature = "gpu")]
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 
-use std::io::Write as _;
+mod likeness;
+mod natural;
+
 use std::path::Path;
 use std::sync::Arc;
 
+use crate::likeness::{gpu, likeness, share, write_difference};
 use driftworld_env::{
-    Action, Autoreset, Batch, BatchOptions, Camera, CpuRenderer, EnvError, Environment, Episode, Frame, GpuChoice,
-    GpuRenderer, Images, Picture, RendererKind, RendererReport, Scene, Target,
+    Action, Autoreset, Batch, BatchOptions, Camera, CpuRenderer, EnvError, Environment, Episode, Frame, Images,
+    Picture, RendererKind, RendererReport, Scene, Target,
 };
 use driftworld_spec::{Color, Modality, Object, Portable, Wall, World, WorldDraft, Zone, ZoneEnd};
-
-/// A renderer on this machine's adapter, if there is one.
-fn gpu() -> Option<GpuRenderer> {
-    match GpuRenderer::new(GpuChoice::Any) {
-        Ok(renderer) => Some(renderer),
-        Err(error)
-            if std::env::var_os("DRIFTWORLD_REQUIRE_GPU").is_some_and(|value| value != "0" && !value.is_empty()) =>
-        {
-            panic!("DRIFTWORLD_REQUIRE_GPU=1: {error}")
-        }
-        Err(error) => {
-            // Not by println, which the test harness keeps to itself where tests pass.
-            let _ = writeln!(std::io::stderr(), "skipped: {error}");
-            None
-        }
-    }
-}
 
 fn world(file: &str) -> World {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(file);
@@ -103,67 +89,6 @@ fn cameras(world: &World, scene: &Scene) -> Vec<Camera> {
     });
     cameras.push(Camera::overview(scene));
     cameras
-}
-
-/// How much of two pictures is alike.
-#[derive(Debug)]
-struct Likeness {
-    colors: f64,
-    classes: f64,
-    instances: f64,
-    categories: f64,
-    depths: f64,
-}
-
-fn share(count: usize, of: usize) -> f64 {
-    if of == 0 { 1.0 } else { count as f64 / of as f64 }
-}
-
-fn likeness(found: &Frame, expected: &Frame) -> Likeness {
-    let pixels = expected.depth.len();
-    let same = |alike: &dyn Fn(usize) -> bool| share((0..pixels).filter(|&pixel| alike(pixel)).count(), pixels);
-    let smooth: Vec<usize> = (0..pixels).filter(|&pixel| !is_silhouette(expected, pixel)).collect();
-    let near = |&&pixel: &&usize| (found.depth[pixel] - expected.depth[pixel]).abs() <= 0.01 * expected.depth[pixel];
-    Likeness {
-        colors: same(&|pixel| (3 * pixel..3 * pixel + 3).all(|byte| found.rgb[byte].abs_diff(expected.rgb[byte]) <= 3)),
-        classes: same(&|pixel| found.class[pixel] == expected.class[pixel]),
-        instances: same(&|pixel| found.instance[pixel] == expected.instance[pixel]),
-        categories: same(&|pixel| found.category[pixel] == expected.category[pixel]),
-        depths: share(smooth.iter().filter(near).count(), smooth.len()),
-    }
-}
-
-/// Whether depth changes by more than 3 % between a pixel and one beside it.
-fn is_silhouette(frame: &Frame, pixel: usize) -> bool {
-    let (width, height) = (frame.width as usize, frame.height as usize);
-    let (x, y) = (pixel % width, pixel / width);
-    let depth = frame.depth[pixel];
-    let around = |at: usize, most: usize| at.saturating_sub(1)..=(at + 1).min(most - 1);
-    around(y, height).any(|y| {
-        around(x, width).any(|x| {
-            let other = frame.depth[y * width + x];
-            (other - depth).abs() > 0.03 * depth.min(other)
-        })
-    })
-}
-
-/// Writes a picture, the other, and where they differ, beside each other: for looking at after a failure.
-fn write_difference(name: &str, found: &Frame, expected: &Frame) -> std::path::PathBuf {
-    let (width, height) = (expected.width as usize, expected.height as usize);
-    let mut rgb = Vec::with_capacity(9 * width * height);
-    for y in 0..height {
-        let row = 3 * width * y..3 * width * (y + 1);
-        rgb.extend(&found.rgb[row.clone()]);
-        rgb.extend(&expected.rgb[row.clone()]);
-        rgb.extend(row.map(|byte| found.rgb[byte].abs_diff(expected.rgb[byte]).saturating_mul(20)));
-    }
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.png"));
-    let file = std::fs::File::create(&path).expect("cargo made the folder");
-    let mut encoder = png::Encoder::new(file, 3 * width as u32, height as u32);
-    encoder.set_color(png::ColorType::Rgb);
-    let mut writer = encoder.write_header().expect("a header");
-    writer.write_image_data(&rgb).expect("as many pixels as said");
-    path
 }
 
 fn check_likeness(size: u32) {
