@@ -59,10 +59,48 @@ fn a_grid_of_minigrid_has_its_rooms_and_things() {
         .iter()
         .filter_map(|object| object.tag.as_deref())
         .collect();
-    assert_eq!(tags, ["key", "goal", "lava", "ball"]);
+    assert_eq!(tags, ["yellow_key", "goal", "lava", "ball", "door"]);
+    assert_eq!(world.agent_params.carry_limit, 1);
     let said: Vec<String> = warnings.iter().map(ToString::to_string).collect();
     insta::assert_snapshot!(said.join("\n"));
     World::from_json("again", &world.to_json()).unwrap();
+}
+
+/// Across their doorways, with the key of their colour.
+#[test]
+fn doors_of_minigrid_stand_in_their_doorways() {
+    let grid = "WGWGWGWGWG\nWG>>DRKBWG\nWGLBWGWGWG\nWG__WGGGWG\nWG      WG\nWGWGWGWGWG\n";
+    let (world, warnings) = World::from_minigrid_text("grid.txt", grid).unwrap();
+    assert!(warnings.is_empty(), "{warnings:?}");
+    let doors = world.objects.iter().filter_map(|object| {
+        let door = object.door.as_ref()?;
+        let cell = object.coordinates.map(|metres| (metres / 2.0).floor());
+        Some((cell, object.heading % 180.0, object.scale, door.open, door.key.clone()))
+    });
+    let blue = Some("blue_key".to_owned());
+    assert_eq!(
+        doors.collect::<Vec<_>>(),
+        [
+            ([0.0, 1.0], 90.0, 2.0, false, None),
+            ([-1.0, 0.0], 0.0, 2.0, false, blue.clone()),
+            ([-1.0, -1.0], 0.0, 2.0, true, None),
+        ]
+    );
+    let key = world.objects.iter().find(|object| object.portable.is_some()).unwrap();
+    assert_eq!((key.class.as_str(), &key.tag), ("key", &blue));
+}
+
+#[test]
+fn what_is_not_known_is_said_once() {
+    let (_, warnings) = World::from_dmlab_text("level.txt", "#####\n#P.G#\n#####\n").unwrap();
+    let said: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+    assert_eq!(
+        said,
+        [
+            "level.txt:1:1 (/environment_params/layout/text): the letter '#' is not known (12 of it, this one first); it is read as floor",
+            "level.txt:2:3 (/environment_params/layout/text): the letter '.' is not known; it is read as floor",
+        ]
+    );
 }
 
 #[test]
@@ -84,9 +122,13 @@ proptest! {
         };
         let plan = world.plan().unwrap();
         let count = |letter: char| text.chars().filter(|other| *other == letter).count();
-        prop_assert_eq!(world.objects.len(), count('G') + count('A'));
+        prop_assert_eq!(world.objects.len(), "GAIH".chars().map(count).sum::<usize>());
         for object in &world.objects {
             let cell = plan.cell_at(object.coordinates).map(|cell| plan.cells[cell]);
+            if object.door.is_some() {
+                prop_assert!(matches!(cell.and_then(|cell| cell.letter), Some('I' | 'H')));
+                continue;
+            }
             let letter = if object.tag.as_deref() == Some("goal") { 'G' } else { 'A' };
             prop_assert_eq!(cell.and_then(|cell| cell.letter), Some(letter));
         }

@@ -2,8 +2,8 @@
 //! says how rooms look.
 
 use super::{FLOOR, Reader, pays, thing};
-use crate::layout::Legend;
 use crate::warning::Warning;
+use crate::world::{Door, Stimulus};
 use crate::{SpecError, World};
 
 /// Side of a cell in metres: 100 of the original's units, of which 32 are a metre.
@@ -13,7 +13,7 @@ impl World {
     /// Reads the entity layer of a text level of DeepMind Lab; `name` is what warnings call it.
     ///
     /// `*` is a wall, `P` where an agent may start, `G` a goal of 10 points that ends the episode, `A` an apple of 1 point,
-    /// `I` and `H` doors, which are doorways without doors here. Cells are 3.125 m wide, as they are there. A letter that is
+    /// `I` and `H` doors, which open when the agent comes to them. Cells are 3.125 m wide, as they are there. A letter that is
     /// not known is floor. Behind an empty line a variations layer may follow, which is left out. A warning says what was left
     /// out, changed or chosen.
     ///
@@ -81,19 +81,19 @@ impl Reader<'_> {
                 self.put(letter, apple, at);
             }
             'I' | 'H' => {
-                if !self.legend.contains_key(&letter.to_string()) {
-                    self.warn(
-                        place,
-                        format!("the door {letter:?} is a doorway without a door, and so are all like it"),
-                    );
-                }
-                self.legend.insert(letter.to_string(), Legend::Doorway);
+                let opens_on = vec![Stimulus::AgentCollide];
+                self.put_door(
+                    letter,
+                    Door {
+                        opens_on,
+                        ..Door::default()
+                    },
+                    None,
+                    at,
+                );
             }
             _ => {
-                self.warn(
-                    place,
-                    format!("the letter {letter:?} is not known; it is read as floor"),
-                );
+                self.do_not_know(format!("the letter {letter:?}"), place);
                 return false;
             }
         }

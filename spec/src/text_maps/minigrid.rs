@@ -1,8 +1,8 @@
 //! MiniGrid's grids as text: two characters for each cell, what is there and its colour, as `str(env)` prints them.
 
 use super::{FLOOR, Reader, pays, thing};
-use crate::layout::Legend;
 use crate::warning::Warning;
+use crate::world::{Door, Object, Portable, Stimulus};
 use crate::{SpecError, World};
 
 /// Side of a cell in metres.
@@ -12,8 +12,8 @@ impl World {
     /// Reads a grid of MiniGrid as `str(env)` prints it; `name` is what warnings call it.
     ///
     /// Each cell has two characters. `W` is a wall, `F` and two spaces are floor, `G` a goal of 1 point that ends the episode,
-    /// `V` lava, which ends it as a failure, `K` a key, `A` a ball, `B` a box; the second character is the colour. `D`, `L` and
-    /// `__` are doors, which are doorways without doors here. `>>`, `VV`, `<<` and `^^` is the agent. Cells are 2 m wide.
+    /// `V` lava, which ends it as a failure, `K` a key, `A` a ball, `B` a box, of which the agent carries one at a time; the second
+    /// character is the colour. `D` is a closed door, `L` one that a key of its colour unlocks, `__` an open one. `>>`, `VV`, `<<` and `^^` is the agent. Cells are 2 m wide.
     /// What is not known is floor; a warning says what was left out, changed or chosen.
     ///
     /// # Errors
@@ -57,6 +57,14 @@ fn color(letter: char) -> Option<&'static str> {
     })
 }
 
+/// The same, which an interaction picks up.
+fn carried(object: Object) -> Object {
+    Object {
+        portable: Some(Portable::default()),
+        ..object
+    }
+}
+
 impl Reader<'_> {
     /// The letter of the layout for a pair of characters, with what stands there.
     fn pair(&mut self, pair: [char; 2], at: [usize; 2], place: [usize; 2]) -> char {
@@ -76,33 +84,44 @@ impl Reader<'_> {
         };
         match pair[0] {
             'W' => '#',
-            '_' => self.doorway(place, "an open door"),
+            '_' => self.toggled(
+                Door {
+                    open: true,
+                    ..Door::default()
+                },
+                None,
+                at,
+            ),
             _ => FLOOR,
         }
     }
 
-    fn doorway(&mut self, place: [usize; 2], what: &str) -> char {
-        self.legend.insert("D".to_owned(), Legend::Doorway);
-        self.warn(place, format!("{what} is a doorway without a door"));
+    /// A door that is opened and closed in turn.
+    fn toggled(&mut self, door: Door, color: Option<&str>, at: [usize; 2]) -> char {
+        let closes_on = vec![Stimulus::AgentInteract];
+        self.put_door('D', Door { closes_on, ..door }, color, at);
         'D'
     }
 
     /// What has a colour that matters.
     fn colored(&mut self, [what, letter]: [char; 2], at: [usize; 2], place: [usize; 2]) -> char {
         let Some(color) = color(letter) else {
-            self.warn(place, format!("\"{what}{letter}\" is not known; it is read as floor"));
+            self.do_not_know(format!("\"{what}{letter}\""), place);
             return FLOOR;
         };
         let object = match what {
-            'D' => return self.doorway(place, &format!("a closed {color} door")),
-            'L' => return self.doorway(place, &format!("a locked {color} door")),
+            'D' => return self.toggled(Door::default(), Some(color), at),
+            'L' => {
+                let key = Some(format!("{color}_key"));
+                return self.toggled(Door { key, ..Door::default() }, Some(color), at);
+            }
             'G' => pays(thing("geometric", color, "goal"), 1.0),
             'V' => thing("cube", "orangered", "lava"),
-            'K' => thing("geometric", color, "key"),
-            'A' => thing("icosphere", color, "ball"),
-            'B' => thing("cube", color, "box"),
+            'K' => carried(thing("key", color, &format!("{color}_key"))),
+            'A' => carried(thing("icosphere", color, "ball")),
+            'B' => carried(thing("cube", color, "box")),
             _ => {
-                self.warn(place, format!("\"{what}{letter}\" is not known; it is read as floor"));
+                self.do_not_know(format!("\"{what}{letter}\""), place);
                 return FLOOR;
             }
         };

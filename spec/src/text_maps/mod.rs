@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use crate::layout::{Layout, Legend};
 use crate::warning::Warning;
-use crate::world::{EndCondition, Object, Stimulus, World, WorldDraft};
+use crate::world::{Door, EndCondition, Object, Stimulus, World, WorldDraft};
 use crate::{Color, SpecError};
 
 /// What stands for a cell that was not understood: floor.
@@ -25,6 +25,10 @@ struct Reader<'a> {
     objects: Vec<(Object, [usize; 2])>,
     /// Where the agent may start: column, row, and heading in degrees.
     starts: Vec<([usize; 2], f64)>,
+    /// Doors, each with its colour if it has one, and column and row of its cell.
+    doors: Vec<(Door, Option<Color>, [usize; 2])>,
+    /// What is not known: how often it stands there, and line and column of the first.
+    unknown: BTreeMap<String, (usize, [usize; 2])>,
     warnings: Vec<Warning>,
 }
 
@@ -37,6 +41,8 @@ impl<'a> Reader<'a> {
             legend: BTreeMap::new(),
             objects: Vec::new(),
             starts: Vec::new(),
+            doors: Vec::new(),
+            unknown: BTreeMap::new(),
             warnings: Vec::new(),
         }
     }
@@ -50,6 +56,30 @@ impl<'a> Reader<'a> {
             column,
             text: text.into(),
         });
+    }
+
+    /// Counts what is not known, to be said once for all its places.
+    fn do_not_know(&mut self, what: String, place: [usize; 2]) {
+        self.unknown.entry(what).or_insert((0, place)).0 += 1;
+    }
+
+    fn warn_of_unknown(&mut self) {
+        let mut unknown: Vec<_> = std::mem::take(&mut self.unknown).into_iter().collect();
+        unknown.sort_by_key(|(_, (_, place))| *place);
+        for (what, (count, place)) in unknown {
+            let times = if count > 1 {
+                format!(" ({count} of it, this one first)")
+            } else {
+                String::new()
+            };
+            self.warn(place, format!("{what} is not known{times}; it is read as floor"));
+        }
+    }
+
+    /// A door in a doorway, for which a letter stands.
+    fn put_door(&mut self, letter: char, door: Door, color: Option<&str>, at: [usize; 2]) {
+        self.legend.insert(letter.to_string(), Legend::Doorway);
+        self.doors.push((door, color.and_then(Color::from_name), at));
     }
 
     /// An object of a group at a cell, for which a letter stands.
@@ -71,6 +101,7 @@ impl<'a> Reader<'a> {
 
     /// The world of what was read; lines that are too short are filled up with walls.
     fn world(mut self) -> Result<(World, Vec<Warning>), SpecError> {
+        self.warn_of_unknown();
         let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
         self.rows.iter_mut().for_each(|row| row.resize(columns, '#'));
         if self.starts.is_empty() {
@@ -101,7 +132,7 @@ impl<'a> Reader<'a> {
         let mut draft = WorldDraft::default();
         let used: Vec<char> = self.rows.iter().flatten().copied().collect();
         let legend = self.legend.clone();
-        draft.environment_params.layout = Some(Layout {
+        let layout = Layout {
             text: Some(self.rows.iter().map(|row| row.iter().collect()).collect()),
             cell: Some(self.cell),
             height: Some(self.cell.min(4.0)),
@@ -110,7 +141,7 @@ impl<'a> Reader<'a> {
                 .filter(|(letter, _)| used.iter().any(|other| letter.chars().eq([*other])))
                 .collect(),
             ..Layout::default()
-        });
+        };
         // What fits through a cell in the other program fits here.
         draft.agent_params.agent_width = (self.cell / 3.0).min(1.0);
         if let Some((start, heading)) = self.starts.first() {
@@ -135,7 +166,40 @@ impl<'a> Reader<'a> {
                 ..object.clone()
             });
         }
+        // The agent carries one thing at a time, as in MiniGrid.
+        let is_carried = |object: &Object| object.portable.is_some();
+        draft.agent_params.carry_limit = u32::from(draft.objects.iter().any(is_carried));
+        draft.objects.extend(self.doors_in(&layout));
+        draft.environment_params.layout = Some(layout);
         Ok((draft.check()?, self.warnings))
+    }
+
+    /// The doors, each across its doorway.
+    fn doors_in(&self, layout: &Layout) -> Vec<Object> {
+        let doorways = if self.doors.is_empty() {
+            Vec::new()
+        } else {
+            layout.plan(0).doorways.clone()
+        };
+        let door = |(door, color, at): &(Door, Option<Color>, [usize; 2])| {
+            let coordinates = self.place(*at);
+            let near = |center: [f64; 2]| {
+                [0, 1]
+                    .into_iter()
+                    .all(|axis| (center[axis] - coordinates[axis]).abs() < self.cell / 2.0)
+            };
+            let doorway = doorways.iter().find(|doorway| near(doorway.center));
+            Object {
+                heading: doorway.map_or(0.0, |doorway| doorway.heading),
+                // The model is 1 m wide.
+                scale: doorway.map_or(self.cell, |doorway| doorway.width),
+                color: *color,
+                tag: Some("door".to_owned()),
+                door: Some(door.clone()),
+                ..Object::new("door", coordinates)
+            }
+        };
+        self.doors.iter().map(door).collect()
     }
 }
 
