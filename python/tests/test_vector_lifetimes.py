@@ -95,7 +95,7 @@ def test_one_environment_logs_what_a_run_logs(tmp_path: Path) -> None:
 @pytest.mark.parametrize("num_envs", [2, 3, 8])
 def test_evaluations_do_not_depend_on_how_many_environments_there_are(tmp_path: Path, num_envs: int) -> None:
     regimes = [
-        {"task": "get_to_goal", "variant": name, "count": 7, "seed": 4, "max_steps": 40} for name in ("plain", "held")
+        {"task": "get_to_goal", "variant": name, "count": 7, "seed": 4, "max_steps": 300} for name in ("plain", "held")
     ]
     blocks = [{"type": kind, "regimes": regimes} for kind in ("evaluation", "learning", "evaluation")]
     curriculum = Curriculum.from_dict({"name": "many", "blocks": blocks})
