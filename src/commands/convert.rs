@@ -58,7 +58,7 @@ enum Form {
 enum Letters {
     /// The entity layer of a text level of DeepMind Lab.
     DmlabText,
-    /// A grid of MiniGrid, two characters for each cell, as `str(env)` prints it.
+    /// A grid of MiniGrid, two characters for each cell, as `env.unwrapped.pprint_grid()` gives it.
     MinigridText,
 }
 

@@ -19,7 +19,7 @@ use super::{Failure, output};
 /// is run once more from its world and its actions, and must earn what the log says, to the last bit. Without --episode, all are checked.
 #[derive(Args)]
 #[command(after_help = "Examples:
-  driftworld run scenario.json --agent random --logs logs/first --record
+  driftworld run scenario.json --agent random --output logs/first --record
   driftworld replay logs/first
   driftworld replay logs/first --episode 17 -o episode.gif
   driftworld replay logs/first --episode 17 -o episode.png --size 320")]

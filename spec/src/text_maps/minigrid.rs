@@ -1,4 +1,4 @@
-//! MiniGrid's grids as text: two characters for each cell, what is there and its colour, as `str(env)` prints them.
+//! MiniGrid's grids as text: two characters for each cell, what is there and its colour, as `env.unwrapped.pprint_grid()` gives them.
 
 use super::{FLOOR, Reader, pays, thing};
 use crate::warning::Warning;
@@ -9,7 +9,7 @@ use crate::{SpecError, World};
 const CELL: f64 = 2.0;
 
 impl World {
-    /// Reads a grid of MiniGrid as `str(env)` prints it; `name` is what warnings call it.
+    /// Reads a grid of MiniGrid as `env.unwrapped.pprint_grid()` gives it; `name` is what warnings call it.
     ///
     /// Each cell has two characters. `W` is a wall, `F` and two spaces are floor, `G` a goal of 1 point that ends the episode,
     /// `V` lava, which ends it as a failure, `K` a key, `A` a ball, `B` a box, of which the agent carries one at a time; the second
