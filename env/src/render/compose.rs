@@ -83,8 +83,8 @@ impl Walls {
 /// One row's packed pixels and items, kept from picture to picture.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
-    pub(super) words: Vec<u32>,
-    pub(super) items: Vec<u32>,
+    words: Vec<u32>,
+    items: Vec<u32>,
     /// The nearest of the arena's walls in each column: 1 / distance, and its packed pixel.
     walls: Vec<f32>,
     wall_pixels: Vec<u32>,
@@ -351,7 +351,7 @@ pub(super) fn metres<L: Lanes>(l: L, inverse: L::Float) -> L::Float {
 
 /// Colour and depth of a row that is shorter than a vector.
 #[inline(never)]
-pub(super) fn narrow<L: Lanes>(l: L, word: L::Word, inverse: L::Float, target: &mut Target<'_>, row: Range<usize>) {
+fn narrow<L: Lanes>(l: L, word: L::Word, inverse: L::Float, target: &mut Target<'_>, row: Range<usize>) {
     let count = row.len();
     if let Some(rgb) = &mut target.rgb {
         let mut bytes = [0; 3 * MOST_LANES];

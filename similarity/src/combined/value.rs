@@ -10,12 +10,6 @@ use crate::layout_shape::LayoutShape;
 use crate::scalar::{CostTable, choice_mismatch, circular_difference, relative_difference};
 use crate::{ColorMeasure, MetricProperties};
 
-/// Names of the measures of layouts.
-const WHOLE_LAYOUT: &str = "layout / widest choice";
-const WALL_JACCARD: &str = "wall jaccard / widest choice";
-const WALKING_DISTANCE: &str = "walking distance / widest choice";
-const WALL_TRANSPORT: &str = "wall transport / widest choice";
-
 /// How two values of one parameter are compared.
 #[derive(Clone, Debug)]
 pub(super) enum ValueMeasure {
@@ -34,11 +28,7 @@ pub(super) enum ValueMeasure {
         widest: f64,
     },
     /// What differs of two layouts, over that of the widest pair of choices.
-    Layout {
-        measure: &'static str,
-        apart: fn(&Value, &Value) -> f64,
-        widest: f64,
-    },
+    Layout { of: LayoutMeasure, widest: f64 },
     /// A table of costs, by the words for the choices, over the largest of them.
     Costs(CostTable),
     /// 0 or 1.
@@ -68,13 +58,9 @@ impl ValueMeasure {
             Some(MeasureName::Cie76) => color("cie76 / widest choice", ColorMeasure::Cie76),
             Some(MeasureName::Ciede2000) => color("ciede2000 / widest choice", ColorMeasure::Ciede2000),
             Some(MeasureName::Hyab) => color("hyab / widest choice", ColorMeasure::Hyab),
-            Some(MeasureName::WallJaccard) => layout(parameter, WALL_JACCARD, |a, b| {
-                by_shape(a, b, LayoutShape::walls_distance)
-            }),
-            Some(MeasureName::WalkingDistance) => layout(parameter, WALKING_DISTANCE, |a, b| {
-                by_shape(a, b, LayoutShape::ways_distance)
-            }),
-            Some(MeasureName::WallTransport) => layout(parameter, WALL_TRANSPORT, |a, b| by_shape(a, b, transport)),
+            Some(MeasureName::WallJaccard) => layout(parameter, LayoutMeasure::Walls),
+            Some(MeasureName::WalkingDistance) => layout(parameter, LayoutMeasure::Ways),
+            Some(MeasureName::WallTransport) => layout(parameter, LayoutMeasure::Transport),
             _ => Self::of_type(parameter),
         }
     }
@@ -101,7 +87,7 @@ impl ValueMeasure {
                 widest: widest_turn(parameter),
             },
             ParameterType::Color => color(parameter, "oklab / widest choice", ColorMeasure::Oklab),
-            ParameterType::Layout => layout(parameter, WHOLE_LAYOUT, layouts_apart),
+            ParameterType::Layout => layout(parameter, LayoutMeasure::Whole),
             ParameterType::Boolean | ParameterType::String | ParameterType::Distribution | ParameterType::Json => {
                 Self::SameOrNot
             }
@@ -111,10 +97,11 @@ impl ValueMeasure {
     /// The measure's name.
     pub(super) fn name(&self) -> &'static str {
         match self {
-            Self::Difference { measure, .. } | Self::Color { measure, .. } | Self::Layout { measure, .. } => measure,
+            Self::Difference { measure, .. } | Self::Color { measure, .. } => measure,
             Self::LogRatio { .. } => "log ratio / range",
             Self::Relative { .. } => "relative difference / widest",
             Self::Turn { .. } => "turn / widest",
+            Self::Layout { of, .. } => of.name(),
             Self::Costs(_) => "cost / largest",
             Self::SameOrNot => "same or not",
         }
@@ -125,7 +112,7 @@ impl ValueMeasure {
         match self {
             Self::Color { of, .. } => of.properties(),
             Self::Costs(table) => table.properties(),
-            Self::Layout { measure, .. } if *measure != WHOLE_LAYOUT => MetricProperties::Pseudometric,
+            Self::Layout { of, .. } => of.properties(),
             _ => MetricProperties::Metric,
         }
     }
@@ -160,8 +147,8 @@ impl ValueMeasure {
                 }
                 _ => same_or_not(),
             },
-            Self::Layout { apart, widest, .. } => {
-                let raw = apart(a, b);
+            Self::Layout { of, widest } => {
+                let raw = of.between(a, b);
                 (raw, share(raw, *widest))
             }
             // What lies between the choices, as on the way of a drift, is the same or not.
@@ -173,36 +160,62 @@ impl ValueMeasure {
     }
 }
 
-/// How far two layouts are apart by what they are: their shapes, the sides of their arenas, each by the difference over the larger,
-/// and 1 for other doors. Those without a seed are compared as drawn with seed 0. Walls one by one stand in the default arena.
-fn layouts_apart(a: &Value, b: &Value) -> f64 {
-    let (Value::Layout(a), Value::Layout(b)) = (a, b) else {
-        return choice_mismatch(a, b);
-    };
-    let sides = |layout: &Layout| layout.size().unwrap_or(EnvironmentParams::default().map_size);
-    let doors = f64::from(u8::from(doors(Some(a)) != doors(Some(b))));
-    let sides = sides(a).into_iter().zip(sides(b));
-    shape(a).distance(&shape(b)) + doors + sides.map(|(a, b)| relative_difference(a, b)).sum::<f64>()
+/// What of two layouts is compared. Those without a seed are compared as drawn with seed 0. Walls one by one stand in the default
+/// arena.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum LayoutMeasure {
+    /// What they are: their shapes, the sides of their arenas, each by the difference over the larger, and 1 for other doors.
+    Whole,
+    /// Which walls stand.
+    Walls,
+    /// How long ways are.
+    Ways,
+    /// How far walls have to be moved.
+    Transport,
 }
 
-/// How far two layouts are apart by their shapes alone.
-fn by_shape(a: &Value, b: &Value, between: fn(&LayoutShape, &LayoutShape) -> f64) -> f64 {
-    match (a, b) {
-        (Value::Layout(a), Value::Layout(b)) => between(&shape(a), &shape(b)),
-        _ => choice_mismatch(a, b),
+impl LayoutMeasure {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Whole => "layout / widest choice",
+            Self::Walls => "wall jaccard / widest choice",
+            Self::Ways => "walking distance / widest choice",
+            Self::Transport => "wall transport / widest choice",
+        }
+    }
+
+    fn properties(self) -> MetricProperties {
+        match self {
+            Self::Whole => MetricProperties::Metric,
+            Self::Walls | Self::Ways | Self::Transport => MetricProperties::Pseudometric,
+        }
+    }
+
+    fn between(self, a: &Value, b: &Value) -> f64 {
+        let (Value::Layout(a), Value::Layout(b)) = (a, b) else {
+            return choice_mismatch(a, b);
+        };
+        let [one, other] = [shape(a), shape(b)];
+        match self {
+            Self::Whole => {
+                let sides = |layout: &Layout| layout.size().unwrap_or(EnvironmentParams::default().map_size);
+                let doors = f64::from(u8::from(doors(Some(a)) != doors(Some(b))));
+                let sides = sides(a).into_iter().zip(sides(b));
+                one.distance(&other) + doors + sides.map(|(a, b)| relative_difference(a, b)).sum::<f64>()
+            }
+            Self::Walls => one.walls_distance(&other),
+            Self::Ways => one.ways_distance(&other),
+            // Shapes that layouts make have finite heights.
+            Self::Transport => one.transport_distance(&other).unwrap_or(f64::NAN),
+        }
     }
 }
 
-fn transport(a: &LayoutShape, b: &LayoutShape) -> f64 {
-    // Shapes that layouts make have finite heights.
-    a.transport_distance(b).unwrap_or(f64::NAN)
-}
-
-fn layout(parameter: &Parameter, measure: &'static str, apart: fn(&Value, &Value) -> f64) -> ValueMeasure {
+fn layout(parameter: &Parameter, of: LayoutMeasure) -> ValueMeasure {
+    let read = |value: &Value| Some(value.clone());
     ValueMeasure::Layout {
-        measure,
-        apart,
-        widest: widest_pair(parameter, |value| Some(value.clone()), apart),
+        of,
+        widest: widest_pair(parameter, read, |a, b| of.between(a, b)),
     }
 }
 

@@ -1,4 +1,5 @@
-//! MiniGrid's grids as text: two characters for each cell, what is there and its colour, as `env.unwrapped.pprint_grid()` gives them.
+//! MiniGrid's grids as text: two characters for each cell, what is there and its colour, as `env.unwrapped.pprint_grid()`
+//! gives them.
 
 use super::{FLOOR, Reader, pays, thing};
 use crate::warning::Warning;
@@ -12,8 +13,9 @@ impl World {
     /// Reads a grid of MiniGrid as `env.unwrapped.pprint_grid()` gives it; `name` is what warnings call it.
     ///
     /// Each cell has two characters. `W` is a wall, `F` and two spaces are floor, `G` a goal of 1 point that ends the episode,
-    /// `V` lava, which ends it as a failure, `K` a key, `A` a ball, `B` a box, of which the agent carries one at a time; the second
-    /// character is the colour. `D` is a closed door, `L` one that a key of its colour unlocks, `__` an open one. `>>`, `VV`, `<<` and `^^` is the agent. Cells are 2 m wide.
+    /// `V` lava, which ends it as a failure, `K` a key, `A` a ball, `B` a box. The agent carries one of these at a time. The
+    /// second character is the colour. `D` is a closed door, `L` one that a key of its colour unlocks, `__` an open one.
+    /// `>>`, `VV`, `<<` and `^^` is the agent. Cells are 2 m wide.
     /// What is not known is floor; a warning says what was left out, changed or chosen.
     ///
     /// # Errors
