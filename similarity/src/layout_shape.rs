@@ -22,7 +22,7 @@ const COARSE: usize = 32;
 /// Steps of a way that there is not.
 const NO_WAY: u32 = (SIDE * SIDE) as u32;
 
-/// What layouts are compared by: a raster of 96 × 96 cells with the heights of the walls that touch them, how long the ways are
+/// What layouts are compared by: a raster of 96 × 96 cells with the heights of the walls that reach into them, how long the ways are
 /// between the cells nearest to 36 places in rows and columns, and what is marked: letters of cells and colours of walls.
 /// Places are shares of the arena's sides: how large it is does not count. What is finer than a cell of the raster is not seen.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,7 +77,10 @@ impl LayoutShape {
             }
         }
         let ways = ways(&walls);
-        let share = |[x, y]: [f64; 2]| format!("{:.4} {:.4}", x / arena[0], y / arena[1]);
+        // Whole ten-thousandths of the sides. The irrational offset keeps all ratios of small numbers, where layouts have their
+        // corners, off the borders, at which rounding would decide.
+        let whole = |share: f64| (share * 1e4 + std::f64::consts::FRAC_1_SQRT_2).floor();
+        let share = |[x, y]: [f64; 2]| format!("{} {}", whole(x / arena[0]), whole(y / arena[1]));
         let letters = plan.cells.iter().filter_map(|cell| Some((cell.letter?, cell.center)));
         let letters = letters.map(|(letter, center)| format!("{letter} {}", share(center)));
         let colors = plan.walls.iter().filter_map(|wall| {
@@ -184,7 +187,11 @@ impl LayoutShape {
     }
 }
 
-/// Whether a polygon holds a point, or comes within half a cell of it.
+/// How much nearer than half a cell, squared, a wall comes to the middle of a cell that it touches: what lies on lines of the
+/// raster touches the cells on its own side alone, whatever rounding made of it.
+const ROUNDING: f64 = 1e-9;
+
+/// Whether a polygon holds a point, or comes nearer to it than half a cell.
 fn touches(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     let Some(mut from) = corners.last().copied() else {
         return false;
@@ -201,7 +208,7 @@ fn touches(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
         }
         from = to;
     }
-    inside || least <= 0.25
+    inside || least < 0.25 - ROUNDING
 }
 
 /// The cells beside one, within the raster.
@@ -422,6 +429,30 @@ mod tests {
             let single = Layout { walls: Some(walls.collect()), ..Layout::default() };
             let single = LayoutShape::of(&single.plan(0), plan.size, 4.0);
             prop_assert_eq!(single.distance(&shape(&layout)), 0.0);
+        }
+
+        /// What a cell of a text measures changes nothing, and where the raster has whole cells for every letter it is the text.
+        #[test]
+        fn how_large_the_letters_of_a_text_are_does_not_count(
+            (columns, rows) in (prop::sample::select(vec![3_usize, 4, 5, 6, 7, 8, 9, 11, 12, 13, 16, 24, 31, 32, 48, 96]), 2_usize..33),
+            walls in prop::collection::vec(any::<bool>(), 96 * 33), metres in 0.1..40.0_f64,
+        ) {
+            let is_wall = |column: usize, row: usize| walls[row * 96 + column] || (column, row) == (0, 0);
+            let lines = (0..rows).map(|row| (0..columns).map(|column| if is_wall(column, row) { '#' } else { 'x' }).collect());
+            let lines: Vec<String> = lines.collect();
+            let at = |metres: f64| {
+                let layout = serde_json::json!({ "text": lines, "cell": metres, "legend": { "x": "floor" } });
+                shape(&serde_json::from_value(layout).expect("a layout of text"))
+            };
+            let [one, other] = [at(1.0), at(metres)];
+            prop_assert_eq!(&one, &other);
+            if SIDE % columns == 0 && SIDE % rows == 0 {
+                for (cell, height) in one.walls.iter().enumerate() {
+                    let (row, column) = (SIDE - 1 - cell / SIDE, cell % SIDE);
+                    let expected = is_wall(column * columns / SIDE, row * rows / SIDE);
+                    prop_assert_eq!(*height > 0.0, expected, "column {}, row {} of the raster", column, row);
+                }
+            }
         }
 
         #[test]

@@ -1,5 +1,6 @@
 //! Distances of whole variants and whole worlds, made of many parts. The measures that the parts are made of are in their own folders.
 
+mod arena;
 mod drawn;
 mod kinds;
 mod leaves;

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use driftworld_spec::{Domain, EnvironmentParams, Layout, MeasureName, Parameter, ParameterType, Value};
+use driftworld_spec::{Domain, Layout, MeasureName, Parameter, ParameterType, Value};
 
+use crate::combined::arena::Arena;
 use crate::combined::sketch::doors;
 use crate::layout_shape::LayoutShape;
 use crate::scalar::{CostTable, choice_mismatch, circular_difference, relative_difference};
@@ -28,7 +29,11 @@ pub(super) enum ValueMeasure {
         widest: f64,
     },
     /// What differs of two layouts, over that of the widest pair of choices.
-    Layout { of: LayoutMeasure, widest: f64 },
+    Layout {
+        of: LayoutMeasure,
+        arena: Arena,
+        widest: f64,
+    },
     /// A table of costs, by the words for the choices, over the largest of them.
     Costs(CostTable),
     /// 0 or 1.
@@ -36,8 +41,8 @@ pub(super) enum ValueMeasure {
 }
 
 impl ValueMeasure {
-    /// What the parameter asks for, or what its type has.
-    pub(super) fn of(parameter: &Parameter) -> Self {
+    /// What the parameter asks for, or what its type has. Layouts stand in an arena.
+    pub(super) fn of(parameter: &Parameter, arena: Arena) -> Self {
         let compare = parameter.compare.as_ref();
         if let (Some(costs), Some(choices)) = (compare.and_then(|compare| compare.costs.as_ref()), &parameter.choices) {
             let names = choices.iter().filter_map(|choice| choice.cast(parameter.kind));
@@ -58,14 +63,14 @@ impl ValueMeasure {
             Some(MeasureName::Cie76) => color("cie76 / widest choice", ColorMeasure::Cie76),
             Some(MeasureName::Ciede2000) => color("ciede2000 / widest choice", ColorMeasure::Ciede2000),
             Some(MeasureName::Hyab) => color("hyab / widest choice", ColorMeasure::Hyab),
-            Some(MeasureName::WallJaccard) => layout(parameter, LayoutMeasure::Walls),
-            Some(MeasureName::WalkingDistance) => layout(parameter, LayoutMeasure::Ways),
-            Some(MeasureName::WallTransport) => layout(parameter, LayoutMeasure::Transport),
-            _ => Self::of_type(parameter),
+            Some(MeasureName::WallJaccard) => layout(parameter, LayoutMeasure::Walls, arena),
+            Some(MeasureName::WalkingDistance) => layout(parameter, LayoutMeasure::Ways, arena),
+            Some(MeasureName::WallTransport) => layout(parameter, LayoutMeasure::Transport, arena),
+            _ => Self::of_type(parameter, arena),
         }
     }
 
-    fn of_type(parameter: &Parameter) -> Self {
+    fn of_type(parameter: &Parameter, arena: Arena) -> Self {
         match parameter.kind {
             ParameterType::Number | ParameterType::Integer => Self::Difference {
                 measure: "difference / range",
@@ -87,7 +92,7 @@ impl ValueMeasure {
                 widest: widest_turn(parameter),
             },
             ParameterType::Color => color(parameter, "oklab / widest choice", ColorMeasure::Oklab),
-            ParameterType::Layout => layout(parameter, LayoutMeasure::Whole),
+            ParameterType::Layout => layout(parameter, LayoutMeasure::Whole, arena),
             ParameterType::Boolean | ParameterType::String | ParameterType::Distribution | ParameterType::Json => {
                 Self::SameOrNot
             }
@@ -147,8 +152,8 @@ impl ValueMeasure {
                 }
                 _ => same_or_not(),
             },
-            Self::Layout { of, widest } => {
-                let raw = of.between(a, b);
+            Self::Layout { of, arena, widest } => {
+                let raw = of.between(a, b, *arena);
                 (raw, share(raw, *widest))
             }
             // What lies between the choices, as on the way of a drift, is the same or not.
@@ -160,8 +165,7 @@ impl ValueMeasure {
     }
 }
 
-/// What of two layouts is compared. Those without a seed are compared as drawn with seed 0. Walls one by one stand in the default
-/// arena.
+/// What of two layouts is compared. Those without a seed are compared as drawn with seed 0.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum LayoutMeasure {
     /// What they are: their shapes, the sides of their arenas, each by the difference over the larger, and 1 for other doors.
@@ -191,14 +195,14 @@ impl LayoutMeasure {
         }
     }
 
-    fn between(self, a: &Value, b: &Value) -> f64 {
+    fn between(self, a: &Value, b: &Value, arena: Arena) -> f64 {
         let (Value::Layout(a), Value::Layout(b)) = (a, b) else {
             return choice_mismatch(a, b);
         };
-        let [one, other] = [shape(a), shape(b)];
+        let [one, other] = [shape(a, arena), shape(b, arena)];
         match self {
             Self::Whole => {
-                let sides = |layout: &Layout| layout.size().unwrap_or(EnvironmentParams::default().map_size);
+                let sides = |layout: &Layout| layout.size().unwrap_or(arena.size);
                 let doors = f64::from(u8::from(doors(Some(a)) != doors(Some(b))));
                 let sides = sides(a).into_iter().zip(sides(b));
                 one.distance(&other) + doors + sides.map(|(a, b)| relative_difference(a, b)).sum::<f64>()
@@ -211,26 +215,26 @@ impl LayoutMeasure {
     }
 }
 
-fn layout(parameter: &Parameter, of: LayoutMeasure) -> ValueMeasure {
+fn layout(parameter: &Parameter, of: LayoutMeasure, arena: Arena) -> ValueMeasure {
     let read = |value: &Value| Some(value.clone());
     ValueMeasure::Layout {
         of,
-        widest: widest_pair(parameter, read, |a, b| of.between(a, b)),
+        arena,
+        widest: widest_pair(parameter, read, |a, b| of.between(a, b, arena)),
     }
 }
 
 /// The shape of a layout. The last that were asked for are kept: the same few choices are compared again and again.
-fn shape(layout: &Layout) -> Arc<LayoutShape> {
+fn shape(layout: &Layout, arena: Arena) -> Arc<LayoutShape> {
     const MOST_KEPT: usize = 256;
     static KEPT: Mutex<BTreeMap<String, Arc<LayoutShape>>> = Mutex::new(BTreeMap::new());
-    let key = serde_json::to_string(layout).unwrap_or_default();
+    let size = layout.size().unwrap_or(arena.size);
+    let key = serde_json::to_string(&(layout, size, arena.wall_height)).unwrap_or_default();
     let kept = || KEPT.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(shape) = kept().get(&key) {
         return Arc::clone(shape);
     }
-    let around = EnvironmentParams::default();
-    let arena = layout.size().unwrap_or(around.map_size);
-    let shape = Arc::new(LayoutShape::of(&layout.plan(0), arena, around.wall_height));
+    let shape = Arc::new(LayoutShape::of(&layout.plan(0), size, arena.wall_height));
     let mut kept = kept();
     if kept.len() >= MOST_KEPT {
         kept.clear();

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use driftworld_spec::{Element, ParameterType, Role, TaskSpec, Variant};
 
+use crate::combined::arena::Arena;
 use crate::combined::drawn::DrawnMeasure;
 use crate::combined::value::ValueMeasure;
 use crate::combined::weighted_distance::{Distance, Part, Weights};
@@ -14,7 +15,8 @@ use crate::{MetricProperties, SimilarityError};
 ///
 /// Every parameter counts by the measure and at the weight that the task gives it under `compare`, or else at weight 1 and by
 /// what its type has: numbers by difference over the declared range, headings by the turn, colours in Oklab, points and
-/// vectors by Euclidean length, each over the widest pair of choices, anything else as the same or not. Randomized ones are
+/// vectors by Euclidean length, layouts by their shapes in the task's arena, each over the widest pair of choices, anything else
+/// as the same or not. Randomized ones are
 /// compared by distribution, over the widest pair of distributions that the declared ranges and choices allow: Wasserstein-1
 /// of numbers, round the circle for headings, in Oklab for colours out of a continuum, share by share for shares, Wasserstein-2 for
 /// points, total variation for words and for colours out of lists. Parameters that only such distributions read count by what they make
@@ -80,11 +82,12 @@ enum By {
 impl VariantMeasure {
     /// Compares variants of this task, its elements at these weights.
     pub fn new(task: &Arc<TaskSpec>, weights: Weights) -> Self {
+        let arena = Arena::of(task);
         let parameters = task.parameters().iter().filter_map(|(name, parameter)| {
             let by = match parameter.role {
                 Role::Fixed => return None,
                 Role::Variant if parameter.kind != ParameterType::Distribution => {
-                    By::Value(ValueMeasure::of(parameter))
+                    By::Value(ValueMeasure::of(parameter, arena))
                 }
                 Role::Variant | Role::Randomized => {
                     By::Drawn(DrawnMeasure::of(parameter, &task.distributions_at_ends(name)))
