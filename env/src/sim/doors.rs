@@ -40,7 +40,7 @@ fn ticks_of(seconds: f64, time_step: f64) -> u64 {
     ((seconds / time_step - 1e-6).ceil() as u64).max(1)
 }
 
-/// Opens a closed door.
+/// Opens a door. One that is open is then as one that has just been opened: what was to close it is forgotten.
 pub(super) fn open(world: &World, state: &mut SimState, views: &mut Views, index: usize) {
     let object = &world.objects[index];
     let after = object.door.as_ref().and_then(|door| door.closes_after);
@@ -60,6 +60,12 @@ pub(super) fn close_soon(state: &mut SimState, index: usize) {
     }
 }
 
+/// Whether an open door is to close as soon as nobody stands in it.
+pub(super) fn waits_to_close(state: &SimState, index: usize) -> bool {
+    let closes_at = state.door_of(index).and_then(|door| door.closes_at);
+    state.objects[index].open && closes_at.is_some_and(|tick| tick <= state.ticks)
+}
+
 /// The end of a time step: clocks first, then what is to close and can.
 pub(super) fn advance_doors(world: &World, state: &mut SimState, views: &mut Views) {
     for place in 0..state.doors.len() {
@@ -73,13 +79,12 @@ pub(super) fn advance_doors(world: &World, state: &mut SimState, views: &mut Vie
         };
         if let Some(should_be_open) = clock(door, state.ticks, world.agent_params.time_step) {
             match (should_be_open, state.objects[index].open) {
-                (true, false) => open(world, state, views, index),
+                (true, _) => open(world, state, views, index),
                 (false, true) => close_soon(state, index),
-                _ => {}
+                (false, false) => {}
             }
         }
-        let is_due = state.doors[place].closes_at.is_some_and(|tick| tick <= state.ticks);
-        if is_due && !is_stood_in(world, state, views, index) {
+        if waits_to_close(state, index) && !is_stood_in(world, state, views, index) {
             state.doors[place].closes_at = None;
             state.objects[index].open = false;
             views.sync_object(index, &world.objects[index], &state.objects[index]);

@@ -4,7 +4,7 @@
 use driftworld_spec::{Object, Stimulus, SwitchAction, World};
 
 use super::collision_world::{CollisionWorld, slot};
-use super::doors::{close_soon, open};
+use super::doors::{close_soon, open, waits_to_close};
 use super::event::Effect;
 use super::footprint::Point;
 use super::groups::{SOLID, WALL};
@@ -37,16 +37,12 @@ pub(crate) fn effect_of(world: &World, state: &SimState, index: usize, stimulus:
         return None;
     }
     if let Some(door) = &object.door {
-        if !own.open && door.opens_on.contains(&stimulus) && !is_locked(world, state, index) {
+        // One that waits to close hears what a closed one does.
+        let is_as_closed = !own.open || waits_to_close(state, index);
+        if is_as_closed && door.opens_on.contains(&stimulus) && !is_locked(world, state, index) {
             return Some(Effect::Opened);
         }
-        // One that waits to close does so by itself.
-        let waits = || {
-            state
-                .door_of(index)
-                .is_some_and(|door| door.closes_at.is_some_and(|tick| tick <= state.ticks))
-        };
-        if own.open && door.closes_on.contains(&stimulus) && !waits() {
+        if !is_as_closed && door.closes_on.contains(&stimulus) {
             return Some(Effect::Closed);
         }
     }
@@ -139,11 +135,12 @@ pub(super) fn apply_effect(world: &World, state: &mut SimState, views: &mut View
 }
 
 fn set_going(world: &World, state: &mut SimState, views: &mut Views, door: usize, action: SwitchAction) {
-    let is_open = state.objects[door].open;
+    let is_as_closed = !state.objects[door].open || waits_to_close(state, door);
     match action {
-        SwitchAction::Open | SwitchAction::Toggle if !is_open => open(world, state, views, door),
-        SwitchAction::Close | SwitchAction::Toggle if is_open => close_soon(state, door),
-        _ => {}
+        SwitchAction::Open => open(world, state, views, door),
+        SwitchAction::Toggle if is_as_closed => open(world, state, views, door),
+        SwitchAction::Close | SwitchAction::Toggle if !is_as_closed => close_soon(state, door),
+        SwitchAction::Close | SwitchAction::Toggle => {}
     }
 }
 

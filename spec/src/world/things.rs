@@ -20,7 +20,8 @@ fn is_by_interaction(stimuli: &[Stimulus]) -> bool {
 fields! {
     /// Makes an object a door: a body that stops nobody while it is open.
     ///
-    /// It never closes on who stands in it: it closes in the first time step in which nobody does.
+    /// It never closes on who stands in it: it closes in the first time step in which nobody does, unless it is opened
+    /// again meanwhile. The last order counts.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(deny_unknown_fields)]
     #[schemars(extend("examples" = [
