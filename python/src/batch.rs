@@ -10,7 +10,7 @@ use driftworld_env::{
     Action, Batch, BatchOptions, Catalogue, Effect, EndedBy, EnvError, Event, GoOn, Library, RendererKind, WorldSource,
     top_down,
 };
-use driftworld_spec::World;
+use driftworld_spec::{Modality, World};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -54,7 +54,7 @@ type Stepped<'py> = (
 impl PyBatch {
     /// One environment for each stream, at the start of world 0 under seed 0.
     #[new]
-    #[pyo3(signature = (streams, overrides, autoreset, num_threads, renderer, depth, libraries, max_episode_steps=None))]
+    #[pyo3(signature = (streams, overrides, autoreset, num_threads, renderer, depth, libraries, modalities, max_episode_steps=None))]
     #[expect(clippy::too_many_arguments, reason = "called from one place, by name")]
     fn new(
         py: Python<'_>,
@@ -65,9 +65,13 @@ impl PyBatch {
         renderer: &str,
         depth: &str,
         libraries: Vec<Vec<u8>>,
+        modalities: &str,
         max_episode_steps: Option<NonZeroU32>,
     ) -> Result<Self> {
         let overrides = Arc::new(overrides_of(overrides)?);
+        let modalities: Vec<Modality> = serde_json::from_str(modalities).map_err(|error| {
+            PyValueError::new_err(format!("modalities: {error}, expected a list of kinds of images"))
+        })?;
         let supply =
             |stream: &Bound<'_, PyStream>| Arc::new(Supply::new(stream.get().0.clone(), Arc::clone(&overrides)));
         let supplies: Vec<Arc<Supply>> = streams.iter().map(supply).collect();
@@ -76,6 +80,7 @@ impl PyBatch {
             num_threads,
             renderer: RendererKind::from_str(renderer)?,
             depth: word("depth", depth, "uint8, uint16 or float32")?,
+            modalities: Some(modalities),
             max_episode_steps,
         };
         let make = |go_on: GoOn<'_>| {

@@ -1,6 +1,7 @@
 //! Scenarios and the logs that they are lived into, as Python holds them. What they mean is `spec`'s, the plan and the log
 //! `curriculum`'s; the agent and its environment are in `package/driftworld/curricula.py`.
 
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -157,6 +158,18 @@ impl PyPlan {
             "chance": spec.agent_seed, "label": label,
         });
         Ok(json_to_py(py, &dictionary)?)
+    }
+
+    /// The numbers of the first and the last experience of each regime: all variants, and both ends of each drift.
+    fn ends_of_regimes(&self, py: Python<'_>) -> Result<Vec<u64>> {
+        py.detach(|| {
+            let mut ends: BTreeMap<(usize, usize), [u64; 2]> = BTreeMap::new();
+            for number in 0..self.plan.num_experiences() {
+                let spec = self.plan.experience_spec(number)?;
+                ends.entry((spec.block, spec.regime)).or_insert([number; 2])[1] = number;
+            }
+            Ok(ends.into_values().flatten().collect())
+        })
     }
 
     /// The world of experience `number`; one without any limit has one of steps here.

@@ -12,6 +12,8 @@ pub(crate) struct WorldOverrides {
     /// Height and width in pixels.
     size: Option<[u32; 2]>,
     actions: Option<ActionSpace>,
+    /// Whether actions that are numbers, in a world's units, are −1..1 in place of them.
+    normalizes: bool,
     interact: Option<bool>,
     frame_skip: Option<u32>,
     max_steps: Option<u32>,
@@ -31,6 +33,9 @@ impl WorldOverrides {
         }
         if let Some(actions) = &self.actions {
             agent.actions.clone_from(actions);
+        }
+        if self.normalizes && agent.actions == ActionSpace::Continuous {
+            agent.actions = ActionSpace::Normalized;
         }
         lay(&mut agent.interact, self.interact);
         lay(&mut agent.frame_skip, self.frame_skip);

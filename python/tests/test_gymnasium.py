@@ -323,7 +323,7 @@ def test_a_spec_goes_through_json(env_id: str) -> None:
 def test_unknown_things_are_named_with_what_is_known() -> None:
     with pytest.raises(ValueError, match="modalities: found 'sound', expected one of rgb, depth"):
         bare(FIND, modalities=["sound"])
-    with pytest.raises(ValueError, match="actions: found 'jump', expected one of normalized"):
+    with pytest.raises(ValueError, match="actions: found 'jump', expected one of task, normalized"):
         bare(FIND, actions="jump")
     with pytest.raises(ValueError, match="renderer: found 'gl', expected one of cpu, gpu, auto"):
         bare(FIND, renderer="gl")

@@ -107,7 +107,7 @@ def test_variants_whose_actions_are_others_are_refused() -> None:
     ("options", "told"),
     [
         ({"size": 64.0}, "size: found 64.0"),
-        ({"modalities": None}, "modalities: found None"),
+        ({"modalities": 3}, "modalities: found 3, expected one of rgb"),
         ({"modalities": []}, "modalities: found"),
         ({"interact": "yes"}, "interact: found 'yes'"),
         ({"actions": [["a", 1, 2]]}, "actions: found"),

@@ -35,12 +35,12 @@ impl ImageLayout {
         }
     }
 
-    /// Whether a world asks for these images.
+    /// Whether a world's images have their place among these: as large, and none that is not there.
     pub(super) fn check(&self, env: usize, world: &World) -> Result<(), EnvError> {
         let agent = &world.agent_params;
         if [self.width, self.height] == agent.picture_size()
             && self.supersampling == agent.supersampling
-            && self.modalities == agent.modalities
+            && agent.modalities.iter().all(|asked| self.modalities.contains(asked))
             && self.state_features == agent.state_features
         {
             return Ok(());
@@ -98,8 +98,8 @@ impl std::fmt::Display for ImageLayout {
     }
 }
 
-/// The images of all environments of a batch, environment after environment; row 0 on top. Buffers of modalities that
-/// are not asked for are empty.
+/// The images of all environments of a batch, environment after environment; row 0 on top. Buffers of modalities that the
+/// layout lacks are empty. Images that it has and an environment's world does not ask for are 0 everywhere.
 #[derive(Clone, Debug)]
 pub struct Images {
     /// What there is.
@@ -213,6 +213,17 @@ impl<'a> ImagesMut<'a> {
         (self, rest)
     }
 
+    /// Sets the images of an environment that its world does not ask for to 0.
+    pub(super) fn blank(&mut self, env: usize, asked: &[Modality]) {
+        let mut target = self.target(env);
+        let is_blank = |modality| !asked.contains(&modality);
+        blank_if(is_blank(Modality::Rgb), &mut target.rgb);
+        blank_if(is_blank(Modality::Depth), &mut target.depth);
+        blank_if(is_blank(Modality::Segmentation), &mut target.category);
+        blank_if(is_blank(Modality::Class), &mut target.class);
+        blank_if(is_blank(Modality::Instance), &mut target.instance);
+    }
+
     /// Makes the depth that was drawn into the form that is handed out, for the environment of this number among these.
     pub(super) fn form_depth(&mut self, env: usize) {
         let pixels = self.size[0] as usize * self.size[1] as usize;
@@ -239,6 +250,22 @@ impl<'a> ImagesMut<'a> {
             instance: one(self.instance, env, pixels),
         }
     }
+}
+
+fn blank_if<T: Default + Clone>(is_blank: bool, image: &mut Option<&mut [T]>) {
+    if let (true, Some(image)) = (is_blank, image) {
+        image.fill(T::default());
+    }
+}
+
+/// Takes what a world does not ask for out of what is to be drawn.
+pub(super) fn keep_asked(target: &mut Target<'_>, asked: &[Modality]) {
+    let keeps = |modality| asked.contains(&modality);
+    target.rgb = target.rgb.take().filter(|_| keeps(Modality::Rgb));
+    target.depth = target.depth.take().filter(|_| keeps(Modality::Depth));
+    target.category = target.category.take().filter(|_| keeps(Modality::Segmentation));
+    target.class = target.class.take().filter(|_| keeps(Modality::Class));
+    target.instance = target.instance.take().filter(|_| keeps(Modality::Instance));
 }
 
 /// A buffer of so many of a value.

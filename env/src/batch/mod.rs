@@ -19,7 +19,7 @@ pub use options::{Autoreset, BatchOptions, Episode, GoOn, MAX_BATCH_BYTES, MAX_E
 pub use outputs::Outputs;
 
 use self::part::{Drawing, Part, Work};
-use self::slot::Slot;
+use self::slot::{LayoutFrom, Slot};
 use crate::EnvError;
 use crate::assets::Catalogue;
 use crate::recording::Recording;
@@ -66,7 +66,7 @@ impl Batch {
     /// # Errors
     /// [`EnvError::BatchSize`] for none or more than [`MAX_ENVS`]; [`EnvError::BatchMemory`] where outputs would take
     /// more than [`MAX_BATCH_BYTES`], or more than can be had; [`EnvError::BatchWorld`] where the source has no world;
-    /// [`EnvError::BatchImages`] where worlds ask for different images; [`EnvError::BatchThreads`] if threads cannot be
+    /// [`EnvError::BatchImages`] where worlds ask for images of other sizes, or for some that there are not; [`EnvError::BatchThreads`] if threads cannot be
     /// had; [`EnvError::NoGpu`] if a graphics card is asked for and none works; and as [`Renderer::draw_batch`].
     pub fn new(num_envs: usize, source: WorldSource, options: BatchOptions) -> Result<Self, EnvError> {
         Self::with_catalogue(num_envs, source, options, &Catalogue::default())
@@ -108,7 +108,13 @@ impl Batch {
         }
         let graphics = Some(Renderer::new(options.renderer)?).filter(|renderer| renderer.kind() == RendererKind::Gpu);
         let limit = options.max_episode_steps;
-        let first = Slot::new(0, Arc::clone(&source), None, catalogue, limit)?;
+        let first = Slot::new(
+            0,
+            Arc::clone(&source),
+            LayoutFrom::World(options.modalities.as_deref()),
+            catalogue,
+            limit,
+        )?;
         let layout = ImageLayout::clone(&first.layout);
         let state_len = first.environment.world().agent_params.state_len();
         // Before anything large is taken.
@@ -135,7 +141,13 @@ impl Batch {
                 return Err(EnvError::Stopped);
             }
             let layout = Arc::clone(&slots[0].layout);
-            slots.push(Slot::new(env, Arc::clone(&source), Some(&layout), catalogue, limit)?);
+            slots.push(Slot::new(
+                env,
+                Arc::clone(&source),
+                LayoutFrom::Other(&layout),
+                catalogue,
+                limit,
+            )?);
         }
         let outputs = Outputs::new(&layout, options.depth, state_len, num_envs)?;
         let finals = match options.autoreset {
@@ -390,6 +402,9 @@ fn draw_together(
     let mut images = outputs.images.view();
     for (env, slot) in slots.iter().enumerate() {
         if is_chosen(env, slot) {
+            if let Some(asked) = slot.blanks() {
+                images.blank(env, asked);
+            }
             images.form_depth(env);
         }
     }

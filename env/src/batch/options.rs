@@ -3,7 +3,7 @@
 use std::num::NonZeroU32;
 use std::sync::Arc;
 
-use driftworld_spec::World;
+use driftworld_spec::{Modality, World};
 
 use super::depth::DepthForm;
 use crate::render::RendererKind;
@@ -46,7 +46,7 @@ pub struct Episode {
 pub type WorldSource = Arc<dyn Fn(Episode) -> Result<World, String> + Send + Sync>;
 
 /// How a batch runs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct BatchOptions {
     /// When episodes that have ended are followed by the next.
     pub autoreset: Autoreset,
@@ -55,6 +55,8 @@ pub struct BatchOptions {
     pub num_threads: usize,
     /// What draws: the processor, each environment by itself; or a graphics card, all environments at once.
     pub renderer: RendererKind,
+    /// Which images there are; those of the first world if absent. A world that asks for fewer has 0 in the others.
+    pub modalities: Option<Vec<Modality>>,
     /// The numbers of depth images.
     pub depth: DepthForm,
     /// A limit of steps beside that of the worlds, which know nothing of it: an episode of so many steps is truncated,

@@ -3,7 +3,9 @@
 use std::num::NonZeroU32;
 use std::sync::Arc;
 
-use super::images::ImageLayout;
+use driftworld_spec::Modality;
+
+use super::images::{ImageLayout, keep_asked};
 use super::options::{Autoreset, Episode, WorldSource};
 use super::outputs::OutputsMut;
 use crate::EnvError;
@@ -11,6 +13,15 @@ use crate::assets::Catalogue;
 use crate::recording::{Recorder, Recording};
 use crate::render::CpuRenderer;
 use crate::sim::{Action, EndedBy, Environment, Step};
+
+/// Where the layout of an environment's images is from.
+#[derive(Clone, Copy)]
+pub(super) enum LayoutFrom<'a> {
+    /// Its own world, but for which images there are, if that is said.
+    World(Option<&'a [Modality]>),
+    /// Another environment of its batch.
+    Other(&'a Arc<ImageLayout>),
+}
 
 pub(super) struct Slot {
     env: usize,
@@ -33,11 +44,11 @@ pub(super) struct Slot {
 }
 
 impl Slot {
-    /// An environment at the start of its episode 0. Images are as `layout` says; without it, as the world says.
+    /// An environment at the start of its episode 0.
     pub(super) fn new(
         env: usize,
         source: WorldSource,
-        layout: Option<&Arc<ImageLayout>>,
+        images: LayoutFrom<'_>,
         catalogue: &Catalogue,
         limit: Option<NonZeroU32>,
     ) -> Result<Self, EnvError> {
@@ -47,7 +58,14 @@ impl Slot {
             episode: 0,
             reason,
         })?;
-        let layout = layout.map_or_else(|| Arc::new(ImageLayout::of(&world)), Arc::clone);
+        let layout = match images {
+            LayoutFrom::World(None) => Arc::new(ImageLayout::of(&world)),
+            LayoutFrom::World(Some(modalities)) => Arc::new(ImageLayout {
+                modalities: modalities.to_vec(),
+                ..ImageLayout::of(&world)
+            }),
+            LayoutFrom::Other(layout) => Arc::clone(layout),
+        };
         layout.check(env, &world)?;
         Ok(Self {
             env,
@@ -207,6 +225,13 @@ impl Slot {
         Ok(())
     }
 
+    /// What its world asks for, if that is less than there is.
+    pub(super) fn blanks(&self) -> Option<&[Modality]> {
+        let asked = &self.environment.world().agent_params.modalities;
+        let is_less = self.layout.modalities.iter().any(|there| !asked.contains(there));
+        is_less.then_some(asked)
+    }
+
     /// Hands out the state vector, and the images if there is a renderer: without one they are drawn later, for all
     /// environments together.
     fn observe(
@@ -219,12 +244,18 @@ impl Slot {
         let Some(renderer) = renderer else { return Ok(()) };
         let camera = self.environment.camera();
         let mut target = outputs.images.target(index);
-        if target.is_empty() {
-            return Ok(());
+        let blanks = self.blanks();
+        if let Some(asked) = blanks {
+            keep_asked(&mut target, asked);
         }
-        let scene = self.environment.scene();
-        renderer.draw(scene, &camera, &mut target)?;
-        renderer.draw_carried(scene, self.environment.shown_carried(), &mut target);
+        if !target.is_empty() {
+            let scene = self.environment.scene();
+            renderer.draw(scene, &camera, &mut target)?;
+            renderer.draw_carried(scene, self.environment.shown_carried(), &mut target);
+        }
+        if let Some(asked) = blanks {
+            outputs.images.blank(index, asked);
+        }
         outputs.images.form_depth(index);
         Ok(())
     }

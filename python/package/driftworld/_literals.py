@@ -11,7 +11,7 @@ from typing import Literal, TypeAlias
 ImageKind: TypeAlias = Literal["rgb", "depth", "segmentation", "class", "instance"]
 Modality: TypeAlias = Literal["rgb", "depth", "segmentation", "class", "instance", "state"]
 DepthForm: TypeAlias = Literal["uint8", "uint16", "float32"]
-ActionsName: TypeAlias = Literal["normalized", "continuous", "discrete"]
+ActionsName: TypeAlias = Literal["task", "normalized", "continuous", "discrete"]
 RendererName: TypeAlias = Literal["cpu", "gpu", "auto"]
 LabelPlace: TypeAlias = Literal["none", "info", "obs"]
 InfoFor: TypeAlias = Literal["agent", "full"]

@@ -5,6 +5,7 @@ Which experiences there are is said by ``curricula.py``, what a log holds by the
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import math
@@ -17,7 +18,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, Protocol, cast, runtime_checkable
 
 import gymnasium
 import numpy as np
@@ -28,6 +29,7 @@ from driftworld._files import write_whole
 from driftworld._html import table
 from driftworld._plain import plain
 from driftworld.envs import DriftworldEnv
+from driftworld.envs.options import EnvOptions, Options, widest_action
 from driftworld.errors import CurriculumError
 
 if TYPE_CHECKING:
@@ -352,7 +354,8 @@ class Rollout:
 def environment(plan: _native.Plan, options: Mapping[str, Any]) -> gymnasium.Env[Any, Any]:
     """The environment that a plan is lived in, at its first world."""
     refuse_options(options)
-    env = DriftworldEnv(world=first_world(plan), **options)
+    world, options = first_world(plan, options)
+    env = DriftworldEnv(world=world, **options)
     return Permitted(env, plan.experience_spec(0)["label"], options.get("info") == "full")
 
 
@@ -363,15 +366,37 @@ def refuse_options(options: Mapping[str, Any]) -> None:
         raise TypeError(f"{refused[0]}: found it among the options, expected none: the curriculum says what is lived")
 
 
-def first_world(plan: _native.Plan) -> _native.Stream:
-    """The first world of a plan that can be drawn; the spaces of all others are the same."""
-    for number in range(len(plan)):
+def first_world(plan: _native.Plan, options: Mapping[str, Any]) -> tuple[_native.Stream, dict[str, Any]]:
+    """A world of a plan into whose spaces all its others fit, and options that say so.
+
+    Where no modalities are said, observations hold all that any world of the plan asks for; what a world does not ask for is 0.
+    """
+    worlds = _some_worlds(plan)
+    read = Options.read(cast(EnvOptions, dict(options)))
+    layouts = [read.layouts(world)[0] for world in worlds]
+    widest = widest_action(layouts)
+    world = next(world for world, layout in zip(worlds, layouts, strict=True) if layout["action"] == widest)
+    if read.modalities is not None:
+        return world, dict(options)
+    return world, {**options, "modalities": read.shown(layouts).modalities, "blank": True}
+
+
+def _some_worlds(plan: _native.Plan) -> list[_native.Stream]:
+    """Worlds of all regimes of a plan, from both ends of drifts; of regimes whose worlds cannot be drawn one that can, if need be."""
+    found, refused = [], None
+    for number in plan.ends_of_regimes():
         try:
-            return plan.world(number)
+            found.append(plan.world(number))
         except CurriculumError as error:
-            if error.code != "curriculum/world" or number + 1 == len(plan):
+            if error.code != "curriculum/world":
                 raise
-    raise ValueError("curriculum: found no experience, expected at least one")
+            refused = error
+    for number in range(0 if found else len(plan)):
+        with contextlib.suppress(CurriculumError):
+            return [plan.world(number)]
+    if not found:
+        raise refused or ValueError("curriculum: found no experience, expected at least one")
+    return found
 
 
 def origin(experience: Experience) -> dict[str, Any]:

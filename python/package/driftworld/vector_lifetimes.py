@@ -94,8 +94,9 @@ class VectorRollout(Rollout):
     ) -> None:
         refuse_options(options)
         # Views: what an agent gets is copied once, when all environments that end have begun anew.
+        world, options = first_world(plan, options)
         envs = DriftworldVectorEnv(
-            world=first_world(plan), num_envs=num_envs, num_threads=num_threads, copy=False, **options
+            world=world, num_envs=num_envs, num_threads=num_threads, copy=False, **options
         )
         super().__init__(agent, envs, experience, options, paired_chance, watch, save)
         self._plan, self._num_envs, self._full = plan, num_envs, options.get("info") == "full"

@@ -5,6 +5,7 @@ Single and vector environments are both made of it; what Gymnasium wants of each
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -13,7 +14,7 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from driftworld import _native
-from driftworld.envs.options import Options, expect_same_spaces
+from driftworld.envs.options import Options, expect_same_spaces, images_among, widest_action
 from driftworld.envs.origin import DrawnWorld, Home, OneVariant, OneWorld, Queue, Source, seed_in_range, world_text
 from driftworld.envs.spaces import action_space, label, observation_space
 
@@ -52,12 +53,16 @@ class Members:
         max_episode_steps: int | None = None,
     ) -> None:
         self.num_envs = len(sources)
-        self._options = options
         self._home = home
         self._made_with = (autoreset, num_threads, max_episode_steps)
-        self.layout = options.layouts(home.source().streams(1)[0])[0]
-        self._checked: set[str] = set()
         self._sources = list(sources)
+        layouts = self._layouts(options, self._sources)
+        options = options.shown(layouts)
+        self._options = options
+        home_layout = options.layouts(home.source().streams(1)[0])[0]
+        self.layout = {**home_layout, "action": widest_action([home_layout, *layouts])}
+        self._modalities: tuple[str, ...] = options.modalities or ()
+        self._checked: set[str] = set()
         streams = self._streams(self._sources)
         self._labels = home.labels()
         self.label_in_info = options.task_label == "info"
@@ -71,6 +76,7 @@ class Members:
             options.renderer,
             options.depth,
             list(options.libraries),
+            json.dumps(images_among(self._modalities)),
             max_episode_steps,
         )
         self._is_discrete = isinstance(self.action_space, spaces.Discrete)
@@ -85,10 +91,23 @@ class Members:
     def _arranged(self, buffers: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
         """The buffers in the order of the options."""
         buffers["state"] = buffers["state"].reshape(self.num_envs, -1)
-        views = {kind: buffers[kind] for kind in self._options.modalities}
+        views = {kind: buffers[kind] for kind in self._modalities}
         if self._options.task_label == "obs":
             views["task"] = _locked(np.zeros((self.num_envs, len(self._labels)), dtype=np.float32))
         return views
+
+    def _layouts(self, options: Options, sources: list[Source]) -> list[dict[str, Any]]:
+        """What the environments look like: one layout for each variant there is."""
+        variants: dict[str, _native.Variant] = {}
+        others: dict[int, Source] = {}
+        for source in sources:
+            if isinstance(source, (OneVariant, Queue)):
+                variants.update({variant.hash: variant for variant in _variants(source)})
+            else:
+                others[id(source)] = source
+        streams = [source.streams(1)[0] for source in others.values()]
+        streams += [_native.Stream.variants(list(variants.values()))] if variants else []
+        return [layout for stream in streams for layout in options.layouts(stream)]
 
     def _streams(self, sources: list[Source]) -> list[_native.Stream]:
         """Each environment's worlds, after a look whether they fit into the spaces."""
@@ -103,15 +122,14 @@ class Members:
     def _check(self, source: Source, stream: _native.Stream) -> None:
         """Looks whether the worlds of a source fit into the spaces."""
         if isinstance(source, (OneVariant, Queue)):
-            variants = source.variants if isinstance(source, Queue) else (source.variant,)
-            new = {variant.hash: variant for variant in variants}
+            new = {variant.hash: variant for variant in _variants(source)}
             new = {hash: variant for hash, variant in new.items() if hash not in self._checked}
             streams = [_native.Stream.variants(list(new.values()))] if new else []
         else:
             new, streams = {}, [stream]
         for unseen in streams:
             for layout in self._options.layouts(unseen):
-                expect_same_spaces(self.layout, layout)
+                expect_same_spaces(self.layout, layout, self._modalities)
         self._checked.update(new)
 
     def checked(self, options: Mapping[str, Any], *, many: bool) -> Prepared:
@@ -230,13 +248,13 @@ class Members:
 
     def _one(self, views: dict[str, NDArray[Any]], env: int) -> Any:
         if not self._options.is_dict:
-            return views[self._options.modalities[0]][env].copy()
+            return views[self._modalities[0]][env].copy()
         return {kind: view[env].copy() for kind, view in views.items()}
 
     def observations(self, copy: bool) -> Any:
         """All observations: copies, or views on the batch's buffers that nobody can write through."""
         if not self._options.is_dict:
-            view = self._views[self._options.modalities[0]]
+            view = self._views[self._modalities[0]]
             return view.copy() if copy else view
         return {kind: view.copy() if copy else view[:] for kind, view in self._views.items()}
 
@@ -302,6 +320,10 @@ class Members:
         for env, name in enumerate(written["names"]):
             members._name(env, name)
         return members
+
+
+def _variants(source: OneVariant | Queue) -> Sequence[_native.Variant]:
+    return source.variants if isinstance(source, Queue) else (source.variant,)
 
 
 #: Rows that a native batch can be handed.

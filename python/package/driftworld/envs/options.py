@@ -8,7 +8,7 @@ import json
 import math
 import numbers
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 from typing import Annotated, Any, TypedDict, TypeVar, get_args, get_type_hints
@@ -21,12 +21,17 @@ from driftworld.errors import SpecError
 
 #: What an observation may hold.
 MODALITIES: tuple[Modality, ...] = get_args(Modality)
-DEFAULT_MODALITIES: tuple[Modality, ...] = ("rgb", "depth", "state")
 DEPTHS: tuple[DepthForm, ...] = get_args(DepthForm)
 RENDERERS: tuple[RendererName, ...] = get_args(RendererName)
 LABELS: tuple[LabelPlace, ...] = get_args(LabelPlace)
 INFOS: tuple[InfoFor, ...] = get_args(InfoFor)
-ACTIONS: dict[str, str] = {"normalized": "normalized", "continuous": "continuous", "discrete": "default_discrete"}
+#: What is laid over the actions of worlds; ``"task"`` lays nothing over a table, and −1..1 over numbers.
+ACTIONS: dict[str, str | None] = {
+    "task": None,
+    "normalized": "normalized",
+    "continuous": "continuous",
+    "discrete": "default_discrete",
+}
 
 
 class EnvOptions(TypedDict, total=False):
@@ -35,10 +40,11 @@ class EnvOptions(TypedDict, total=False):
     What the options mean is said in :class:`driftworld.DriftworldEnv`.
     """
 
-    modalities: Annotated[Modality | Sequence[Modality], DEFAULT_MODALITIES]
+    modalities: Annotated[Modality | Sequence[Modality] | None, None]
+    blank: Annotated[bool, False]
     size: Annotated[int | tuple[int, int] | None, None]
     depth: Annotated[DepthForm, "uint8"]
-    actions: Annotated[ActionsName | Sequence[Sequence[float]] | None, "normalized"]
+    actions: Annotated[ActionsName | Sequence[Sequence[float]] | None, "task"]
     interact: Annotated[bool | None, None]
     frame_skip: Annotated[int | None, None]
     max_steps: Annotated[int | None, None]
@@ -76,7 +82,7 @@ class Options:
     """Checked options of an environment; single and vector environments share them.
 
     Attributes:
-        modalities: What an observation holds, in this order.
+        modalities: What an observation holds, in this order; what the worlds ask for if ``None``.
         is_dict: Whether an observation is a dictionary, or its one modality alone.
         depth: The numbers of depth images.
         renderer: What draws.
@@ -86,7 +92,7 @@ class Options:
         overrides: What is laid over each world, as JSON.
     """
 
-    modalities: tuple[str, ...]
+    modalities: tuple[str, ...] | None
     is_dict: bool
     depth: str
     renderer: str
@@ -105,25 +111,35 @@ class Options:
         options = {**_DEFAULTS, **given}
         modalities, task_label = options["modalities"], options["task_label"]
         is_dict = not isinstance(modalities, str)
-        if not isinstance(modalities, Sequence):
+        if modalities is not None and not isinstance(modalities, Sequence):
             raise ValueError(f"modalities: found {modalities!r}, expected one of {', '.join(MODALITIES)}, or a list")
-        kinds: tuple[str, ...] = (modalities,) if isinstance(modalities, str) else tuple(modalities)
-        for kind in kinds:
-            _one_of("modalities", kind, MODALITIES)
-        if not kinds or len(set(kinds)) < len(kinds):
-            raise ValueError(f"modalities: found {modalities!r}, expected some of {', '.join(MODALITIES)}, each once")
+        kinds: tuple[str, ...] | None = None
+        if modalities is not None:
+            kinds = (modalities,) if isinstance(modalities, str) else tuple(modalities)
+        if kinds is not None:
+            for kind in kinds:
+                _one_of("modalities", kind, MODALITIES)
+            if not kinds or len(set(kinds)) < len(kinds):
+                raise ValueError(f"modalities: found {modalities!r}, expected some of {', '.join(MODALITIES)}, each once")
+        blank = _flag("blank", options["blank"])
         _one_of("depth", options["depth"], DEPTHS)
         _one_of("renderer", options["renderer"], RENDERERS)
         _one_of("task_label", task_label, LABELS)
         _one_of("info", options["info"], INFOS)
+        if blank and kinds is None:
+            raise ValueError(
+                'blank: found True without modalities, expected them, such as modalities=["rgb", "depth", "state"]: without, they are '
+                "what the worlds ask for"
+            )
         if task_label == "obs" and not is_dict:
             raise ValueError(
                 'task_label: found "obs", expected modalities to be a list: a single image has no room for it'
             )
         overrides = {
-            "modalities": [kind for kind in kinds if kind != "state"],
+            "modalities": None if kinds is None or blank else images_among(kinds),
             "size": _size(options["size"]),
             "actions": _actions(options["actions"]),
+            "normalizes": isinstance(options["actions"], str) and options["actions"] == "task",
             "interact": _flag("interact", options["interact"]),
             **{name: whole(name, options[name]) for name in ("frame_skip", "max_steps", "supersampling")},
         }
@@ -148,6 +164,30 @@ class Options:
             return [json.loads(text) for text in stream.layouts(self.overrides)]
         except SpecError as error:
             raise _as_options(error) from None
+
+
+    def shown(self, layouts: Iterable[dict[str, Any]]) -> Options:
+        """The same with the modalities that worlds of these layouts ask for, where none are said.
+
+        Raises:
+            ValueError: If they ask for none at all.
+        """
+        if self.modalities is not None:
+            return self
+        asked = {kind for layout in layouts for kind in modalities_of(layout)}
+        if not asked:
+            raise ValueError(f"modalities: found worlds that show nothing, expected some of {', '.join(MODALITIES)}")
+        return replace(self, modalities=tuple(kind for kind in MODALITIES if kind in asked))
+
+
+def images_among(kinds: Iterable[str]) -> list[str]:
+    """What of an observation is an image."""
+    return [kind for kind in kinds if kind != "state"]
+
+
+def modalities_of(layout: dict[str, Any]) -> list[str]:
+    """What worlds of a layout show."""
+    return [*layout["modalities"], *(["state"] if layout["state_len"] else [])]
 
 
 #: The option behind each value that options lay over a world.
@@ -181,8 +221,8 @@ def _as_options(error: SpecError) -> SpecError:
     return SpecError("\n".join(lines), code=error.code, problems=problems)
 
 
-def expect_same_spaces(ours: dict[str, Any], theirs: dict[str, Any]) -> None:
-    """Checks that worlds of another variant fit into the spaces of an environment.
+def expect_same_spaces(ours: dict[str, Any], theirs: dict[str, Any], modalities: Sequence[str]) -> None:
+    """Checks that worlds of another variant fit into the spaces of an environment, whose observations hold these modalities.
 
     Raises:
         ValueError: That says what differs.
@@ -193,11 +233,29 @@ def expect_same_spaces(ours: dict[str, Any], theirs: dict[str, Any]) -> None:
                 f"variant: found {key} {theirs[key]}, expected {ours[key]} as the environment was made with; give option size, "
                 "or make an environment of its own"
             )
-    if ours["action"] != theirs["action"]:
+    missing = [kind for kind in theirs["modalities"] if kind not in modalities]
+    if missing:
+        raise ValueError(
+            f"variant: found images of {', '.join(missing)}, expected some of {', '.join(modalities)} as the environment was made "
+            "with; give option modalities with all of them, and blank=True if each variant shall show its own alone"
+        )
+    if not fits_into(theirs["action"], ours["action"]):
         raise ValueError(
             f"variant: found actions of {_words(theirs['action'])}, expected {_words(ours['action'])} as the environment was made "
-            "with; give options actions and interact, or make an environment of its own"
+            "with; give option actions a table of rows: their third number counts where a variant lets the agent interact"
         )
+
+
+def fits_into(action: dict[str, Any], other: dict[str, Any]) -> bool:
+    """Whether actions of one kind can be handed over as those of the other: the same, or without the last numbers."""
+    bounds = action.get("bounds")
+    return action == other or (bounds is not None and other.get("bounds", [])[: len(bounds)] == bounds)
+
+
+def widest_action(layouts: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """The actions of these layouts that all others fit into; those of the first if there are none such."""
+    actions: list[dict[str, Any]] = [layout["action"] for layout in layouts]
+    return next((one for one in actions if all(fits_into(action, one) for action in actions)), actions[0])
 
 
 def _words(action: dict[str, Any]) -> str:

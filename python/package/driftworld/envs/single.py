@@ -35,11 +35,14 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         variant: The variant to begin with; without one, the one behind ``#``, else that of all defaults.
         modalities: What an observation holds: ``"rgb"`` alone is a ``Box``, a list such as ``["rgb", "depth"]`` a ``Dict``.
             There are ``rgb`` uint8 (h, w, 3); ``depth`` (h, w, 1); ``segmentation`` uint8 (h, w, 1), reward categories; ``class``
-            uint16 and ``instance`` uint32 (h, w, 1); ``state`` float32 (n,).
+            uint16 and ``instance`` uint32 (h, w, 1); ``state`` float32 (n,). What the task asks for if not given, as a ``Dict``.
+        blank: With ``modalities``: images that a variant does not ask for are 0, in place of being drawn all the same. So one space
+            serves variants that differ in what they show.
         size: Pixels along each side, or (height, width); as the task says if not given.
         depth: ``"uint8"``, grey from 0 at the camera to 255 at 100 m; ``"uint16"``, millimetres; ``"float32"``, metres.
-        actions: ``"normalized"``, −1..1; ``"continuous"``, in m/s and °/s; ``"discrete"``, rows of the built-in table; or a table
-            of rows (speed in m/s, turn rate in °/s, interact if above 0.5); ``None`` for what the task says.
+        actions: ``"task"``, rows of the task's table if it has one, else numbers in −1..1; ``"normalized"``, −1..1;
+            ``"continuous"``, in m/s and °/s; ``"discrete"``, rows of the built-in table; or a table of rows (speed in m/s, turn
+            rate in °/s, interact if above 0.5); ``None`` for exactly what the task says.
         interact: Whether the agent can interact; as the task says if not given.
         frame_skip: Time steps for which each action is held; as the task says if not given.
         max_steps: Steps after which an episode is truncated, 0 for never; as the task says if not given.

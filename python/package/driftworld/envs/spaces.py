@@ -35,10 +35,11 @@ _FEATURES: dict[str, list[tuple[float, float]]] = {
 
 def observation_space(options: Options, layout: dict[str, Any], num_labels: int) -> spaces.Space[Any]:
     """The space of one observation: a ``Dict``, or the ``Box`` of its one modality."""
-    boxes: dict[str, spaces.Space[Any]] = {kind: _box(kind, options, layout) for kind in options.modalities}
+    kinds = options.modalities or ()
+    boxes: dict[str, spaces.Space[Any]] = {kind: _box(kind, options, layout) for kind in kinds}
     if options.task_label == "obs":
         boxes["task"] = spaces.Box(0.0, 1.0, (num_labels,), np.float32)
-    return spaces.Dict(boxes) if options.is_dict else boxes[options.modalities[0]]
+    return spaces.Dict(boxes) if options.is_dict else boxes[kinds[0]]
 
 
 def _box(kind: str, options: Options, layout: dict[str, Any]) -> spaces.Box:
