@@ -7,6 +7,7 @@ use driftworld_env::{
 };
 use driftworld_report::picture::{Picture, SheetRow};
 use driftworld_spec::{Stimulus, World};
+use driftworld_text::amount;
 
 use crate::Failure;
 
@@ -161,14 +162,28 @@ fn title(step: usize, deed: &Deed) -> String {
     }
 }
 
-/// A number with one decimal and its sign.
+/// A number with its sign and one decimal, so that it keeps its width while it changes; a smaller one with the decimals
+/// that show it.
 pub(crate) fn number(value: f64, plus: &str) -> String {
-    let sign = if value < 0.0 { "−" } else { plus };
-    format!("{sign}{:.1}", value.abs())
+    let size = amount(value.abs());
+    let text = match value.abs() {
+        _ if size == "0" => return "0.0".to_owned(),
+        small if small < 0.05 => size,
+        size => format!("{size:.1}"),
+    };
+    format!("{}{text}", if value < 0.0 { "−" } else { plus })
 }
 
-/// The time, the return, what is carried, and why the episode ended.
+/// The time, the return, what is carried, and why the episode ended, in one line.
 pub(crate) fn words(environment: &Environment, end: Option<&Step>) -> String {
+    facts(environment, end).join(PARTED)
+}
+
+/// What stands between two facts in a line.
+pub(crate) const PARTED: &str = " · ";
+
+/// The time, the return, what is carried, and why the episode ended.
+pub(crate) fn facts(environment: &Environment, end: Option<&Step>) -> Vec<String> {
     let mut parts = vec![
         format!("{:.1} s", environment.seconds()),
         format!("return {}", number(environment.episode_return(), "")),
@@ -188,7 +203,7 @@ pub(crate) fn words(environment: &Environment, end: Option<&Step>) -> String {
             None => "has no end".to_owned(),
         });
     }
-    parts.join(" · ")
+    parts
 }
 
 /// How often a picture is drawn too large along each side, for smooth edges: where that is allowed.
@@ -222,6 +237,24 @@ pub(crate) fn map_of(environment: &Environment, size: u32, way: &[[f32; 2]]) -> 
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn numbers_have_a_sign_and_the_decimals_that_show_them() {
+        for (value, expected) in [
+            (100.729_999_999_999_99, "+100.7"),
+            (-0.3, "−0.3"),
+            (0.0, "0.0"),
+            (-0.0, "0.0"),
+            (1e-12, "0.0"),
+            (-0.001, "−0.001"),
+            (0.049, "+0.049"),
+            (0.05, "+0.1"),
+            (-1e6, "−1000000.0"),
+        ] {
+            assert_eq!(number(value, "+"), expected);
+        }
+        assert_eq!(number(2.0, ""), "2.0");
+    }
 
     proptest! {
         /// The frames rise, begin at the start, end at the end, are as many as asked for where there are so many steps,

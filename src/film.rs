@@ -9,11 +9,11 @@ use driftworld_env::{
     Catalogue, Environment, Recording, Renderer, RendererKind, Replay, category_color, depth_to_gray,
 };
 use driftworld_report::film::{Film, FilmKind};
-use driftworld_report::picture::{Picture, sheet};
+use driftworld_report::picture::{Picture, caption_lines, sheet};
 use driftworld_text::ShownPath;
 use serde::Serialize;
 
-use crate::episode_frames::{deed, map_of, rows, seen_by, words};
+use crate::episode_frames::{deed, facts, map_of, rows, seen_by};
 use crate::{Failure, output_file};
 
 /// Most pixels along a side of the agent's view, and of the map.
@@ -82,7 +82,7 @@ pub struct FilmOptions {
     pub size: u32,
     /// One frame for so many steps, at least 1. The start and the end are always shown.
     pub every: u32,
-    /// Whether a line above each frame says time, return and what happened.
+    /// Whether words above each frame say time, return and what happened.
     pub captions: bool,
     /// What draws.
     pub renderer: RendererKind,
@@ -120,6 +120,19 @@ impl FilmOptions {
         1 + steps.div_ceil(self.every.max(1) as usize)
     }
 
+    /// Whether there is a frame after so many steps of an episode of `last`.
+    fn shows(&self, number: usize, last: usize) -> bool {
+        number.is_multiple_of(self.every as usize) || number == last
+    }
+
+    /// Pixels across.
+    fn width(&self) -> u32 {
+        match self.view {
+            FilmView::Agent | FilmView::Above => self.size,
+            FilmView::Both => 2 * self.size,
+        }
+    }
+
     fn check(&self) -> Result<(), Failure> {
         if (1..=MAX_FILM_SIZE).contains(&self.size) && self.every >= 1 {
             return Ok(());
@@ -144,36 +157,80 @@ pub fn film(
 ) -> Result<(), Failure> {
     options.check()?;
     let mut replay = Replay::new(recording, catalogue);
+    let captions = if options.captions {
+        Captions::of(&mut replay, recording, options)?
+    } else {
+        Captions::default()
+    };
+    replay.restart();
     replay.environment().set_renderer(Renderer::new(options.renderer)?);
-    let steps_of_a_second = (1.0 / recording.seconds_per_step()).ceil() as usize;
     let mut way = vec![replay.environment().agent().position];
-    // What happened last, and when.
-    let mut said: Option<(String, usize)> = None;
-    take(frame(&mut replay, options, &way, "")?, 0)?;
-    while let Some(step) = replay.step()? {
+    let mut captioned = |replay: &mut Replay<'_>, way: &[[f32; 2]], number: usize| {
+        let frame = frame(replay.environment(), options, way)?;
+        take(captions.above(frame, number), number)
+    };
+    captioned(&mut replay, &way, 0)?;
+    while replay.step()?.is_some() {
         let number = replay.num_steps();
-        let environment = replay.environment();
-        way.push(environment.agent().position);
-        let deed = deed(environment.world(), &step).words.join(", ");
-        if !deed.is_empty() {
-            said = Some((deed, number));
-        }
-        let is_last = number == recording.actions.len();
-        if number.is_multiple_of(options.every as usize) || is_last {
-            let mut caption = words(environment, is_last.then_some(&step));
-            if let Some((deed, when)) = &said
-                && number - when <= steps_of_a_second
-            {
-                caption = format!("{caption} · {deed}");
-            }
-            take(frame(&mut replay, options, &way, &caption)?, number)?;
+        way.push(replay.environment().agent().position);
+        if options.shows(number, recording.actions.len()) {
+            captioned(&mut replay, &way, number)?;
         }
     }
     Ok(replay.check()?)
 }
 
-fn frame(replay: &mut Replay<'_>, options: &FilmOptions, way: &[[f32; 2]], caption: &str) -> Result<Picture, Failure> {
-    let environment = replay.environment();
+/// What stands above the frames of a film: known before the first is drawn, for all have room for the longest.
+#[derive(Default)]
+struct Captions {
+    /// By the number of steps before the frame, rising.
+    of_frames: Vec<(usize, Vec<String>)>,
+    num_lines: usize,
+}
+
+impl Captions {
+    /// The captions of an episode, which is run for them from its start, without pictures.
+    fn of(replay: &mut Replay<'_>, recording: &Recording, options: &FilmOptions) -> Result<Self, Failure> {
+        let last = recording.actions.len();
+        let steps_of_a_second = (1.0 / recording.seconds_per_step()).ceil() as usize;
+        let mut of_frames = vec![(0, facts(replay.environment(), None))];
+        // What happened last, and when.
+        let mut said: Option<(Vec<String>, usize)> = None;
+        while let Some(step) = replay.step()? {
+            let number = replay.num_steps();
+            let environment = replay.environment();
+            let deed = deed(environment.world(), &step).words;
+            if !deed.is_empty() {
+                said = Some((deed, number));
+            }
+            if options.shows(number, last) {
+                let mut caption = facts(environment, (number == last).then_some(&step));
+                if let Some((deed, when)) = &said
+                    && number - when <= steps_of_a_second
+                {
+                    caption.extend(deed.iter().cloned());
+                }
+                of_frames.push((number, caption));
+            }
+        }
+        let width = options.width();
+        let lines = of_frames.iter().map(|(_, caption)| caption_lines(caption, width).len());
+        Ok(Self {
+            num_lines: lines.max().unwrap_or(0),
+            of_frames,
+        })
+    }
+
+    /// The frame before which so many steps lie, with its caption.
+    fn above(&self, frame: Picture, number: usize) -> Picture {
+        match self.of_frames.binary_search_by_key(&number, |(number, _)| *number) {
+            Ok(place) => frame.captioned(&self.of_frames[place].1, self.num_lines),
+            Err(_) => frame,
+        }
+    }
+}
+
+fn frame(environment: &mut Environment, options: &FilmOptions, way: &[[f32; 2]]) -> Result<Picture, Failure> {
     let pictures = match options.view {
         FilmView::Agent => vec![agent_view(environment, options)?],
         FilmView::Above => vec![map_of(environment, options.size, way)],
@@ -182,19 +239,11 @@ fn frame(replay: &mut Replay<'_>, options: &FilmOptions, way: &[[f32; 2]], capti
             map_of(environment, options.size, way),
         ],
     };
-    let mut frame = Picture::blank(pictures.iter().map(|picture| picture.width).sum(), options.size);
+    let mut frame = Picture::blank(options.width(), options.size);
     let mut left = 0;
     for picture in &pictures {
         frame.paste(picture, left, 0);
         left += picture.width;
-    }
-    if options.captions {
-        let caption = if caption.is_empty() {
-            words(environment, None)
-        } else {
-            caption.to_owned()
-        };
-        return Ok(frame.captioned(&caption));
     }
     Ok(frame)
 }

@@ -6,7 +6,7 @@ use crate::Failure;
 use crate::env::{Catalogue, Recording, RendererKind};
 use crate::film::{FilmModality, FilmOptions, FilmSummary, FilmView, MAX_FILM_SIZE, write_film};
 use clap::Args;
-use driftworld_text::ShownPath;
+use driftworld_text::{ShownPath, amount};
 
 use super::output;
 
@@ -104,9 +104,9 @@ pub(crate) fn summary(recording: &Recording) -> String {
     let ended = recording
         .ended_by
         .map_or_else(|| "no end".to_owned(), |word| format!("ended by {}", word.word()));
-    format!(
-        "{world}{} steps, reward {}, {ended}",
-        recording.actions.len(),
-        recording.reward
-    )
+    let steps = match recording.actions.len() {
+        1 => "1 step".to_owned(),
+        steps => format!("{steps} steps"),
+    };
+    format!("{world}{steps}, reward {}, {ended}", amount(recording.reward))
 }

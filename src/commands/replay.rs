@@ -125,8 +125,10 @@ impl Replay {
             count => format!("; {count} were not recorded"),
         };
         output::line(format!(
-            "{}: {checked} episodes of {steps} steps in all come out as recorded{without}",
-            self.log.shown()
+            "{}: {checked} {} of {steps} steps in all {} as recorded{without}",
+            self.log.shown(),
+            if checked == 1 { "episode" } else { "episodes" },
+            if checked == 1 { "comes out" } else { "come out" },
         ))
     }
 }

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use crate::spec::{EnvironmentParams, Layout, did_you_mean};
+use driftworld_text::amount;
 
 use super::line::COMMANDS;
 use super::session::{MOST_LINES, Session};
@@ -61,7 +62,7 @@ impl Session<'_> {
             ground(&world.environment_params),
             world.objects.len(),
             agent.action_model,
-            agent.time_step * f64::from(agent.frame_skip),
+            amount(agent.time_step * f64::from(agent.frame_skip)),
             list(modalities.collect()),
             list(self.channels.watched().iter().map(|part| (*part).to_owned()).collect()),
             list(self.snapshots.keys().cloned().collect()),
@@ -110,12 +111,6 @@ pub(super) fn help(command: Option<&str>) -> Result<String, String> {
         let near = did_you_mean(command, COMMANDS.map(|(name, _, _)| name));
         format!("found command {command:?}, expected one listed by help{near}")
     })
-}
-
-/// A reward with all that is not noise of it: six places behind the point at most.
-pub(super) fn amount(number: f64) -> String {
-    let rounded = (number * 1e6).round() / 1e6;
-    format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
 }
 
 /// A number with at most two decimals, and without those that say nothing.

@@ -6,13 +6,13 @@ use std::path::Path;
 
 use crate::env::{Action, Category, Channels, CpuRenderer, Environment, Event, Level, Snapshot, Step};
 use crate::spec::{Object, World, did_you_mean};
-use driftworld_text::ShownPath;
+use driftworld_text::{ShownPath, amount};
 
 use super::line::Line;
 use super::messages::shown;
 use super::names::Names;
 use super::place::Folder;
-use super::report::{amount, help};
+use super::report::help;
 use super::screen::Screen;
 use crate::Failure;
 use crate::Warn;

@@ -206,7 +206,7 @@ fn an_episode_becomes_a_film_or_a_sheet() {
         said.contains("episode 1: find_objects#red, world 1 under seed 5: 30 steps"),
         "{said}"
     );
-    assert!(said.contains(": 31 frames of 96 × 72 pixels, 4.0 s"), "{said}");
+    assert!(said.contains(": 31 frames of 96 × 95 pixels, 4.0 s"), "{said}");
     assert_eq!(first_bytes(&at("e.gif")), b"GIF8");
     let said = replay(
         "e.apng",

@@ -3,6 +3,7 @@
 
 use driftworld_spec::World;
 use driftworld_spec::maps::MapLibrary;
+use driftworld_text::amount;
 use serde_json::{Value, json};
 
 use super::Channel;
@@ -158,7 +159,10 @@ impl Channels {
             let gone = if event.destroyed { ", destroyed" } else { "" };
             let said = format!(
                 "{:?} object {} ({}), reward {}{gone}",
-                event.stimulus, event.object, object.class, event.reward
+                event.stimulus,
+                event.object,
+                object.class,
+                amount(event.reward)
             );
             messages.extend(self.remark(Category::Agent, Level::Log, said, time));
         }
@@ -168,7 +172,7 @@ impl Channels {
                 (false, true) => "as a failure",
                 (false, false) => "at its last step",
             };
-            let (steps, earned) = (environment.num_steps(), environment.episode_return());
+            let (steps, earned) = (environment.num_steps(), amount(environment.episode_return()));
             let said = format!("the episode ended {ending} after {steps} steps, return {earned}");
             messages.extend(self.remark(Category::Academy, Level::Log, said, time));
         }

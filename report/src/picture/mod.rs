@@ -14,7 +14,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 pub use blocks::blocks;
-pub use caption::CAPTION_HEIGHT;
+pub use caption::{MAX_CAPTION_LINES, caption_lines};
 pub use heat_map::heat_map;
 pub use path_map::path_map;
 pub use scatter::{Panel, Point, scatter};

@@ -58,10 +58,21 @@ struct Cell<'a> {
 }
 
 impl<'a> Cell<'a> {
+    /// A title too long for its picture gives what stands behind its colon to the words below.
     fn of(row: &'a SheetRow, width: u32) -> Self {
+        let title = driftworld_text::printable(&row.title).into_owned();
+        let mut words = driftworld_text::printable(&row.words).into_owned();
+        let width = width as f32;
+        let title = match title.split_once(": ") {
+            Some((first, rest)) if text_width(&title, TITLE.0) > width => {
+                words = [rest, words.as_str()].map(str::trim).join(" · ");
+                first
+            }
+            _ => &title,
+        };
         Self {
-            title: cut(driftworld_text::printable(&row.title).as_ref(), TITLE.0, width as f32),
-            lines: lines(driftworld_text::printable(&row.words).as_ref(), WORDS.0, width as f32),
+            title: cut(title, TITLE.0, width),
+            lines: lines(words.trim_end_matches(" · "), WORDS.0, width),
             pictures: &row.pictures,
         }
     }
@@ -95,7 +106,7 @@ impl<'a> Cell<'a> {
 }
 
 /// A text that is cut where it is too wide.
-fn cut(text: &str, size: f32, width: f32) -> String {
+pub(super) fn cut(text: &str, size: f32, width: f32) -> String {
     if text_width(text, size) <= width {
         return text.to_owned();
     }
@@ -144,6 +155,30 @@ mod tests {
             assert!(lines.last().is_some_and(|line| line.ends_with('…')));
         }
         assert_eq!(lines("a few words", 13.0, 300.0), ["a few words"]);
+    }
+
+    #[test]
+    fn a_title_too_long_for_its_picture_goes_on_in_the_words() {
+        let row = SheetRow {
+            title: "Step 120: touches the red berries: +100.0".to_owned(),
+            words: "12.0 s · return 98.8".to_owned(),
+            pictures: Vec::new(),
+        };
+        let shown = |width| {
+            let cell = Cell::of(&row, width);
+            (cell.title, cell.lines.join(" "))
+        };
+        assert_eq!(shown(500), (row.title.clone(), row.words.clone()));
+        let below = "touches the red berries: +100.0 · 12.0 s · return 98.8";
+        assert_eq!(shown(160), ("Step 120".to_owned(), below.to_owned()));
+        let silent = SheetRow {
+            words: String::new(),
+            ..row.clone()
+        };
+        assert_eq!(
+            Cell::of(&silent, 160).lines.join(" "),
+            "touches the red berries: +100.0"
+        );
     }
 
     #[test]

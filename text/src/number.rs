@@ -1,0 +1,85 @@
+//! Numbers as people read them: without the digits that only rounding put there. Files keep every digit; that is not
+//! decided here.
+
+/// Places behind the point, at most.
+const PLACES: usize = 6;
+
+/// Digits of a number that a sum of many keeps, at most.
+const DIGITS: usize = 13;
+
+/// A number without the noise of its last bits: at most six places behind the point and, where it has some, thirteen
+/// digits in all; no zeros at their end, and no sign before zero. Numbers from 1e15 on, which have no places, have
+/// all their digits.
+///
+/// ```
+/// # use driftworld_text::amount;
+/// assert_eq!(amount(100.729_999_999_999_99), "100.73");
+/// assert_eq!(amount(0.1 + 0.2 - 0.3), "0");
+/// ```
+pub fn amount(number: f64) -> String {
+    if !number.is_finite() {
+        return number.to_string();
+    }
+    let size = number.abs();
+    let places = (0..=PLACES)
+        .rev()
+        .find(|places| size < 10_f64.powi((DIGITS - places) as i32));
+    let text = format!("{number:.*}", places.unwrap_or(0));
+    let text = match text.split_once('.') {
+        Some(_) => text.trim_end_matches('0').trim_end_matches('.'),
+        None => &text,
+    };
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn what_rounding_added_is_gone() {
+        for (number, expected) in [
+            (100.729_999_999_999_99, "100.73"),
+            (0.1 + 0.2, "0.3"),
+            (0.1 + 0.2 - 0.3, "0"),
+            (-1e-12, "0"),
+            (-0.0, "0"),
+            (-42.100_000_000_000_05, "-42.1"),
+            (1000.0, "1000"),
+            (2e15, "2000000000000000"),
+            (123_456_789.123_456_7, "123456789.1235"),
+            (f64::NAN, "NaN"),
+            (f64::NEG_INFINITY, "-inf"),
+        ] {
+            assert_eq!(amount(number), expected);
+        }
+    }
+
+    proptest! {
+        /// Tenths, hundredths, and so on, come back as they were written, however many were added up to them.
+        #[test]
+        fn a_sum_reads_as_its_exact_value(
+            parts in prop::collection::vec(-100_000i64..100_000, 1..400),
+            places in 0u32..=4,
+        ) {
+            let unit = 10_i64.pow(places);
+            let sum: f64 = parts.iter().map(|part| *part as f64 / unit as f64).sum();
+            let exact = parts.iter().sum::<i64>();
+            let (whole, rest) = (exact.abs() / unit, exact.abs() % unit);
+            let rest = if places == 0 { String::new() } else { format!(".{rest:0>width$}", width = places as usize) };
+            let digits = format!("{}{whole}{rest}", if exact < 0 { "-" } else { "" });
+            let expected = if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { &digits };
+            prop_assert_eq!(amount(sum), if exact == 0 { "0" } else { expected });
+        }
+
+        /// What is read is what was there, but for half a unit of its last place; and it says no more than it reads as.
+        #[test]
+        fn nothing_but_noise_is_left_out(number in prop::num::f64::NORMAL | prop::num::f64::ZERO) {
+            let text = amount(number);
+            let read: f64 = text.parse().unwrap();
+            prop_assert!((read - number).abs() <= 0.5e-6_f64.max(number.abs() * 1e-12), "{} reads as {}", number, text);
+            prop_assert_eq!(amount(read), text);
+        }
+    }
+}
