@@ -13,6 +13,7 @@ mod log;
 mod maps;
 mod matrix;
 mod protocol;
+mod recording;
 mod refusal;
 mod scenario;
 mod settings;
@@ -29,7 +30,7 @@ pub struct Target {
 }
 
 /// Every target, in the order of the alphabet.
-pub const TARGETS: [Target; 12] = [
+pub const TARGETS: [Target; 13] = [
     target("agent_script", agent_script::check),
     target("episode", episode::check),
     target("gltf", gltf::check),
@@ -38,6 +39,7 @@ pub const TARGETS: [Target; 12] = [
     target("maps", maps::check),
     target("matrix", matrix::check),
     target("protocol", protocol::check),
+    target("recording", recording::check),
     target("scenario", scenario::check),
     target("settings", settings::check),
     target("task", task::check),

@@ -138,6 +138,7 @@ targets! {
     maps: 512,
     matrix: 256,
     protocol: 256,
+    recording: 256,
     scenario: 256,
     settings: 256,
     task: 256,

@@ -111,7 +111,7 @@ impl RecordingLines {
 const SEAL: &str = ",\"crc32\":\"";
 
 /// A line of JSON that ends with the checksum of what stands before it, and with a line end.
-fn sealed(line: &impl Serialize) -> String {
+pub(super) fn sealed(line: &impl Serialize) -> String {
     let mut json = serde_json::to_string(line).expect("lines have string keys only, which always serialise");
     let end = json.pop();
     debug_assert_eq!(end, Some('}'), "a line is an object");

@@ -91,8 +91,8 @@ impl<R: BufRead> RecordingReader<R> {
             if line.starts_with(b"{\"world_hash\":") {
                 let world: WorldLine = serde_json::from_slice(&line).map_err(|error| wrong(self, &error))?;
                 let line = self.line;
-                // The first stays: a line that is repeated says nothing new.
-                self.worlds.entry(world.world_hash).or_insert((line, world.world));
+                // The last counts: it was written where one before could not be made out.
+                self.worlds.insert(world.world_hash, (line, world.world));
                 continue;
             }
             let said: EpisodeLine = serde_json::from_slice(&line).map_err(|error| wrong(self, &error))?;
@@ -156,10 +156,13 @@ impl<R: BufRead> RecordingReader<R> {
         self.is_torn
     }
 
-    /// Bytes before a place, and what goes on writing there.
+    /// Bytes before a place, and what goes on writing there. It writes worlds again that cannot be made out of their
+    /// lines, such as those that another version wrote.
     pub fn into_lines_at(self, place: RecordingMark) -> (u64, RecordingLines) {
-        let before = self.worlds.into_iter().filter(|(_, (line, _))| *line <= place.line);
-        (place.offset, RecordingLines::with_worlds(before.map(|(hash, _)| hash)))
+        let before = self.worlds.iter().filter(|(_, (line, _))| *line <= place.line);
+        let sound = before.filter(|(hash, _)| self.world(place.line, hash).is_ok());
+        let sound = sound.map(|(hash, _)| hash.clone());
+        (place.offset, RecordingLines::with_worlds(sound))
     }
 
     fn world(&self, line: u64, hash: &str) -> Result<World, EnvError> {
@@ -217,6 +220,49 @@ impl<R: BufRead> RecordingReader<R> {
             line: self.line,
             found: found.into(),
             expected: expected.into(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::lines::sealed;
+    use super::*;
+    use crate::recording::packed::deflated;
+    use crate::{Action, Environment, Recorder};
+
+    fn recording(experience: u64) -> Recording {
+        let world = World::default();
+        let (mut environment, mut recorder) = (Environment::new(world.clone()), Recorder::default());
+        recorder.begin(world);
+        let action = Action::Continuous([1.0, 0.0, 0.0]);
+        environment.step(action).unwrap();
+        recorder.step(action);
+        let mut recording = recorder.recording(&environment, None);
+        recording.origin.experience = experience;
+        recording
+    }
+
+    /// The fuzzer found it: what was written behind such a line could not be read back.
+    #[test]
+    fn a_world_that_cannot_be_made_out_is_written_again() {
+        let world = sealed(&WorldLine {
+            world_hash: World::default().hash(),
+            world: deflated(br#"{ "of_another_version": true }"#.iter().copied()),
+        });
+        let mut file = RecordingLines::header() + &world;
+        let mut reader = RecordingReader::new(file.as_bytes()).unwrap();
+        assert!(reader.next_episode().unwrap().is_none());
+        let end = reader.mark();
+        let (offset, mut lines) = reader.into_lines_at(end);
+        assert_eq!(offset, file.len() as u64);
+        file += &lines.lines(&recording(0));
+        file += &lines.lines(&recording(1));
+        assert_eq!(file.matches("{\"world_hash\"").count(), 2, "written again, and once");
+        let mut reader = RecordingReader::new(file.as_bytes()).unwrap();
+        for number in 0..2 {
+            let episode = reader.next_episode().unwrap().unwrap();
+            assert_eq!(reader.recording(&episode).unwrap(), recording(number));
         }
     }
 }

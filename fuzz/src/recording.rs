@@ -1,0 +1,239 @@
+//! Files of recorded episodes: the bytes as they are, or the lines of a known file with the changes that the bytes
+//! describe, packed and under sound checksums, since plain bytes seldom get past these.
+
+use std::fs;
+use std::io::Write;
+use std::sync::OnceLock;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use driftworld_curriculum::{RECORDINGS_FILE, Recordings, list_recordings, read_recording_file};
+use driftworld_env::{
+    Action, Catalogue, Environment, Recorder, Recording, RecordingLines, RecordingReader, Replay, Step,
+};
+use driftworld_metrics::BlockType;
+use driftworld_spec::World;
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
+use serde_json::{Value, json};
+
+use crate::edited::Known;
+use crate::{refusal, world};
+
+/// The most objects of a world that is run, and the most steps that are.
+const MOST_OBJECTS: usize = 32;
+const MOST_STEPS: usize = 16;
+
+/// The most bytes that an edited file packs: copies of copies grow.
+const MOST_PACKED: usize = 1 << 20;
+
+/// Files, each a list of lines: a world is itself where a file has it packed, and actions are their bytes.
+fn known() -> &'static Known {
+    static KNOWN: OnceLock<Known> = OnceLock::new();
+    KNOWN.get_or_init(|| {
+        let world = World::default();
+        let (start, hash) = (world::json(&world.to_json()), world.hash());
+        let header = json!({ "recording_format": 1, "driftworld": env!("CARGO_PKG_VERSION") });
+        let of_world = json!({ "world_hash": hash, "world": start });
+        let episode = |actions: Value, steps: u32, reward: f64| {
+            json!({
+                "experience": 0, "block": 0, "task": "t", "variant": "v", "seed": 3, "index": 0, "world_hash": hash,
+                "time_step": world.agent_params.time_step, "frame_skip": 1, "steps": steps, "reward": reward,
+                "ended_by": null, "driftworld": "0.2.0", "edits": [[1, hash]], "actions": actions,
+            })
+        };
+        let rows: Vec<u8> = [1_u16, 0].iter().flat_map(|row| row.to_le_bytes()).collect();
+        let f32s: Vec<u8> = [1.0_f32, 30.0, 0.0]
+            .iter()
+            .flat_map(|number| number.to_le_bytes())
+            .collect();
+        let f64s: Vec<u8> = [0.1, 30.0, 1.0]
+            .iter()
+            .flat_map(|number: &f64| number.to_le_bytes())
+            .collect();
+        let documents = vec![
+            json!([header, of_world, episode(json!({ "f32": f32s }), 1, 0.0)]),
+            json!([header, of_world, episode(json!({ "f64": f64s }), 1, 0.0)]),
+            json!([header, of_world, episode(json!({ "rows": rows }), 2, 0.0)]),
+            json!([header]),
+        ];
+        Known::new(documents, include_str!("../../schemas/world.schema.json"))
+    })
+}
+
+/// What a text packs, or itself.
+fn packed(value: Value) -> Value {
+    let bytes = match &value {
+        Value::Object(_) => value.to_string().into_bytes(),
+        Value::Array(items) => items.iter().map(|item| item.as_u64().unwrap_or(0) as u8).collect(),
+        _ => return value,
+    };
+    let mut deflater = ZlibEncoder::new(Vec::new(), Compression::fast());
+    let kept = &bytes[..bytes.len().min(MOST_PACKED)];
+    let deflated = deflater.write_all(kept).and_then(|()| deflater.finish());
+    Value::from(STANDARD.encode(deflated.expect("writing into memory cannot fail")))
+}
+
+/// A line as a file has it.
+fn sealed(mut line: Value) -> String {
+    if let Some(world) = line.get_mut("world") {
+        *world = packed(world.take());
+    }
+    if let Some(actions) = line.get_mut("actions").and_then(Value::as_object_mut) {
+        actions.values_mut().for_each(|bytes| *bytes = packed(bytes.take()));
+    }
+    let mut text = line.to_string();
+    if text.pop() != Some('}') {
+        return text + "\n";
+    }
+    let sum = crc32fast::hash(text.as_bytes());
+    format!("{text},\"crc32\":\"{sum:08x}\"}}\n")
+}
+
+fn file(bytes: &[u8]) -> Vec<u8> {
+    match bytes.split_first() {
+        Some((&crate::edited::MARK, rest)) => {
+            let edited = known().edited(&mut arbitrary::Unstructured::new(rest));
+            let lines = match edited {
+                Value::Array(lines) => lines,
+                other => vec![other],
+            };
+            lines.into_iter().map(sealed).collect::<String>().into_bytes()
+        }
+        _ => bytes.to_vec(),
+    }
+}
+
+/// Whatever the file holds, it is read to its end; what is made out of it can be written, reads the same, and is run
+/// once more without a fault; a log goes on behind it, or refuses it and leaves it alone.
+pub(crate) fn check(bytes: &[u8]) {
+    let file = file(bytes);
+    let recordings = read(&file);
+    for recording in &recordings {
+        comes_back(recording);
+        runs(recording);
+    }
+    on_disk(&file);
+}
+
+/// Every episode that can be made out.
+fn read(file: &[u8]) -> Vec<Recording> {
+    let mut reader = match RecordingReader::new(file) {
+        Ok(reader) => reader,
+        Err(error) => {
+            refusal::message(&error.to_string());
+            return Vec::new();
+        }
+    };
+    let lines = file.split(|byte| *byte == b'\n').count();
+    let mut recordings = Vec::new();
+    for _ in 0..=lines {
+        match reader.next_episode() {
+            Ok(Some(episode)) => match reader.recording(&episode) {
+                Ok(recording) => {
+                    assert_eq!(recording.origin, episode.origin);
+                    assert_eq!(recording.actions.len(), episode.steps as usize);
+                    recordings.push(recording);
+                }
+                Err(error) => refusal::message(&error.to_string()),
+            },
+            Ok(None) => return recordings,
+            Err(error) => refusal::message(&error.to_string()),
+        }
+    }
+    panic!("found more episodes and errors than the {lines} lines of the file");
+}
+
+fn comes_back(recording: &Recording) {
+    let text = RecordingLines::header() + &RecordingLines::default().lines(recording);
+    let [again] = &read(text.as_bytes())[..] else {
+        panic!("what we wrote holds one episode:\n{text}")
+    };
+    assert_eq!(format!("{again:?}"), format!("{recording:?}"));
+}
+
+/// Runs it twice, to the same end.
+fn runs(recording: &Recording) {
+    let worlds = recording.edits.iter().map(|edit| &edit.world);
+    if worlds
+        .chain([&recording.world])
+        .any(|world| world.objects.len() > MOST_OBJECTS)
+    {
+        return;
+    }
+    let mut small = recording.clone();
+    small.actions.truncate(MOST_STEPS);
+    let end = || {
+        let mut replay = Replay::new(&small, &Catalogue::default());
+        loop {
+            match replay.step() {
+                Ok(Some(Step { reward, .. })) => assert!(reward.is_finite()),
+                Ok(None) => {
+                    let said = replay.check().err().map(|error| error.to_string());
+                    refusal::messages(&said);
+                    return format!("{said:?} {:?}", replay.environment().agent());
+                }
+                Err(error) => {
+                    refusal::message(&error.to_string());
+                    return error.to_string();
+                }
+            }
+        }
+    };
+    assert_eq!(end(), end(), "the same recording");
+}
+
+/// What is done with a file where a log keeps it.
+fn on_disk(file: &[u8]) {
+    const WORKER: &str = "w";
+    let log = tempfile::tempdir().expect("there is room for a small log");
+    let path = log.path().join(WORKER).join("0-train").join(RECORDINGS_FILE);
+    fs::create_dir_all(path.parent().expect("it is in a folder")).expect("there is room for a folder");
+    fs::write(&path, file).expect("there is room for a small file");
+    let before: Vec<u64> = match list_recordings(&path) {
+        Ok((origins, damage)) => {
+            refusal::messages(damage);
+            origins.iter().map(|origin| origin.experience).collect()
+        }
+        Err(error) => {
+            refusal::message(&error.to_string());
+            Vec::new()
+        }
+    };
+    let next = before.iter().max().map_or(0, |last| last.saturating_add(1));
+    let added = small(next);
+    match Recordings::new(log.path()).append(WORKER, (0, BlockType::Train), &added) {
+        Ok(()) => {
+            let back = read_recording_file(&path, next).expect("what was written last can be read");
+            assert_eq!(back.as_ref(), Some(&added));
+            let (after, _) = list_recordings(&path).expect("it is a file of recordings");
+            assert!(after.iter().any(|origin| origin.experience == next));
+            let kept: Vec<u64> = after.iter().map(|origin| origin.experience).collect();
+            assert!(
+                kept.starts_with(&before) || before.is_empty(),
+                "found {kept:?} after {before:?}"
+            );
+        }
+        Err(error) => {
+            refusal::message(&error.to_string());
+            assert_eq!(
+                fs::read(&path).expect("it is there"),
+                file,
+                "what is refused is left alone"
+            );
+        }
+    }
+}
+
+/// A recording of one step.
+fn small(experience: u64) -> Recording {
+    let world = World::default();
+    let (mut environment, mut recorder) = (Environment::new(world.clone()), Recorder::default());
+    recorder.begin(world);
+    let action = Action::Continuous([1.0, 0.0, 0.0]);
+    environment.step(action).expect("it is an action of the default world");
+    recorder.step(action);
+    let mut recording = recorder.recording(&environment, None);
+    recording.origin.experience = experience;
+    recording
+}
