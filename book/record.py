@@ -1,15 +1,21 @@
 """Records the first hour as a stranger would type it: the commands of `docs/first-hour.md`, in a terminal of 80 columns.
 
-    python book/record.py target/release/driftworld      writes docs/first-hour-recording.md
-    python book/record.py --check                        fails if a command of the tutorial is not in it
+    python book/record.py target/release/driftworld      writes the three files below
+    python book/record.py --check                        fails if they disagree, or a command of the tutorial is not in them
 
-The commands run in a folder of their own, in a pseudo-terminal. What is written down is what stands on the screen: progress bars
-that were drawn over are gone. Needs Python on a Unix, and nothing else.
+`docs/recordings/first-hour.cast` is what the terminal was sent, with the times (asciicast v2, which asciinema plays);
+`docs/images/first-hour.svg` is the same as a moving picture (`terminal_picture.py`); `docs/first-hour-recording.md` is what stands
+on the screen in the end. The last two are made of the first. That the commands print the same today is a test of
+`tests/pages/`.
+
+The commands run in a folder of their own, in a pseudo-terminal. Their times are recorded; those of typing and reading are made up.
+Needs Python on a Unix, and nothing else.
 """
 
 from __future__ import annotations
 
 import fcntl
+import json
 import os
 import pty
 import re
@@ -18,19 +24,33 @@ import subprocess
 import sys
 import tempfile
 import termios
+import time
 from pathlib import Path
+
+from terminal_picture import picture, screen
 
 ROOT = Path(__file__).parents[1]
 TUTORIAL = ROOT / "docs" / "first-hour.md"
-RECORDING = ROOT / "docs" / "first-hour-recording.md"
-COLUMNS, ROWS = 80, 200
+CAST = ROOT / "docs" / "recordings" / "first-hour.cast"
+PICTURE = ROOT / "docs" / "images" / "first-hour.svg"
+PAGE = ROOT / "docs" / "first-hour-recording.md"
+COLUMNS, ROWS = 80, 24
 BLOCK = re.compile(r"^```(\w+)([^\n]*)\n(.*?)^```", re.DOTALL | re.MULTILINE)
 HEAD = """# The first hour, recorded
 
 What stands on a terminal of 80 columns when the commands of [the first hour](first-hour.md) are typed one after the other.
-Files are saved between them, as the page says. `python book/record.py target/release/driftworld` records it anew.
+Files are saved between them, as the page says.
+
+![A terminal in which the commands of the first hour are typed](images/first-hour.svg)
+
+The recording itself is [first-hour.cast](recordings/first-hour.cast), for `asciinema play`. The tests compare it with what
+the commands print. `python book/record.py target/release/driftworld` records it anew. All of it:
 
 """
+# Seconds that a word takes to type, and a line to be read; the least and the most for all lines of a command.
+TYPING, READING, SHORTEST, LONGEST = 0.12, 0.15, 1.0, 5.0
+
+Events = list[tuple[float, str]]
 
 
 def steps() -> list[tuple[str, str]]:
@@ -45,52 +65,29 @@ def steps() -> list[tuple[str, str]]:
     return found
 
 
-def screen(text: str) -> list[str]:
-    """The lines of a screen after everything was drawn: moves, erasures and overwriting; colours are left out."""
-    lines, row, column = [""], 0, 0
-    for part in re.findall(r"\x1b\[[0-9;?]*[A-Za-z]|\x1b[^\[]|[\r\n\b]|[^\x1b\r\n\b]+", text):
-        if part == "\r":
-            column = 0
-        elif part == "\n":
-            row += 1
-        elif part == "\b":
-            column = max(column - 1, 0)
-        elif part.startswith("\x1b["):
-            count = int(re.match(r"\d*", part[2:])[0] or 1)
-            if part.endswith("A"):
-                row = max(row - count, 0)
-            elif part.endswith("B"):
-                row += count
-            elif part.endswith("G"):
-                column = count - 1
-            elif part.endswith("K"):
-                lines[row] = "" if part == "\x1b[2K" else lines[row][:column]
-            elif part.endswith("J"):
-                lines[row] = lines[row][:column]
-                del lines[row + 1 :]
-        elif not part.startswith("\x1b"):
-            for letter in part:
-                if column == COLUMNS:
-                    row, column = row + 1, 0
-                while len(lines) <= row:
-                    lines.append("")
-                line = lines[row].ljust(column)
-                lines[row] = line[:column] + letter + line[column + 1 :]
-                column += 1
-        while len(lines) <= row:
-            lines.append("")
-    return [line.rstrip() for line in lines]
+def typed(command: str) -> list[str]:
+    """A command as it is typed, word by word: a line that goes on has `>` before it."""
+    lines = [("$ " if number == 0 else "> ") + line.strip() for number, line in enumerate(command.split("\n"))]
+    words = re.findall(r"\S+ ?", "\n".join(lines).replace("\n", " \n"))
+    text = "\r\n".join(lines)
+    pieces, rest = [], text
+    for word in words:
+        at = rest.index(word.strip()) + len(word.strip())
+        pieces.append(rest[:at])
+        rest = rest[at:]
+    return [*pieces, rest + "\r\n"]
 
 
-def run(command: str, folder: Path, program: Path) -> list[str]:
-    """What a command draws on a terminal."""
+def run(command: str, folder: Path, program: Path) -> Events:
+    """What a command draws on a terminal, with the seconds since it began."""
     ours, theirs = pty.openpty()
     fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", ROWS, COLUMNS, 0, 0))
-    path = f"{program.resolve().parent}{os.pathsep}{os.environ['PATH']}"
-    environment = {**os.environ, "PATH": path, "TERM": "xterm-256color"}
+    environment = {name: value for name, value in os.environ.items() if name not in ("COLUMNS", "NO_COLOR")}
+    environment |= {"PATH": f"{program.resolve().parent}{os.pathsep}{os.environ['PATH']}", "TERM": "xterm-256color"}
+    begun = time.monotonic()
     child = subprocess.Popen(["bash", "-c", command], cwd=folder, env=environment, stdin=theirs, stdout=theirs, stderr=theirs)
     os.close(theirs)
-    drawn = b""
+    events, pending = [], b""
     while True:
         try:
             piece = os.read(ours, 65536)
@@ -98,50 +95,94 @@ def run(command: str, folder: Path, program: Path) -> list[str]:
             break
         if not piece:
             break
-        drawn += piece
+        pending += piece
+        # A letter may be in two pieces.
+        whole = pending.decode(errors="ignore")
+        pending = pending[len(whole.encode()) :]
+        events.append((time.monotonic() - begun, whole))
     os.close(ours)
     if child.wait() != 0:
-        sys.exit(f"record: `{command}` ended with {child.returncode}:\n{drawn.decode(errors='replace')}")
-    lines = screen(drawn.decode(errors="replace"))
-    while lines and not lines[-1]:
-        lines.pop()
-    return lines
+        sys.exit(f"record: `{command}` ended with {child.returncode}:\n{''.join(text for _, text in events)}")
+    return events
 
 
 def record(program: Path) -> str:
-    """The page."""
-    session = []
+    """The recording."""
+    events: Events = []
+    now = 0.0
+
+    def show(text: str, seconds: float) -> None:
+        nonlocal now
+        now += seconds
+        events.append((now, text))
+
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         for what, text in steps():
             if what != "$":
                 (folder / what).write_text(text, encoding="utf-8")
-                session += [f"(save {what}: {len(text.splitlines())} lines)", ""]
+                lines = len(text.splitlines())
+                show(f"(save {what}: {lines} line{'s' if lines > 1 else ''})\r\n\r\n", 1.0)
                 continue
-            first, *rest = text.split("\n")
-            session += [f"$ {first}", *(f"> {line.strip()}" for line in rest), *run(text, folder, program), ""]
-    return HEAD + "```text\n" + "\n".join(session).strip() + "\n```\n"
+            for word in typed(text):
+                show(word, TYPING)
+            drawn = run(text, folder, program)
+            begun = now
+            for seconds, piece in drawn:
+                show(piece, begun + seconds - now)
+            lines = sum(piece.count("\n") for _, piece in drawn)
+            show("\r\n", min(max(SHORTEST, lines * READING), LONGEST))
+    header = {"version": 2, "width": COLUMNS, "height": ROWS, "title": "The first hour of Driftworld"}
+    lines = [json.dumps(header), *(json.dumps([round(at, 3), "o", text], ensure_ascii=False) for at, text in events)]
+    return "\n".join(lines) + "\n"
 
 
-def check(page: str) -> None:
-    """Fails if a command of the tutorial is missing, or a line is wider than the terminal."""
-    typed = [line for what, text in steps() if what == "$" for line in [f"$ {text.split(chr(10))[0]}"]]
-    shown = page.splitlines()
-    missing = [line for line in typed if line not in shown]
-    block = page.split("```text\n")[1].split("```")[0]
-    wide = [line for line in block.splitlines() if len(line) > COLUMNS and not line.startswith("$")]
-    if missing or wide:
-        sys.exit(f"docs/first-hour-recording.md: found no {missing}, and too wide {wide}; python book/record.py PROGRAM records it anew")
+def read(cast: str) -> Events:
+    """The events of a recording."""
+    header, *events = [json.loads(line) for line in cast.splitlines()]
+    assert header["version"] == 2 and header["width"] == COLUMNS, header
+    assert all(before[0] <= after[0] for before, after in zip(events, events[1:])), "times rise"
+    return [(at, text) for at, kind, text in events if kind == "o"]
+
+
+def page(events: Events) -> str:
+    """The page: what stands on the screen in the end."""
+    lines = ["".join(letter for letter, _ in line).rstrip() for line in screen("".join(text for _, text in events), COLUMNS)]
+    return HEAD + "```text\n" + "\n".join(lines).strip() + "\n```\n"
+
+
+def check() -> None:
+    """Fails if the files disagree, a command of the tutorial is missing, or a line is wider than the terminal."""
+    events = read(CAST.read_text(encoding="utf-8"))
+    wrong = [
+        f"{path.relative_to(ROOT)} is not what the recording makes"
+        for path, made in ((PAGE, page(events)), (PICTURE, picture(events, COLUMNS, ROWS)))
+        if path.read_text(encoding="utf-8") != made
+    ]
+    shown = page(events).splitlines()
+    wrong += [
+        f"found no `{text}` in the recording"
+        for what, text in steps()
+        if what == "$" and f"$ {text.split(chr(10))[0]}" not in shown
+    ]
+    begin = shown.index("```text")
+    wrong += [f"too wide: {line}" for line in shown[begin:] if len(line) > COLUMNS and not line.startswith("$")]
+    if wrong:
+        sys.exit("\n".join([*wrong, "python book/record.py PROGRAM records it anew"]))
 
 
 def main() -> None:
     """Records, or checks the recording."""
     [argument] = sys.argv[1:] or ["--check"]
-    if argument == "--check":
-        check(RECORDING.read_text(encoding="utf-8"))
-    else:
-        RECORDING.write_text(record(Path(argument)), encoding="utf-8")
-        check(RECORDING.read_text(encoding="utf-8"))
+    if argument == "--draw":
+        pass
+    elif argument != "--check":
+        CAST.write_text(record(Path(argument)), encoding="utf-8")
+    if argument != "--check":
+        events = read(CAST.read_text(encoding="utf-8"))
+        PAGE.write_text(page(events), encoding="utf-8")
+        PICTURE.write_text(picture(events, COLUMNS, ROWS), encoding="utf-8")
+    check()
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@
 
 mod blocks;
 mod how_to;
+mod recording;
 mod shell;
 
 use std::collections::BTreeSet;

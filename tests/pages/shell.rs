@@ -1,14 +1,17 @@
 //! Runs the commands of a page as its reader would: one block after the other, in a folder of their own in which
-//! `examples/` is the checkout's. A block `json file=NAME` or `text file=NAME` is saved; a block `sh fails` must fail; a
+//! `examples/` is the checkout's. A block `sh terminal=KEYS` is run on a terminal on which these keys are pressed, one after each
+//! step that it shows. A block `json file=NAME` or `text file=NAME` is saved; a block `sh fails` must fail; a
 //! block `text output` is what the commands above it print.
 //!
 //! `DRIFTWORLD_UPDATE_PAGES=1` writes what is printed into the page, and copies the pictures that the commands made to where
 //! the page shows them: `sheet.png` is `images/PAGE-sheet.png`. Read the difference before you commit it.
 
+use std::io::{Read, Write};
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, ExitStatus, Stdio};
 
 use crate::blocks::{Block, blocks};
+use crate::recording::{self, Recorded};
 use crate::{read, root};
 
 /// It stands for whatever was printed there, be it lines or the rest of one.
@@ -22,11 +25,20 @@ pub(crate) fn run(page: &str) {
     }
     let mut text = read(page);
     let mut printed = String::new();
+    let mut recorded = if page == "docs/first-hour.md" {
+        recording::first_hour()
+    } else {
+        Vec::new()
+    };
+    let is_recorded = !recorded.is_empty();
     for block in blocks(&text.clone()) {
         if let Some(name) = block.file() {
             std::fs::write(folder.join(name), &block.text).unwrap();
         } else if block.language == "sh" && !block.has("by-hand") {
             printed = run_block(page, &block, folder);
+            if is_recorded {
+                compare(page, &block, &printed, &mut recorded);
+            }
         } else if block.has("output") {
             if same(&block.text, &printed) {
                 continue;
@@ -44,6 +56,10 @@ pub(crate) fn run(page: &str) {
             );
         }
     }
+    assert!(
+        recorded.is_empty(),
+        "{page}: these are recorded, and not there: {recorded:?}"
+    );
     let pictures = pictures(page, &text);
     for (picture, place) in &pictures {
         assert!(
@@ -57,6 +73,27 @@ pub(crate) fn run(page: &str) {
     if updates() {
         std::fs::write(root().join(page), text).unwrap();
     }
+}
+
+/// Takes the commands of a block off a recording, and compares what they printed.
+fn compare(page: &str, block: &Block, printed: &str, recorded: &mut Vec<Recorded>) {
+    let advice = "python book/record.py target/release/driftworld records it anew";
+    let (mut commands, mut output) = (String::new(), String::new());
+    while commands.len() < block.text.len() && !recorded.is_empty() {
+        let next = recorded.remove(0);
+        commands.extend([next.command.as_str(), "\n"]);
+        output += &next.output;
+    }
+    assert_eq!(
+        commands, block.text,
+        "{page}:{}: other commands are recorded; {advice}",
+        block.line
+    );
+    assert!(
+        same(&output, printed),
+        "{page}:{}: found\n{printed}\nexpected, as recorded,\n{output}\n{advice}",
+        block.line
+    );
 }
 
 fn updates() -> bool {
@@ -75,27 +112,105 @@ fn pictures(page: &str, text: &str) -> Vec<(String, String)> {
 
 /// What a block prints, to both of its outputs; lines have no spaces at their ends.
 fn run_block(page: &str, block: &Block, folder: &Path) -> String {
-    let command = Path::new(env!("CARGO_BIN_EXE_driftworld"));
-    let path = std::env::var("PATH").unwrap_or_default();
-    let done = Command::new("bash")
-        .args(["-euo", "pipefail", "-c", &format!("exec 2>&1\n{}", block.text)])
-        .current_dir(folder)
-        .env("PATH", format!("{}:{path}", command.parent().unwrap().display()))
-        .env("COLUMNS", "80")
-        .env("NO_COLOR", "1")
-        .output()
-        .unwrap();
-    let printed = String::from_utf8_lossy(&done.stdout);
-    let ends_well = done.status.success();
+    let script = format!("exec 2>&1\n{}", block.text);
+    let bash = ["bash", "-euo", "pipefail", "-c", &script];
+    let keys = block.marks.iter().find_map(|mark| mark.strip_prefix("terminal="));
+    let (status, printed) = if let Some(keys) = keys {
+        on_a_terminal(&bash, keys, folder)
+    } else {
+        let done = command(&bash, folder).output().unwrap();
+        (done.status, String::from_utf8_lossy(&done.stdout).into_owned())
+    };
     assert_eq!(
-        ends_well,
+        status.success(),
         !block.has("fails"),
-        "{page}:{}: {}\n{}\n{printed}",
+        "{page}:{}: {status}\n{}\n{printed}",
         block.line,
-        done.status,
         block.text
     );
+    // Data keep every digit.
+    if !["--json", "cat ", "head "].iter().any(|data| block.text.contains(data)) {
+        assert_eq!(
+            noise(&printed),
+            None,
+            "{page}:{}: what people read has no noise",
+            block.line
+        );
+    }
     printed.lines().flat_map(|line| [line.trim_end(), "\n"]).collect()
+}
+
+/// A command that knows ours.
+fn command(words: &[&str], folder: &Path) -> Command {
+    let ours = Path::new(env!("CARGO_BIN_EXE_driftworld"));
+    let path = std::env::var("PATH").unwrap_or_default();
+    let mut command = Command::new(words[0]);
+    command
+        .args(&words[1..])
+        .current_dir(folder)
+        .env("PATH", format!("{}:{path}", ours.parent().unwrap().display()))
+        .env("COLUMNS", "80")
+        .env("NO_COLOR", "1");
+    command
+}
+
+/// Runs a command that plays, on a terminal that `script` makes, and presses each key once the step before it is shown.
+fn on_a_terminal(bash: &[&str], keys: &str, folder: &Path) -> (ExitStatus, String) {
+    let sized = format!("stty cols 80 rows 24\n{}", bash[4]);
+    let words: Vec<&str> = if cfg!(target_os = "linux") {
+        // It hands its command to a shell as one text.
+        let names = [
+            "script",
+            "-qec",
+            "exec bash -euo pipefail -c \"$DRIFTWORLD_BLOCK\"",
+            "/dev/null",
+        ];
+        names.to_vec()
+    } else {
+        [&["script", "-q", "/dev/null"], &bash[..4], &[sized.as_str()]].concat()
+    };
+    let mut child = command(&words, folder)
+        .env("DRIFTWORLD_BLOCK", &sized)
+        .env("TERM", "xterm-256color")
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap_or_else(|error| panic!("`script` makes a terminal: {error}"));
+    let (mut pressed, mut shown) = (child.stdin.take().unwrap(), child.stdout.take().unwrap());
+    let mut drawn = String::new();
+    let mut piece = [0; 4096];
+    for (step, key) in (1..).zip(keys.chars()) {
+        while !drawn.contains(&format!("step {step} ")) {
+            let length = shown.read(&mut piece).unwrap();
+            assert!(length > 0, "the command ended before {key:?} was pressed:\n{drawn}");
+            drawn.push_str(&String::from_utf8_lossy(&piece[..length]));
+        }
+        pressed.write_all(key.to_string().as_bytes()).unwrap();
+    }
+    let mut rest = Vec::new();
+    shown.read_to_end(&mut rest).unwrap();
+    // What the command prints stands behind the picture, which is taken away.
+    let said = String::from_utf8_lossy(&rest).replace('\r', "");
+    let said = said
+        .rsplit_once("\x1b[?1049l")
+        .map_or(said.clone(), |(_, said)| said.to_owned());
+    (child.wait().unwrap(), said)
+}
+
+/// A number with more decimals than anybody reads, such as 100.72999999999999. Lines of JSON are data.
+fn noise(printed: &str) -> Option<&str> {
+    let is_part = |letter: char| letter.is_ascii_digit() || letter == '.';
+    let lines = printed.lines().filter(|line| !line.contains("\": "));
+    let numbers = lines.flat_map(|line| line.split(|letter| !is_part(letter)));
+    let mut noisy = numbers.filter(|number| number.rsplit_once('.').is_some_and(|(_, places)| places.len() > 9));
+    noisy.next()
+}
+
+#[test]
+fn noise_is_found() {
+    assert_eq!(noise("reward 100.72999999999999, ended"), Some("100.72999999999999"));
+    assert_eq!(noise("reward 100.73 of 5, v1.2.3, 0.12345678."), None);
+    assert_eq!(noise("  \"light\": 3.0599365234375\n"), None);
 }
 
 /// Whether a page shows what was printed, apart from what it leaves out. How wide columns are does not matter.

@@ -1,0 +1,99 @@
+//! The recording of the first hour says what its commands print today: `first_hour_runs` compares them. How it is made is
+//! `book/record.py`'s.
+
+use crate::read;
+
+const CAST: &str = "docs/recordings/first-hour.cast";
+
+/// A command of a recording, and what it left on the screen.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Recorded {
+    /// As a page has it: a line that goes on is indented.
+    pub(crate) command: String,
+    /// With a line end after each line.
+    pub(crate) output: String,
+}
+
+/// Every command of the first hour, in order.
+pub(crate) fn first_hour() -> Vec<Recorded> {
+    commands(&screen(&sent(&read(CAST))))
+}
+
+/// What a terminal was sent, by an asciicast v2.
+fn sent(cast: &str) -> String {
+    let mut lines = cast.lines();
+    let header: serde_json::Value = serde_json::from_str(lines.next().unwrap()).unwrap();
+    assert_eq!((&header["version"], &header["width"]), (&2.into(), &80.into()));
+    let events: Vec<(f64, String, String)> = lines.map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert!(events.is_sorted_by(|a, b| a.0 <= b.0), "times rise");
+    events.into_iter().map(|(_, _, text)| text).collect()
+}
+
+/// The lines of a terminal in the end: letters, line ends, erased lines; colours are left out.
+fn screen(sent: &str) -> Vec<String> {
+    let mut lines: Vec<Vec<char>> = vec![Vec::new()];
+    let mut column = 0;
+    let mut letters = sent.chars();
+    while let Some(letter) = letters.next() {
+        let line = lines.last_mut().unwrap();
+        match letter {
+            '\r' => column = 0,
+            '\n' => lines.push(Vec::new()),
+            '\u{1b}' => {
+                let code: String = letters
+                    .by_ref()
+                    .take_while(|letter| *letter != 'm' && *letter != 'K')
+                    .collect();
+                // Of the two, colours have numbers behind no 2 alone.
+                if code == "[2" {
+                    line.clear();
+                }
+            }
+            letter => {
+                line.resize(line.len().max(column + 1), ' ');
+                line[column] = letter;
+                column += 1;
+            }
+        }
+    }
+    let text = |line: Vec<char>| line.into_iter().collect::<String>().trim_end().to_owned();
+    lines.into_iter().map(text).collect()
+}
+
+fn commands(screen: &[String]) -> Vec<Recorded> {
+    let mut found: Vec<Recorded> = Vec::new();
+    let mut is_saving = false;
+    for line in screen {
+        is_saving |= line.starts_with("(save ");
+        if let Some(command) = line.strip_prefix("$ ") {
+            is_saving = false;
+            found.push(Recorded {
+                command: command.to_owned(),
+                output: String::new(),
+            });
+        } else if let Some(last) = found.last_mut() {
+            match line.strip_prefix("> ") {
+                Some(more) if last.output.is_empty() => last.command.extend(["\n    ", more]),
+                _ if is_saving => {}
+                _ => last.output.extend([line.as_str(), "\n"]),
+            }
+        }
+    }
+    for one in &mut found {
+        one.output.truncate(one.output.trim_end().len());
+        one.output.push('\n');
+    }
+    found
+}
+
+#[test]
+fn a_recording_is_read_as_a_terminal_shows_it() {
+    let sent = "(save a: 1 line)\r\n\r\n$ a \\\r\n> -b\r\nbar 1\r\u{1b}[2Kbar 22\r\u{1b}[2K\u{1b}[1mhead\u{1b}[0m\r\nx\r\n\r\n\
+                (save b: 2 lines)\r\n\r\n$ c\r\ny\r\n\r\n";
+    let recorded = |command: &str, output: &str| Recorded {
+        command: command.to_owned(),
+        output: output.to_owned(),
+    };
+    let found = commands(&screen(sent));
+    assert_eq!(found, [recorded("a \\\n    -b", "head\nx\n"), recorded("c", "y\n")]);
+}
