@@ -15,11 +15,14 @@ const FOLDER: &str = "docs/images";
 
 /// Pictures that are made elsewhere, and how.
 #[cfg_attr(not(test), expect(dead_code, reason = "what is not made here is only listed"))]
-const ORIGINS: [(&str, &str); 10] = [
+const ORIGINS: [(&str, &str); 14] = [
     (
         "looks.png",
         "first views in natural looks: a park, a dusk, a room and a maze, as docs/looks.md has them",
     ),
+    ("book-desktop.png", "python book/screenshots.py target/book"),
+    ("book-phone.png", "python book/screenshots.py target/book"),
+    ("book-search.png", "python book/screenshots.py target/book"),
     (
         "first-hour-berries.png",
         "docs/first-hour.md: DRIFTWORLD_UPDATE_PAGES=1 cargo test --test pages",
@@ -48,6 +51,7 @@ const ORIGINS: [(&str, &str); 10] = [
         "first-hour-variants.png",
         "docs/first-hour.md: DRIFTWORLD_UPDATE_PAGES=1 cargo test --test pages",
     ),
+    ("first-hour.svg", "python book/record.py target/release/driftworld"),
     ("speed.svg", "cargo xtask bench peers PYTHON SCRIPTS"),
     (
         "report.png",
