@@ -49,6 +49,7 @@ mod output_file;
 mod overwrite;
 pub mod picture_distance;
 pub mod recordings;
+mod remarks;
 pub mod scales;
 pub mod scenarios;
 pub mod scoring;

@@ -279,8 +279,11 @@ impl PyBatch {
     /// What an environment's world asks for that is not as its author may think.
     fn warnings(&self, env: usize) -> Result<Vec<String>> {
         let stepping = self.lock()?;
-        let warnings = stepping.environment(env)?.warnings();
-        Ok(warnings.iter().map(ToString::to_string).collect())
+        let environment = stepping.environment(env)?;
+        let warnings = environment.warnings();
+        let remarks = environment.world().remarks("world", "{}").into_iter();
+        let remarks = remarks.map(|remark| format!("{}: {}", remark.pointer, remark.text));
+        Ok(warnings.iter().map(ToString::to_string).chain(remarks).collect())
     }
 
     /// A picture of an environment, `(height, width, 3)` bytes: what its agent sees, or the world from above.

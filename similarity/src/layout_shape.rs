@@ -446,7 +446,7 @@ mod tests {
             };
             let [one, other] = [at(1.0), at(metres)];
             prop_assert_eq!(&one, &other);
-            if SIDE % columns == 0 && SIDE % rows == 0 {
+            if SIDE.is_multiple_of(columns) && SIDE.is_multiple_of(rows) {
                 for (cell, height) in one.walls.iter().enumerate() {
                     let (row, column) = (SIDE - 1 - cell / SIDE, cell % SIDE);
                     let expected = is_wall(column * columns / SIDE, row * rows / SIDE);

@@ -22,7 +22,7 @@ use super::{Failure, output};
 /// worlds, as by `distance --by behavior`. Where it does not, nothing has to be forgotten.
 ///
 /// A variant is contradicted where an element differs that no parameter that differs `affects`; S covers p, and O covers phi. It is idle
-/// where it sets a parameter that nothing reads. The exit code is 1 if one is contradicted.
+/// where it sets a parameter that made no difference in --steps. The exit code is 1 if one is contradicted.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld elements find_objects

@@ -1,6 +1,7 @@
 //! `driftworld validate`: every problem of a document with its place.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use crate::contents::Contents;
 use crate::curriculum::{Trial, Tried, Undrawable, try_expert, try_worlds};
@@ -8,7 +9,7 @@ use crate::documents::{self, Checked, Kind};
 use crate::elements::{ElementsOutcome, ElementsRequest, elements_of};
 use crate::scenarios::{Missing, ScenarioFile, task_from};
 use crate::spec::{Classes, Problem, SpecError, TaskSpec};
-use crate::tasks;
+use crate::{remarks, tasks};
 use clap::Args;
 use driftworld_text::{ShownPath, printable};
 use rayon::prelude::*;
@@ -32,7 +33,11 @@ use super::output;
 /// warning names the worlds: the way may be closed, too hard for it, or not worth going.
 ///
 /// --elements also tests which elements of the decision process the variants of a task change, as `driftworld elements`
-/// does. A task fails if that contradicts the `affects` of its parameters. A parameter that nothing reads is a warning.
+/// does; of a scenario, all variants of its tasks. A file fails if that contradicts the `affects` of a parameter. A parameter that
+/// made no difference is a warning.
+///
+/// What is odd about the worlds of a task is a warning: a zone outside the arena, a switch without a door, a key behind its own
+/// door. The first world of each variant is looked at, or with --worlds as many as are drawn, 100 at most.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld validate examples/tasks
@@ -52,6 +57,9 @@ pub(crate) struct Validate {
     /// Also test which elements of the decision process variants change, and fail on what contradicts `affects`.
     #[arg(long)]
     elements: bool,
+    /// The most steps of an episode with --elements; more steps see what differs later.
+    #[arg(long, requires = "elements", default_value_t = 100, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    steps: u32,
     /// Seed for worlds of a task's variants. Scenarios have their own.
     #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = super::numbers::seed)]
     seed: u64,
@@ -81,8 +89,10 @@ struct Found {
     /// What else is wrong with a scenario, with its code.
     failure: Option<(&'static str, String)>,
     trials: Vec<Trial>,
-    /// What a task's variants were seen to change, where that was asked for.
-    elements: Option<ElementsOutcome>,
+    /// What is odd about the worlds of a task, in sentences.
+    remarks: Vec<String>,
+    /// What variants of the task, or of a scenario's tasks, were seen to change, where that was asked for.
+    elements: Vec<ElementsOutcome>,
 }
 
 impl Validate {
@@ -142,11 +152,17 @@ impl Validate {
                 Err((code, why)) => failure = Some((code, format!("{name}: {why}"))),
             }
         }
-        let mut elements = None;
+        let mut remarks = Vec::new();
+        let is_sound = checked.error.is_none() && failure.is_none();
+        if is_sound && checked.kind == Kind::Task {
+            let task = TaskSpec::from_json(&name, &text)?;
+            remarks = remarks::of_task(&task, self.seed, u64::from(self.worlds));
+        }
+        let mut elements = Vec::new();
         let is_drawn = trials.iter().all(|trial| trial.num_failed() == 0);
-        if self.elements && checked.kind == Kind::Task && checked.error.is_none() && failure.is_none() && is_drawn {
-            match self.try_elements(&name, &text) {
-                Ok(found) => elements = Some(found),
+        if self.elements && is_sound && is_drawn {
+            match self.try_elements(path, &name, &text, checked.kind) {
+                Ok(found) => elements = found,
                 Err(why) => failure = Some(("document/elements", format!("{name}: {}", why.text().for_command()))),
             }
         }
@@ -154,26 +170,35 @@ impl Validate {
             checked,
             failure,
             trials,
+            remarks,
             elements,
         })
     }
 
-    /// Tries what the variants of a valid task change.
-    fn try_elements(&self, name: &str, text: &str) -> Result<ElementsOutcome, Failure> {
-        let request = ElementsRequest {
-            seed: self.seed,
-            libraries: self.libraries.paths().to_vec(),
-            ..ElementsRequest::of(name)
+    /// Tries what the variants of a valid task change, or those of each task that a scenario names.
+    fn try_elements(&self, path: &Path, name: &str, text: &str, kind: Kind) -> Result<Vec<ElementsOutcome>, Failure> {
+        let tasks = match kind {
+            Kind::Task => vec![TaskSpec::from_json(name, text)?],
+            Kind::Scenario => {
+                let warn = &mut |_| {};
+                let file = ScenarioFile::from_text(path, text, warn)?;
+                let plan = file.plan_with(Missing::Refused, Undrawable::Skipped, warn)?;
+                plan.tasks().values().map(Arc::clone).collect()
+            }
+            // The tasks of the original's scenarios, and worlds, claim nothing.
+            Kind::L2ExplorerScenario | Kind::World | Kind::Maps | Kind::L2ExplorerWorld => Vec::new(),
         };
-        // The name of a file may hold a `#`; all variants are meant.
-        let task = TaskSpec::from_json(name, text)?;
-        elements_of(
-            &task,
-            &ElementsRequest {
-                task: task.name().to_owned(),
-                ..request
-            },
-        )
+        let tried = tasks.iter().map(|task| {
+            let request = ElementsRequest {
+                seed: self.seed,
+                steps: self.steps,
+                libraries: self.libraries.paths().to_vec(),
+                // The name of a file may hold a `#`; all variants are meant.
+                ..ElementsRequest::of(task.name())
+            };
+            elements_of(task, &request)
+        });
+        tried.collect()
     }
 
     /// Draws some worlds of what a valid document describes; else why that cannot begin, with the error's code.
@@ -231,13 +256,14 @@ impl Found {
 
     /// Whether what was tried contradicts nothing.
     fn is_sound(&self) -> bool {
-        self.elements.as_ref().is_none_or(ElementsOutcome::is_sound)
+        self.elements.iter().all(ElementsOutcome::is_sound)
     }
 
-    /// What the experiments warn of, in sentences.
+    /// What worlds and experiments warn of, in sentences.
     fn cautions(&self) -> Vec<String> {
         let idle = self.elements.iter().flat_map(ElementsOutcome::warnings);
-        idle.chain(self.trials.iter().filter_map(trials::unfinished)).collect()
+        let all = self.remarks.iter().cloned().chain(idle);
+        all.chain(self.trials.iter().filter_map(trials::unfinished)).collect()
     }
 }
 
@@ -271,8 +297,8 @@ impl Verdict {
         for warning in &found.cautions() {
             output::warning(format!("{path}: {warning}"));
         }
-        if let Some(elements) = found.elements.as_ref().filter(|elements| !elements.is_sound()) {
-            let found = elements.contradictions();
+        if !found.is_sound() {
+            let found = found.elements.iter().flat_map(ElementsOutcome::contradictions);
             found.for_each(|contradiction| output::note(format!("{path}: {contradiction}")));
             return Ok(());
         }
@@ -320,12 +346,16 @@ impl Verdict {
         if let Some(warnings) = report["warnings"].as_array_mut() {
             warnings.extend(found.cautions().into_iter().map(Value::from));
         }
-        if let Some(elements) = &found.elements {
+        if !found.elements.is_empty() {
             let contradiction = |message: &str| json!({ "code": "task/elements", "message": message });
             if let Some(problems) = report["problems"].as_array_mut() {
-                problems.extend(elements.contradictions().map(contradiction));
+                let all = found.elements.iter().flat_map(ElementsOutcome::contradictions);
+                problems.extend(all.map(contradiction));
             }
-            report["elements"] = json!(elements);
+            report["elements"] = match (checked.kind, found.elements.as_slice()) {
+                (Kind::Task, [own]) => json!(own),
+                (_, all) => json!(all),
+            };
         }
         report
     }

@@ -7,7 +7,7 @@ mod request;
 
 use std::sync::Arc;
 
-use driftworld_env::{Experiment, Findings};
+use driftworld_env::{Experiment, Findings, MAX_EXPERIMENT_STEPS};
 use driftworld_generator::Sampler;
 use driftworld_spec::{Element, TaskSpec, Value, Variant, World};
 
@@ -17,8 +17,11 @@ pub use request::{DEFAULT_ELEMENTS_WORLDS, ElementsRequest, MAX_ELEMENTS_WORLDS}
 
 use crate::{Failure, libraries, tasks};
 
-/// The most worlds in which it is tried whether anything reads a parameter.
+/// The most worlds in which it is tried whether a parameter makes a difference.
 const IDLE_WORLDS: u64 = 8;
+
+/// So many times as many steps as usual are tried before a parameter is said to make none.
+const IDLE_PATIENCE: u32 = 4;
 
 /// Tries which elements differ between variants of a task, and says where its parameters claim something else.
 ///
@@ -132,16 +135,25 @@ impl Trial {
         Ok(outcome)
     }
 
-    /// The parameters that differ and that nothing reads: where one is set back alone, nothing changes.
+    /// The parameters that differ and made no difference: where one is set back alone, nothing changes.
     fn idle(&self, base: &Variant, other: &Variant, outcome: &VariantElements) -> Result<Vec<String>, Failure> {
         let names = &outcome.parameters;
-        if outcome.measured.is_empty() {
-            return Ok(names.clone());
-        }
-        if names.len() < 2 {
+        let is_alike = outcome.measured.is_empty();
+        if names.is_empty() || (names.len() < 2 && !is_alike) {
             return Ok(Vec::new());
         }
         let worlds = self.worlds(other, self.num_worlds.min(IDLE_WORLDS))?;
+        let patient = Self {
+            experiment: Experiment {
+                steps: self
+                    .experiment
+                    .steps
+                    .saturating_mul(IDLE_PATIENCE)
+                    .min(MAX_EXPERIMENT_STEPS),
+                ..self.experiment.clone()
+            },
+            ..*self
+        };
         let mut idle: Vec<String> = Vec::new();
         // One after the other, the last first: of two that would do alone, one is needed.
         for name in names.iter().rev() {
@@ -156,7 +168,8 @@ impl Trial {
             if self.worlds(&without, worlds.len() as u64).is_err() {
                 continue;
             }
-            if self.compare(&worlds, &without)?.differences.is_empty() {
+            let is_same = |trial: &Self| Ok::<_, Failure>(trial.compare(&worlds, &without)?.differences.is_empty());
+            if (is_alike || is_same(self)?) && is_same(&patient)? {
                 idle.push(name.clone());
             }
         }

@@ -39,7 +39,7 @@ pub struct VariantElements {
     pub measured: Vec<Measured>,
     /// What was measured and is not declared.
     pub contradictions: Vec<Contradiction>,
-    /// Parameters that differ and that nothing reads: where such a one alone is set back, nothing changes.
+    /// Parameters that differ and made no difference: where such a one alone is set back, nothing changes.
     pub idle: Vec<String>,
     /// Whether what is best changes, of a variant that changes the reward; absent of others, and of drawn worlds that are
     /// compared for a probe.
@@ -75,7 +75,7 @@ pub struct Contradiction {
 pub enum Verdict {
     /// All that was measured is declared.
     Sound,
-    /// The same, and there are parameters that nothing reads.
+    /// The same, and there are parameters that made no difference.
     Idle,
     /// Something was measured that is not declared.
     Contradicted,
@@ -116,12 +116,16 @@ impl ElementsOutcome {
         each.map(|contradiction| contradiction.message.as_str())
     }
 
-    /// Every parameter that a variant sets and nothing reads there, in a sentence.
+    /// Every parameter that a variant sets and that made no difference, in a sentence.
     pub fn warnings(&self) -> impl Iterator<Item = String> {
         self.variants.iter().flat_map(move |variant| {
             let of = move |name: &String| {
                 let (task, base, own) = (&self.task, &self.base, &variant.variant);
-                format!("{task}#{own}: nothing reads {name} there: with its value in {base} all worlds that were tried are the same")
+                format!(
+                    "{task}#{own}: {name} made no difference: with its value in {base}, the same happened in all steps. Nothing reads it, \
+                     or it counts later than that: --steps takes more than {}",
+                    self.steps
+                )
             };
             variant.idle.iter().map(of)
         })

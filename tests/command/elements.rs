@@ -92,7 +92,7 @@ fn a_contradiction_is_told_by_its_first_case() {
             "{said}"
         );
         assert!(
-            said.contains("warning: ") && said.contains("lamp#reaching: nothing reads reach there"),
+            said.contains("warning: ") && said.contains("lamp#reaching: reach made no difference"),
             "{said}"
         );
     }
@@ -115,4 +115,103 @@ fn arguments_that_make_no_experiment_are_refused() {
     fail(2, &["elements", "find_objects", "--worlds", "0"]);
     fail(2, &["elements", "find_objects", "--modalities", "sound"]);
     assert!(fail(1, &["elements", "find_objects", "red", "blu"]).contains("did you mean \"blue\""));
+}
+
+#[test]
+fn a_scenario_is_refused_for_what_its_tasks_claim() {
+    let folder = scratch();
+    let scenario = r#"{ "version": 1, "name": "s", "blocks": [
+        { "type": "learning", "regimes": [{ "task": "./lamp.json", "variant": "dusk", "count": 1, "seed": 1, "max_steps": 5 }] }] }"#;
+    let path = folder.path().join("s.json");
+    fs::write(&path, scenario).unwrap();
+    for (affects, is_sound) in [("phi", true), ("R", false)] {
+        fs::write(folder.path().join("lamp.json"), task(affects)).unwrap();
+        let arguments = ["validate", text(&path), "--elements", "--json"];
+        let said = output(&mut driftworld(&arguments));
+        assert_eq!(said.status.success(), is_sound, "{affects}");
+        let verdicts: Value = serde_json::from_slice(&said.stdout).expect("JSON");
+        assert_eq!(verdicts[0]["valid"], is_sound);
+        assert_eq!(verdicts[0]["elements"][0]["task"], "lamp", "{verdicts}");
+    }
+}
+
+/// A lever that opens a door after the agent has walked for some seconds: too late for few steps.
+#[test]
+fn more_steps_see_what_differs_later() {
+    let folder = scratch();
+    let late = r#"{ "name": "late", "parameters": {
+        "period": { "role": "variant", "type": "number", "affects": ["T"], "range": [2, 400], "default": 400 } },
+      "world": { "objects": [{ "class": "door", "coordinates": [9, 9], "door": { "opens_on": [], "period": { "param": "period" } } }] },
+      "variants": { "never": {}, "later": { "period": 120 } } }"#;
+    let path = folder.path().join("late.json");
+    fs::write(&path, late).unwrap();
+    let warned = |steps: &str| {
+        let said = output(&mut driftworld(&[
+            "validate",
+            text(&path),
+            "--elements",
+            "--steps",
+            steps,
+        ]));
+        assert!(said.status.success());
+        String::from_utf8(said.stderr).unwrap()
+    };
+    let soon = warned("50");
+    assert!(
+        soon.contains("period made no difference") && soon.contains("--steps takes more than 50"),
+        "{soon}"
+    );
+    assert_eq!(warned("700"), "");
+}
+
+#[test]
+fn what_the_examples_claim_holds() {
+    let files = ["worlds", "tasks"].into_iter().flat_map(|folder| {
+        fs::read_dir(format!("{}/examples/{folder}", env!("CARGO_MANIFEST_DIR")))
+            .unwrap()
+            .map(|entry| entry.unwrap().path())
+    });
+    let mut number = 0;
+    for path in files.filter(|path| path.extension().is_some_and(|extension| extension == "json")) {
+        let task = driftworld::spec::TaskSpec::from_json(text(&path), &fs::read_to_string(&path).unwrap()).unwrap();
+        let request = driftworld::elements::ElementsRequest {
+            worlds: 2,
+            ..driftworld::elements::ElementsRequest::of(task.name())
+        };
+        let found = driftworld::elements::elements_of(&task, &request)
+            .unwrap_or_else(|failure| panic!("{}: {failure:?}", path.display()));
+        let wrong: Vec<&str> = found.contradictions().collect();
+        assert!(wrong.is_empty(), "{wrong:#?}");
+        number += 1;
+    }
+    assert!(number >= 15, "{number} examples");
+}
+
+#[test]
+fn what_is_odd_about_worlds_is_told_of_the_task_that_draws_them() {
+    let folder = scratch();
+    let odd = r#"{ "name": "odd", "world": { "environment_params": { "map_size": [20, 20], "zones": [{ "disc": { "center": [90, 0], "radius": 1 }, "name": "far" }] },
+        "objects": [{ "class": "switch", "coordinates": [2, 2], "switch": { "target": "nothing" } }] },
+      "variants": { "a": {}, "b": {} } }"#;
+    let path = folder.path().join("odd.json");
+    fs::write(&path, odd).unwrap();
+    for (arguments, of) in [
+        (vec![], "in 2 of 2 worlds, of 2 variants"),
+        (vec!["--worlds", "7"], "in 14 of 14 worlds, of 2 variants"),
+    ] {
+        let said = output(driftworld(&["validate", text(&path)]).args(arguments));
+        assert!(said.status.success());
+        let warnings = String::from_utf8(said.stderr)
+            .unwrap()
+            .split_whitespace()
+            .collect::<Vec<_>>()
+            .join(" ");
+        for expected in [
+            "(/environment_params/zones/0): the zone lies outside",
+            "(/objects/0/switch/target): ",
+        ] {
+            assert!(warnings.contains(expected), "{warnings}");
+        }
+        assert_eq!(warnings.matches(of).count(), 2, "{warnings}");
+    }
 }

@@ -125,7 +125,7 @@ impl Room<'_> {
             agent: "never learns",
             expected: "each metric good in at most 5 % of lifetimes",
             found: worst.map_or_else(
-                || "nothing is evaluated twice: no metric to calibrate".to_owned(),
+                || "no metric to calibrate: no variant is evaluated both before and after it is learned".to_owned(),
                 |(name, count)| format!("at most {count} of {lifetimes} ({name}); up to {most} is sampling"),
             ),
             passed: worst.map(|(_, count)| *count <= most),

@@ -89,8 +89,19 @@ impl Paired {
             let of = |what: &str| format!("{what} of object {index} ({}) at the start", shown(&kind(own)));
             Unlike::of(of("the position in metres"), &own.coordinates, &other.coordinates)
                 .or_else(|| Unlike::of(of("the heading in degrees"), &own.heading, &other.heading))
+                .or_else(|| {
+                    let [own, other] = [own, other].map(|object| object.door.as_ref().is_some_and(|door| door.open));
+                    Unlike::of(of("whether it is open"), &own, &other)
+                })
         };
-        agent.or_else(|| a.objects.iter().zip(&b.objects).enumerate().find_map(of_object))
+        let energy = || {
+            let [own, other] =
+                [own, other].map(|agent| agent.energy.as_ref().map(|energy| energy.start.min(energy.most)));
+            Unlike::of("the agent's energy at the start", &own, &other)
+        };
+        agent
+            .or_else(energy)
+            .or_else(|| a.objects.iter().zip(&b.objects).enumerate().find_map(of_object))
     }
 }
 

@@ -1,6 +1,8 @@
 //! A world against itself, against worlds with one thing changed, and that it makes no difference who comes first.
 
-use driftworld_spec::{ActionModel, Color, Element, MotionModel, Object, Stimulus, World, WorldDraft};
+use driftworld_spec::{
+    ActionModel, Color, Door, Element, Energy, MotionModel, Object, Portable, Stimulus, Switch, Wall, World, WorldDraft,
+};
 use proptest::prelude::*;
 
 use super::*;
@@ -102,6 +104,78 @@ fn what_follows_belongs_to_the_transitions() {
         world.objects[1].motion_model = MotionModel::Prey;
         world.objects[1].speed = 2.0;
     });
+}
+
+/// A room with a door that the agent opens by touch, on its way to a goal, and a lever; the key of another door lies beside it.
+fn rooms() -> WorldDraft {
+    let mut world = WorldDraft::default();
+    world.environment_params.map_size = [6.0, 12.0];
+    let wall = |x: [f64; 2]| Wall {
+        polygon: vec![[x[0], -0.1], [x[1], -0.1], [x[1], 0.1], [x[0], 0.1]],
+        height: None,
+        color: None,
+    };
+    world.environment_params.walls = vec![wall([-3.0, -0.75]), wall([0.75, 3.0])];
+    let mut door = Object::new("door", [0.0, 0.0]);
+    (door.tag, door.scale) = (Some("gate".to_owned()), 1.5);
+    door.door = Some(Door {
+        opens_on: vec![Stimulus::AgentCollide],
+        ..Door::default()
+    });
+    let mut key = Object::new("key", [0.0, -2.0]);
+    (key.tag, key.portable) = (Some("gold".to_owned()), Some(Portable::default()));
+    let mut goal = Object::new("cube", [0.0, 4.0]);
+    (goal.tag, goal.reward) = (Some("goal".to_owned()), 1.0);
+    goal.reward_once_stimulus = vec![Stimulus::AgentCollide];
+    let mut lever = Object::new("switch", [2.0, -2.0]);
+    (lever.tag, lever.switch) = (Some("lever".to_owned()), Some(Switch::of("gate")));
+    world.objects = vec![door, key, goal, lever];
+    (world.agent_params.coordinates, world.agent_params.agent_width) = ([0.0, -4.0], 0.6);
+    world.agent_params.carry_limit = 1;
+    world.agent_params.energy = Some(Energy::default());
+    world
+}
+
+#[test]
+fn doors_switches_keys_and_energy_are_seen() {
+    // Two pairs: in one of them the visitor begins with the last.
+    let elements = |a: &WorldDraft, b: &WorldDraft| {
+        let pair = (sound(a), sound(b));
+        let found = Experiment::default().compare(&[pair.clone(), pair]).expect("all run");
+        found.elements()
+    };
+    let mut asked = 0;
+    let mut check = |expected: &[Element], change: &dyn Fn(&mut WorldDraft)| {
+        asked += 1;
+        let (own, mut changed) = (rooms(), rooms());
+        change(&mut changed);
+        assert_eq!(elements(&own, &changed), expected, "change {asked}");
+        assert_eq!(elements(&changed, &own), expected, "change {asked} the other way round");
+    };
+    let door =
+        |change: fn(&mut Door)| move |world: &mut WorldDraft| change(world.objects[0].door.as_mut().expect("a door"));
+    check(&[], &|_| {});
+    check(&[Element::P], &door(|door| door.open = true));
+    check(&[Element::T], &door(|door| door.closes_after = Some(60.0)));
+    check(&[Element::T], &door(|door| door.opens_on = vec![]));
+    check(
+        &[Element::T],
+        &door(|door| door.closes_on = vec![Stimulus::AgentInteract]),
+    );
+    check(&[Element::T], &door(|door| door.key = Some("gold".to_owned())));
+    check(&[Element::T], &door(|door| door.period = Some(4.0)));
+    check(&[Element::T], &|world| world.objects[1].portable = None);
+    check(&[Element::T], &|world| {
+        world.objects[3].switch = Some(Switch::of("nothing"));
+    });
+    check(&[Element::T], &|world| world.agent_params.carry_limit = 0);
+    let energy = |change: fn(&mut Energy)| {
+        move |world: &mut WorldDraft| change(world.agent_params.energy.as_mut().expect("some"))
+    };
+    check(&[Element::P], &energy(|energy| energy.start = 50.0));
+    check(&[Element::T], &energy(|energy| energy.per_second = -2.0));
+    check(&[Element::T], &energy(|energy| energy.per_metre = -0.1));
+    check(&[Element::T], &|world| world.objects[2].energy = 5.0);
 }
 
 #[test]

@@ -194,6 +194,12 @@ impl Environment {
         returning.map(|(index, tick)| (*index, seconds(*tick))).collect()
     }
 
+    /// The second at which an open door closes.
+    fn closes_at(&self, index: usize) -> Option<f64> {
+        let ticks = self.state.door_of(index)?.closes_at?;
+        Some(ticks as f64 * self.world.agent_params.time_step)
+    }
+
     fn object_unlike(&self, other: &Self, index: usize) -> Option<Unlike> {
         let (own, their) = (&self.state.objects[index], &other.state.objects[index]);
         let is_ordered = |world: &World| world.objects[index].order.is_some();
@@ -205,6 +211,14 @@ impl Environment {
         };
         Unlike::of(of("the presence"), &own.present, &their.present)
             .or_else(|| Unlike::of(of("whether it is open"), &own.open, &their.open))
+            .or_else(|| {
+                let [own, their] = [self, other].map(|one| one.state.is_unlocked(index));
+                Unlike::of(of("whether it is unlocked"), &own, &their)
+            })
+            .or_else(|| {
+                let [own, their] = [self, other].map(|one| one.closes_at(index));
+                Unlike::of(of("the second at which it closes"), &own, &their)
+            })
             .or_else(|| Unlike::of(of("the position in metres"), &own.position, &their.position))
             .or_else(|| Unlike::of(of("the heading in degrees"), &own.heading_deg, &their.heading_deg))
             .or_else(|| {

@@ -43,7 +43,7 @@ def elements(
         A dictionary with ``task``, ``base`` (the variant that others were compared with), ``worlds``, ``seed``, ``steps`` and
         ``variants``: a list of dictionaries with ``variant``, ``parameters`` (in which it differs), ``declared`` (letters),
         ``measured`` (each with ``element`` and ``witness``), ``contradictions`` (each with ``element`` and ``message``),
-        ``idle`` (parameters that nothing reads), ``proof`` (how much was tried) and ``verdict`` (``"sound"``, ``"idle"`` or
+        ``idle`` (parameters that made no difference), ``proof`` (how much was tried) and ``verdict`` (``"sound"``, ``"idle"`` or
         ``"contradicted"``).
 
     Raises:

@@ -147,6 +147,7 @@ fn transition(a: &Sketch, b: &Sketch, objects: &Objects, sink: &mut impl Sink) {
     as_it_is(Comparison::Bodies, objects.body, sink);
     relative(Comparison::TimeStep, a.time_step, b.time_step, sink);
     relative(Comparison::Width, a.agent_width, b.agent_width, sink);
+    as_it_is(Comparison::EnergyOfAgent, a.energy.distance(&b.energy), sink);
     let map = f64::from(u8::from(a.map != b.map));
     as_it_is(Comparison::MapAndWalls, map + a.walls.distance(&b.walls), sink);
     let layouts = match (&a.layout, &b.layout) {

@@ -42,6 +42,7 @@ pub(super) struct Sketch {
     pub(super) angular_speed: f64,
     pub(super) time_step: f64,
     pub(super) agent_width: f64,
+    pub(super) energy: Arc<Leaves>,
     pub(super) map: u8,
     pub(super) walls: Arc<Leaves>,
     /// What divides the arena; `None` where there is no layout.
@@ -115,6 +116,7 @@ impl Sketcher {
             angular_speed: agent.max_angular_speed,
             time_step: step_seconds,
             agent_width: agent.agent_width,
+            energy: self.leaves(Comparison::EnergyOfAgent),
             map: around.predefined_map,
             walls: self.leaves(Comparison::MapAndWalls),
             layout: self.shape(world),

@@ -83,7 +83,7 @@ fields! {
         /// The agent's energy, which falls and rises; without it there is none. What comes of it is said by an end condition and by the
         /// state feature `energy`.
         #[serde(skip_serializing_if = "Option::is_none")]
-        pub energy: Option<Energy> = None => Field::ours(Leaves(ShapingAndEndings)),
+        pub energy: Option<Energy> = None => Field::ours(Leaves(EnergyOfAgent)),
     }
 }
 

@@ -141,7 +141,7 @@ fields! {
         /// Energy that the agent gains when a triggering pays its reward, be that 0, or destroys it; once for what pays once.
         #[serde(default, skip_serializing_if = "is_default")]
         #[schemars(range(min = -1e9, max = 1e9))]
-        pub energy: f64 => Field::ours(Leaves(PaidFor)),
+        pub energy: f64 => Field::ours(Leaves(Bodies)),
         /// How often `AgentInRange` holds: when the agent comes into range, or at every time step in it. An agent that starts within
         /// range comes into it in the first time step.
         #[serde(default, skip_serializing_if = "is_default")]

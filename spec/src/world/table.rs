@@ -26,8 +26,14 @@ impl World {
 
 /// The fields of a world or an object that are compared leaf by leaf: for each comparison a text that has, field by field
 /// in the order of the table, a line of JSON. Equal fields have equal texts.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct LeafTexts([Vec<u8>; Comparison::ALL.len()]);
+
+impl Default for LeafTexts {
+    fn default() -> Self {
+        Self([const { Vec::new() }; Comparison::ALL.len()])
+    }
+}
 
 impl LeafTexts {
     /// The texts of a world, but for its objects, in place of those before.

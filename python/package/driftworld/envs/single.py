@@ -204,7 +204,8 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         return self._members.origin(0)
 
     def warnings(self) -> list[str]:
-        """What the world asks for that is not as its author may think, such as a class that nobody knows."""
+        """What the world asks for that is not as its author may think: a class that nobody knows, a switch without a door, a key that
+        lies behind its own door. Remarks on its document begin with the place there."""
         return self._members.batch.warnings(0)
 
     def get_keys_to_action(self) -> dict[tuple[str, ...], Any]:

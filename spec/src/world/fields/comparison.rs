@@ -62,12 +62,14 @@ comparisons! {
     LargestTurnRate: A, "largest turn rate", "the larger one",
     /// How objects move by themselves.
     Motion: T, "motion of objects", "the larger one, or another word",
-    /// How solid objects are, and what becomes of them.
+    /// How solid objects are, what becomes of them, and what energy they give.
     Bodies: T, "bodies of objects", "the larger one, or another word",
     /// Seconds of a step.
     TimeStep: T, "time step", "the larger one",
     /// The agent's width.
     Width: T, "agent's width", "the larger one",
+    /// How the agent's energy changes.
+    EnergyOfAgent: T, "agent's energy", "the larger one, or none",
     /// The map and its walls.
     MapAndWalls: T, "map and walls", "the larger one, or another word",
     /// What divides the arena: mazes, rooms and walls.

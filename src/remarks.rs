@@ -1,0 +1,156 @@
+//! What is odd about the worlds that a task draws, each once, with where it was seen first. What is odd about one world is said by
+//! `spec`.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use driftworld_generator::Sampler;
+use driftworld_spec::{TaskSpec, World};
+use rayon::prelude::*;
+
+/// The most worlds of a variant that are looked through.
+pub(crate) const MOST_LOOKED_THROUGH: u64 = 100;
+
+/// Something that is odd in some worlds of a task.
+struct Odd {
+    /// The remark without its numbers, which may differ from world to world.
+    kind: String,
+    pointer: String,
+    text: String,
+    /// Where it was seen first: the variant, and the number of its world.
+    variant: String,
+    index: u64,
+    worlds: u64,
+    variants: BTreeSet<String>,
+}
+
+/// What is odd about the first worlds of each variant, in sentences. Worlds that cannot be drawn say nothing.
+pub(crate) fn of_task(task: &Arc<TaskSpec>, seed: u64, worlds: u64) -> Vec<String> {
+    let worlds = worlds.clamp(1, MOST_LOOKED_THROUGH);
+    let variants = task.all_variants();
+    let each: Vec<Vec<Odd>> = variants
+        .par_iter()
+        .map(|variant| {
+            let sampler = Sampler::new(variant, seed);
+            let mut found = Vec::new();
+            for index in 0..worlds {
+                if let Ok(world) = sampler.world(index) {
+                    gather(
+                        &mut found,
+                        of_world(&world).map(|(pointer, text)| odd(pointer, text, variant.name(), index)),
+                    );
+                }
+            }
+            found
+        })
+        .collect();
+    let mut found = Vec::new();
+    for own in each {
+        gather(&mut found, own.into_iter());
+    }
+    let all = variants.len() as u64 * worlds;
+    found.iter().map(|odd| odd.told(all)).collect()
+}
+
+/// What is odd about a world: the place in its document, and a sentence.
+pub(crate) fn of_world(world: &World) -> impl Iterator<Item = (String, String)> {
+    // Places in a text are of no use: the world has none.
+    let remarks = world.remarks("world", "{}").into_iter();
+    remarks.map(|remark| (remark.pointer, remark.text))
+}
+
+fn odd(pointer: String, text: String, variant: &str, index: u64) -> Odd {
+    Odd {
+        kind: text
+            .chars()
+            .filter(|letter| !matches!(letter, '0'..='9' | '-' | '.'))
+            .collect(),
+        pointer,
+        text,
+        variant: variant.to_owned(),
+        index,
+        worlds: 1,
+        variants: BTreeSet::from([variant.to_owned()]),
+    }
+}
+
+/// Adds what is odd to what was odd before: a world counts once for each kind.
+fn gather(found: &mut Vec<Odd>, more: impl Iterator<Item = Odd>) {
+    let mut seen = BTreeSet::new();
+    for odd in more {
+        let is_first = seen.insert((odd.kind.clone(), odd.variant.clone()));
+        match found.iter_mut().find(|known| known.kind == odd.kind) {
+            Some(known) if is_first => {
+                known.worlds += odd.worlds;
+                known.variants.extend(odd.variants);
+            }
+            Some(_) => {}
+            None => found.push(odd),
+        }
+    }
+}
+
+impl Odd {
+    fn told(&self, all: u64) -> String {
+        let Self {
+            pointer,
+            text,
+            variant,
+            index,
+            worlds,
+            variants,
+            ..
+        } = self;
+        let of = match variants.len() {
+            1 => String::new(),
+            many => format!(", of {many} variants"),
+        };
+        format!("world {index} of {variant} ({pointer}): {text} (in {worlds} of {all} worlds{of})")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn remarks(world: &str, worlds: u64) -> Vec<String> {
+        let text = format!(
+            r#"{{ "name": "t", "parameters": {{
+                "x": {{ "role": "randomized", "type": "number", "affects": ["S"], "distribution": {{ "uniform": {{ "low": -20, "high": 20 }} }} }},
+                "open": {{ "role": "variant", "type": "boolean", "affects": ["S"], "choices": [true, false], "default": false }} }},
+              "world": {{ "environment_params": {{ "map_size": [20, 20] }}, {world} }},
+              "variants": {{ "shut": {{}}, "wide": {{ "open": true }} }} }}"#
+        );
+        of_task(&TaskSpec::from_json("t", &text).unwrap(), 0, worlds)
+    }
+
+    #[test]
+    fn what_all_worlds_share_is_told_once() {
+        let lever = r#""objects": [{ "class": "switch", "coordinates": [2, 2], "switch": { "target": "nothing" } }]"#;
+        let found = remarks(lever, 50);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(
+            found[0].starts_with("world 0 of shut (/objects/0/switch/target): "),
+            "{found:?}"
+        );
+        assert!(found[0].ends_with("(in 100 of 100 worlds, of 2 variants)"), "{found:?}");
+        assert!(remarks(lever, 1)[0].ends_with("(in 2 of 2 worlds, of 2 variants)"));
+    }
+
+    #[test]
+    fn what_some_worlds_have_is_counted() {
+        let zone = r#""rules": { "reward_per_second": 0 }, "objects": [
+            { "class": "cube", "coordinates": [{ "param": "x" }, 0], "reward": 1, "reward_once_stimulus": ["AgentCollide"] }]"#;
+        let found = remarks(zone, 100);
+        assert_eq!(found.len(), 1, "{found:?}");
+        let outside: u64 = found[0]
+            .split("(in ")
+            .nth(1)
+            .and_then(|rest| rest.split(' ').next())
+            .unwrap()
+            .parse()
+            .unwrap();
+        // Half of them lie beyond 10 m, and both variants have the same worlds.
+        assert!(outside > 60 && outside < 140 && outside.is_multiple_of(2), "{found:?}");
+    }
+}
