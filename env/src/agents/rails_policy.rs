@@ -7,13 +7,16 @@ use super::errands::Errands;
 use super::nearest::Goal;
 use super::route::Route;
 use super::shield::Shield;
-use super::steering::{Purpose, Target, avoided, distance, walk};
+use super::steering::{Purpose, Target, avoided, distance, fails, walk};
 use crate::ground;
 use crate::scene::Scene;
 use crate::sim::{Action, SimRef};
 
 /// Steps after which a target that was not reached is left for later.
 const PATIENCE: u32 = 150;
+
+/// Steps after which it looks again whether there is a way to anything.
+const IDLE: u32 = 20;
 
 /// How far from the edge of an object that will come back the agent waits for it, in metres.
 const ASIDE: f32 = 1.5;
@@ -109,8 +112,26 @@ impl RailsPolicy {
     }
 
     fn choose(&mut self, sim: SimRef) {
+        let tiers = tiers(sim);
+        if tiers.iter().flatten().all(|index| self.given_up.contains(index)) {
+            self.given_up.clear();
+        }
+        (self.target, self.steps_on_target) = (None, 0);
+        for wanted in &tiers {
+            self.target = self.nearest(sim, wanted);
+            if self.target.is_some() {
+                return;
+            }
+            // There is no way to them.
+            let new = wanted.iter().filter(|index| !self.given_up.contains(index));
+            let new: Vec<usize> = new.copied().collect();
+            self.given_up.extend(new);
+        }
+    }
+
+    /// The nearest of these objects that was not given up; `None` where there is no way to any.
+    fn nearest(&mut self, sim: SimRef, wanted: &[usize]) -> Option<Target> {
         let here = sim.agent().position;
-        let mut wanted = wanted(sim);
         let mut given_up = vec![false; sim.objects().len()];
         // What was written down may name objects that the world does not have.
         for index in &self.given_up {
@@ -118,23 +139,34 @@ impl RailsPolicy {
                 *given_up = true;
             }
         }
-        if wanted.iter().all(|index| given_up[*index]) {
-            self.given_up.clear();
-            given_up.fill(false);
-        }
-        wanted.retain(|index| !given_up[*index]);
         let (world, scene) = (sim.world, sim.scene());
         let goals: Vec<Goal> = wanted
-            .into_iter()
+            .iter()
+            .copied()
+            .filter(|index| !given_up[*index])
             .map(|index| Goal {
                 object: index as u32,
                 place: sim.objects()[index].position,
                 probability: world.objects[index].reward_probability.max(0.01) as f32,
             })
             .collect();
+        if goals.is_empty() {
+            return None;
+        }
         let nearest = self.route.nearest(world, scene, here, &goals, &avoided(sim, None));
-        self.target = nearest.map(|number| Target::at(goals[number].object as usize, sim, &mut self.route));
-        self.steps_on_target = 0;
+        nearest.map(|number| Target::at(goals[number].object as usize, sim, &mut self.route))
+    }
+
+    /// The tier that counts: the first of which not all is given up.
+    fn tier(&self, tiers: [Vec<usize>; 3]) -> Vec<usize> {
+        let is_left = |index: &usize| !self.given_up.contains(index);
+        let [first, second, third] = tiers;
+        for tier in [&first, &second, &third] {
+            if tier.iter().any(is_left) {
+                return tier.clone();
+            }
+        }
+        [first, second, third].concat()
     }
 
     fn towards(&mut self, sim: SimRef) -> [f64; 3] {
@@ -203,7 +235,7 @@ impl RailsPolicy {
 
     fn tour(&mut self, sim: SimRef) -> [f64; 3] {
         self.steps_on_target = self.steps_on_target.saturating_add(1);
-        let wanted = wanted(sim);
+        let wanted = self.tier(tiers(sim));
         let stale = self
             .target
             .as_ref()
@@ -211,8 +243,14 @@ impl RailsPolicy {
         if !stale && self.steps_on_target > PATIENCE {
             self.given_up.extend(self.target.as_ref().map(|target| target.object));
         }
+        // Where there is no way to anything, it looks again now and then.
+        let waits = self.target.is_none()
+            && self.steps_on_target < IDLE
+            && wanted.iter().all(|index| self.given_up.contains(index));
         if (stale || self.steps_on_target > PATIENCE) && !wanted.is_empty() {
-            self.choose(sim);
+            if !waits {
+                self.choose(sim);
+            }
         } else if wanted.is_empty() {
             self.target = None;
         }
@@ -229,6 +267,12 @@ impl RailsPolicy {
 /// The objects worth going to, by index: those that pay now, without those whose touch is a success as long as others pay; if
 /// nothing pays, those whose touch is a success.
 pub(super) fn wanted(sim: SimRef) -> Vec<usize> {
+    tiers(sim).into_iter().find(|tier| !tier.is_empty()).unwrap_or_default()
+}
+
+/// The objects worth going to, by index, those that come first before others: what pays and does not end the episode, what pays and
+/// ends it well, what ends it well. What touching fails is none.
+fn tiers(sim: SimRef) -> [Vec<usize>; 3] {
     let world = sim.world;
     let states = sim.objects();
     // In a sequence only what comes first of what is left pays.
@@ -240,25 +284,18 @@ pub(super) fn wanted(sim: SimRef) -> Vec<usize> {
     };
     let pays =
         |index: &usize| world.objects[*index].is_target() && states[*index].present && states[*index].reward > 0.0;
+    let is_safe = |index: &usize| !fails(world, &world.objects[*index]);
     let ends = |object: &Object| {
         world.rules.success.iter().any(|condition| match condition {
             EndCondition::Touch(tag) => object.tag.as_ref() == Some(tag),
             _ => false,
         })
     };
-    let paying: Vec<usize> = (0..states.len()).filter(pays).filter(in_turn).collect();
-    if paying.is_empty() {
-        return (0..states.len())
-            .filter(|&index| states[index].present && ends(&world.objects[index]))
-            .collect();
-    }
-    // What ends the episode is left until nothing else pays.
-    let (last, mut before): (Vec<usize>, Vec<usize>) =
-        paying.into_iter().partition(|&index| ends(&world.objects[index]));
-    if before.is_empty() {
-        before = last;
-    }
-    before
+    let paying = (0..states.len()).filter(pays).filter(in_turn).filter(is_safe);
+    let (last, before): (Vec<usize>, Vec<usize>) = paying.partition(|&index| ends(&world.objects[index]));
+    let ending = (0..states.len()).filter(|&index| states[index].present && ends(&world.objects[index]));
+    let ending: Vec<usize> = ending.filter(|index| !last.contains(index)).collect();
+    [before, last, ending]
 }
 
 /// Whether the agent stands where something that pays would come back.

@@ -1,15 +1,18 @@
-//! Keeps who walks by a plan out of zones that end the episode as a failure, and of those that cost: a plan leads around them, but
-//! steps are as long as the world's actions make them. Where ways lead is found in `flood.rs` and `errands/`.
+//! Keeps who walks by a plan out of zones that end the episode as a failure, off objects whose touch does so, and out of zones that
+//! cost: a plan leads around them, but steps are as long as the world's actions make them. Where ways lead is found in `flood.rs` and `errands/`.
 
 use driftworld_spec::{Zone, ZoneEnd};
 
-use super::steering::in_space_where;
+use super::steering::{failing, in_space_where};
 use crate::sim::{Action, SimRef};
 
 /// The shares of a speed that are tried.
 const SHARES: [f64; 4] = [1.0, 0.5, 0.25, 0.0];
 
-/// Which zones a step keeps out of.
+/// How far beyond a touch a step keeps off what fails, in metres.
+const AWAY: f64 = 0.02;
+
+/// What a step keeps out of, beside off objects whose touch is a failure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Shield {
     /// Those that end the episode as a failure.
@@ -25,10 +28,10 @@ impl Shield {
     }
 
     fn has_use(self, sim: SimRef) -> bool {
-        sim.world.environment_params.zones.iter().any(|zone| self.shuns(zone))
+        sim.world.environment_params.zones.iter().any(|zone| self.shuns(zone)) || failing(sim).next().is_some()
     }
 
-    /// A step as speed, turn rate and interaction, slower where it would lead into a zone that is shunned.
+    /// A step as speed, turn rate and interaction, slower where it would lead into what is shunned.
     pub(super) fn slowed(self, sim: SimRef, [speed, turn, interact]: [f64; 3]) -> [f64; 3] {
         if !self.has_use(sim) {
             return [speed, turn, interact];
@@ -39,16 +42,18 @@ impl Shield {
             .unwrap_or([0.0, turn, interact])
     }
 
-    /// Such a step as an action of the world: of its table, a row that does not lead into a zone that is shunned, where there
+    /// Such a step as an action of the world: of its table, a row that does not lead into what is shunned, where there
     /// is one.
     pub(super) fn in_space(self, numbers: [f64; 3], sim: SimRef) -> Action {
         let has_use = self.has_use(sim);
         in_space_where(numbers, sim, |row| !has_use || self.is_safe(sim, row))
     }
 
-    /// Whether a step by a velocity enters no zone that is shunned, as far as nothing stands in the way.
+    /// Whether a step by a velocity enters no zone and touches no object that is shunned, as far as nothing stands in the way.
     fn is_safe(self, sim: SimRef, step: [f64; 3]) -> bool {
-        !sim.views.zones.are_entered(&path(sim, step), |zone| self.shuns(zone))
+        let path = path(sim, step);
+        !sim.views.zones.are_entered(&path, |zone| self.shuns(zone))
+            && !failing(sim).any(|object| sim.would_touch(object as u32, &path, AWAY))
     }
 }
 

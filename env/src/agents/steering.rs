@@ -1,7 +1,7 @@
 //! Walking to one object: the way there, the next step on it, and that step as an action of the world. Which object is
 //! chosen by the agents.
 
-use driftworld_spec::{ActionModel, ActionSpace, MotionModel, Object, Zone};
+use driftworld_spec::{ActionModel, ActionSpace, EndCondition, MotionModel, Object, World, Zone};
 
 use super::route::Route;
 use crate::sim::{Action, Environment, SimRef};
@@ -78,7 +78,7 @@ pub(super) fn walk(goal: [f32; 2], sim: SimRef, route: &mut Route) -> [f64; 3] {
     let world = sim.world;
     let agent = sim.agent();
     // Beside what costs no corner is cut.
-    let costs = world.environment_params.zones.iter().any(Zone::is_costly);
+    let costs = is_narrow(sim);
     let ahead = if !costs {
         3
     } else if world.plan().is_some() {
@@ -128,7 +128,33 @@ pub(super) fn seconds(sim: SimRef) -> f32 {
     sim.world.agent_params.time_step as f32 * sim.world.agent_params.frame_skip as f32
 }
 
-/// The objects that a way to `goal` leads around: what stands fast and is solid or costs. Without a goal all of them,
+/// Whether touching an object ends the episode as a failure.
+pub(super) fn fails(world: &World, object: &Object) -> bool {
+    world.rules.failure.iter().any(|condition| match condition {
+        EndCondition::Touch(tag) => object.tag.as_ref() == Some(tag),
+        _ => false,
+    })
+}
+
+/// The objects that are there and whose touch ends the episode as a failure.
+pub(super) fn failing(sim: SimRef) -> impl Iterator<Item = usize> {
+    let has_any = sim
+        .world
+        .rules
+        .failure
+        .iter()
+        .any(|condition| matches!(condition, EndCondition::Touch(_)));
+    let objects = if has_any { sim.world.objects.as_slice() } else { &[] };
+    let is_there = move |(index, object): &(usize, &Object)| sim.objects()[*index].present && fails(sim.world, object);
+    objects.iter().enumerate().filter(is_there).map(|(index, _)| index)
+}
+
+/// Whether no corner is to be cut: beside it may be a zone that costs, or what fails.
+pub(super) fn is_narrow(sim: SimRef) -> bool {
+    sim.world.environment_params.zones.iter().any(Zone::is_costly) || failing(sim).next().is_some()
+}
+
+/// The objects that a way to `goal` leads around: what stands fast and is solid, costs or fails. Without a goal all of them,
 /// by rising index.
 pub(super) fn avoided(sim: SimRef, goal: Option<usize>) -> Vec<u32> {
     let objects = sim.world.objects.iter().zip(sim.objects());
@@ -139,7 +165,10 @@ pub(super) fn avoided(sim: SimRef, goal: Option<usize>) -> Vec<u32> {
     objects
         .enumerate()
         .filter(|(index, (object, state))| {
-            Some(*index) != goal && state.present && stands(object) && (object.solid || object.reward < 0.0)
+            Some(*index) != goal
+                && state.present
+                && stands(object)
+                && (object.solid || object.reward < 0.0 || fails(sim.world, object))
         })
         .map(|(index, _)| index as u32)
         .collect()

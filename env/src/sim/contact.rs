@@ -76,6 +76,24 @@ impl CollisionWorld {
         }
     }
 
+    /// Whether an agent that goes straight from place to place touches an object, or comes nearer to a touch than so many metres,
+    /// without going away from it.
+    pub(super) fn would_touch(&self, object: u32, path: &[Point], metres: f64) -> bool {
+        let Some(handle) = self.handles[object as usize] else {
+            return false;
+        };
+        let footprint = &self.low[slot(handle)];
+        let reach = self.radius + TOUCH + metres;
+        // Who is nearer already may go away.
+        let reach = path
+            .first()
+            .map_or(reach, |at| reach.min(footprint.gap(*at).distance - 1e-9));
+        path.windows(2).any(|ends| {
+            let by = [0, 1].map(|axis| ends[1][axis] - ends[0][axis]);
+            footprint.time_within(ends[0], by, reach).is_some()
+        })
+    }
+
     /// Whether an object is so near to the agent that a contact lasts.
     pub(super) fn is_still_touched(&self, object: u32, at: [f32; 2]) -> bool {
         self.handles[object as usize].is_some_and(|handle| {

@@ -37,6 +37,12 @@ impl<'a> SimRef<'a> {
         self.views.bodies.in_reach(agent.position, agent.forward(), found);
     }
 
+    /// Whether an agent that goes straight from place to place touches an object, or comes nearer to a touch than so many metres,
+    /// without going away from it.
+    pub(crate) fn would_touch(self, object: u32, path: &[[f64; 2]], metres: f64) -> bool {
+        self.views.bodies.would_touch(object, path, metres)
+    }
+
     /// The radius of an object's body in metres.
     pub(crate) fn body_radius(self, index: usize) -> f32 {
         let item = &self.views.scene.items[index];

@@ -1,14 +1,14 @@
 //! How one thing is done: walking to an object, and there touching it, using it, waiting at it or putting something down. What
 //! is to be done is decided in `plan.rs`.
 
-use driftworld_spec::{Stimulus, Zone};
+use driftworld_spec::Stimulus;
 
 use super::floor::{Floor, Room};
 use super::leaf::Leaf;
 use super::plan::can_interact;
 use super::ways::{Bringing, is_left};
 use super::wishes::moving_stimulus;
-use crate::agents::steering::{distance, off, seconds, step_to};
+use crate::agents::steering::{distance, is_narrow, off, seconds, step_to};
 use crate::sim::{SimRef, answering, put_down_place};
 
 /// Degrees off which an agent goes on looking at what it means to use, rather than walking to it.
@@ -241,8 +241,7 @@ fn turn(sim: SimRef, point: [f32; 2]) -> f64 {
 
 /// A step towards a point, and so many metres past it: not at full speed into a turn.
 fn walk(sim: SimRef, point: [f32; 2], past: f32) -> [f64; 3] {
-    let costs = sim.world.environment_params.zones.iter().any(Zone::is_costly);
-    if costs {
+    if is_narrow(sim) {
         // Beside what costs no corner is cut.
         return step_to(sim, point, past.min(0.05), 5.0);
     }

@@ -7,6 +7,7 @@ use super::leaf::Leaf;
 use super::tolls::Tolls;
 use super::ways::{Bringing, Waiting};
 use crate::agents::grid::Grid;
+use crate::agents::steering::fails;
 use crate::polygon::is_near_or_inside;
 use crate::sim::SimRef;
 
@@ -17,7 +18,8 @@ const SIDE: f32 = 0.2;
 const LEAST: f32 = 0.04;
 const LIKED: f32 = 0.25;
 
-/// How dear cells are: on open ground, beside walls, at what stands around, at what costs.
+/// How dear cells are: where nobody should be, on open ground, beside walls, at what stands around, at what costs.
+const NOWHERE: u16 = 0;
 const OPEN: u16 = 1;
 pub(super) const BESIDE: u16 = 2;
 const STANDS: u16 = 6;
@@ -99,7 +101,12 @@ impl Floor {
                 .within(at.map(|metres| metres - reach), at.map(|metres| metres + reach));
             for cell in cells {
                 if leaf.distance(self.grid.centre(cell)) < margin && self.weight[cell] > 0 {
-                    self.weight[cell] = if is_door { 0 } else { self.weight[cell].max(weight) };
+                    let is_shut = is_door || weight == NOWHERE;
+                    self.weight[cell] = if is_shut {
+                        NOWHERE
+                    } else {
+                        self.weight[cell].max(weight)
+                    };
                 }
             }
         }
@@ -305,6 +312,7 @@ fn standing(sim: SimRef) -> Vec<Standing> {
         }
         let is_door = object.door.is_some() && object.solid;
         let weight = match (own.reward < 0.0, object.solid) {
+            _ if fails(sim.world, object) => NOWHERE,
             (true, _) => COSTS,
             (false, true) => STANDS,
             (false, false) => return None,

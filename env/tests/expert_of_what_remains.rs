@@ -1,0 +1,114 @@
+//! The expert does what can be done: what it cannot get to keeps it from nothing, and it touches nothing that ends the episode as a
+//! failure. With doors and things in the world it plans errands, without it tours; both are tried.
+
+use driftworld_env::{Agent, EndedBy, Environment, OnRailsAgent};
+use driftworld_spec::{EndCondition, Object, Portable, Stimulus, Wall, World, WorldDraft};
+use proptest::prelude::*;
+
+fn cube(tag: &str, at: [f64; 2], reward: f64) -> Object {
+    let mut object = Object::new("cube", at);
+    (object.tag, object.reward) = (Some(tag.to_owned()), reward);
+    if reward != 0.0 {
+        object.reward_once_stimulus = vec![Stimulus::AgentCollide];
+    }
+    object
+}
+
+/// An arena of 24 m with a goal in the north, whose touch is a success and pays if that is said.
+fn field(pays: f64, has_things: bool) -> WorldDraft {
+    let mut world = WorldDraft::default();
+    world.environment_params.map_size = [24.0, 24.0];
+    world.objects = vec![cube("goal", [0.0, 9.0], pays)];
+    if has_things {
+        let mut key = Object::new("key", [-10.0, -10.0]);
+        key.portable = Some(Portable::default());
+        world.objects.push(key);
+    }
+    world.rules.success = vec![EndCondition::Touch("goal".to_owned())];
+    world.agent_params.coordinates = [0.0, -9.0];
+    world.max_steps = 900;
+    world
+}
+
+/// Four walls around a place.
+fn cell([x, y]: [f64; 2]) -> Vec<Wall> {
+    let wall = |low: [f64; 2], high: [f64; 2]| Wall {
+        polygon: vec![
+            [x + low[0], y + low[1]],
+            [x + high[0], y + low[1]],
+            [x + high[0], y + high[1]],
+            [x + low[0], y + high[1]],
+        ],
+        height: None,
+        color: None,
+    };
+    vec![
+        wall([-2.0, -2.0], [2.0, -1.8]),
+        wall([-2.0, 1.8], [2.0, 2.0]),
+        wall([-2.0, -2.0], [-1.8, 2.0]),
+        wall([1.8, -2.0], [2.0, 2.0]),
+    ]
+}
+
+/// How an episode of the expert ends, and what it pays.
+fn lived(world: World) -> (Option<EndedBy>, bool, f64) {
+    let mut environment = Environment::new(world);
+    let mut expert = OnRailsAgent::new();
+    expert.begin(0);
+    let mut earned = 0.0;
+    loop {
+        let action = expert.act(&environment);
+        let step = environment.step(action).expect("the episode goes on");
+        earned += step.reward;
+        if step.terminated || step.truncated {
+            return (step.ended_by, step.success, earned);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    #[test]
+    fn what_cannot_be_got_to_keeps_it_from_nothing(
+        has_things in any::<bool>(), pays in prop::sample::select(vec![0.0, 1.0]), is_layout in any::<bool>(),
+        shut in prop::collection::vec(prop::array::uniform2(-7.0..7.0_f64), 1..3), open in prop::option::of(-9.0..-3.0_f64),
+    ) {
+        let mut world = field(pays, has_things);
+        let shut: Vec<[f64; 2]> = shut.into_iter().map(|[x, y]| [x, y * 0.6]).collect();
+        let walls: Vec<Wall> = shut.iter().flat_map(|at| cell(*at)).collect();
+        if is_layout {
+            let walls = walls.into_iter().map(|wall| driftworld_spec::LayoutWall { polygon: Some(wall.polygon), ..Default::default() });
+            world.environment_params.layout = Some(driftworld_spec::Layout { walls: Some(walls.collect()), ..Default::default() });
+        } else {
+            world.environment_params.walls = walls;
+        }
+        world.objects.extend(shut.iter().map(|at| cube("gem", *at, 5.0)));
+        // One more gem that can be got, far from all cells.
+        if let Some(x) = open {
+            world.objects.push(cube("gem", [x, -9.0], 5.0));
+        }
+        let (ended_by, success, earned) = lived(world.check().expect("it is sound"));
+        prop_assert!(success, "{ended_by:?} after {earned}");
+        let expected = pays + if open.is_some() { 5.0 } else { 0.0 };
+        prop_assert_eq!(earned, expected);
+    }
+
+    #[test]
+    fn it_touches_nothing_that_fails(
+        has_things in any::<bool>(), gap in -8.0..8.0_f64, (solid, scale) in (any::<bool>(), 0.8..1.6_f64), heading in 0.0..360.0_f64,
+    ) {
+        let mut world = field(1.0, has_things);
+        // A row of lava through the arena, with one gap of 4 m.
+        let places = (0..25).map(|number| f64::from(number) - 12.0).filter(|x| (x - gap).abs() > 2.0 + scale / 2.0);
+        world.objects.extend(places.map(|x| {
+            let mut lava = cube("lava", [x, 0.0], 0.0);
+            (lava.solid, lava.scale) = (solid, scale);
+            lava
+        }));
+        world.rules.failure = vec![EndCondition::Touch("lava".to_owned())];
+        world.agent_params.heading = heading;
+        let (ended_by, success, earned) = lived(world.check().expect("it is sound"));
+        prop_assert!(success, "{ended_by:?} after {earned}");
+    }
+}
