@@ -2,8 +2,8 @@
 //! become a sheet is `report`'s.
 
 use driftworld_env::{
-    Agent, Catalogue, Effect, EndedBy, Environment, Event, MAX_EXPERT_STEPS, Recorder, Recording, Renderer, Replay,
-    Step, top_down_with_way,
+    Agent, Catalogue, Effect, EndedBy, Environment, Event, Recorder, Recording, Renderer, Replay, Step,
+    top_down_with_way,
 };
 use driftworld_report::picture::{Picture, SheetRow};
 use driftworld_spec::{Stimulus, World};
@@ -18,19 +18,20 @@ pub(crate) struct Deed {
     weight: u8,
 }
 
-/// An agent's episode in a world, to its end; one without an end is cut off.
+/// An agent's episode in a world, to its end, or to so many steps.
 pub(crate) fn recorded(
     world: &World,
     catalogue: &Catalogue,
     agent: &mut dyn Agent,
     seed: u64,
+    most: u32,
 ) -> Result<Recording, Failure> {
     let mut environment = Environment::with_catalogue(world.clone(), catalogue.clone());
     let mut recorder = Recorder::default();
     recorder.begin(world.clone());
     agent.begin(seed);
     let mut ended_by = None;
-    while !environment.ended() && recorder.num_steps() < MAX_EXPERT_STEPS {
+    while !environment.ended() && recorder.num_steps() < most {
         let action = agent.act(&environment);
         ended_by = environment.step(action)?.ended_by;
         recorder.step(action);

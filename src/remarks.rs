@@ -49,7 +49,7 @@ pub(crate) fn of_task(task: &Arc<TaskSpec>, seed: u64, worlds: u64) -> Vec<Strin
         gather(&mut found, own.into_iter());
     }
     let all = variants.len() as u64 * worlds;
-    found.iter().map(|odd| odd.told(all)).collect()
+    found.iter().map(|odd| odd.in_words(all)).collect()
 }
 
 /// What is odd about a world: the place in its document, and a sentence.
@@ -91,7 +91,7 @@ fn gather(found: &mut Vec<Odd>, more: impl Iterator<Item = Odd>) {
 }
 
 impl Odd {
-    fn told(&self, all: u64) -> String {
+    fn in_words(&self, all: u64) -> String {
         let Self {
             pointer,
             text,

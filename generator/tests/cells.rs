@@ -293,3 +293,33 @@ fn doorways_hold_one_object_each_turned_along_the_wall() {
     let error = Sampler::new(&maze, 3).world(0).unwrap_err().to_string();
     assert!(error.contains("of 0 doorways"), "{error}");
 }
+
+#[test]
+fn letters_for_floor_that_the_legend_names_are_found() {
+    let layout =
+        r########"{ "text": ["#######", "#P.w.w#", "#######"], "cell": 2, "legend": { "w": "floor" } }"########;
+    let task = task(layout, "", 2, r#"{ "cells": { "letter": "w" } }"#);
+    for world in worlds(&task, 5) {
+        let (plan, _, mut found) = cells(&world);
+        found.sort_unstable();
+        let letters: Vec<usize> = (0..plan.cells.len())
+            .filter(|cell| plan.cells[*cell].letter == Some('w'))
+            .collect();
+        assert_eq!((letters.len(), &found), (2, &letters));
+    }
+}
+
+/// 0.1 + 0.2 is more than 0.3 in binary digits.
+#[test]
+fn a_doorway_and_a_wall_may_fill_a_side() {
+    for (room, doorway, wall) in [(0.3, 0.1, 0.2), (0.7, 0.1, 0.6), (1.1, 0.8, 0.3)] {
+        let rooms = format!(
+            r#"{{ "rooms": {{ "grid": [2, 2], "room": [{room}, {room}], "doorway": {doorway}, "wall": {wall} }} }}"#
+        );
+        let text = format!(
+            r#"{{ "environment_params": {{ "layout": {rooms} }}, "agent_params": {{ "agent_width": 0.05 }} }}"#
+        );
+        let read = World::from_json("w", &text);
+        assert!(read.is_ok(), "{room}: {:?}", read.err());
+    }
+}

@@ -1,6 +1,6 @@
 //! Maps of other programs, read as worlds: their walls, their things, and what is said of what did not pass.
 
-use driftworld_spec::World;
+use driftworld_spec::{Legend, World, ZoneEnd};
 use proptest::prelude::*;
 
 const LEVEL: &str = "\
@@ -59,7 +59,13 @@ fn a_grid_of_minigrid_has_its_rooms_and_things() {
         .iter()
         .filter_map(|object| object.tag.as_deref())
         .collect();
-    assert_eq!(tags, ["yellow_key", "goal", "lava", "ball", "door"]);
+    assert_eq!(tags, ["yellow_key", "goal", "ball", "door"]);
+    let zones = &world.environment_params.zones;
+    assert_eq!(zones.len(), 1);
+    assert_eq!(zones[0].ends, Some(ZoneEnd::Failure));
+    // Its cell, whole: the second of the fourth row.
+    let corners = [[-4.0, -3.0], [-2.0, -3.0], [-2.0, -1.0], [-4.0, -1.0]];
+    assert_eq!(zones[0].polygon.as_deref(), Some(&corners[..]));
     assert_eq!(world.agent_params.carry_limit, 1);
     let said: Vec<String> = warnings.iter().map(ToString::to_string).collect();
     insta::assert_snapshot!(said.join("\n"));
@@ -92,15 +98,50 @@ fn doors_of_minigrid_stand_in_their_doorways() {
 
 #[test]
 fn what_is_not_known_is_said_once() {
-    let (_, warnings) = World::from_dmlab_text("level.txt", "#####\n#P.G#\n#####\n").unwrap();
+    let (_, warnings) = World::from_dmlab_text("level.txt", "*****\n*P.G*\n*.?.*\n*****\n").unwrap();
     let said: Vec<String> = warnings.iter().map(ToString::to_string).collect();
     assert_eq!(
         said,
         [
-            "level.txt:1:1 (/environment_params/layout/text): the letter '#' is not known (12 of it, this one first); it is read as floor",
-            "level.txt:2:3 (/environment_params/layout/text): the letter '.' is not known; it is read as floor",
+            "level.txt:2:3 (/environment_params/layout/text): the letter '.' is not known (3 of it, this one first); it is read as floor",
+            "level.txt:3:3 (/environment_params/layout/text): the letter '?' is not known; it is read as floor",
         ]
     );
+}
+
+#[test]
+fn a_text_that_is_no_map_is_refused() {
+    let text = "Dear all,\nhere is the map that I promised.\n";
+    let read = [
+        World::from_dmlab_text("letter.txt", text),
+        World::from_minigrid_text("letter.txt", text),
+    ];
+    for error in read.map(|read| read.unwrap_err().to_string()) {
+        assert!(
+            error.starts_with("letter.txt:1:1 (/): found ") && error.contains("signs that are not known"),
+            "{error}"
+        );
+        assert!(error.contains("expected "), "{error}");
+    }
+    // What stands above a grid in MiniGrid's own output.
+    let grid = "<DoorKeyEnv<MiniGrid-DoorKey-5x5-v0>>\nWGWGWG\nWG>>WG\nWGWGWG\n";
+    let (world, warnings) = World::from_minigrid_text("grid.txt", grid).unwrap();
+    assert_eq!((world.plan().unwrap().lattice, warnings.len()), ([3, 3], 0));
+}
+
+/// Keys of several colours each have a letter, and their doors find them.
+#[test]
+fn keys_of_several_colours_are_of_several_groups() {
+    let grid = "WGWGWGWGWGWG\nWG>>KRKBKR  WG\nWGWGWGWGWGWG\n";
+    let (world, _) = World::from_minigrid_text("grid.txt", grid).unwrap();
+    let plan = world.plan().unwrap();
+    let layout = world.environment_params.layout.as_ref().unwrap();
+    for object in world.objects.iter().filter(|object| object.portable.is_some()) {
+        let letter = plan.cells[plan.cell_at(object.coordinates).unwrap()].letter.unwrap();
+        let group = Legend::Group(object.tag.clone().unwrap());
+        assert_eq!(layout.legend.get(&letter.to_string()), Some(&group), "{letter}");
+    }
+    assert_eq!(layout.legend.len(), 2);
 }
 
 #[test]
@@ -117,7 +158,8 @@ proptest! {
     fn things_stand_at_their_letters(rows in prop::collection::vec("[*PGA IH?]{1,12}", 1..10)) {
         let text = rows.join("\n");
         let Ok((world, _)) = World::from_dmlab_text("drawn", &text) else {
-            prop_assert!(!text.contains([' ', 'P', 'G', 'A', 'I', 'H', '?']));
+            let num = |letters: &str| text.chars().filter(|letter| letters.contains(*letter)).count();
+            prop_assert!(!text.contains([' ', 'P', 'G', 'A', 'I', 'H', '?']) || num("?") > num("*PGAIH"));
             return Ok(());
         };
         let plan = world.plan().unwrap();

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::env::MAX_EXPERT_STEPS;
 use crate::episode_frames::recorded;
 use crate::film::expect_film;
 use clap::Args;
@@ -14,6 +15,9 @@ use super::film_choice::{FilmChoice, summary, tell};
 use super::recording_file::write_recording;
 use super::world_choice::WorldChoice;
 use super::{Failure, output};
+
+/// Steps of a film in a world that has no limit of its own: 5 minutes of 0.1 s.
+const MOST_WITHOUT_LIMIT: u32 = 3000;
 
 /// Let an agent act in a world, and film it.
 #[derive(Args)]
@@ -32,6 +36,9 @@ pub(crate) struct Film {
     /// File to write: .gif or .apng for a film, .png for a sheet of the frames that matter.
     #[arg(short, long, default_value = "film.gif", value_name = "FILE")]
     output: PathBuf,
+    /// Steps after which the film ends; 3000 if the world has no limit of its own.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    max_steps: Option<u32>,
     /// Keep the world and the actions in this file, for `driftworld replay`.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
@@ -51,8 +58,20 @@ impl Film {
         let world = self.choice.world()?;
         let catalogue = self.libraries.catalogue()?;
         let mut agent = self.agent.agent()?.agent;
-        let mut recording = recorded(&world, &catalogue, agent.as_mut(), self.agent_seed)?;
+        let has_limit = world.step_limit().is_some_and(|limit| limit > 0);
+        let unsaid = if has_limit {
+            MAX_EXPERT_STEPS
+        } else {
+            MOST_WITHOUT_LIMIT
+        };
+        let most = self.max_steps.unwrap_or(unsaid);
+        let mut recording = recorded(&world, &catalogue, agent.as_mut(), self.agent_seed, most)?;
         recording.origin = self.choice.origin();
+        if self.max_steps.is_none() && !has_limit && recording.actions.len() == most as usize {
+            output::warning(format!(
+                "the world has no limit of steps: the film ends after {most}; --max-steps takes more"
+            ));
+        }
         let film = self.film.write(&self.output, &recording, &catalogue)?;
         if let Some(path) = &self.record {
             write_recording(path, &recording)?;

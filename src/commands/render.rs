@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::env::{Catalogue, Environment, Renderer, RendererKind};
+use crate::env::{Catalogue, Environment, MAX_EXPERT_STEPS, Renderer, RendererKind};
 use crate::spec::World;
 use clap::{Args, ValueEnum};
 
@@ -115,7 +115,7 @@ impl Render {
     /// Two frames side by side.
     fn episode(&self, world: &World, catalogue: &Catalogue) -> Result<Drawing, Failure> {
         let mut agent = self.agent.as_ref().unwrap_or(&AgentArg::Onrails).agent()?.agent;
-        let recording = recorded(world, catalogue, agent.as_mut(), 0)?;
+        let recording = recorded(world, catalogue, agent.as_mut(), 0, MAX_EXPERT_STEPS)?;
         let most = usize::from(self.frames.unwrap_or(8));
         let renderer = Renderer::new(self.renderer)?;
         Ok(sheet(&rows(&recording, catalogue, renderer, self.size, most)?, 2)?)

@@ -27,24 +27,27 @@ fn a_map_of_letters_becomes_a_world_with_warnings_on_standard_error() {
     fail(2, &["convert", path, "--from", "dmlab-text", "--seed", "3"]);
 }
 
-/// Opens the red door, fetches the blue key behind it, and unlocks the way to the goal.
+/// Opens the red door, fetches the blue key behind it, and unlocks the way to the goal; goes around lava.
 #[test]
-fn a_grid_of_minigrid_with_a_locked_door_can_be_solved() {
+fn grids_of_minigrid_with_a_locked_door_and_with_lava_can_be_solved() {
     let folder = scratch();
     let grid = folder.path().join("grid.txt");
-    let map = "WGWGWGWGWG\nWG>>DRKBWG\nWGLBWGWGWG\nWG__WGGGWG\nWG      WG\nWGWGWGWGWG\n";
-    fs::write(&grid, map).expect("the folder is there");
-    let written = succeed(&["convert", text(&grid), "--from", "minigrid-text"]);
-    let world = driftworld::spec::World::from_json("written", &written).expect("it is a world");
-    let mut environment = Environment::new(world);
-    let mut agent = OnRailsAgent::new();
-    agent.begin(0);
-    let last = loop {
-        let action = agent.act(&environment);
-        let step = environment.step(action).expect("the agent's actions are sound");
-        if step.ended() || environment.num_steps() > 2000 {
-            break step;
-        }
-    };
-    assert!(last.success, "{:?}", last.ended_by);
+    let doors = "WGWGWGWGWG\nWG>>DRKBWG\nWGLBWGWGWG\nWG__WGGGWG\nWG      WG\nWGWGWGWGWG\n";
+    let lava = "WGWGWGWGWG\nWG>>VR  WG\nWG  VR  WG\nWG    GGWG\nWGWGWGWGWG\n";
+    for map in [doors, lava] {
+        fs::write(&grid, map).expect("the folder is there");
+        let written = succeed(&["convert", text(&grid), "--from", "minigrid-text"]);
+        let world = driftworld::spec::World::from_json("written", &written).expect("it is a world");
+        let mut environment = Environment::new(world);
+        let mut agent = OnRailsAgent::new();
+        agent.begin(0);
+        let last = loop {
+            let action = agent.act(&environment);
+            let step = environment.step(action).expect("the agent's actions are sound");
+            if step.ended() || environment.num_steps() > 2000 {
+                break step;
+            }
+        };
+        assert!(last.success, "{:?}", last.ended_by);
+    }
 }

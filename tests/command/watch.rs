@@ -321,3 +321,39 @@ fn playing_needs_a_terminal_and_says_so() {
         "{said}"
     );
 }
+
+#[test]
+fn a_film_of_a_world_without_a_limit_ends() {
+    let folder = scratch();
+    let world = folder.path().join("endless.json");
+    std::fs::write(&world, r#"{ "agent_params": { "observation_size": 8 } }"#).expect("the folder is there");
+    let sheet = folder.path().join("sheet.png");
+    let film = |more: &[&str]| {
+        let mut arguments = vec![
+            "film",
+            text(&world),
+            "--agent",
+            "still",
+            "--size",
+            "32",
+            "--json",
+            "-o",
+            text(&sheet),
+        ];
+        arguments.extend(more);
+        let done = output(&mut driftworld(&arguments));
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        let said: serde_json::Value = serde_json::from_slice(&done.stdout).expect("JSON");
+        (
+            said["steps"].as_u64(),
+            String::from_utf8_lossy(&done.stderr).into_owned(),
+        )
+    };
+    let (steps, said) = film(&[]);
+    assert_eq!(steps, Some(3000));
+    assert!(
+        said.contains("no limit of steps") && said.contains("--max-steps"),
+        "{said}"
+    );
+    assert_eq!(film(&["--max-steps", "7"]), (Some(7), String::new()));
+}

@@ -293,7 +293,7 @@ pub enum Distribution<N = f64> {
         /// By how many sides they can be left; any if absent.
         #[serde(default, skip_serializing_if = "cells::is_any")]
         kind: CellKind,
-        /// Those that one of these letters of a text stands for; any if absent.
+        /// Those that one of these letters of a text stands for; any if absent. Letters for floor count if the legend names them.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(length(min = 1, max = 100))]
         letter: Option<String>,

@@ -74,6 +74,15 @@ impl TextMap<'_> {
         own.cloned().or_else(|| Legend::of_letter(letter))
     }
 
+    /// Whether a letter says more of a cell than that it is floor; a letter for floor that the legend names does.
+    fn says_more(&self, letter: char) -> bool {
+        match self.meaning(letter) {
+            Some(Legend::Wall) => false,
+            Some(Legend::Floor) => self.legend.contains_key(&*letter.encode_utf8(&mut [0; 4])),
+            _ => true,
+        }
+    }
+
     pub(super) fn plan(&self, standing: f64, seed: u64) -> Plan {
         let [columns, rows] = self.lattice();
         // The first line is the northernmost.
@@ -93,8 +102,7 @@ impl TextMap<'_> {
                 center,
                 room: rooms[place],
                 sides: sides(&squares, columns, place),
-                letter: (!matches!(self.meaning(letters[place]), Some(Legend::Floor | Legend::Wall)))
-                    .then_some(letters[place]),
+                letter: self.says_more(letters[place]).then_some(letters[place]),
             })
         });
         plan.corridor = self.cell;

@@ -14,11 +14,11 @@ impl World {
     ///
     /// `*` is a wall, `P` where an agent may start, `G` a goal of 10 points that ends the episode, `A` an apple of 1 point,
     /// `I` and `H` doors, which open when the agent comes to them. Cells are 3.125 m wide, as they are there. A letter that is
-    /// not known is floor. Behind an empty line a variations layer may follow, which is left out. A warning says what was left
-    /// out, changed or chosen.
+    /// not known is floor. Behind an empty line a variations layer may follow, as many lines of capital letters, points and spaces,
+    /// which is left out. A warning says what was left out, changed or chosen.
     ///
     /// # Errors
-    /// [`SpecError::Document`] for a text that makes no world: without a free cell, or too large.
+    /// [`SpecError::Document`] for a text that makes no world: without a free cell, too large, or more of it unknown than known.
     ///
     /// # Example
     /// ```
@@ -50,6 +50,9 @@ impl World {
             }
             reader.rows.push(letters);
         }
+        reader.expect_map(
+            "the entity layer of a level of DeepMind Lab: a letter for each cell, such as * for a wall, P for the start, G for a goal",
+        )?;
         reader.world()
     }
 }
@@ -74,7 +77,9 @@ impl Reader<'_> {
         match letter {
             '*' | ' ' => {}
             'P' => self.starts.push((at, 0.0)),
-            'G' => self.put(letter, pays(thing("geometric", "gold", "goal"), 10.0), at),
+            'G' => {
+                self.put(letter, pays(thing("geometric", "gold", "goal"), 10.0), at);
+            }
             'A' => {
                 let mut apple = pays(thing("icosphere", "limegreen", "apple"), 1.0);
                 apple.scale = 0.5;

@@ -2,9 +2,13 @@
 //! gives them.
 
 use super::{FLOOR, Reader, pays, thing};
+use crate::layout::Legend;
 use crate::warning::Warning;
 use crate::world::{Door, Object, Portable, Stimulus};
 use crate::{SpecError, World};
+
+/// What stands for a cell of lava: floor, under a zone.
+const LAVA: char = 'V';
 
 /// Side of a cell in metres.
 const CELL: f64 = 2.0;
@@ -13,13 +17,14 @@ impl World {
     /// Reads a grid of MiniGrid as `env.unwrapped.pprint_grid()` gives it; `name` is what warnings call it.
     ///
     /// Each cell has two characters. `W` is a wall, `F` and two spaces are floor, `G` a goal of 1 point that ends the episode,
-    /// `V` lava, which ends it as a failure, `K` a key, `A` a ball, `B` a box. The agent carries one of these at a time. The
+    /// `V` lava, a zone that ends it as a failure, `K` a key, `A` a ball, `B` a box. The agent carries one of these at a time. The
     /// second character is the colour. `D` is a closed door, `L` one that a key of its colour unlocks, `__` an open one.
     /// `>>`, `VV`, `<<` and `^^` is the agent. Cells are 2 m wide.
-    /// What is not known is floor; a warning says what was left out, changed or chosen.
+    /// What is not known is floor; a warning says what was left out, changed or chosen. A line with the environment's name is
+    /// skipped.
     ///
     /// # Errors
-    /// [`SpecError::Document`] for a text that makes no world: without a free cell, or too large.
+    /// [`SpecError::Document`] for a text that makes no world: without a free cell, too large, or more of it unknown than known.
     ///
     /// # Example
     /// ```
@@ -32,7 +37,10 @@ impl World {
     /// ```
     pub fn from_minigrid_text(name: &str, text: &str) -> Result<(Self, Vec<Warning>), SpecError> {
         let mut reader = Reader::new(name, CELL);
-        for (number, line) in text.lines().enumerate().filter(|(_, line)| !line.is_empty()) {
+        // What an environment is called may stand above its grid.
+        let is_name = |line: &str| line.starts_with('<') && line.ends_with('>') && line.contains("Env");
+        let lines = text.lines().enumerate();
+        for (number, line) in lines.filter(|(_, line)| !line.is_empty() && !is_name(line.trim())) {
             let characters: Vec<char> = line.chars().collect();
             let row = reader.rows.len();
             let mut letters = Vec::with_capacity(characters.len() / 2);
@@ -43,6 +51,10 @@ impl World {
             }
             reader.rows.push(letters);
         }
+        reader.expect_map(
+            "a grid of MiniGrid: two signs for each cell, such as WG for a wall, >> for the agent, GG for a goal, as env.unwrapped.pprint_grid() \
+             gives it",
+        )?;
         reader.world()
     }
 }
@@ -112,13 +124,17 @@ impl Reader<'_> {
             return FLOOR;
         };
         let object = match what {
+            'V' => {
+                self.lava.push(at);
+                self.legend.insert(LAVA.to_string(), Legend::Floor);
+                return LAVA;
+            }
             'D' => return self.toggled(Door::default(), Some(color), at),
             'L' => {
                 let key = Some(format!("{color}_key"));
                 return self.toggled(Door { key, ..Door::default() }, Some(color), at);
             }
             'G' => pays(thing("geometric", color, "goal"), 1.0),
-            'V' => thing("cube", "orangered", "lava"),
             'K' => carried(thing("key", color, &format!("{color}_key"))),
             'A' => carried(thing("icosphere", color, "ball")),
             'B' => carried(thing("cube", color, "box")),
@@ -132,7 +148,6 @@ impl Reader<'_> {
             'A' => 'O',
             other => other,
         };
-        self.put(own, object, at);
-        own
+        self.put(own, object, at)
     }
 }

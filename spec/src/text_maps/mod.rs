@@ -6,9 +6,10 @@ mod minigrid;
 
 use std::collections::BTreeMap;
 
+use crate::error::Problem;
 use crate::layout::{Layout, Legend};
 use crate::warning::Warning;
-use crate::world::{Door, EndCondition, Object, Stimulus, World, WorldDraft};
+use crate::world::{Door, EndCondition, Object, Stimulus, World, WorldDraft, Zone, ZoneEnd};
 use crate::{Color, SpecError};
 
 /// What stands for a cell that was not understood: floor.
@@ -27,6 +28,8 @@ struct Reader<'a> {
     starts: Vec<([usize; 2], f64)>,
     /// Doors, each with its colour if it has one, and column and row of its cell.
     doors: Vec<(Door, Option<Color>, [usize; 2])>,
+    /// Cells whose floor ends the episode as a failure: column and row.
+    lava: Vec<[usize; 2]>,
     /// What is not known: how often it stands there, and line and column of the first.
     unknown: BTreeMap<String, (usize, [usize; 2])>,
     warnings: Vec<Warning>,
@@ -42,6 +45,7 @@ impl<'a> Reader<'a> {
             objects: Vec::new(),
             starts: Vec::new(),
             doors: Vec::new(),
+            lava: Vec::new(),
             unknown: BTreeMap::new(),
             warnings: Vec::new(),
         }
@@ -82,11 +86,58 @@ impl<'a> Reader<'a> {
         self.doors.push((door, color.and_then(Color::from_name), at));
     }
 
-    /// An object of a group at a cell, for which a letter stands.
-    fn put(&mut self, letter: char, object: Object, at: [usize; 2]) {
-        let group = object.tag.clone().unwrap_or_default();
-        self.legend.insert(letter.to_string(), Legend::Group(group));
+    /// An object of a group at a cell. Hands back the letter that stands for the group: the one that is wanted, or another if that
+    /// stands for another group.
+    fn put(&mut self, letter: char, object: Object, at: [usize; 2]) -> char {
+        let meant = Legend::Group(object.tag.clone().unwrap_or_default());
         self.objects.push((object, at));
+        let others = letter.to_lowercase().chain('1'..='9');
+        let is_free = |one: &char| self.legend.get(&one.to_string()).is_none_or(|known| *known == meant);
+        let own = std::iter::once(letter).chain(others).find(is_free).unwrap_or(letter);
+        self.legend.insert(own.to_string(), meant);
+        own
+    }
+
+    /// Refuses a text of which more is unknown than known: it is no map.
+    fn expect_map(&self, expected: &str) -> Result<(), SpecError> {
+        let unknown: usize = self.unknown.values().map(|(count, _)| count).sum();
+        let known = self.rows.iter().flatten().filter(|letter| **letter != FLOOR).count();
+        let Some((what, (_, [line, column]))) = self.unknown.iter().min_by_key(|(_, (_, place))| *place) else {
+            return Ok(());
+        };
+        if unknown <= known {
+            return Ok(());
+        }
+        let all = unknown + known;
+        let found = format!("{unknown} of {all} signs that are not known, {what} first");
+        let mut problem = Problem::new("spec/text-map", "", found, expected.to_owned());
+        (problem.line, problem.column) = (*line, *column);
+        Err(SpecError::Document {
+            name: self.name.to_owned(),
+            problems: vec![problem],
+            more: false,
+        })
+    }
+
+    /// The zones of lava: one for each stretch of cells in a row.
+    fn zones(&self) -> Vec<Zone> {
+        let mut stretches: Vec<[[usize; 2]; 2]> = Vec::new();
+        for &at in &self.lava {
+            match stretches.last_mut() {
+                Some([_, last]) if [last[0] + 1, last[1]] == at => *last = at,
+                _ => stretches.push([at, at]),
+            }
+        }
+        let half = self.cell / 2.0;
+        let zone = |[first, last]: [[usize; 2]; 2]| {
+            let ([west, y], [east, _]) = (self.place(first), self.place(last));
+            let [low, high] = [[west - half, y - half], [east + half, y + half]];
+            let mut zone = Zone::polygon(vec![low, [high[0], low[1]], high, [low[0], high[1]]]);
+            zone.name = Some("lava".to_owned());
+            (zone.ends, zone.color) = (Some(ZoneEnd::Failure), Color::from_name("orangered"));
+            zone
+        };
+        stretches.into_iter().map(zone).collect()
     }
 
     /// The middle of a cell in metres.
@@ -118,7 +169,7 @@ impl<'a> Reader<'a> {
                     .map(move |(column, letter)| ([column, row], *letter))
             });
             let free = cells
-                .filter(|(at, letter)| !['#', '*'].contains(letter) && !taken(*at))
+                .filter(|(at, letter)| !['#', '*'].contains(letter) && !taken(*at) && !self.lava.contains(at))
                 .map(|(at, _)| at)
                 .next();
             self.starts.extend(free.map(|at| (at, 0.0)));
@@ -156,9 +207,6 @@ impl<'a> Reader<'a> {
         if has("goal") {
             draft.rules.success = vec![EndCondition::Touch("goal".to_owned())];
         }
-        if has("lava") {
-            draft.rules.failure = vec![EndCondition::Touch("lava".to_owned())];
-        }
         for (object, at) in &self.objects {
             let coordinates = self.place(*at);
             draft.objects.push(Object {
@@ -170,6 +218,7 @@ impl<'a> Reader<'a> {
         let is_carried = |object: &Object| object.portable.is_some();
         draft.agent_params.carry_limit = u32::from(draft.objects.iter().any(is_carried));
         draft.objects.extend(self.doors_in(&layout));
+        draft.environment_params.zones = self.zones();
         draft.environment_params.layout = Some(layout);
         Ok((draft.check()?, self.warnings))
     }
