@@ -25,6 +25,7 @@ import sys
 import tempfile
 import termios
 import time
+from itertools import pairwise
 from pathlib import Path
 
 from terminal_picture import picture, screen
@@ -141,7 +142,7 @@ def read(cast: str) -> Events:
     """The events of a recording."""
     header, *events = [json.loads(line) for line in cast.splitlines()]
     assert header["version"] == 2 and header["width"] == COLUMNS, header
-    assert all(before[0] <= after[0] for before, after in zip(events, events[1:])), "times rise"
+    assert all(before[0] <= after[0] for before, after in pairwise(events)), "times rise"
     return [(at, text) for at, kind, text in events if kind == "o"]
 
 

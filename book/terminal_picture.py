@@ -121,7 +121,10 @@ def picture(events: Events, columns: int, rows: int) -> str:
         if offset != scrolls[-1][1]:
             scrolls.append((at, offset))
     styles, groups = [], []
-    share = lambda seconds: f"{100 * seconds / length:.2f}%"  # noqa: E731
+
+    def share(seconds: float) -> str:
+        return f"{100 * seconds / length:.2f}%"
+
     for number, ((begin, end), parts) in enumerate(sorted(lives.items())):
         content = "".join(parts)
         if not content:

@@ -189,3 +189,11 @@ def test_unknown_classes_and_names_that_collide_are_problems(tmp_path: Path) -> 
     with pytest.warns(UserWarning, match="not checked"):
         (problem,) = driftworld.validate({"name": "s", "blocks": [{"type": "learning", "regimes": regimes}]})
     assert problem["code"] == "curriculum/same-log-name"
+
+
+def test_a_notebook_shows_a_curriculum_as_its_blocks() -> None:
+    curriculum = Curriculum.design("find_objects#blue", "find_objects#red", learn=3, eval_episodes=2, seed=0)
+    told = curriculum._repr_html_()
+    assert told.count("<tr>") == len(curriculum) + 1
+    assert f"{len(curriculum)} blocks, {curriculum.num_experiences} experiences" in told
+    assert told.count(">find_objects#blue, find_objects#red<") == 3 and ">learning<" in told

@@ -256,3 +256,19 @@ def test_a_file_that_is_neither_a_world_nor_a_task_is_refused(tmp_path: Path) ->
     (tmp_path / "three.json").write_text("3", encoding="utf-8")
     with pytest.raises(driftworld.SpecError, match="three.json"):
         driftworld.distance(str(tmp_path / "three.json"), "find_objects#red")
+
+
+def test_a_notebook_shows_what_differs_and_how_far() -> None:
+    told = distance("find_objects#blue", "find_objects#dusk")._repr_html_()
+    assert "<td style=\"text-align: left\">light</td>" in told
+    # What is equal is named below, and has no row of zeros.
+    assert "equal: " in told and "<td style=\"text-align: left\">spread</td>" not in told
+    matrix = distance_matrix(["find_objects#blue", "find_objects#red", "find_objects#dusk"])
+    shown = matrix._repr_html_()
+    assert shown.count("background-color") == 9 and "rgba(66, 133, 244, 0.60)" in shown
+    assert ">red</th>" in shown and ">find_objects#red</td>" in shown
+    found = order(matrix)
+    lines = str(found).splitlines()
+    assert [line.split()[1] for line in lines[:3]] == found.labels
+    assert lines[1].endswith(f"{found.steps[0]:.4f}") and f"length {found.length:.4f}" in lines[3]
+    assert found._repr_html_().count("<tr>") == 4

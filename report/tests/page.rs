@@ -79,6 +79,35 @@ fn the_page_is_well_formed_and_has_every_section() {
     assert!(page.contains("Warning: data-log.tsv:7: something &lt;odd&gt;"));
 }
 
+/// Where a scenario says what tasks are called, the page says so in figures and tables, and the log's own name once beside it.
+#[test]
+fn tasks_have_their_names_and_the_logs_beside_them() {
+    let life = Life {
+        expert: false,
+        ..Life::default()
+    };
+    let lived = life.live();
+    let mut options = ChapterOptions::default();
+    options.figures.names = [("find_red".to_owned(), "find_objects#red".to_owned())].into();
+    let chapters = vec![Chapter::write(&lived.lifetime, &lived.metrics, &options).unwrap()];
+    let page = Report {
+        chapters,
+        ..Report::default()
+    };
+    let page = page.to_html().unwrap();
+    let places: Vec<&str> = page
+        .match_indices("find_red")
+        .map(|(at, _)| &page[at - 60..at + 20])
+        .collect();
+    assert_eq!(places.len(), 1, "the log's own name: {places:#?}");
+    assert!(page.contains("find_objects#red<small>in the log find_red</small>"));
+    let rows = count(&page, "<th scope=\"row\">find_objects#red");
+    let columns = count(&page, "<th scope=\"col\">find_objects#red</th>");
+    assert!(rows == columns + 1 && columns >= 2, "{rows} rows, {columns} columns");
+    // What has no other name stands there as before.
+    assert!(page.contains("<th scope=\"row\">find_blue</th>") && !page.contains("in the log find_blue"));
+}
+
 #[test]
 fn headings_go_down_one_level_at_a_time() {
     let page = Life::default().live().page();

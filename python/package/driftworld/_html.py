@@ -6,20 +6,45 @@ import html
 from collections.abc import Iterable, Sequence
 
 
-def table(head: Sequence[str], rows: Iterable[Sequence[str]], caption: str = "") -> str:
-    """A table as HTML, its first column at the left and the others at the right. All texts are escaped."""
+def table(
+    head: Sequence[str],
+    rows: Iterable[Sequence[str]],
+    caption: str = "",
+    shades: Iterable[Sequence[float]] = (),
+) -> str:
+    """A table as HTML: columns of numbers at the right, but for the first, and others at the left. All texts are escaped.
 
-    def cells(tag: str, texts: Sequence[str]) -> str:
-        aligned = ["left", *["right"] * (len(texts) - 1)]
+    ``shades`` say for each row how strongly each of its cells behind the first is tinted, in 0..=1.
+    """
+
+    listed = [*rows]
+    numeric = [all(_is_number(row[column]) for row in listed) for column in range(len(head))]
+    aligned = ["right" if column and numeric[column] else "left" for column in range(len(head))]
+
+    def cells(tag: str, texts: Sequence[str], tints: Sequence[float] = ()) -> str:
+        # Seen through, so that letters can be read on a light page and on a dark one.
+        colors = ["", *(f"; background-color: rgba(66, 133, 244, {0.6 * tint:.2f})" for tint in tints)]
+        colors += [""] * (len(texts) - len(colors))
         told = (
-            f'<{tag} style="text-align: {side}">{html.escape(text)}</{tag}>'
-            for side, text in zip(aligned, texts, strict=True)
+            f'<{tag} style="text-align: {side}{color}">{html.escape(text)}</{tag}>'
+            for side, color, text in zip(aligned, colors, texts, strict=True)
         )
         return f"<tr>{''.join(told)}</tr>"
 
     told = f"<caption>{html.escape(caption)}</caption>" if caption else ""
-    body = "".join(cells("td", row) for row in rows)
+    tinted = [*shades]
+    body = "".join(cells("td", row, tinted[place] if tinted else ()) for place, row in enumerate(listed))
     return f"<table>{told}<thead>{cells('th', head)}</thead><tbody>{body}</tbody></table>"
+
+
+def _is_number(text: str) -> bool:
+    """Whether a cell holds a number, or stands for none."""
+    return text in ("", "-") or text.lstrip("-+\N{MINUS SIGN}")[:1].isdigit()
+
+
+def note(text: str) -> str:
+    """A line below a table. The text is escaped."""
+    return f'<p style="opacity: 0.7">{html.escape(text)}</p>' if text else ""
 
 
 def number(value: object) -> str:

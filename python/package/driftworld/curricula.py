@@ -20,6 +20,7 @@ import gymnasium
 
 from driftworld import _native
 from driftworld._files import write_whole
+from driftworld._html import table
 from driftworld._literals import (
     BlockKind,
     ComparedBy,
@@ -496,6 +497,22 @@ class Curriculum(Sequence[Block]):
     def __repr__(self) -> str:
         return f"<Curriculum {self.name!r} of {len(self)} blocks, {self.num_experiences} experiences>"
 
+    def _repr_html_(self) -> str:
+        def variants(block: Block) -> str:
+            """Those of its regimes: of the first experience of each."""
+            names: dict[str, None] = {}
+            place = 0
+            for regime in self.scenario["blocks"][block.number]["regimes"]:
+                if place < len(block):
+                    names[block[place].variant] = None
+                place += regime["count"]
+            return ", ".join(names) if len(names) <= 3 else f"{len(names)} variants"
+
+        rows = [(str(block.number), block.kind, variants(block), f"{len(block):,}") for block in self._blocks[:_SHOWN]]
+        more = f"; the first {_SHOWN} are shown" if len(self) > _SHOWN else ""
+        told = f"{self.name}: {len(self)} blocks, {self.num_experiences:,} experiences{more}"
+        return table(("block", "kind", "variants", "experiences"), rows, told)
+
     def __eq__(self, other: object) -> bool:
         """Whether the same is lived: scenario, tasks and world files say the same."""
         if not isinstance(other, Curriculum):
@@ -513,6 +530,9 @@ class Curriculum(Sequence[Block]):
         self.__dict__.update(state)
         self._begin(state["_plan"])
 
+
+#: Blocks that a notebook shows.
+_SHOWN = 60
 
 #: Options of a design that are whole numbers.
 _WHOLE = ("learn", "eval_episodes", "pre_deployment", "blocks", "variants", "steps", "seed", "worlds", "lifetimes", "lifetime")

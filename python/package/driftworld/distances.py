@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from driftworld import _native
 from driftworld._files import write_whole
-from driftworld._html import number, table
+from driftworld._html import note, number, table
 from driftworld._literals import ComparedBy, OrderMethod, Scale
 from driftworld.envs.options import library_bytes
 from driftworld.logs import _pandas
@@ -92,8 +92,10 @@ class Distance(float):
         rows = [
             (part["name"], part["element"], part["measure"], number(part["raw"]), f"{part['weight']:g}", f"{part['share']:.1%}")
             for part in self.parts
+            if part["raw"] != 0
         ]
-        return told + (table(head, rows) if rows else "")
+        equal = dict.fromkeys(part["name"] for part in self.parts if part["raw"] == 0)
+        return told + (table(head, rows) if rows else "") + note(f"equal: {', '.join(equal)}" if equal else "")
 
     def __getnewargs__(self) -> tuple[Any, ...]:
         return (self.total, self.elements, self.parts, self.by, self.compared)
@@ -365,10 +367,16 @@ class DistanceMatrix:
         return f"<DistanceMatrix of {len(self)} items>"
 
     def _repr_html_(self) -> str:
-        labels, shown = self.labels, min(len(self), SHOWN)
+        shown = min(len(self), SHOWN)
+        labels = self.labels[:shown]
+        # Over the columns a variant goes by its own name where all are of one task.
+        tasks = {label.partition("#")[0] for label in labels}
+        heads = [label.partition("#")[2] or label for label in labels] if len(tasks) == 1 else labels
         more = f"; the first {shown} are shown" if shown < len(self) else ""
         rows = [(labels[row], *(number(float(value)) for value in self.values[row, :shown])) for row in range(shown)]
-        return table(("", *labels[:shown]), rows, f"{len(self)} items{more}")
+        values = self.values[:shown, :shown]
+        shades = (values / (values.max(initial=0.0) or 1.0)).tolist()
+        return table(("", *heads), rows, f"{len(self)} items{more}", shades)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (_matrix_again, (self._native.to_json(),))
@@ -425,6 +433,25 @@ class Order(Sequence[str]):
 
     def __len__(self) -> int:
         return len(self.order)
+
+    def __str__(self) -> str:
+        return "\n".join([*("  ".join(row).rstrip() for row in self._rows(True)), self._summary()])
+
+    def _repr_html_(self) -> str:
+        return table(("", "item", "from the one before"), self._rows(False)) + note(self._summary())
+
+    def _rows(self, padded: bool) -> list[tuple[str, str, str]]:
+        """A row for each item: its place, its label, the step to it."""
+        wide = max(map(len, self.order), default=0) if padded else 0
+        steps = ["", *(f"{step:.4f}" for step in self.steps)]
+        return [(f"{place}", f"{label:<{wide}}", step) for place, (label, step) in enumerate(zip(self.order, steps), start=1)]
+
+    def _summary(self) -> str:
+        """What is said of the whole."""
+        return (
+            f"{self.method}: length {self.length:.4f}, largest step {self.largest_step:.4f}; "
+            f"{self.share_of_shorter_random_orders:.1%} of random orders are shorter"
+        )
 
 
 def distance_matrix(

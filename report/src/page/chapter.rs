@@ -123,8 +123,8 @@ impl Chapter {
                 &format!("As logged: points where there is room, the area they fill where there is none. Lines: \
                      learning {lines_are}."))?)
             h3 { "Tasks" }
-            (task_table::table(lifetime, metrics))
-            (pair_table::tables(metrics))
+            (task_table::table(lifetime, metrics, &options.figures.names))
+            (pair_table::tables(metrics, &options.figures.names))
         };
         Ok(Self {
             name: shown(lifetime.run_id()),

@@ -1,5 +1,7 @@
 //! The tables of transfer: from each task that was learnt to each other one, coloured like a map of heat.
 
+use std::collections::BTreeMap;
+
 use driftworld_metrics::{LifetimeMetrics, SummaryRow};
 use maud::{Markup, html};
 
@@ -9,8 +11,9 @@ use crate::words::shown;
 /// Tasks beyond these are in the files of metrics only.
 const MOST_TASKS: usize = 24;
 
-/// A table for each metric of pairs that has any.
-pub(super) fn tables(metrics: &LifetimeMetrics) -> Markup {
+/// A table for each metric of pairs that has any. `called` are the tasks' names by those that the log has.
+pub(super) fn tables(metrics: &LifetimeMetrics, called: &BTreeMap<String, String>) -> Markup {
+    let named = |task: &String| shown(called.get(task).unwrap_or(task));
     let summary = metrics.summary();
     let tasks = &metrics.task_metrics;
     let names: Vec<&String> = tasks.keys().take(MOST_TASKS).collect();
@@ -35,13 +38,13 @@ pub(super) fn tables(metrics: &LifetimeMetrics) -> Markup {
                     thead {
                         tr {
                             th scope="col" { "learnt ↓ evaluated →" }
-                            @for name in &names { th scope="col" { (shown(name)) } }
+                            @for name in &names { th scope="col" { (named(name)) } }
                         }
                     }
                     tbody {
                         @for from in &names {
                             tr {
-                                th scope="row" { (shown(from)) }
+                                th scope="row" { (named(from)) }
                                 @for to in &names { (cell(row, first(from, to, &row.name))) }
                             }
                         }

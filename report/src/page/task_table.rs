@@ -1,5 +1,7 @@
 //! The table of tasks: how much of each was lived, and the metrics of each that are one number.
 
+use std::collections::BTreeMap;
+
 use driftworld_metrics::{BlockType, Lifetime, LifetimeMetrics};
 use maud::{Markup, html};
 
@@ -9,7 +11,8 @@ use crate::words::shown;
 /// Tasks beyond these are in the files of metrics only.
 const MOST_ROWS: usize = 200;
 
-pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Markup {
+/// `called` are the tasks' names by those that the log has.
+pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics, called: &BTreeMap<String, String>) -> Markup {
     let names: Vec<String> = metrics.summary().iter().map(|row| row.name.to_string()).collect();
     let value = |task: &str, name: &str| metrics.task_metrics.get(task).and_then(|values| values.number(name));
     let has = |name: &String| lifetime.tasks().iter().any(|task| value(task, name).is_some());
@@ -35,7 +38,7 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Markup {
                 tbody {
                     @for task in lifetime.tasks().iter().take(MOST_ROWS) {
                         tr {
-                            th scope="row" { (shown(task)) }
+                            th scope="row" { (heading_of_row(task, called)) }
                             td.number { (count(rows(task, BlockType::Train).0)) }
                             td.number { (count(rows(task, BlockType::Train).1)) }
                             td.number { (count(rows(task, BlockType::Test).1)) }
@@ -49,6 +52,16 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Markup {
         }
         @if lifetime.tasks().len() > MOST_ROWS {
             p.note { "and " (count(lifetime.tasks().len() - MOST_ROWS)) " tasks more: see the file of metrics." }
+        }
+    }
+}
+
+/// What a task is called, with the log's own name below it where that is another.
+fn heading_of_row(task: &str, called: &BTreeMap<String, String>) -> Markup {
+    html! {
+        @match called.get(task).filter(|name| *name != task) {
+            Some(name) => { (shown(name)) small { "in the log " (shown(task)) } },
+            None => (shown(task)),
         }
     }
 }

@@ -1,16 +1,14 @@
-//! What learning one variant did to the others, read off the evaluations around it.
+//! What was learnt, transferred and forgotten in a lifetime, read off the evaluations around its learning blocks.
 
 use crate::curriculum::Summary;
 use crate::spec::BlockKind;
 use crate::table::wide_table;
 use crate::tasks;
 
-/// The evaluations before and after one learning block.
+/// What one learning block did to other variants.
 struct Effect {
     /// The variant that was learned.
     learned: String,
-    before: f64,
-    after: f64,
     /// The variant that was not learned yet and rose most.
     transfer: Option<Change>,
     /// The variant that was learned before and fell most.
@@ -29,41 +27,107 @@ impl Change {
     fn gain(&self) -> f64 {
         self.after - self.before
     }
+}
 
-    fn shown(change: Option<&Self>) -> String {
-        change.map_or_else(
-            || "-".to_owned(),
-            |Self { variant, before, after }| format!("{variant}: {before:.0} to {after:.0}"),
-        )
+/// What became of one variant over the lifetime, in whole points of reward, so that the parts shown add up.
+struct Account {
+    variant: String,
+    at_first: i64,
+    /// Gained before its own block: by learning others.
+    transferred: i64,
+    learnt: i64,
+    /// Gained after its own block, while others were learned: below 0 where it was forgotten.
+    afterwards: i64,
+}
+
+impl Account {
+    fn at_the_end(&self) -> i64 {
+        self.at_first + self.transferred + self.learnt + self.afterwards
     }
 }
 
-/// One row for each learning block, and below in words where transfer and forgetting were largest.
+/// One row for each variant: what it paid at first, what was transferred to it, learnt and forgotten, and what it paid at
+/// the end; below in words where transfer and forgetting were largest.
 pub(super) fn effects_table(summary: &Summary) -> String {
-    let effects = effects(summary);
     let headings = [
-        "learned",
-        "before",
-        "after",
-        "rose most, not learned yet",
-        "fell most, learned before",
+        "variant",
+        "at first",
+        "transferred",
+        "learnt",
+        "forgotten",
+        "at the end",
     ];
-    let row = |effect: &Effect| {
+    let row = |account: &Account| {
         vec![
-            effect.learned.clone(),
-            format!("{:.0}", effect.before),
-            format!("{:.0}", effect.after),
-            Change::shown(effect.transfer.as_ref()),
-            Change::shown(effect.forgetting.as_ref()),
+            account.variant.clone(),
+            account.at_first.to_string(),
+            change(account.transferred),
+            change(account.learnt),
+            change(account.afterwards),
+            account.at_the_end().to_string(),
         ]
     };
-    let rows = effects.iter().map(row).collect();
-    let table = wide_table(headings.map(str::to_owned).to_vec(), rows, &[1, 2]);
-    [Some(table), transfer_sentence(&effects), forgetting_sentence(&effects)]
-        .into_iter()
-        .flatten()
-        .collect::<Vec<_>>()
-        .join("\n")
+    let rows = accounts(summary).iter().map(row).collect();
+    let table = wide_table(headings.map(str::to_owned).to_vec(), rows, &[1, 2, 3, 4, 5]);
+    let meaning = "transferred: gained before its own block, by learning others\n\
+                   learnt: gained in its own block\n\
+                   forgotten: lost after it (-), or still gained (+)\n\
+                   Each row adds up to its end.\n"
+        .to_owned();
+    let effects = effects(summary);
+    [
+        Some(table),
+        Some(meaning),
+        transfer_sentence(&effects),
+        forgetting_sentence(&effects),
+    ]
+    .into_iter()
+    .flatten()
+    .collect::<Vec<_>>()
+    .join("\n")
+}
+
+fn change(points: i64) -> String {
+    if points == 0 {
+        "0".to_owned()
+    } else {
+        format!("{points:+}")
+    }
+}
+
+fn short(variant: &str) -> String {
+    tasks::split(variant).1.unwrap_or(variant).to_owned()
+}
+
+/// Every variant that was learned, in the order of its first block, and was evaluated around it.
+fn accounts(summary: &Summary) -> Vec<Account> {
+    let of = |kind: BlockKind| summary.regimes.iter().filter(move |regime| regime.kind == kind);
+    let mut accounts: Vec<Account> = Vec::new();
+    for block in of(BlockKind::Learning) {
+        let variant = short(&block.variant);
+        if accounts.iter().any(|account| account.variant == variant) {
+            continue;
+        }
+        let evaluations = || of(BlockKind::Evaluation).filter(|regime| regime.variant == block.variant);
+        let points = |reward: f64| reward.round() as i64;
+        let (Some(first), Some(before), Some(after), Some(last)) = (
+            evaluations().next(),
+            evaluations().take_while(|regime| regime.block < block.block).last(),
+            evaluations().find(|regime| regime.block > block.block),
+            evaluations().next_back(),
+        ) else {
+            continue;
+        };
+        let [first, before, after, last] = [first, before, after, last].map(|regime| points(regime.mean_reward));
+        accounts.push(Account {
+            variant,
+            at_first: first,
+            transferred: before - first,
+            learnt: after - before,
+            afterwards: last - after,
+        });
+    }
+    accounts
 }
 
 fn transfer_sentence(effects: &[Effect]) -> Option<String> {
@@ -89,7 +153,6 @@ fn forgetting_sentence(effects: &[Effect]) -> Option<String> {
 }
 
 fn effects(summary: &Summary) -> Vec<Effect> {
-    let short = |variant: &str| tasks::split(variant).1.unwrap_or(variant).to_owned();
     let evaluation = |block: Option<usize>| -> Vec<(String, f64)> {
         let own = summary.regimes.iter().filter(|regime| Some(regime.block) == block);
         own.filter(|regime| regime.kind == BlockKind::Evaluation)
@@ -114,20 +177,15 @@ fn effects(summary: &Summary) -> Vec<Effect> {
             Some(Change { variant, before, after })
         };
         let changes: Vec<Change> = first.iter().filter_map(change).collect();
-        let (own, others): (Vec<_>, Vec<_>) = changes.into_iter().partition(|change| change.variant == learned);
-        let (known, new): (Vec<_>, Vec<_>) =
-            (others.into_iter()).partition(|change| learned_before.contains(&change.variant));
-        if let Some(own) = own.first() {
-            let rose = new.into_iter().filter(|change| change.gain() > 0.0);
-            let fell = known.into_iter().filter(|change| change.gain() < 0.0);
-            effects.push(Effect {
-                learned: learned.clone(),
-                before: own.before,
-                after: own.after,
-                transfer: rose.max_by(|a, b| a.gain().total_cmp(&b.gain())),
-                forgetting: fell.min_by(|a, b| a.gain().total_cmp(&b.gain())),
-            });
-        }
+        let others = changes.into_iter().filter(|change| change.variant != learned);
+        let (known, new): (Vec<_>, Vec<_>) = others.partition(|change| learned_before.contains(&change.variant));
+        let rose = new.into_iter().filter(|change| change.gain() > 0.0);
+        let fell = known.into_iter().filter(|change| change.gain() < 0.0);
+        effects.push(Effect {
+            learned: learned.clone(),
+            transfer: rose.max_by(|a, b| a.gain().total_cmp(&b.gain())),
+            forgetting: fell.min_by(|a, b| a.gain().total_cmp(&b.gain())),
+        });
         learned_before.push(learned);
     }
     effects
@@ -137,6 +195,7 @@ fn effects(summary: &Summary) -> Vec<Effect> {
 mod tests {
     use super::*;
     use crate::curriculum::RegimeSummary;
+    use proptest::prelude::*;
 
     fn summary(blocks: &[&[(&str, f64)]]) -> Summary {
         let mut regimes = Vec::new();
@@ -175,13 +234,46 @@ mod tests {
             &[("a", 3.0), ("b", 20.0), ("c", 8.0)],
         ]));
         let expected = "\
-learned  before  after  rose most, not learned yet  fell most, learned before
-a             0     10  c: 2 to 9                   -
-b             4     20  -                           a: 10 to 3
+variant  at first  transferred  learnt  forgotten  at the end
+a               0            0     +10         -7           3
+b               1           +3     +16          0          20
+transferred: gained before its own block, by learning others
+learnt: gained in its own block
+forgotten: lost after it (-), or still gained (+)
+Each row adds up to its end.
+
 Transfer: learning a raised c from 2 to 9, before c was ever learned.
 Forgetting: learning b lowered a from 10 to 3, although a had been learned.";
         let lines = |text: &str| text.lines().map(|line| line.trim_end().to_owned()).collect::<Vec<_>>();
         assert_eq!(lines(&said), lines(expected));
+    }
+
+    proptest! {
+        /// Whatever the rewards are, what is shown of a variant adds up: what it paid at first and at the end are those of the
+        /// first and the last evaluation, and the parts are what lies between.
+        #[test]
+        fn every_row_adds_up(rewards in prop::collection::vec(prop::array::uniform3(-500.0..500.0f64), 4)) {
+            const NAMES: [&str; 3] = ["a", "b", "c"];
+            let evaluation = |block: usize| -> Vec<(&str, f64)> { NAMES.into_iter().zip(rewards[block]).collect() };
+            let evaluations: Vec<_> = (0..4).map(evaluation).collect();
+            let learned = NAMES.map(|name| [(name, 0.0)]);
+            let mut blocks: Vec<&[(&str, f64)]> = Vec::new();
+            for number in 0..3 {
+                blocks.extend([&evaluations[number][..], &learned[number][..]]);
+            }
+            blocks.push(&evaluations[3]);
+            let said = effects_table(&summary(&blocks));
+            for (number, name) in NAMES.into_iter().enumerate() {
+                let line = said.lines().find(|line| line.starts_with(&format!("{name} "))).unwrap();
+                let shown: Vec<i64> = line.split_whitespace().skip(1).map(|cell| cell.parse().unwrap()).collect();
+                let level = |block: usize| rewards[block][number].round() as i64;
+                prop_assert_eq!(shown[0], level(0));
+                prop_assert_eq!(shown[0] + shown[1], level(number));
+                prop_assert_eq!(shown[0] + shown[1] + shown[2], level(number + 1));
+                prop_assert_eq!(shown[0] + shown[1] + shown[2] + shown[3], level(3));
+                prop_assert_eq!(shown[4], level(3));
+            }
+        }
     }
 
     #[test]

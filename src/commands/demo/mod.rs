@@ -110,13 +110,7 @@ impl Demo {
         }
         output::line(block_table(&outcome, &beside))?;
 
-        heading(
-            "5",
-            "What learning each variant did: mean reward in the evaluations before and after",
-        )?;
-        output::line(effects_table(&outcome))?;
-
-        heading("6", "The lifelong-learning metrics of the lifetime")?;
+        heading("5", "The lifelong-learning metrics of the lifetime")?;
         let warn = |text| output::warning(text);
         let page = write_report(
             &ReportRequest {
@@ -131,13 +125,18 @@ impl Demo {
         let names = VariantNames::of_logs(&[&logs]);
         let lifetimes = scores.lifetimes.iter().map(|lifetime| summary(lifetime, &names));
         output::line(lifetimes.collect::<String>())?;
+        heading(
+            "6",
+            "In short: what was learnt, transferred and forgotten, in mean reward",
+        )?;
+        output::line(effects_table(&outcome))?;
         output::line(
-            "\nThe learner sees 169 numbers of a small picture, and knows no map. Yours takes its place from Python or Rust;\n\
-             docs/curricula.md says how.",
+            "\nThe learner sees 169 numbers of a small picture, and knows no map. Yours takes its place from Python or \
+             Rust: docs/curricula.md says how.",
         )?;
 
-        heading("", "Everything is in")?;
-        output::line(contents(folder))
+        heading("", &format!("Everything is in {}", folder.shown()))?;
+        output::line(contents())
     }
 
     fn worlds(&self, variants: &[(String, Variant)]) -> Result<Vec<Shown>, Failure> {
@@ -277,7 +276,7 @@ fn remove_old_log(logs: &Path) -> Result<(), Failure> {
     std::fs::remove_dir_all(logs).map_err(failed)
 }
 
-fn contents(folder: &Path) -> String {
+fn contents() -> String {
     let entries = [
         ("contact-sheet.png", "each variant as the agent sees it, and from above"),
         ("maps/", "the maps alone"),
@@ -290,6 +289,6 @@ fn contents(folder: &Path) -> String {
         ("report.html", "the lifetime on one page, for a browser"),
         ("scores/", "the metrics: driftworld metrics on the log prints them"),
     ];
-    let line = |(name, what): &(&str, &str)| format!("  {:<36} {what}", folder.join(name).shown().to_string());
+    let line = |(name, what): &(&str, &str)| format!("  {name:<18} {what}");
     entries.iter().map(line).collect::<Vec<_>>().join("\n")
 }
