@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use driftworld_generator::Sampler;
-use driftworld_spec::{TaskSpec, World};
+use driftworld_spec::{Legend, TaskSpec, World, did_you_mean};
 use rayon::prelude::*;
 
 /// The most worlds of a variant that are looked through.
@@ -32,12 +32,14 @@ pub(crate) fn of_task(task: &Arc<TaskSpec>, seed: u64, worlds: u64) -> Vec<Strin
         .par_iter()
         .map(|variant| {
             let sampler = Sampler::new(variant, seed);
+            let groups: Vec<&str> = task.groups().iter().map(|group| group.spec.name.as_str()).collect();
             let mut found = Vec::new();
             for index in 0..worlds {
                 if let Ok(world) = sampler.world(index) {
+                    let all = of_world(&world).chain(unknown_groups(&world, &groups));
                     gather(
                         &mut found,
-                        of_world(&world).map(|(pointer, text)| odd(pointer, text, variant.name(), index)),
+                        all.map(|(pointer, text)| odd(pointer, text, variant.name(), index)),
                     );
                 }
             }
@@ -57,6 +59,22 @@ pub(crate) fn of_world(world: &World) -> impl Iterator<Item = (String, String)> 
     // Places in a text are of no use: the world has none.
     let remarks = world.remarks("world", "{}").into_iter();
     remarks.map(|remark| (remark.pointer, remark.text))
+}
+
+/// Groups that the legend of a world's layout names and that its task does not have.
+fn unknown_groups(world: &World, groups: &[&str]) -> Vec<(String, String)> {
+    let legend = world.environment_params.layout.iter().flat_map(|layout| &layout.legend);
+    let unknown = legend.filter_map(|(letter, meaning)| match meaning {
+        Legend::Group(group) if !groups.contains(&group.as_str()) => Some((letter, group)),
+        _ => None,
+    });
+    let remark = |(letter, group): (&String, &String)| {
+        let near = did_you_mean(group, groups.iter().copied());
+        let text =
+            format!("no group of the task is called {group:?}: nothing is placed at the letters {letter:?}{near}");
+        (format!("/environment_params/layout/legend/{letter}"), text)
+    };
+    unknown.map(remark).collect()
 }
 
 fn odd(pointer: String, text: String, variant: &str, index: u64) -> Odd {
@@ -135,6 +153,21 @@ mod tests {
         );
         assert!(found[0].ends_with("(in 100 of 100 worlds, of 2 variants)"), "{found:?}");
         assert!(remarks(lever, 1)[0].ends_with("(in 2 of 2 worlds, of 2 variants)"));
+    }
+
+    #[test]
+    fn a_legend_that_names_no_group_is_told_with_the_nearest() {
+        let text = r##"{ "name": "t", "world": { "environment_params": { "layout": {
+            "text": ["*****", "*P.G*", "*****"], "cell": 3, "legend": { "G": { "group": "gaol" } } } } },
+            "groups": [{ "name": "goal", "count": 1, "object": { "class": "cube" }, "placement": { "cells": {} } }] }"##;
+        let found = of_task(&TaskSpec::from_json("t", text).unwrap(), 0, 1);
+        assert_eq!(
+            found,
+            [
+                "world 0 of default (/environment_params/layout/legend/G): no group of the task is called \"gaol\": nothing is placed at \
+              the letters \"G\"; did you mean \"goal\"? (in 1 of 1 worlds)"
+            ]
+        );
     }
 
     #[test]

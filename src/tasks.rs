@@ -151,13 +151,19 @@ fn fits(pattern: &str, name: &str) -> bool {
     }
 }
 
+/// Whether something is there that can be read; a folder, which may be called as a variant is, is none.
+fn is_document(path: &Path) -> bool {
+    path.exists() && !path.is_dir()
+}
+
 /// The names with their tasks: a variant, a family or a pattern may stand without its task behind one that has it, as in
 /// `find_objects#red dusk`.
 pub(crate) fn with_tasks(names: &[String]) -> Vec<String> {
     let mut known: Vec<(String, Arc<TaskSpec>)> = Vec::new();
     let called = names.iter().map(|name| {
         let (of, own) = split(name);
-        let is_task = own.is_some() || BUILT_IN.iter().any(|(built_in, _)| *built_in == of) || Path::new(of).exists();
+        let is_task =
+            own.is_some() || BUILT_IN.iter().any(|(built_in, _)| *built_in == of) || is_document(Path::new(of));
         if !is_task && let Some((task, _)) = known.iter().rev().find(|(_, spec)| variants_called(spec, name).is_ok()) {
             return format!("{task}#{name}");
         }
@@ -269,6 +275,8 @@ mod tests {
             names(&["find_objects#*held"]),
             ["find_objects#held", "find_objects#long_held"]
         );
+        // A folder of the name of a variant is no document: this crate has one that is called `docs`.
+        assert!(!is_document(Path::new("docs")) && is_document(Path::new("Cargo.toml")));
         let unknown = variants_of(&["find_objects#red".to_owned(), "dsk".to_owned()]).unwrap_err();
         assert!(unknown.to_string().starts_with("found task \"dsk\""), "{unknown}");
         assert!(fits("a*c", "abcc") && !fits("a*c", "abcd") && fits("*", "") && !fits("a", "ab"));

@@ -117,10 +117,13 @@ impl<'a> Cells<'a> {
             format!("of {} doorways, {count} are {asked}", plan.doorways.len())
         } else {
             let of_kind = (0..all).filter(is_kind).count();
-            format!(
-                "of {all} cells, {of_kind} of them {}, {count} are {asked}",
-                kind.describe()
-            )
+            let kind_too = *kind != CellKind::Any && !conditions.is_empty() && of_kind > 0;
+            let of_them = if kind_too {
+                format!(", {of_kind} of them {}", kind.describe())
+            } else {
+                String::new()
+            };
+            format!("of {all} cells{of_them}, {count} are {asked}")
         };
         if fitting.is_empty() {
             return Err(format!("{asked}; ask for less, or change the layout"));

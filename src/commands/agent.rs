@@ -27,7 +27,7 @@ pub(crate) enum AgentArg {
 
 impl AgentArg {
     /// What the help says of the argument.
-    pub(crate) const HELP: &'static str = "The agent: random, still, onrails (knows the map and visits what pays), sarsa (a small learner), or scripted:FILE";
+    pub(crate) const HELP: &'static str = "The agent: random, still, onrails (the expert: knows the map and visits what pays), sarsa (a small learner), or scripted:FILE";
 
     /// What logs call the agent.
     pub(crate) fn name(&self) -> String {
@@ -75,7 +75,8 @@ impl FromStr for AgentArg {
             Some(("scripted", file)) if !file.is_empty() => Ok(Self::Scripted(file.into())),
             None if text == "random" => Ok(Self::Random),
             None if text == "still" => Ok(Self::Still),
-            None if text == "onrails" => Ok(Self::Onrails),
+            // What tables call it.
+            None if ["onrails", "expert"].contains(&text) => Ok(Self::Onrails),
             None if text == "sarsa" => Ok(Self::Sarsa),
             _ => {
                 let near = nearest(text, ["random", "still", "onrails", "sarsa", "scripted"]);
@@ -100,6 +101,7 @@ mod tests {
     fn agents_are_called_by_name_and_a_script_by_its_file() {
         assert_eq!("random".parse(), Ok(AgentArg::Random));
         assert_eq!("onrails".parse(), Ok(AgentArg::Onrails));
+        assert_eq!("expert".parse(), Ok(AgentArg::Onrails));
         assert_eq!("sarsa".parse(), Ok(AgentArg::Sarsa));
         assert_eq!("scripted:a:b.txt".parse(), Ok(AgentArg::Scripted("a:b.txt".into())));
         assert_eq!(AgentArg::Scripted("a.txt".into()).name(), "scripted:a.txt");

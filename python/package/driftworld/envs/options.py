@@ -229,9 +229,10 @@ def expect_same_spaces(ours: dict[str, Any], theirs: dict[str, Any], modalities:
     """
     for key in ("height", "width", "state_features"):
         if ours[key] != theirs[key]:
+            advice = "make" if key == "state_features" else "give option size, or make"
             raise ValueError(
-                f"variant: found {key} {theirs[key]}, expected {ours[key]} as the environment was made with; give option size, "
-                "or make an environment of its own"
+                f"variant: found {key} {theirs[key]}, expected {ours[key]} as the environment was made with; {advice} an environment "
+                "of its own"
             )
     missing = [kind for kind in theirs["modalities"] if kind not in modalities]
     if missing:
