@@ -157,9 +157,9 @@ mod tests {
 
     #[test]
     fn a_legend_that_names_no_group_is_told_with_the_nearest() {
-        let text = r##"{ "name": "t", "world": { "environment_params": { "layout": {
+        let text = r#"{ "name": "t", "world": { "environment_params": { "layout": {
             "text": ["*****", "*P.G*", "*****"], "cell": 3, "legend": { "G": { "group": "gaol" } } } } },
-            "groups": [{ "name": "goal", "count": 1, "object": { "class": "cube" }, "placement": { "cells": {} } }] }"##;
+            "groups": [{ "name": "goal", "count": 1, "object": { "class": "cube" }, "placement": { "cells": {} } }] }"#;
         let found = of_task(&TaskSpec::from_json("t", text).unwrap(), 0, 1);
         assert_eq!(
             found,
