@@ -168,3 +168,15 @@ def test_a_lifetime_by_interaction_has_the_numbers_of_those_that_may(first: str)
     assert space.shape == (3,)
     summary = curriculum.run(_Watcher(space), check_frozen=False, size=SIZE, info="full")
     assert summary.finished and summary.experiences == 12
+
+
+def test_warnings_hold_what_is_odd_about_the_world_at_hand() -> None:
+    world = {
+        "environment_params": {"map_size": [20, 20]},
+        "objects": [{"class": "switch", "coordinates": [2, 2], "switch": {"target": "nothing"}}],
+    }
+    assert DriftworldEnv(world=world).warnings() == [
+        '/objects/0/switch/target: no door has the tag "nothing"; the switch moves nothing'
+    ]
+    del world["objects"]
+    assert DriftworldEnv(world=world).warnings() == []
