@@ -68,8 +68,8 @@ pub enum PictureDistanceError {
     },
     /// There is no place where an agent could stand in every world.
     #[error(
-        "pictures: found none of {tried} places free in all worlds, expected at least 1; try more places across, or \
-         compare worlds with more free space"
+        "pictures: found none of {tried} places free in all worlds, expected at least 1; where walls stand elsewhere, as in mazes \
+         of other sizes, compare by worlds or by parameters"
     )]
     NoPlace {
         /// How many places were tried.
