@@ -1,7 +1,7 @@
 //! [`LayoutShape`]: the walls of a layout as a raster, and the ways that they leave, so that layouts are compared by what
 //! they are and not by how they are written.
 
-use std::collections::{BTreeSet, VecDeque};
+use std::collections::BTreeSet;
 use std::sync::LazyLock;
 
 use driftworld_spec::Plan;
@@ -211,30 +211,37 @@ fn touches(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     inside || least < 0.25 - ROUNDING
 }
 
-/// The cells beside one, within the raster.
-fn beside(cell: usize) -> impl Iterator<Item = usize> {
-    let (column, row) = (cell % SIDE, cell / SIDE);
-    [
-        (column + 1 < SIDE).then_some(cell + 1),
-        (row + 1 < SIDE).then_some(cell + SIDE),
-        (column > 0).then(|| cell - 1),
-        (row > 0).then(|| cell - SIDE),
-    ]
-    .into_iter()
-    .flatten()
-}
-
 /// Steps from a cell to each over those that `may_enter` allows; [`NO_WAY`] to the others.
+///
+/// Each layout that is compared asks for dozens of these, and tests for many layouts without optimisation: so no iterators here.
 fn steps(from: usize, may_enter: impl Fn(usize) -> bool) -> Vec<u32> {
     let mut steps = vec![NO_WAY; SIDE * SIDE];
     steps[from] = 0;
-    let mut open = VecDeque::from([from]);
-    while let Some(cell) = open.pop_front() {
-        for next in beside(cell) {
+    // Every cell that was come to, nearest first; those before `done` have been gone on from.
+    let mut reached = Vec::with_capacity(SIDE * SIDE);
+    reached.push(from);
+    let mut done = 0;
+    while done < reached.len() {
+        let cell = reached[done];
+        done += 1;
+        let (column, row, next_steps) = (cell % SIDE, cell / SIDE, steps[cell] + 1);
+        let mut go_to = |next: usize| {
             if steps[next] == NO_WAY && may_enter(next) {
-                steps[next] = steps[cell] + 1;
-                open.push_back(next);
+                steps[next] = next_steps;
+                reached.push(next);
             }
+        };
+        if column + 1 < SIDE {
+            go_to(cell + 1);
+        }
+        if row + 1 < SIDE {
+            go_to(cell + SIDE);
+        }
+        if column > 0 {
+            go_to(cell - 1);
+        }
+        if row > 0 {
+            go_to(cell - SIDE);
         }
     }
     steps
@@ -268,6 +275,36 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+
+    /// The cells beside one, within the raster.
+    fn beside(cell: usize) -> impl Iterator<Item = usize> {
+        let (column, row) = (cell % SIDE, cell / SIDE);
+        [
+            (column + 1 < SIDE).then_some(cell + 1),
+            (row + 1 < SIDE).then_some(cell + SIDE),
+            (column > 0).then(|| cell - 1),
+            (row > 0).then(|| cell - SIDE),
+        ]
+        .into_iter()
+        .flatten()
+    }
+
+    proptest! {
+        /// From cell to cell the steps are one more than the least beside it, and where there are none, none leads there.
+        #[test]
+        fn steps_are_one_more_than_the_least_beside(
+            walls in prop::collection::vec(prop::bool::weighted(0.35), SIDE * SIDE),
+            from in 0..SIDE * SIDE,
+        ) {
+            let found = steps(from, |cell| !walls[cell]);
+            prop_assert_eq!(found[from], 0);
+            for cell in (0..SIDE * SIDE).filter(|cell| *cell != from) {
+                let least = beside(cell).map(|near| found[near]).min().unwrap_or(NO_WAY);
+                let expected = if walls[cell] || least == NO_WAY { NO_WAY } else { least + 1 };
+                prop_assert_eq!(found[cell], expected, "cell {}", cell);
+            }
+        }
+    }
 
     fn layouts() -> impl Strategy<Value = Layout> {
         let maze = (2_u32..9, 0.0..=1.0, 0_u64..999).prop_map(|(side, braid, seed)| Layout {
