@@ -1,7 +1,6 @@
 """Takes pictures of the book, as `cargo xtask docs` makes it, at the widths of a desktop and of a phone.
 
     python book/screenshots.py target/book [chromium]     writes docs/images/book-*.png
-    python book/screenshots.py target/book --wide         says which pages scroll sideways as a whole at either width
 
 Needs Chromium, in PATH or named by DRIFTWORLD_BROWSER or the second argument; no network.
 """
@@ -25,7 +24,6 @@ PICTURES = [
     ("book-search.png", "concepts.html?search=forgetting", 1100, 560),
     ("book-phone.png", "tasks.html#find-objects", 390, 760),
 ]
-WIDTHS = (1280, 390)
 FLAGS = [
     "--headless",
     "--no-sandbox",
@@ -40,17 +38,17 @@ FLAGS = [
 ]
 
 
-def browser(flags: list[str], page: str, program: str) -> str:
-    """What a browser prints that opens this page."""
+def browser(flags: list[str], page: str, program: str) -> None:
+    """Opens a page in a browser."""
     with tempfile.TemporaryDirectory() as profile:
         command = [program, *FLAGS, f"--user-data-dir={profile}", *flags, page]
-        return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+        subprocess.run(command, check=True, capture_output=True)
 
 
-def framed(page: str, width: int, height: int, script: str = "") -> str:
+def framed(page: str, width: int, height: int) -> str:
     """A page with another in a frame of this size."""
     style = f"border:0;width:{width}px;height:{height}px;display:block"
-    return f'<body style="margin:0"><iframe src="{page}" style="{style}"></iframe>{script}</body>'
+    return f'<body style="margin:0"><iframe src="{page}" style="{style}"></iframe></body>'
 
 
 def take(book: Path, program: str) -> None:
@@ -63,31 +61,11 @@ def take(book: Path, program: str) -> None:
         print(f"wrote {(IMAGES / name).relative_to(ROOT)}")
 
 
-def wide(book: Path, program: str) -> None:
-    """Fails if a page scrolls sideways as a whole."""
-    pages = [page for page in sorted(book.rglob("*.html")) if "files" not in page.relative_to(book).parts]
-    script = """<script>onload=()=>{const f=document.querySelector('iframe').contentDocument.documentElement;
-document.title=`${f.scrollWidth} of ${f.clientWidth}`}</script>"""
-    found = []
-    for page in pages:
-        for width in WIDTHS:
-            with tempfile.NamedTemporaryFile("w", suffix=".html") as frame:
-                frame.write(framed(page.as_uri(), width, 800, script))
-                frame.flush()
-                title = re.search(r"<title>(\d+) of (\d+)", browser(["--dump-dom"], Path(frame.name).as_uri(), program))
-            if title is None or int(title[1]) > int(title[2]):
-                found.append(f"{page.relative_to(book)} at {width}: {title and title[0]}")
-    print("\n".join(found) or f"{len(pages)} pages, none scrolls sideways at {' or '.join(map(str, WIDTHS))} pixels")
-    sys.exit(bool(found))
-
-
 def main() -> None:
-    """Takes the pictures, or looks for pages that are too wide."""
-    book, *more = sys.argv[1:]
-    is_wide = "--wide" in more
-    named = [word for word in more if word != "--wide"]
+    """Takes the pictures."""
+    book, *named = sys.argv[1:]
     program = (named or [os.environ.get("DRIFTWORLD_BROWSER") or shutil.which("chromium") or "chromium"])[0]
-    (wide if is_wide else take)(Path(book).resolve(), program)
+    take(Path(book).resolve(), program)
 
 
 if __name__ == "__main__":
