@@ -55,7 +55,8 @@ pub enum GeneratorError {
     /// The agent starts outside the arena or in a region that cannot be entered.
     #[error(
         "{variant}, seed {seed}, index {index}: found the agent's start at {start:?} in {}, expected free space \
-         inside the arena; move agent_params.coordinates, or widen their distribution",
+         inside the arena; move agent_params.coordinates, or widen their distribution; in mazes, rooms and texts \
+         {{ \"cells\": {{}} }} is any free cell",
         tried(*tries)
     )]
     NoStart {

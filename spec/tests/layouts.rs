@@ -329,6 +329,7 @@ fn what_cannot_be_reached_is_remarked_upon() {
     assert_eq!(
         remarks.iter().map(ToString::to_string).collect::<Vec<_>>(),
         [
+            "w.json:1:1 (/agent_params/coordinates): the agent starts inside wall 3 of 5 of the layout",
             "w.json:2:12 (/environment_params/layout): of 2 free cells 1 cannot be reached from the others; open a way to them, or fill them up"
         ]
     );

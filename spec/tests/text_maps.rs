@@ -124,9 +124,14 @@ fn a_text_that_is_no_map_is_refused() {
         assert!(error.contains("expected "), "{error}");
     }
     // What stands above a grid in MiniGrid's own output.
-    let grid = "<DoorKeyEnv<MiniGrid-DoorKey-5x5-v0>>\nWGWGWG\nWG>>WG\nWGWGWG\n";
-    let (world, warnings) = World::from_minigrid_text("grid.txt", grid).unwrap();
-    assert_eq!((world.plan().unwrap().lattice, warnings.len()), ([3, 3], 0));
+    for name in [
+        "<DoorKeyEnv<MiniGrid-DoorKey-5x5-v0>>",
+        "<GoToLocal<BabyAI-GoToLocal-v0>>",
+    ] {
+        let grid = format!("{name}\nWGWGWG\nWG>>WG\nWGWGWG\n");
+        let (world, warnings) = World::from_minigrid_text("grid.txt", &grid).unwrap();
+        assert_eq!((world.plan().unwrap().lattice, warnings.len()), ([3, 3], 0));
+    }
 }
 
 /// Keys of several colours each have a letter, and their doors find them.
@@ -148,7 +153,7 @@ fn keys_of_several_colours_are_of_several_groups() {
 fn a_text_without_floor_is_refused() {
     for text in ["", "\n\n", "***\n***\n"] {
         let error = World::from_dmlab_text("level.txt", text).unwrap_err().to_string();
-        assert!(error.contains("expected"), "{error}");
+        assert!(error.starts_with("level.txt") && error.contains("expected"), "{error}");
     }
 }
 

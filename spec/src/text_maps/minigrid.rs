@@ -37,8 +37,11 @@ impl World {
     /// ```
     pub fn from_minigrid_text(name: &str, text: &str) -> Result<(Self, Vec<Warning>), SpecError> {
         let mut reader = Reader::new(name, CELL);
-        // What an environment is called may stand above its grid.
-        let is_name = |line: &str| line.starts_with('<') && line.ends_with('>') && line.contains("Env");
+        // What an environment is called may stand above its grid, which has no small letters.
+        let is_name = |line: &str| {
+            let has_small = line.chars().any(char::is_lowercase);
+            line.starts_with('<') && line.ends_with('>') && has_small
+        };
         let lines = text.lines().enumerate();
         for (number, line) in lines.filter(|(_, line)| !line.is_empty() && !is_name(line.trim())) {
             let characters: Vec<char> = line.chars().collect();

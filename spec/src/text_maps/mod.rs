@@ -220,7 +220,16 @@ impl<'a> Reader<'a> {
         draft.objects.extend(self.doors_in(&layout));
         draft.environment_params.zones = self.zones();
         draft.environment_params.layout = Some(layout);
-        Ok((draft.check()?, self.warnings))
+        match draft.check() {
+            Ok(world) => Ok((world, self.warnings)),
+            // They are about the text, not about a world that nobody has seen.
+            Err(SpecError::Document { problems, more, .. }) => Err(SpecError::Document {
+                name: self.name.to_owned(),
+                problems,
+                more,
+            }),
+            Err(other) => Err(other),
+        }
     }
 
     /// The doors, each across its doorway.

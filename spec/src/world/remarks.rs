@@ -43,11 +43,22 @@ impl World {
             let text = format!("the zone lies outside the {width} × {depth} m arena; it is kept, out of reach");
             remarks.push(format!("/environment_params/zones/{index}"), text);
         }
+        let start = self.agent_params.coordinates;
+        if self.progress.is_none() && (!arena.contains(start) || self.enclosure(start).is_some()) {
+            let inside = self.enclosure(start).map_or_else(
+                || format!("outside the {width} × {depth} m arena"),
+                |wall| format!("inside {wall}"),
+            );
+            remarks.push(
+                "/agent_params/coordinates".to_owned(),
+                format!("the agent starts {inside}"),
+            );
+        }
         let failing = |place: [f64; 2]| {
             let mut zones = arena.zones.iter().enumerate();
             zones.find(|(_, zone)| zone.ends == Some(ZoneEnd::Failure) && zone.contains(place))
         };
-        if let Some((zone, _)) = failing(self.agent_params.coordinates) {
+        if let Some((zone, _)) = failing(start) {
             let text = format!("the agent starts in zone {zone}, which ends the episode as a failure");
             remarks.push("/agent_params/coordinates".to_owned(), text);
         }
