@@ -4,11 +4,12 @@
 use driftworld_env::{Agent, Environment, Renderer, Scene, StillAgent};
 use driftworld_generator::Sampler;
 use driftworld_report::picture::{Drawing, SheetRow, TextLine, sheet, text_width};
-use driftworld_spec::{Element, MotionModel, Value, Variant, World};
+use driftworld_spec::{Element, MotionModel, Variant, World};
 
 use crate::Failure;
 use crate::map_drawing::Moves;
 use crate::subject::{Sight, sight, subjects};
+use crate::value_words::short;
 use crate::views::{Views, agent_camera};
 
 /// Worlds of each variant that are tried.
@@ -21,9 +22,6 @@ const TURNS: [f32; 12] = [
 
 /// For how many seconds moving objects draw their ways.
 const SECONDS: f64 = 5.0;
-
-/// The most letters of a value in a caption.
-const LONGEST_VALUE: usize = 28;
 
 /// A variant, what is said of it, and which of its worlds may be drawn.
 #[derive(Clone)]
@@ -270,26 +268,12 @@ fn differences(base: &Variant, variant: &Variant) -> String {
     let of_base = |name: &str| base.value(name).map_or_else(|| "none".to_owned(), short);
     let parts: Vec<String> = (variant.values().iter())
         .filter(|(name, value)| base.value(name) != Some(value))
-        .map(|(name, value)| format!("{name} {} ({})", short(value), of_base(name)))
+        .map(|(name, value)| match (short(value), of_base(name)) {
+            (same, other) if same == other => format!("{name} {same} (another)"),
+            (own, other) => format!("{name} {own} ({other})"),
+        })
         .collect();
     parts.join(", ") + if parts.is_empty() { "" } else { "." }
-}
-
-/// A value as a caption has room for it: numbers with four digits.
-fn short(value: &Value) -> String {
-    let rounded = match value {
-        Value::Number(number) => format!("{number:.3e}").parse::<f64>().ok(),
-        _ => None,
-    };
-    rounded.map_or_else(|| cut(&value.to_string()), |number| number.to_string())
-}
-
-fn cut(text: &str) -> String {
-    let plain: String = text.chars().filter(|letter| *letter != '"').collect();
-    if plain.chars().count() <= LONGEST_VALUE {
-        return plain;
-    }
-    plain.chars().take(LONGEST_VALUE - 1).chain(['…']).collect()
 }
 
 /// What is the same in the pictures of two variants, and what is not in them.
@@ -420,12 +404,17 @@ mod tests {
         insta::assert_snapshot!(captions.join("\n"));
     }
 
+    /// What differs between mazes is said in words, whole.
     #[test]
-    fn captions_have_four_digits() {
-        let shown =
-            [21.899_414, 0.642_968_750_000_000_1, -100.0, 12_346.0, 0.0].map(|number| short(&Value::Number(number)));
-        assert_eq!(shown, ["21.9", "0.643", "-100", "12350", "0"]);
-        assert_eq!(short(&Value::Text("red".to_owned())), "red");
+    fn layouts_in_captions_are_not_cut() {
+        let task = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/worlds/maze.json");
+        let task = tasks::task(task).expect("it is a task");
+        let base = task.variant("medium").expect("it is declared");
+        let said: Vec<String> = (task.all_variants().iter())
+            .map(|variant| differences(&base, variant))
+            .collect();
+        assert!(said.contains(&"layout maze 4 × 4 (maze 8 × 8).".to_owned()), "{said:?}");
+        assert!(said.iter().all(|words| !words.contains(['{', '…'])), "{said:?}");
     }
 
     #[test]

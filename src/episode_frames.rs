@@ -10,6 +10,7 @@ use driftworld_spec::{Stimulus, World};
 use driftworld_text::amount;
 
 use crate::Failure;
+use crate::map_drawing::map_size;
 
 /// What one step did, in words, and how much it matters: 0 for a step on the way.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -79,7 +80,7 @@ pub(crate) fn rows(
             words: words(environment, end),
             pictures: vec![
                 seen.map_or_else(|| seen_by(environment, size), Ok)?.into(),
-                map_of(environment, size, &way).into(),
+                map_of(environment, map_beside(environment, size), &way).into(),
             ],
         });
         way.drain(..way.len() - 1);
@@ -183,12 +184,24 @@ pub(crate) fn words(environment: &Environment, end: Option<&Step>) -> String {
 /// What stands between two facts in a line.
 pub(crate) const PARTED: &str = " · ";
 
-/// The time, the return, what is carried, and why the episode ended.
+/// The time, the return, the energy that is left, the zones that the agent is in, what is carried, and why the episode ended.
 pub(crate) fn facts(environment: &Environment, end: Option<&Step>) -> Vec<String> {
     let mut parts = vec![
         format!("{:.1} s", environment.seconds()),
         format!("return {}", number(environment.episode_return(), "")),
     ];
+    if let Some(energy) = environment.energy() {
+        parts.push(format!("energy {energy:.0}"));
+    }
+    let here = environment.agent().position.map(f64::from);
+    let zones = environment.world().environment_params.zones.iter().enumerate();
+    let names: Vec<String> = zones
+        .filter(|(_, zone)| zone.contains(here))
+        .map(|(number, zone)| zone.name.clone().unwrap_or_else(|| format!("zone {number}")))
+        .collect();
+    if !names.is_empty() {
+        parts.push(format!("in {}", names.join(", ")));
+    }
     let objects = environment.world().objects.iter().zip(environment.objects());
     let carried: Vec<&str> = objects
         .filter(|(_, own)| own.carried)
@@ -218,6 +231,11 @@ fn finished(width: u32, height: u32, rgb: Vec<u8>, size: u32) -> Picture {
     if oversize(size) == 2 { picture.halved() } else { picture }
 }
 
+/// The size of a map of an episode beside pictures of this height.
+pub(crate) fn map_beside(environment: &Environment, height: u32) -> [u32; 2] {
+    map_size(environment.scene(), height)
+}
+
 /// What the agent sees.
 pub(crate) fn seen_by(environment: &mut Environment, size: u32) -> Result<Picture, Failure> {
     let side = size * oversize(size);
@@ -226,18 +244,22 @@ pub(crate) fn seen_by(environment: &mut Environment, size: u32) -> Result<Pictur
 }
 
 /// The map with the agent, and a way to it.
-pub(crate) fn map_of(environment: &Environment, size: u32, way: &[[f32; 2]]) -> Picture {
-    let side = size * oversize(size);
+pub(crate) fn map_of(environment: &Environment, [width, height]: [u32; 2], way: &[[f32; 2]]) -> Picture {
+    let size = width.max(height);
     let agent = environment.agent();
     let agent = Some((agent.position, agent.heading_deg));
-    let map = top_down_with_way(environment.scene(), side, side, agent, way);
+    let [wide, high] = [width, height].map(|side| side * oversize(size));
+    let map = top_down_with_way(environment.scene(), wide, high, agent, way);
     finished(map.width, map.height, map.rgb, size)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use driftworld_env::StillAgent;
+    use driftworld_spec::{Energy, WorldDraft, Zone};
     use proptest::prelude::*;
+
+    use super::*;
 
     #[test]
     fn numbers_have_a_sign_and_the_decimals_that_show_them() {
@@ -255,6 +277,37 @@ mod tests {
             assert_eq!(number(value, "+"), expected);
         }
         assert_eq!(number(2.0, ""), "2.0");
+    }
+
+    /// Who burns in the lava of an example is in it, and says so; who has no energy to use says nothing of it.
+    #[test]
+    fn captions_say_where_the_agent_is_and_what_it_has_left() {
+        let mut draft = WorldDraft::default();
+        draft.agent_params.energy = Some(Energy {
+            start: 30.0,
+            per_second: -10.0,
+            ..Energy::default()
+        });
+        let mut pond = Zone::disc([0.0, 0.0], 2.0);
+        pond.name = Some("pond".to_owned());
+        draft.environment_params.zones = vec![pond, Zone::disc([20.0, 0.0], 1.0)];
+        let world = draft.check().expect("the world is sound");
+        let mut environment = Environment::new(world.clone());
+        assert_eq!(words(&environment, None), "0.0 s · return 0.0 · energy 30 · in pond");
+        while environment.seconds() < 0.95 {
+            environment.step(StillAgent.act(&environment)).expect("it steps");
+        }
+        assert!(
+            words(&environment, None).ends_with("· energy 20 · in pond"),
+            "{}",
+            words(&environment, None)
+        );
+        let elsewhere = world.edit(|draft| {
+            draft.agent_params.coordinates = [9.0, 9.0];
+            draft.agent_params.energy = None;
+        });
+        let environment = Environment::new(elsewhere.expect("the world is sound"));
+        assert_eq!(words(&environment, None), "0.0 s · return 0.0");
     }
 
     proptest! {

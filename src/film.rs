@@ -13,7 +13,7 @@ use driftworld_report::picture::{Picture, caption_lines, sheet};
 use driftworld_text::ShownPath;
 use serde::Serialize;
 
-use crate::episode_frames::{deed, facts, map_of, rows, seen_by};
+use crate::episode_frames::{deed, facts, map_beside, map_of, rows, seen_by};
 use crate::{Failure, output_file};
 
 /// Most pixels along a side of the agent's view, and of the map.
@@ -78,7 +78,8 @@ pub struct FilmOptions {
     pub view: FilmView,
     /// What of the agent's view.
     pub modality: FilmModality,
-    /// Pixels along each side of the agent's view, and of the map: 1 to [`MAX_FILM_SIZE`].
+    /// Pixels along each side of the agent's view, and from north to south of the map, which is as oblong as its arena: 1 to
+    /// [`MAX_FILM_SIZE`].
     pub size: u32,
     /// One frame for so many steps, at least 1. The start and the end are always shown.
     pub every: u32,
@@ -126,10 +127,12 @@ impl FilmOptions {
     }
 
     /// Pixels across.
-    fn width(&self) -> u32 {
+    fn width(&self, environment: &Environment) -> u32 {
+        let map = map_beside(environment, self.size)[0];
         match self.view {
-            FilmView::Agent | FilmView::Above => self.size,
-            FilmView::Both => 2 * self.size,
+            FilmView::Agent => self.size,
+            FilmView::Above => map,
+            FilmView::Both => self.size + map,
         }
     }
 
@@ -213,7 +216,7 @@ impl Captions {
                 of_frames.push((number, caption));
             }
         }
-        let width = options.width();
+        let width = options.width(replay.environment());
         let lines = of_frames.iter().map(|(_, caption)| caption_lines(caption, width).len());
         Ok(Self {
             num_lines: lines.max().unwrap_or(0),
@@ -233,13 +236,13 @@ impl Captions {
 fn frame(environment: &mut Environment, options: &FilmOptions, way: &[[f32; 2]]) -> Result<Picture, Failure> {
     let pictures = match options.view {
         FilmView::Agent => vec![agent_view(environment, options)?],
-        FilmView::Above => vec![map_of(environment, options.size, way)],
+        FilmView::Above => vec![map_of(environment, map_beside(environment, options.size), way)],
         FilmView::Both => vec![
             agent_view(environment, options)?,
-            map_of(environment, options.size, way),
+            map_of(environment, map_beside(environment, options.size), way),
         ],
     };
-    let mut frame = Picture::blank(options.width(), options.size);
+    let mut frame = Picture::blank(options.width(environment), options.size);
     let mut left = 0;
     for picture in &pictures {
         frame.paste(picture, left, 0);

@@ -3,9 +3,11 @@
 
 #![expect(clippy::disallowed_methods, reason = "where lines and words stand on a map")]
 
-use driftworld_env::{Scene, top_down, top_down_scale};
+use driftworld_env::{Scene, top_down};
 use driftworld_report::picture::{Drawing, Level, Picture, Rgb, Shape, Side, TextLine, ring, text_width};
-use driftworld_spec::{MotionModel, Object, Stimulus, World};
+use driftworld_spec::{EndCondition, MotionModel, Object, Stimulus, World, Zone, ZoneEnd};
+
+use crate::map_scale::{Bar, CORNERS, Places, freest, north, north_size};
 
 const INK: Rgb = [20, 24, 30];
 const WHITE: Rgb = [255, 255, 255];
@@ -19,6 +21,12 @@ const COSTS: Rgb = [190, 0, 20];
 const MOST_SIGNS: usize = 60;
 /// Letters of the legend are this large at most, in pixels.
 const LEGEND: f32 = 12.0;
+/// The longest bar beside a map, in pixels.
+const LONGEST_BAR: f32 = 140.0;
+/// A smaller map without a legend has no room for a scale.
+const LEAST_SCALED: u32 = 80;
+/// A map is at most so many times as wide as high, and as high as wide.
+const MOST_OBLONG: f32 = 2.0;
 
 /// What a map shows beside what stands in its world.
 #[derive(Clone, Debug, Default)]
@@ -44,57 +52,61 @@ impl Moves {
     }
 }
 
-/// A map of so many pixels along each side, and the legend to its right.
+/// A map of so many pixels from north to south, as wide as its arena is, and to its right the legend with scale and north, where they
+/// cover nothing.
 pub(crate) fn map_with_legend(world: &World, scene: &Scene, moves: &Moves, size: u32) -> Drawing {
-    let ground = ground(scene, size);
+    let ground = ground(scene, map_size(scene, size));
+    let places = Places::of(scene, [ground.width, ground.height]);
     let entries = entries(world, scene, moves, &ground);
     let map = annotated(world, scene, moves, ground);
     let letters = (size as f32 / 17.0).clamp(9.0, LEGEND);
-    let legend = legend(&entries, letters, size);
-    let mut drawing = Drawing::blank(size + legend.width, size);
+    let legend = legend(&entries, letters, size, &places);
+    let mut drawing = Drawing::blank(map.width + legend.width, size);
+    let left = map.width;
     drawing.put(map, [0, 0]);
-    drawing.put(legend, [size, 0]);
+    drawing.put(legend, [left, 0]);
     drawing
 }
 
-/// The map alone.
+/// The map alone, a square, with scale and north in the corners where they cover least.
 pub(crate) fn map(world: &World, scene: &Scene, moves: &Moves, size: u32) -> Drawing {
-    annotated(world, scene, moves, ground(scene, size))
+    let mut map = annotated(world, scene, moves, ground(scene, [size, size]));
+    if size < LEAST_SCALED {
+        return map;
+    }
+    let places = Places::of(scene, [size, size]);
+    let visible = scene.items.iter().filter(|item| item.visible);
+    // The agent's place counts for more than anything else.
+    let mut marks = vec![(places.pixel(moves.agent.0), 1_000.0)];
+    marks.extend(visible.map(|item| (places.pixel(item.position), 1.0)));
+    marks.extend(places.pixels(&moves.way).into_iter().map(|place| (place, 0.01)));
+    let mut corners = CORNERS.to_vec();
+    let bar = Bar::of(&places, size as f32 * 0.3);
+    let at = freest(&mut corners, bar.size(), places.size, &marks);
+    bar.draw(&mut map, at, true);
+    corners.reverse();
+    let side = north_size(size as f32);
+    north(&mut map, freest(&mut corners, [side; 2], places.size, &marks), side);
+    map
+}
+
+/// Pixels across and down of a map that is so high: as oblong as the arena, within limits.
+pub(crate) fn map_size(scene: &Scene, height: u32) -> [u32; 2] {
+    let [wide, deep] = scene.arena_size();
+    let aspect = (wide / deep.max(1e-3)).clamp(1.0 / MOST_OBLONG, MOST_OBLONG);
+    [((height as f32 * aspect).round() as u32).max(1), height]
 }
 
 /// The ground from above with what stands on it, in neutral light, with smooth edges where that is allowed.
-fn ground(scene: &Scene, size: u32) -> Picture {
-    let twice = if size <= 2048 { 2 } else { 1 };
-    let image = top_down(&scene.clone().in_neutral_light(), size * twice, size * twice, None);
+fn ground(scene: &Scene, [width, height]: [u32; 2]) -> Picture {
+    let twice = if width.max(height) <= 2048 { 2 } else { 1 };
+    let image = top_down(&scene.clone().in_neutral_light(), width * twice, height * twice, None);
     let picture = Picture {
         width: image.width,
         height: image.height,
         rgb: image.rgb,
     };
     if twice == 2 { picture.halved() } else { picture }
-}
-
-/// From metres to pixels of a square map.
-struct Places {
-    size: f32,
-    scale: f32,
-}
-
-impl Places {
-    fn of(scene: &Scene, size: u32) -> Self {
-        Self {
-            size: size as f32,
-            scale: top_down_scale(scene, size, size),
-        }
-    }
-
-    fn pixel(&self, [x, y]: [f32; 2]) -> [f32; 2] {
-        [self.size / 2.0 + x * self.scale, self.size / 2.0 - y * self.scale]
-    }
-
-    fn pixels(&self, metres: &[[f32; 2]]) -> Vec<[f32; 2]> {
-        metres.iter().map(|place| self.pixel(*place)).collect()
-    }
 }
 
 /// Whether the agent gets or loses something by an object.
@@ -128,8 +140,8 @@ pub(crate) fn trigger_radius(world: &World, scene: &Scene, index: usize) -> Opti
 }
 
 fn annotated(world: &World, scene: &Scene, moves: &Moves, ground: Picture) -> Drawing {
-    let size = ground.width;
-    let places = Places::of(scene, size);
+    let size = ground.width.min(ground.height);
+    let places = Places::of(scene, [ground.width, ground.height]);
     let thin = (size as f32 / 240.0).max(1.0);
     let mut map = Drawing::from(ground);
     let visible = || (0..world.objects.len()).filter(|index| scene.items.get(*index).is_some_and(|item| item.visible));
@@ -181,8 +193,6 @@ fn annotated(world: &World, scene: &Scene, moves: &Moves, ground: Picture) -> Dr
             sign(&mut map, [x + off, y - off], pay(&world.objects[index]), size);
         }
     }
-    scale_bar(&mut map, &places);
-    north(&mut map);
     map
 }
 
@@ -215,64 +225,6 @@ fn arrow(map: &mut Drawing, [x, y]: [f32; 2], heading_deg: f32, size: f32) {
     map.area(corners(0.0), WHITE);
 }
 
-/// The length in metres of the bar: a round one that takes at most three tenths of the map.
-fn bar_metres(metres: f32) -> f32 {
-    let most = 0.3 * metres;
-    let power = 10_f32.powf(most.log10().floor());
-    let steps = [5.0, 2.0, 1.0].into_iter().map(|step| step * power);
-    steps.into_iter().find(|step| *step <= most).unwrap_or(power)
-}
-
-/// A bar with its length, on a light ground in the lower left corner.
-fn scale_bar(map: &mut Drawing, places: &Places) {
-    let metres = bar_metres(places.size / places.scale);
-    let long = metres * places.scale;
-    let letters = (places.size / 22.0).clamp(9.0, 20.0);
-    let label = format!("{metres} m");
-    let thick = (places.size / 100.0).clamp(2.0, 8.0).round();
-    let edge = (places.size / 40.0).round();
-    let wide = long.max(text_width(&label, letters)) + 8.0;
-    let high = letters * 1.1 + thick + 7.0;
-    let top = places.size - edge - high;
-    map.shapes.push(Shape::Area {
-        points: vec![
-            [edge, top],
-            [edge + wide, top],
-            [edge + wide, top + high],
-            [edge, top + high],
-        ],
-        color: WHITE,
-        alpha: 0.75,
-    });
-    map.write(TextLine::new(label, [edge + 4.0, top + 3.0], letters, INK));
-    map.rectangle([edge + 4.0, top + high - thick - 3.0, long, thick], [0, 0, 0]);
-}
-
-/// An arrow to the north in the upper right corner.
-fn north(map: &mut Drawing) {
-    let size = map.width as f32;
-    let high = (size / 14.0).clamp(12.0, 44.0);
-    let (x, top) = (size - high * 0.75 - size / 50.0, size / 40.0 + 2.0);
-    map.shapes.push(Shape::Disc {
-        middle: [x, top + high * 0.72],
-        radius: high * 0.86,
-        color: WHITE,
-        alpha: 0.75,
-    });
-    let half = high * 0.26;
-    map.area(
-        [
-            [x, top],
-            [x + half, top + 0.72 * high],
-            [x, top + 0.55 * high],
-            [x - half, top + 0.72 * high],
-        ],
-        INK,
-    );
-    let words = TextLine::new("N", [x, top + 0.8 * high], high * 0.62, INK);
-    map.write(words.anchored(Side::Middle, Level::Top));
-}
-
 /// One line of a legend.
 #[derive(Clone, Debug, PartialEq)]
 struct Entry {
@@ -283,6 +235,7 @@ struct Entry {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Mark {
     Color(Rgb),
+    Zone(Rgb),
     Arrow,
     Ring,
     Trail,
@@ -290,9 +243,8 @@ enum Mark {
 }
 
 /// What is on a map: the objects by class, colour and pay, then walls, zones, reach and ways.
-#[expect(clippy::too_many_lines, reason = "one entry after the other")]
 fn entries(world: &World, scene: &Scene, moves: &Moves, ground: &Picture) -> Vec<Entry> {
-    let places = Places::of(scene, ground.width);
+    let places = Places::of(scene, [ground.width, ground.height]);
     let mut entries = vec![Entry {
         mark: Mark::Arrow,
         name: if moves.way.len() > 1 {
@@ -304,7 +256,11 @@ fn entries(world: &World, scene: &Scene, moves: &Moves, ground: &Picture) -> Vec
     // Group by name and pay: the colour is that of the first one.
     let mut groups: Vec<(String, f64, Rgb, usize)> = Vec::new();
     for (object, item) in world.objects.iter().zip(&scene.items).filter(|(_, item)| item.visible) {
-        let (name, pay) = (named(object), pay(object));
+        let (mut name, pay) = (named(object), pay(object));
+        let ends = |condition: &EndCondition| matches!(condition, EndCondition::Touch(tag) if object.tag.as_ref() == Some(tag));
+        if world.rules.failure.iter().any(ends) {
+            name.push_str(", fails");
+        }
         let color = item.color.map_or_else(
             || at(ground, places.pixel(item.position)),
             |color| color.map(|c| (c * 255.0) as u8),
@@ -339,19 +295,12 @@ fn entries(world: &World, scene: &Scene, moves: &Moves, ground: &Picture) -> Vec
         .enumerate()
         .filter(|(_, zone)| zone.visible)
     {
-        let color = zone
-            .color
-            .map_or([128; 3], |color| color.to_f32().map(|c| (c * 255.0) as u8));
-        let name = zone.name.clone().unwrap_or_else(|| format!("zone {number}"));
-        let pay = zone.reward_per_second;
-        let pay = if pay == 0.0 {
-            String::new()
-        } else {
-            format!(", {}/s", signed(pay))
-        };
+        let color = zone.ground_color().to_f32().map(|c| (c * 255.0) as u8);
+        let mut words = vec![zone.name.clone().unwrap_or_else(|| format!("zone {number}"))];
+        words.extend(effects(zone));
         let entry = Entry {
-            mark: Mark::Color(color),
-            name: format!("{name}{pay}"),
+            mark: Mark::Zone(color),
+            name: words.join(", "),
         };
         if !entries.iter().any(|other| other.name == entry.name) {
             entries.push(entry);
@@ -397,8 +346,31 @@ fn entries(world: &World, scene: &Scene, moves: &Moves, ground: &Picture) -> Vec
     entries
 }
 
+/// What a zone does, in words.
+fn effects(zone: &Zone) -> Vec<String> {
+    let mut words = Vec::new();
+    if zone.reward_per_second != 0.0 {
+        words.push(format!("{}/s", signed(zone.reward_per_second)));
+    }
+    if zone.reward_on_entering != 0.0 {
+        words.push(format!("{} on entering", signed(zone.reward_on_entering)));
+    }
+    if zone.speed_factor != 1.0 {
+        words.push(format!("speed × {}", signed(zone.speed_factor).trim_start_matches('+')));
+    }
+    if zone.teleport.is_some() {
+        words.push("teleports".to_owned());
+    }
+    match zone.ends {
+        Some(ZoneEnd::Failure) => words.push("fails".to_owned()),
+        Some(ZoneEnd::Success) => words.push("succeeds".to_owned()),
+        None => {}
+    }
+    words
+}
+
 /// The name of a group of objects: what is only a shape is better named by what it is for.
-fn named(object: &Object) -> String {
+pub(crate) fn named(object: &Object) -> String {
     let class = object.class.to_lowercase();
     let shape = match (class.as_str(), object.model.0.as_str()) {
         ("geometric", "1") => "cube",
@@ -421,10 +393,20 @@ fn at(picture: &Picture, [x, y]: [f32; 2]) -> Rgb {
     [picture.rgb[start], picture.rgb[start + 1], picture.rgb[start + 2]]
 }
 
-/// The legend in a column of this height; what has no room is counted in the last line.
-fn legend(entries: &[Entry], letters: f32, height: u32) -> Drawing {
+/// The legend in a column of this height, with scale and north at its foot; what has no room is counted in the last line.
+fn legend(entries: &[Entry], letters: f32, height: u32, places: &Places) -> Drawing {
     let line = (letters * 1.45).round();
-    let rooms = (((height as f32 - letters - 6.0) / line).floor().max(1.0)) as usize;
+    let bar = Bar::of(places, (0.3 * places.size[0]).min(LONGEST_BAR));
+    let arrow_side = north_size((height as f32).min(280.0));
+    let foot = bar.size()[1].max(arrow_side) + 2.0;
+    // In a small legend there is no room for the note.
+    let note = if height as f32 > 9.0 * line + foot {
+        "in even light"
+    } else {
+        ""
+    };
+    let note_height = if note.is_empty() { 0.0 } else { letters + 6.0 };
+    let rooms = (((height as f32 - foot - note_height - 6.0) / line).floor().max(1.0)) as usize;
     let mut shown: Vec<(Option<Mark>, String)> = entries
         .iter()
         .map(|entry| (Some(entry.mark), entry.name.clone()))
@@ -435,10 +417,10 @@ fn legend(entries: &[Entry], letters: f32, height: u32) -> Drawing {
         shown.push((None, format!("and {left_out} more")));
     }
     let left = 6.0 + letters * 1.6;
-    let note = "in even light";
     let names = shown.iter().map(|(_, name)| name.as_str()).chain([note]);
     let wide = names.map(|name| text_width(name, letters)).fold(0.0, f32::max);
-    let mut legend = Drawing::blank((left + wide + 6.0).ceil() as u32, height);
+    let wide = (left + wide + 6.0).max(bar.size()[0] + arrow_side + 10.0);
+    let mut legend = Drawing::blank(wide.ceil() as u32, height);
     for (number, (mark, name)) in shown.iter().enumerate() {
         let y = 6.0 + line * (number as f32 + 0.5);
         let (x, r) = (6.0 + letters * 0.6, letters * 0.42);
@@ -446,6 +428,10 @@ fn legend(entries: &[Entry], letters: f32, height: u32) -> Drawing {
             Some(Mark::Color(color)) => {
                 legend.disc([x, y], r + 0.8, INK);
                 legend.disc([x, y], r, *color);
+            }
+            Some(Mark::Zone(color)) => {
+                legend.rectangle([x - r - 0.8, y - r - 0.8, 2.0 * r + 1.6, 2.0 * r + 1.6], INK);
+                legend.rectangle([x - r, y - r, 2.0 * r, 2.0 * r], *color);
             }
             Some(Mark::Arrow) => arrow(&mut legend, [x, y], 90.0, r),
             Some(Mark::Ring) => {
@@ -464,8 +450,14 @@ fn legend(entries: &[Entry], letters: f32, height: u32) -> Drawing {
         }
         legend.write(TextLine::new(name, [left, y], letters, INK).anchored(Side::Left, Level::Middle));
     }
-    let words = TextLine::new(note, [left, height as f32 - 5.0], letters * 0.9, [110, 116, 124]);
-    legend.write(words.anchored(Side::Left, Level::Bottom));
+    let top = height as f32 - foot;
+    if !note.is_empty() {
+        let words = TextLine::new(note, [6.0, top - 5.0], letters * 0.9, [110, 116, 124]);
+        legend.write(words.anchored(Side::Left, Level::Bottom));
+    }
+    bar.draw(&mut legend, [2.0, height as f32 - bar.size()[1] - 2.0], false);
+    let at = [legend.width as f32 - arrow_side - 2.0, height as f32 - arrow_side - 2.0];
+    north(&mut legend, at, arrow_side);
     legend
 }
 
@@ -527,6 +519,47 @@ mod tests {
             prop_assert!(longest <= 0.31 * size as f32);
         }
 
+        /// Scale and north stand beside the map, or, on a map alone, where the agent is not, wherever it stands.
+        #[test]
+        fn nothing_covers_the_agent(x in -0.46..0.46_f64, y in -0.46..0.46_f64, heading in 0.0..360.0_f64, size in 80_u32..300) {
+            let side = 16.0;
+            let mut draft = WorldDraft::default();
+            draft.environment_params.map_size = [side, side];
+            draft.agent_params.coordinates = [x * side, y * side];
+            draft.agent_params.heading = heading;
+            let world = draft.check().expect("the world is sound");
+            let scene = Scene::from_world(&world);
+            let bare = annotated(&world, &scene, &Moves::none(&world), ground(&scene, [size, size])).to_picture();
+            let alone = drawn(&world, size);
+            let beside = map_with_legend(&world, &scene, &Moves::none(&world), size).to_picture();
+            let near = f64::from(size) / 26.0;
+            let middle = |share: f64| f64::from(size) * (0.5 + share / 1.06);
+            for (column, row) in (0..size as usize).flat_map(|column| (0..size as usize).map(move |row| (column, row))) {
+                prop_assert_eq!(pixel(&beside, column, row), pixel(&bare, column, row));
+                if (column as f64 - middle(x)).hypot(row as f64 - middle(-y)) < near {
+                    prop_assert_eq!(pixel(&alone, column, row), pixel(&bare, column, row), "{} {}", column, row);
+                }
+            }
+        }
+
+        /// A map is as oblong as its arena: the margins around it are equally wide, but where it would be a strip.
+        #[test]
+        fn oblong_arenas_have_oblong_maps(wide in 6.0..60.0_f64, deep in 6.0..60.0_f64, height in 60_u32..200) {
+            let mut draft = WorldDraft::default();
+            draft.environment_params.map_size = [wide, deep];
+            let world = draft.check().expect("the world is sound");
+            let scene = Scene::from_world(&world);
+            let [width, same] = map_size(&scene, height);
+            prop_assert_eq!(same, height);
+            let places = Places::of(&scene, [width, height]);
+            let [left, top] = places.pixel([-wide as f32 / 2.0, deep as f32 / 2.0]);
+            prop_assert!(left >= 0.0 && top >= 0.0);
+            if (0.5..2.0).contains(&(wide / deep)) {
+                let share = [left / width as f32, top / height as f32];
+                prop_assert!(share.iter().all(|share| (share - 0.5 * (1.0 - 1.0 / 1.06)).abs() < 0.012), "{share:?}");
+            }
+        }
+
         /// The ring's yellow pixels lie as far from the object as its trigger reaches on the ground.
         #[test]
         fn rings_have_their_radius(reach in 2.0..9.0_f64, size in 220_u32..420) {
@@ -577,6 +610,45 @@ mod tests {
         assert_eq!(names(&scene).iter().filter(|name| name.contains("cube")).count(), 2);
         scene.items[4].visible = false;
         assert!(!has(&scene, "tent") && !names(&scene).iter().any(|name| name.contains("rock")));
+    }
+
+    /// What a zone does is in the legend, and what ends an episode as a failure.
+    #[test]
+    fn the_legend_says_what_zones_do() {
+        let zone = |name: &str, change: &dyn Fn(&mut Zone)| {
+            let mut zone = Zone::disc([0.0, 0.0], 3.0);
+            zone.name = Some(name.to_owned());
+            change(&mut zone);
+            zone
+        };
+        let mut thorn = object("shrub", [4.0, 4.0], 0.0, 0.0);
+        thorn.tag = Some("thorn".to_owned());
+        let mut draft = WorldDraft {
+            objects: vec![thorn],
+            ..WorldDraft::default()
+        };
+        draft.rules.failure = vec![EndCondition::Touch("thorn".to_owned())];
+        draft.environment_params.map_size = [30.0, 30.0];
+        draft.environment_params.zones = vec![
+            zone("lava", &|zone| zone.ends = Some(ZoneEnd::Failure)),
+            zone("mud", &|zone| (zone.speed_factor, zone.reward_per_second) = (0.2, -1.5)),
+            zone("gate", &|zone| zone.teleport = Some([5.0, 5.0])),
+            zone("home", &|zone| {
+                (zone.ends, zone.reward_on_entering) = (Some(ZoneEnd::Success), 7.0);
+            }),
+        ];
+        let world = draft.check().expect("the world is sound");
+        let drawing = map_with_legend(&world, &Scene::from_world(&world), &Moves::none(&world), 300);
+        let texts = drawing.texts();
+        for name in [
+            "thorn, fails",
+            "lava, fails",
+            "mud, −1.5/s, speed × 0.2",
+            "gate, teleports",
+            "home, +7 on entering, succeeds",
+        ] {
+            assert!(texts.contains(&name), "{name}: {texts:?}");
+        }
     }
 
     /// As many signs as there are things that pay and cost.

@@ -14,6 +14,7 @@ use driftworld_spec::World;
 
 use crate::Failure;
 use crate::map_drawing::{self, Moves};
+use crate::subject::sight;
 
 /// The pictures of one world.
 pub(crate) struct Views<'a> {
@@ -29,18 +30,35 @@ pub(crate) struct Seen {
     pub(crate) rgb: Picture,
     pub(crate) depth: Picture,
     pub(crate) segmentation: Picture,
+    /// Metres to what is seen, row by row; beyond the farthest thing in the sky.
+    distances: Vec<f32>,
+    /// Metres to the farthest thing that is not the sky.
+    farthest: f32,
     /// The reward categories that are in it.
     categories: Vec<u8>,
 }
 
 impl Seen {
-    /// The picture of distances with what its greys mean below it.
+    /// The picture of distances with what its greys mean below it. It is white at one of a few distances, so that indoors there is
+    /// something to see.
     pub(crate) fn depth_with_legend(&self) -> Drawing {
         let (width, height) = (self.depth.width, self.depth.height);
+        let white = white_at(self.farthest);
+        let stretched: Vec<f32> = (self.distances.iter())
+            .map(|metres| metres * DEPTH_METRES / white)
+            .collect();
+        let picture = Picture {
+            width,
+            height,
+            rgb: depth_to_gray(&stretched)
+                .into_iter()
+                .flat_map(|gray| [gray; 3])
+                .collect(),
+        };
         let letters = letters(width);
         let bar = (letters * 0.9).round();
         let mut drawing = Drawing::blank(width, height + (letters * 1.4 + bar + 12.0) as u32);
-        drawing.put(self.depth.clone(), [0, 0]);
+        drawing.put(picture, [0, 0]);
         let (left, top) = (letters, height as f32 + 5.0);
         let long = (width as f32 - 2.0 * letters).max(10.0);
         let mut greys = Picture::blank(long as u32, bar as u32);
@@ -58,23 +76,32 @@ impl Seen {
             [left, top],
         ];
         drawing.line(rim, 1.0, INK);
-        for quarter in 0..=4_u8 {
+        let is_beyond = self.distances.iter().any(|metres| *metres > white);
+        let mut taken: Vec<[f32; 2]> = Vec::new();
+        // The ends first: what is between them has what room is left.
+        for quarter in [4_u8, 0, 2, 1, 3] {
             let share = f32::from(quarter) / 4.0;
-            let x = left + share * (right - left);
-            let end = if quarter == 4 { " m and more" } else { "" };
-            let side = match quarter {
-                0 => Side::Left,
-                4 => Side::Right,
-                _ => Side::Middle,
+            let (side, words) = match quarter {
+                0 => (Side::Left, "0".to_owned()),
+                4 if is_beyond => (Side::Right, format!("{white} m and more")),
+                4 => (Side::Right, format!("{white} m")),
+                _ => (Side::Middle, format!("{}", share * white)),
             };
-            let words = TextLine::new(
-                format!("{}{end}", share * DEPTH_METRES),
-                [x, top + bar + 4.0],
-                letters,
-                INK,
-            );
-            if quarter % 2 == 0 || text_width("100 m and more", letters) * 3.0 < long {
-                drawing.write(words.anchored(side, Level::Top));
+            let x = left + share * (right - left);
+            let wide = text_width(&words, letters);
+            let from = match side {
+                Side::Left => x,
+                Side::Middle => x - wide / 2.0,
+                Side::Right => x - wide,
+            };
+            let gap = letters * 0.6;
+            if taken
+                .iter()
+                .all(|[start, end]| from > end + gap || from + wide + gap < *start)
+            {
+                taken.push([from, from + wide]);
+                let line = TextLine::new(words, [x, top + bar + 4.0], letters, INK);
+                drawing.write(line.anchored(side, Level::Top));
             }
         }
         drawing
@@ -114,13 +141,47 @@ impl Seen {
 
 const INK: [u8; 3] = [38, 42, 48];
 
-/// Metres at which pictures of distances are white.
+/// Metres at which pictures of distances are white, as agents see them.
 const DEPTH_METRES: f32 = 100.0;
+
+/// Metres at which those are white that people look at, by a scale.
+const SCALES: [f32; 4] = [10.0, 20.0, 40.0, DEPTH_METRES];
+
+/// The first scale on which nothing is white but the sky.
+fn white_at(farthest: f32) -> f32 {
+    SCALES
+        .into_iter()
+        .find(|most| *most >= farthest)
+        .unwrap_or(DEPTH_METRES)
+}
 
 /// The size of a legend's letters below a picture of this width.
 fn letters(width: u32) -> f32 {
     (width as f32 / 28.0).clamp(8.0, 15.0)
 }
+
+/// Share of the overview's half that is left free along its edges.
+const RIM_OF_OVERVIEW: f32 = 0.04;
+
+/// Half the height at 1 m of a close-up from its usual distance: an angle of 42°.
+const CLOSE_UP_TANGENT: f32 = 0.384;
+
+/// A close-up of fewer pixels, of 4,096, shows nothing.
+const LEAST_CLOSE_UP: u32 = 80;
+
+/// From where objects are looked at: degrees from the agent's side, and shares of the usual distance.
+const CLOSE_UPS: [(f32, f32); 24] = {
+    let turns = [
+        0.0, 30.0, -30.0, 60.0, -60.0, 90.0, -90.0, 120.0, -120.0, 150.0, -150.0, 180.0,
+    ];
+    let mut all = [(0.0, 1.0); 24];
+    let mut number = 0;
+    while number < 24 {
+        all[number] = (turns[number % 12], if number < 12 { 1.0 } else { 0.6 });
+        number += 1;
+    }
+    all
+};
 
 /// What a reward category is.
 fn category_name(category: u8) -> &'static str {
@@ -185,28 +246,69 @@ impl<'a> Views<'a> {
     /// From outside, above a corner of the arena.
     pub(crate) fn overview(&self, width: u32) -> Result<Picture, Failure> {
         let scene = self.scene.clone().with_wall_tops();
-        self.smooth(&scene, &self.above(&scene), width)
+        let camera = self.above(&scene);
+        self.smooth(&scene, &self.with_all_in_it(&scene, camera, width), width)
     }
 
-    /// The camera of the overview: higher, and looking down at the same ground, where walls would hide a small arena.
-    fn above(&self, scene: &Scene) -> Camera {
-        let camera = Camera::overview(scene);
-        let layout = self.world.plan().into_iter().flat_map(|plan| &plan.walls);
-        let wall = layout
-            .filter_map(|wall| wall.height)
-            .fold(self.world.environment_params.wall_height, f64::max) as f32;
-        let span = scene.arena_size().into_iter().fold(4.0, f32::max);
-        let hidden = wall - span / 12.0;
-        if hidden <= 0.0 {
-            return camera;
+    /// The camera moved, and turned no way, so that all of the arena and of what stands in it is in a picture of this width.
+    fn with_all_in_it(&self, scene: &Scene, camera: Camera, width: u32) -> Camera {
+        let [wide, deep] = scene.arena_size().map(|side| side / 2.0);
+        let wall = self.highest_wall();
+        let mut points: Vec<[f32; 3]> = Vec::new();
+        for (x, y) in [(-wide, -deep), (-wide, deep), (wide, -deep), (wide, deep)] {
+            points.extend([[x, y, 0.0], [x, y, wall]]);
         }
-        let [x, y, z] = camera.position;
-        let height = z + (2.0 * hidden).min(span);
-        let ahead = z / -camera.pitch_deg.to_radians().tan();
+        for item in scene.items.iter().filter(|item| item.visible) {
+            let [radius, height] = [item.asset.radius, item.asset.height].map(|metres| metres * item.scale);
+            let [x, y] = item.position;
+            points.extend([[x - radius, y, height], [x + radius, y, height]]);
+        }
+        let [heading, pitch] = [camera.heading_deg, camera.pitch_deg].map(f32::to_radians);
+        let (right, forward, up) = (
+            [heading.cos(), -heading.sin(), 0.0],
+            [heading.sin() * pitch.cos(), heading.cos() * pitch.cos(), pitch.sin()],
+            [-heading.sin() * pitch.sin(), -heading.cos() * pitch.sin(), pitch.cos()],
+        );
+        let along = |of: [f32; 3], axis: [f32; 3]| of[0] * axis[0] + of[1] * axis[1] + of[2] * axis[2];
+        // Across, up and away from the arena's middle.
+        let seen: Vec<[f32; 3]> = points
+            .into_iter()
+            .map(|point| [along(point, right), along(point, up), along(point, forward)])
+            .collect();
+        let tangent = (camera.field_of_view_deg / 2.0).to_radians().tan() * (1.0 - RIM_OF_OVERVIEW);
+        let edges = [tangent * width as f32 / self.size as f32, tangent];
+        // Where the camera stands on these axes. A plane through the left edge holds it back as far as the leftmost point, and so on:
+        // it stands where the planes of two opposite edges meet, and behind all of them.
+        let bound = |axis: usize, sign: f32| {
+            let reach = |point: &[f32; 3]| sign * point[axis] - edges[axis] * point[2];
+            seen.iter().map(reach).fold(f32::MIN, f32::max)
+        };
+        let (mut place, mut back) = ([0.0; 2], f32::MAX);
+        for axis in [0, 1] {
+            let (more, less) = (bound(axis, 1.0), bound(axis, -1.0));
+            place[axis] = (more - less) / 2.0;
+            back = back.min(-(more + less) / (2.0 * edges[axis]));
+        }
+        let position = [0, 1, 2].map(|axis| place[0] * right[axis] + place[1] * up[axis] + back * forward[axis]);
+        Camera { position, ..camera }
+    }
+
+    /// Metres to the top of the highest wall.
+    fn highest_wall(&self) -> f32 {
+        let layout = self.world.plan().into_iter().flat_map(|plan| &plan.walls);
+        layout
+            .filter_map(|wall| wall.height)
+            .fold(self.world.environment_params.wall_height, f64::max) as f32
+    }
+
+    /// The camera of the overview, wherever it stands: it looks down steeply where walls within the arena would hide what is between them.
+    fn above(&self, scene: &Scene) -> Camera {
+        let is_divided = self.world.plan().is_some_and(|plan| !plan.walls.is_empty());
+        let span = scene.arena_size().into_iter().fold(4.0, f32::max);
+        let hides = is_divided || self.highest_wall() > span / 12.0;
         Camera {
-            position: [x, y, height],
-            pitch_deg: -(height / ahead).atan().to_degrees(),
-            ..camera
+            pitch_deg: if hides { -45.0 } else { -23.0 },
+            ..Camera::overview(scene)
         }
     }
 
@@ -234,6 +336,10 @@ impl<'a> Views<'a> {
                     .flat_map(|category| category_color(*category))
                     .collect(),
             ),
+            farthest: (frame.depth.iter().zip(&frame.category))
+                .filter(|(_, category)| **category != CATEGORY_SKY)
+                .fold(0.0, |most, (metres, _)| metres.max(most)),
+            distances: frame.depth,
             categories: {
                 let mut categories = frame.category;
                 categories.sort_unstable();
@@ -241,6 +347,28 @@ impl<'a> Views<'a> {
                 categories
             },
         })
+    }
+
+    /// What the agent sees at the start in colour, pixel by pixel as a learner gets it.
+    pub(crate) fn as_learners_see(&self, side: u32) -> Result<Picture, Failure> {
+        let frame = self.frame(&self.scene, &self.agent_camera(self.turn), side, side)?;
+        Ok(Picture {
+            width: side,
+            height: side,
+            rgb: frame.rgb,
+        })
+    }
+
+    /// What the agent sees at the start in colour, with smooth edges.
+    pub(crate) fn smoothly(&self, [width, height]: [u32; 2]) -> Result<Picture, Failure> {
+        let camera = self.agent_camera(self.turn);
+        let frame = self.frame(&self.scene, &camera, 2 * width, 2 * height)?;
+        let picture = Picture {
+            width: frame.width,
+            height: frame.height,
+            rgb: frame.rgb,
+        };
+        Ok(picture.halved())
     }
 
     /// What the agent sees ahead, to its right, behind and to its left.
@@ -255,7 +383,8 @@ impl<'a> Views<'a> {
         [0.0, 90.0, 180.0, 270.0].into_iter().map(look).collect()
     }
 
-    /// The first object of each class that is nearest to the agent, from near by, with the name of its class.
+    /// The first object of each name that is nearest to the agent, from near by, with its name. What cannot be seen from anywhere near
+    /// it is left out.
     pub(crate) fn close_ups(&self, most: usize) -> Result<Vec<(String, Picture)>, Failure> {
         let start = self.world.agent_params.coordinates;
         let far = |index: &usize| {
@@ -270,22 +399,40 @@ impl<'a> Views<'a> {
         });
         let mut shown: Vec<(String, Picture)> = Vec::new();
         for index in indices {
-            let class = self.world.objects[index].class.to_lowercase();
-            if shown.len() < most && !shown.iter().any(|(other, _)| *other == class) {
-                shown.push((class, self.smooth(&self.scene, &self.close_to(index), self.size)?));
+            let name = map_drawing::named(&self.world.objects[index]);
+            if shown.len() < most
+                && !shown.iter().any(|(other, _)| *other == name)
+                && let Some(camera) = self.near(index)?
+            {
+                shown.push((name, self.smooth(&self.scene, &camera, self.size)?));
             }
         }
         Ok(shown)
     }
 
-    /// A camera that looks at an object from where the agent is, so near that the object fills the picture.
-    fn close_to(&self, index: usize) -> Camera {
+    /// A camera that sees an object, where possible from where the agent is: walls and other things may be in the way.
+    fn near(&self, index: usize) -> Result<Option<Camera>, Failure> {
+        let mut best: (u32, Option<Camera>) = (LEAST_CLOSE_UP, None);
+        for (turn, closeness) in CLOSE_UPS {
+            let camera = self.close_to(index, turn, closeness);
+            let pixels = sight(&mut self.renderer.borrow_mut(), &self.scene, &camera, &[index])?.pixels;
+            // Another place is taken only where clearly more is seen.
+            if pixels > best.0 + best.0 / 4 {
+                best = (pixels, Some(camera));
+            }
+        }
+        Ok(best.1)
+    }
+
+    /// A camera that looks at an object from where the agent is, turned around it, so near that the object fills the picture; nearer
+    /// with a wider angle.
+    fn close_to(&self, index: usize, turn: f32, closeness: f32) -> Camera {
         let item = &self.scene.items[index];
         let start = self.world.agent_params.coordinates.map(|metres| metres as f32);
         let way = [item.position[0] - start[0], item.position[1] - start[1]];
-        let heading = if way == [0.0; 2] { 0.0_f32 } else { way[0].atan2(way[1]) };
+        let heading = if way == [0.0; 2] { 0.0_f32 } else { way[0].atan2(way[1]) } + turn.to_radians();
         let size = item.asset.height.max(item.asset.radius * 1.6) * item.scale;
-        let back = 1.9 * size + item.asset.radius * item.scale;
+        let back = (1.9 * size + item.asset.radius * item.scale) * closeness;
         let height = size * 0.75 + 0.3;
         Camera {
             position: [
@@ -297,21 +444,16 @@ impl<'a> Views<'a> {
             pitch_deg: -((height - item.asset.height * item.scale * 0.5) / back)
                 .atan()
                 .to_degrees(),
-            field_of_view_deg: 42.0,
+            field_of_view_deg: 2.0 * (CLOSE_UP_TANGENT / closeness).atan().to_degrees(),
         }
     }
 
     /// The map with the agent's start on it, in even light.
     pub(crate) fn top_down(&self) -> Picture {
-        self.map(&Moves::none(self.world)).to_picture()
+        map_drawing::map(self.world, &self.scene, &Moves::none(self.world), self.size).to_picture()
     }
 
-    /// The map with scale, north, triggers, what pays and what costs, and ways.
-    pub(crate) fn map(&self, moves: &Moves) -> Drawing {
-        map_drawing::map(self.world, &self.scene, moves, self.size)
-    }
-
-    /// The same with a legend to its right.
+    /// The map with triggers, what pays and what costs, and ways, and a legend to its right with scale and north.
     pub(crate) fn map_with_legend(&self, moves: &Moves) -> Drawing {
         map_drawing::map_with_legend(self.world, &self.scene, moves, self.size)
     }
@@ -336,5 +478,126 @@ impl<'a> Views<'a> {
         let mut frame = Frame::new(width, height);
         self.renderer.borrow_mut().render(scene, camera, &mut frame)?;
         Ok(frame)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use driftworld_env::Target;
+    use driftworld_report::picture::Shape;
+    use driftworld_spec::{Object, WorldDraft};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::tasks;
+
+    fn seen(size: u32, farthest: f32, sky: bool) -> Seen {
+        let pixels = (size * size) as usize;
+        let mut distances = vec![farthest; pixels];
+        distances[0] = if sky { 1000.0 } else { farthest };
+        Seen {
+            rgb: Picture::blank(size, size),
+            depth: Picture::blank(size, size),
+            segmentation: Picture::blank(size, size),
+            distances,
+            farthest,
+            categories: vec![CATEGORY_SKY],
+        }
+    }
+
+    /// The words of a drawing with where each begins and ends.
+    fn words(drawing: &Drawing) -> Vec<(String, [f32; 2])> {
+        let lines = drawing.shapes.iter().filter_map(|shape| match shape {
+            Shape::Text(line) => Some(line),
+            _ => None,
+        });
+        let place = |line: &TextLine| {
+            let share = match line.side {
+                Side::Left => 0.0,
+                Side::Middle => 0.5,
+                Side::Right => 1.0,
+            };
+            let from = line.at[0] - share * line.width();
+            (line.text.clone(), [from, from + line.width()])
+        };
+        lines.map(place).collect()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(40))]
+
+        /// No word of a scale of distances stands on another or outside, at any size, and the scale's end is always said.
+        #[test]
+        fn words_of_a_scale_stand_apart(size in 84_u32..700, farthest in 0.5..150.0_f32, sky in any::<bool>()) {
+            let drawing = seen(size, farthest, sky).depth_with_legend();
+            let mut words = words(&drawing);
+            words.sort_by(|a, b| a.1[0].total_cmp(&b.1[0]));
+            for pair in words.windows(2) {
+                prop_assert!(pair[0].1[1] + 2.0 < pair[1].1[0], "{words:?}");
+            }
+            prop_assert!(words.iter().all(|(_, [from, to])| *from >= 0.0 && *to <= size as f32), "{words:?}");
+            let last = &words.last().expect("the scale has words").0;
+            prop_assert!(last.contains(" m"), "{last}");
+            prop_assert_eq!(last.ends_with("and more"), sky || farthest > 100.0);
+        }
+
+        /// Four things in the corners of an arena of any form are seen in the overview, by the pixels of each.
+        #[test]
+        fn the_overview_leaves_no_corner_out(wide in 20.0..60.0_f64, deep in 20.0..60.0_f64, wall in 0.0..1.5_f64) {
+            let side = wide.min(deep);
+            let mut draft = WorldDraft::default();
+            draft.environment_params.map_size = [wide, deep];
+            draft.environment_params.wall_height = wall;
+            let thing = side / 10.0;
+            for (x, y) in [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)] {
+                let mut object = Object::new("geometric", [x * (wide - thing) / 2.0, y * (deep - thing) / 2.0]);
+                object.scale = thing;
+                draft.objects.push(object);
+            }
+            let world = draft.check().expect("the world is sound");
+            let views = Views::new(&world, 180, 0.0);
+            let scene = views.scene.clone().with_wall_tops();
+            let camera = views.with_all_in_it(&scene, views.above(&scene), 320);
+            let mut instances = vec![0_u32; 180 * 320];
+            let mut target = Target { width: 320, height: 180, instance: Some(&mut instances), ..Target::default() };
+            Renderer::default().draw(&scene, &camera, &mut target).expect("it is drawn");
+            for number in 1..=4_u32 {
+                let places: Vec<usize> = (0..instances.len()).filter(|at| instances[*at] == number).collect();
+                prop_assert!(places.len() >= 4, "{number}: {} pixels", places.len());
+                let on_the_edge = places.iter().any(|at| at % 320 == 0 || at % 320 == 319 || at / 320 == 0 || at / 320 == 179);
+                prop_assert!(!on_the_edge, "{number} is cut off");
+            }
+        }
+    }
+
+    /// Where walls stand between the agent and a thing, its picture is of the thing all the same.
+    #[test]
+    fn close_ups_show_things_and_no_walls() {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/worlds");
+        for name in ["maze", "t_maze", "key_corridor", "locked_rooms"] {
+            let variants = tasks::variants_of(&[folder.join(format!("{name}.json")).display().to_string()]);
+            let (_, variant) = variants.expect("it is a task").swap_remove(0);
+            let world = driftworld_generator::Sampler::new(&variant, 0)
+                .world(0)
+                .expect("it is drawn");
+            let views = Views::new(&world, 64, 0.0);
+            let things: std::collections::BTreeSet<String> = world.objects.iter().map(map_drawing::named).collect();
+            let close_ups = views.close_ups(5).expect("they are drawn");
+            assert_eq!(close_ups.len(), things.len().min(5), "{name}");
+            let mut shown = 0;
+            for index in 0..world.objects.len() {
+                let Some(camera) = views.near(index).expect("it is drawn") else {
+                    continue;
+                };
+                let seen = sight(&mut Renderer::default(), &views.scene, &camera, &[index]).expect("it is drawn");
+                assert!(seen.pixels > LEAST_CLOSE_UP, "{name}: {index}");
+                shown += 1;
+            }
+            assert!(
+                shown + 1 >= world.objects.len(),
+                "{name}: {shown} of {}",
+                world.objects.len()
+            );
+        }
     }
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::env::{Catalogue, Environment, MAX_EXPERT_STEPS, Renderer, RendererKind};
-use crate::spec::World;
+use crate::spec::{Style, World};
 use clap::{Args, ValueEnum};
 
 use super::agent::AgentArg;
@@ -69,10 +69,12 @@ enum View {
     TopDown,
     /// The agent's view in colour.
     Rgb,
-    /// The agent's view as distance, white at 100 m.
+    /// The agent's view as distance, with a scale; white at 100 m with `--plain`.
     Depth,
     /// The agent's view as reward categories.
     Segmentation,
+    /// The agent's view in plain and in natural looks, at 84, 160 and 640 pixels.
+    Looks,
     /// An agent's episode, frame by frame: start, end, and what was done between.
     Episode,
 }
@@ -108,8 +110,36 @@ impl Render {
             View::Segmentation if self.plain => views.first_person()?.segmentation.into(),
             View::Segmentation => views.first_person()?.segmentation_with_legend(),
             View::Sheet => self.sheet(world, &views)?,
+            View::Looks => self.looks(world, catalogue)?,
             View::Episode => self.episode(world, catalogue)?,
         })
+    }
+
+    /// What the agent sees in both styles: small as learners see it, large with smooth edges.
+    fn looks(&self, world: &World, catalogue: &Catalogue) -> Result<Drawing, Failure> {
+        let row = |style: Style, title: &str| -> Result<SheetRow, Failure> {
+            let world = world.clone().edit(|draft| {
+                let looks = &mut draft.environment_params.looks;
+                looks.style = style;
+            })?;
+            let views = Views::with_catalogue(&world, catalogue, self.size, self.turn as f32)
+                .drawn_by(Renderer::new(self.renderer)?);
+            let large = views.smoothly([640, 360])?;
+            let mut small = Drawing::blank(160, large.height);
+            let mut top = 0;
+            for side in [160, 84] {
+                small.put(views.as_learners_see(side)?, [0, top]);
+                top += side + 12;
+            }
+            let pictures: Vec<Drawing> = vec![large.into(), small];
+            Ok(SheetRow {
+                title: title.to_owned(),
+                words: "640 × 360 pixels with smooth edges; 160 × 160 and 84 × 84 as learners see it".to_owned(),
+                pictures,
+            })
+        };
+        let rows = [row(Style::Plain, "Plain")?, row(Style::Natural, "Natural")?];
+        Ok(sheet(&rows, 1)?)
     }
 
     /// Two frames side by side.

@@ -87,13 +87,13 @@ fn an_episode_is_drawn_frame_by_frame() {
         let (width, height) = size.split_once(" × ").expect("it has two sides");
         [width, height].map(|side| side.parse::<u32>().expect("it is a number"))
     };
-    // Rows of two frames, each of two pictures and a head.
+    // Rows of two frames, each of two pictures and a head; a map is as oblong as the arena, 13 to 9.
     let [eight, three, two] = [
         size(&[]),
         size(&["--frames", "3"]),
         size(&["--frames", "2", "--agent", "still"]),
     ];
-    assert_eq!([eight[0], three[0], two[0]], [316; 3]);
+    assert_eq!([eight[0], three[0], two[0]], [372; 3]);
     assert!(two[1] > 64 && three[1] > 128 && three[1] > two[1] && eight[1] > 256 && eight[1] > three[1]);
     let error = fail(2, &[&episode[..], &["--frames", "3"]].concat());
     assert!(error.contains("expected --view episode"), "{error}");

@@ -61,6 +61,8 @@ const ORIGINS: [(&str, &str); 14] = [
 
 /// Each picture with the commands that make it: `{}` is its path, `{tmp}` an empty folder.
 const IMAGES: &[(&str, &[&str])] = &[
+    ("looks-sizes.png", &["render find_objects --view looks -o {}"]),
+    ("models.png", &["assets show -o {}"]),
     (
         "demo.png",
         &[

@@ -192,6 +192,11 @@ impl Environment {
         self.state.earned
     }
 
+    /// The energy that the agent has left; none where its world gives it none to use.
+    pub fn energy(&self) -> Option<f64> {
+        self.world.agent_params.energy.map(|_| self.state.energy)
+    }
+
     /// Whether the episode is over, so that a reset must come before the next step.
     pub fn ended(&self) -> bool {
         self.state.ended

@@ -1,33 +1,36 @@
-//! `driftworld assets show`: pictures of a class's models, or of one model from all sides, level by level.
+//! `driftworld assets show`: pictures of a class's models, of one model from all sides, level by level, or of every class.
 
 #![expect(clippy::disallowed_methods, reason = "where a camera stands for a picture")]
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::env::{Asset, Camera, CpuRenderer, Frame, Library, LibraryModel, Scene, model_names as built_in};
-use crate::spec::{Model, Object, WorldDraft};
+use crate::env::{
+    Asset, Camera, CpuRenderer, Frame, Library, LibraryModel, Scene, Target, classes, model_names as built_in,
+};
+use crate::spec::{Model, Object, Style, WorldDraft};
 use clap::Args;
 
 use super::super::{Failure, output};
 use super::LibraryChoice;
 use crate::report::picture::{Picture, SheetRow, sheet};
 
-/// Draw the models of a class, or one model from four sides at each level of detail.
+/// Draw the models of a class, one model from four sides at each level of detail, or some of each built-in class.
 #[derive(Args)]
 #[command(after_help = "Examples:
+  driftworld assets show -o all.png
   driftworld assets show tree -o trees.png
   driftworld assets show lamp 1 --assets town.assets -o lamp.png")]
 pub(crate) struct Show {
-    /// The class to draw.
-    class: String,
+    /// The class to draw [default: some models of every built-in class, in natural looks].
+    class: Option<String>,
     /// A single model of the class.
     model: Option<String>,
     #[command(flatten)]
     libraries: LibraryChoice,
-    /// Width and height of each picture in pixels.
-    #[arg(long, default_value_t = 220, value_parser = clap::value_parser!(u32).range(16..=2048))]
-    size: u32,
+    /// Width and height of each picture in pixels [default: 220, of all classes 44].
+    #[arg(long, value_parser = clap::value_parser!(u32).range(16..=2048))]
+    size: Option<u32>,
     /// PNG file to write.
     #[arg(short, long, default_value = "assets.png", value_name = "FILE")]
     output: PathBuf,
@@ -39,6 +42,14 @@ pub(crate) struct Show {
 /// Height and width in metres that a model is drawn at, whatever its own size is.
 const SHOWN_SIZE: f32 = 4.0;
 
+/// Pixels along each side of a picture; of one among those of all classes.
+const SIZE: u32 = 220;
+const ALBUM_SIZE: u32 = 44;
+
+/// Of a class whose models have no names so many are shown among all classes, so many classes side by side.
+const ALBUM_MODELS: usize = 7;
+const ALBUM_COLUMNS: usize = 2;
+
 /// Pictures beside each other.
 const COLUMNS: usize = 7;
 
@@ -47,23 +58,54 @@ const MOST_MODELS: usize = 210;
 
 impl Show {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let class = self.class.to_lowercase();
-        let libraries = self.libraries.read()?;
-        let names = model_names(&class, &libraries);
-        let rows = match &self.model {
-            Some(model) => self.levels(&class, model, &libraries)?,
-            None if names.is_empty() => {
-                return Err(Failure::input(format!(
-                    "class {class:?} is not known; driftworld assets list shows those that are built in"
-                )));
-            }
-            None => self.models(&class, &names)?,
-        };
-        output::write_picture_and_tell(&self.output, &sheet(&rows, 1)?)?;
+        if let Some(class) = &self.class {
+            let rows = self.of_class(&class.to_lowercase())?;
+            output::write_picture_and_tell(&self.output, &sheet(&rows, 1)?)?;
+        } else {
+            output::write_picture_and_tell(&self.output, &sheet(&self.all(), ALBUM_COLUMNS)?)?;
+        }
         if self.json {
             output::json_of_what_was_written()
         } else {
             Ok(())
+        }
+    }
+
+    /// Some models of every built-in class.
+    fn all(&self) -> Vec<SheetRow> {
+        let row = |(class, models): (&str, u32)| {
+            let names: Vec<String> = built_in(class).collect();
+            let is_named = names.iter().any(|name| name.parse::<u32>().is_err());
+            let shown = if is_named {
+                names.len()
+            } else {
+                names.len().min(ALBUM_MODELS)
+            };
+            SheetRow {
+                title: class.to_owned(),
+                words: match models {
+                    _ if is_named => names.join(", "),
+                    1 => "1 model".to_owned(),
+                    models => format!("{models} models"),
+                },
+                pictures: names[..shown]
+                    .iter()
+                    .map(|name| cut_out(class, name, self.size.unwrap_or(ALBUM_SIZE)).into())
+                    .collect(),
+            }
+        };
+        classes().map(row).collect()
+    }
+
+    fn of_class(&self, class: &str) -> Result<Vec<SheetRow>, Failure> {
+        let libraries = self.libraries.read()?;
+        let names = model_names(class, &libraries);
+        match &self.model {
+            Some(model) => self.levels(class, model, &libraries),
+            None if names.is_empty() => Err(Failure::input(format!(
+                "class {class:?} is not known; driftworld assets list shows those that are built in"
+            ))),
+            None => self.models(class, &names),
         }
     }
 
@@ -157,7 +199,8 @@ impl Show {
             pitch_deg: -((height - middle) / back).atan().to_degrees(),
             field_of_view_deg: 44.0,
         };
-        let mut frame = Frame::new(2 * self.size, 2 * self.size);
+        let size = self.size.unwrap_or(SIZE);
+        let mut frame = Frame::new(2 * size, 2 * size);
         CpuRenderer::new().render(&scene, &camera, &mut frame);
         let drawn = Picture {
             width: frame.width,
@@ -166,6 +209,55 @@ impl Show {
         };
         drawn.halved()
     }
+}
+
+/// A built-in model in natural looks on white, as large as fits.
+fn cut_out(class: &str, name: &str, size: u32) -> Picture {
+    let mut object = Object::new(class, [0.0, 0.0]);
+    object.model = Model(name.to_owned());
+    object.text = (class == "sign").then(|| "ABC".to_owned());
+    let mut world = WorldDraft {
+        objects: vec![object],
+        ..WorldDraft::default()
+    };
+    world.environment_params.wall_height = 0.0;
+    world.environment_params.looks.style = Style::Natural;
+    // From behind the camera, to its left.
+    world.environment_params.sun_direction = [-0.5, -0.6, 0.6];
+    let mut scene = Scene::from_world(&world.check().expect("a model on open ground is sound"));
+    let item = &mut scene.items[0];
+    item.heading_deg = 210.0;
+    let reach = item.asset.height.max(2.0 * item.asset.radius) * item.scale;
+    let (back, height) = (2.6 * reach, 0.9 * reach);
+    let middle = item.asset.height * item.scale / 2.0;
+    let camera = Camera {
+        position: [0.0, -back, height],
+        heading_deg: 0.0,
+        pitch_deg: -((height - middle) / back).atan().to_degrees(),
+        field_of_view_deg: 32.0,
+    };
+    let side = 4 * size;
+    let (mut rgb, mut instances) = (vec![0; 3 * (side * side) as usize], vec![0; (side * side) as usize]);
+    let mut target = Target {
+        width: side,
+        height: side,
+        rgb: Some(&mut rgb),
+        instance: Some(&mut instances),
+        ..Target::default()
+    };
+    let drawn = CpuRenderer::new().draw(&scene, &camera, &mut target);
+    drawn.expect("the picture is as large as its target");
+    for (pixel, instance) in rgb.chunks_exact_mut(3).zip(instances) {
+        if instance == 0 {
+            pixel.fill(255);
+        }
+    }
+    let large = Picture {
+        width: side,
+        height: side,
+        rgb,
+    };
+    large.halved().halved()
 }
 
 fn triangles(asset: &Asset) -> usize {
@@ -181,4 +273,24 @@ fn model_names(class: &str, libraries: &[Library]) -> Vec<String> {
         }
     }
     names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every built-in model can be seen among all, on white, and none is cut off at a side.
+    #[test]
+    fn every_model_stands_on_white_and_is_whole() {
+        for (class, _) in classes() {
+            for name in built_in(class).step_by(5) {
+                let picture = cut_out(class, &name, 24);
+                let inked = |at: usize| picture.rgb[3 * at..3 * at + 3] != [255; 3];
+                let all = (0..24 * 24).filter(|at| inked(*at)).count();
+                assert!(all >= 20, "{class} {name}: {all} pixels");
+                let rim = (0..24).flat_map(|k| [k, 23 * 24 + k, 24 * k, 24 * k + 23]);
+                assert_eq!(rim.filter(|at| inked(*at)).count(), 0, "{class} {name} is cut off");
+            }
+        }
+    }
 }

@@ -128,10 +128,10 @@ impl Game {
         let size = width.min(height);
         match self.shown {
             Shown::Agent => self.seen(width, height),
-            Shown::Above => Ok(map_of(&self.environment, size, &self.way)),
+            Shown::Above => Ok(map_of(&self.environment, [size; 2], &self.way)),
             Shown::Both => {
                 let side = (width / 2).min(height).max(1);
-                let (seen, map) = (self.seen(side, side)?, map_of(&self.environment, side, &self.way));
+                let (seen, map) = (self.seen(side, side)?, map_of(&self.environment, [side; 2], &self.way));
                 let mut both = Picture::blank(2 * side, side);
                 both.paste(&seen, 0, 0);
                 both.paste(&map, side, 0);

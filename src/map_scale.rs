@@ -1,0 +1,162 @@
+//! Scale and north of a map: from metres to pixels, a bar with its length, an arrow, and the corners where they cover least. What
+//! else is on a map is in `map_drawing.rs`.
+
+#![expect(clippy::disallowed_methods, reason = "where lines and words stand on a map")]
+
+use driftworld_env::{Scene, top_down_scale};
+use driftworld_report::picture::{Drawing, Level, Rgb, Shape, Side, TextLine, text_width};
+
+const INK: Rgb = [20, 24, 30];
+const WHITE: Rgb = [255, 255, 255];
+
+/// From metres to pixels of a map.
+pub(crate) struct Places {
+    pub(crate) size: [f32; 2],
+    pub(crate) scale: f32,
+}
+
+impl Places {
+    pub(crate) fn of(scene: &Scene, [width, height]: [u32; 2]) -> Self {
+        Self {
+            size: [width as f32, height as f32],
+            scale: top_down_scale(scene, width, height),
+        }
+    }
+
+    pub(crate) fn pixel(&self, [x, y]: [f32; 2]) -> [f32; 2] {
+        let [width, height] = self.size;
+        [width / 2.0 + x * self.scale, height / 2.0 - y * self.scale]
+    }
+
+    pub(crate) fn pixels(&self, metres: &[[f32; 2]]) -> Vec<[f32; 2]> {
+        metres.iter().map(|place| self.pixel(*place)).collect()
+    }
+}
+
+/// Corners of a map by whether they are on the right and below, the usual one of the bar first, that of north last.
+pub(crate) const CORNERS: [[bool; 2]; 4] = [[false, true], [true, true], [false, false], [true, false]];
+
+/// Where a box of this size covers least, which takes that corner away.
+pub(crate) fn freest(
+    corners: &mut Vec<[bool; 2]>,
+    size: [f32; 2],
+    map: [f32; 2],
+    marks: &[([f32; 2], f32)],
+) -> [f32; 2] {
+    let edge = (map[1] / 40.0).round();
+    let near = map[1] / 20.0;
+    let place = |corner: [bool; 2]| {
+        [0, 1].map(|axis| {
+            if corner[axis] {
+                map[axis] - edge - size[axis]
+            } else {
+                edge
+            }
+        })
+    };
+    let cost = |corner: [bool; 2]| -> f32 {
+        let at = place(corner);
+        let covers = |mark: [f32; 2]| {
+            [0, 1]
+                .into_iter()
+                .all(|axis| (at[axis] - near..at[axis] + size[axis] + near).contains(&mark[axis]))
+        };
+        marks
+            .iter()
+            .filter(|(mark, _)| covers(*mark))
+            .map(|(_, weight)| weight)
+            .sum()
+    };
+    let mut best = 0;
+    for number in 1..corners.len() {
+        if cost(corners[number]) < cost(corners[best]) {
+            best = number;
+        }
+    }
+    place(corners.remove(best))
+}
+
+/// The length in metres of a bar: a round one of at most so many metres.
+fn bar_metres(most: f32) -> f32 {
+    let power = 10_f32.powf(most.log10().floor());
+    let steps = [5.0, 2.0, 1.0].into_iter().map(|step| step * power);
+    steps.into_iter().find(|step| *step <= most).unwrap_or(power)
+}
+
+/// A bar with its length.
+pub(crate) struct Bar {
+    label: String,
+    long: f32,
+    letters: f32,
+    thick: f32,
+}
+
+impl Bar {
+    /// The bar of a map, at most so many pixels long.
+    pub(crate) fn of(places: &Places, most: f32) -> Self {
+        let metres = bar_metres(most / places.scale);
+        let size = places.size[1];
+        Self {
+            label: format!("{metres} m"),
+            long: metres * places.scale,
+            letters: (size / 22.0).clamp(9.0, 20.0),
+            thick: (size / 100.0).clamp(2.0, 8.0).round(),
+        }
+    }
+
+    /// Pixels that it takes with its words and a rim.
+    pub(crate) fn size(&self) -> [f32; 2] {
+        let wide = self.long.max(text_width(&self.label, self.letters)) + 8.0;
+        [wide, (self.letters * 1.1 + self.thick + 7.0).ceil()]
+    }
+
+    /// Draws it with its top left corner at a place; on a map, on a light ground.
+    pub(crate) fn draw(&self, on: &mut Drawing, [left, top]: [f32; 2], on_a_map: bool) {
+        let [wide, high] = self.size();
+        if on_a_map {
+            on.shapes.push(Shape::Area {
+                points: vec![
+                    [left, top],
+                    [left + wide, top],
+                    [left + wide, top + high],
+                    [left, top + high],
+                ],
+                color: WHITE,
+                alpha: 0.75,
+            });
+        }
+        on.write(TextLine::new(&self.label, [left + 4.0, top + 3.0], self.letters, INK));
+        let bar = [left + 4.0, top + high - self.thick - 3.0, self.long, self.thick];
+        on.rectangle(bar, [0, 0, 0]);
+    }
+}
+
+/// Pixels along each side that the arrow to the north takes on a map of this height.
+pub(crate) fn north_size(size: f32) -> f32 {
+    (1.72 * (size / 14.0).clamp(12.0, 44.0)).round()
+}
+
+/// An arrow to the north in a disc with this corner and side.
+pub(crate) fn north(map: &mut Drawing, [left, top]: [f32; 2], side: f32) {
+    let high = side / 1.72;
+    let x = left + side / 2.0;
+    map.shapes.push(Shape::Disc {
+        middle: [x, top + side / 2.0],
+        radius: side / 2.0,
+        color: WHITE,
+        alpha: 0.75,
+    });
+    let top = top + 0.14 * high;
+    let half = high * 0.26;
+    map.area(
+        [
+            [x, top],
+            [x + half, top + 0.72 * high],
+            [x, top + 0.55 * high],
+            [x - half, top + 0.72 * high],
+        ],
+        INK,
+    );
+    let words = TextLine::new("N", [x, top + 0.8 * high], high * 0.62, INK);
+    map.write(words.anchored(Side::Middle, Level::Top));
+}

@@ -1,0 +1,130 @@
+//! Values in a few words, as captions have room for them. Values that are written whole are `spec`'s.
+
+use driftworld_spec::{Layout, RoomDoors, Value};
+
+/// The most letters of a value whose parts are not known here.
+const LONGEST: usize = 40;
+
+/// A value in a few words: numbers with four digits, layouts by what they are made of.
+pub(crate) fn short(value: &Value) -> String {
+    match value {
+        Value::Number(number) => rounded(*number),
+        Value::Layout(layout) => layout_words(layout),
+        other => cut(&other.to_string()),
+    }
+}
+
+fn rounded(number: f64) -> String {
+    let digits = format!("{number:.3e}").parse::<f64>();
+    digits.map_or_else(|_| number.to_string(), |number| number.to_string())
+}
+
+fn cut(text: &str) -> String {
+    let plain: String = text.chars().filter(|letter| *letter != '"').collect();
+    if plain.chars().count() <= LONGEST {
+        return plain;
+    }
+    plain.chars().take(LONGEST - 1).chain(['…']).collect()
+}
+
+/// What a layout is made of; what is as usual is not said.
+fn layout_words(layout: &Layout) -> String {
+    let mut words = Vec::new();
+    let mut seed = None;
+    if let Some(maze) = &layout.maze {
+        let usual = driftworld_spec::Maze::default();
+        words.push(format!("maze {} × {}", maze.cells[0], maze.cells[1]));
+        if maze.cell != usual.cell {
+            words.push(format!("cells of {} m", rounded(maze.cell)));
+        }
+        if maze.braid != usual.braid {
+            words.push(format!("{} % of dead ends open", rounded(100.0 * maze.braid)));
+        }
+        seed = maze.seed;
+    } else if let Some(rooms) = &layout.rooms {
+        let usual = driftworld_spec::Rooms::default();
+        let [wide, deep] = rooms.room.map(rounded);
+        words.push(format!(
+            "{} × {} rooms of {wide} × {deep} m",
+            rooms.grid[0], rooms.grid[1]
+        ));
+        if rooms.doorway != usual.doorway {
+            words.push(format!("doorways of {} m", rounded(rooms.doorway)));
+        }
+        if rooms.loops != usual.loops {
+            words.push(format!("{} % of loops", rounded(100.0 * rooms.loops)));
+        }
+        match rooms.doors {
+            RoomDoors::None => {}
+            RoomDoors::Open => words.push("open doors".to_owned()),
+            RoomDoors::Closed => words.push("closed doors".to_owned()),
+            RoomDoors::Keyed => words.push("doors with keys".to_owned()),
+        }
+        seed = rooms.seed;
+    } else if let Some(lines) = &layout.text {
+        let wide = lines.first().map_or(0, |line| line.chars().count());
+        words.push(format!("map of {wide} × {} letters", lines.len()));
+        if let Some(cell) = layout.cell {
+            words.push(format!("cells of {} m", rounded(cell)));
+        }
+    } else if let Some(map) = layout.predefined {
+        words.push(format!("map {map}"));
+        if let Some([wide, deep]) = layout.size.map(|size| size.map(rounded)) {
+            words.push(format!("{wide} × {deep} m"));
+        }
+    } else {
+        match layout.walls.as_ref().map_or(0, Vec::len) {
+            0 => words.push("no walls".to_owned()),
+            1 => words.push("1 wall".to_owned()),
+            number => words.push(format!("{number} walls")),
+        }
+    }
+    if layout.standing < 1.0 {
+        words.push(format!("{} % of walls", rounded(100.0 * layout.standing)));
+    }
+    if let Some(seed) = seed {
+        words.push(format!("seed {seed}"));
+    }
+    words.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use driftworld_spec::{ParameterType, Value};
+
+    use super::*;
+
+    #[test]
+    fn numbers_have_four_digits() {
+        let shown =
+            [21.899_414, 0.642_968_750_000_000_1, -100.0, 12_346.0, 0.0].map(|number| short(&Value::Number(number)));
+        assert_eq!(shown, ["21.9", "0.643", "-100", "12350", "0"]);
+        assert_eq!(short(&Value::Text("red".to_owned())), "red");
+        assert_eq!(short(&Value::Text("x".repeat(60))).chars().count(), LONGEST);
+    }
+
+    #[test]
+    fn layouts_are_words_and_no_cut_json() {
+        let cases = [
+            (r#"{ "maze": {} }"#, "maze 8 × 8"),
+            (
+                r#"{ "maze": { "cells": [12, 5], "cell": 2, "braid": 0.5, "seed": 7 } }"#,
+                "maze 12 × 5, cells of 2 m, 50 % of dead ends open, seed 7",
+            ),
+            (r#"{ "maze": {}, "standing": 0.33 }"#, "maze 8 × 8, 33 % of walls"),
+            (
+                r#"{ "rooms": { "grid": [3, 2], "room": [6, 8.5], "doorway": 2, "loops": 0, "doors": "keyed" } }"#,
+                "3 × 2 rooms of 6 × 8.5 m, doorways of 2 m, 0 % of loops, doors with keys",
+            ),
+            (r#"{ "text": ["*****", "*A..*", "*****"] }"#, "map of 5 × 3 letters"),
+            (r#"{ "predefined": 3, "size": [50, 50] }"#, "map 3, 50 × 50 m"),
+            (r#"{ "walls": [] }"#, "no walls"),
+            (r#"{ "walls": [{ "from": [0, 0], "to": [5, 0] }] }"#, "1 wall"),
+        ];
+        for (json, words) in cases {
+            let value: Value = serde_json::from_str(json).expect("it is a value");
+            let value = value.cast(ParameterType::Layout).expect("it is a layout");
+            assert_eq!(short(&value), words, "{json}");
+        }
+    }
+}
