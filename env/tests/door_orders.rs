@@ -47,12 +47,12 @@ impl Orders {
 
     fn close(&mut self, tick: u64) {
         if self.is_open {
-            self.due = Some(self.due.map_or(tick, |due| due.min(tick)));
+            self.due = Some(self.due.map_or(tick - 1, |due| due.min(tick - 1)));
         }
     }
 
     fn set_going(&mut self, action: SwitchAction, door: &Door, tick: u64) {
-        let is_to_be_open = self.is_open && self.due.is_none_or(|due| due > tick);
+        let is_to_be_open = self.is_open && self.due.is_none_or(|due| due >= tick);
         match action {
             SwitchAction::Close => self.close(tick),
             SwitchAction::Toggle if is_to_be_open => self.close(tick),

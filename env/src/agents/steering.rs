@@ -18,6 +18,9 @@ const AHEAD_BESIDE_ZONES: f32 = 0.5;
 /// Metres within which an agent that means to interact does so.
 const REACH: f32 = 3.0;
 
+/// Degrees off which an agent that stands before an object looks at it.
+const FACING: f32 = 30.0;
+
 /// Share of the distance to an object that it may have moved by before the way to it is found anew.
 const ASTRAY: f32 = 0.2;
 
@@ -68,6 +71,14 @@ impl Target {
     pub(super) fn towards(&self, sim: SimRef, purpose: Purpose, route: &mut Route) -> [f64; 3] {
         let goal = sim.objects()[self.object].position;
         let [speed, turn, _] = walk(goal, sim, route);
+        if purpose == Purpose::Interact && !interacts_on_the_way(sim) {
+            // First it gets there and looks at it, then it interacts.
+            return match self.is_in_reach(sim) {
+                true if off(sim, goal).abs() < FACING => [0.0, 0.0, 1.0],
+                true => [0.0, turn, 0.0],
+                false => [speed, turn, 0.0],
+            };
+        }
         let interact = purpose == Purpose::Interact && distance(sim.agent().position, goal) < REACH;
         [speed, turn, if interact { 1.0 } else { 0.0 }]
     }
@@ -172,6 +183,15 @@ pub(super) fn avoided(sim: SimRef, goal: Option<usize>) -> Vec<u32> {
         })
         .map(|(index, _)| index as u32)
         .collect()
+}
+
+/// Whether an action can go and interact at once: in tables a row may do one of them alone.
+fn interacts_on_the_way(sim: SimRef) -> bool {
+    let agent = &sim.world.agent_params;
+    agent.num_actions().is_none_or(|rows| {
+        let mut rows = (0..rows).filter_map(|row| agent.action_row(row));
+        rows.any(|[speed, _, interact]| interact > 0.5 && speed > 0.0)
+    })
 }
 
 /// The action in the world's own space: the row of its table that comes nearest, if it has one.

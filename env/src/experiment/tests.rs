@@ -1,7 +1,8 @@
 //! A world against itself, against worlds with one thing changed, and that it makes no difference who comes first.
 
 use driftworld_spec::{
-    ActionModel, Color, Door, Element, Energy, MotionModel, Object, Portable, Stimulus, Switch, Wall, World, WorldDraft,
+    ActionModel, ActionSpace, Color, Door, Element, Energy, MotionModel, Object, Portable, Stimulus, Switch, Wall,
+    World, WorldDraft,
 };
 use proptest::prelude::*;
 
@@ -90,7 +91,7 @@ fn what_actions_mean_belongs_to_the_actions() {
         world.agent_params.action_model = ActionModel::ByWaypoint;
     });
     check(&[Element::A], |world| {
-        world.agent_params.actions = driftworld_spec::ActionSpace::DefaultDiscrete;
+        world.agent_params.actions = ActionSpace::DefaultDiscrete;
     });
     check(&[Element::A], |world| world.agent_params.interact = false);
 }
@@ -147,10 +148,15 @@ fn doors_switches_keys_and_energy_are_seen() {
     let mut asked = 0;
     let mut check = |expected: &[Element], change: &dyn Fn(&mut WorldDraft)| {
         asked += 1;
-        let (own, mut changed) = (rooms(), rooms());
-        change(&mut changed);
-        assert_eq!(elements(&own, &changed), expected, "change {asked}");
-        assert_eq!(elements(&changed, &own), expected, "change {asked} the other way round");
+        // A row of the table goes or interacts; numbers do both at once.
+        for actions in [ActionSpace::Continuous, ActionSpace::DefaultDiscrete] {
+            let mut own = rooms();
+            own.agent_params.actions = actions;
+            let mut changed = own.clone();
+            change(&mut changed);
+            assert_eq!(elements(&own, &changed), expected, "change {asked}");
+            assert_eq!(elements(&changed, &own), expected, "change {asked} the other way round");
+        }
     };
     let door =
         |change: fn(&mut Door)| move |world: &mut WorldDraft| change(world.objects[0].door.as_mut().expect("a door"));

@@ -54,16 +54,17 @@ pub(super) fn open(world: &World, state: &mut SimState, views: &mut Views, index
 
 /// Lets an open door close at the end of this time step, or as soon as nobody stands in it.
 pub(super) fn close_soon(state: &mut SimState, index: usize) {
-    let now = state.ticks;
+    // It is due since the last time step: from now on it waits to close, where one whose time runs out now does not yet.
+    let due = state.ticks.saturating_sub(1);
     if let Some(door) = state.doors.iter_mut().find(|door| door.object == index) {
-        door.closes_at = Some(door.closes_at.map_or(now, |tick| tick.min(now)));
+        door.closes_at = Some(door.closes_at.map_or(due, |tick| tick.min(due)));
     }
 }
 
-/// Whether an open door is to close as soon as nobody stands in it.
+/// Whether an open door was to close before, and waits until nobody stands in it.
 pub(super) fn waits_to_close(state: &SimState, index: usize) -> bool {
     let closes_at = state.door_of(index).and_then(|door| door.closes_at);
-    state.objects[index].open && closes_at.is_some_and(|tick| tick <= state.ticks)
+    state.objects[index].open && closes_at.is_some_and(|tick| tick < state.ticks)
 }
 
 /// The end of a time step: clocks first, then what is to close and can.
@@ -84,7 +85,8 @@ pub(super) fn advance_doors(world: &World, state: &mut SimState, views: &mut Vie
                 (false, false) => {}
             }
         }
-        if waits_to_close(state, index) && !is_stood_in(world, state, views, index) {
+        let is_due = state.doors[place].closes_at.is_some_and(|tick| tick <= state.ticks);
+        if is_due && state.objects[index].open && !is_stood_in(world, state, views, index) {
             state.doors[place].closes_at = None;
             state.objects[index].open = false;
             views.sync_object(index, &world.objects[index], &state.objects[index]);
