@@ -2,7 +2,7 @@
 
 use driftworld_spec::{
     ActionModel, ActionSpace, Color, Door, Element, Energy, MotionModel, Object, Portable, Stimulus, Switch, Wall,
-    World, WorldDraft,
+    World, WorldDraft, Zone, ZoneEnd,
 };
 use proptest::prelude::*;
 
@@ -182,6 +182,50 @@ fn doors_switches_keys_and_energy_are_seen() {
     check(&[Element::T], &energy(|energy| energy.per_second = -2.0));
     check(&[Element::T], &energy(|energy| energy.per_metre = -0.1));
     check(&[Element::T], &|world| world.objects[2].energy = 5.0);
+}
+
+#[test]
+fn a_zone_that_pays_or_ends_belongs_to_the_rewards() {
+    let zone = |change: fn(&mut Zone)| {
+        move |world: &mut WorldDraft| {
+            let mut zone = Zone::disc([0.0, -2.0], 1.5);
+            zone.visible = false;
+            change(&mut zone);
+            world.environment_params.zones.push(zone);
+        }
+    };
+    let check = |expected: &[Element], change: &dyn Fn(&mut WorldDraft)| {
+        let mut changed = rooms();
+        change(&mut changed);
+        assert_eq!(elements(&rooms(), &changed), expected);
+        assert_eq!(elements(&changed, &rooms()), expected);
+    };
+    check(&[], &zone(|_| {}));
+    check(&[Element::R], &zone(|zone| zone.reward_per_second = -5.0));
+    check(&[Element::R], &zone(|zone| zone.reward_on_entering = 3.0));
+    check(&[Element::R], &zone(|zone| zone.ends = Some(ZoneEnd::Failure)));
+    check(&[Element::T], &zone(|zone| zone.speed_factor = 0.5));
+}
+
+/// Its corners are the same, and sums about it are rounded otherwise.
+#[test]
+fn a_wall_in_two_pieces_is_one_wall_to_the_eye() {
+    let wall = |x: [f64; 2]| Wall {
+        polygon: vec![[x[0], 5.0], [x[1], 5.0], [x[1], 5.3], [x[0], 5.3]],
+        height: None,
+        color: None,
+    };
+    let with = |walls: Vec<Wall>| {
+        let mut world = world();
+        world.agent_params.modalities = vec![Modality::Depth];
+        world.environment_params.walls = walls;
+        world
+    };
+    let found = elements(
+        &with(vec![wall([-9.0, 9.0])]),
+        &with(vec![wall([-9.0, 0.7]), wall([0.7, 9.0])]),
+    );
+    assert!(!found.contains(&Element::Phi), "{found:?}");
 }
 
 #[test]

@@ -53,6 +53,7 @@ impl Environment {
     /// Both worlds have as many objects, each the counterpart of the one of its number.
     pub(crate) fn take_state_of(&mut self, other: &Self) {
         let (theirs, seconds) = (&other.state, self.world.agent_params.time_step);
+        let has_same_zones = have_same_zones(&self.world, &other.world);
         let own = &mut self.state;
         let of_theirs = other.world.agent_params.time_step;
         let ticks = |theirs: u64| {
@@ -87,7 +88,11 @@ impl Environment {
         }
         own.energy = theirs.energy;
         own.contacts.clone_from(&theirs.contacts);
-        self.views.zones.resume(&other.views.zones.entered(theirs), own);
+        if has_same_zones {
+            self.views.zones.resume(&other.views.zones.entered(theirs), own);
+        } else {
+            self.views.zones.locate(own);
+        }
         own.returning.clear();
         own.returning
             .extend(theirs.returning.iter().map(|(index, tick)| (*index, ticks(*tick))));
@@ -178,8 +183,10 @@ impl Environment {
         .or_else(|| (0..own.objects.len()).find_map(|index| self.object_unlike(other, index)))
         .or_else(|| Unlike::of("the objects that the agent touches", &own.contacts, &their.contacts))
         .or_else(|| {
+            // Where zones are others, being in one follows from where the agent is, and is no state of its own.
             let [own, their] = [self, other].map(|one| one.views.zones.entered(&one.state));
-            Unlike::of("the zones that the agent is in", &own, &their)
+            let unlike = Unlike::of("the zones that the agent is in", &own, &their);
+            unlike.filter(|_| have_same_zones(&self.world, &other.world))
         })
         .or_else(|| Unlike::of("what the agent carries", &own.carried, &their.carried))
         .or_else(|| Unlike::of("the agent's energy", &own.energy, &their.energy))
@@ -244,6 +251,15 @@ impl Environment {
         self.renderer.draw_carried(&self.views.scene, carried, &mut target);
         Ok(())
     }
+}
+
+/// Whether the zones of two worlds lie where those of the other do, each with its counterpart of the same number.
+fn have_same_zones(a: &World, b: &World) -> bool {
+    let places = |world: &World| -> Vec<_> {
+        let zones = world.environment_params.zones.iter();
+        zones.map(|zone| (zone.disc, zone.polygon.clone())).collect()
+    };
+    places(a) == places(b)
 }
 
 /// What people call an object: its tag, or else its class.
