@@ -10,7 +10,7 @@ use std::sync::atomic::AtomicBool;
 use driftworld_curriculum::{
     CurriculumError, ENDED_BY, ENDING, Experience, FoundWorld, Journal, Plan, RunContext, Sources, run,
 };
-use driftworld_env::{Catalogue, OnRailsAgent};
+use driftworld_env::{Catalogue, ScriptedAgent};
 use driftworld_metrics::{Complexity, Difficulty, Timestamp, read_log, validate_log};
 use driftworld_spec::{Block, BlockKind, Regime, Scenario, ScenarioComplexity, ScenarioDifficulty, World};
 
@@ -57,9 +57,9 @@ fn scenario() -> Scenario {
 fn live(log: &Path, most: u64, resume: bool) -> Result<(), CurriculumError> {
     let plan = plan(&scenario());
     let mut journal = if resume {
-        Journal::resume(log, &plan, "onrails")?
+        Journal::resume(log, &plan, "scripted")?
     } else {
-        Journal::create(log, &plan, "onrails")?
+        Journal::create(log, &plan, "scripted")?
     };
     let mut around = RunContext {
         now: &mut || Timestamp::from_unix_micros(1_600_000_000_000_000).expect("a year from 1 to 9999"),
@@ -75,7 +75,9 @@ fn live(log: &Path, most: u64, resume: bool) -> Result<(), CurriculumError> {
         jobs: NonZeroUsize::MIN,
         repeated_evaluations: driftworld_curriculum::REPEATED_EVALUATIONS,
     };
-    run(&plan, &mut OnRailsAgent::new(), &mut journal, &mut around)?;
+    // The agent on rails would leave alone what fails.
+    let mut agent = ScriptedAgent::parse("touch", "touch goal 60\nrepeat\n").expect("it is a script");
+    run(&plan, &mut agent, &mut journal, &mut around)?;
     journal.finish()
 }
 
