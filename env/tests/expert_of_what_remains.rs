@@ -112,3 +112,31 @@ proptest! {
         prop_assert!(success, "{ended_by:?} after {earned}");
     }
 }
+
+/// A doorway, and a thing right behind it that leaves no way around: who may carry it takes it out of the way.
+#[test]
+fn a_thing_in_its_way_is_picked_up() {
+    let behind = |carry_limit: u32, at: f64| {
+        let mut world = field(1.0, false);
+        let wall = |x: [f64; 2]| Wall {
+            polygon: vec![[x[0], -0.15], [x[1], -0.15], [x[1], 0.15], [x[0], 0.15]],
+            height: None,
+            color: None,
+        };
+        world.environment_params.walls = vec![wall([-12.0, -0.75]), wall([0.75, 12.0])];
+        let mut key = Object::new("key", [0.0, at]);
+        key.portable = Some(Portable::default());
+        world.objects.push(key);
+        world.agent_params.carry_limit = carry_limit;
+        lived(world.check().expect("it is sound"))
+    };
+    for at in [0.7, 0.8, 0.9] {
+        assert_eq!(
+            behind(1, at),
+            (Some(EndedBy::Touch), true, 1.0),
+            "{at} m behind the wall"
+        );
+    }
+    let (ended_by, success, _) = behind(0, 0.8);
+    assert!(!success, "{ended_by:?}: there is no way");
+}

@@ -10,7 +10,7 @@ use crate::sim::{Action, SimRef};
 const SHARES: [f64; 4] = [1.0, 0.5, 0.25, 0.0];
 
 /// How far beyond a touch a step keeps off what fails, in metres.
-const AWAY: f64 = 0.02;
+const AWAY: f64 = 0.01;
 
 /// What a step keeps out of, beside off objects whose touch is a failure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

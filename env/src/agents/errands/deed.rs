@@ -3,6 +3,7 @@
 
 use driftworld_spec::Stimulus;
 
+use super::HELD_UP;
 use super::floor::{Floor, Room};
 use super::leaf::Leaf;
 use super::plan::can_interact;
@@ -225,6 +226,21 @@ fn is_too_much(sim: SimRef, object: u32) -> bool {
     let object = &sim.world.objects[object as usize];
     let is_thing = object.portable.is_some() && object.door.is_none() && object.switch.is_none();
     is_thing && sim.state.carried().len() >= sim.world.agent_params.carry_limit as usize
+}
+
+/// Whether the agent gets nowhere, with a thing in front that an interaction would take out of its way.
+pub(super) fn is_blocked_by_a_thing(sim: SimRef) -> bool {
+    let world = sim.world;
+    let has_hand = sim.state.carried().len() < world.agent_params.carry_limit as usize;
+    let [east, north] = sim.agent().velocity;
+    if !has_hand || !can_interact(world) || (east * east + north * north).sqrt() > HELD_UP {
+        return false;
+    }
+    let is_thing = |index: u32| {
+        let object = &world.objects[index as usize];
+        object.portable.is_some() && object.door.is_none() && object.switch.is_none() && object.solid
+    };
+    answering(sim, &reached(sim)).is_some_and(is_thing)
 }
 
 /// The objects that an interaction reaches now.

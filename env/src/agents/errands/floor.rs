@@ -18,6 +18,9 @@ const SIDE: f32 = 0.2;
 const LEAST: f32 = 0.04;
 const LIKED: f32 = 0.25;
 
+/// How far it keeps from what fails when it is touched, in metres: farther than the last step is held back.
+const FAILING: f32 = 0.15;
+
 /// How dear cells are: where nobody should be, on open ground, beside walls, at what stands around, at what costs.
 const NOWHERE: u16 = 0;
 const OPEN: u16 = 1;
@@ -93,7 +96,12 @@ impl Floor {
             let Standing {
                 leaf, is_door, weight, ..
             } = self.standing[number];
-            let margin = self.body + if is_door { 0.02 } else { LEAST };
+            let margin = match weight {
+                _ if is_door => 0.02,
+                NOWHERE => FAILING,
+                _ => LEAST,
+            };
+            let margin = self.body + margin;
             let at = leaf.at;
             let reach = leaf.reach() + margin;
             let cells = self

@@ -16,7 +16,7 @@ mod wishes;
 
 use driftworld_spec::{MotionModel, Zone};
 
-use deed::{Deed, Task};
+use deed::{Deed, Task, is_blocked_by_a_thing};
 use floor::Floor;
 use plan::Plan;
 use wishes::{Wish, wishes};
@@ -30,6 +30,12 @@ const PATIENCE: u32 = 3000;
 /// Of every so many steps on a target, the last few are steps back, and as many more each time: who got caught somewhere gets
 /// free, and does not come back to the very same place for ever.
 const STUCK: (u32, u32) = (200, 4);
+
+/// From which step on a target, and then every how many steps, it looks whether a thing that can be carried lies in its way.
+const BLOCKED: (u32, u32) = (40, 5);
+
+/// Slower than this, in m/s, the agent gets nowhere.
+const HELD_UP: f32 = 0.3;
 
 /// The errands of an agent.
 #[derive(Clone, Debug, Default)]
@@ -117,6 +123,14 @@ impl Errands {
             if task.is_none() {
                 task = self.rest(sim, &wishes);
             }
+        }
+        let (least, each) = BLOCKED;
+        if !is_waiting
+            && self.steps_on_target >= least
+            && self.steps_on_target.is_multiple_of(each)
+            && is_blocked_by_a_thing(sim)
+        {
+            return [0.0, 0.0, 1.0];
         }
         let (round, more) = STUCK;
         let back = (more * (1 + self.steps_on_target / round)).min(round / 2);
