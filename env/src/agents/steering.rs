@@ -141,20 +141,17 @@ pub(super) fn seconds(sim: SimRef) -> f32 {
 
 /// Whether touching an object ends the episode as a failure.
 pub(super) fn fails(world: &World, object: &Object) -> bool {
-    world.rules.failure.iter().any(|condition| match condition {
-        EndCondition::Touch(tag) => object.tag.as_ref() == Some(tag),
-        _ => false,
-    })
+    world
+        .rules
+        .failure
+        .iter()
+        .any(|condition| condition.is_touch_of(object))
 }
 
 /// The objects that are there and whose touch ends the episode as a failure.
 pub(super) fn failing(sim: SimRef) -> impl Iterator<Item = usize> {
-    let has_any = sim
-        .world
-        .rules
-        .failure
-        .iter()
-        .any(|condition| matches!(condition, EndCondition::Touch(_)));
+    let mut conditions = sim.world.rules.failure.iter();
+    let has_any = conditions.any(|condition| matches!(condition, EndCondition::Touch(_)));
     let objects = if has_any { sim.world.objects.as_slice() } else { &[] };
     let is_there = move |(index, object): &(usize, &Object)| sim.objects()[*index].present && fails(sim.world, object);
     objects.iter().enumerate().filter(is_there).map(|(index, _)| index)

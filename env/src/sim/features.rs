@@ -1,6 +1,6 @@
 //! The state vector: the features that a world asks for, as numbers. What each means is said in `StateFeature`.
 
-use driftworld_spec::{EndCondition, Object, StateFeature, Stimulus, World};
+use driftworld_spec::{Object, StateFeature, Stimulus, World};
 
 use super::environment::Environment;
 use super::state::{ObjectState, SimState};
@@ -107,8 +107,8 @@ fn is_goal(world: &World, object: &Object, own: &ObjectState) -> bool {
     let Some(tag) = &object.tag else { return false };
     let rules = &world.rules;
     let wanted = rules.shaping.as_ref().and_then(|shaping| shaping.toward.as_ref());
-    let touch = |condition: &EndCondition| matches!(condition, EndCondition::Touch(wanted) if wanted == tag);
-    own.present && wanted.map_or_else(|| rules.success.iter().any(touch), |wanted| wanted == tag)
+    let is_touched = || rules.success.iter().any(|condition| condition.is_touch_of(object));
+    own.present && wanted.map_or_else(is_touched, |wanted| wanted == tag)
 }
 
 /// The way to an object ahead and to the right in metres, and 1; all 0 without an object.

@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::Object;
 use super::defaults::{is_default, is_one, is_two, one, two};
 use super::fields::{Field, FieldPlace, Place, fields};
 use crate::value::{ParameterType, Value};
@@ -116,6 +117,13 @@ fields! {
         #[serde(default = "two", skip_serializing_if = "is_two")]
         #[schemars(range(min = 0.0, max = 1000.0))]
         pub within: f64 => Field::ours(AsPart).unit("m"),
+    }
+}
+
+impl EndCondition {
+    /// Whether it is that the agent touches this object.
+    pub fn is_touch_of(&self, object: &Object) -> bool {
+        matches!(self, Self::Touch(tag) if object.tag.as_ref() == Some(tag))
     }
 }
 

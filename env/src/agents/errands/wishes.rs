@@ -56,10 +56,9 @@ pub(super) fn wishes(sim: SimRef) -> [Vec<Wish>; 3] {
 
 /// Whether an object is there whose touch is a success.
 fn ends_by_touch(sim: SimRef, index: u32) -> bool {
-    let tag = &sim.world.objects[index as usize].tag;
-    let is_it =
-        |condition: &EndCondition| matches!(condition, EndCondition::Touch(wanted) if tag.as_ref() == Some(wanted));
-    sim.objects()[index as usize].present && sim.world.rules.success.iter().any(is_it)
+    let object = &sim.world.objects[index as usize];
+    let mut conditions = sim.world.rules.success.iter();
+    sim.objects()[index as usize].present && conditions.any(|condition| condition.is_touch_of(object))
 }
 
 /// What makes an object pay, or counts as touching it.
