@@ -1,7 +1,7 @@
 //! The policy on rails: it knows the map, and tours what pays. How it goes to one object is in `steering.rs`; the agent
 //! that acts by it, in `on_rails.rs`. A world on rails steers by it, too.
 
-use driftworld_spec::{EndCondition, Object, RailsProgress, Stimulus, World, Zone};
+use driftworld_spec::{Object, RailsProgress, Stimulus, World, Zone};
 
 use super::errands::Errands;
 use super::nearest::Goal;
@@ -113,37 +113,32 @@ impl RailsPolicy {
 
     fn choose(&mut self, sim: SimRef) {
         let tiers = tiers(sim);
-        if tiers.iter().flatten().all(|index| self.given_up.contains(index)) {
+        let given_up = self.given_up_of(sim);
+        if tiers.iter().flatten().all(|index| given_up.contains(*index)) {
             self.given_up.clear();
         }
         (self.target, self.steps_on_target) = (None, 0);
-        for wanted in &tiers {
-            self.target = self.nearest(sim, wanted);
+        for mut wanted in tiers {
+            self.target = self.nearest(sim, &wanted);
             if self.target.is_some() {
                 return;
             }
             // There is no way to them.
-            let new = wanted.iter().filter(|index| !self.given_up.contains(index));
-            let new: Vec<usize> = new.copied().collect();
-            self.given_up.extend(new);
+            let given_up = self.given_up_of(sim);
+            wanted.retain(|index| !given_up.contains(*index));
+            self.given_up.append(&mut wanted);
         }
     }
 
     /// The nearest of these objects that was not given up; `None` where there is no way to any.
     fn nearest(&mut self, sim: SimRef, wanted: &[usize]) -> Option<Target> {
         let here = sim.agent().position;
-        let mut given_up = vec![false; sim.objects().len()];
-        // What was written down may name objects that the world does not have.
-        for index in &self.given_up {
-            if let Some(given_up) = given_up.get_mut(*index) {
-                *given_up = true;
-            }
-        }
+        let given_up = self.given_up_of(sim);
         let (world, scene) = (sim.world, sim.scene());
         let goals: Vec<Goal> = wanted
             .iter()
             .copied()
-            .filter(|index| !given_up[*index])
+            .filter(|index| !given_up.contains(*index))
             .map(|index| Goal {
                 object: index as u32,
                 place: sim.objects()[index].position,
@@ -157,16 +152,18 @@ impl RailsPolicy {
         nearest.map(|number| Target::at(goals[number].object as usize, sim, &mut self.route))
     }
 
-    /// The tier that counts: the first of which not all is given up.
-    fn tier(&self, tiers: [Vec<usize>; 3]) -> Vec<usize> {
-        let is_left = |index: &usize| !self.given_up.contains(index);
-        let [first, second, third] = tiers;
-        for tier in [&first, &second, &third] {
-            if tier.iter().any(is_left) {
-                return tier.clone();
+    fn given_up_of(&self, sim: SimRef) -> GivenUp {
+        let mut given_up = Vec::new();
+        if !self.given_up.is_empty() {
+            given_up.resize(sim.objects().len(), false);
+        }
+        // What was written down may name objects that the world does not have.
+        for index in &self.given_up {
+            if let Some(given_up) = given_up.get_mut(*index) {
+                *given_up = true;
             }
         }
-        [first, second, third].concat()
+        GivenUp(given_up)
     }
 
     fn towards(&mut self, sim: SimRef) -> [f64; 3] {
@@ -235,7 +232,8 @@ impl RailsPolicy {
 
     fn tour(&mut self, sim: SimRef) -> [f64; 3] {
         self.steps_on_target = self.steps_on_target.saturating_add(1);
-        let wanted = self.tier(tiers(sim));
+        let given_up = self.given_up_of(sim);
+        let wanted = given_up.tier(tiers(sim));
         let stale = self
             .target
             .as_ref()
@@ -246,13 +244,11 @@ impl RailsPolicy {
         // Where there is no way to anything, it looks again now and then.
         let waits = self.target.is_none()
             && self.steps_on_target < IDLE
-            && wanted.iter().all(|index| self.given_up.contains(index));
-        if (stale || self.steps_on_target > PATIENCE) && !wanted.is_empty() {
-            if !waits {
-                self.choose(sim);
-            }
-        } else if wanted.is_empty() {
+            && wanted.iter().all(|index| given_up.contains(*index));
+        if wanted.is_empty() {
             self.target = None;
+        } else if (stale || self.steps_on_target > PATIENCE) && !waits {
+            self.choose(sim);
         }
         if self.target.is_some() {
             self.zone_goal = None;
@@ -261,6 +257,24 @@ impl RailsPolicy {
             *target = Target::at(target.object, sim, &mut self.route);
         }
         self.towards(sim)
+    }
+}
+
+/// For each object whether it was given up; empty where none was.
+struct GivenUp(Vec<bool>);
+
+impl GivenUp {
+    fn contains(&self, index: usize) -> bool {
+        self.0.get(index).is_some_and(|given_up| *given_up)
+    }
+
+    /// The tier that counts: the first of which not all is given up; all where nothing else is left.
+    fn tier(&self, mut tiers: [Vec<usize>; 3]) -> Vec<usize> {
+        let is_left = |index: &usize| !self.contains(*index);
+        match tiers.iter().position(|tier| tier.iter().any(is_left)) {
+            Some(number) => std::mem::take(&mut tiers[number]),
+            None => tiers.concat(),
+        }
     }
 }
 
@@ -285,16 +299,14 @@ fn tiers(sim: SimRef) -> [Vec<usize>; 3] {
     let pays =
         |index: &usize| world.objects[*index].is_target() && states[*index].present && states[*index].reward > 0.0;
     let is_safe = |index: &usize| !fails(world, &world.objects[*index]);
-    let ends = |object: &Object| {
-        world.rules.success.iter().any(|condition| match condition {
-            EndCondition::Touch(tag) => object.tag.as_ref() == Some(tag),
-            _ => false,
-        })
+    let ends = |index: &usize| {
+        let mut conditions = world.rules.success.iter();
+        conditions.any(|condition| condition.is_touch_of(&world.objects[*index]))
     };
     let paying = (0..states.len()).filter(pays).filter(in_turn).filter(is_safe);
-    let (last, before): (Vec<usize>, Vec<usize>) = paying.partition(|&index| ends(&world.objects[index]));
-    let ending = (0..states.len()).filter(|&index| states[index].present && ends(&world.objects[index]));
-    let ending: Vec<usize> = ending.filter(|index| !last.contains(index)).collect();
+    let (last, before): (Vec<usize>, Vec<usize>) = paying.partition(ends);
+    let is_left = |index: &usize| states[*index].present && !last.contains(index);
+    let ending = (0..states.len()).filter(ends).filter(is_left).collect();
     [before, last, ending]
 }
 
