@@ -3,7 +3,6 @@
 
 use driftworld_spec::Stimulus;
 
-use super::HELD_UP;
 use super::floor::{Floor, Room};
 use super::leaf::Leaf;
 use super::plan::can_interact;
@@ -14,6 +13,9 @@ use crate::sim::{SimRef, answering, put_down_place};
 
 /// Degrees off which an agent goes on looking at what it means to use, rather than walking to it.
 const OFF: f32 = 8.0;
+
+/// Slower than this, in m/s, the agent gets nowhere.
+const HELD_UP: f32 = 0.3;
 
 /// How near to a thing the agent puts down what it carries in its place, in metres.
 const BESIDE: f32 = 1.8;

@@ -18,7 +18,8 @@ const SIDE: f32 = 0.2;
 const LEAST: f32 = 0.04;
 const LIKED: f32 = 0.25;
 
-/// How far it keeps from what fails when it is touched, in metres: farther than the last step is held back.
+/// How far it keeps from closed doors, and from what fails when it is touched, in metres: farther than the last step is held back.
+const DOOR: f32 = 0.02;
 const FAILING: f32 = 0.15;
 
 /// How dear cells are: where nobody should be, on open ground, beside walls, at what stands around, at what costs.
@@ -40,7 +41,7 @@ const NO_ROOM: Room = 0;
 pub(super) struct Standing {
     object: u32,
     pub(super) leaf: Leaf,
-    /// Whether it is a closed door; else it is dear, or costs.
+    /// Whether it is a closed door, which divides rooms.
     is_door: bool,
     weight: u16,
 }
@@ -96,12 +97,12 @@ impl Floor {
             let Standing {
                 leaf, is_door, weight, ..
             } = self.standing[number];
-            let margin = match weight {
-                _ if is_door => 0.02,
+            let away = match weight {
+                _ if is_door => DOOR,
                 NOWHERE => FAILING,
                 _ => LEAST,
             };
-            let margin = self.body + margin;
+            let margin = self.body + away;
             let at = leaf.at;
             let reach = leaf.reach() + margin;
             let cells = self
@@ -109,11 +110,9 @@ impl Floor {
                 .within(at.map(|metres| metres - reach), at.map(|metres| metres + reach));
             for cell in cells {
                 if leaf.distance(self.grid.centre(cell)) < margin && self.weight[cell] > 0 {
-                    let is_shut = is_door || weight == NOWHERE;
-                    self.weight[cell] = if is_shut {
-                        NOWHERE
-                    } else {
-                        self.weight[cell].max(weight)
+                    self.weight[cell] = match weight {
+                        NOWHERE => NOWHERE,
+                        dear => self.weight[cell].max(dear),
                     };
                 }
             }
@@ -320,7 +319,7 @@ fn standing(sim: SimRef) -> Vec<Standing> {
         }
         let is_door = object.door.is_some() && object.solid;
         let weight = match (own.reward < 0.0, object.solid) {
-            _ if fails(sim.world, object) => NOWHERE,
+            _ if is_door || fails(sim.world, object) => NOWHERE,
             (true, _) => COSTS,
             (false, true) => STANDS,
             (false, false) => return None,

@@ -34,9 +34,6 @@ const STUCK: (u32, u32) = (200, 4);
 /// From which step on a target, and then every how many steps, it looks whether a thing that can be carried lies in its way.
 const BLOCKED: (u32, u32) = (40, 5);
 
-/// Slower than this, in m/s, the agent gets nowhere.
-const HELD_UP: f32 = 0.3;
-
 /// The errands of an agent.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Errands {
