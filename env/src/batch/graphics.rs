@@ -1,7 +1,7 @@
 //! The pictures of a whole batch drawn together, for renderers that like it so. What an environment draws by itself is
 //! in `slot.rs`.
 
-use super::images::{ImagesMut, keep_asked};
+use super::images::{ImagesMut, blank_unasked};
 use super::slot::Slot;
 use crate::EnvError;
 use crate::render::{Picture, Renderer};
@@ -18,14 +18,15 @@ pub(super) fn draw(
         .iter()
         .zip(targets)
         .enumerate()
-        .map(|(env, (slot, mut target))| {
+        .filter(|(env, (slot, _))| is_chosen(*env, slot))
+        .map(|(_, (slot, mut target))| {
             if let Some(asked) = slot.blanks() {
-                keep_asked(&mut target, asked);
+                blank_unasked(&mut target, asked);
             }
-            (env, (slot, target))
+            (slot, target)
         })
-        .filter(|(env, (slot, target))| !target.is_empty() && is_chosen(*env, slot))
-        .map(|(_, (slot, target))| {
+        .filter(|(_, target)| !target.is_empty())
+        .map(|(slot, target)| {
             let picture = Picture {
                 scene: slot.environment.scene(),
                 camera: slot.environment.camera(),

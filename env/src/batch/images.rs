@@ -213,17 +213,6 @@ impl<'a> ImagesMut<'a> {
         (self, rest)
     }
 
-    /// Sets the images of an environment that its world does not ask for to 0.
-    pub(super) fn blank(&mut self, env: usize, asked: &[Modality]) {
-        let mut target = self.target(env);
-        let is_blank = |modality| !asked.contains(&modality);
-        blank_if(is_blank(Modality::Rgb), &mut target.rgb);
-        blank_if(is_blank(Modality::Depth), &mut target.depth);
-        blank_if(is_blank(Modality::Segmentation), &mut target.category);
-        blank_if(is_blank(Modality::Class), &mut target.class);
-        blank_if(is_blank(Modality::Instance), &mut target.instance);
-    }
-
     /// Makes the depth that was drawn into the form that is handed out, for the environment of this number among these.
     pub(super) fn form_depth(&mut self, env: usize) {
         let pixels = self.size[0] as usize * self.size[1] as usize;
@@ -252,20 +241,19 @@ impl<'a> ImagesMut<'a> {
     }
 }
 
-fn blank_if<T: Default + Clone>(is_blank: bool, image: &mut Option<&mut [T]>) {
-    if let (true, Some(image)) = (is_blank, image) {
-        image.fill(T::default());
+/// Sets the images that a world does not ask for to 0, and takes them out of what is to be drawn.
+pub(super) fn blank_unasked(target: &mut Target<'_>, asked: &[Modality]) {
+    fn blank<T: Default + Clone>(image: &mut Option<&mut [T]>, is_asked: bool) {
+        if !is_asked && let Some(image) = image.take() {
+            image.fill(T::default());
+        }
     }
-}
-
-/// Takes what a world does not ask for out of what is to be drawn.
-pub(super) fn keep_asked(target: &mut Target<'_>, asked: &[Modality]) {
-    let keeps = |modality| asked.contains(&modality);
-    target.rgb = target.rgb.take().filter(|_| keeps(Modality::Rgb));
-    target.depth = target.depth.take().filter(|_| keeps(Modality::Depth));
-    target.category = target.category.take().filter(|_| keeps(Modality::Segmentation));
-    target.class = target.class.take().filter(|_| keeps(Modality::Class));
-    target.instance = target.instance.take().filter(|_| keeps(Modality::Instance));
+    let is_asked = |modality| asked.contains(&modality);
+    blank(&mut target.rgb, is_asked(Modality::Rgb));
+    blank(&mut target.depth, is_asked(Modality::Depth));
+    blank(&mut target.category, is_asked(Modality::Segmentation));
+    blank(&mut target.class, is_asked(Modality::Class));
+    blank(&mut target.instance, is_asked(Modality::Instance));
 }
 
 /// A buffer of so many of a value.

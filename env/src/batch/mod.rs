@@ -66,8 +66,9 @@ impl Batch {
     /// # Errors
     /// [`EnvError::BatchSize`] for none or more than [`MAX_ENVS`]; [`EnvError::BatchMemory`] where outputs would take
     /// more than [`MAX_BATCH_BYTES`], or more than can be had; [`EnvError::BatchWorld`] where the source has no world;
-    /// [`EnvError::BatchImages`] where worlds ask for images of other sizes, or for some that there are not; [`EnvError::BatchThreads`] if threads cannot be
-    /// had; [`EnvError::NoGpu`] if a graphics card is asked for and none works; and as [`Renderer::draw_batch`].
+    /// [`EnvError::BatchImages`] where worlds ask for images of other sizes, or for some that there are not;
+    /// [`EnvError::BatchThreads`] if threads cannot be had; [`EnvError::NoGpu`] if a graphics card is asked for and none works;
+    /// and as [`Renderer::draw_batch`].
     pub fn new(num_envs: usize, source: WorldSource, options: BatchOptions) -> Result<Self, EnvError> {
         Self::with_catalogue(num_envs, source, options, &Catalogue::default())
     }
@@ -402,9 +403,6 @@ fn draw_together(
     let mut images = outputs.images.view();
     for (env, slot) in slots.iter().enumerate() {
         if is_chosen(env, slot) {
-            if let Some(asked) = slot.blanks() {
-                images.blank(env, asked);
-            }
             images.form_depth(env);
         }
     }

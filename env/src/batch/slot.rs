@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use driftworld_spec::Modality;
 
-use super::images::{ImageLayout, keep_asked};
+use super::images::{ImageLayout, blank_unasked};
 use super::options::{Autoreset, Episode, WorldSource};
 use super::outputs::OutputsMut;
 use crate::EnvError;
@@ -244,17 +244,13 @@ impl Slot {
         let Some(renderer) = renderer else { return Ok(()) };
         let camera = self.environment.camera();
         let mut target = outputs.images.target(index);
-        let blanks = self.blanks();
-        if let Some(asked) = blanks {
-            keep_asked(&mut target, asked);
+        if let Some(asked) = self.blanks() {
+            blank_unasked(&mut target, asked);
         }
         if !target.is_empty() {
             let scene = self.environment.scene();
             renderer.draw(scene, &camera, &mut target)?;
             renderer.draw_carried(scene, self.environment.shown_carried(), &mut target);
-        }
-        if let Some(asked) = blanks {
-            outputs.images.blank(index, asked);
         }
         outputs.images.form_depth(index);
         Ok(())
