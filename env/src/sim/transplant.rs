@@ -1,7 +1,7 @@
 //! Two worlds with the same objects in the same state: putting one where the other is, stepping both by one command, and
 //! saying what of their states differs. What follows from a difference is said by `experiment`.
 
-use driftworld_spec::World;
+use driftworld_spec::{World, Zone};
 
 use super::action::{Action, Intent};
 use super::environment::Environment;
@@ -255,11 +255,9 @@ impl Environment {
 
 /// Whether the zones of two worlds lie where those of the other do, each with its counterpart of the same number.
 fn have_same_zones(a: &World, b: &World) -> bool {
-    let places = |world: &World| -> Vec<_> {
-        let zones = world.environment_params.zones.iter();
-        zones.map(|zone| (zone.disc, zone.polygon.clone())).collect()
-    };
-    places(a) == places(b)
+    let [own, other] = [a, b].map(|world| &world.environment_params.zones);
+    let is_same = |(own, other): (&Zone, &Zone)| own.disc == other.disc && own.polygon == other.polygon;
+    own.len() == other.len() && own.iter().zip(other).all(is_same)
 }
 
 /// What people call an object: its tag, or else its class.
