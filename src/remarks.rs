@@ -36,7 +36,9 @@ pub(crate) fn of_task(task: &Arc<TaskSpec>, seed: u64, worlds: u64) -> Vec<Strin
             let mut found = Vec::new();
             for index in 0..worlds {
                 if let Ok(world) = sampler.world(index) {
-                    let all = of_world(&world).chain(unknown_groups(&world, &groups));
+                    let own = world.remarks_without_text().into_iter();
+                    let own = own.map(|remark| (remark.pointer, remark.text));
+                    let all = own.chain(unknown_groups(&world, &groups));
                     gather(
                         &mut found,
                         all.map(|(pointer, text)| odd(pointer, text, variant.name(), index)),
@@ -52,13 +54,6 @@ pub(crate) fn of_task(task: &Arc<TaskSpec>, seed: u64, worlds: u64) -> Vec<Strin
     }
     let all = variants.len() as u64 * worlds;
     found.iter().map(|odd| odd.in_words(all)).collect()
-}
-
-/// What is odd about a world: the place in its document, and a sentence.
-pub(crate) fn of_world(world: &World) -> impl Iterator<Item = (String, String)> {
-    // Places in a text are of no use: the world has none.
-    let remarks = world.remarks("world", "{}").into_iter();
-    remarks.map(|remark| (remark.pointer, remark.text))
 }
 
 /// Groups that the legend of a world's layout names and that its task does not have.

@@ -281,7 +281,7 @@ impl PyBatch {
         let stepping = self.lock()?;
         let environment = stepping.environment(env)?;
         let warnings = environment.warnings();
-        let remarks = environment.world().remarks("world", "{}").into_iter();
+        let remarks = environment.world().remarks_without_text().into_iter();
         let remarks = remarks.map(|remark| format!("{}: {}", remark.pointer, remark.text));
         Ok(warnings.iter().map(ToString::to_string).chain(remarks).collect())
     }

@@ -56,6 +56,17 @@ impl Remarks {
     pub(crate) fn in_text(self, name: &str, text: &str) -> Vec<Warning> {
         let pointers: Vec<&str> = self.first.iter().map(|(pointer, _)| pointer.as_str()).collect();
         let places = places_in(text, &pointers);
+        self.at(name, places)
+    }
+
+    /// The remarks on what has no text; `name` is what messages call it.
+    pub(crate) fn without_text(self, name: &str) -> Vec<Warning> {
+        let places = vec![(0, 0); self.first.len()];
+        self.at(name, places)
+    }
+
+    /// The remarks in the order of their lines and columns, one for each.
+    fn at(self, name: &str, places: Vec<(usize, usize)>) -> Vec<Warning> {
         let warning = |((pointer, text), (line, column))| Warning {
             name: name.to_owned(),
             pointer,

@@ -31,6 +31,15 @@ impl World {
     /// # Ok::<(), driftworld_spec::SpecError>(())
     /// ```
     pub fn remarks(&self, name: &str, text: &str) -> Vec<Warning> {
+        self.found_odd().in_text(name, text)
+    }
+
+    /// What is odd about this world, as [`World::remarks`], of a world that was read from no text: without lines and columns.
+    pub fn remarks_without_text(&self) -> Vec<Warning> {
+        self.found_odd().without_text("world")
+    }
+
+    fn found_odd(&self) -> Remarks {
         let mut remarks = Remarks::default();
         let arena = &self.environment_params;
         let [width, depth] = arena.arena_size();
@@ -44,14 +53,10 @@ impl World {
             remarks.push(format!("/environment_params/zones/{index}"), text);
         }
         let start = self.agent_params.coordinates;
-        if self.progress.is_none() && (!arena.contains(start) || self.enclosure(start).is_some()) {
-            let inside = self.enclosure(start).map_or_else(
-                || format!("outside the {width} × {depth} m arena"),
-                |wall| format!("inside {wall}"),
-            );
+        if let Some(place) = self.place_out_of_reach(start).filter(|_| self.progress.is_none()) {
             remarks.push(
                 "/agent_params/coordinates".to_owned(),
-                format!("the agent starts {inside}"),
+                format!("the agent starts {place}"),
             );
         }
         let failing = |place: [f64; 2]| {
@@ -102,7 +107,7 @@ impl World {
         for (pointer, text) in thing_remarks(self).into_iter().chain(lock_remarks(self)) {
             remarks.push(pointer, text);
         }
-        remarks.in_text(name, text)
+        remarks
     }
 
     /// Whether the agent is to go to an object: it pays, or touching it or picking it up ends the episode well.
@@ -118,17 +123,21 @@ impl World {
 
     /// Where an object stands that nobody comes to: outside the arena, or inside which wall; `None` on free ground.
     pub(crate) fn out_of_reach(&self, object: &Object) -> Option<String> {
-        let arena = &self.environment_params;
-        let [width, depth] = arena.arena_size();
-        let place = if arena.contains(object.coordinates) {
-            format!("inside {}", self.enclosure(object.coordinates)?)
-        } else {
-            format!("outside the {width} × {depth} m arena")
-        };
+        let place = self.place_out_of_reach(object.coordinates)?;
         let ([x, y], class) = (object.coordinates, &object.class);
         Some(format!(
             "the {class} stands at ({x:.1}, {y:.1}), {place}; it is kept, out of reach"
         ))
+    }
+
+    /// Where a place is that nobody comes to: outside the arena, or inside which wall; `None` on free ground.
+    fn place_out_of_reach(&self, at: [f64; 2]) -> Option<String> {
+        let arena = &self.environment_params;
+        if arena.contains(at) {
+            return Some(format!("inside {}", self.enclosure(at)?));
+        }
+        let [width, depth] = arena.arena_size();
+        Some(format!("outside the {width} × {depth} m arena"))
     }
 }
 
