@@ -42,6 +42,7 @@ pub mod lifetime_report;
 mod log_folders;
 mod log_names;
 mod map_drawing;
+mod map_legend;
 mod map_scale;
 mod matrix_file;
 mod modality;

@@ -14,6 +14,7 @@ use driftworld_spec::World;
 
 use crate::Failure;
 use crate::map_drawing::{self, Moves};
+use crate::map_legend;
 use crate::subject::sight;
 
 /// The pictures of one world.
@@ -399,7 +400,7 @@ impl<'a> Views<'a> {
         });
         let mut shown: Vec<(String, Picture)> = Vec::new();
         for index in indices {
-            let name = map_drawing::named(&self.world.objects[index]);
+            let name = map_legend::named(&self.world.objects[index]);
             if shown.len() < most
                 && !shown.iter().any(|(other, _)| *other == name)
                 && let Some(camera) = self.near(index)?
@@ -455,7 +456,7 @@ impl<'a> Views<'a> {
 
     /// The map with triggers, what pays and what costs, and ways, and a legend to its right with scale and north.
     pub(crate) fn map_with_legend(&self, moves: &Moves) -> Drawing {
-        map_drawing::map_with_legend(self.world, &self.scene, moves, self.size)
+        map_legend::map_with_legend(self.world, &self.scene, moves, self.size)
     }
 
     fn agent_camera(&self, turn: f32) -> Camera {
@@ -581,7 +582,7 @@ mod tests {
                 .world(0)
                 .expect("it is drawn");
             let views = Views::new(&world, 64, 0.0);
-            let things: std::collections::BTreeSet<String> = world.objects.iter().map(map_drawing::named).collect();
+            let things: std::collections::BTreeSet<String> = world.objects.iter().map(map_legend::named).collect();
             let close_ups = views.close_ups(5).expect("they are drawn");
             assert_eq!(close_ups.len(), things.len().min(5), "{name}");
             let mut shown = 0;
