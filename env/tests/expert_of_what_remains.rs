@@ -113,6 +113,38 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    /// What bars no way stays where it lies, wherever that is on open ground, and however many lie there.
+    #[test]
+    fn a_thing_beside_its_way_is_left_alone(
+        things in prop::collection::vec(prop::array::uniform2(-8.0..8.0_f64), 1..6), heading in 0.0..360.0_f64,
+    ) {
+        let mut world = field(1.0, false);
+        world.agent_params.carry_limit = 3;
+        world.agent_params.heading = heading;
+        let far = |at: &[f64; 2]| libm::hypot(at[0], at[1] - 9.0) > 2.0 && libm::hypot(at[0], at[1] + 9.0) > 2.0;
+        world.objects.extend(things.into_iter().filter(far).map(|at| {
+            let mut key = Object::new("key", at);
+            key.portable = Some(Portable::default());
+            key
+        }));
+        let mut environment = Environment::new(world.check().expect("it is sound"));
+        let mut expert = OnRailsAgent::new();
+        expert.begin(0);
+        loop {
+            let action = expert.act(&environment);
+            let step = environment.step(action).expect("the episode goes on");
+            prop_assert!(environment.objects().iter().all(|own| !own.carried));
+            if step.ended() {
+                prop_assert!(step.success, "{:?}", step.ended_by);
+                break;
+            }
+        }
+    }
+}
+
 /// A doorway, and a thing right behind it that leaves no way around: who may carry it takes it out of the way.
 #[test]
 fn a_thing_in_its_way_is_picked_up() {

@@ -98,3 +98,20 @@ fn an_episode_is_drawn_frame_by_frame() {
     let error = fail(2, &[&episode[..], &["--frames", "3"]].concat());
     assert!(error.contains("expected --view episode"), "{error}");
 }
+
+/// The same view twice, in three sizes each: what learners see small, and no picture of one style as that of the other.
+#[test]
+fn both_looks_are_drawn_side_by_side() {
+    let folder = scratch();
+    let path = folder.path().join("looks.svg");
+    succeed(&["render", "find_objects", "--view", "looks", "-o", text(&path)]);
+    let drawn = std::fs::read_to_string(&path).expect("the picture was written");
+    let [plain, natural] = ["Plain", "Natural"].map(|title| drawn.find(&format!(">{title}<")).expect("it has a row"));
+    assert!(plain < natural);
+    let images: std::collections::BTreeSet<&str> = drawn
+        .split("base64,")
+        .skip(1)
+        .filter_map(|rest| rest.split('"').next())
+        .collect();
+    assert_eq!(images.len(), 6, "three sizes of two styles, no two the same");
+}
