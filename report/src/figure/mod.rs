@@ -128,7 +128,8 @@ pub struct FigureOptions {
     /// How far apart each two neighbouring learning blocks are, as [`neighbours`](crate::neighbours) lists them; `None` within
     /// where a distance is not known. Default none: the timeline stands alone.
     pub distances: Option<Vec<Option<f64>>>,
-    /// What tasks are called in legends and in tables of the page, by their names in the log, which hold letters and digits alone; others keep theirs.
+    /// What tasks are called in legends and in tables of the page, by their names in the log, which hold letters and digits
+    /// alone; others keep theirs.
     pub names: BTreeMap<String, String>,
 }
 

@@ -165,7 +165,6 @@ class Options:
         except SpecError as error:
             raise _as_options(error) from None
 
-
     def shown(self, layouts: Iterable[dict[str, Any]]) -> Options:
         """The same with the modalities that worlds of these layouts ask for, where none are said.
 
