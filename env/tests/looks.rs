@@ -3,7 +3,8 @@
 //! them.
 
 use driftworld_env::{Action, Camera, CpuRenderer, Environment, FAR_DEPTH, Frame, Scene, Target};
-use driftworld_spec::{Covering, Layout, Looks, Maze, Object, Rooms, Style, Surface, World, WorldDraft, Zone};
+use driftworld_spec::{Covering, Layout, Looks, Maze, Object, Rooms, Style, Surface, Wall, World, WorldDraft, Zone};
+use proptest::prelude::*;
 
 fn natural() -> Looks {
     Looks::of(Style::Natural)
@@ -268,6 +269,80 @@ fn shadows_darken_ground_and_nothing_else() {
         }
     }
     assert!(darker > 20, "{darker} pixels");
+}
+
+/// Whether the way from a to b comes into a convex polygon whose corners go around it, by cutting off what is outside each edge.
+fn comes_into([a, b]: [[f32; 2]; 2], polygon: &[[f32; 2]]) -> bool {
+    let (mut first, mut last) = (0.0_f32, 1.0_f32);
+    for (k, from) in polygon.iter().enumerate() {
+        let to = polygon[(k + 1) % polygon.len()];
+        let left_of = |at: [f32; 2]| (to[0] - from[0]) * (at[1] - from[1]) - (to[1] - from[1]) * (at[0] - from[0]);
+        let (start, end) = (left_of(a), left_of(b));
+        if start < 0.0 && end < 0.0 {
+            return false;
+        }
+        let there = start / (start - end);
+        if start < 0.0 {
+            first = first.max(there);
+        } else if end < 0.0 {
+            last = last.min(there);
+        }
+    }
+    first <= last
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(96))]
+
+    /// Ground is in a wall's shadow where the way towards the sun, up to the wall's height, comes into the wall.
+    #[test]
+    fn shadows_of_walls_lie_where_they_keep_the_sun_off(
+        ((x, y), (long, thick)) in ((-4.0..4.0_f64, 5.0..9.0_f64), (0.3..6.0_f64, 0.2..4.0_f64)),
+        (turn, height) in (0.0..360.0_f64, 0.3..3.0_f64),
+        (azimuth, rise) in (0.0..360.0_f64, 0.5..2.0_f64),
+    ) {
+        const SIDE: usize = 84;
+        const EYE: f32 = 3.5;
+        let (sine, cosine) = libm::sincos(turn.to_radians());
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[along, across]: [f64; 2]| {
+            let (along, across) = (along * long / 2.0, across * thick / 2.0);
+            [x + cosine * along - sine * across, y + sine * along + cosine * across]
+        });
+        let mut world = WorldDraft::default();
+        let environment = &mut world.environment_params;
+        environment.looks = Looks { ground: Some(Covering::of(Surface::Plain)), ..natural() };
+        environment.map_size = [80.0, 80.0];
+        environment.walls = vec![Wall { polygon: corners.to_vec(), height: Some(height), color: None }];
+        let (east, north) = libm::sincos(azimuth.to_radians());
+        environment.sun_direction = [east, north, rise];
+        let mut without = world.clone();
+        without.environment_params.looks.shadows = Some(false);
+        let camera = Camera::first_person([0.0, -2.0], 0.0, EYE, 60.0);
+        let [with, without] = [&world, &without].map(|world| draw(world, &camera, [SIDE as u32; 2]));
+        let polygon = corners.map(|corner| corner.map(|metres| metres as f32));
+        let reach = [east, north].map(|part| (part / rise * height) as f32);
+        let step = 2.0 * libm::tanf(30_f32.to_radians()) / SIDE as f32;
+        // What a pixel shows: not bare ground, ground in shadow, ground in the sun.
+        let expected: Vec<Option<bool>> = (0..SIDE * SIDE)
+            .map(|pixel| {
+                let offset = |place: usize| (place as f32 + 0.5 - SIDE as f32 / 2.0) * step;
+                let (right, down) = (offset(pixel % SIDE), offset(pixel / SIDE));
+                let depth = without.depth[pixel];
+                let at = [right * depth, depth - 2.0];
+                // From above one sees into walls, which have no tops.
+                let is_ground = (EYE - down * depth).abs() < 1e-2 && !comes_into([at, at], &polygon);
+                is_ground.then(|| comes_into([at, [at[0] + reach[0], at[1] + reach[1]]], &polygon))
+            })
+            .collect();
+        for pixel in (1..SIDE - 1).flat_map(|row| (1..SIDE - 1).map(move |column| row * SIDE + column)) {
+            let around = [0, 1, 2].map(|row| [0, 1, 2].map(|column| expected[pixel + row * SIDE + column - SIDE - 1]));
+            let (Some(is_dark), true) = (expected[pixel], around.as_flattened().iter().all(|one| *one == expected[pixel])) else {
+                continue;
+            };
+            let bytes = 3 * pixel..3 * pixel + 3;
+            prop_assert_eq!(with.rgb[bytes.clone()] != without.rgb[bytes], is_dark, "column {}, row {}", pixel % SIDE, pixel / SIDE);
+        }
+    }
 }
 
 #[test]

@@ -135,12 +135,16 @@ fn letters_stand_out_from_boards_of_every_colour() {
 
 #[test]
 fn from_afar_a_sign_is_drawn_without_its_letters() {
-    let differ = |metres: f64| {
+    let differ = |metres: f64, text: &str| {
         let frame = |text: &str| picture(&world(text, metres, 0.0, None), 0.0, SIDE).rgb;
-        frame("ABC") != frame(" ")
+        frame(text) != frame(" ")
     };
-    assert!(differ(4.5), "a square of a letter is a pixel");
-    assert!(!differ(7.0) && !differ(20.0), "it is less");
+    assert!(differ(3.7, "ABC"), "a square of a letter is more than a pixel");
+    assert!(!differ(4.5, "ABC") && !differ(20.0, "ABC"), "it is about one, or less");
+    assert!(
+        differ(1.9, "ABCDEFGH") && !differ(3.0, "ABCDEFGH"),
+        "squares of eight letters are smaller"
+    );
 }
 
 #[test]

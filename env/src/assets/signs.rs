@@ -14,6 +14,9 @@ const LIGHT: [f32; 3] = [0.97, 0.97, 0.95];
 /// From the ground to the middle of a board in metres: about as high as the agent's eye.
 const MIDDLE: f32 = 1.15;
 
+/// Pixels of a square of a letter from which on letters are drawn, seen from the sign's nearest point.
+const READABLE: f32 = 1.6;
+
 /// How thick a board is, and how far letters are before it, in metres.
 const THICK: f32 = 0.05;
 const BEFORE: f32 = 0.01;
@@ -40,8 +43,8 @@ impl Lettering {
     }
 }
 
-/// Sign number `model` of [`SIGNS`] with a text on its front. The letters are left out where one of their squares is below a
-/// pixel, so that they do not flicker.
+/// Sign number `model` of [`SIGNS`] with a text on its front. The letters are left out where one of their squares is below
+/// [`READABLE`] pixels: they would flicker, and be read as others.
 pub(crate) fn sign(model: u32, text: &str, lettering: Lettering) -> Asset {
     let ([wide, high], posts) = match model {
         2 => ([2.2, 0.62], [0.8, -0.8].as_slice()),
@@ -66,7 +69,7 @@ pub(crate) fn sign(model: u32, text: &str, lettering: Lettering) -> Asset {
     };
     let mut all = asset.parts.clone();
     all.push(Part::new(letters, super::Paint::Fixed(color)));
-    // Half a pixel may be off: that is this much where a square is one pixel.
-    let levels = vec![(0.0, all), (square / 2.0, asset.parts)];
+    // Half a pixel may be off: that is this much where a square is so many pixels.
+    let levels = vec![(0.0, all), (square / (2.0 * READABLE), asset.parts)];
     Asset::of_levels(levels, asset.collider)
 }

@@ -18,6 +18,9 @@ use super::surfaces::NEUTRAL;
 use super::target::Target;
 use super::view::View;
 
+/// The share of detail of which nothing is left out.
+const FULL_SHARE: u32 = 255;
+
 /// Rows that are gone through before the next columns: what they lie in stays near the processor.
 const BAND: usize = 128;
 
@@ -322,7 +325,11 @@ impl Composition<'_> {
         }
         let mut texel = found(l, row, texels, columns, 1.0);
         if row.detail > 0.0 {
-            texel = l.modulate(texel, found(l, row, texels, columns, row.detail));
+            let mut detail = found(l, row, texels, columns, row.detail);
+            if row.detail_share < FULL_SHARE {
+                detail = l.mix(neutral, detail, l.three_times(l.splat_word(row.detail_share)));
+            }
+            texel = l.modulate(texel, detail);
         }
         Behind {
             word: l.modulate(base, texel),

@@ -39,7 +39,8 @@ fn between(a: [f32; 3], b: [f32; 3], share: f32) -> [f32; 3] {
 
 impl Daylight {
     pub(super) fn new(light: &Light, is_inside: bool) -> Self {
-        let height = light.direction[2];
+        // Under a ceiling nothing depends on the sun, fog neither.
+        let height = if is_inside { 1.0 } else { light.direction[2] };
         // Dim light reads as a low sun, too.
         let low = (1.0 - rise(height, 0.04, 0.5)).max(0.9 * (1.0 - rise(light.exposure, 0.1, 0.8)));
         let exposure = if light.exposure < 1.0 {
@@ -54,10 +55,10 @@ impl Daylight {
         }
         let warm = between([1.0; 3], [1.0, 0.66, 0.36], low);
         let cold = between([0.94, 1.0, 1.1], [0.84, 0.84, 1.06], low);
-        let strength = (1.0 - light.ambient) * rise(height, -0.06, 0.1) * (1.1 - 0.1 * low);
-        let around = light.ambient * (1.1 + 0.35 * low);
+        let strength = (1.0 - light.ambient) * rise(height, -0.06, 0.1) * (0.88 - 0.08 * low);
+        let around = light.ambient * (1.5 + 0.1 * low);
         let top: [f32; 3] = std::array::from_fn(|k| color[k] * cold[k] * around);
-        let bottom = [0, 1, 2].map(|k| color[k] * around * [0.62, 0.60, 0.55][k]);
+        let bottom = [0, 1, 2].map(|k| color[k] * around * [0.74, 0.72, 0.66][k]);
         Self {
             direction: light.direction,
             sun: [0, 1, 2].map(|k| color[k] * warm[k] * strength),

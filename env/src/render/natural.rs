@@ -290,6 +290,7 @@ impl CpuRenderer {
         for &shadow in &found {
             let params = ShadowParams {
                 may_be_cut: shadow.nearest < NEAR,
+                from_behind: matches!(shadow.drawable, Drawable::Panels(_)),
             };
             match shadow.drawable {
                 Drawable::Item(index) => {

@@ -49,7 +49,7 @@ impl Patch {
             u: along(axes[0]),
             v: along(axes[1]),
             facing: [view.axes.forward, view.axes.right, view.axes.up].map(|axis| crate::vector::dot(axis, normal)),
-            sharpness: SHARPNESS * period / view.step,
+            sharpness: SHARPNESS * tile.sharpness * period / view.step,
         })
     }
 

@@ -29,6 +29,12 @@ pub(super) trait Shading: Copy {
     /// Whether some of it may be nearer than the near plane.
     fn may_be_cut(&self) -> bool;
 
+    /// Whether triangles turn the other way on the screen than those do that are seen from the front.
+    #[inline(always)]
+    fn is_turned(&self) -> bool {
+        false
+    }
+
     /// Which of a block's faces are drawn: those that look at the camera. `behind` is how far their planes are behind the
     /// origin.
     #[inline(always)]
@@ -122,7 +128,10 @@ fn draw_lanes<L: Lanes, const ITEMS: bool, S: Shading>(
         return;
     }
     // Edge k lies opposite to corner k; each is the same line, to the bit, for the triangle on its other side.
-    let edges = [edge(l, x, y, 1, 2), edge(l, x, y, 2, 0), edge(l, x, y, 0, 1)];
+    let mut edges = [edge(l, x, y, 1, 2), edge(l, x, y, 2, 0), edge(l, x, y, 0, 1)];
+    if params.is_turned() {
+        edges = [edge(l, x, y, 2, 1), edge(l, x, y, 0, 2), edge(l, x, y, 1, 0)];
+    }
     let area = l.add(edges[0][0], l.add(edges[1][0], edges[2][0]));
     let share = l.div(one, area);
     let mut rows = [[0.0; BLOCK]; 16];
@@ -265,7 +274,10 @@ fn draw_all_cut<L: Lanes, const ITEMS: bool, S: Shading>(
         lanes_to_cut &= lanes_to_cut - 1;
         let (polygon, count) = cut(block, first + lane, at);
         for k in 2..count {
-            let corners = [polygon[0], polygon[k - 1], polygon[k]];
+            let mut corners = [polygon[0], polygon[k - 1], polygon[k]];
+            if params.is_turned() {
+                corners.swap(1, 2);
+            }
             if let Some(triangle) = set_up(corners, [canvas.width, canvas.height], pixels[lane], params.item()) {
                 params.fill::<L, ITEMS>(lanes, canvas, &triangle);
             }

@@ -18,6 +18,9 @@ const SHIFT: f32 = 65536.0;
 /// How much coarser than a pixel texels may be: a pixel shows less than one texel of its level, and none is skipped.
 const SHARPNESS: f32 = 1.25;
 
+/// How many of the finest texels a pixel shows where the first of their detail is seen, and where all of it is.
+const DETAIL: [f32; 2] = [0.7, 0.3];
+
 /// A layer of clouds: metres above the eye, metres to a side of its tile, and from which rise on it is seen in full.
 const CLOUDS: [f32; 3] = [40.0, 150.0, 0.22];
 
@@ -58,6 +61,8 @@ pub(super) struct Row {
     pub(super) side: u32,
     /// Texels of the same tile, enlarged, laid over it, where a texel is larger than a pixel: by how much they are finer.
     pub(super) detail: f32,
+    /// How much of them is seen, 1 to 255: more of them the nearer a row is, so that they come in without a seam.
+    pub(super) detail_share: u32,
     pub(super) shows: Shows,
 }
 
@@ -222,10 +227,13 @@ impl Plane {
             let period = tile.period * self.scale;
             // A pixel is longer than it is wide.
             let length = metres * metres * key.step * key.up.abs().max(0.05) / self.below;
-            look.sharpen(period, length);
+            look.sharpen(period, length / tile.sharpness);
             let width = metres * key.step;
-            if tile.is_grain && width * SIDE as f32 / period < 0.5 {
+            let ([first, all], shown) = (DETAIL, width * SIDE as f32 / period);
+            let share = ((first - shown) / (first - all)).min(1.0);
+            if tile.is_grain && share > 0.0 {
                 look.row.detail = 5.0;
+                look.row.detail_share = (FULL_LEVEL * share + ROUNDING) as u32;
             }
         }
         look

@@ -65,6 +65,12 @@ impl Cast {
         }
     }
 
+    /// Whether a wall's face of this normal casts its shadow: it looks away from the light.
+    #[cfg(feature = "gpu")]
+    pub(super) fn is_cast_by(&self, normal: [f32; 3]) -> bool {
+        crate::vector::dot(normal, self.toward) < 0.0
+    }
+
     /// A ball around the shadow of a thing that stands in the middle of a circle.
     fn ball(&self, [x, y]: [f32; 2], radius: f32, height: f32) -> ([f32; 3], f32) {
         let away = [self.toward[0], self.toward[1]].map(|part| part * height / 2.0);
@@ -140,6 +146,9 @@ pub(super) fn level<'a>(item: &'a Item, shadow: Visible, view: &View) -> &'a [Ma
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ShadowParams {
     pub(super) may_be_cut: bool,
+    /// Whether it is cast by the faces that look away from the light. Walls have no tops: their shadow ends where that of the edge
+    /// does which is furthest from the light.
+    pub(super) from_behind: bool,
 }
 
 impl Shading for ShadowParams {
@@ -153,11 +162,21 @@ impl Shading for ShadowParams {
         self.may_be_cut
     }
 
-    /// Those that look at the light: from above, they turn as the triangles that they become.
+    #[inline(always)]
+    fn is_turned(&self) -> bool {
+        self.from_behind
+    }
+
+    /// Those that look at the light, which turn, from above, as the triangles that they become; or those that look away from it.
     #[inline(always)]
     fn facing<L: Lanes>(&self, l: L, normal: [L::Float; 3], _behind: L::Float, at: &Placement) -> L::Mask {
         let zero = l.splat(0.0);
-        l.above(super::raster::dot(l, normal, at.sun, zero), zero)
+        let light = super::raster::dot(l, normal, at.sun, zero);
+        if self.from_behind {
+            l.above(zero, light)
+        } else {
+            l.above(light, zero)
+        }
     }
 
     #[inline(always)]

@@ -23,24 +23,26 @@ pub(super) struct Tile {
     pub(super) period: f32,
     /// Whether it looks like itself when it is enlarged, so that it serves as its own detail.
     pub(super) is_grain: bool,
+    /// Texels of a pixel: less than 1 where edges are hard and the same all along, so that they do not flicker.
+    pub(super) sharpness: f32,
 }
 
 /// The tile of a surface; none of a plain one.
 pub(super) fn tile(surface: Surface) -> Option<&'static Tile> {
     macro_rules! baked {
-        ($period:literal, $is_grain:literal, $texel:expr) => {{
-            static TILE: LazyLock<Tile> = LazyLock::new(|| Tile::baked($period, $is_grain, $texel));
+        ($period:literal, $is_grain:literal, $sharpness:expr, $texel:expr) => {{
+            static TILE: LazyLock<Tile> = LazyLock::new(|| Tile::baked($period, $is_grain, $sharpness, $texel));
             Some(&*TILE)
         }};
     }
     match surface {
         Surface::Plain => None,
-        Surface::Noise => baked!(8.0, true, noise),
-        Surface::Brick => baked!(2.0, false, brick),
-        Surface::Plank => baked!(2.0, false, plank),
-        Surface::Tile => baked!(2.0, false, floor_tile),
-        Surface::Stripes => baked!(2.0, false, stripes),
-        Surface::Checker => baked!(2.0, false, checker),
+        Surface::Noise => baked!(8.0, true, 1.0, noise),
+        Surface::Brick => baked!(2.0, false, 1.0, brick),
+        Surface::Plank => baked!(2.0, false, 1.0, plank),
+        Surface::Tile => baked!(2.0, false, 1.0, floor_tile),
+        Surface::Stripes => baked!(2.0, false, 0.5, stripes),
+        Surface::Checker => baked!(2.0, false, 0.5, checker),
     }
 }
 
@@ -53,13 +55,14 @@ pub(super) fn clouds() -> &'static Tile {
             texels: words(&levels, |share| (share * 255.0 + 0.5) as u32, 0),
             period: 1.0,
             is_grain: false,
+            sharpness: 1.0,
         }
     });
     &TILE
 }
 
 impl Tile {
-    fn baked(period: f32, is_grain: bool, texel: fn(f32, f32) -> [f32; 3]) -> Self {
+    fn baked(period: f32, is_grain: bool, sharpness: f32, texel: fn(f32, f32) -> [f32; 3]) -> Self {
         let mut levels = levels(texel);
         // On the whole no channel is brighter or darker than the colour.
         let mean = levels.last().map_or([1.0; 3], |coarsest| coarsest[0]);
@@ -70,6 +73,7 @@ impl Tile {
             texels: words(&levels, |factor| (factor * 128.0 + 0.5).clamp(0.0, 255.0) as u32, 0x80),
             period,
             is_grain,
+            sharpness,
         }
     }
 }

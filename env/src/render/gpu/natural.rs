@@ -153,8 +153,11 @@ impl TileContents {
             Drawable::Panels(index) => {
                 let at = cast.placement(view, &Pose::WORLD);
                 let blocks = &scene.panels()[index as usize].blocks;
-                for (block, lane) in blocks.iter().flat_map(triangles) {
-                    let of_corners = corners_as_rows(&at, corners(block, lane));
+                let faces = blocks.iter().flat_map(triangles);
+                for (block, lane) in faces.filter(|(block, lane)| cast.is_cast_by(normal(block, *lane))) {
+                    // Seen from above, what looks away from the light turns the other way.
+                    let [a, b, c] = corners(block, lane);
+                    let of_corners = corners_as_rows(&at, [a, c, b]);
                     let words = instance(&of_corners, [0.0; 3], [0.0; 4], [0, 0]);
                     self.shadows.push(words, Shape::Triangle);
                 }
@@ -231,7 +234,7 @@ fn row_words(row: &Row, texels: Option<u32>) -> [u32; ROW] {
         dv,
         if texels.is_some() { row.side } else { 1 },
         row.detail.to_bits(),
-        row.shows as u32,
+        row.shows as u32 | row.detail_share << 8,
         texels.unwrap_or(0),
     ]
 }

@@ -28,6 +28,7 @@ struct Row {
     v: vec2f,
     side: u32,
     detail: f32,
+    // What it shows; above the lowest byte, how much of the detail is seen.
     shows: u32,
     // Where its tile of texels begins.
     texels: u32,
@@ -86,12 +87,13 @@ fn found(row: Row, offset: f32, finer: f32) -> vec3u {
 
 // The texel of a row of ground or ceiling.
 fn row_texel(row: Row, offset: f32) -> vec3u {
-    if row.side <= 1u || row.shows == SHOWS_SKY {
+    if row.side <= 1u || (row.shows & 255u) == SHOWS_SKY {
         return vec3u(128u);
     }
     var texel = found(row, offset, 1.0);
     if row.detail > 0.0 {
-        texel = modulated(texel, found(row, offset, row.detail));
+        let detail = mixed(vec3u(128u), found(row, offset, row.detail), vec3u(row.shows >> 8u));
+        texel = modulated(texel, detail);
     }
     return texel;
 }
@@ -167,7 +169,7 @@ fn backdrop_fragment(whole: Whole) -> Behind {
     let row = row_of(whole.position, number);
     let base = bytes_of(row.base);
     var bytes = base;
-    if row.shows == SHOWS_SKY {
+    if (row.shows & 255u) == SHOWS_SKY {
         if row.sunward != row.base {
             bytes = mixed(base, bytes_of(row.sunward), glow(number, offset));
         }
@@ -176,7 +178,7 @@ fn backdrop_fragment(whole: Whole) -> Behind {
         }
     } else {
         bytes = modulated(base, row_texel(row, offset));
-        if row.shows == SHOWS_FLOOR {
+        if (row.shows & 255u) == SHOWS_FLOOR {
             bytes = in_shadow(bytes, whole.position, number);
         }
     }
