@@ -1,12 +1,21 @@
 //! What the simulator reads of an object: fields that nothing reads stand at their defaults, so that they count nothing.
 
-use driftworld_spec::{MotionModel, Object, Stimulus};
+use driftworld_spec::{MotionModel, Object, Stimulus, Style, Surface};
+
+/// The class whose objects say their text.
+const SIGN: &str = "sign";
 
 /// The object with everything that nothing reads at its default: what it pays where no stimulus makes it pay, the range of a
-/// stimulus that it does not have, the speed of what stands, and so on.
-pub(super) fn as_read(object: &Object) -> Object {
+/// stimulus that it does not have, the speed of what stands, what covers it in a world of plain looks, and so on.
+pub(super) fn as_read(object: &Object, style: Style) -> Object {
     let plain = Object::new(object.class.as_str(), object.coordinates);
     let mut read = object.clone();
+    if style == Style::Plain {
+        read.surface = Surface::Plain;
+    }
+    if !object.class.eq_ignore_ascii_case(SIGN) {
+        read.text = None;
+    }
     let pays = !(read.reward_stimulus.is_empty() && read.reward_once_stimulus.is_empty());
     if !pays {
         (read.reward, read.reward_probability) = (plain.reward, plain.reward_probability);

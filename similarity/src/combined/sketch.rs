@@ -58,8 +58,8 @@ pub(super) struct Sketch {
     /// How many seconds an episode may last; `None` for one without a limit.
     pub(super) limit: Option<f64>,
     pub(super) light: f64,
-    /// Wall, sky, ground, sunlight.
-    pub(super) surroundings: [Oklab; 4],
+    /// Wall, sky, ground, sunlight, ceiling.
+    pub(super) surroundings: [Oklab; 5],
     /// Columns and rows.
     pub(super) picture: [f64; 2],
     pub(super) camera: Arc<Leaves>,
@@ -89,9 +89,10 @@ pub(super) struct ObjectFeatures {
 impl Sketcher {
     /// The sketch of a world.
     pub(super) fn sketch(&mut self, world: &World) -> Sketch {
+        let (agent, around, rules) = (&world.agent_params, &world.environment_params, &world.rules);
         let mut by_class: BTreeMap<String, Vec<ObjectFeatures>> = BTreeMap::new();
         for (index, object) in world.objects.iter().enumerate() {
-            let features = self.features(index, &as_read(object));
+            let features = self.features(index, &as_read(object, around.looks.style));
             by_class.entry(object.class.to_lowercase()).or_default().push(features);
         }
         let mut objects = Vec::with_capacity(world.objects.len());
@@ -101,7 +102,6 @@ impl Sketcher {
             objects.extend(group);
             classes.push((class, objects.len()));
         }
-        let (agent, around, rules) = (&world.agent_params, &world.environment_params, &world.rules);
         let step_seconds = agent.time_step * f64::from(agent.frame_skip);
         let limits = [world.max_seconds, f64::from(world.max_steps) * step_seconds];
         self.texts.read_world(world);
@@ -137,6 +137,7 @@ impl Sketcher {
                 around.sky_color,
                 around.ground_color,
                 around.light_color,
+                around.looks.ceiling_color_seen(around.layout.as_ref()),
             ]
             .map(Oklab::from),
             picture: agent.picture_size().map(f64::from),

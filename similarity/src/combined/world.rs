@@ -158,7 +158,10 @@ fn total(a: &Sketch, b: &Sketch, weights: &Weights) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use driftworld_spec::{Color, Disc, Door, Element, Object, Portable, Stimulus, Switch, WorldDraft, Zone, ZoneEnd};
+    use driftworld_spec::{
+        Color, Covering, Disc, Door, Element, Layout, Looks, Maze, Object, Portable, Stimulus, Style, Surface, Switch,
+        WorldDraft, Zone, ZoneEnd,
+    };
     use proptest::prelude::*;
 
     fn world(color: &str, reward: f64) -> World {
@@ -223,6 +226,152 @@ mod tests {
             assert_eq!(distance.differs_in(), [Element::T]);
             assert!(distance.total >= 1.0, "{}", distance.total);
         }
+    }
+
+    /// Looks part by part, each of which may be said or not.
+    fn looks() -> impl Strategy<Value = Looks> {
+        let surfaces = [Surface::Plain, Surface::Noise, Surface::Brick, Surface::Tile];
+        let covering = (
+            prop::sample::select(surfaces.to_vec()),
+            prop::sample::select(vec![1.0, 1.5, 3.0]),
+        );
+        let covering = || {
+            prop::option::of(
+                covering
+                    .clone()
+                    .prop_map(|(surface, scale)| Covering { surface, scale }),
+            )
+        };
+        let said = || prop::option::of(any::<bool>());
+        let color = prop::sample::select(vec!["white", "black", "red"]);
+        let parts = (
+            covering(),
+            covering(),
+            said(),
+            prop::option::of(color),
+            said(),
+            said(),
+            any::<bool>(),
+        );
+        (any::<bool>(), parts).prop_map(
+            |(natural, (ground, walls, ceiling, color, shadows, clouds, fog_in_depth))| {
+                let own = Looks::of(if natural { Style::Natural } else { Style::Plain });
+                Looks {
+                    ground,
+                    walls,
+                    ceiling,
+                    ceiling_color: color.and_then(Color::from_name).unwrap_or(own.ceiling_color),
+                    shadows,
+                    clouds,
+                    fog_in_depth,
+                    ..own
+                }
+            },
+        )
+    }
+
+    fn drawn(looks: Looks, layout: Option<&Layout>, fog: Option<f64>) -> World {
+        let edited = World::default().edit(|world| {
+            let environment = &mut world.environment_params;
+            (environment.looks, environment.layout, environment.fog_distance) = (looks, layout.cloned(), fog);
+        });
+        edited.unwrap()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        /// Looks count as they are seen: what is said in so many words is what the style has by itself, and what nothing reads counts
+        /// nothing.
+        #[test]
+        fn looks_count_as_far_as_they_are_seen(
+            looks in looks(), other in looks(), inside in any::<bool>(), fog in prop::option::of(Just(12.0)),
+        ) {
+            let layout = inside.then(|| Layout { maze: Some(Maze { seed: Some(1), ..Maze::default() }), ..Layout::default() });
+            let layout = layout.as_ref();
+            let here = drawn(looks, layout, fog);
+            let d = |a: &World, b: &World| world_distance(a, b, &Weights::default());
+            let has_ceiling = looks.has_ceiling(layout);
+            let in_full = Looks {
+                ground: Some(looks.ground(has_ceiling)),
+                walls: Some(looks.walls()),
+                ceiling: Some(has_ceiling),
+                shadows: Some(looks.has_shadows()),
+                clouds: Some(looks.has_clouds()),
+                ..looks
+            };
+            if looks.style == Style::Natural {
+                prop_assert_eq!(d(&here, &drawn(in_full, layout, fog)).total, 0.0);
+            }
+            let mut unread = looks;
+            if has_ceiling {
+                unread.clouds = Some(!looks.has_clouds());
+            } else {
+                unread.ceiling_color = Color([0.1, 0.2, 0.3]);
+            }
+            if fog.is_none() {
+                unread.fog_in_depth = !looks.fog_in_depth;
+            }
+            if looks.style == Style::Plain {
+                unread = Looks { fog_in_depth: unread.fog_in_depth, style: Style::Plain, ..other };
+            }
+            prop_assert_eq!(d(&here, &drawn(unread, layout, fog)).total, 0.0, "{:?}", unread);
+            let there = d(&here, &drawn(other, layout, fog));
+            prop_assert!(there.differs_in().iter().all(|element| *element == Element::O));
+            // From the plain style each part is as far away as from the natural one by itself, and 1 more.
+            let natural = drawn(Looks { fog_in_depth: looks.fog_in_depth, ..Looks::of(Style::Natural) }, layout, fog);
+            let plain = drawn(Looks { fog_in_depth: looks.fog_in_depth, ..Looks::default() }, layout, fog);
+            if looks.style == Style::Natural {
+                prop_assert!((d(&plain, &here).total - d(&natural, &here).total - 1.0).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn what_covers_things_and_what_they_say_counts_where_it_is_seen() {
+        let with = |style: Style, class: &str, change: fn(&mut Object)| {
+            let mut object = Object::new(class, [3.0, 4.0]);
+            change(&mut object);
+            let edited = World::default().edit(|world| {
+                world.environment_params.looks = Looks::of(style);
+                world.objects.push(object);
+            });
+            edited.unwrap()
+        };
+        let d = |style: Style, class: &str, change: fn(&mut Object)| {
+            world_distance(
+                &with(style, class, |_| ()),
+                &with(style, class, change),
+                &Weights::default(),
+            )
+            .total
+        };
+        let brick = |object: &mut Object| object.surface = Surface::Brick;
+        let says = |object: &mut Object| object.text = Some("GO".to_owned());
+        assert_eq!(
+            (d(Style::Plain, "cube", brick), d(Style::Natural, "cube", brick)),
+            (0.0, 1.0)
+        );
+        assert_eq!(
+            (d(Style::Natural, "cube", says), d(Style::Plain, "sign", says)),
+            (0.0, 1.0)
+        );
+    }
+
+    #[test]
+    fn colours_of_ceilings_are_compared_as_colours() {
+        let under = |color: Color| {
+            let looks = Looks {
+                ceiling: Some(true),
+                ceiling_color: color,
+                ..Looks::of(Style::Natural)
+            };
+            drawn(looks, None, None)
+        };
+        let d = |a: Color, b: Color| world_distance(&under(a), &under(b), &Weights::default()).total;
+        let (black, white) = (Color([0.0; 3]), Color([1.0; 3]));
+        assert!((d(black, white) - 1.0).abs() < 1e-6);
+        assert!(d(black, Color([0.01; 3])) < 0.1);
     }
 
     #[test]

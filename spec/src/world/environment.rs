@@ -73,7 +73,7 @@ fields! {
         /// and whether there are shadows and a ceiling.
         #[serde(skip_serializing_if = "is_default")]
         #[schemars(with = "LooksForm")]
-        pub looks: Looks = Looks::default() => Field::ours(Leaves(CameraAndWeather)),
+        pub looks: Looks = Looks::default() => Field::ours(Measured(&[CameraAndWeather, ColorsOfSurroundings])),
     }
 }
 

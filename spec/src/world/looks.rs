@@ -133,6 +133,15 @@ impl Looks {
         self.covering(self.walls, Surface::Brick)
     }
 
+    /// The colour of the ceiling; that of one of which nothing is said where there is none.
+    pub fn ceiling_color_seen(&self, layout: Option<&Layout>) -> Color {
+        if self.has_ceiling(layout) {
+            self.ceiling_color
+        } else {
+            CEILING
+        }
+    }
+
     /// Whether shadows fall on the ground.
     pub fn has_shadows(&self) -> bool {
         self.style == Style::Natural && self.shadows.unwrap_or(true)
@@ -152,6 +161,15 @@ impl Looks {
 }
 
 impl Covering {
+    /// Its scale; 1 where it has no pattern.
+    pub(super) fn scale_seen(self) -> f64 {
+        if self.surface == Surface::Plain {
+            1.0
+        } else {
+            self.scale
+        }
+    }
+
     /// A surface at its own size.
     pub fn of(surface: Surface) -> Self {
         Self { surface, scale: 1.0 }

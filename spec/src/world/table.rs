@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use serde::Serialize;
 
 use super::fields::{self, Compared, Comparison, FieldPlace, Fields, places_of};
-use super::{Disc, Object, World, WorldDraft, Zone, ZoneEnd};
+use super::{Disc, EnvironmentParams, Looks, Object, Style, Surface, World, WorldDraft, Zone, ZoneEnd};
 use crate::Color;
 
 impl World {
@@ -44,6 +44,10 @@ impl LeafTexts {
         self.add(&world.agent_params);
         self.add(&world.rules);
         self.add_zones(&world.environment_params.zones);
+        fields::write(
+            &Drawn::of(&world.environment_params),
+            &mut self.0[Comparison::CameraAndWeather as usize],
+        );
     }
 
     /// The texts of an object in place of those before.
@@ -108,6 +112,48 @@ impl LeafTexts {
     /// The text of a comparison.
     pub fn of(&self, comparison: Comparison) -> &[u8] {
         &self.0[comparison as usize]
+    }
+}
+
+/// How a world is drawn, as far as anything reads it, and whatever its document says in so many words: what is as the style has it
+/// by itself is the same as what is absent.
+#[derive(Serialize)]
+struct Drawn {
+    style: Style,
+    ground: Option<Surface>,
+    ground_scale: f64,
+    walls: Option<Surface>,
+    wall_scale: f64,
+    ceiling: Option<bool>,
+    shadows: bool,
+    clouds: bool,
+    fog_in_depth: bool,
+}
+
+impl Drawn {
+    fn of(environment: &EnvironmentParams) -> Self {
+        let (style, layout) = (environment.looks.style, environment.layout.as_ref());
+        let own = Looks::of(Style::Natural);
+        // Nothing reads them in the plain style.
+        let looks = match style {
+            Style::Plain => &own,
+            Style::Natural => &environment.looks,
+        };
+        let has_ceiling = looks.has_ceiling(layout);
+        let (ground, walls) = (looks.ground(has_ceiling), looks.walls());
+        let other = |surface: Surface, own: Surface| (surface != own).then_some(surface);
+        Self {
+            style,
+            ground: other(ground.surface, own.ground(has_ceiling).surface),
+            ground_scale: ground.scale_seen(),
+            walls: other(walls.surface, own.walls().surface),
+            wall_scale: walls.scale_seen(),
+            ceiling: (has_ceiling != own.has_ceiling(layout)).then_some(has_ceiling),
+            shadows: looks.has_shadows(),
+            // Nobody sees them through a ceiling.
+            clouds: has_ceiling || looks.has_clouds(),
+            fog_in_depth: environment.looks.fog_in_depth && environment.fog_distance.is_some(),
+        }
     }
 }
 
