@@ -91,6 +91,11 @@ fn energy_lasts_as_long_as_there_is_fruit() {
 }
 
 #[test]
+fn what_runs_away_is_caught() {
+    check("hunt");
+}
+
+#[test]
 fn things_are_carried_to_their_place() {
     check("put_next");
 }

@@ -202,6 +202,7 @@ const IMAGES: &[(&str, &[&str])] = &[
         "world-foraging.png",
         &["sheet examples/worlds/foraging.json --size 150 -o {}"],
     ),
+    ("world-hunt.png", &["sheet examples/worlds/hunt.json --size 150 -o {}"]),
     (
         "solved-key_corridor.png",
         &["render examples/worlds/key_corridor.json#closed --seed 5 --view episode --size 200 -o {}"],
