@@ -48,6 +48,7 @@ pub(crate) fn measure(round: Duration, renderer: RendererKind) -> Result<Figures
     let wide = arena(ARENA_20, [160, 120])?;
     let small = in_color(arena(ARENA_8, [64, 64])?)?;
     let mazes = mazes()?;
+    let small_maze = in_color(mazes.world(0)?.edit(|world| world.agent_params.observation_size = 64)?)?;
     let one = steps(&square, NUM_ENVS, 1, round)?;
     let mut environment = Environment::new(square.clone());
     let mut figures = rates([
@@ -72,6 +73,18 @@ pub(crate) fn measure(round: Duration, renderer: RendererKind) -> Result<Figures
         (
             "steps_per_second_per_core_maze_84_natural",
             steps(&in_natural_looks(&mazes.world(0)?)?, NUM_ENVS, 1, round)?,
+        ),
+        (
+            "steps_per_second_per_core_160x120_natural",
+            steps(&in_natural_looks(&wide)?, NUM_ENVS, 1, round)?,
+        ),
+        (
+            "steps_per_second_per_core_maze_64_rgb",
+            steps(&small_maze, NUM_ENVS, 1, round)?,
+        ),
+        (
+            "steps_per_second_per_core_maze_64_rgb_natural",
+            steps(&in_natural_looks(&small_maze)?, NUM_ENVS, 1, round)?,
         ),
         (
             "resets_per_second_per_core_maze",

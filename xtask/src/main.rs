@@ -73,8 +73,9 @@ Usage:
                                     TOOL: miri, address, threads
   cargo xtask bench [NAME]          measure, optimised: all benches, or those of NAME (generator, similarity,
                                     env, metrics, unity)
-  cargo xtask bench peers PYTHON SCRIPTS
-                                    ours beside the peers that PYTHON has, by the scripts in a folder; draws docs/images/speed.svg";
+  cargo xtask bench peers PYTHON SCRIPTS [JAXENSTEIN]
+                                    ours beside the peers that PYTHON has, by the scripts in a folder; JAXENSTEIN is a checkout of it;
+                                    draws docs/images/speed.svg";
 
 /// What the arguments ask for.
 #[derive(Debug, PartialEq)]
@@ -97,6 +98,7 @@ enum Request {
     Peers {
         python: String,
         scripts: PathBuf,
+        jaxenstein: Option<PathBuf>,
     },
 }
 
@@ -140,9 +142,10 @@ fn parse(arguments: &[String]) -> Result<Request, String> {
             )),
         },
         ["bench"] => Ok(Request::Bench(Suite::ALL.to_vec())),
-        ["bench", "peers", python, scripts] => Ok(Request::Peers {
+        ["bench", "peers", python, scripts, jaxenstein @ ..] if jaxenstein.len() <= 1 => Ok(Request::Peers {
             python: (*python).to_owned(),
             scripts: scripts.into(),
+            jaxenstein: jaxenstein.first().map(PathBuf::from),
         }),
         ["bench", name] => match Suite::from_name(name) {
             Some(suite) => Ok(Request::Bench(vec![suite])),
@@ -209,8 +212,12 @@ fn execute(request: Request) -> ExitCode {
         Request::Dist => Workspace::load().and_then(|workspace| dist::make(&workspace)),
         Request::Fuzz(wanted) => Workspace::load().and_then(|workspace| fuzz::search(&workspace, &wanted)),
         Request::Soundness(tools) => Workspace::load().and_then(|workspace| soundness::check(&workspace, &tools)),
-        Request::Peers { python, scripts } => {
-            Workspace::load().and_then(|workspace| peers::measure(&workspace, &python, &scripts))
+        Request::Peers {
+            python,
+            scripts,
+            jaxenstein,
+        } => {
+            Workspace::load().and_then(|workspace| peers::measure(&workspace, &python, &scripts, jaxenstein.as_deref()))
         }
         Request::Bench(suites) => Workspace::load().and_then(|workspace| bench::measure(&workspace, &suites)),
     };

@@ -20,8 +20,14 @@ struct Bar {
     per_second: f64,
 }
 
-/// Measures ViZDoom, MiniWorld and ourselves, each on one core, prints a table and draws the plot.
-pub(crate) fn measure(workspace: &Workspace, python: &str, scripts: &Path) -> Result<(), XtaskError> {
+/// Measures ViZDoom, MiniWorld, `JAXenstein` where there is a checkout of it, and ourselves, each on one core, prints a table and
+/// draws the plot.
+pub(crate) fn measure(
+    workspace: &Workspace,
+    python: &str,
+    scripts: &Path,
+    jaxenstein: Option<&Path>,
+) -> Result<(), XtaskError> {
     let mut vizdoom = Command::new("taskset");
     vizdoom.args(["-c", "0", python]).arg(scripts.join("peer_vizdoom.py"));
     let mut miniworld = Command::new("xvfb-run");
@@ -39,6 +45,14 @@ pub(crate) fn measure(workspace: &Workspace, python: &str, scripts: &Path) -> Re
         &["depth+labels"],
         &doom,
     ));
+    if let Some(checkout) = jaxenstein {
+        let mut mazes = Command::new("taskset");
+        mazes
+            .args(["-c", "0", python])
+            .arg(scripts.join("peer_jaxenstein.py"))
+            .arg(checkout);
+        bars.extend(bars_of("JAXenstein", "64 × 64, colour, maze", &[], &output(mazes)?));
+    }
     bars.extend(our_bars(workspace)?);
     println!("\n| environment | observation | steps a second on one core |\n|---|---|---|");
     for bar in &bars {
@@ -49,10 +63,12 @@ pub(crate) fn measure(workspace: &Workspace, python: &str, scripts: &Path) -> Re
 }
 
 fn our_bars(workspace: &Workspace) -> Result<Vec<Bar>, XtaskError> {
-    let bench = cargo(
-        workspace,
-        &["run", "--release", "--quiet", "--", "bench", "env", "--json"],
-    );
+    output(cargo(workspace, &["build", "--release", "--quiet"]))?;
+    let mut bench = Command::new("taskset");
+    bench
+        .args(["-c", "0"])
+        .arg(workspace.root.join("target/release/driftworld"))
+        .args(["bench", "env", "--json"]);
     let text = output(bench)?;
     let figure = |key: &str| {
         let (_, rest) = text.split_once(&format!("\"{key}\":"))?;
@@ -64,9 +80,18 @@ fn our_bars(workspace: &Workspace) -> Result<Vec<Bar>, XtaskError> {
         number.parse().ok()
     };
     let bars = [
-        ("steps_per_second_per_core_160x120", "160 × 120, colour, depth, classes"),
-        ("steps_per_second_per_core_84", "84 × 84, colour, depth, classes"),
-        ("steps_per_second_per_core_64_rgb", "64 × 64, colour, 8 objects"),
+        (
+            "steps_per_second_per_core_160x120_natural",
+            "160 × 120, colour, depth, classes",
+        ),
+        ("steps_per_second_per_core_160x120", "the same, plain"),
+        (
+            "steps_per_second_per_core_84_natural",
+            "84 × 84, colour, depth, classes",
+        ),
+        ("steps_per_second_per_core_84", "the same, plain"),
+        ("steps_per_second_per_core_maze_64_rgb_natural", "64 × 64, colour, maze"),
+        ("steps_per_second_per_core_maze_64_rgb", "the same, plain"),
     ];
     let bar = |(key, what): (&str, &str)| {
         figure(key).map(|per_second| Bar {
