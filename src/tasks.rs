@@ -8,6 +8,7 @@ use crate::documents::{self, DocumentError};
 use driftworld_env::Catalogue;
 use driftworld_files::FileError;
 use driftworld_spec::{Classes, DEFAULT_VARIANT, SpecError, TaskSpec, Variant, did_you_mean};
+use driftworld_text::printable;
 
 /// The tasks that are built in: name and text. The files are `examples/tasks/`.
 pub const BUILT_IN: [(&str, &str); 6] = [
@@ -24,11 +25,7 @@ pub const BUILT_IN: [(&str, &str); 6] = [
 #[non_exhaustive]
 pub enum TaskError {
     /// There is no such built-in task, and no such file.
-    #[error(
-        "found task {name:?}, expected the path of a task spec or one of {}{}",
-        built_in_names().join(", "),
-        did_you_mean(name, built_in_names())
-    )]
+    #[error("{}", unknown(name))]
     Unknown {
         /// The name asked for.
         name: String,
@@ -42,6 +39,22 @@ pub enum TaskError {
     /// The document is wrong, or has no such variant.
     #[error(transparent)]
     Spec(#[from] SpecError),
+}
+
+/// That there is no such file, for a name that is a path; else that there is no such task.
+fn unknown(name: &str) -> String {
+    let names = built_in_names();
+    let has_ending = Path::new(name)
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
+    if has_ending || name.contains(['/', '\\']) {
+        return format!(
+            "{}: found no such file, expected a task spec or the name of a built-in task",
+            printable(name)
+        );
+    }
+    let (all, near) = (names.join(", "), did_you_mean(name, names));
+    format!("found task {name:?}, expected the path of a task spec or one of {all}{near}")
 }
 
 /// The classes that worlds can have objects of, by the libraries at hand; where one is not known, messages say how a library is named.
@@ -251,6 +264,17 @@ mod tests {
              spheres, clearing, wide, modest, poor, half, turned, interact, near, held, long_held, slim, slow, \
              stiff and 17 more; did you mean \"red\"?"
         );
+    }
+
+    #[test]
+    fn of_a_path_it_is_said_that_there_is_no_such_file() {
+        for name in ["nope.json", "no/where"] {
+            let said = variant(name).unwrap_err().to_string();
+            assert_eq!(
+                said,
+                format!("{name}: found no such file, expected a task spec or the name of a built-in task")
+            );
+        }
     }
 
     #[test]

@@ -50,7 +50,7 @@ pub(super) fn grouped(command: Command) -> Command {
     command.help_template(template).after_help(
         "'driftworld COMMAND --help' shows examples of each. A task is a built-in one, or the path of a task spec. A variant is \
          TASK#VARIANT, such as find_objects#red; a family or a pattern, such as find_objects#any_*, stands for its members. \
-         In place of a file, - is standard input or output.",
+         In place of a document, - is standard input, and with -o standard output.",
     )
 }
 

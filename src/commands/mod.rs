@@ -83,8 +83,12 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> u8 {
             done.and(reported).map_or_else(|failure| report(&failure), |()| 0)
         }
         Err(help) => {
-            // Where nobody reads, there is nobody to tell of it.
-            let _ = help.print();
+            if help.use_stderr() {
+                output::note(help.render().to_string().trim_end());
+            } else {
+                // Where nobody reads, there is nobody to tell of it.
+                let _ = help.print();
+            }
             u8::try_from(help.exit_code()).unwrap_or(2)
         }
     }

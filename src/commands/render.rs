@@ -65,7 +65,8 @@ enum View {
     Sheet,
     /// From outside, above a corner.
     Overview,
-    /// The map, north on top.
+    /// The map, north on top; also called above.
+    #[value(alias = "above")]
     TopDown,
     /// The agent's view in colour.
     Rgb,

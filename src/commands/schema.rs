@@ -15,7 +15,7 @@ use super::output;
 #[command(after_help = "Example:\n  driftworld schema task > task.schema.json\n  driftworld schema -o schemas")]
 pub(crate) struct Schema {
     /// The schema to print.
-    #[arg(value_parser = ["world", "task", "scenario"], conflicts_with_all = ["output", "check", "reference"])]
+    #[arg(value_parser = ["world", "task", "scenario", "maps"], conflicts_with_all = ["output", "check", "reference"])]
     document: Option<String>,
     /// Use the Markdown reference of a world's keys instead of the schemas.
     #[arg(long)]
@@ -52,7 +52,7 @@ impl Schema {
         }
         let Some(folder) = &self.output else {
             return Err(Failure::usage(
-                "name a document (world, task, scenario), a folder with -o, or one with --check",
+                "name a document (world, task, scenario, maps), a folder with -o, or one with --check",
             ));
         };
         for (name, text) in self.texts()? {

@@ -5,6 +5,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use strum::VariantNames as _;
 
+use crate::did_you_mean;
+
 /// What two variants or worlds are compared by: of what, and after a colon by which measure of it.
 #[derive(
     Clone,
@@ -145,9 +147,10 @@ impl By {
     /// What was found, and the names there are.
     pub fn from_name(name: &str) -> Result<Self, String> {
         let american = name.replacen("behaviour", "behavior", 1);
-        american
-            .parse()
-            .map_err(|_| format!("found {name:?}, expected one of {}", Self::names().join(", ")))
+        american.parse().map_err(|_| {
+            let near = did_you_mean(name, Self::names().iter().copied());
+            format!("found {name:?}, expected one of {}{near}", Self::names().join(", "))
+        })
     }
 }
 
@@ -170,6 +173,11 @@ mod tests {
             By::from_name("looks")
                 .unwrap_err()
                 .contains("parameters, worlds, pictures")
+        );
+        assert!(
+            By::from_name("picture")
+                .unwrap_err()
+                .ends_with("did you mean \"pictures\"?")
         );
     }
 }
