@@ -9,6 +9,9 @@ use crate::Failure;
 /// Pixels along each side of the pictures that are counted.
 const SIDE: u32 = 64;
 
+/// Columns at each side of the pictures that do not count: what stands there is cut off, or overlooked.
+const MARGIN: u32 = SIDE / 8;
+
 /// From so many pixels on an object counts as seen: a thousandth of the picture, a cube of 1 m from 30 m.
 pub(crate) const ENOUGH: u32 = SIDE * SIDE / 1000;
 
@@ -39,7 +42,7 @@ pub(crate) fn subjects(world: &World) -> Vec<usize> {
 pub(crate) struct Sight {
     /// Subjects of which there is enough.
     pub(crate) seen: u32,
-    /// Pixels of all subjects, of 4,096.
+    /// Pixels of all subjects, of 4,096, without the margins.
     pub(crate) pixels: u32,
 }
 
@@ -66,7 +69,11 @@ pub(crate) fn sight(
     };
     renderer.draw(scene, camera, &mut target)?;
     let mut counts = vec![0_u32; scene.items.len()];
-    for instance in instances {
+    let counted = MARGIN as usize..(SIDE - MARGIN) as usize;
+    for (place, instance) in instances.into_iter().enumerate() {
+        if !counted.contains(&(place % SIDE as usize)) {
+            continue;
+        }
         if let Some(count) = (instance as usize)
             .checked_sub(1)
             .and_then(|index| counts.get_mut(index))
@@ -79,4 +86,41 @@ pub(crate) fn sight(
         seen: own().filter(|pixels| *pixels >= ENOUGH).count() as u32,
         pixels: own().sum(),
     })
+}
+
+#[cfg(test)]
+#[expect(clippy::disallowed_methods, reason = "where a cube stands before a camera")]
+mod tests {
+    use driftworld_spec::{Object, WorldDraft};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::views::agent_camera;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(40))]
+
+        /// A cube is seen where its middle lies within the margins, and not where all of it lies in one of them.
+        #[test]
+        fn what_stands_in_a_margin_is_not_seen(place in -1.2..1.2_f64) {
+            let mut draft = WorldDraft::default();
+            draft.environment_params.map_size = [60.0, 60.0];
+            draft.agent_params.coordinates = [0.0, -5.0];
+            draft.agent_params.heading = 0.0;
+            let half = (draft.agent_params.field_of_view / 2.0).to_radians().tan() * 10.0;
+            let mut object = Object::new("geometric", [place * half, 5.0]);
+            object.scale = 1.0;
+            draft.objects.push(object);
+            let world = draft.check().expect("the world is sound");
+            let (scene, camera) = (Scene::from_world(&world), agent_camera(&world, 0.0));
+            let seen = sight(&mut Renderer::default(), &scene, &camera, &[0]).expect("it is drawn");
+            let (inner, rim) = (1.0 - 2.0 * f64::from(MARGIN) / f64::from(SIDE), 0.8 / half);
+            if place.abs() < inner - rim {
+                prop_assert!(seen.is_enough(), "{seen:?}");
+            }
+            if place.abs() > inner + rim {
+                prop_assert_eq!(seen, Sight::default());
+            }
+        }
+    }
 }
