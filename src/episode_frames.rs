@@ -2,14 +2,15 @@
 //! become a sheet is `report`'s.
 
 use driftworld_env::{
-    Agent, Catalogue, Effect, EndedBy, Environment, Event, Recorder, Recording, Renderer, Replay, Step,
-    top_down_with_way,
+    Agent, Catalogue, Effect, EndedBy, Environment, Event, Recorder, Recording, Renderer, Replay, Step, category_color,
+    depth_to_gray, top_down_with_way,
 };
 use driftworld_report::picture::{Picture, SheetRow};
 use driftworld_spec::{Stimulus, World};
 use driftworld_text::amount;
 
 use crate::Failure;
+use crate::film::{FilmModality, FilmOptions, FilmView};
 use crate::map_drawing::map_size;
 
 /// What one step did, in words, and how much it matters: 0 for a step on the way.
@@ -40,20 +41,19 @@ pub(crate) fn recorded(
     Ok(recorder.recording(&environment, ended_by))
 }
 
-/// A recorded episode as rows of a sheet: what the agent sees, and the map with the way since the row before. Where something was done,
-/// it is what the agent saw when it did it, and the map after that.
+/// A recorded episode as rows of a sheet: what the agent sees, and the map with the way since the row before, or one of them. Where
+/// something was done, it is what the agent saw when it did it, and the map after that.
 ///
 /// The start and the end are among the rows, and of what happened as much as `most` rows have room for; where little
 /// happened, steps on the way.
 pub(crate) fn rows(
     recording: &Recording,
     catalogue: &Catalogue,
-    renderer: Renderer,
-    size: u32,
+    options: &FilmOptions,
     most: usize,
 ) -> Result<Vec<SheetRow>, Failure> {
     let mut replay = Replay::new(recording, catalogue);
-    replay.environment().set_renderer(renderer);
+    replay.environment().set_renderer(Renderer::new(options.renderer)?);
     let mut deeds = vec![Deed::default()];
     let mut last = None;
     while let Some(step) = replay.step()? {
@@ -66,8 +66,8 @@ pub(crate) fn rows(
     for number in chosen(&deeds, most) {
         let mut seen = None;
         while taken < number {
-            if taken + 1 == number && deeds[number].weight > 0 {
-                seen = Some(seen_by(replay.environment(), size)?);
+            if taken + 1 == number && deeds[number].weight > 0 && options.view != FilmView::Above {
+                seen = Some(seen_by(replay.environment(), options)?);
             }
             replay.step()?;
             way.push(replay.environment().agent().position);
@@ -75,13 +75,18 @@ pub(crate) fn rows(
         }
         let environment = replay.environment();
         let end = last.as_ref().filter(|_| number + 1 == deeds.len());
+        let (title, words) = if options.captions {
+            (title(number, &deeds[number]), words(environment, end))
+        } else {
+            (title(number, &Deed::default()), String::new())
+        };
+        let pictures = options.pictures(environment, &way, &mut |environment| {
+            seen.take().map_or_else(|| seen_by(environment, options), Ok)
+        })?;
         rows.push(SheetRow {
-            title: title(number, &deeds[number]),
-            words: words(environment, end),
-            pictures: vec![
-                seen.map_or_else(|| seen_by(environment, size), Ok)?.into(),
-                map_of(environment, map_beside(environment, size), &way).into(),
-            ],
+            title,
+            words,
+            pictures: pictures.into_iter().map(Into::into).collect(),
         });
         way.drain(..way.len() - 1);
     }
@@ -236,11 +241,29 @@ pub(crate) fn map_beside(environment: &Environment, height: u32) -> [u32; 2] {
     map_size(environment.scene(), height)
 }
 
-/// What the agent sees.
-pub(crate) fn seen_by(environment: &mut Environment, size: u32) -> Result<Picture, Failure> {
-    let side = size * oversize(size);
+/// What the agent sees: in colours with smooth edges, else pixel by pixel.
+pub(crate) fn seen_by(environment: &mut Environment, options: &FilmOptions) -> Result<Picture, Failure> {
+    let (size, modality) = (options.size, options.modality);
+    let side = size
+        * if modality == FilmModality::Rgb {
+            oversize(size)
+        } else {
+            1
+        };
     let frame = environment.observe_at(side, side)?;
-    Ok(finished(frame.width, frame.height, frame.rgb, size))
+    let rgb = match modality {
+        FilmModality::Rgb => return Ok(finished(frame.width, frame.height, frame.rgb, size)),
+        FilmModality::Segmentation => frame.category.iter().flat_map(|it| category_color(*it)).collect(),
+        FilmModality::Depth => depth_to_gray(&frame.depth)
+            .into_iter()
+            .flat_map(|gray| [gray; 3])
+            .collect(),
+    };
+    Ok(Picture {
+        width: size,
+        height: size,
+        rgb,
+    })
 }
 
 /// The map with the agent, and a way to it.

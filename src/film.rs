@@ -5,16 +5,14 @@ use std::path::Path;
 use std::str::FromStr;
 
 use clap::ValueEnum;
-use driftworld_env::{
-    Catalogue, Environment, Recording, Renderer, RendererKind, Replay, category_color, depth_to_gray,
-};
+use driftworld_env::{Catalogue, Environment, Recording, Renderer, RendererKind, Replay};
 use driftworld_report::film::{Film, FilmKind};
 use driftworld_report::picture::{Picture, caption_lines, sheet};
 use driftworld_text::ShownPath;
 use serde::Serialize;
 
 use crate::episode_frames::{deed, facts, map_beside, map_of, rows, seen_by};
-use crate::{Failure, output_file};
+use crate::{Failure, argument, output_file};
 
 /// Most pixels along a side of the agent's view, and of the map.
 pub const MAX_FILM_SIZE: u32 = 2048;
@@ -83,7 +81,7 @@ pub struct FilmOptions {
     pub size: u32,
     /// One frame for so many steps, at least 1. The start and the end are always shown.
     pub every: u32,
-    /// Whether words above each frame say time, return and what happened.
+    /// Whether words above each frame say time, return and what happened; without them a sheet says the step.
     pub captions: bool,
     /// What draws.
     pub renderer: RendererKind,
@@ -107,12 +105,15 @@ impl Default for FilmOptions {
 pub struct FilmSummary {
     /// Frames.
     pub frames: u32,
-    /// Pixels across, and down.
+    /// Pixels of a frame across, and down.
     pub width: u32,
     /// See `width`.
     pub height: u32,
     /// How long it lasts; 0 for a sheet.
     pub seconds: f64,
+    /// Pixels of the sheet across and down, if it is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sheet: Option<[u32; 2]>,
 }
 
 impl FilmOptions {
@@ -136,14 +137,45 @@ impl FilmOptions {
         }
     }
 
-    fn check(&self) -> Result<(), Failure> {
-        if (1..=MAX_FILM_SIZE).contains(&self.size) && self.every >= 1 {
-            return Ok(());
+    /// Refuses options that nothing can be drawn by, or of which one means nothing beside another.
+    ///
+    /// # Errors
+    /// That says which, and what to do.
+    pub fn check(&self) -> Result<(), Failure> {
+        if !(1..=MAX_FILM_SIZE).contains(&self.size) || self.every < 1 {
+            return Err(Failure::usage(format!(
+                "film: found size {} and every {}, expected 1 to {MAX_FILM_SIZE} pixels, and each step or fewer",
+                self.size, self.every
+            )));
         }
-        Err(Failure::usage(format!(
-            "film: found size {} and every {}, expected 1 to {MAX_FILM_SIZE} pixels, and each step or fewer",
-            self.size, self.every
-        )))
+        if self.view == FilmView::Above && self.modality != FilmModality::Rgb {
+            let word = self.modality.to_possible_value();
+            return Err(Failure::usage(format!(
+                "{modality}: found {} of the view from above, expected a view of the agent's, of which alone there are \
+                 modalities; leave {modality} out, or set {view} to agent or both",
+                word.as_ref().map_or("one", |word| word.get_name()),
+                modality = argument("modality"),
+                view = argument("view"),
+            )));
+        }
+        Ok(())
+    }
+
+    /// Pictures of an episode as it is now: the agent's view, which is asked for if it is shown, and the map with the way.
+    pub(crate) fn pictures(
+        &self,
+        environment: &mut Environment,
+        way: &[[f32; 2]],
+        seen: &mut dyn FnMut(&mut Environment) -> Result<Picture, Failure>,
+    ) -> Result<Vec<Picture>, Failure> {
+        let mut pictures = Vec::new();
+        if self.view != FilmView::Above {
+            pictures.push(seen(environment)?);
+        }
+        if self.view != FilmView::Agent {
+            pictures.push(map_of(environment, map_beside(environment, self.size), way));
+        }
+        Ok(pictures)
     }
 }
 
@@ -234,14 +266,7 @@ impl Captions {
 }
 
 fn frame(environment: &mut Environment, options: &FilmOptions, way: &[[f32; 2]]) -> Result<Picture, Failure> {
-    let pictures = match options.view {
-        FilmView::Agent => vec![agent_view(environment, options)?],
-        FilmView::Above => vec![map_of(environment, map_beside(environment, options.size), way)],
-        FilmView::Both => vec![
-            agent_view(environment, options)?,
-            map_of(environment, map_beside(environment, options.size), way),
-        ],
-    };
+    let pictures = options.pictures(environment, way, &mut |environment| seen_by(environment, options))?;
     let mut frame = Picture::blank(options.width(environment), options.size);
     let mut left = 0;
     for picture in &pictures {
@@ -249,26 +274,6 @@ fn frame(environment: &mut Environment, options: &FilmOptions, way: &[[f32; 2]])
         left += picture.width;
     }
     Ok(frame)
-}
-
-fn agent_view(environment: &mut Environment, options: &FilmOptions) -> Result<Picture, Failure> {
-    let size = options.size;
-    if options.modality == FilmModality::Rgb {
-        return seen_by(environment, size);
-    }
-    let frame = environment.observe_at(size, size)?;
-    let rgb = match options.modality {
-        FilmModality::Segmentation => frame.category.iter().flat_map(|it| category_color(*it)).collect(),
-        _ => depth_to_gray(&frame.depth)
-            .into_iter()
-            .flat_map(|gray| [gray; 3])
-            .collect(),
-    };
-    Ok(Picture {
-        width: size,
-        height: size,
-        rgb,
-    })
 }
 
 /// What a file's ending stands for.
@@ -337,6 +342,7 @@ pub fn write_film(
         width: 0,
         height: 0,
         seconds: 0.0,
+        sheet: None,
     };
     let last = recording.actions.len();
     let mut to = Some(&mut file);
@@ -367,8 +373,7 @@ fn write_sheet(
     catalogue: &Catalogue,
     options: &FilmOptions,
 ) -> Result<FilmSummary, Failure> {
-    let renderer = Renderer::new(options.renderer)?;
-    let rows = rows(recording, catalogue, renderer, options.size, SHEET_ROWS)?;
+    let rows = rows(recording, catalogue, options, SHEET_ROWS)?;
     let mut replay = Replay::new(recording, catalogue);
     while replay.step()?.is_some() {}
     replay.check()?;
@@ -376,8 +381,9 @@ fn write_sheet(
     output_file::write_picture(path, &picture)?;
     Ok(FilmSummary {
         frames: rows.len() as u32,
-        width: picture.width,
-        height: picture.height,
+        width: options.width(replay.environment()),
+        height: options.size,
         seconds: 0.0,
+        sheet: Some([picture.width, picture.height]),
     })
 }

@@ -146,6 +146,13 @@ def test_an_episode_is_drawn_at_any_size_and_from_anywhere(tmp_path: Path) -> No
     for name, begin in (("e.gif", b"GIF89a"), ("e.apng", b"\x89PNG"), ("e.png", b"\x89PNG")):
         recording.save(tmp_path / name, size=24)
         assert (tmp_path / name).read_bytes().startswith(begin)
+    sheets = {}
+    for view, modality in (("agent", "rgb"), ("agent", "depth"), ("above", "rgb"), ("both", "rgb"), ("both", "depth")):
+        recording.save(tmp_path / "e.png", size=24, view=view, modality=modality)
+        sheets[view, modality] = (tmp_path / "e.png").read_bytes()
+    assert len(set(sheets.values())) == len(sheets)
+    with pytest.raises(ValueError, match="modality: found depth of the view from above"):
+        recording.save(tmp_path / "e.png", view="above", modality="depth")
     assert recording._repr_png_().startswith(b"\x89PNG")
     assert repr(recording) == f"<Recording of episode 0: 10 steps, reward {recording.reward:g}, ended by steps>"
     assert pickle.loads(pickle.dumps(recording)) == recording

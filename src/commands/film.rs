@@ -55,6 +55,7 @@ pub(crate) struct Film {
 impl Film {
     pub(crate) fn run(self) -> Result<(), Failure> {
         expect_film(&self.output)?;
+        self.film.check()?;
         let world = self.choice.world()?;
         let catalogue = self.libraries.catalogue()?;
         let mut agent = self.agent.agent()?.agent;

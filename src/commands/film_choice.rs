@@ -13,13 +13,13 @@ use super::output;
 /// How an episode is filmed.
 #[derive(Args)]
 pub(crate) struct FilmChoice {
-    /// From where to look.
+    /// What is shown: what the agent sees, the map from above, or both side by side.
     #[arg(long, value_enum, default_value_t = FilmView::Both)]
     view: FilmView,
     /// Height of the pictures in pixels.
     #[arg(long, default_value_t = 240, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_FILM_SIZE)))]
     size: u32,
-    /// What the agent's view shows.
+    /// What the agent's view shows; the map has no modalities.
     #[arg(long, value_enum, default_value_t = FilmModality::Rgb)]
     modality: FilmModality,
     /// Frames per second [default: the world's own time].
@@ -55,6 +55,11 @@ impl FilmChoice {
         }
     }
 
+    /// Refuses options of which one means nothing beside another.
+    pub(crate) fn check(&self) -> Result<(), Failure> {
+        self.options().check()
+    }
+
     /// Writes the film, with a bar on a terminal.
     pub(crate) fn write(
         &self,
@@ -79,14 +84,14 @@ pub(crate) fn tell(path: &Path, film: &FilmSummary) -> Result<(), Failure> {
         width,
         height,
         seconds,
+        sheet,
     } = film;
-    let lasts = if *seconds > 0.0 {
-        format!(", {seconds:.1} s")
-    } else {
-        String::new()
+    let more = match sheet {
+        Some([wide, high]) => format!(", on a sheet of {wide} × {high}"),
+        None => format!(", {seconds:.1} s"),
     };
     output::line(format!(
-        "wrote {}: {frames} frames of {width} × {height} pixels{lasts}",
+        "wrote {}: {frames} frames of {width} × {height} pixels{more}",
         path.shown()
     ))
 }

@@ -12,6 +12,7 @@ use super::world_choice::WorldChoice;
 use super::{Failure, output};
 use crate::contact_sheet::ways;
 use crate::episode_frames::{recorded, rows};
+use crate::film::{FilmOptions, FilmView};
 use crate::report::picture::{Drawing, SheetRow, sheet};
 use crate::views::Views;
 
@@ -148,8 +149,14 @@ impl Render {
         let mut agent = self.agent.as_ref().unwrap_or(&AgentArg::Onrails).agent()?.agent;
         let recording = recorded(world, catalogue, agent.as_mut(), 0, MAX_EXPERT_STEPS)?;
         let most = usize::from(self.frames.unwrap_or(8));
-        let renderer = Renderer::new(self.renderer)?;
-        Ok(sheet(&rows(&recording, catalogue, renderer, self.size, most)?, 2)?)
+        let options = FilmOptions {
+            view: FilmView::Both,
+            size: self.size,
+            captions: true,
+            renderer: self.renderer,
+            ..FilmOptions::default()
+        };
+        Ok(sheet(&rows(&recording, catalogue, &options, most)?, 2)?)
     }
 
     fn sheet(&self, world: &World, views: &Views) -> Result<Drawing, Failure> {

@@ -48,6 +48,7 @@ impl Replay {
     pub(crate) fn run(self) -> Result<(), Failure> {
         if let Some(path) = &self.output {
             expect_film(path)?;
+            self.film.check()?;
         }
         let episodes = RecordedEpisodes::open(&self.log)?;
         let catalogue = self.libraries.catalogue()?;

@@ -225,7 +225,12 @@ fn an_episode_becomes_a_film_or_a_sheet() {
     assert!(said.contains(": 6 frames of 48 × 48 pixels, 2.2 s"), "{said}");
     assert_eq!(&first_bytes(&at("e.apng"))[1..], b"PNG");
     let said = replay("e.png", &["--json"]);
-    assert!(said.contains("\"frames\": 12"), "{said}");
+    assert!(
+        said.contains("\"frames\": 12") && said.contains("\"width\": 96"),
+        "{said}"
+    );
+    let said = replay("e.png", &["--view", "above"]);
+    assert!(said.contains(": 12 frames of 48 × 48 pixels, on a sheet of "), "{said}");
     assert_eq!(&first_bytes(&at("e.png"))[1..], b"PNG");
     // The same bytes when it is drawn once more.
     let before = fs::read(at("e.gif")).unwrap();
@@ -243,6 +248,55 @@ fn an_episode_becomes_a_film_or_a_sheet() {
         "{said}"
     );
     assert!(fail(1, &["replay", "nowhere"]).contains("nowhere"));
+}
+
+/// What is drawn of an episode is what was asked for, whatever the file's ending: other options, other pictures; the same, the same.
+#[test]
+fn each_view_and_modality_is_a_picture_of_its_own() {
+    let folder = scratch();
+    let kept = folder.path().join("kept.jsonl");
+    let first = folder.path().join("first.png");
+    let agent = ["film", "find_objects#red", "--max-steps", "9", "--size", "24", "-o"];
+    succeed(&[&agent[..], &[text(&first), "--record", text(&kept)]].concat());
+    for ending in ["png", "gif", "apng"] {
+        let mut drawn: Vec<(String, Vec<u8>)> = Vec::new();
+        for (view, modalities) in [
+            ("agent", &["rgb", "depth", "segmentation"][..]),
+            ("above", &["rgb"]),
+            ("both", &["rgb", "depth", "segmentation"]),
+        ] {
+            for modality in modalities {
+                let file = folder.path().join(format!("{view}-{modality}.{ending}"));
+                let replay = || {
+                    let options = ["--episode", "0", "--size", "24", "--view", view, "--modality", modality];
+                    succeed(&[&["replay", text(&kept)], &options[..], &["-o", text(&file)]].concat());
+                    fs::read(&file).unwrap()
+                };
+                let bytes = replay();
+                assert!(
+                    view != "both" || bytes == replay(),
+                    "{modality} {ending}: another picture the second time"
+                );
+                for (other, theirs) in &drawn {
+                    assert!(&bytes != theirs, "{ending}: {view} {modality} is as {other}");
+                }
+                drawn.push((format!("{view} {modality}"), bytes));
+            }
+        }
+        let refused = folder.path().join(format!("refused.{ending}"));
+        let wrong = ["--view", "above", "--modality", "depth", "-o", text(&refused)];
+        for command in [
+            &["replay", text(&kept), "--episode", "0"][..],
+            &["film", "find_objects"],
+        ] {
+            let said = fail(2, &[command, &wrong].concat());
+            assert!(
+                said.contains("--modality: found depth of the view from above"),
+                "{said}"
+            );
+            assert!(!refused.exists());
+        }
+    }
 }
 
 #[test]
