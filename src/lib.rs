@@ -41,6 +41,7 @@ mod libraries;
 pub mod lifetime_report;
 mod log_folders;
 mod log_names;
+mod map_colors;
 mod map_drawing;
 mod map_legend;
 mod map_scale;

@@ -5,6 +5,7 @@ use driftworld_env::Scene;
 use driftworld_report::picture::{Drawing, Level, Picture, Rgb, Side, TextLine, ring, text_width};
 use driftworld_spec::{MotionModel, Object, World, Zone, ZoneEnd};
 
+use crate::map_colors::MapColors;
 use crate::map_drawing::{INK, Moves, RING, TRAIL, WHITE, annotated, arrow, ground, map_size, pay, trigger_radius};
 use crate::map_scale::{Bar, Places, north, north_size};
 
@@ -36,9 +37,10 @@ struct Entry {
     name: String,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 enum Mark {
-    Color(Rgb),
+    /// One to three.
+    Colors(Vec<Rgb>),
     Zone(Rgb),
     Arrow,
     Ring,
@@ -116,28 +118,30 @@ fn entries(world: &World, scene: &Scene, moves: &Moves, ground: &Picture) -> Vec
     entries
 }
 
-/// The objects that can be seen, grouped by name and pay, what pays or costs most first; the colour is that of a group's first.
+/// The objects that can be seen, grouped by name and pay, what pays or costs most first.
 fn object_entries(world: &World, scene: &Scene, ground: &Picture, places: &Places) -> Vec<Entry> {
-    let mut groups: Vec<(String, f64, Rgb, usize)> = Vec::new();
-    for (object, item) in world.objects.iter().zip(&scene.items).filter(|(_, item)| item.visible) {
+    let mut groups: Vec<(String, f64, Vec<usize>)> = Vec::new();
+    let objects = world.objects.iter().zip(&scene.items).enumerate();
+    for (index, (object, _)) in objects.filter(|(_, (_, item))| item.visible) {
         let (mut name, pay) = (named(object), pay(object));
         let mut failure = world.rules.failure.iter();
         if failure.any(|condition| condition.is_touch_of(object)) {
             name.push_str(", fails");
         }
-        let color = item.color.map_or_else(
-            || at(ground, places.pixel(item.position)),
-            |color| color.map(|c| (c * 255.0) as u8),
-        );
         match groups.iter_mut().find(|group| group.0 == name && group.1 == pay) {
-            Some(group) => group.3 += 1,
-            None => groups.push((name, pay, color, 1)),
+            Some(group) => group.2.push(index),
+            None => groups.push((name, pay, vec![index])),
         }
     }
     groups.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-    let entry = |(name, pay, color, count): (String, f64, Rgb, usize)| {
-        let count = if count > 1 {
-            format!(" ×{count}")
+    let colors = MapColors::of(scene);
+    let entry = |(name, pay, members): (String, f64, Vec<usize>)| {
+        let mut seen = colors.of_group(&members);
+        if let (true, Some(first)) = (seen.is_empty(), members.first()) {
+            seen.push(at(ground, places.pixel(scene.items[*first].position)));
+        }
+        let count = if members.len() > 1 {
+            format!(" ×{}", members.len())
         } else {
             String::new()
         };
@@ -147,7 +151,7 @@ fn object_entries(world: &World, scene: &Scene, ground: &Picture, places: &Place
             format!(", {}", signed(pay))
         };
         Entry {
-            mark: Mark::Color(color),
+            mark: Mark::Colors(seen),
             name: format!("{name}{count}{pay}"),
         }
     };
@@ -217,7 +221,7 @@ fn legend(entries: &[Entry], letters: f32, height: u32, places: &Places) -> Draw
     let rooms = (((height as f32 - foot - note_height - 6.0) / line).floor().max(1.0)) as usize;
     let mut shown: Vec<(Option<Mark>, String)> = entries
         .iter()
-        .map(|entry| (Some(entry.mark), entry.name.clone()))
+        .map(|entry| (Some(entry.mark.clone()), entry.name.clone()))
         .collect();
     if shown.len() > rooms {
         let left_out = shown.len() - rooms + 1;
@@ -233,10 +237,7 @@ fn legend(entries: &[Entry], letters: f32, height: u32, places: &Places) -> Draw
         let y = 6.0 + line * (number as f32 + 0.5);
         let (x, r) = (6.0 + letters * 0.6, letters * 0.42);
         match mark {
-            Some(Mark::Color(color)) => {
-                legend.disc([x, y], r + 0.8, INK);
-                legend.disc([x, y], r, *color);
-            }
+            Some(Mark::Colors(colors)) => swatch(&mut legend, [x, y], r, colors),
             Some(Mark::Zone(color)) => {
                 legend.rectangle([x - r - 0.8, y - r - 0.8, 2.0 * r + 1.6, 2.0 * r + 1.6], INK);
                 legend.rectangle([x - r, y - r, 2.0 * r, 2.0 * r], *color);
@@ -267,6 +268,22 @@ fn legend(entries: &[Entry], letters: f32, height: u32, places: &Places) -> Draw
     let at = [legend.width as f32 - arrow_side - 2.0, height as f32 - arrow_side - 2.0];
     north(&mut legend, at, arrow_side);
     legend
+}
+
+/// A disc with a sector for each colour.
+fn swatch(legend: &mut Drawing, middle: [f32; 2], radius: f32, colors: &[Rgb]) {
+    legend.disc(middle, radius + 0.8, INK);
+    let rim = ring(middle, radius);
+    let corner = |number: usize| number * (rim.len() - 1) / colors.len();
+    for (number, color) in colors.iter().enumerate() {
+        if number == 0 {
+            legend.disc(middle, radius, *color);
+        } else {
+            let mut sector = rim[corner(number)..=corner(number + 1)].to_vec();
+            sector.push(middle);
+            legend.area(sector, *color);
+        }
+    }
 }
 
 #[cfg(test)]

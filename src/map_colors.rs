@@ -1,0 +1,207 @@
+//! In which colours a map shows the things of a group: those that are seen most from above. The swatches are drawn in
+//! `map_legend.rs`.
+
+use driftworld_env::{Image, Scene, top_down, top_down_scale};
+use driftworld_report::picture::Rgb;
+
+use crate::map_drawing::map_size;
+
+/// Pixels from north to south of the pictures that are counted.
+const HEIGHT: u32 = 192;
+/// Colours that are nearer to each other than this, in levels of 0 to 255, are one.
+const NEAR: i32 = 48;
+/// So far, squared, light and shadow change a paint.
+const SHADE: i32 = 96 * 96;
+/// The most colours of a group that are told.
+const MOST: usize = 3;
+/// Rims of doors and keys.
+const RIM: Rgb = [20, 24, 30];
+
+/// A scene of which groups of things are looked at from above, each alone.
+pub(crate) struct MapColors {
+    /// With nothing on its ground but a speck.
+    scene: Scene,
+    bare: Image,
+}
+
+impl MapColors {
+    pub(crate) fn of(scene: &Scene) -> Self {
+        let mut scene = scene.clone().in_neutral_light();
+        let mut far = [0.0_f32; 2];
+        for item in &mut scene.items {
+            if item.visible {
+                let radius = item.asset.radius * item.scale;
+                far = [0, 1].map(|axis| far[axis].max(item.position[axis].abs() + radius));
+            }
+            item.visible = false;
+        }
+        // A map shows what stands outside the arena, too: with a speck that is as far out, all are of one scale.
+        if let Some(mut speck) = scene.items.first().cloned() {
+            speck.scale = 1e-3;
+            (speck.visible, speck.position) = (true, far);
+            scene.items.push(speck);
+        }
+        let [width, height] = map_size(&scene, HEIGHT);
+        Self {
+            bare: top_down(&scene, width, height, None),
+            scene,
+        }
+    }
+
+    /// The colours of these items, what most is seen of first: one where they look alike, at most three. None where nothing of them
+    /// can be seen.
+    pub(crate) fn of_group(&self, members: &[usize]) -> Vec<Rgb> {
+        let mut groups: Vec<(Rgb, usize)> = Vec::new();
+        for (color, pixels) in self.of_members(members) {
+            match groups.iter_mut().find(|(other, _)| is_near(*other, color)) {
+                Some((_, sum)) => *sum += pixels,
+                None => groups.push((color, pixels)),
+            }
+        }
+        groups.sort_by_key(|(_, pixels)| std::cmp::Reverse(*pixels));
+        groups.into_iter().take(MOST).map(|(color, _)| color).collect()
+    }
+
+    /// The colour of each of these items, as far as it is seen: the median of the pixels that are nearer to it than to the others,
+    /// with their number.
+    fn of_members(&self, members: &[usize]) -> Vec<(Rgb, usize)> {
+        let mut scene = self.scene.clone();
+        for index in members {
+            scene.items[*index].visible = true;
+        }
+        let (width, height) = (self.bare.width, self.bare.height);
+        let image = top_down(&scene, width, height, None);
+        let scale = top_down_scale(&scene, width, height);
+        let middles: Vec<[f32; 2]> = (members.iter())
+            .map(|index| {
+                let [x, y] = scene.items[*index].position;
+                [width as f32 / 2.0 + x * scale, height as f32 / 2.0 - y * scale]
+            })
+            .collect();
+        let mut pixels: Vec<Vec<Rgb>> = vec![Vec::new(); members.len()];
+        let pairs = image.rgb.chunks_exact(3).zip(self.bare.rgb.chunks_exact(3));
+        for (place, (shown, bare)) in pairs.enumerate() {
+            if shown == bare || shown == RIM {
+                continue;
+            }
+            let at = [place as u32 % width, place as u32 / width].map(|pixel| pixel as f32 + 0.5);
+            let far = |middle: &[f32; 2]| (middle[0] - at[0]).powi(2) + (middle[1] - at[1]).powi(2);
+            let nearest = (0..middles.len()).min_by(|a, b| far(&middles[*a]).total_cmp(&far(&middles[*b])));
+            if let Some(own) = nearest {
+                pixels[own].push([shown[0], shown[1], shown[2]]);
+            }
+        }
+        let with_color = |(index, pixels): (&usize, &Vec<Rgb>)| {
+            let shaded = median(pixels)?;
+            // What is painted is told by its paint, if that is what is seen of it: not so a trunk's below leaves.
+            let paint = scene.items[*index]
+                .color
+                .map(|paint| paint.map(|share| (share * 255.0) as u8));
+            let paint = paint.filter(|paint| distance(*paint, shaded) < SHADE);
+            Some((paint.unwrap_or(shaded), pixels.len()))
+        };
+        members.iter().zip(&pixels).filter_map(with_color).collect()
+    }
+}
+
+/// The median of pixels in each channel: what is seen in the middle of their shades.
+fn median(pixels: &[Rgb]) -> Option<Rgb> {
+    let half = pixels.len() / 2;
+    let channel = |channel: usize| {
+        let mut levels: Vec<u8> = pixels.iter().map(|pixel| pixel[channel]).collect();
+        levels.sort_unstable();
+        levels.get(half).copied()
+    };
+    Some([channel(0)?, channel(1)?, channel(2)?])
+}
+
+/// How far colours are apart, in levels, squared.
+fn distance(one: Rgb, other: Rgb) -> i32 {
+    let channels = one.iter().zip(other);
+    channels.map(|(a, b)| (i32::from(*a) - i32::from(b)).pow(2)).sum()
+}
+
+fn is_near(one: Rgb, other: Rgb) -> bool {
+    distance(one, other) < NEAR * NEAR
+}
+
+#[cfg(test)]
+mod tests {
+    use driftworld_generator::Sampler;
+    use driftworld_spec::{Color, Object, WorldDraft};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::tasks;
+
+    const PAINTS: [[f64; 3]; 5] = [
+        [1.0, 0.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [1.0, 1.0, 0.0],
+        [1.0, 0.0, 1.0],
+        [1.0, 1.0, 1.0],
+    ];
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(24))]
+
+        /// Cubes of so many paints have as many colours, up to three, each the paint of some, and none of another that more have;
+        /// whatever the size of the arena.
+        #[test]
+        fn the_colors_of_a_group_are_those_that_most_of_it_have(
+            paints in prop::collection::vec(0_usize..5, 1..8),
+            side in 20.0..80.0_f64,
+        ) {
+            let mut draft = WorldDraft::default();
+            draft.environment_params.map_size = [side, side];
+            for (number, paint) in paints.iter().enumerate() {
+                let place = |k: usize| (k as f64 - 1.0) * side / 4.0;
+                let mut object = Object::new("geometric", [place(number % 3), place(number / 3)]);
+                object.color = Some(Color(PAINTS[*paint]));
+                draft.objects.push(object);
+            }
+            let world = draft.check().expect("the world is sound");
+            let all: Vec<usize> = (0..paints.len()).collect();
+            let found = MapColors::of(&Scene::from_world(&world)).of_group(&all);
+            let count = |paint: usize| paints.iter().filter(|other| **other == paint).count();
+            let painted = |color: &Rgb| -> Option<usize> {
+                let near = |paint: &usize| is_near(*color, PAINTS[*paint].map(|share| (share * 255.0) as u8));
+                (0..5).find(near)
+            };
+            let found: Vec<usize> = found.iter().filter_map(painted).collect();
+            let different = (0..5).filter(|paint| count(*paint) > 0).count();
+            prop_assert_eq!(found.len(), different.min(MOST), "{:?} of {:?}", found, paints);
+            for (paint, other) in (0..5).flat_map(|paint| found.iter().map(move |other| (paint, *other))) {
+                prop_assert!(found.contains(&paint) || count(paint) <= count(other), "{:?} of {:?}", found, paints);
+            }
+        }
+    }
+
+    /// The green of trees is told, not their wood; of doors in three colours each.
+    #[test]
+    fn issue_24_groups_of_several_colors() {
+        let of_class = |name: &str, class: &str| {
+            let variant = tasks::variant(name).expect("it is there");
+            let world = Sampler::new(&variant, 0).world(0).expect("it is drawn");
+            let objects = world.objects.iter().enumerate();
+            let members: Vec<usize> = objects
+                .filter(|(_, object)| object.class == class)
+                .map(|(index, _)| index)
+                .collect();
+            MapColors::of(&Scene::from_world(&world)).of_group(&members)
+        };
+        let worlds = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/worlds");
+        for name in ["find_objects", &format!("{worlds}/foraging.json")] {
+            let trees = of_class(name, "tree");
+            assert!(!trees.is_empty(), "{name}");
+            for [red, green, blue] in trees {
+                assert!(
+                    green > blue && green.max(red) - blue > 5,
+                    "{name}: {red} {green} {blue}"
+                );
+            }
+        }
+        assert_eq!(of_class(&format!("{worlds}/locked_rooms.json#keyed"), "door").len(), 3);
+        assert_eq!(of_class(&format!("{worlds}/locked_rooms.json#open"), "door").len(), 1);
+    }
+}
