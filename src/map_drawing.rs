@@ -19,6 +19,8 @@ const PAYS: Rgb = [0, 110, 50];
 const COSTS: Rgb = [190, 0, 20];
 /// With more objects that pay or cost than this, none has a sign of its own.
 const MOST_SIGNS: usize = 60;
+/// On a smaller map signs would hide what they stand beside.
+const LEAST_SIGNED: u32 = 100;
 /// A smaller map without a legend has no room for a scale.
 const LEAST_SCALED: u32 = 80;
 /// A map is at most so many times as wide as high, and as high as wide.
@@ -146,8 +148,19 @@ pub(crate) fn annotated(world: &World, scene: &Scene, moves: &Moves, ground: Pic
             });
         }
     }
+    let radius = |index: usize| {
+        let item = &scene.items[index];
+        (item.asset.radius * item.scale * places.scale).max(0.015 * size as f32)
+    };
+    let all: Vec<([f32; 2], f32)> = visible()
+        .map(|index| (places.pixel(scene.items[index].position), radius(index)))
+        .collect();
     for trail in &moves.trails {
         let points = places.pixels(trail);
+        let own = all
+            .iter()
+            .find(|(at, _)| points.first().is_some_and(|start| apart(*at, *start) < 0.5));
+        let points = own.map_or_else(|| points.clone(), |(_, radius)| from_rim(&points, *radius + 1.5 * thin));
         map.line(points.clone(), 3.0 * thin, INK);
         map.line(points.clone(), 1.8 * thin, TRAIL);
         if let Some(end) = points.last() {
@@ -166,21 +179,63 @@ pub(crate) fn annotated(world: &World, scene: &Scene, moves: &Moves, ground: Pic
         (size as f32 / 26.0).max(6.0),
     );
     let signs: Vec<usize> = visible().filter(|index| pay(&world.objects[*index]) != 0.0).collect();
-    if signs.len() <= MOST_SIGNS {
+    if signs.len() <= MOST_SIGNS && size >= LEAST_SIGNED {
         for index in signs {
-            let item = &scene.items[index];
-            let [x, y] = places.pixel(item.position);
-            let off = (item.asset.radius * item.scale * places.scale).max(0.015 * size as f32) + 1.0;
-            sign(&mut map, [x + off, y - off], pay(&world.objects[index]), size);
+            let at = places.pixel(scene.items[index].position);
+            sign(&mut map, at, radius(index), pay(&world.objects[index]), size, &all);
         }
     }
     map
 }
 
-/// A plus or a minus.
-fn sign(map: &mut Drawing, at: [f32; 2], pay: f64, size: u32) {
+fn apart(one: [f32; 2], other: [f32; 2]) -> f32 {
+    (one[0] - other[0]).hypot(one[1] - other[1])
+}
+
+/// A way as far as it lies outside a disc around its start, which would be hidden below it; nothing of a shorter one.
+fn from_rim(points: &[[f32; 2]], radius: f32) -> Vec<[f32; 2]> {
+    let Some(start) = points.first().copied() else {
+        return Vec::new();
+    };
+    let Some(out) = points.iter().position(|point| apart(*point, start) > radius) else {
+        return Vec::new();
+    };
+    let (from, to) = (points[out.max(1) - 1], points[out]);
+    // Between them the way leaves the disc: by halves, to a fraction of a pixel.
+    let (mut low, mut high) = (0.0_f32, 1.0_f32);
+    let at = |share: f32| [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]));
+    for _ in 0..12 {
+        let middle = f32::midpoint(low, high);
+        if apart(at(middle), start) > radius {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    let mut rest = vec![at(high)];
+    rest.extend_from_slice(&points[out..]);
+    rest
+}
+
+/// A plus or a minus beside a thing with this middle and radius, at the corner where it covers the least of all things.
+fn sign(map: &mut Drawing, [x, y]: [f32; 2], radius: f32, pay: f64, size: u32, things: &[([f32; 2], f32)]) {
     let (text, color) = if pay > 0.0 { ("+", PAYS) } else { ("−", COSTS) };
-    let words = TextLine::new(text, at, (size as f32 / 17.0).clamp(11.0, 30.0), color);
+    let letters = (size as f32 / 17.0).clamp(9.0, 30.0);
+    // A sign and its rim reach so far from its middle.
+    let reach = 0.42 * letters;
+    let off = 0.71 * radius + reach;
+    let covers = |at: [f32; 2]| -> f32 {
+        let near = |(thing, radius): &([f32; 2], f32)| (radius + reach - apart(*thing, at)).max(0.0);
+        things.iter().map(near).sum()
+    };
+    let mut best = [x + off, y - off];
+    for corner in [[x + off, y + off], [x - off, y - off], [x - off, y + off]] {
+        // Where it makes no difference, they all stand at one side.
+        if covers(corner) + 0.5 < covers(best) {
+            best = corner;
+        }
+    }
+    let words = TextLine::new(text, best, letters, color);
     map.write(words.anchored(Side::Middle, Level::Middle).rimmed(WHITE));
 }
 
@@ -302,6 +357,49 @@ mod tests {
                 let share = [left / width as f32, top / height as f32];
                 prop_assert!(share.iter().all(|share| (share - 0.5 * (1.0 - 1.0 / 1.06)).abs() < 0.012), "{share:?}");
             }
+        }
+
+        /// What pays is as well seen with its sign as without, whatever the size of the map and the number of things around it.
+        #[test]
+        fn signs_hide_nothing(places in prop::collection::vec((-4_i32..=4, -4_i32..=4), 1..6), size in 48_u32..400) {
+            let objects = |reward: f64| -> Vec<Object> {
+                let at = |(x, y): &(i32, i32)| object("geometric", [f64::from(*x) * 6.0, f64::from(*y) * 6.0], reward, 0.0);
+                places.iter().map(at).collect()
+            };
+            let drawn = |reward: f64| {
+                let world = world(60.0, objects(reward));
+                let scene = Scene::from_world(&world);
+                let drawing = annotated(&world, &scene, &Moves::none(&world), ground(&scene, [size, size]));
+                (Places::of(&scene, [size, size]), drawing.to_picture())
+            };
+            let ((scale, with), (_, without)) = (drawn(5.0), drawn(0.0));
+            for (x, y) in &places {
+                let [x, y] = scale.pixel([*x as f32 * 6.0, *y as f32 * 6.0]);
+                prop_assert_eq!(pixel(&with, x as usize, y as usize), pixel(&without, x as usize, y as usize));
+            }
+        }
+
+        /// Ways begin beside what takes them: it is as well seen as without, and so is their end.
+        #[test]
+        fn ways_hide_nothing_that_takes_them(angle in 0.0..6.2_f32, far in 4.0..20.0_f32, size in 64_u32..400) {
+            let world = world(60.0, vec![object("geometric", [1.0, 2.0], 0.0, 0.0)]);
+            let scene = Scene::from_world(&world);
+            let trail: Vec<[f32; 2]> = (0..50)
+                .map(|step| step as f32 / 49.0 * far)
+                .map(|out| [1.0 + out * angle.cos(), 2.0 + out * angle.sin()])
+                .collect();
+            let end = trail[49];
+            let moves = Moves { trails: vec![trail], ..Moves::none(&world) };
+            let drawn = |moves: &Moves| annotated(&world, &scene, moves, ground(&scene, [size, size])).to_picture();
+            let (with, without) = (drawn(&moves), drawn(&Moves::none(&world)));
+            let at = |place: [f32; 2]| {
+                let [x, y] = Places::of(&scene, [size, size]).pixel(place);
+                [&with, &without].map(|picture| pixel(picture, x as usize, y as usize))
+            };
+            let [shown, bare] = at([1.0, 2.0]);
+            prop_assert_eq!(shown, bare);
+            let [shown, bare] = at(end);
+            prop_assert!(shown != bare);
         }
 
         /// The ring's yellow pixels lie as far from the object as its trigger reaches on the ground.

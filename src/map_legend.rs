@@ -96,7 +96,7 @@ fn entries(world: &World, scene: &Scene, moves: &Moves, ground: &Picture) -> Vec
     if !moves.trails.is_empty() {
         entries.push(Entry {
             mark: Mark::Trail,
-            name: format!("ways of {} s", moves.seconds.round()),
+            name: format!("moves in {} s", moves.seconds.round()),
         });
     }
     if world
@@ -205,7 +205,8 @@ fn at(picture: &Picture, [x, y]: [f32; 2]) -> Rgb {
     [picture.rgb[start], picture.rgb[start + 1], picture.rgb[start + 2]]
 }
 
-/// The legend in a column of this height, with scale and north at its foot; what has no room is counted in the last line.
+/// The legend in a column of this height, with scale and north at its foot; what has no room is counted in the last line, the agent
+/// first. Without room for two lines there are no words.
 fn legend(entries: &[Entry], letters: f32, height: u32, places: &Places) -> Drawing {
     let line = (letters * 1.45).round();
     let bar = Bar::of(places, (0.3 * places.size[0]).min(LONGEST_BAR));
@@ -224,9 +225,14 @@ fn legend(entries: &[Entry], letters: f32, height: u32, places: &Places) -> Draw
         .map(|entry| (Some(entry.mark.clone()), entry.name.clone()))
         .collect();
     if shown.len() > rooms {
+        // The agent is known without words.
+        shown.rotate_left(1);
         let left_out = shown.len() - rooms + 1;
         shown.truncate(rooms - 1);
-        shown.push((None, format!("and {left_out} more")));
+        // Below nothing it would say nothing.
+        if !shown.is_empty() {
+            shown.push((None, format!("and {left_out} more")));
+        }
     }
     let left = 6.0 + letters * 1.6;
     let names = shown.iter().map(|(_, name)| name.as_str()).chain([note]);
