@@ -5,7 +5,7 @@ use driftworld_env::{
     Agent, Catalogue, Effect, EndedBy, Environment, Event, Recorder, Recording, Renderer, Replay, Step, category_color,
     depth_to_gray, top_down_with_way,
 };
-use driftworld_report::picture::{Picture, SheetRow};
+use driftworld_report::picture::{Picture, SheetRow, whole};
 use driftworld_spec::{Stimulus, World};
 use driftworld_text::amount;
 
@@ -181,13 +181,12 @@ pub(crate) fn number(value: f64, plus: &str) -> String {
     format!("{}{text}", if value < 0.0 { "−" } else { plus })
 }
 
-/// The time, the return, what is carried, and why the episode ended, in one line.
+/// The time, the return, what is carried, and why the episode ended, as one text in which no line is broken inside a fact.
 pub(crate) fn words(environment: &Environment, end: Option<&Step>) -> String {
-    facts(environment, end).join(PARTED)
+    let facts: Vec<String> = facts(environment, end).iter().map(|fact| whole(fact)).collect();
+    // A line is broken behind the dot.
+    facts.join("\u{a0}· ")
 }
-
-/// What stands between two facts in a line.
-pub(crate) const PARTED: &str = " · ";
 
 /// The time, the return, the energy that is left, the zones that the agent is in, what is carried, and why the episode ended.
 pub(crate) fn facts(environment: &Environment, end: Option<&Step>) -> Vec<String> {
@@ -316,21 +315,23 @@ mod tests {
         draft.environment_params.zones = vec![pond, Zone::disc([20.0, 0.0], 1.0)];
         let world = draft.check().expect("the world is sound");
         let mut environment = Environment::new(world.clone());
-        assert_eq!(words(&environment, None), "0.0 s · return 0.0 · energy 30 · in pond");
+        let said = |environment: &Environment| words(environment, None).replace('\u{a0}', " ");
+        assert_eq!(said(&environment), "0.0 s · return 0.0 · energy 30 · in pond");
+        assert!(words(&environment, None).starts_with(&format!("{}\u{a0}· ", whole("0.0 s"))));
         while environment.seconds() < 0.95 {
             environment.step(StillAgent.act(&environment)).expect("it steps");
         }
         assert!(
-            words(&environment, None).ends_with("· energy 20 · in pond"),
+            said(&environment).ends_with("· energy 20 · in pond"),
             "{}",
-            words(&environment, None)
+            said(&environment)
         );
         let elsewhere = world.edit(|draft| {
             draft.agent_params.coordinates = [9.0, 9.0];
             draft.agent_params.energy = None;
         });
         let environment = Environment::new(elsewhere.expect("the world is sound"));
-        assert_eq!(words(&environment, None), "0.0 s · return 0.0");
+        assert_eq!(said(&environment), "0.0 s · return 0.0");
     }
 
     proptest! {

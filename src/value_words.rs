@@ -10,6 +10,28 @@ pub(crate) fn short(value: &Value) -> String {
     match value {
         Value::Number(number) => rounded(*number),
         Value::Layout(layout) => layout_words(layout),
+        Value::Point(place) => bracketed(place),
+        Value::Vector(numbers) => bracketed(numbers),
+        Value::Json(json) => json_words(json),
+        other => cut(&other.to_string()),
+    }
+}
+
+/// Numbers of a place or a list.
+fn bracketed(numbers: &[f64]) -> String {
+    let numbers: Vec<String> = numbers.iter().map(|number| rounded(*number)).collect();
+    cut(&format!("[{}]", numbers.join(", ")))
+}
+
+/// Lists of words as such; what is more than that as JSON.
+fn json_words(json: &serde_json::Value) -> String {
+    match json {
+        serde_json::Value::Null => "none".to_owned(),
+        serde_json::Value::String(text) => cut(text),
+        serde_json::Value::Array(items) if items.iter().all(serde_json::Value::is_string) => {
+            let words = items.iter().filter_map(|item| item.as_str());
+            cut(&words.collect::<Vec<_>>().join(", "))
+        }
         other => cut(&other.to_string()),
     }
 }
@@ -101,6 +123,20 @@ mod tests {
         assert_eq!(shown, ["21.9", "0.643", "-100", "12350", "0"]);
         assert_eq!(short(&Value::Text("red".to_owned())), "red");
         assert_eq!(short(&Value::Text("x".repeat(60))).chars().count(), LONGEST);
+    }
+
+    #[test]
+    fn lists_and_places_are_words() {
+        let json = |text: &str| Value::Json(Box::new(serde_json::from_str(text).expect("it is JSON")));
+        for (value, words) in [
+            (json(r#"["rgb", "depth"]"#), "rgb, depth"),
+            (json("null"), "none"),
+            (json(r#"{ "a": [1, 2] }"#), "{a:[1,2]}"),
+            (Value::Point([-5.0, -12.5]), "[-5, -12.5]"),
+            (Value::Vector(vec![1.0, 2.0, 3.0]), "[1, 2, 3]"),
+        ] {
+            assert_eq!(short(&value), words);
+        }
     }
 
     #[test]

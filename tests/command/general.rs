@@ -231,8 +231,8 @@ fn a_sheet_shows_variants_or_what_a_scenario_learns() {
     let svg = drawn();
     assert_eq!(svg.matches("<image ").count(), 8, "four variants");
     assert!(
-        svg.contains("([-10.0,10.0,-10.0,-10.0])"),
-        "values that differ are said"
+        svg.contains(" ([-10, 10, -10, -10]).</text>"),
+        "values that differ are said, and those in brackets are whole"
     );
     let error = fail(
         1,

@@ -1,7 +1,7 @@
 //! Captions: a few facts above a picture, in as many lines as they need at its width. Which facts, the caller knows.
 
-use super::sheet::cut;
-use super::{Drawing, INK, Picture, TextLine, text_width};
+use super::lines::cut;
+use super::{Drawing, INK, Picture, TextLine, text_lines, text_width};
 
 /// The size of the letters, and of those above pictures narrower than [`NARROW`].
 const LETTERS: f32 = 15.0;
@@ -33,17 +33,7 @@ pub fn caption_lines(facts: &[String], width: u32) -> Vec<String> {
         let beside = lines.last().map(|line| format!("{line}{PARTED}{fact}"));
         match (lines.last_mut(), beside) {
             (Some(line), Some(beside)) if fits(&beside) => *line = beside,
-            _ => {
-                let mut own: Vec<String> = Vec::new();
-                for word in fact.split_whitespace() {
-                    let longer = own.last().map(|line| format!("{line} {word}"));
-                    match (own.last_mut(), longer) {
-                        (Some(line), Some(longer)) if fits(&longer) => *line = longer,
-                        _ => own.push(cut(word, size, room)),
-                    }
-                }
-                lines.extend(own);
-            }
+            _ => lines.extend(text_lines(fact, size, room)),
         }
     }
     if lines.len() > MAX_CAPTION_LINES {

@@ -1,6 +1,7 @@
 //! Sheets of views: rows of pictures under their titles.
 
-use super::{Drawing, FAINT, INK, Rgb, TextLine, text_width};
+use super::lines::cut;
+use super::{Drawing, FAINT, INK, Rgb, TextLine, text_lines, text_width};
 use crate::ReportError;
 
 /// One row of a [`sheet`].
@@ -65,14 +66,15 @@ impl<'a> Cell<'a> {
         let width = width as f32;
         let title = match title.split_once(": ") {
             Some((first, rest)) if text_width(&title, TITLE.0) > width => {
-                words = [rest, words.as_str()].map(str::trim).join(" · ");
+                // A line is broken behind the dot.
+                words = [rest, words.as_str()].map(str::trim).join("\u{a0}· ");
                 first
             }
             _ => &title,
         };
         Self {
             title: cut(title, TITLE.0, width),
-            lines: lines(words.trim_end_matches(" · "), WORDS.0, width),
+            lines: lines(words.trim_end_matches("\u{a0}· "), WORDS.0, width),
             pictures: &row.pictures,
         }
     }
@@ -105,37 +107,15 @@ impl<'a> Cell<'a> {
     }
 }
 
-/// A text that is cut where it is too wide.
-pub(super) fn cut(text: &str, size: f32, width: f32) -> String {
-    if text_width(text, size) <= width {
-        return text.to_owned();
-    }
-    let mut kept: String = text.to_owned();
-    while kept.pop().is_some() {
-        let shorter = format!("{}…", kept.trim_end());
-        if text_width(&shorter, size) <= width {
-            return shorter;
-        }
-    }
-    String::new()
-}
-
-/// A text in lines of this width at most, as many as are allowed.
+/// A text in lines of this width at most, as many as are allowed. What stands between two facts stands at no line's end.
 fn lines(text: &str, size: f32, width: f32) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in text.split_whitespace() {
-        let is_last = lines.len() == MOST_LINES;
-        match lines.last_mut() {
-            Some(line) if text_width(&format!("{line} {word}"), size) <= width => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            Some(line) if is_last => {
-                *line = cut(&format!("{line} {word}"), size, width);
-                return lines;
-            }
-            _ => lines.push(cut(word, size, width)),
-        }
+    let mut lines = text_lines(text, size, width);
+    for line in &mut lines {
+        line.truncate(line.trim_end_matches(" ·").len());
+    }
+    if lines.len() > MOST_LINES {
+        let rest = lines.split_off(MOST_LINES - 1).join(" ");
+        lines.push(cut(&rest, size, width));
     }
     lines
 }
@@ -169,8 +149,9 @@ mod tests {
             (cell.title, cell.lines.join(" "))
         };
         assert_eq!(shown(500), (row.title.clone(), row.words.clone()));
-        let below = "touches the red berries: +100.0 · 12.0 s · return 98.8";
-        assert_eq!(shown(160), ("Step 120".to_owned(), below.to_owned()));
+        // The dot is left out where a line ends.
+        let below = "touches the red berries: +100.0 12.0 s · return 98.8";
+        assert_eq!(shown(200), ("Step 120".to_owned(), below.to_owned()));
         let silent = SheetRow {
             words: String::new(),
             ..row.clone()

@@ -2,7 +2,7 @@
 
 use crate::Failure;
 use crate::env::{Catalogue, EndedBy, Environment, EpisodeOrigin, Recorder, Recording, Renderer, Step};
-use crate::episode_frames::{deed, map_of, number, words};
+use crate::episode_frames::{deed, facts, map_of, number};
 use crate::report::picture::Picture;
 use crate::spec::World;
 
@@ -150,13 +150,11 @@ impl Game {
     /// The line below the picture: steps, time, return, what is carried, what happened last.
     pub(super) fn status(&self) -> String {
         let end = self.last.as_ref().filter(|step| step.ended());
-        let mut parts = vec![
-            format!("step {}", self.environment.num_steps()),
-            words(&self.environment, end),
-        ];
+        let mut parts = vec![format!("step {}", self.environment.num_steps())];
         if let Some(step) = &self.last {
-            parts.insert(1, format!("reward {}", number(step.reward, "+")));
+            parts.push(format!("reward {}", number(step.reward, "+")));
         }
+        parts.extend(facts(&self.environment, end));
         if !self.said.is_empty() {
             parts.push(self.said.clone());
         }

@@ -1,0 +1,140 @@
+//! Texts in lines of a width: broken at blanks, and only where need be inside what belongs together. How many lines there is
+//! room for, the callers know.
+
+use super::text_width;
+
+/// Stands for a blank at which no line is broken if it can be helped.
+const NO_BREAK: char = '\u{a0}';
+
+/// A text that belongs together: a line is broken inside it only if it is wider than the line.
+///
+/// # Example
+/// ```
+/// use driftworld_report::picture::{text_lines, whole};
+/// let text = format!("It is {}.", whole("8 × 8 m"));
+/// assert_eq!(text_lines(&text, 10.0, 50.0), ["It is", "8 × 8 m."]);
+/// ```
+pub fn whole(text: &str) -> String {
+    text.replace(' ', &NO_BREAK.to_string())
+}
+
+/// A text in lines of this width at most, in letters of `size` pixels: broken at blanks; inside what is [`whole`] behind commas and
+/// before brackets, and between words without numbers, if it is wider than a line. What is still too wide is cut.
+pub fn text_lines(text: &str, size: f32, width: f32) -> Vec<String> {
+    let fits = |text: &str| text_width(text, size) <= width;
+    let mut lines: Vec<String> = Vec::new();
+    for piece in pieces(text, &fits) {
+        let longer = lines.last().map(|line| format!("{line} {piece}"));
+        match (lines.last_mut(), longer) {
+            (Some(line), Some(longer)) if fits(&longer) => *line = longer,
+            _ => lines.push(cut(&piece, size, width)),
+        }
+    }
+    lines
+}
+
+/// The pieces of a text between which lines may be broken.
+fn pieces(text: &str, fits: &dyn Fn(&str) -> bool) -> Vec<String> {
+    let mut pieces = vec![text.to_owned()];
+    // From where it is best broken to where it is worst.
+    let ways: [fn(&str, char, &str) -> bool; 4] = [
+        |_, blank, _| blank == ' ',
+        |before, _, behind| before.ends_with([',', ';', ':']) || behind.starts_with('('),
+        |before, _, behind| !before.ends_with(is_of_number) && !behind.starts_with(is_of_number),
+        |_, _, _| true,
+    ];
+    for (number, may) in ways.into_iter().enumerate() {
+        let broken = pieces.into_iter().flat_map(|piece| {
+            if number > 0 && fits(&piece) {
+                vec![piece]
+            } else {
+                broken(&piece, may)
+            }
+        });
+        pieces = broken.collect();
+    }
+    let pieces = pieces.into_iter().map(|piece| piece.replace(NO_BREAK, " "));
+    pieces.filter(|piece| !piece.is_empty()).collect()
+}
+
+/// A text broken at the blanks of one kind and of the other that may.
+fn broken(text: &str, may: fn(&str, char, &str) -> bool) -> Vec<String> {
+    let mut pieces = Vec::new();
+    let mut begin = 0;
+    for (place, blank) in text.match_indices([' ', NO_BREAK]) {
+        let behind = place + blank.len();
+        let letter = if blank == " " { ' ' } else { NO_BREAK };
+        if may(&text[begin..place], letter, &text[behind..]) {
+            pieces.push(text[begin..place].to_owned());
+            begin = behind;
+        }
+    }
+    pieces.push(text[begin..].to_owned());
+    pieces
+}
+
+/// Whether a letter at the border of a word is one of a number or its unit.
+fn is_of_number(letter: char) -> bool {
+    letter.is_ascii_digit() || "×%−-+".contains(letter)
+}
+
+/// A text that is cut where it is too wide.
+pub(super) fn cut(text: &str, size: f32, width: f32) -> String {
+    if text_width(text, size) <= width {
+        return text.to_owned();
+    }
+    let mut kept: String = text.to_owned();
+    while kept.pop().is_some() {
+        let shorter = format!("{}…", kept.trim_end());
+        if text_width(&shorter, size) <= width {
+            return shorter;
+        }
+    }
+    String::new()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Every word is there, in order; no line is too wide; and what is whole and fits into a line stands in one.
+        #[test]
+        fn what_belongs_together_stays_together(
+            facts in prop::collection::vec("[a-z_]{1,12} [0-9]{1,4} (m|s|× [0-9]{1,2} m)( \\([0-9]{1,3}\\))?", 1..8),
+            width in 40_u16..500,
+        ) {
+            let width = f32::from(width);
+            let text: Vec<String> = facts.iter().map(|fact| whole(fact)).collect();
+            let lines = text_lines(&text.join(", "), 13.0, width);
+            prop_assert!(lines.iter().all(|line| text_width(line, 13.0) <= width), "{lines:?}");
+            let is_cut = lines.iter().any(|line| line.ends_with('…'));
+            prop_assert!(is_cut || lines.join(" ") == facts.join(", "), "{lines:?}");
+            for fact in &facts {
+                if text_width(&format!("{fact},"), 13.0) <= width {
+                    prop_assert!(lines.iter().any(|line| line.contains(fact.as_str())), "{fact}: {lines:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_too_wide_is_broken_behind_commas_first_and_in_no_number() {
+        let text = whole("layout maze 8 × 8, 50 % of dead ends open (maze 8 × 8)");
+        let lines = |width| text_lines(&text, 13.0, width);
+        assert_eq!(lines(400.0), ["layout maze 8 × 8, 50 % of dead ends open (maze 8 × 8)"]);
+        assert_eq!(
+            lines(200.0),
+            ["layout maze 8 × 8,", "50 % of dead ends open", "(maze 8 × 8)"]
+        );
+        assert_eq!(
+            lines(110.0),
+            ["layout maze 8 × 8,", "50 % of dead ends", "open (maze 8 × 8)"]
+        );
+        assert_eq!(
+            lines(90.0),
+            ["layout", "maze 8 × 8,", "50 % of dead", "ends open", "(maze 8 × 8)"]
+        );
+    }
+}
