@@ -17,6 +17,9 @@ use crate::{Failure, argument, output_file};
 /// Most pixels along a side of the agent's view, and of the map.
 pub const MAX_FILM_SIZE: u32 = 2048;
 
+/// Narrower frames have no captions: they would be higher than the picture, and cut.
+const LEAST_CAPTIONED: u32 = 100;
+
 /// Rows of a sheet.
 const SHEET_ROWS: usize = 12;
 
@@ -81,7 +84,8 @@ pub struct FilmOptions {
     pub size: u32,
     /// One frame for so many steps, at least 1. The start and the end are always shown.
     pub every: u32,
-    /// Whether words above each frame say time, return and what happened; without them a sheet says the step.
+    /// Whether words above each frame say time, return and what happened; without them a sheet says the step. Frames of a film that
+    /// are less than 100 pixels wide have none.
     pub captions: bool,
     /// What draws.
     pub renderer: RendererKind,
@@ -192,7 +196,7 @@ pub fn film(
 ) -> Result<(), Failure> {
     options.check()?;
     let mut replay = Replay::new(recording, catalogue);
-    let captions = if options.captions {
+    let captions = if options.captions && options.width(replay.environment()) >= LEAST_CAPTIONED {
         Captions::of(&mut replay, recording, options)?
     } else {
         Captions::default()

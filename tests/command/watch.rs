@@ -196,17 +196,20 @@ fn an_episode_becomes_a_film_or_a_sheet() {
     ]);
     let at = |name: &str| folder.path().join(name);
     let first_bytes = |path: &Path| fs::read(path).unwrap()[..4].to_vec();
-    let replay = |name: &str, more: &[&str]| {
+    let replay_in = |size: &str, name: &str, more: &[&str]| {
         let path = at(name);
-        let begin = ["replay", text(&log), "--episode", "1", "--size", "48", "-o"];
+        let begin = ["replay", text(&log), "--episode", "1", "--size", size, "-o"];
         succeed(&[&begin[..], &[text(&path)], more].concat())
     };
+    let replay = |name: &str, more: &[&str]| replay_in("48", name, more);
     let said = replay("e.gif", &[]);
     assert!(
         said.contains("episode 1: find_objects#red, world 1 under seed 5: 30 steps"),
         "{said}"
     );
-    assert!(said.contains(": 31 frames of 96 × 95 pixels, 4.0 s"), "{said}");
+    assert!(said.contains(": 31 frames of 96 × 48 pixels, 4.0 s"), "{said}");
+    let said = replay_in("50", "wide.gif", &["--every", "30"]);
+    assert!(said.contains(": 2 frames of 100 × 83 pixels"), "{said}");
     assert_eq!(first_bytes(&at("e.gif")), b"GIF8");
     let said = replay(
         "e.apng",
