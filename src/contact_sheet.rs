@@ -3,12 +3,12 @@
 
 use driftworld_env::{Agent, Environment, Renderer, Scene, StillAgent};
 use driftworld_generator::Sampler;
-use driftworld_report::picture::{Drawing, SheetRow, TextLine, sheet, text_width};
-use driftworld_spec::{Element, MotionModel, Variant, World};
+use driftworld_report::picture::{Drawing, SheetRow, TextLine, sheet, text_lines, whole};
+use driftworld_spec::{Element, Modality, MotionModel, Variant, World};
 
 use crate::Failure;
 use crate::map_drawing::Moves;
-use crate::subject::{Sight, sight, subjects};
+use crate::subject::{Sight, openness, sight, subjects};
 use crate::value_words::short;
 use crate::views::{Views, agent_camera};
 
@@ -32,6 +32,18 @@ pub(crate) struct Shown {
     /// The first index, and how many there are.
     pub(crate) index: u64,
     pub(crate) count: u64,
+    pub(crate) worlds: Worlds,
+}
+
+/// What the worlds of a variant are called.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Worlds {
+    /// By their index.
+    Numbered,
+    /// By when they come in a scenario, whose indices say nothing to a reader.
+    OfScenario,
+    /// The one that a drift ends with.
+    EndOfDrift,
 }
 
 impl Shown {
@@ -44,6 +56,7 @@ impl Shown {
             seed,
             index: 0,
             count: WORLDS,
+            worlds: Worlds::Numbered,
         }
     }
 }
@@ -89,11 +102,11 @@ pub(crate) fn contact_sheet(shown: &[Shown], look: Look, tick: &dyn Fn()) -> Res
     let rows: Vec<SheetRow> = cells.into_iter().map(|cell| cell.row).collect();
     let mut drawing = sheet(&rows, look.columns)?;
     for line in said {
-        // Below the pictures, if it is not too long.
-        let size = (13.0 * (drawing.width as f32 - 24.0) / text_width(&line, 13.0)).min(13.0);
-        drawing.height += 18;
-        let at = [12.0, drawing.height as f32 - 18.0];
-        drawing.write(TextLine::new(line, at, size, [110, 116, 124]));
+        for line in text_lines(&line, 13.0, drawing.width as f32 - 24.0) {
+            drawing.height += 18;
+            let at = [12.0, drawing.height as f32 - 18.0];
+            drawing.write(TextLine::new(line, at, 13.0, [110, 116, 124]));
+        }
     }
     drawing.height += 4;
     Ok(drawing)
@@ -107,26 +120,42 @@ pub(crate) fn cells(shown: &[Shown], look: Look, tick: &dyn Fn()) -> Result<(Vec
         .map(|shown| Candidates::of(shown, look.index))
         .collect::<Result<Vec<_>, Failure>>()?;
     let joint = joint_choice(&mut renderer, &worlds, look)?;
+    let choices = worlds
+        .iter()
+        .map(|candidates| candidates.own_choice(&mut renderer, joint, look))
+        .collect::<Result<Vec<_>, Failure>>()?;
+    let places: Vec<String> = (shown.iter().zip(&choices))
+        .map(|(shown, (choice, _))| placed(shown, *choice, look))
+        .collect();
+    let usual = commonest(&places);
     let mut cells: Vec<Cell> = Vec::new();
     let mut drawn: Vec<(Choice, Drawing, Drawing)> = Vec::new();
+    // Of which variants others have the values in brackets.
+    let mut bases = Vec::new();
     for (number, (shown_here, candidates)) in shown.iter().zip(&worlds).enumerate() {
-        let (choice, is_seen) = candidates.own_choice(&mut renderer, joint, look)?;
+        let (choice, is_seen) = choices[number];
         let candidate = candidates.at(choice.world)?;
         let views = Views::new(&candidate.world, look.size, choice.turn);
-        let seen: Drawing = views.first_person()?.rgb.into();
+        let modality = shown_modality(&candidate.world);
+        let seen: Drawing = views.seen_in(modality)?.into();
         let map = views.map_with_legend(&ways(&candidate.world)?);
         let base = (0..number).find(|base| shown[*base].variant.task().name() == shown_here.variant.task().name());
         let mut words = vec![shown_here.words.trim().to_owned()];
         if let Some(base) = base {
-            words.push(differences(&shown[base].variant, &shown_here.variant));
+            let differences = differences(&shown[base].variant, &shown_here.variant);
+            if !differences.is_empty() && !bases.contains(&base) {
+                bases.push(base);
+            }
+            words.push(differences);
             let (their_choice, their_view, their_map) = &drawn[base];
             let same = [*their_view == seen, *their_map == map];
             if *their_choice == choice {
                 words.push(alike(&shown[base].variant, &shown_here.variant, same));
             }
         }
-        if choice != joint {
-            words.push(placed(shown_here, choice, look));
+        words.push(modality_words(modality).to_owned());
+        if Some(&places[number]) != usual {
+            words.push(sentence(&places[number]));
         }
         words.retain(|part| !part.is_empty());
         cells.push(Cell {
@@ -140,15 +169,79 @@ pub(crate) fn cells(shown: &[Shown], look: Look, tick: &dyn Fn()) -> Result<(Vec
         drawn.push((choice, seen, map));
         tick();
     }
+    let bases: Vec<String> = bases.into_iter().map(|base| shown[base].variant.id()).collect();
     let mut said = Vec::new();
-    if let Some(first) = shown.first().filter(|_| shown.len() > 1) {
+    if !bases.is_empty() {
+        let each = if bases.len() > 1 { "each " } else { "" };
         said.push(format!(
-            "In brackets: the values of {}, the first of its task. Each cell: {}",
-            first.variant.id(),
-            placed(first, joint, look)
+            "In brackets: the values of {}, {each}the first of its task.",
+            listed(&bases)
         ));
     }
-    Ok((cells, said))
+    if let Some(usual) = usual.filter(|_| shown.len() > 1) {
+        let which = if places.iter().all(|place| place == usual) {
+            "Each cell"
+        } else {
+            "Other cells"
+        };
+        said.push(format!("{which}: {usual}."));
+    }
+    Ok((
+        cells,
+        vec![said.join(" ")]
+            .into_iter()
+            .filter(|said| !said.is_empty())
+            .collect(),
+    ))
+}
+
+/// What most of them are; of equals the first.
+fn commonest(places: &[String]) -> Option<&String> {
+    let count = |place: &String| places.iter().filter(|other| *other == place).count();
+    places.iter().rev().max_by_key(|place| count(place))
+}
+
+/// A few words as a sentence.
+fn sentence(words: &str) -> String {
+    let mut letters = words.chars();
+    let first = letters.next().map(|letter| letter.to_uppercase().collect::<String>());
+    format!("{}{}.", first.unwrap_or_default(), letters.as_str())
+}
+
+/// "a", "a and b", "a, b and c".
+fn listed<T: AsRef<str>>(words: &[T]) -> String {
+    let words: Vec<&str> = words.iter().map(AsRef::as_ref).collect();
+    match &words[..] {
+        [before @ .., one, last] => [before, &[&format!("{one} and {last}")]].concat().join(", "),
+        few => few.concat(),
+    }
+}
+
+/// In which of the kinds of pictures that its agent gets a world is shown: colours before distances before what things are.
+fn shown_modality(world: &World) -> Modality {
+    let own = &world.agent_params.modalities;
+    let order = [
+        Modality::Rgb,
+        Modality::Depth,
+        Modality::Segmentation,
+        Modality::Class,
+        Modality::Instance,
+    ];
+    order
+        .into_iter()
+        .find(|kind| own.contains(kind))
+        .unwrap_or(Modality::Rgb)
+}
+
+/// What is said of a picture that is not in colours.
+fn modality_words(modality: Modality) -> &'static str {
+    match modality {
+        Modality::Rgb => "",
+        Modality::Depth => "Shown in depth: the agent sees no colours.",
+        Modality::Segmentation => "Shown in reward categories: the agent sees no colours.",
+        Modality::Class => "Shown by classes, a colour for each: the agent sees no other colours.",
+        Modality::Instance => "Shown by objects, a colour for each: the agent sees no other colours.",
+    }
 }
 
 /// The worlds of a variant that are tried, drawn when they are asked for.
@@ -192,7 +285,8 @@ impl Candidates {
         sight(renderer, &candidate.scene, &camera, &candidate.subjects)
     }
 
-    /// The choice of all if it shows what this variant is about; else another camera, else another world.
+    /// The choice of all if it shows what this variant is about; else another camera, else another world; where nothing shows it, the
+    /// most open view of the world of all.
     fn own_choice(&self, renderer: &mut Renderer, joint: Choice, look: Look) -> Result<(Choice, bool), Failure> {
         if self.sight(renderer, joint)?.is_enough() {
             return Ok((joint, true));
@@ -211,7 +305,21 @@ impl Candidates {
                 return Ok((best.1, true));
             }
         }
-        Ok((joint, false))
+        Ok((self.most_open(renderer, joint, look)?, false))
+    }
+
+    /// The camera before which there is most room; of equals that of all, then the first.
+    fn most_open(&self, renderer: &mut Renderer, joint: Choice, look: Look) -> Result<Choice, Failure> {
+        let scene = &self.at(joint.world)?.scene;
+        let mut best = (0.0, joint);
+        for turn in std::iter::once(joint.turn).chain(turns(look)) {
+            let camera = agent_camera(&self.at(joint.world)?.world, turn);
+            let metres = openness(renderer, scene, &camera)?;
+            if metres > best.0 {
+                best = (metres, Choice { turn, ..joint });
+            }
+        }
+        Ok(best.1)
     }
 }
 
@@ -253,24 +361,37 @@ fn joint_choice(renderer: &mut Renderer, worlds: &[Candidates], look: Look) -> R
 
 /// Which world and which camera, in words.
 fn placed(shown: &Shown, choice: Choice, look: Look) -> String {
-    let index = look.index.unwrap_or(shown.index + choice.world % shown.count.max(1));
+    let place = choice.world % shown.count.max(1);
+    let world = match (look.index, shown.worlds) {
+        (Some(index), _) => format!("world {index}"),
+        (None, Worlds::Numbered) => format!("world {}", shown.index + place),
+        (None, Worlds::OfScenario) => {
+            let order = ["first", "second", "third", "fourth"];
+            let word = order.get(place as usize).copied().unwrap_or("fifth or later");
+            format!("its {word} world in the scenario")
+        }
+        (None, Worlds::EndOfDrift) => "its last world in the scenario".to_owned(),
+    };
     let side = if choice.turn < 0.0 { "left" } else { "right" };
     let turn = match choice.turn.abs() {
         0.0 => "the agent's view".to_owned(),
         180.0 => "the view behind the agent".to_owned(),
         degrees => format!("the view {degrees}° to the agent's {side}"),
     };
-    format!("World {index}, {turn}.")
+    format!("{world}, {turn}")
 }
 
-/// The values that a variant has and another one has not, with those in brackets.
+/// The values that a variant has and another one has not, with those in brackets; each of them whole.
 fn differences(base: &Variant, variant: &Variant) -> String {
     let of_base = |name: &str| base.value(name).map_or_else(|| "none".to_owned(), short);
     let parts: Vec<String> = (variant.values().iter())
         .filter(|(name, value)| base.value(name) != Some(value))
-        .map(|(name, value)| match (short(value), of_base(name)) {
-            (same, other) if same == other => format!("{name} {same} (another)"),
-            (own, other) => format!("{name} {own} ({other})"),
+        .map(|(name, value)| {
+            let (own, other) = (short(value), of_base(name));
+            let other = if own == other { "another".to_owned() } else { other };
+            // A map may be called so itself: "map 2, 60 × 60 m".
+            let own = own.strip_prefix(&format!("{name} ")).unwrap_or(&own);
+            whole(&format!("{name} {own} ({other})"))
         })
         .collect();
     parts.join(", ") + if parts.is_empty() { "" } else { "." }
@@ -290,15 +411,15 @@ fn alike(base: &Variant, variant: &Variant, [view, map]: [bool; 2]) -> String {
         .filter(|(name, value)| base.value(name) != Some(value));
     let mut elements: Vec<Element> = differing
         .filter_map(|(name, _)| parameters.get(name))
-        .flat_map(|parameter| parameter.affects.iter().copied())
+        .flat_map(|parameter| parameter.affects.iter().map(|element| element.coarse()))
         .collect();
-    elements.sort_by_key(|element| element.name());
+    elements.sort_unstable();
     elements.dedup();
     let names: Vec<&str> = elements.iter().map(|element| element.name()).collect();
     match names.len() {
         0 => format!("{what}."),
         1 => format!("{what}: only {} differs.", names[0]),
-        _ => format!("{what}: {} differ.", names.join(" and ")),
+        _ => format!("{what}: {} differ.", listed(&names)),
     }
 }
 
@@ -401,7 +522,99 @@ mod tests {
             .map(|cell| format!("{}: {}", cell.row.title, cell.row.words))
             .collect();
         captions.extend(said);
-        insta::assert_snapshot!(captions.join("\n"));
+        // What belongs together is shown so.
+        insta::assert_snapshot!(captions.join("\n").replace('\u{a0}', "~"));
+    }
+
+    /// Where nothing shows what a world is about, no turn shows more room than the one that is taken; and whatever is said of a cell
+    /// below the sheet or in its caption is so of it.
+    #[test]
+    fn blind_cells_have_the_most_open_view_and_say_which() {
+        let task = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/worlds/maze.json");
+        let shown = of_task(&tasks::task(task).expect("it is a task"), 8);
+        let mut renderer = Renderer::default();
+        let worlds: Vec<Candidates> = shown
+            .iter()
+            .map(|shown| Candidates::of(shown, None).expect("they are drawn"))
+            .collect();
+        let joint = joint_choice(&mut renderer, &worlds, LOOK).expect("they are drawn");
+        let (cells, said) = cells(&shown, LOOK, &|| ()).expect("they can be drawn");
+        let mut blind = 0;
+        for ((candidates, cell), shown) in worlds.iter().zip(&cells).zip(&shown) {
+            let (choice, is_seen) = candidates.own_choice(&mut renderer, joint, LOOK).expect("it is drawn");
+            let place = sentence(&placed(shown, choice, LOOK));
+            let below = format!("ther cells: {}.", placed(shown, choice, LOOK));
+            assert_eq!(
+                cell.row.words.ends_with(&place),
+                !said[0].contains(&below),
+                "{}: {said:?}",
+                cell.row.words
+            );
+            if is_seen {
+                continue;
+            }
+            blind += 1;
+            let candidate = candidates.at(choice.world).expect("it is there");
+            let mut open = |turn| {
+                let camera = agent_camera(&candidate.world, turn);
+                openness(&mut renderer, &candidate.scene, &camera).expect("it is drawn")
+            };
+            let own = open(choice.turn);
+            assert!(TURNS.into_iter().all(|turn| open(turn) <= own), "{}", cell.row.title);
+        }
+        assert!(blind >= 5, "{blind}");
+    }
+
+    /// A variant is shown as its agent sees it.
+    #[test]
+    fn who_sees_no_colors_is_shown_none() {
+        let task = tasks::task("moving_object").expect("it is built in");
+        let named = ["wandering", "depth_only", "rgb_only"];
+        let shown = named.map(|name| Shown::declared(task.variant(name).expect("it is declared"), 0));
+        let (cells, _) = cells(&shown, LOOK, &|| ()).expect("they can be drawn");
+        for (cell, is_gray) in cells.iter().zip([false, true, false]) {
+            let picture = cell.row.pictures[0].to_picture();
+            let gray = picture
+                .rgb
+                .chunks_exact(3)
+                .all(|pixel| pixel[0] == pixel[1] && pixel[1] == pixel[2]);
+            assert_eq!(gray, is_gray, "{}", cell.row.title);
+            assert_eq!(
+                cell.row.words.contains("Shown in depth: the agent sees no colours."),
+                is_gray
+            );
+            assert_eq!(
+                cell.row.words.contains("Looks the same"),
+                cell.row.title.ends_with("rgb_only")
+            );
+        }
+    }
+
+    /// Whose values stand in brackets is said of each task that has some, and of no other.
+    #[test]
+    fn brackets_are_explained_where_there_are_some() {
+        let said = |names: &[&str]| {
+            let shown: Vec<Shown> = (names.iter())
+                .map(|name| Shown::declared(tasks::variant(name).expect("it is declared"), 0))
+                .collect();
+            cells(&shown, LOOK, &|| ()).expect("they can be drawn").1.concat()
+        };
+        let one = said(&["find_objects#blue", "select_object#green", "select_object#red"]);
+        assert!(
+            one.starts_with("In brackets: the values of select_object#green, the first of its task. "),
+            "{one}"
+        );
+        let two = said(&[
+            "find_objects#blue",
+            "find_objects#red",
+            "get_to_goal#plain",
+            "get_to_goal#soft",
+        ]);
+        let both = "In brackets: the values of find_objects#blue and get_to_goal#plain, each the first of its task. ";
+        assert!(two.starts_with(both), "{two}");
+        let none = said(&["find_objects#blue", "get_to_goal#plain"]);
+        assert!(!none.contains("brackets"), "{none}");
+        assert_eq!(listed(&["a", "b", "c", "d"]), "a, b, c and d");
     }
 
     /// What differs between mazes is said in words, whole.
@@ -413,7 +626,7 @@ mod tests {
         let said: Vec<String> = (task.all_variants().iter())
             .map(|variant| differences(&base, variant))
             .collect();
-        assert!(said.contains(&"layout maze 4 × 4 (maze 8 × 8).".to_owned()), "{said:?}");
+        assert!(said.contains(&whole("layout maze 4 × 4 (maze 8 × 8).")), "{said:?}");
         assert!(said.iter().all(|words| !words.contains(['{', '…'])), "{said:?}");
     }
 

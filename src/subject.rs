@@ -1,5 +1,5 @@
 //! What a picture of a world is about, and whether a camera sees it: what pays, costs, moves or is used, counted by
-//! pixels. Which camera is taken is the contact sheet's choice.
+//! pixels; and how much room is before a camera. Which camera is taken is the contact sheet's choice.
 
 use driftworld_env::{Camera, Renderer, Scene, Target};
 use driftworld_spec::{MotionModel, World};
@@ -86,6 +86,22 @@ pub(crate) fn sight(
         seen: own().filter(|pixels| *pixels >= ENOUGH).count() as u32,
         pixels: own().sum(),
     })
+}
+
+/// More room than this is open all the same.
+const OPEN_METRES: f32 = 30.0;
+
+/// How much room there is before a camera: the mean of the metres to what it sees, up to 30.
+pub(crate) fn openness(renderer: &mut Renderer, scene: &Scene, camera: &Camera) -> Result<f32, Failure> {
+    let mut depth = vec![0.0_f32; (SIDE * SIDE) as usize];
+    let mut target = Target {
+        width: SIDE,
+        height: SIDE,
+        depth: Some(&mut depth),
+        ..Target::default()
+    };
+    renderer.draw(scene, camera, &mut target)?;
+    Ok(depth.iter().map(|metres| metres.min(OPEN_METRES)).sum::<f32>() / depth.len() as f32)
 }
 
 #[cfg(test)]

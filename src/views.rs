@@ -10,7 +10,7 @@ use driftworld_env::{
     Catalogue, Environment, Frame, Renderer, Scene, category_color, depth_to_gray,
 };
 use driftworld_report::picture::{Drawing, Level, Picture, Side, TextLine, text_width};
-use driftworld_spec::World;
+use driftworld_spec::{Modality, World};
 
 use crate::Failure;
 use crate::map_drawing::{self, Moves};
@@ -51,10 +51,7 @@ impl Seen {
         let picture = Picture {
             width,
             height,
-            rgb: depth_to_gray(&stretched)
-                .into_iter()
-                .flat_map(|gray| [gray; 3])
-                .collect(),
+            rgb: gray_rgb(&stretched),
         };
         let letters = letters(width);
         let bar = (letters * 0.9).round();
@@ -183,6 +180,19 @@ const CLOSE_UPS: [(f32, f32); 24] = {
     }
     all
 };
+
+/// Distances as greys, three bytes for each.
+fn gray_rgb(metres: &[f32]) -> Vec<u8> {
+    depth_to_gray(metres).into_iter().flat_map(|gray| [gray; 3]).collect()
+}
+
+/// A colour for a number, unlike those of its neighbours; black for 0.
+fn number_color(number: u32) -> [u8; 3] {
+    [97_u32, 53, 151].map(|step| {
+        let share = number.wrapping_mul(step) % 192;
+        if number == 0 { 0 } else { 64 + share as u8 }
+    })
+}
 
 /// What a reward category is.
 fn category_name(category: u8) -> &'static str {
@@ -324,12 +334,7 @@ impl<'a> Views<'a> {
         };
         Ok(Seen {
             rgb: self.smooth(&self.scene, &camera, self.size)?,
-            depth: picture(
-                depth_to_gray(&frame.depth)
-                    .into_iter()
-                    .flat_map(|gray| [gray; 3])
-                    .collect(),
-            ),
+            depth: picture(gray_rgb(&frame.depth)),
             segmentation: picture(
                 frame
                     .category
@@ -347,6 +352,27 @@ impl<'a> Views<'a> {
                 categories.dedup();
                 categories
             },
+        })
+    }
+
+    /// What the agent sees at the start, in one kind of picture: classes and objects have a colour for each.
+    pub(crate) fn seen_in(&self, modality: Modality) -> Result<Picture, Failure> {
+        let camera = self.agent_camera(self.turn);
+        if modality == Modality::Rgb {
+            return self.smooth(&self.scene, &camera, self.size);
+        }
+        let frame = self.frame(&self.scene, &camera, self.size, self.size)?;
+        let rgb = match modality {
+            Modality::Rgb => frame.rgb,
+            Modality::Depth => gray_rgb(&frame.depth),
+            Modality::Segmentation => frame.category.iter().flat_map(|it| category_color(*it)).collect(),
+            Modality::Class => frame.class.iter().flat_map(|it| number_color(u32::from(*it))).collect(),
+            Modality::Instance => frame.instance.iter().flat_map(|it| number_color(*it)).collect(),
+        };
+        Ok(Picture {
+            width: self.size,
+            height: self.size,
+            rgb,
         })
     }
 

@@ -8,7 +8,7 @@ use clap::Args;
 use driftworld_text::ShownPath;
 
 use super::{Failure, output};
-use crate::contact_sheet::{Look, Shown, contact_sheet};
+use crate::contact_sheet::{Look, Shown, Worlds, contact_sheet};
 use crate::contents::Contents;
 use crate::documents;
 use crate::scenarios::is_original;
@@ -116,6 +116,7 @@ fn of_regime<'a>(
         },
         index,
         count: u64::from(regime.count),
+        worlds: Worlds::OfScenario,
         ..declared
     }
 }
@@ -156,6 +157,7 @@ fn learned(file: &Path) -> Result<Vec<Shown>, Failure> {
                 let last = regime.first_index + u64::from(regime.count) - 1;
                 shown.push(Shown {
                     count: 1,
+                    worlds: Worlds::EndOfDrift,
                     ..of_regime(end, &drift.values, regime, last)
                 });
             }
