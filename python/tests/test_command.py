@@ -80,7 +80,7 @@ def test_an_interrupt_ends_it_in_words() -> None:
     # Read to the end: a writer that waits for its reader could not be seen to end.
     _, said = child.communicate(timeout=60)
     # Samples ask to be told, so that they can remove what is half written.
-    assert child.returncode == 1 and said.startswith(b"error: interrupted after ")
+    assert child.returncode == 130 and said.startswith(b"error: interrupted after ")
 
 
 def test_an_interrupted_run_leaves_a_log_that_goes_on(tmp_path: Path) -> None:
@@ -92,7 +92,7 @@ def test_an_interrupted_run_leaves_a_log_that_goes_on(tmp_path: Path) -> None:
         pass
     child.send_signal(signal.SIGINT)
     _, said = child.communicate(timeout=60)
-    assert child.returncode == 1 and "interrupted" in said and "--resume" in said
+    assert child.returncode == 130 and "interrupted" in said and "--resume" in said
     lived = len(driftworld.read_log(log))
     assert 0 < lived < 3002
     subprocess.run([*argv, "--resume"], check=True, capture_output=True)

@@ -1,9 +1,10 @@
 //! Signals: what the signals of a terminal and of a job scheduler do to a command. Long work asks whether one came and
-//! ends by itself; what cannot ask, or does not come to it in time, is ended. Either way nothing half written stays.
+//! ends by itself; what cannot ask, or does not come to it in time, is ended. Either way nothing half written stays, and the
+//! exit code is that of a program that the signal ended: 130 for an interrupt.
 //!
 //! Only in a program of its own ([`watch`]): where the command is asked by another program, signals are that one's.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 use std::sync::{Arc, LazyLock, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use super::Failure;
@@ -11,6 +12,15 @@ use system::follow_signals;
 
 /// Set by the first signal while somebody listens.
 static ASKED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
+
+/// The number of the first signal while somebody listened; an interrupt's where that cannot be known.
+static SIGNAL: AtomicU8 = AtomicU8::new(INTERRUPT);
+
+/// The number of an interrupt.
+const INTERRUPT: u8 = 2;
+
+/// Whether a command gave up because of a signal.
+static GAVE_UP: AtomicBool = AtomicBool::new(false);
 
 /// What to say if whoever listens does not end by itself; nothing while nobody does.
 static PARTING: Mutex<Option<String>> = Mutex::new(None);
@@ -28,7 +38,7 @@ pub(crate) struct Interrupt(());
 
 impl Interrupt {
     /// From now on the first interrupt, termination or hang-up is a question. Whoever has not ended by itself 1.5
-    /// seconds later, or when the next signal comes, is ended with exit code 1 and these words.
+    /// seconds later, or when the next signal comes, is ended with these words and the exit code of the signal.
     pub(crate) fn listen(words: impl Into<String>) -> Self {
         *parting() = Some(words.into());
         #[cfg(not(unix))]
@@ -38,6 +48,13 @@ impl Interrupt {
 
     pub(crate) fn is_asked(&self) -> bool {
         self.flag().load(Ordering::Relaxed)
+    }
+
+    /// Why a command that was asked to stop has no result: its exit code is the signal's.
+    #[expect(clippy::unused_self, reason = "only who listens was asked")]
+    pub(crate) fn failure(&self, text: impl Into<String>) -> Failure {
+        GAVE_UP.store(true, Ordering::SeqCst);
+        Failure::input(text)
     }
 
     /// The answer to the same question, for other threads.
@@ -54,6 +71,12 @@ impl Drop for Interrupt {
             silence();
         }
     }
+}
+
+/// The exit code of a command that gave up because of a signal, which is then forgotten; none of another.
+pub(super) fn exit_code() -> Option<u8> {
+    let signal = SIGNAL.swap(INTERRUPT, Ordering::SeqCst);
+    GAVE_UP.swap(false, Ordering::SeqCst).then_some(128 + signal)
 }
 
 /// From now on nobody listens.
@@ -98,7 +121,7 @@ mod system {
     use signal_hook::low_level;
 
     use super::super::output;
-    use super::{ASKED, parting};
+    use super::{ASKED, INTERRUPT, SIGNAL, parting};
 
     /// How long work has to end by itself.
     const GRACE: Duration = Duration::from_millis(1500);
@@ -136,26 +159,29 @@ mod system {
                     let _ = low_level::emulate_default_handler(signal);
                     low_level::exit(128 + signal);
                 }
-                Some(words) if ASKED.swap(true, Ordering::SeqCst) => end(&words),
+                Some(words) if ASKED.load(Ordering::SeqCst) => end(&words, signal),
                 Some(_) => {
-                    let waits = thread::Builder::new().spawn(|| {
+                    // Before it is asked: whoever gives up is told the number.
+                    SIGNAL.store(u8::try_from(signal).unwrap_or(INTERRUPT), Ordering::SeqCst);
+                    ASKED.store(true, Ordering::SeqCst);
+                    let waits = thread::Builder::new().spawn(move || {
                         thread::sleep(GRACE);
                         // By then the command may be over, in a program that goes on.
                         if let Some(words) = parting().clone() {
-                            end(&words);
+                            end(&words, signal);
                         }
                     });
                     if waits.is_err() {
-                        end(&parting().clone().unwrap_or_default());
+                        end(&parting().clone().unwrap_or_default(), signal);
                     }
                 }
             }
         }
     }
 
-    fn end(words: &str) -> ! {
+    fn end(words: &str, signal: i32) -> ! {
         leave(Some(format!("error: {words}")));
-        low_level::exit(1)
+        low_level::exit(128 + signal)
     }
 
     /// Removes what is half written, and says the words, as far as there is time.
@@ -188,7 +214,7 @@ mod system {
     pub(super) fn follow_signals() -> io::Result<()> {
         for signal in [SIGINT, SIGTERM] {
             // In this order: what ends the process looks before the first signal has been taken down.
-            register_conditional_shutdown(signal, 1, Arc::clone(&ASKED))?;
+            register_conditional_shutdown(signal, 128 + signal, Arc::clone(&ASKED))?;
             register_conditional_default(signal, Arc::clone(&IDLE))?;
             register(signal, Arc::clone(&ASKED))?;
         }

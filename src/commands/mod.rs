@@ -63,8 +63,9 @@ use crate::{documents, log_folders, matrix_file, overwrite, style};
 ///
 /// Returns the exit code: 0 when all went well, 1 when the input or the place for the output is wrong, 2 when the
 /// arguments are. When the reader of the output goes away, as with `| head`, the process ends; so it does within two
-/// seconds of an interrupt, a termination or a hang-up, with nothing half written left: with exit code 1 where
-/// something was going on that can be gone on with or begun again, else by the signal.
+/// seconds of an interrupt, a termination or a hang-up, with nothing half written left: with words where something was
+/// going on that can be gone on with or begun again, else by the signal. The exit code is 128 and the signal's number
+/// either way: 130 for an interrupt, as shells have it.
 pub fn run(args: impl IntoIterator<Item = OsString>) -> u8 {
     /// What signals do is the process's: one command at a time.
     static RUNNING: Mutex<()> = Mutex::new(());
@@ -228,10 +229,10 @@ impl Command {
 /// Says on standard error why the command failed; hands back the exit code.
 fn report(failure: &Failure) -> u8 {
     output::to_standard_error(&format!("error: {}", failure.text().for_command()));
-    match failure {
+    interrupt::exit_code().unwrap_or(match failure {
         Failure::Input(..) => 1,
         Failure::Usage(_) => 2,
-    }
+    })
 }
 
 /// Ends the command without a word when the reader of its output goes away, as with `| head`, and with an error where

@@ -306,7 +306,7 @@ impl LifetimeRun<'_> {
             Ok(summary) if summary.finished => finished
                 .map(|()| summary)
                 .map_err(|error| self.stopped(&error.to_string(), done)),
-            Ok(_) => Err(self.stopped("interrupted", done)),
+            Ok(_) => Err(interrupt.failure(self.stopping("interrupted", done))),
             // The same command would stop there again, and again.
             Err(error @ CurriculumError::World { .. }) => Err(Failure::input(format!(
                 "{error}\n{}: holds {done} of {} experiences, all complete; {}",
@@ -334,11 +334,16 @@ impl LifetimeRun<'_> {
 
     /// Why it stopped, what there is, and how to go on.
     fn stopped(&self, why: &str, done: u64) -> Failure {
-        Failure::input(format!(
+        Failure::input(self.stopping(why, done))
+    }
+
+    /// The same in words.
+    fn stopping(&self, why: &str, done: u64) -> String {
+        format!(
             "{why}\n{}: holds {done} of {} experiences, all complete; continue with the same command and --resume",
             self.logs.shown(),
             self.plan.num_experiences()
-        ))
+        )
     }
 }
 

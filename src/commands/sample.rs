@@ -362,7 +362,7 @@ fn each(
             take((index, variant, world))?;
             if interrupt.is_asked() && index + 1 < range.end {
                 let done = index + 1 - range.start;
-                return Err(Failure::input(format!(
+                return Err(interrupt.failure(format!(
                     "interrupted after {done} of {} worlds; incomplete output was removed",
                     range.end - range.start
                 )));

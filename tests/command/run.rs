@@ -119,7 +119,8 @@ fn told_to_stop(arguments: &[&str], log: &Path, signal: &str) -> Option<String> 
         fs::remove_dir_all(log).expect("the log can be removed");
         return None;
     }
-    assert_eq!(output.status.code(), Some(1), "{error}");
+    let code = if signal == "-INT" { 130 } else { 143 };
+    assert_eq!(output.status.code(), Some(code), "{error}");
     Some(error)
 }
 

@@ -1,4 +1,5 @@
-//! A signal ends a command wherever it is, also where it waits for somebody who never comes. How soon,
+//! A signal ends a command wherever it is, also where it waits for somebody who never comes, and a shell sees the same exit
+//! code of all: 130 for an interrupt. How soon,
 //! `cargo xtask chaos` measures; here a command that does not end lets the test run into its limit.
 #![cfg(unix)]
 
@@ -69,7 +70,7 @@ fn what_waits_for_a_reader_ends_by_the_signal() {
 #[test]
 fn what_nobody_reads_ends_with_words() {
     let folder = scratch();
-    for (name, _) in signals() {
+    for (name, number) in signals() {
         // The pipe fills, and the command waits in the middle of a line.
         let mut child = start(
             folder.path(),
@@ -80,7 +81,7 @@ fn what_nobody_reads_ends_with_words() {
         signal(&child, name);
         let (output, error) = ended(child);
         drop(unread);
-        assert_eq!(output.status.code(), Some(1), "{error}");
+        assert_eq!(output.status.code(), Some(128 + number), "{error}");
         assert!(error.contains("error: interrupted"), "{error}");
     }
 }
@@ -96,13 +97,13 @@ fn a_long_experience_is_not_waited_for() {
         &path.join("scenario.json"),
         &format!(r#"{{ "name": "s", "blocks": [{{ "type": "learning", "regimes": [{regime}] }}] }}"#),
     );
-    for (name, _) in signals() {
+    for (name, number) in signals() {
         let log = format!("log{name}");
         let mut child = start(path, &["run", "scenario.json", "--agent", "random", "--output", &log]);
         wait_until(&mut child, |_| path.join(&log).join("logger_info.json").exists());
         signal(&child, name);
         let (output, error) = ended(child);
-        assert_eq!(output.status.code(), Some(1), "{error}");
+        assert_eq!(output.status.code(), Some(128 + number), "{error}");
         assert!(error.contains("interrupted") && error.contains("--resume"), "{error}");
         let mut rows = fs::read_dir(path.join(&log)).expect("the log was begun");
         assert!(

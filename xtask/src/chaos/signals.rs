@@ -136,15 +136,26 @@ impl Case {
         figures.faults += 1;
         let ended = end(child, Instant::now());
         drop(unread);
-        // By the signal where nobody could say more, else with an error.
+        // By the signal where nobody could say more, else with an error and the exit code that a shell makes of the signal.
         let is_by_signal = ended.status.code().is_none() && ended.said.is_empty();
-        if ended.took > LIMIT || !(is_by_signal || (ended.is_orderly() && ended.status.code() == Some(1))) {
+        let is_with_words = ended.status.code() == Some(exit_code(signal)) && ended.said.contains("error: ");
+        let is_orderly = !ended.hung && !ended.said.contains("panicked") && (is_by_signal || is_with_words);
+        if ended.took > LIMIT || !is_orderly {
             figures.failed(format!("{what}: {:.2} s, {}", ended.took.as_secs_f64(), ended.shown()));
         }
         if let Some(name) = all_files(&out).keys().find(|name| name.ends_with(".driftworld-part")) {
             figures.failed(format!("{what}: {name} is left"));
         }
         Ok(ended.took)
+    }
+}
+
+/// What a shell sees of a program that this signal ends.
+fn exit_code(signal: &str) -> i32 {
+    match signal {
+        "-HUP" => 129,
+        "-TERM" => 143,
+        _ => 130,
     }
 }
 
