@@ -9,6 +9,9 @@ use crate::style;
 /// The narrowest width that is taken seriously, in columns.
 const NARROWEST: usize = 40;
 
+/// Stands for a blank behind which no line is broken.
+const NO_BREAK: char = '\u{a0}';
+
 /// The columns of standard output: what `COLUMNS` says, else those of the terminal; nothing where lines may be of any length.
 pub(crate) fn columns_of_stdout() -> Option<usize> {
     asked_for().or_else(|| {
@@ -53,18 +56,19 @@ pub(crate) fn longest_piece(text: &str) -> usize {
         .unwrap_or(0)
 }
 
-/// A text in lines of at most `width` columns, broken behind blanks and commas alone: a longer word stays whole.
+/// A text in lines of at most `width` columns, broken behind blanks and commas alone: a longer word stays whole. No-break spaces become
+/// blanks where no line is broken.
 pub(crate) fn wrap(text: &str, width: usize) -> Vec<String> {
     let mut lines = Vec::new();
     let mut line = String::new();
     for piece in pieces(text) {
         if !line.is_empty() && columns_of(&line) + columns_of(piece.trim_end()) > width {
-            lines.push(line.trim_end().to_owned());
+            lines.push(line.trim_end().replace(NO_BREAK, " "));
             line.clear();
         }
         line.push_str(piece);
     }
-    lines.push(line.trim_end().to_owned());
+    lines.push(line.trim_end().replace(NO_BREAK, " "));
     lines
 }
 
@@ -100,7 +104,9 @@ fn pieces(text: &str) -> impl Iterator<Item = &str> {
                 (_, None) => break rest.len(),
                 (' ', Some((next, after))) if *after != ' ' => break *next,
                 // Between the parts of a list, but not in a number such as 1,200.
-                (',', Some((next, after))) if *after != ' ' && !after.is_ascii_digit() => break *next,
+                (',', Some((next, after))) if ![' ', NO_BREAK].contains(after) && !after.is_ascii_digit() => {
+                    break *next;
+                }
                 _ => {}
             }
         };
@@ -123,6 +129,7 @@ mod tests {
             ["[\"rgb\",", "\"depth\"],", "1,200"]
         );
         assert_eq!(wrap("immeasurable", 5), ["immeasurable"]);
+        assert_eq!(wrap("in [-5,\u{a0}-12]\u{a0}m", 9), ["in", "[-5, -12] m"]);
         assert_eq!(wrap("", 5), [""]);
         assert_eq!(wrap_lines("  a b c\nd", Some(5)), "  a b\n  c\nd");
     }

@@ -9,7 +9,9 @@ use driftworld_text::{one_line, printable};
 use serde_json::json;
 
 use super::{Failure, output};
+use crate::report::picture::whole;
 use crate::table::table;
+use crate::value_words::short;
 
 /// List the built-in tasks, or show what varies in a task.
 #[derive(Args)]
@@ -128,8 +130,8 @@ fn usual(variant: Option<&Variant>, name: &str, parameter: &Parameter) -> String
     let value = parameter.default.as_ref().or(parameter.value.as_ref());
     let drawn = variant.and_then(|variant| variant.distribution(name));
     match (value, drawn) {
-        (Some(value), _) => short(&value.to_string()),
-        (None, Some(distribution)) => short(&distribution.to_string()),
+        (Some(value), _) => in_few_words(value, parameter),
+        (None, Some(distribution)) => distribution.to_string(),
         (None, None) => String::new(),
     }
 }
@@ -143,18 +145,28 @@ fn differing(variant: &Variant) -> String {
             .as_ref()
             .and_then(|default| default.cast(parameter.kind));
         let own = variant.value(name).filter(|own| default.as_ref() != Some(*own))?;
-        (parameter.role == Role::Variant).then(|| format!("{name} = {}", short(&own.to_string())))
+        (parameter.role == Role::Variant).then(|| format!("{name}\u{a0}=\u{a0}{}", in_few_words(own, parameter)))
     });
     differing.collect::<Vec<_>>().join(", ")
 }
 
-/// A text cut to what a column has room for.
-fn short(text: &str) -> String {
-    const MOST: usize = 44;
-    if text.chars().count() <= MOST {
-        return text.to_owned();
+/// A value as captions have it; no line is broken beside a number, but behind commas of what is no place.
+fn in_few_words(value: &Value, parameter: &Parameter) -> String {
+    let cast = value.cast(parameter.kind);
+    let words = short(cast.as_ref().unwrap_or(value));
+    if words.starts_with('[') {
+        return whole(&words);
     }
-    text.chars().take(MOST - 1).chain(['…']).collect()
+    let is_of_number = |letter: char| letter.is_ascii_digit() || "×%-".contains(letter);
+    let mut bound = String::new();
+    for word in words.split(' ') {
+        if !bound.is_empty() {
+            let is_bound = bound.ends_with(is_of_number) || (word.starts_with(is_of_number) && !bound.ends_with(','));
+            bound.push(if is_bound { '\u{a0}' } else { ' ' });
+        }
+        bound.push_str(word);
+    }
+    bound
 }
 
 fn role(role: Role) -> &'static str {
@@ -165,18 +177,34 @@ fn role(role: Role) -> &'static str {
     }
 }
 
+/// The most choices that are listed.
+const MOST_CHOICES: usize = 8;
+
 /// What a parameter may be, in a few words.
 fn in_words(domain: &Domain, parameter: &Parameter) -> String {
     let unit = parameter
         .unit
         .as_ref()
         .map_or_else(String::new, |unit| format!(" {unit}"));
-    let text = match domain {
-        Domain::Range([low, high]) => format!("{low} to {high}"),
+    match domain {
+        Domain::Range([low, high]) => whole(&format!("{low} to {high}{unit}")),
         Domain::Choices(choices) if parameter.kind == ParameterType::Distribution => {
             format!("{} distributions", choices.len())
         }
-        Domain::Choices(choices) => choices.iter().map(Value::to_string).collect::<Vec<_>>().join(", "),
-    };
-    short(&text) + &unit
+        Domain::Choices(choices) => {
+            let words: Vec<String> = choices.iter().map(|choice| in_few_words(choice, parameter)).collect();
+            // What has commas itself is parted by more than one.
+            let between = if words.iter().any(|words| words.contains(',')) {
+                "; "
+            } else {
+                ", "
+            };
+            let more = match words.get(MOST_CHOICES..) {
+                Some(more) if !more.is_empty() => format!("{between}and {} more", more.len()),
+                _ => String::new(),
+            };
+            let listed = words.iter().take(MOST_CHOICES).map(String::as_str).collect::<Vec<_>>();
+            listed.join(between) + &more + &unit.replace(' ', "\u{a0}")
+        }
+    }
 }

@@ -70,3 +70,25 @@ fn tables_fit_80_and_120_columns_and_break_no_word() {
         }
     }
 }
+
+/// Values are said whole at every width: none is cut, none is parted from its unit, and no place is broken.
+#[test]
+fn values_of_tasks_are_whole() {
+    let folder = scratch();
+    for task in ["find_objects", "moving_object", "select_object"] {
+        for columns in [80, 100, 120, 160, 10_000] {
+            let shown = at(columns, folder.path(), &format!("tasks show {task}"));
+            assert!(!shown.contains(['…', '\u{a0}', '{']), "{task} at {columns}: {shown}");
+            for line in shown.lines() {
+                let count = |letter: char| line.chars().filter(|other| *other == letter).count();
+                assert_eq!(count('['), count(']'), "{task} at {columns}: {line}");
+                let units = ["m", "s", "m/s", "deg/s", "×", "%"];
+                let first = line.split_whitespace().next().unwrap_or_default();
+                assert!(
+                    !units.contains(&first.trim_end_matches([',', ';'])),
+                    "{task} at {columns}: {line}"
+                );
+            }
+        }
+    }
+}
