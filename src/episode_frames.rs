@@ -6,7 +6,7 @@ use driftworld_env::{
     depth_to_gray, top_down_with_way,
 };
 use driftworld_report::picture::{Picture, SheetRow, whole};
-use driftworld_spec::{Stimulus, World};
+use driftworld_spec::{Object, Stimulus, World};
 use driftworld_text::amount;
 
 use crate::Failure;
@@ -146,10 +146,15 @@ fn said(world: &World, event: &Event) -> String {
         None => {
             // What is only a shape is better named by what it is for.
             let name = event.tag.as_deref().unwrap_or(class);
+            let alike = |other: &&Object| match &event.tag {
+                Some(tag) => other.tag.as_deref() == Some(&**tag),
+                None => other.tag.is_none() && other.class == *class,
+            };
+            let what = one_of(name, world.objects.iter().filter(alike).count());
             match event.stimulus {
-                Stimulus::AgentCollide => format!("touches the {name}"),
-                Stimulus::AgentInteract => format!("uses the {name}"),
-                Stimulus::AgentInRange => format!("comes near the {name}"),
+                Stimulus::AgentCollide => format!("touches {what}"),
+                Stimulus::AgentInteract => format!("uses {what}"),
+                Stimulus::AgentInRange => format!("comes near {what}"),
             }
         }
     };
@@ -157,6 +162,16 @@ fn said(world: &World, event: &Event) -> String {
         what
     } else {
         format!("{what}: {}", number(event.reward, "+"))
+    }
+}
+
+/// A thing of which there are so many: groups are named in the plural, as "targets", or in the singular.
+fn one_of(name: &str, count: usize) -> String {
+    match (count, name.ends_with('s'), name.starts_with(['a', 'e', 'i', 'o', 'u'])) {
+        (0 | 1, ..) => format!("the {name}"),
+        (_, true, _) => format!("one of the {name}"),
+        (_, false, true) => format!("an {name}"),
+        (_, false, false) => format!("a {name}"),
     }
 }
 
@@ -299,6 +314,19 @@ mod tests {
             assert_eq!(number(value, "+"), expected);
         }
         assert_eq!(number(2.0, ""), "2.0");
+    }
+
+    #[test]
+    fn one_thing_of_several_is_not_called_the_thing() {
+        for (name, count, said) in [
+            ("targets", 5, "one of the targets"),
+            ("targets", 1, "the targets"),
+            ("fruit", 10, "a fruit"),
+            ("animal", 2, "an animal"),
+            ("goal", 1, "the goal"),
+        ] {
+            assert_eq!(one_of(name, count), said);
+        }
     }
 
     /// Who burns in the lava of an example is in it, and says so; who has no energy to use says nothing of it.

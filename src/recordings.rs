@@ -175,7 +175,7 @@ impl RecordedEpisodes {
     /// Why an episode of a log has no recording, and what to do.
     pub fn unrecorded(&self, number: u64) -> Failure {
         Failure::input(format!(
-            "{}: found no recording of episode {number} (a {RECORDINGS_FILE} beside its rows), expected one; run with {}",
+            "{}: found no recording of episode {number} (an {RECORDINGS_FILE} beside its rows), expected one; run with {}",
             self.path.shown(),
             crate::argument("record")
         ))

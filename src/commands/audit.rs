@@ -69,7 +69,8 @@ impl Audit {
         }
         if failed > 0 {
             return Err(Failure::input(format!(
-                "found {failed} agents with other scores than the protocol promises, expected none"
+                "found {failed} {} with other scores than the protocol promises, expected none",
+                if failed == 1 { "agent" } else { "agents" }
             )));
         }
         Ok(())

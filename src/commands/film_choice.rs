@@ -104,6 +104,7 @@ pub(crate) fn summary(recording: &Recording) -> String {
             format!("{task}#{variant}, world {index} under seed {seed}: ")
         }
         (Some(task), Some(variant), ..) => format!("{task}#{variant}: "),
+        (Some(world), None, ..) => format!("{world}: "),
         _ => String::new(),
     };
     let ended = recording

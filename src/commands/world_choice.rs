@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use crate::Failure;
 use crate::env::EpisodeOrigin;
-use crate::spec::World;
+use crate::spec::{DEFAULT_VARIANT, World};
+use crate::tasks;
 use crate::worlds::{WorldRequest, is_world_file};
 use clap::Args;
 
@@ -48,11 +49,13 @@ impl WorldChoice {
 
     /// What names an episode in this world.
     pub(crate) fn origin(&self) -> EpisodeOrigin {
-        let (task, variant) = self.world.split_once('#').unwrap_or((&self.world, ""));
+        let (task, variant) = tasks::split(&self.world);
         let is_drawn = !self.l2explorer && !is_world_file(&self.world);
+        // Without a name it is the variant in which every parameter has its default.
+        let variant = variant.or(is_drawn.then_some(DEFAULT_VARIANT));
         EpisodeOrigin {
             task: Some(task.to_owned()),
-            variant: Some(variant.to_owned()).filter(|variant| !variant.is_empty()),
+            variant: variant.map(str::to_owned),
             seed: is_drawn.then_some(self.seed),
             index: is_drawn.then_some(self.index),
             ..EpisodeOrigin::default()

@@ -345,6 +345,27 @@ fn an_agent_is_filmed_and_kept() {
     assert!(!at("x.jpg").exists());
 }
 
+/// Which world it was is said of every episode, whether its variant was named or not, and of a world of a file.
+#[test]
+fn the_world_of_an_episode_is_named() {
+    let folder = scratch();
+    let world = folder.path().join("meadow.json");
+    write(&world, r#"{ "agent_params": { "observation_size": 8 } }"#);
+    let sheet = folder.path().join("sheet.png");
+    for (name, said) in [
+        ("moving_object", "moving_object#default, world 0 under seed 0: 2 steps"),
+        (
+            "moving_object#fast",
+            "moving_object#fast, world 0 under seed 0: 2 steps",
+        ),
+        (text(&world), "meadow.json: 2 steps"),
+    ] {
+        let arguments = ["film", name, "--max-steps", "2", "--size", "16", "-o", text(&sheet)];
+        let found = succeed(&arguments);
+        assert!(found.contains(said), "{found}");
+    }
+}
+
 #[test]
 fn the_commands_of_the_page_do_what_it_says() {
     let page = read(root().join("docs/watch.md"));
