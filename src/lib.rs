@@ -56,6 +56,7 @@ mod remarks;
 pub mod scales;
 pub mod scenarios;
 pub mod scoring;
+mod sheet_words;
 mod style;
 mod subject;
 mod table;

@@ -8,10 +8,11 @@ use clap::Args;
 use driftworld_text::ShownPath;
 
 use super::{Failure, output};
-use crate::contact_sheet::{Look, Shown, Worlds, contact_sheet};
+use crate::contact_sheet::{Look, Shown, contact_sheet};
 use crate::contents::Contents;
 use crate::documents;
 use crate::scenarios::is_original;
+use crate::sheet_words::Worlds;
 
 /// The most variants that one picture shows.
 const MOST_VARIANTS: usize = 60;

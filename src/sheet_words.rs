@@ -1,0 +1,163 @@
+//! What is said in a contact sheet: which world and which camera a cell shows, what differs from another variant, and what
+//! holds for all cells. Which they show is chosen in `contact_sheet.rs`.
+
+use driftworld_report::picture::whole;
+use driftworld_spec::{Element, Modality, Variant};
+
+use crate::contact_sheet::{Choice, Look, Shown};
+use crate::value_words::short;
+
+/// What the worlds of a variant are called.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Worlds {
+    /// By their index.
+    Numbered,
+    /// By when they come in a scenario, whose indices say nothing to a reader.
+    OfScenario,
+    /// The one that a drift ends with.
+    EndOfDrift,
+}
+
+/// What most of them are; of equals the first.
+pub(crate) fn commonest(places: &[String]) -> Option<&String> {
+    let count = |place: &String| places.iter().filter(|other| *other == place).count();
+    places.iter().rev().max_by_key(|place| count(place))
+}
+
+/// A few words as a sentence.
+pub(crate) fn sentence(words: &str) -> String {
+    let mut letters = words.chars();
+    let first = letters.next().map(|letter| letter.to_uppercase().collect::<String>());
+    format!("{}{}.", first.unwrap_or_default(), letters.as_str())
+}
+
+/// "a", "a and b", "a, b and c".
+fn listed<T: AsRef<str>>(words: &[T]) -> String {
+    let words: Vec<&str> = words.iter().map(AsRef::as_ref).collect();
+    match &words[..] {
+        [before @ .., one, last] => [before, &[&format!("{one} and {last}")]].concat().join(", "),
+        few => few.concat(),
+    }
+}
+
+/// What holds for all cells: of which variants the values in brackets are, and where most of them are seen from.
+pub(crate) fn below_all(bases: &[String], places: &[String], usual: Option<&String>) -> Option<String> {
+    let mut said = Vec::new();
+    if !bases.is_empty() {
+        let each = if bases.len() > 1 { "each " } else { "" };
+        said.push(format!(
+            "In brackets: the values of {}, {each}the first of its task.",
+            listed(bases)
+        ));
+    }
+    if let Some(usual) = usual {
+        let which = if places.iter().all(|place| place == usual) {
+            "Each cell"
+        } else {
+            "Other cells"
+        };
+        said.push(format!("{which}: {usual}."));
+    }
+    (!said.is_empty()).then(|| said.join(" "))
+}
+
+/// What is said of a picture that is not in colours.
+pub(crate) fn modality_words(modality: Modality) -> &'static str {
+    match modality {
+        Modality::Rgb => "",
+        Modality::Depth => "Shown in depth: the agent sees no colours.",
+        Modality::Segmentation => "Shown in reward categories: the agent sees no colours.",
+        Modality::Class => "Shown by classes, a colour for each: the agent sees no other colours.",
+        Modality::Instance => "Shown by objects, a colour for each: the agent sees no other colours.",
+    }
+}
+
+/// Which world and which camera, in words.
+pub(crate) fn placed(shown: &Shown, choice: Choice, look: Look) -> String {
+    let place = choice.world % shown.count.max(1);
+    let world = match (look.index, shown.worlds) {
+        (Some(index), _) => format!("world {index}"),
+        (None, Worlds::Numbered) => format!("world {}", shown.index + place),
+        (None, Worlds::OfScenario) => {
+            let order = ["first", "second", "third", "fourth"];
+            let word = order.get(place as usize).copied().unwrap_or("fifth or later");
+            format!("its {word} world in the scenario")
+        }
+        (None, Worlds::EndOfDrift) => "its last world in the scenario".to_owned(),
+    };
+    let side = if choice.turn < 0.0 { "left" } else { "right" };
+    let turn = match choice.turn.abs() {
+        0.0 => "the agent's view".to_owned(),
+        180.0 => "the view behind the agent".to_owned(),
+        degrees => format!("the view {degrees}° to the agent's {side}"),
+    };
+    format!("{world}, {turn}")
+}
+
+/// The values that a variant has and another one has not, with those in brackets; each of them whole.
+pub(crate) fn differences(base: &Variant, variant: &Variant) -> String {
+    let of_base = |name: &str| base.value(name).map_or_else(|| "none".to_owned(), short);
+    let parts: Vec<String> = (variant.values().iter())
+        .filter(|(name, value)| base.value(name) != Some(value))
+        .map(|(name, value)| {
+            let (own, other) = (short(value), of_base(name));
+            let other = if own == other { "another".to_owned() } else { other };
+            // A map may be called so itself: "map 2, 60 × 60 m".
+            let own = own.strip_prefix(&format!("{name} ")).unwrap_or(&own);
+            whole(&format!("{name} {own} ({other})"))
+        })
+        .collect();
+    parts.join(", ") + if parts.is_empty() { "" } else { "." }
+}
+
+/// What is the same in the pictures of two variants, and what is not in them.
+pub(crate) fn alike(base: &Variant, variant: &Variant, [view, map]: [bool; 2]) -> String {
+    let what = match (view, map) {
+        (true, true) => "Looks the same, and so does the map",
+        (true, false) => "Looks the same from here",
+        (false, _) => return String::new(),
+    };
+    let parameters = variant.task().parameters();
+    let differing = variant
+        .values()
+        .iter()
+        .filter(|(name, value)| base.value(name) != Some(value));
+    let mut elements: Vec<Element> = differing
+        .filter_map(|(name, _)| parameters.get(name))
+        .flat_map(|parameter| parameter.affects.iter().map(|element| element.coarse()))
+        .collect();
+    elements.sort_unstable();
+    elements.dedup();
+    let names: Vec<&str> = elements.iter().map(|element| element.name()).collect();
+    match names.len() {
+        0 => format!("{what}."),
+        1 => format!("{what}: only {} differs.", names[0]),
+        _ => format!("{what}: {} differ.", listed(&names)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tasks;
+
+    #[test]
+    fn lists_have_one_and() {
+        assert_eq!(listed(&["a"]), "a");
+        assert_eq!(listed(&["a", "b"]), "a and b");
+        assert_eq!(listed(&["a", "b", "c", "d"]), "a, b, c and d");
+    }
+
+    /// What differs between mazes is said in words, whole.
+    #[test]
+    fn layouts_in_captions_are_not_cut() {
+        let task = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/worlds/maze.json");
+        let task = tasks::task(task).expect("it is a task");
+        let base = task.variant("medium").expect("it is declared");
+        let said: Vec<String> = (task.all_variants().iter())
+            .map(|variant| differences(&base, variant))
+            .collect();
+        assert!(said.contains(&whole("layout maze 4 × 4 (maze 8 × 8).")), "{said:?}");
+        assert!(said.iter().all(|words| !words.contains(['{', '…'])), "{said:?}");
+    }
+}
