@@ -80,6 +80,14 @@ impl PyTask {
         Ok(families)
     }
 
+    /// A table for notebooks: what each variant changes.
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py()
+            .import("driftworld.specs")?
+            .getattr("_task_html")?
+            .call1((slf,))
+    }
+
     /// The names of the variants that it declares, families unfolded; ``["default"]`` if it declares none.
     fn variant_names(&self) -> Vec<&str> {
         self.0.variant_names()

@@ -44,6 +44,14 @@ impl PyVariant {
         PyTask(Arc::clone(self.0.task()))
     }
 
+    /// A table for notebooks: the values, those that are not the task's defaults first.
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py()
+            .import("driftworld.specs")?
+            .getattr("_variant_html")?
+            .call1((slf,))
+    }
+
     /// What its author says of it, if anything.
     #[getter]
     fn description(&self) -> Option<&str> {

@@ -78,6 +78,18 @@ def test_a_variant_says_what_it_is(lamps: TaskSpec) -> None:
     assert lamps.variant().values == {"light": 2.0, "far": 5.0}
 
 
+def test_notebooks_show_what_variants_change(lamps: TaskSpec) -> None:
+    told = lamps.variant("dusk")._repr_html_()
+    assert ">lamps#dusk<" in told and "<td style=\"text-align: left\">light</td>" in told
+    assert ">0.5<" in told and ">2<" in told and "at their defaults: far 5" in told
+    assert lamps.variant("day")._repr_html_().count("<tr>") == 1, "the head alone"
+    told = lamps._repr_html_()
+    assert told.count("<tr>") == 1 + len(lamps.variants)
+    assert ">light 0.5<" in told and ">the defaults<" in told and "lamps: Light and dark." in told
+    named = TaskSpec.from_dict({**LAMPS, "description": "<b>"})
+    assert "&lt;b&gt;" in named._repr_html_()
+
+
 def test_a_variant_is_changed_into_another(lamps: TaskSpec) -> None:
     made = lamps.variant("dusk").with_values("made", far=7)
     assert (made.id, made.values) == ("lamps#made", {"light": 0.5, "far": 7.0})

@@ -333,6 +333,7 @@ class TaskSpec:
     def families(self) -> dict[str, list[str]]:
         """Its families of variants, which grids and sweeps declare, each with the names of its members."""
 
+    def _repr_html_(self) -> str: ...
     def variant_names(self) -> list[str]:
         """The names of the variants that it declares, families unfolded; ``["default"]`` if it declares none."""
 
@@ -378,6 +379,7 @@ class Variant:
     def description(self) -> str | None:
         """What its author says of it, if anything."""
 
+    def _repr_html_(self) -> str: ...
     @property
     def values(self) -> dict[str, Any]:
         """The values of all parameters that are the same in every world, by name."""

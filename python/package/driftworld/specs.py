@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from driftworld import _native
+from driftworld._html import note, table
 from driftworld._literals import DocumentKind
 from driftworld._native import Drift, TaskSpec, Variant
 
@@ -61,6 +62,42 @@ def variants(*names: str | Variant | TaskSpec) -> list[tuple[str, Variant]]:
     return list(found.items())
 
 
+def _variant_html(variant: Variant) -> str:
+    """The values of a variant as a table: those that are not the task's defaults first, the others in a line below."""
+    usual = variant.task.variant().values
+    parameters = variant.task.parameters
+    rows = [
+        (name, _said(value), _said(usual[name]), ", ".join(parameters[name].get("affects", [])))
+        for name, value in variant.values.items()
+        if value != usual[name]
+    ]
+    equal = [f"{name} {_said(value)}" for name, value in variant.values.items() if value == usual[name]]
+    caption = f"{variant.id}: {variant.description}" if variant.description else variant.id
+    head = ("parameter", "value", "default", "affects")
+    return table(head, rows, caption) + note(f"at their defaults: {', '.join(equal)}" if equal else "")
+
+
+def _task_html(task: TaskSpec) -> str:
+    """What each variant of a task changes, as a table."""
+    usual = task.variant().values
+    rows = [
+        (
+            variant.name,
+            ", ".join(f"{name} {_said(value)}" for name, value in variant.values.items() if value != usual[name]) or "the defaults",
+            variant.description or "",
+        )
+        for variant in task.variants
+    ]
+    return table(("variant", "changes", "description"), rows, f"{task.name}: {task.description}")
+
+
+def _said(value: Any) -> str:
+    """A value as JSON says it; a text without quotes."""
+    if isinstance(value, float):
+        return f"{value:g}"
+    return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+
+
 def _named(name: str | Variant | TaskSpec) -> Iterable[tuple[str, Variant]]:
     if isinstance(name, Variant):
         return [(name.id, name)]
@@ -105,8 +142,8 @@ def validate(
     paths = [assets] if isinstance(assets, (str, os.PathLike)) else list(assets)
     libraries = [Path(path).read_bytes() for path in paths]
     _, problems, notes, error = _native.check(name, text, kind, libraries)
-    for note in notes:
-        warnings.warn(note, stacklevel=2)
+    for said in notes:
+        warnings.warn(said, stacklevel=2)
     if check and error is not None:
         raise error
     return problems
