@@ -5,7 +5,7 @@
     reason = "ticks and arrows of a figure, rounded to what is drawn"
 )]
 
-use driftworld_spec::{BlockKind, Phase, Regime, Scenario};
+use driftworld_spec::{Block, BlockKind, Phase, Regime, Scenario};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -68,6 +68,7 @@ pub fn blocks(scenario: &Scenario) -> Result<Drawing, ReportError> {
         let from_left = Pos::new(HPos::Left, VPos::Top);
         write(&scenario.name, (16, 12), 26.0, &INK, from_left)?;
         legend(
+            scenario,
             left,
             |text, at| write(text, at, 16.5, &FAINT, from_left),
             |shape, style| area.draw(&Rectangle::new(shape, style)),
@@ -149,21 +150,44 @@ pub fn blocks(scenario: &Scenario) -> Result<Drawing, ReportError> {
 
 /// A sample of each kind of bar with its name, under the title.
 fn legend<E>(
+    scenario: &Scenario,
     left: i32,
     write: impl Fn(&str, (i32, i32)) -> Result<(), E>,
     draw: impl Fn([(i32, i32); 2], ShapeStyle) -> Result<(), E>,
 ) -> Result<(), E> {
-    let kinds = [
-        ("learning", COLORS[0].filled(), BAR / 2),
-        ("before deployment", COLORS[0].mix(0.3).filled(), BAR / 2),
-        ("evaluation, frozen", RGBColor(150, 154, 160).filled(), BAR / 4),
-    ];
-    for (index, (name, style, height)) in kinds.into_iter().enumerate() {
+    for (index, (name, style, height)) in kinds(scenario).into_iter().enumerate() {
         let x = left + index as i32 * 190;
         draw([(x, 56 - height / 2), (x + 30, 56 + height / 2)], style)?;
         write(name, (x + 38, 48))?;
     }
     Ok(())
+}
+
+/// The kinds of bars that a scenario has: name, colour, height.
+fn kinds(scenario: &Scenario) -> Vec<(&'static str, ShapeStyle, i32)> {
+    let has = |kind: BlockKind, phase: Option<Phase>| {
+        let is = |block: &Block| block.kind == kind && phase.is_none_or(|phase| block.phase == phase);
+        scenario.blocks.iter().any(is)
+    };
+    let early = Some(Phase::PreDeployment);
+    let all = [
+        (
+            has(BlockKind::Learning, Some(Phase::Deployment)),
+            ("learning", COLORS[0].filled(), BAR / 2),
+        ),
+        (
+            has(BlockKind::Learning, early),
+            ("before deployment", COLORS[0].mix(0.3).filled(), BAR / 2),
+        ),
+        (
+            has(BlockKind::Evaluation, None),
+            ("evaluation, frozen", RGBColor(150, 154, 160).filled(), BAR / 4),
+        ),
+    ];
+    all.into_iter()
+        .filter(|(is_there, _)| *is_there)
+        .map(|(_, kind)| kind)
+        .collect()
 }
 
 /// The names of the rows, and every stretch.
@@ -239,6 +263,23 @@ mod tests {
         assert_eq!(ticks(100.0).len(), 11);
         assert_eq!(ticks(190.0)[..3], [0.0, 20.0, 40.0]);
         assert!((1..100_000).all(|total| ticks(f64::from(total)).len() <= 12));
+    }
+
+    #[test]
+    fn the_legend_names_what_is_drawn_alone() {
+        let names = |text: &str| {
+            let found = kinds(&Scenario::from_json("s", text).unwrap()).into_iter();
+            found.map(|kind| kind.0).collect::<Vec<_>>()
+        };
+        let block = |kind: &str, phase: &str| {
+            format!(r#"{{ "type": "{kind}"{phase}, "regimes": [{{ "task": "t", "variant": "a", "count": 4 }}] }}"#)
+        };
+        let early = r#", "phase": "pre_deployment""#;
+        let all = [block("learning", early), block("evaluation", ""), block("learning", "")];
+        let of = |blocks: &[String]| names(&format!(r#"{{ "name": "s", "blocks": [{}] }}"#, blocks.join(", ")));
+        assert_eq!(of(&all), ["learning", "before deployment", "evaluation, frozen"]);
+        assert_eq!(of(&all[1..]), ["learning", "evaluation, frozen"]);
+        assert_eq!(of(&all[2..]), ["learning"]);
     }
 
     #[test]
