@@ -365,7 +365,8 @@ fn of_scoring() -> Vec<(MetricsError, &'static str, &'static str)> {
                 found: text("a_1, b_1"),
             },
             "metrics/not-single-task",
-            "single-task expert log run: found a_1, b_1, expected exactly one trained task",
+            "single-task expert log run: found a_1, b_1, expected exactly one trained task; take one log for \
+             each task, or compare with an agent that ran the same blocks by --against, with floors and ceilings by --scales",
         ),
         (
             E::NoSteData {

@@ -155,7 +155,8 @@ fn experts_are_stored_replaced_and_found() {
     );
     assert_eq!(
         error,
-        "error: single-task expert log life: found find_red, find_blue, expected exactly one trained task\n"
+        "error: single-task expert log life: found find_red, find_blue, expected exactly one trained task; take one log \
+         for each task, or compare with an agent that ran the same blocks by --against, with floors and ceilings by --scales\n"
     );
 }
 

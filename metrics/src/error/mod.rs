@@ -497,8 +497,9 @@ pub enum MetricsError {
     },
 
     /// A single-task expert's log must train exactly one task.
-    #[error("single-task expert log {run_id}: found {found}, expected exactly one trained \
-         task", run_id = one_line(run_id), found = one_line(found))]
+    #[error("single-task expert log {run_id}: found {found}, expected exactly one trained task; take \
+         one log for each task, or compare with an agent that ran the same blocks by --against, with floors and \
+         ceilings by --scales", run_id = one_line(run_id), found = one_line(found))]
     NotSingleTask {
         /// Name of the log.
         run_id: String,
