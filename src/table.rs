@@ -12,6 +12,9 @@ const GAP: usize = 2;
 /// The narrowest that a column of sentences is made before the table is given up, in columns of the terminal.
 const NARROW: usize = 12;
 
+/// A blank at which no line ends: a no-break space.
+const UNBROKEN: &str = "\u{a0}";
+
 /// How texts stand in a table for spreadsheets, by the option `--raw-cells`.
 pub(crate) fn cells(raw: bool) -> Cells {
     if raw { Cells::Raw } else { Cells::Guarded }
@@ -29,6 +32,23 @@ pub(crate) fn table<const N: usize>(headings: [&str; N], rows: Vec<[String; N]>,
 /// The same for a number of columns that is not known beforehand.
 pub(crate) fn wide_table(headings: Vec<String>, rows: Vec<Vec<String>>, numbers: &[usize]) -> String {
     fitted(headings, rows, numbers, columns_of_stdout())
+}
+
+/// The same without the columns in which no row says anything.
+pub(crate) fn without_empty(headings: Vec<String>, rows: Vec<Vec<String>>, numbers: &[usize]) -> String {
+    let kept: Vec<usize> = (0..headings.len())
+        .filter(|column| rows.is_empty() || rows.iter().any(|row| !row[*column].is_empty()))
+        .collect();
+    let only = |cells: Vec<String>| -> Vec<String> { kept.iter().map(|column| cells[*column].clone()).collect() };
+    let numbers: Vec<usize> = (0..kept.len())
+        .filter(|place| numbers.contains(&kept[*place]))
+        .collect();
+    wide_table(only(headings), rows.into_iter().map(only).collect(), &numbers)
+}
+
+/// A text that tables do not break, such as a value with its error. Blanks are blanks again when it is printed.
+pub(crate) fn whole(text: &str) -> String {
+    text.replace(' ', UNBROKEN)
 }
 
 /// A table of at most `width` columns of the terminal. Cells go on in further lines where need be, broken between words; where
@@ -79,7 +99,7 @@ fn narrow(headings: &[String], rows: &[Vec<String>], numbers: &[usize], width: u
         .collect();
     for (row, first) in rows.iter().zip(&firsts) {
         shown.extend(lines(first, &widths, numbers));
-        let below = wrap(&row[last], width.saturating_sub(2 * GAP));
+        let below = broken(&row[last], width.saturating_sub(2 * GAP));
         shown.extend(
             below
                 .iter()
@@ -117,12 +137,18 @@ fn widths(headings: &[String], rows: &[Vec<String>], width: Option<usize>) -> Op
     Some(under(cap))
 }
 
+/// A cell in lines, with blanks for what was not to be broken.
+fn broken(cell: &str, width: usize) -> Vec<String> {
+    let lines = wrap(cell, width).into_iter();
+    lines.map(|line| line.replace(UNBROKEN, " ")).collect()
+}
+
 /// A row in as many lines as its highest cell needs.
 fn lines(row: &[String], widths: &[usize], numbers: &[usize]) -> Vec<String> {
     let cells: Vec<Vec<String>> = row
         .iter()
         .zip(widths)
-        .map(|(cell, width)| wrap(cell, (*width).max(1)))
+        .map(|(cell, width)| broken(cell, (*width).max(1)))
         .collect();
     let height = cells.iter().map(Vec::len).max().unwrap_or(0);
     let line = |number: usize| {
@@ -161,7 +187,7 @@ fn listed(headings: &[String], rows: &[Vec<String>], width: usize) -> String {
         lines.push(Style::Strong.on(row.first().map_or("", String::as_str)));
         for (heading, cell) in headings.iter().zip(row).skip(1).filter(|(_, cell)| !cell.is_empty()) {
             let room = width.saturating_sub(name + 2 * GAP).max(1);
-            for (number, text) in wrap(cell, room).into_iter().enumerate() {
+            for (number, text) in broken(cell, room).into_iter().enumerate() {
                 let heading = if number == 0 { heading.as_str() } else { "" };
                 let blanks = " ".repeat(name.saturating_sub(columns_of(heading)));
                 lines.push(format!("  {heading}{blanks}  {text}").trim_end().to_owned());
@@ -236,7 +262,31 @@ mod tests {
         );
     }
 
+    #[test]
+    fn columns_in_which_no_row_says_anything_are_left_out() {
+        let row = |cells: [&str; 3]| cells.map(str::to_owned).to_vec();
+        let rows = vec![row(["a", "", "1"]), row(["b", "", "22"])];
+        assert_eq!(
+            without_empty(row(["name", "nothing", "number"]), rows, &[2]),
+            "name  number\na          1\nb         22"
+        );
+    }
+
     proptest! {
+        #[test]
+        fn what_is_whole_stands_on_one_line(
+            facts in proptest::collection::vec("[0-9]{1,6} ± [0-9]{1,6}", 1..5),
+            words in "([a-z]{1,8} ){0,12}",
+            width in 40_usize..90,
+        ) {
+            let headings = ["metric", "value", "what it says"].map(str::to_owned).to_vec();
+            let row = |fact: &String| vec!["some_metric".to_owned(), whole(fact), words.clone()];
+            let shown = fitted(headings, facts.iter().map(row).collect(), &[1], Some(width));
+            for fact in &facts {
+                prop_assert!(shown.lines().any(|line| line.contains(fact.as_str())), "{shown}");
+            }
+        }
+
         #[test]
         fn no_line_is_wider_than_it_may_be_and_every_word_is_whole(
             rows in proptest::collection::vec(proptest::collection::vec("([a-z#_]{1,8} ){0,6}", 4), 1..6),

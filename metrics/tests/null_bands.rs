@@ -133,6 +133,13 @@ fn check_calibration(lifetimes: &[LifetimeMetrics], exchanged: Exchanged) {
             called_good += usize::from(band.reading(good) == Reading::Good);
             called_bad += usize::from(band.reading(good) == Reading::Bad);
         }
+        let said = |reading| lifetimes.iter().filter(|life| life.readings[name] == reading).count();
+        let (said_good, said_bad) = (said(Reading::Good), said(Reading::Bad));
+        // What is said looks at the parts, too.
+        assert!(
+            said_good <= called_good && said_bad <= called_bad,
+            "{name}: {said_good}, {said_bad}"
+        );
         let counts = format!(
             "{name}: {inside} inside, {called_good} good, {called_bad} bad of {}",
             lifetimes.len()
@@ -311,7 +318,7 @@ fn each_band_holds_the_value_of_the_lifetime_and_contrast_comes_first() {
         "{names:?}"
     );
     let json = serde_json::to_value(&scores).unwrap();
-    for ours in ["null", "reached", "forward_transfer_contrast"] {
+    for ours in ["readings", "null", "contrasts", "reached", "forward_transfer_contrast"] {
         assert_eq!(json.get(ours), None, "{ours}");
     }
     // Learning decides these.
@@ -325,6 +332,63 @@ fn each_band_holds_the_value_of_the_lifetime_and_contrast_comes_first() {
     };
     assert_eq!(band("avg_train_perf"), None);
     assert_eq!(band("perf_recovery"), None);
+}
+
+#[test]
+fn a_contrast_that_is_shown_has_its_pairs_and_all_of_it_can_be_read_back() {
+    for seed in 0..6 {
+        let rows = forgetting(&mut ChaCha8Rng::seed_from_u64(seed));
+        for (method, smooth) in [
+            (TransferMethod::Ratio, false),
+            (TransferMethod::Ratio, true),
+            (TransferMethod::Both, false),
+        ] {
+            let options = Options {
+                transfer_method: method,
+                smooth_eval_data: smooth,
+                ..Options::default()
+            };
+            let scores = score(&log_of(&rows), &[], &options).unwrap();
+            let shown = scores.summary().into_iter().filter(|row| row.name.contains("transfer"));
+            for row in shown {
+                let (Some(value), parts) = (row.value, scores.parts(&row.name)) else {
+                    panic!("{} has no value", row.name);
+                };
+                let mean = parts.iter().map(|part| part.value).sum::<f64>() / parts.len() as f64;
+                assert!((mean - value).abs() < 1e-9, "{}: {value}, {parts:?}", row.name);
+            }
+            let json = serde_json::to_string(&scores.whole()).unwrap();
+            let back: LifetimeMetrics = serde_json::from_str(&json).unwrap();
+            let rows = |scores: &LifetimeMetrics| -> Vec<_> {
+                let rows = scores.summary().into_iter().filter(|row| row.value.is_some());
+                rows.map(|row| (row.name, row.reading, row.word)).collect()
+            };
+            assert_eq!(rows(&back), rows(&scores));
+            assert_eq!(
+                back.parts("forward_transfer_contrast"),
+                scores.parts("forward_transfer_contrast")
+            );
+        }
+    }
+}
+
+#[test]
+fn nothing_is_said_of_transfer_that_is_made_of_negative_performances() {
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let rows: Vec<Lived> = forgetting(&mut rng)
+        .into_iter()
+        .map(|(block, kind, task, world, reward)| (block, kind, task, world, reward - 50.0))
+        .collect();
+    let unscaled = Options {
+        normalization_method: driftworld_metrics::NormalizationMethod::Off,
+        ..Options::default()
+    };
+    let scores = score(&log_of(&rows), &[], &unscaled).unwrap();
+    for name in ["forward_transfer_contrast", "backward_transfer_ratio"] {
+        assert_eq!(scores.readings[name], Reading::Undefined, "{name}");
+    }
+    assert_eq!(scores.readings["perf_maintenance_mrlep"], Reading::Bad);
+    assert_eq!(scores.notes.len(), 1);
 }
 
 #[test]

@@ -306,7 +306,7 @@ fn captions_say_what_was_done_to_the_values() {
     assert!(page(true).contains("after smoothing, scaled to 1…101") && page(true).contains("Learning is smoothed"));
     assert!(!page(false).contains("smoothed") && !page(false).contains("after smoothing"));
     assert!(page(false).contains("Performance scaled to 1…101"));
-    assert!(page(true).contains("One lifetime cannot distinguish an effect from noise"));
+    assert!(page(true).contains("One lifetime shows what this agent did"));
 }
 
 #[test]

@@ -24,6 +24,7 @@ mod original_scenarios;
 mod other_contents;
 mod overwrite;
 mod pipes;
+mod readings;
 mod report;
 mod run;
 mod run_files;

@@ -8,9 +8,7 @@ mod simulation;
 
 use std::path::Path;
 
-use driftworld_metrics::{
-    Direction, LifetimeMetrics, Log, MaintenanceMethod, Options, Reading, SteLog, TransferMethod, score,
-};
+use driftworld_metrics::{LifetimeMetrics, Log, MaintenanceMethod, Options, Reading, SteLog, TransferMethod, score};
 use driftworld_spec::Scenario;
 use serde::Serialize;
 
@@ -284,11 +282,8 @@ fn scored(log: &Log, experts: &[SteLog]) -> Result<LifetimeMetrics, CurriculumEr
 
 /// What is said of each metric that evaluations decide.
 fn readings(scores: &LifetimeMetrics) -> Vec<(String, Reading)> {
-    let reading = |(name, band): (&String, &driftworld_metrics::NullBand)| {
-        let neutral = if name.ends_with("ratio") { 1.0 } else { 0.0 };
-        (name.clone(), band.reading(Direction::HigherThan(neutral)))
-    };
-    scores.null_bands.iter().map(reading).collect()
+    let reading = |name: &String| Some((name.clone(), *scores.readings.get(name)?));
+    scores.null_bands.keys().filter_map(reading).collect()
 }
 
 fn mean_and_error(values: &[f64]) -> Option<(f64, f64)> {

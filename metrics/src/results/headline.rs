@@ -6,6 +6,8 @@ use std::borrow::Cow;
 
 use serde::Serialize;
 
+use super::Reading;
+
 /// Which way a metric is good, and from where on.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -18,6 +20,30 @@ pub enum Direction {
     HigherThan(f64),
     /// The lower the better, and this value means no effect.
     LowerThan(f64),
+}
+
+impl Direction {
+    /// The value that means no effect, for a metric that has one.
+    pub fn neutral(self) -> Option<f64> {
+        match self {
+            Self::HigherThan(neutral) | Self::LowerThan(neutral) => Some(neutral),
+            Self::Higher | Self::Lower => None,
+        }
+    }
+
+    /// Whether a value is good or bad, by its side of no effect alone; unclear on neither.
+    pub(crate) fn side(self, value: f64) -> Reading {
+        let (is_better, is_worse) = match self {
+            Self::HigherThan(neutral) => (value > neutral, value < neutral),
+            Self::LowerThan(neutral) => (value < neutral, value > neutral),
+            Self::Higher | Self::Lower => (false, false),
+        };
+        match (is_better, is_worse) {
+            (true, _) => Reading::Good,
+            (_, true) => Reading::Bad,
+            _ => Reading::Unclear,
+        }
+    }
 }
 
 /// A value by which a lifetime is known: one row of its table.

@@ -5,11 +5,12 @@
 use std::borrow::Cow;
 
 use indexmap::IndexMap;
-use serde::{Deserialize, Serialize, Serializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::rounding::ten_decimals;
 use super::{
-    AsLogged, Direction, EvaluationCurve, ExpertFit, Headline, NullBand, Reached, RegimeMetrics, Value, Values,
+    AsLogged, Direction, EvaluationCurve, ExpertFit, Headline, NullBand, PairValues, Reached, Reading, RegimeMetrics,
+    Value, Values,
 };
 use crate::{DataRange, Definitions};
 
@@ -59,6 +60,14 @@ pub struct LifetimeMetrics {
     /// read back.
     #[serde(skip)]
     pub null_draws: IndexMap<String, Vec<f64>>,
+    /// What may be said of each metric that has a value which means no effect, by name. Not in the JSON, which has the
+    /// reference's fields; those of [`LifetimeMetrics::whole`] are rows of [`LifetimeMetrics::summary`].
+    #[serde(default, deserialize_with = "readings_of_rows")]
+    pub readings: IndexMap<String, Reading>,
+    /// The contrasts of transfer of each task where only ratios were asked for. Not in the JSON, which has the
+    /// reference's fields.
+    #[serde(default)]
+    pub contrasts: IndexMap<String, Values>,
     /// What each task came to in evaluations, in the log's unit. Not in the JSON, which has the reference's fields.
     #[serde(default)]
     pub reached: IndexMap<String, Reached>,
@@ -85,6 +94,17 @@ pub struct LifetimeMetrics {
     /// The definitions it was scored by; in the JSON only where they are not the reference's.
     #[serde(default)]
     pub definitions: Definitions,
+}
+
+/// The readings of the rows that stand in the whole JSON.
+fn readings_of_rows<'de, D: Deserializer<'de>>(rows: D) -> Result<IndexMap<String, Reading>, D::Error> {
+    #[derive(Deserialize)]
+    struct Row {
+        reading: Option<Reading>,
+    }
+    let rows = IndexMap::<String, Row>::deserialize(rows)?;
+    let readings = rows.into_iter().filter_map(|(name, row)| Some((name, row.reading?)));
+    Ok(readings.collect())
 }
 
 /// What stands in the JSON, in order.
@@ -165,6 +185,21 @@ pub struct SummaryRow {
     pub good: Direction,
     /// Where the value would lie if the agent had never changed; `None` for a metric that learning decides, too.
     pub null_band: Option<NullBand>,
+    /// What may be said of the value; `None` for a metric without a value that means no effect.
+    pub reading: Option<Reading>,
+    /// The reading in the metric's own words, as every table has it.
+    pub word: Option<&'static str>,
+}
+
+/// The value of a metric for a task, or for a pair of tasks: one of those that the lifetime's value is made of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Part<'a> {
+    /// The task; of a pair, the one that was learnt.
+    pub task: &'a str,
+    /// Of a pair the task that was evaluated before and after.
+    pub other: Option<&'a str>,
+    /// The value; of a pair that met several times, the first.
+    pub value: f64,
 }
 
 impl LifetimeMetrics {
@@ -172,17 +207,43 @@ impl LifetimeMetrics {
     /// without a value. Where transfer was asked for as a ratio only, the contrasts come first: a mean of ratios is above 1 even
     /// if nothing is transferred.
     pub fn summary(&self) -> Vec<SummaryRow> {
-        let row = |headline: &Headline| {
-            let null_band = self.null_bands.get(&*headline.name).copied();
-            let value = self.lifetime.number(&headline.name);
+        let row = |headline: Headline| {
+            let value = self.number(&headline.name);
+            let reading = self.readings.get(&*headline.name).copied();
+            let reading = reading.filter(|_| value.is_some());
             SummaryRow {
-                name: headline.name.clone(),
-                value: value.or_else(|| null_band.map(|band| band.value)),
-                explanation: headline.explanation.clone(),
+                value,
+                null_band: self.null_bands.get(&*headline.name).copied(),
+                reading,
+                word: reading.map(|reading| reading.word(&headline.name)),
+                name: headline.name,
+                explanation: headline.explanation,
                 good: headline.good,
-                null_band,
             }
         };
+        self.shown_headlines().into_iter().map(row).collect()
+    }
+
+    /// The lifetime's value of a metric, also of a contrast of transfer that was not asked for.
+    pub(super) fn number(&self, name: &str) -> Option<f64> {
+        let asked = self.lifetime.number(name);
+        asked.or_else(|| Some(self.null_bands.get(name)?.value))
+    }
+
+    /// The values of tasks, or of pairs of tasks, that the lifetime's value of a metric is made of, also of a contrast of
+    /// transfer that was not asked for.
+    pub fn parts(&self, name: &str) -> Vec<Part<'_>> {
+        parts(&self.task_metrics, &self.contrasts, name)
+    }
+
+    /// The values of a metric from a learnt task to each other, in order of the later evaluation, also of a contrast of
+    /// transfer that was not asked for.
+    pub fn pairs(&self, task: &str, name: &str) -> Option<&PairValues> {
+        pairs(&self.task_metrics, &self.contrasts, task, name)
+    }
+
+    /// The headlines with those that nobody asked for and that are shown all the same.
+    pub(super) fn shown_headlines(&self) -> Vec<Headline> {
         let is_there = |name: &str| self.headlines.iter().any(|headline| headline.name == name);
         let has_band = |name: &str| self.null_bands.contains_key(name);
         let mut contrasts: Vec<Headline> = crate::score::built_in_headlines();
@@ -190,10 +251,42 @@ impl LifetimeMetrics {
         let mut rows = Vec::new();
         for headline in &self.headlines {
             if headline.name.ends_with("_transfer_ratio") {
-                rows.extend(contrasts.drain(..).map(|contrast| row(&contrast)));
+                rows.append(&mut contrasts);
             }
-            rows.push(row(headline));
+            rows.push(headline.clone());
         }
         rows
     }
+}
+
+fn pairs<'a>(
+    tasks: &'a IndexMap<String, Values>,
+    contrasts: &'a IndexMap<String, Values>,
+    task: &str,
+    name: &str,
+) -> Option<&'a PairValues> {
+    let of = |values: &'a IndexMap<String, Values>| values.get(task)?.pairs(name);
+    of(tasks).or_else(|| of(contrasts))
+}
+
+/// As [`LifetimeMetrics::parts`], of the values of tasks and the contrasts that were not asked for.
+pub(crate) fn parts<'a>(
+    tasks: &'a IndexMap<String, Values>,
+    contrasts: &'a IndexMap<String, Values>,
+    name: &str,
+) -> Vec<Part<'a>> {
+    let mut found = Vec::new();
+    for (task, values) in tasks {
+        if let Some(value) = values.number(name) {
+            let other = None;
+            found.push(Part { task, other, value });
+        }
+        for (other, values) in pairs(tasks, contrasts, task, name).into_iter().flatten() {
+            if let Some(value) = values.first().copied() {
+                let other = Some(other.as_str());
+                found.push(Part { task, other, value });
+            }
+        }
+    }
+    found
 }

@@ -4,7 +4,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Direction, LifetimeMetrics};
+use super::reading::LARGEST_P;
+use super::{Direction, LifetimeMetrics, Reading};
 use crate::statistics::{mean, quantile};
 
 /// How evaluations were permuted.
@@ -37,17 +38,6 @@ pub struct NullBand {
     /// evaluations.
     #[serde(default)]
     pub standard_error: Option<f64>,
-}
-
-/// What may be said of a value beside its null band.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Reading {
-    /// Outside the band on the good side, and better than no effect.
-    Good,
-    /// Outside the band on the bad side, and worse than no effect.
-    Bad,
-    /// Neither can be said.
-    Unclear,
 }
 
 /// Part of a value by which sums in another order may differ.
@@ -109,15 +99,15 @@ impl NullBand {
 
     /// Whether the value is within two of its standard errors of no effect; `None` where one of these is not known.
     pub fn is_within_two_errors(&self, good: Direction) -> Option<bool> {
-        let (Direction::HigherThan(neutral) | Direction::LowerThan(neutral)) = good else {
-            return None;
-        };
-        Some((self.value - neutral).abs() < 2.0 * self.standard_error?)
+        Some((self.value - good.neutral()?).abs() < 2.0 * self.standard_error?)
     }
 
-    /// What may be said of the value, for the direction that is good.
+    /// What may be said of the value by the band alone, for the direction that is good: good or bad where the value lies
+    /// outside the band, `p` is at most 0.05, and it is on that side of no effect by two of its standard errors, if
+    /// these are known.
     pub fn reading(&self, good: Direction) -> Reading {
-        if !self.is_outside() {
+        let is_noise = !self.is_outside() || self.p > LARGEST_P || self.is_within_two_errors(good) == Some(true);
+        if is_noise {
             return Reading::Unclear;
         }
         let is_high = self.value > self.high;

@@ -37,7 +37,7 @@ pub fn metric_power(lifetimes: &[LifetimeMetrics], others: &[LifetimeMetrics], e
     let others = if others.is_empty() { lifetimes } else { others };
     let of_headline = |headline: Headline| {
         let values = [lifetimes, others].map(|agent| {
-            let numbers = agent.iter().filter_map(|life| life.lifetime.number(&headline.name));
+            let numbers = agent.iter().filter_map(|life| life.number(&headline.name));
             numbers.collect::<Vec<f64>>()
         });
         let [a, b] = [deviation(&values[0])?, deviation(&values[1])?];

@@ -4,7 +4,7 @@
 
 use serde::Serialize;
 
-use super::{Direction, Headline, LifetimeMetrics, NullBand, Value};
+use super::{Direction, Headline, LifetimeMetrics, NullBand, Part, Reading, disagreements};
 use crate::MetricsError;
 use crate::repeats::{
     Aggregate, BootstrapOptions, Estimate, Improvement, ScoreTable, estimate, probability_of_improvement,
@@ -30,6 +30,10 @@ pub struct RepeatedMetric {
     /// too. It differs from `mean` where lifetimes lack some tasks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub null: Option<NullBand>,
+    /// What may be said of the metric; `None` for one without a value that means no effect.
+    pub reading: Option<Reading>,
+    /// The reading in the metric's own words, as every table has it.
+    pub word: Option<&'static str>,
     /// What a reader of the intervals must be told.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub caution: Option<String>,
@@ -62,8 +66,17 @@ pub fn over_repeats(
             continue;
         };
         let [iqm, mean, median] = estimate(&table, [Aggregate::Iqm, Aggregate::Mean, Aggregate::Median], options)?;
+        let null = NullBand::over_lifetimes(&headline.name, lifetimes);
+        let is_undefined = |life: &LifetimeMetrics| life.readings.get(&*headline.name) == Some(&Reading::Undefined);
+        let reading = if lifetimes.iter().any(is_undefined) {
+            Some(Reading::Undefined)
+        } else {
+            Reading::of_lifetimes(headline.good, null.as_ref(), iqm.best_interval())
+        };
         found.push(RepeatedMetric {
-            null: NullBand::over_lifetimes(&headline.name, lifetimes),
+            null,
+            reading,
+            word: reading.map(|reading| reading.word(&headline.name)),
             headline,
             iqm,
             mean,
@@ -72,6 +85,20 @@ pub fn over_repeats(
             num_strata: table.strata().count(),
             caution: table.caution(options.resampling),
         });
+    }
+    let reading = |name: &str| found.iter().find(|row| row.headline.name == name)?.reading;
+    for sentence in disagreements(reading) {
+        let ratio = sentence
+            .split(' ')
+            .next()
+            .map(|direction| format!("{direction}_transfer_ratio"));
+        if let Some(row) = found
+            .iter_mut()
+            .find(|row| Some(&*row.headline.name) == ratio.as_deref())
+        {
+            let caution = row.caution.take().map(|caution| format!("{caution}; "));
+            row.caution = Some(caution.unwrap_or_default() + &sentence);
+        }
     }
     Ok(found)
 }
@@ -106,9 +133,9 @@ pub fn compare_agents(
 /// The headlines of all lifetimes, each once.
 pub(super) fn headlines(lifetimes: &[LifetimeMetrics]) -> Vec<Headline> {
     let mut headlines: Vec<Headline> = Vec::new();
-    for headline in lifetimes.iter().flat_map(|lifetime| &lifetime.headlines) {
+    for headline in lifetimes.iter().flat_map(LifetimeMetrics::shown_headlines) {
         if headlines.iter().all(|known| known.name != headline.name) {
-            headlines.push(headline.clone());
+            headlines.push(headline);
         }
     }
     headlines
@@ -147,21 +174,12 @@ fn higher_is_better(headline: &Headline, value: f64) -> f64 {
 }
 
 fn strata(lifetime: &LifetimeMetrics, name: &str) -> Vec<(String, f64)> {
-    let mut found = Vec::new();
-    for (task, values) in &lifetime.task_metrics {
-        match values.get(name) {
-            Some(Value::Number(number)) => found.push((task.clone(), *number)),
-            Some(Value::Count(count)) => found.push((task.clone(), *count as f64)),
-            Some(Value::Pairs(pairs)) => {
-                let firsts = pairs
-                    .iter()
-                    .filter_map(|(other, values)| Some((other, *values.first()?)));
-                found.extend(firsts.map(|(other, value)| (format!("{task} → {other}"), value)));
-            }
-            _ => {}
-        }
-    }
-    match lifetime.lifetime.number(name) {
+    let named = |part: Part<'_>| match part.other {
+        Some(other) => (format!("{} → {other}", part.task), part.value),
+        None => (part.task.to_owned(), part.value),
+    };
+    let found: Vec<_> = lifetime.parts(name).into_iter().map(named).collect();
+    match lifetime.number(name) {
         Some(value) if found.is_empty() => vec![("lifetime".to_owned(), value)],
         _ => found,
     }

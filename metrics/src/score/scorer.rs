@@ -5,12 +5,12 @@
 use indexmap::{IndexMap, IndexSet};
 
 use super::assessment::aggregate;
-use super::null_bands::null_bands;
+use super::null_bands::{NullBands, null_bands};
 use super::{Assessment, Metric, all_asked, built_in, built_in_headlines};
 use crate::lifetime::{Lifetime, Regime, SteLog};
 use crate::results::{
-    Headline, LEARNED_SHARE, LifetimeMetrics, Reached, RegimeMetrics, Value, Values, as_logged, curves, expert_fits,
-    is_regime_column, reached, unlike_experts,
+    Headline, LEARNED_SHARE, LifetimeMetrics, Reached, Reading, RegimeMetrics, Value, Values, as_logged, curves,
+    disagreements, expert_fits, is_regime_column, parts, reached, unlike_experts,
 };
 use crate::{BlockType, Log, MetricsError, Options};
 
@@ -97,7 +97,8 @@ impl Scorer {
                 headlines.push(headline);
             }
         }
-        let notes = super::transfer::caution(&assessment).into_iter().collect();
+        let notes: Vec<String> = super::transfer::caution(&assessment).into_iter().collect();
+        let contrasts = super::transfer::contrasts_not_asked_for(&assessment);
         let null_bands = null_bands(log, lifetime, options, &assessment.term_perfs())?;
         let (regimes, tasks, found) = assessment.into_values();
         check_names(&found, "the lifetime", |name| TAKEN.contains(&name))?;
@@ -119,6 +120,11 @@ impl Scorer {
         let mut cautions: Vec<String> = never_learned(&reached, &tasks, options).into_iter().collect();
         cautions.extend(unlike_experts(&expert_fits));
         cautions.extend(super::ste_relative_performance::caution(lifetime));
+        let readings = readings(&headlines, &null_bands, !notes.is_empty(), |name| {
+            let parts = parts(&tasks, &contrasts, name);
+            parts.into_iter().map(|part| part.value).collect()
+        });
+        cautions.extend(disagreements(|name| readings.get(name).copied()));
         let info = &log.scenario_info;
         Ok(LifetimeMetrics {
             lifetime: in_order(&found),
@@ -137,6 +143,8 @@ impl Scorer {
             notes,
             null_bands: null_bands.bands,
             null_draws: null_bands.drawn,
+            readings,
+            contrasts,
             curves: curves(lifetime, &reached),
             reached,
             cautions,
@@ -155,6 +163,30 @@ impl Default for Scorer {
     fn default() -> Self {
         Self::new()
     }
+}
+
+/// What may be said of each metric. `is_negative`: whether transfer is made of performances of which some are negative.
+fn readings(
+    headlines: &[Headline],
+    null_bands: &NullBands,
+    is_negative: bool,
+    parts: impl Fn(&str) -> Vec<f64>,
+) -> IndexMap<String, Reading> {
+    let mut all = headlines.to_vec();
+    let is_new = |headline: &Headline| headlines.iter().all(|known| known.name != headline.name);
+    let banded = built_in_headlines().into_iter();
+    all.extend(banded.filter(|headline| is_new(headline) && null_bands.bands.contains_key(&*headline.name)));
+    let reading = |headline: Headline| {
+        let band = null_bands.bands.get(&*headline.name);
+        let found = Reading::of_lifetime(headline.good, band, &parts(&headline.name))?;
+        let found = if is_negative && super::transfer::is_transfer(&headline.name) {
+            Reading::Undefined
+        } else {
+            found
+        };
+        Some((headline.name.into_owned(), found))
+    };
+    all.into_iter().filter_map(reading).collect()
 }
 
 /// What is said of tasks that were never learned: that they are none to keep, and what maintenance is without them.
@@ -187,7 +219,7 @@ fn never_learned(
 }
 
 /// Fields of the results that no headline and no value of a lifetime may have as its name.
-const TAKEN: [&str; 20] = [
+const TAKEN: [&str; 22] = [
     "run_id",
     "complexity",
     "difficulty",
@@ -202,7 +234,9 @@ const TAKEN: [&str; 20] = [
     "normalization_data_range",
     "as_logged",
     "notes",
+    "readings",
     "null",
+    "contrasts",
     "reached",
     "curves",
     "experts",

@@ -11,7 +11,7 @@ use super::assessment::aggregate;
 use super::statistic::Statistic;
 use super::{Assessment, Metric};
 use crate::lifetime::Lifetime;
-use crate::results::{Direction, Headline, PairValues};
+use crate::results::{Direction, Headline, PairValues, Values};
 use crate::{BlockType, Definitions, MetricsError, Options};
 
 /// `forward_transfer_…` and `backward_transfer_…` of every trained task, by ratio and contrast as far as they are asked
@@ -112,6 +112,38 @@ pub(super) fn caution(assessment: &Assessment<'_>) -> Option<String> {
              above 1 may be a loss; normalise performance (-n task) to interpret transfer"
         )
     })
+}
+
+/// Whether a metric is one of transfer.
+pub(super) fn is_transfer(name: &str) -> bool {
+    let measure = name
+        .strip_prefix("forward_transfer_")
+        .or(name.strip_prefix("backward_transfer_"));
+    matches!(measure, Some("contrast" | "ratio"))
+}
+
+/// The contrasts of each task where ratios alone are asked for: they are shown all the same.
+pub(super) fn contrasts_not_asked_for(assessment: &Assessment<'_>) -> IndexMap<String, Values> {
+    if assessment.options().transfer_method.has_contrast() {
+        return IndexMap::new();
+    }
+    let term_perfs = assessment.term_perfs();
+    let (forward, backward) = gaps(assessment.lifetime(), assessment.options());
+    let (forward, backward) = (
+        pairs(&forward, &term_perfs, contrast),
+        pairs(&backward, &term_perfs, contrast),
+    );
+    let of_task = |task: &String| {
+        let mut values = Values::default();
+        for (name, pairs) in [
+            ("forward_transfer_contrast", &forward),
+            ("backward_transfer_contrast", &backward),
+        ] {
+            values.set(name, pairs.get(task.as_str()).cloned().unwrap_or_default());
+        }
+        (task.clone(), values)
+    };
+    assessment.lifetime().tasks().iter().map(of_task).collect()
 }
 
 /// Values from a trained task to another: `[trained][other]`, in order of the later evaluation.

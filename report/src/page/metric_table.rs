@@ -1,15 +1,20 @@
 //! The table of metrics: each value, what it says, whether that is good, and how the tasks differ in it.
 
-use driftworld_metrics::{Lifetime, LifetimeMetrics, NULL_PERMUTATIONS, NullBand, SummaryRow};
+use std::collections::BTreeMap;
+
+use driftworld_metrics::{AGREEING_PART, LARGEST_P, Lifetime, LifetimeMetrics, NULL_PERMUTATIONS, NullBand, ScaledBy};
 use maud::{Markup, html};
 
-use super::{described, number, verdict};
+use super::verdict::{self, Verdict};
+use super::{described, number};
 use crate::ReportError;
 use crate::figure::{strip, thinned_count};
 use crate::words::{note_shown, shown};
 
 pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Markup, ReportError> {
     let scaled = lifetime.normalization_data_range().is_some();
+    let mut reached = metrics.reached.values();
+    let has_anchors = reached.any(|task| task.scaled_by == ScaledBy::Anchors);
     let mut rows = Vec::new();
     let mut absent = Vec::new();
     for row in metrics.summary() {
@@ -19,7 +24,7 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
             continue;
         };
         let marks = per_task(lifetime, metrics, name);
-        let drawing = strip(&marks, Some(value), verdict::neutral(row.good))?;
+        let drawing = strip(&marks, Some(value), row.good.neutral())?;
         rows.push(html! {
             tr {
                 th scope="row" {
@@ -27,9 +32,9 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
                     span.says { (sentence(&row.explanation)) }
                     code { (shown(name)) }
                 }
-                td.number { span.value { (number(value)) } }
+                td.number { span.value { (number(value)) @if let Some(error) = standard_error(row.null_band) { span.from { "±\u{a0}" (error) } } } }
                 td {
-                    (judged(name, value, &marks, &row, scaled))
+                    @if let Some(reading) = row.reading { (verdict::pill(Verdict::of(reading, name))) }
                     span.from { (verdict::good_from(name, row.good)) }
                     span.from { (null_band(row.null_band)) }
                 }
@@ -52,19 +57,21 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
             }
         }
         p.note {
-            strong { "One lifetime cannot distinguish an effect from noise in learning. Several can, by confidence intervals. " }
-            (verdict::rule(scaled))
+            strong { "One lifetime shows what this agent did, not what its like would do. Several can, by confidence intervals. " }
+            (reading_rule())
         }
         @if !metrics.null_bands.is_empty() {
             p.note {
                 "Null band: the central 95 % of values when the evaluation rows of each world are permuted across evaluations "
-                (NULL_PERMUTATIONS) " times, as if the agent never changed. No effect is named inside it. “no null”: decided by learning, too."
+                (NULL_PERMUTATIONS) " times, as if the agent never changed. “no null”: decided by learning, too. ±: the standard error over worlds."
             }
         }
         @for note in metrics.notes.iter().chain(&metrics.cautions) { p.note { strong { "Note: " } (note_shown(note)) "." } }
         @if scaled {
             p.note {
-                "Tasks are scaled to 1…101, by default by this lifetime’s own worst and best. Such values cannot be compared between lifetimes: a random agent may score "
+                @if has_anchors { "Tasks with a floor and a ceiling are scaled from these, to 1…101; others" }
+                @else { "Tasks are scaled to 1…101, by default" }
+                " by this lifetime’s own worst and best. Such values cannot be compared between lifetimes: a random agent may score "
                 "above an expert. Compare the logged means above."
             }
         }
@@ -86,32 +93,35 @@ fn sentence(words: &str) -> String {
 }
 
 /// Where the value would lie if the agent had never changed.
-fn null_band(band: Option<NullBand>) -> Markup {
+pub(super) fn null_band(band: Option<NullBand>) -> Markup {
     html! {
-        @if let Some(band) = band { "null band " (number(band.low)) " to " (number(band.high)) ", p " (number(band.p)) }
+        @if let Some(band) = band {
+            "null band " (number(band.low)) "\u{a0}to\u{a0}" (number(band.high)) ", p\u{a0}" (number(band.p))
+        }
         @else { "no null" }
     }
 }
 
-fn judged(name: &str, value: f64, marks: &[(usize, f64)], row: &SummaryRow, scaled: bool) -> Markup {
-    let tasks: Vec<f64> = marks.iter().map(|mark| mark.1).collect();
-    let found = verdict::of_lifetime(name, value, &tasks, row.good, scaled);
-    html! {
-        @if let Some(found) = found.map(|found| verdict::beside_null(found, row.null_band, row.good)) {
-            span class={ "verdict " (found.class) } { span aria-hidden="true" { (found.sign) " " } (found.word) }
-        }
-    }
+/// The standard error of a value over worlds, where it is known.
+fn standard_error(band: Option<NullBand>) -> Option<String> {
+    Some(number(band?.standard_error?))
+}
+
+/// How words are chosen, for those who read the table.
+fn reading_rule() -> String {
+    format!(
+        "Words like “helps” need a value outside its null band, with p at most {LARGEST_P}, that differs from no effect by two \
+         standard errors. “mixed” means that less than {:.0}\u{a0}% of the effects of tasks, or of pairs of them, point \
+         that way; “not tested”, that there is no null.",
+        100.0 * AGREEING_PART
+    )
 }
 
 /// The values of a metric for each task, by the task's place; of pairs, the first value of each, by the learnt task's place.
 fn per_task(lifetime: &Lifetime, metrics: &LifetimeMetrics, name: &str) -> Vec<(usize, f64)> {
-    let places = lifetime.tasks().iter().enumerate();
-    let of_task = |(place, task): (usize, &String)| -> Vec<(usize, f64)> {
-        let Some(values) = metrics.task_metrics.get(task) else {
-            return Vec::new();
-        };
-        let firsts = (values.pairs(name).into_iter().flatten()).filter_map(|(_, values)| values.first().copied());
-        firsts.chain(values.number(name)).map(|value| (place, value)).collect()
-    };
-    places.flat_map(of_task).collect()
+    let places: BTreeMap<&str, usize> = lifetime.tasks().iter().map(String::as_str).zip(0..).collect();
+    let parts = metrics.parts(name).into_iter();
+    parts
+        .filter_map(|part| Some((*places.get(part.task)?, part.value)))
+        .collect()
 }

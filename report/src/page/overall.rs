@@ -1,11 +1,13 @@
 //! Values over all lifetimes with their intervals, and comparisons of two agents. They are estimated elsewhere, by `driftworld_metrics`.
 
-use driftworld_metrics::{BootstrapOptions, ComparedMetric, Estimate, Improvement, Interval, RepeatedMetric};
+use driftworld_metrics::{
+    BootstrapOptions, ComparedMetric, Estimate, Improvement, Interval, LARGEST_P, RepeatedMetric,
+};
 use indexmap::IndexMap;
 use maud::{Markup, html};
 
-use super::verdict::{self, Verdict};
-use super::{calm, count, number};
+use super::verdict::{self, Verdict, pill};
+use super::{calm, count, metric_table, number};
 use crate::words::shown;
 
 /// How likely one agent is to be better than another.
@@ -61,6 +63,13 @@ fn values(rows: &[RepeatedMetric], percent: &str) -> Markup {
                     "value less often than they claim. Student’s assumes normally distributed lifetimes."
                 }
             }
+            @if rows.iter().any(|row| row.null.is_some()) {
+                p.note {
+                    "Words like “helps” need an interval without the value of no effect and, for maintenance and transfer, a mean \
+                     over lifetimes outside its null band, with p at most " (LARGEST_P) ". Null band: as for one lifetime, \
+                     of all lifetimes together."
+                }
+            }
             @for (caution, names) in cautions(rows) {
                 p.note {
                     @if names.len() < rows.len() { (names.join(", ")) ": " }
@@ -87,17 +96,14 @@ fn cautions(rows: &[RepeatedMetric]) -> Vec<(&str, Vec<String>)> {
 
 fn value_row(row: &RepeatedMetric) -> Markup {
     let name = &row.headline.name;
-    let judged = row
-        .iqm
-        .best_interval()
-        .and_then(|interval| verdict::of_interval(name, interval, row.headline.good));
     html! {
         tr {
             th scope="row" { (verdict::title(name)) }
             td.number data-name="Interquartile mean" { (estimate(row.iqm)) }
             td.number data-name="Mean" { (estimate(row.mean)) }
             td {
-                @if let Some(judged) = judged { (pill(judged)) } @else { (verdict::good_from(name, row.headline.good)) }
+                @if let Some(reading) = row.reading { (pill(Verdict::of(reading, name))) } @else { (verdict::good_from(name, row.headline.good)) }
+                @if row.null.is_some() { span.from { (metric_table::null_band(row.null)) } }
             }
             td.number data-name="Lifetimes" { (count(row.num_runs)) }
         }
@@ -107,8 +113,8 @@ fn value_row(row: &RepeatedMetric) -> Markup {
 fn estimate(found: Estimate) -> Markup {
     html! {
         b { (number(found.value)) }
-        @if let Some(Interval { low, high }) = found.interval { br; " [" (number(low)) ", " (number(high)) "]" }
-        @if let Some(Interval { low, high }) = found.t_interval { br; " t [" (number(low)) ", " (number(high)) "]" }
+        @if let Some(Interval { low, high }) = found.interval { br; " [" (number(low)) ",\u{a0}" (number(high)) "]" }
+        @if let Some(Interval { low, high }) = found.t_interval { br; " t\u{a0}[" (number(low)) ",\u{a0}" (number(high)) "]" }
     }
 }
 
@@ -164,8 +170,4 @@ fn better(improvement: &Improvement, alpha: f64) -> Option<Verdict> {
         _ => ("even", "●", "no clear difference"),
     };
     Some(Verdict { class, sign, word })
-}
-
-fn pill(verdict: Verdict) -> Markup {
-    html! { span class={ "verdict " (verdict.class) } { span aria-hidden="true" { (verdict.sign) " " } (verdict.word) } }
 }

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use driftworld_metrics::{LifetimeMetrics, SummaryRow};
 use maud::{Markup, html};
 
-use super::{number, verdict};
+use super::number;
+use super::verdict::{self, Verdict};
 use crate::words::shown;
 
 /// Tasks beyond these are in the files of metrics only.
@@ -19,16 +20,16 @@ pub(super) fn tables(metrics: &LifetimeMetrics, called: &BTreeMap<String, String
     let names: Vec<&String> = tasks.keys().take(MOST_TASKS).collect();
     let has = |name: &str| {
         tasks
-            .values()
-            .any(|values| values.pairs(name).is_some_and(|pairs| !pairs.is_empty()))
+            .keys()
+            .any(|task| metrics.pairs(task, name).is_some_and(|pairs| !pairs.is_empty()))
     };
     let found: Vec<&SummaryRow> = summary.iter().filter(|row| has(&row.name)).collect();
-    let first = |from: &str, to: &str, name: &str| tasks.get(from)?.pairs(name)?.get(to)?.first().copied();
+    let first = |from: &str, to: &str, name: &str| metrics.pairs(from, name)?.get(to)?.first().copied();
     html! {
         @if !found.is_empty() {
             h3 { "Transfer between tasks" }
             p.note {
-                "Row: the task that was learnt. Column: the task that was evaluated before and after. The first time each pair occurs; ▲ better, ▼ worse after the row's task was learnt, ● no clear difference, or the metric is within its null band."
+                "Row: the task that was learnt. Column: the task that was evaluated before and after. The first time each pair occurs; ▲ better, ▼ worse after the row's task was learnt, ● no clear difference, or the lifetime shows no clear effect."
             }
         }
         @for row in &found {
@@ -62,10 +63,10 @@ fn cell(row: &SummaryRow, value: Option<f64>) -> Markup {
     let Some(value) = value else {
         return html! { td.even { span aria-hidden="true" { "·" } } };
     };
-    let Some(found) = verdict::of(&row.name, value, row.good, true) else {
+    if row.good.neutral().is_none() {
         return html! { td { (number(value)) } };
-    };
-    let found = verdict::beside_null(found, row.null_band, row.good);
+    }
+    let found = Verdict::of(verdict::of_pair(value, row.good, row.reading), &row.name);
     html! {
         td.(found.class) { (number(value)) " " span aria-hidden="true" { (found.sign) } }
     }

@@ -1,6 +1,8 @@
-//! What the value of a metric says, in a word and a sign: the colour only repeats them. Which way is good is the metrics' to say.
+//! How a reading looks, and what metrics are called: the colour and the sign only repeat the word. What the word is, and which
+//! way is good, is the metrics' to say.
 
-use driftworld_metrics::{Direction, Interval, NullBand, Reading};
+use driftworld_metrics::{Direction, Reading};
+use maud::{Markup, html};
 
 /// A judgement of one value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -11,157 +13,47 @@ pub(super) struct Verdict {
     pub(super) word: &'static str,
 }
 
-const fn good(word: &'static str) -> Verdict {
-    Verdict {
-        class: "good",
-        sign: "▲",
-        word,
+impl Verdict {
+    /// A reading of a metric, in the metric's own words.
+    pub(super) fn of(reading: Reading, metric: &str) -> Self {
+        let (class, sign) = match reading {
+            Reading::Good => ("good", "▲"),
+            Reading::Bad => ("bad", "▼"),
+            _ => ("even", "●"),
+        };
+        let word = reading.word(metric);
+        Self { class, sign, word }
     }
 }
 
-const fn bad(word: &'static str) -> Verdict {
-    Verdict {
-        class: "bad",
-        sign: "▼",
-        word,
-    }
+/// A judgement as it stands in a table.
+pub(super) fn pill(verdict: Verdict) -> Markup {
+    html! { span class={ "verdict " (verdict.class) } { span aria-hidden="true" { (verdict.sign) " " } (verdict.word) } }
 }
 
-const fn even(word: &'static str) -> Verdict {
-    Verdict {
-        class: "even",
-        sign: "●",
-        word,
-    }
-}
+/// The least difference from no effect that the table of pairs tints.
+const LEAST_OF_PAIRS: f64 = 0.05;
 
-/// Values of tasks, or of pairs of them, below which one lifetime says nothing.
-const FEWEST: usize = 3;
-/// A metric that a user added has no least effect: what is shown differs or does not.
-const LEAST_OF_RATIOS: f64 = 0.05;
-const LEAST_OF_POINTS: f64 = 1.0;
-const LEAST_OF_EXPERIENCES: f64 = 1.0;
-
-/// The least distance from the neutral value that is called an effect in one lifetime. `scaled`: whether performances are 1 to 101.
-fn least_effect(name: &str, scaled: bool) -> f64 {
-    match name {
-        _ if name.starts_with("perf_recovery") => LEAST_OF_EXPERIENCES,
-        _ if name.starts_with("perf_maintenance") && scaled => LEAST_OF_POINTS,
-        _ if is_of_pairs(name) || is_against_expert(name) => LEAST_OF_RATIOS,
-        _ => 0.0,
-    }
-}
-
-fn is_of_pairs(name: &str) -> bool {
-    name.contains("transfer")
-}
-
-/// Whether the neutral value is the expert's own.
-fn is_against_expert(name: &str) -> bool {
-    name.starts_with("ste_rel_perf") || name.starts_with("sample_efficiency")
-}
-
-/// How words are chosen, for those who read the table.
-pub(super) fn rule(scaled: bool) -> String {
-    let points = if scaled {
-        format!(", {LEAST_OF_POINTS} of 101 points for maintenance")
-    } else {
-        String::new()
+/// The side of no effect on which a pair of tasks is, where the metric of all pairs has an effect at all.
+pub(super) fn of_pair(value: f64, good: Direction, whole: Option<Reading>) -> Reading {
+    let is_named = matches!(whole, Some(Reading::Good | Reading::Bad | Reading::Mixed));
+    let Some(neutral) = good
+        .neutral()
+        .filter(|neutral| is_named && (value - neutral).abs() >= LEAST_OF_PAIRS)
+    else {
+        return Reading::Unclear;
     };
-    format!(
-        "Words like “helps” need at least {FEWEST} tasks, or pairs of tasks, with a value, and a lifetime's value that differs \
-         from no effect by {LEAST_OF_RATIOS} for ratios and contrasts{points}, {LEAST_OF_EXPERIENCES} experience for recovery. \
-         “mixed” means that fewer than three in four tasks or pairs agree."
-    )
-}
-
-/// The value at which a metric says that nothing happened.
-pub(super) fn neutral(direction: Direction) -> Option<f64> {
-    match direction {
-        Direction::HigherThan(neutral) | Direction::LowerThan(neutral) => Some(neutral),
-        Direction::Higher | Direction::Lower => None,
-    }
-}
-
-/// Judges a value; `None` where there is nothing to hold it against.
-pub(super) fn of(name: &str, value: f64, direction: Direction, scaled: bool) -> Option<Verdict> {
-    let neutral = neutral(direction)?;
-    if (value - neutral).abs() < least_effect(name, scaled) {
-        return Some(even(if is_against_expert(name) {
-            "about equal"
-        } else {
-            "no clear effect"
-        }));
-    }
-    side(name, value, direction)
-}
-
-/// On which side of the neutral value a value is, as it is shown.
-fn side(name: &str, value: f64, direction: Direction) -> Option<Verdict> {
-    let neutral = neutral(direction)?;
-    // What looks the same when it is shown is called the same.
-    if super::number(value) == super::number(neutral) {
-        return Some(even(if is_against_expert(name) { "equal" } else { "no effect" }));
-    }
-    let [better, worse] = words(name);
-    let higher_is_better = !matches!(direction, Direction::LowerThan(_));
-    Some(if (value > neutral) == higher_is_better {
-        good(better)
+    let higher_is_better = !matches!(good, Direction::LowerThan(_));
+    if (value > neutral) == higher_is_better {
+        Reading::Good
     } else {
-        bad(worse)
-    })
-}
-
-/// Judges the value of a lifetime beside those of its tasks: of a few of these nothing is said, and unless three in four say the
-/// same, it is mixed.
-pub(super) fn of_lifetime(
-    name: &str,
-    value: f64,
-    tasks: &[f64],
-    direction: Direction,
-    scaled: bool,
-) -> Option<Verdict> {
-    let (found, neutral) = (of(name, value, direction, scaled)?, neutral(direction)?);
-    if found.class == "even" {
-        return Some(found);
+        Reading::Bad
     }
-    if tasks.len() < FEWEST {
-        return Some(even("too few values to tell"));
-    }
-    let agreeing = tasks
-        .iter()
-        .filter(|task| (**task - neutral) * (value - neutral) > 0.0)
-        .count();
-    if agreeing * 4 < tasks.len() * 3 {
-        return Some(even("mixed"));
-    }
-    Some(found)
-}
-
-/// Names no effect that permuted evaluations show as well.
-pub(super) fn beside_null(found: Verdict, band: Option<NullBand>, direction: Direction) -> Verdict {
-    match band.map(|band| band.reading(direction)) {
-        Some(Reading::Unclear) if found.class != "even" => even("within its null band"),
-        _ => found,
-    }
-}
-
-/// Judges an interval: nothing can be told where it holds the value that means no effect.
-pub(super) fn of_interval(name: &str, interval: Interval, direction: Direction) -> Option<Verdict> {
-    let neutral = neutral(direction)?;
-    if interval.contains(neutral) {
-        return Some(even(if is_against_expert(name) {
-            "no clear difference"
-        } else {
-            "no clear effect"
-        }));
-    }
-    side(name, interval.low, direction)
 }
 
 /// Which way is good, in a few words.
 pub(super) fn good_from(name: &str, direction: Direction) -> String {
-    let neutral_is = if is_against_expert(name) {
+    let neutral_is = if name.starts_with("ste_rel_perf") || name.starts_with("sample_efficiency") {
         "equal to the expert"
     } else {
         "no effect"
@@ -171,18 +63,6 @@ pub(super) fn good_from(name: &str, direction: Direction) -> String {
         Direction::Lower => "the lower the better".to_owned(),
         Direction::HigherThan(neutral) => format!("{neutral_is} at {neutral}, good above"),
         Direction::LowerThan(neutral) => format!("{neutral_is} at {neutral}, good below"),
-    }
-}
-
-/// What a value on the good side of the neutral one says, and one on the other.
-fn words(name: &str) -> [&'static str; 2] {
-    match name {
-        _ if name.starts_with("perf_recovery") => ["relearns faster", "relearns slower"],
-        _ if name.starts_with("perf_maintenance") => ["keeps", "forgets"],
-        _ if name.contains("transfer") => ["helps", "interferes"],
-        _ if name.starts_with("ste_rel_perf") => ["beats the expert", "below the expert"],
-        _ if name.starts_with("sample_efficiency") => ["beats the expert", "below the expert"],
-        _ => ["good", "bad"],
     }
 }
 
@@ -213,39 +93,37 @@ pub(super) fn title(name: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use driftworld_metrics::Exchanged;
-
     use super::*;
 
     #[test]
-    fn a_value_is_judged_where_it_is_clearly_away_from_the_neutral_one() {
-        let check = |name: &str, value: f64, expected: &str| {
-            let found = of(name, value, Direction::HigherThan(1.0), true).expect("there is a neutral value");
+    fn a_reading_has_its_word_and_its_sign() {
+        let check = |reading: Reading, metric: &str, expected: &str| {
+            let found = Verdict::of(reading, metric);
             assert_eq!(format!("{} {}", found.sign, found.word), expected);
         };
-        check("forward_transfer_ratio", 1.2, "▲ helps");
-        check("forward_transfer_ratio", 0.8, "▼ interferes");
-        check("forward_transfer_ratio", 1.04, "● no clear effect");
-        check("ste_rel_perf", 1.000_4, "● about equal");
-        check("of_my_own", 3.0, "▲ good");
-        check("of_my_own", 1.000_4, "● no effect");
-        assert_eq!(of("avg_eval_perf", 3.0, Direction::Higher, true), None);
-        let lower = of("of_my_own", 3.0, Direction::LowerThan(1.0), true).expect("there is a neutral value");
-        assert_eq!(lower.word, "bad");
+        check(Reading::Good, "forward_transfer_ratio", "▲ helps");
+        check(Reading::Bad, "perf_maintenance_mrtlp", "▼ forgets");
+        check(Reading::Mixed, "forward_transfer_ratio", "● mixed");
+        check(Reading::Unclear, "ste_rel_perf", "● no clear difference");
+        check(Reading::Untested, "perf_recovery", "● not tested");
+        check(Reading::Bad, "of_my_own", "▼ bad");
     }
 
     #[test]
-    fn points_are_of_a_scale_and_experiences_are_whole() {
-        let check = |name: &str, value: f64, scaled: bool, expected: &str| {
-            let found = of(name, value, Direction::HigherThan(0.0), scaled).expect("there is a neutral value");
-            assert_eq!(found.word, expected, "{name} {value}");
+    fn a_pair_is_tinted_where_all_pairs_show_an_effect_and_it_is_clearly_on_a_side() {
+        let check = |value: f64, whole: Option<Reading>, expected: Reading| {
+            assert_eq!(of_pair(value, Direction::HigherThan(1.0), whole), expected, "{value}");
         };
-        check("perf_maintenance_mrlep", 0.041, true, "no clear effect");
-        check("perf_maintenance_mrlep", 0.041, false, "keeps");
-        check("perf_maintenance_mrlep", -1.2, true, "forgets");
-        check("perf_recovery", 0.9, true, "no clear effect");
-        check("perf_recovery", -1.5, false, "relearns slower");
-        check("forward_transfer_contrast", 0.03, true, "no clear effect");
+        check(1.2, Some(Reading::Good), Reading::Good);
+        check(0.8, Some(Reading::Good), Reading::Bad);
+        check(0.8, Some(Reading::Mixed), Reading::Bad);
+        check(1.04, Some(Reading::Good), Reading::Unclear);
+        check(1.2, Some(Reading::Unclear), Reading::Unclear);
+        check(1.2, None, Reading::Unclear);
+        assert_eq!(
+            of_pair(0.8, Direction::LowerThan(1.0), Some(Reading::Good)),
+            Reading::Good
+        );
     }
 
     #[test]
@@ -256,52 +134,6 @@ mod tests {
             "equal to the expert at 1, good above"
         );
         assert_eq!(good_from("forward_transfer_ratio", above), "no effect at 1, good above");
-    }
-
-    #[test]
-    fn a_value_is_mixed_unless_three_in_four_tasks_agree() {
-        let check = |tasks: &[f64], expected: &str| {
-            let found = of_lifetime("ste_rel_perf", 1.2, tasks, Direction::HigherThan(1.0), true);
-            assert_eq!(found.expect("there is a neutral value").word, expected, "{tasks:?}");
-        };
-        check(&[], "too few values to tell");
-        check(&[1.9, 1.3], "too few values to tell");
-        check(&[1.9, 1.3, 1.1], "beats the expert");
-        check(&[1.9, 1.3, 1.1, 0.6], "beats the expert");
-        check(&[2.5, 1.3, 1.0, 0.6], "mixed");
-        check(&[2.5, 0.9, 0.8], "mixed");
-    }
-
-    #[test]
-    fn inside_its_null_band_a_value_is_even() {
-        let check = |low: f64, expected: &str| {
-            let band = NullBand {
-                value: 1.2,
-                low,
-                high: low + 0.3,
-                p: 0.5,
-                exchanged: Exchanged::Worlds,
-                standard_error: None,
-            };
-            let above = Direction::HigherThan(1.0);
-            let found = of("forward_transfer_ratio", band.value, above, true).expect("there is a neutral value");
-            assert_eq!(beside_null(found, Some(band), above).word, expected);
-            assert_eq!(beside_null(found, None, above), found);
-        };
-        check(0.95, "within its null band");
-        check(0.8, "helps");
-    }
-
-    #[test]
-    fn an_interval_around_no_effect_tells_nothing() {
-        let check = |low: f64, high: f64, expected: &str| {
-            let found = of_interval("ste_rel_perf", Interval { low, high }, Direction::HigherThan(1.0));
-            assert_eq!(found.expect("there is a neutral value").word, expected);
-        };
-        check(0.9, 1.3, "no clear difference");
-        check(1.01, 1.02, "beats the expert");
-        check(1.1, 1.3, "beats the expert");
-        check(0.7, 0.9, "below the expert");
     }
 
     #[test]

@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::metrics::{EvaluationCell, LEARNED_SHARE, LifetimeMetrics, Reached, Unlabelled};
 
-use super::tables::number;
-use crate::table::wide_table;
+use super::tables::{number, with_error};
+use crate::table::{whole, without_empty};
 use crate::variant_names::VariantNames;
 
 /// Tasks beyond these are in the JSON only.
@@ -21,6 +21,7 @@ pub(super) fn reached(scores: &LifetimeMetrics, names: &VariantNames) -> Option<
     let evaluated = || scores.reached.iter().filter(|(_, task)| !task.evaluations.is_empty());
     let has_expert = evaluated().any(|(_, task)| task.expert.is_some());
     let is_scaled = evaluated().any(|(_, task)| task.is_scaled());
+    let has_own = evaluated().any(|(_, task)| has_own_expert(task));
     let relearns = evaluated().any(|(_, task)| task.plasticity_loss().is_some());
     let rows = evaluated().take(MOST_ROWS).map(|(name, task)| {
         let of = |evaluation: Option<&EvaluationCell>| evaluation.map_or_else(String::new, |found| cell(task, found));
@@ -34,8 +35,10 @@ pub(super) fn reached(scores: &LifetimeMetrics, names: &VariantNames) -> Option<
             cells.push(scale(task));
         }
         if has_expert {
-            cells.push(task.expert.map_or_else(String::new, |level| in_units_of(task, level)));
-            cells.push(task.share.map_or_else(String::new, percent));
+            if has_own {
+                cells.push(task.expert.map_or_else(String::new, |level| in_units_of(task, level)));
+                cells.push(task.share.map_or_else(String::new, percent));
+            }
             if relearns {
                 cells.push(task.shares.iter().copied().map(percent).collect::<Vec<_>>().join(", "));
             }
@@ -60,13 +63,16 @@ pub(super) fn reached(scores: &LifetimeMetrics, names: &VariantNames) -> Option<
     }
     if has_expert {
         let first = headings.len();
-        headings.extend(["expert", "best / expert"]);
+        if has_own {
+            headings.extend(["expert", "best / expert"]);
+            numbers.extend([first, first + 1]);
+        }
         headings.extend(relearns.then_some("after each learning"));
         headings.push("");
-        numbers.extend([first, first + 1]);
         notes.push(format!(
-            "Below {:.0}% of the expert a task was never learned, and its maintenance and transfer say nothing.",
-            100.0 * LEARNED_SHARE
+            "Below {:.0}% of the {} a task was never learned, and its maintenance and transfer say nothing.",
+            100.0 * LEARNED_SHARE,
+            if has_own { "expert" } else { "ceiling" }
         ));
     }
     if evaluated().count() > MOST_ROWS {
@@ -76,7 +82,7 @@ pub(super) fn reached(scores: &LifetimeMetrics, names: &VariantNames) -> Option<
         ));
     }
     let headings = headings.into_iter().map(str::to_owned).collect();
-    let mut lines = vec![wide_table(headings, rows, &numbers), notes.join(" ")];
+    let mut lines = vec![without_empty(headings, rows, &numbers), notes.join(" ")];
     lines.extend(unlabelled(scores, names));
     Some(lines.join("\n"))
 }
@@ -125,6 +131,7 @@ pub(super) fn reached_by_several(agent: &str, lifetimes: &[LifetimeMetrics], nam
             tasks.entry(name).or_default().push(task);
         }
     }
+    let has_own = tasks.values().flatten().any(|task| has_own_expert(task));
     let rows = tasks.iter().take(MOST_ROWS).map(|(name, found)| {
         let mean = |of: &dyn Fn(&Reached) -> Option<f64>, show: fn(f64) -> String| {
             let values: Vec<f64> = found.iter().filter_map(|task| of(task)).collect();
@@ -145,12 +152,16 @@ pub(super) fn reached_by_several(agent: &str, lifetimes: &[LifetimeMetrics], nam
             names.shown(name).to_owned(),
             level(Reached::best),
             level(Reached::last),
-            if is_scaled {
-                mean(&|task| task.score(task.expert?), percent)
-            } else {
-                mean(&|task| task.expert, number)
+            match (has_own, is_scaled) {
+                (false, _) => String::new(),
+                (true, true) => mean(&|task| task.score(task.expert?), percent),
+                (true, false) => mean(&|task| task.expert, number),
             },
-            mean(&|task| task.share, percent),
+            if has_own {
+                mean(&|task| task.share, percent)
+            } else {
+                String::new()
+            },
             if not == 0 {
                 String::new()
             } else {
@@ -171,7 +182,7 @@ pub(super) fn reached_by_several(agent: &str, lifetimes: &[LifetimeMetrics], nam
     let is_scaled = tasks.values().flatten().any(|task| task.is_scaled());
     let unit = if is_scaled { UNITS } else { "" };
     let alike: BTreeSet<String> = lifetimes.iter().flat_map(|scores| unlabelled(scores, names)).collect();
-    let table = |rows: Vec<Vec<String>>| wide_table(headings, rows, &[1, 2, 3, 4]) + unit;
+    let table = |rows: Vec<Vec<String>>| without_empty(headings, rows, &[1, 2, 3, 4]) + unit;
     (!rows.is_empty()).then(|| std::iter::once(table(rows)).chain(alike).collect::<Vec<_>>().join("\n"))
 }
 
@@ -184,9 +195,6 @@ pub(super) fn curves(scores: &LifetimeMetrics, names: &VariantNames) -> Option<S
     let level = |value: f64, is_scaled: bool| if is_scaled { percent(value) } else { number(value) };
     let rows = shown().take(MOST_ROWS).map(|(name, curve)| {
         let level = |value: f64| level(value, curve.is_scaled);
-        let error = curve
-            .forgetting_error
-            .map_or_else(String::new, |error| format!(" ± {}", level(error)));
         let is_noise = curve.forgetting > 0.0
             && curve
                 .forgetting_error
@@ -194,7 +202,7 @@ pub(super) fn curves(scores: &LifetimeMetrics, names: &VariantNames) -> Option<S
         vec![
             names.shown(name).to_owned(),
             level(curve.area),
-            level(curve.forgetting) + &error,
+            with_error(level(curve.forgetting), curve.forgetting_error.map(level)),
             curve.lag.map_or_else(String::new, |lag| format!("{lag:.0}")),
             curve.regret.map_or_else(String::new, level),
             if is_noise {
@@ -211,11 +219,25 @@ pub(super) fn curves(scores: &LifetimeMetrics, names: &VariantNames) -> Option<S
     }
     let headings = ["curve", "area", "forgetting", "lag", "regret", ""];
     let headings = headings.into_iter().map(str::to_owned).collect();
+    let told = |is_there: bool, text: &'static str| if is_there { text } else { "" };
+    let lag = told(
+        shown().any(|(_, curve)| curve.lag.is_some()),
+        " lag: learning experiences of any task, from where the task was first learned (if never, from its first \
+         evaluation) until half of the later gain.",
+    );
+    let regret = told(
+        shown().any(|(_, curve)| curve.regret.is_some()),
+        " regret: expert, or else ceiling, less curve while the task was present.",
+    );
     Some(format!(
-        "{}\nOf evaluation curves alone. area: mean height. forgetting: highest less last. lag: learning experiences to half \
-         of the gain. regret: expert less curve while the task was present.",
-        wide_table(headings, rows, &[1, 2, 3, 4])
+        "{}\nOf evaluation curves alone. area: mean height. forgetting: highest less last.{lag}{regret}",
+        without_empty(headings, rows, &[1, 2, 3, 4])
     ))
+}
+
+/// Whether a task has an expert of its own: a ceiling that stands in for one is 100 %, and the best over it is the best.
+fn has_own_expert(task: &Reached) -> bool {
+    task.expert.is_some() && task.expert != task.ceiling
 }
 
 /// In whole percent; what rounds to nothing has no sign.
@@ -233,10 +255,7 @@ fn cell(task: &Reached, found: &EvaluationCell) -> String {
         }
         _ => (number(found.mean), found.standard_error.map(number)),
     };
-    match error {
-        Some(error) => format!("{mean} ± {error}"),
-        None => mean,
-    }
+    with_error(mean, error)
 }
 
 /// A level in the unit that the evaluations of its task are shown in.
@@ -247,7 +266,7 @@ fn in_units_of(task: &Reached, level: f64) -> String {
 /// What 0 % and 100 % are.
 fn scale(task: &Reached) -> String {
     match task.floor.zip(task.ceiling) {
-        Some((floor, ceiling)) => format!("{floor:.1} to {ceiling:.1}"),
+        Some((floor, ceiling)) => whole(&format!("{floor:.1} to {ceiling:.1}")),
         None => "as logged".to_owned(),
     }
 }

@@ -3,15 +3,15 @@
 use std::collections::BTreeSet;
 
 use crate::metrics::{
-    AsLogged, Direction, Exchanged, Improvement, Interval, LifetimeMetrics, NULL_PERMUTATIONS, NullBand, Reading,
-    RepeatedMetric, ScaledBy,
+    AGREEING_PART, AsLogged, Direction, Exchanged, Improvement, Interval, LARGEST_P, LifetimeMetrics,
+    NULL_PERMUTATIONS, NullBand, RepeatedMetric, ScaledBy,
 };
 
 use driftworld_text::{one_line, printable};
 
 use super::reached_table::{curves, reached, reached_by_several};
 use crate::scoring::{Comparison, Scores, Varied, own_scale};
-use crate::table::{table, wide_table};
+use crate::table::{table, whole, without_empty};
 use crate::variant_names::VariantNames;
 
 /// The scores of one lifetime, or of several with what they say together.
@@ -31,9 +31,10 @@ pub(super) fn scores(scores: &Scores, names: &VariantNames) -> String {
 pub(crate) fn summary(scores: &LifetimeMetrics, names: &VariantNames) -> String {
     let rows = scores.summary().into_iter().filter_map(|row| {
         let error = row.null_band.and_then(|band| band.standard_error);
-        let error = error.map_or_else(String::new, |error| format!(" ± {}", number(error)));
-        let value = number(row.value?) + &error;
-        let [band, p, reading] = beside_null(row.null_band, row.good);
+        let value = row.value?;
+        let value = with_error(short(value), error.map(|error| rounded(error, decimals(value))));
+        let [band, p] = beside_null(row.null_band);
+        let reading = row.word.unwrap_or_default().to_owned();
         Some([
             row.name.into_owned(),
             value,
@@ -58,7 +59,8 @@ pub(crate) fn summary(scores: &LifetimeMetrics, names: &VariantNames) -> String 
     parts.extend(curves(scores, names));
     parts.extend(scaled(scores, names));
     let headings = ["metric", "value", "null band", "p", "reading", "what it says"];
-    let mut metrics = table(headings, rows, &[1, 3]);
+    let headings = headings.map(str::to_owned).to_vec();
+    let mut metrics = without_empty(headings, rows.into_iter().map(Vec::from).collect(), &[1, 3]);
     if has_bands {
         metrics.push('\n');
         metrics.push_str(&what_bands_are(scores));
@@ -71,21 +73,12 @@ pub(crate) fn summary(scores: &LifetimeMetrics, names: &VariantNames) -> String 
     parts.join("\n\n")
 }
 
-/// The band of a value, its p, and whether the value is good, which is said outside the band only.
-fn beside_null(band: Option<NullBand>, direction: Direction) -> [String; 3] {
+/// The band of a value, and its p. What may be said of the value is the library's to say.
+fn beside_null(band: Option<NullBand>) -> [String; 2] {
     let Some(band) = band else {
-        return ["no null".to_owned(), String::new(), String::new()];
+        return [whole("no null"), String::new()];
     };
-    let mut reading = match band.reading(direction) {
-        Reading::Good => format!("good: {}", good(direction)),
-        Reading::Bad => "bad".to_owned(),
-        Reading::Unclear => "no clear effect".to_owned(),
-    };
-    if band.is_within_two_errors(direction) == Some(true) {
-        reading.push_str(", within 2 s.e.");
-    }
-    let ends = format!("{} to {}", number(band.low), number(band.high));
-    [ends, number(band.p), reading]
+    [from_to(band.low, band.high), number(band.p)]
 }
 
 /// What null bands are, and how these were made.
@@ -97,7 +90,10 @@ fn what_bands_are(scores: &LifetimeMetrics) -> String {
     };
     format!(
         "Null band: the central 95% of values when {rows} are permuted across evaluations {NULL_PERMUTATIONS} times, as if the \
-         agent never changed. no null: decided by learning, too. ±: standard error over worlds; within 2 s.e.: of no effect."
+         agent never changed. An effect is named outside the band, with p at most {LARGEST_P}, and two standard errors over \
+         worlds (±) from no effect. mixed: less than {:.0}% of the effects of tasks or pairs point that way. no null: decided \
+         by learning, too, and not tested.",
+        100.0 * AGREEING_PART
     )
 }
 
@@ -259,19 +255,20 @@ fn repeats(metrics: &[RepeatedMetric], share: &str) -> String {
     let rows = metrics.iter().map(|row| {
         let mut cells = vec![
             row.headline.name.to_string(),
-            number(row.iqm.value),
+            short(row.iqm.value),
             interval(row.iqm.interval),
         ];
         if few {
             cells.push(interval(row.iqm.t_interval));
         }
-        cells.push(number(row.mean.value));
+        cells.push(short(row.mean.value));
         if few {
             cells.push(interval(row.mean.t_interval));
         }
-        cells.extend(beside_null(row.null, row.headline.good));
-        cells.push(format!("{} x {}", row.num_runs, row.num_strata));
-        cells.push(good(row.headline.good));
+        cells.extend(beside_null(row.null));
+        cells.push(row.word.unwrap_or_default().to_owned());
+        cells.push(whole(&format!("{} x {}", row.num_runs, row.num_strata)));
+        cells.push(whole(&good(row.headline.good)));
         cells
     });
     let t = format!("{share} (t)");
@@ -283,12 +280,14 @@ fn repeats(metrics: &[RepeatedMetric], share: &str) -> String {
     let numbers = if few { [1, 4, 7] } else { [1, 3, 5] };
     let headings = headings.into_iter().map(str::to_owned).collect();
     let cautions: BTreeSet<&str> = metrics.iter().filter_map(|row| row.caution.as_deref()).collect();
-    let mut lines = vec![wide_table(headings, rows.collect(), &numbers)];
+    let mut lines = vec![without_empty(headings, rows.collect(), &numbers)];
     if metrics.iter().any(|row| row.null.is_some()) {
         lines.push(format!(
             "Null band: the central 95% of means over lifetimes when the rows of each world are permuted across evaluations \
-             {NULL_PERMUTATIONS} times, in all lifetimes alike, as if the agent never changed. Good or bad is said of the \
-             mean, outside the band only. no null: decided by learning, too."
+             {NULL_PERMUTATIONS} times, in all lifetimes alike, as if the agent never changed. An effect is named where the {} \
+             of the IQM is beside no effect and, if there is a null, the mean over lifetimes is outside its band, with p at \
+             most {LARGEST_P}. no null: decided by learning, too.",
+            if few { &t } else { share }
         ));
     }
     lines.extend(cautions.into_iter().map(|caution| format!("note: {caution}")));
@@ -312,15 +311,50 @@ fn counted(number: usize, what: &str) -> String {
 }
 
 fn interval(found: Option<Interval>) -> String {
-    found.map_or_else(String::new, |found| {
-        format!("{} to {}", number(found.low), number(found.high))
-    })
+    found.map_or_else(String::new, |found| from_to(found.low, found.high))
+}
+
+/// A range that is not broken.
+fn from_to(low: f64, high: f64) -> String {
+    whole(&format!("{} to {}", short(low), short(high)))
+}
+
+/// A value with its standard error, where that is known, that is not broken.
+pub(super) fn with_error(value: String, error: Option<String>) -> String {
+    match error {
+        Some(error) => whole(&format!("{value} ± {error}")),
+        None => value,
+    }
 }
 
 /// With three decimals; what rounds to nothing has no sign.
 pub(super) fn number(value: f64) -> String {
-    let shown = format!("{value:.3}");
-    if shown == "-0.000" { "0.000".to_owned() } else { shown }
+    rounded(value, 3)
+}
+
+/// With about four digits, so that a table has room at 80 columns.
+fn short(value: f64) -> String {
+    rounded(value, decimals(value))
+}
+
+/// How many decimals a value of this size has.
+fn decimals(value: f64) -> usize {
+    match value.abs() {
+        size if size >= 100.0 => 1,
+        size if size >= 10.0 => 2,
+        _ => 3,
+    }
+}
+
+/// With so many decimals; what rounds to nothing has no sign.
+fn rounded(value: f64, decimals: usize) -> String {
+    let shown = format!("{value:.decimals$}");
+    let is_nothing = shown.chars().all(|letter| matches!(letter, '-' | '0' | '.'));
+    if is_nothing {
+        shown.trim_start_matches('-').to_owned()
+    } else {
+        shown
+    }
 }
 
 fn good(good: Direction) -> String {
@@ -344,5 +378,14 @@ mod tests {
         check(-0.000_6, "-0.001");
         check(-12.5, "-12.500");
         check(0.0, "0.000");
+    }
+
+    #[test]
+    fn a_short_number_has_about_four_digits() {
+        let check = |value: f64, expected: &str| assert_eq!(short(value), expected);
+        check(-57.616, "-57.62");
+        check(1.55, "1.550");
+        check(-0.000_4, "0.000");
+        check(101.0, "101.0");
     }
 }

@@ -1,0 +1,226 @@
+//! What may be said of a value, in a word: the one judgement that tables, pages, JSON and Python repeat.
+//!
+//! Not here: null bands, see `null_band`; what words look like, which is the command's and the report's.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Direction, NullBand};
+use crate::repeats::Interval;
+
+/// The largest `p` at which an effect is named.
+pub const LARGEST_P: f64 = 0.05;
+
+/// The part of all effects of tasks, or of pairs of them, that must point the way of the lifetime's value; below it, the
+/// effect is mixed.
+pub const AGREEING_PART: f64 = 0.75;
+
+/// What may be said of the value of a metric.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Reading {
+    /// More than noise, and better than no effect.
+    Good,
+    /// More than noise, and worse than no effect.
+    Bad,
+    /// More than noise, but tasks or pairs of them disagree.
+    Mixed,
+    /// No more than noise, or nothing at all.
+    Unclear,
+    /// Learning decides it, so that one lifetime has nothing to hold it against.
+    Untested,
+    /// There are too few lifetimes for an interval.
+    TooFew,
+    /// Made of negative performances, where neither ratio nor contrast has a meaning.
+    Undefined,
+}
+
+impl Reading {
+    /// Of one lifetime's value, beside its null band and the values of tasks, or pairs of them, that it was made of.
+    /// `None` of a metric without a value that means no effect, such as a mean performance.
+    ///
+    /// Good and bad are said where [`NullBand::reading`] says so; mixed, where less than [`AGREEING_PART`] of what
+    /// `parts` differ from no effect is on the value's side.
+    ///
+    /// ```
+    /// use driftworld_metrics::{Direction, Reading};
+    ///
+    /// let good = Direction::HigherThan(1.0);
+    /// assert_eq!(Reading::of_lifetime(good, None, &[1.2, 1.4]), Some(Reading::Untested));
+    /// assert_eq!(Reading::of_lifetime(Direction::Higher, None, &[50.0]), None);
+    /// ```
+    pub fn of_lifetime(good: Direction, band: Option<&NullBand>, parts: &[f64]) -> Option<Self> {
+        let Some(band) = band else {
+            return good.neutral().map(|_| Self::Untested);
+        };
+        let found = band.reading(good);
+        let (Self::Good | Self::Bad, Some(neutral)) = (found, good.neutral()) else {
+            return Some(found);
+        };
+        let effects = || parts.iter().map(|part| part - neutral);
+        let agreeing: f64 = effects()
+            .filter(|effect| effect * (band.value - neutral) > 0.0)
+            .map(f64::abs)
+            .sum();
+        let all: f64 = effects().map(f64::abs).sum();
+        Some(if agreeing < AGREEING_PART * all {
+            Self::Mixed
+        } else {
+            found
+        })
+    }
+
+    /// Of several lifetimes' values: good or bad where the interval over lifetimes lies on that side of no effect and,
+    /// for a metric that has one, the null band of their mean says the same. `None` as of one lifetime.
+    pub fn of_lifetimes(good: Direction, band: Option<&NullBand>, interval: Option<Interval>) -> Option<Self> {
+        let neutral = good.neutral()?;
+        let Some(interval) = interval else {
+            return Some(Self::TooFew);
+        };
+        if interval.contains(neutral) {
+            return Some(Self::Unclear);
+        }
+        let found = good.side(interval.low);
+        let is_denied = band.is_some_and(|band| band.reading(good) != found);
+        Some(if is_denied { Self::Unclear } else { found })
+    }
+
+    /// The word for it, in the words of the metric: `helps`, `forgets`, `mixed`, `no clear effect`.
+    ///
+    /// ```
+    /// use driftworld_metrics::Reading;
+    ///
+    /// assert_eq!(Reading::Bad.word("perf_maintenance_mrlep"), "forgets");
+    /// assert_eq!(Reading::Bad.word("of_my_own"), "bad");
+    /// ```
+    pub fn word(self, metric: &str) -> &'static str {
+        let is = |name: &str| metric.starts_with(name);
+        let is_against_expert = is("ste_rel_perf") || is("sample_efficiency");
+        let [better, worse] = match () {
+            () if is("perf_recovery") => ["relearns faster", "relearns slower"],
+            () if is("perf_maintenance") => ["keeps", "forgets"],
+            () if is("forward_transfer") || is("backward_transfer") => ["helps", "interferes"],
+            () if is_against_expert => ["beats the expert", "below the expert"],
+            () => ["good", "bad"],
+        };
+        match self {
+            Self::Good => better,
+            Self::Bad => worse,
+            Self::Mixed => "mixed",
+            Self::Unclear if is_against_expert => "no clear difference",
+            Self::Unclear => "no clear effect",
+            Self::Untested => "not tested",
+            Self::TooFew => "too few lifetimes",
+            Self::Undefined => "not defined",
+        }
+    }
+}
+
+/// What a reader must be told where contrast and ratio of the same transfer read differently, given the reading of each
+/// metric: a sentence for forward transfer, one for backward transfer.
+pub(crate) fn disagreements(reading: impl Fn(&str) -> Option<Reading>) -> Vec<String> {
+    let of = |direction: &str| {
+        let names = ["contrast", "ratio"].map(|measure| format!("{direction}_transfer_{measure}"));
+        let [contrast, ratio] = [reading(&names[0])?, reading(&names[1])?];
+        (contrast != ratio).then(|| {
+            format!(
+                "{direction} transfer: the contrast says {:?}, the ratio {:?}; prefer the contrast, as a mean of \
+                 ratios is above 1 even if nothing is transferred, and one pair of tasks that began near its minimum \
+                 may decide it",
+                contrast.word(&names[0]),
+                ratio.word(&names[1])
+            )
+        })
+    };
+    ["forward", "backward"].into_iter().filter_map(of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::super::Exchanged;
+    use super::*;
+
+    fn band(value: f64, p: f64, standard_error: Option<f64>) -> NullBand {
+        NullBand {
+            value,
+            low: -0.1,
+            high: 0.1,
+            p,
+            exchanged: Exchanged::Worlds,
+            standard_error,
+        }
+    }
+
+    const GOOD: Direction = Direction::HigherThan(0.0);
+
+    fn any_band() -> impl Strategy<Value = NullBand> {
+        let errors = proptest::option::of(0.0..0.5);
+        (-0.5..0.5, 0.0..0.2, errors).prop_map(|(value, p, error)| band(value, p, error))
+    }
+
+    proptest! {
+        #[test]
+        fn an_effect_is_named_where_it_is_more_than_noise_alone(band in any_band(), parts in proptest::collection::vec(-1.0..1.0, 0..6)) {
+            let found = Reading::of_lifetime(GOOD, Some(&band), &parts).expect("there is a value of no effect");
+            if matches!(found, Reading::Good | Reading::Bad | Reading::Mixed) {
+                prop_assert!(band.is_outside() && band.p <= LARGEST_P);
+                prop_assert!(band.standard_error.is_none_or(|error| band.value.abs() >= 2.0 * error));
+                prop_assert_eq!(found == Reading::Good && band.value <= 0.0, false);
+                prop_assert_eq!(found == Reading::Bad && band.value >= 0.0, false);
+            }
+        }
+
+        #[test]
+        fn what_is_good_one_way_is_bad_the_other(band in any_band(), parts in proptest::collection::vec(-1.0..1.0, 0..6)) {
+            let turned = match Reading::of_lifetime(GOOD, Some(&band), &parts) {
+                Some(Reading::Good) => Some(Reading::Bad),
+                Some(Reading::Bad) => Some(Reading::Good),
+                other => other,
+            };
+            prop_assert_eq!(Reading::of_lifetime(Direction::LowerThan(0.0), Some(&band), &parts), turned);
+        }
+
+        #[test]
+        fn several_lifetimes_say_what_interval_and_band_both_say(band in any_band(), ends in [-1.0..1.0, -1.0..1.0_f64]) {
+            let interval = Interval { low: ends[0].min(ends[1]), high: ends[0].max(ends[1]) };
+            let alone = Reading::of_lifetimes(GOOD, None, Some(interval)).expect("there is a value of no effect");
+            let found = Reading::of_lifetimes(GOOD, Some(&band), Some(interval)).expect("there is a value of no effect");
+            prop_assert!(found == Reading::Unclear || found == alone && found == band.reading(GOOD));
+            prop_assert_eq!(alone == Reading::Unclear, interval.contains(0.0));
+        }
+    }
+
+    #[test]
+    fn an_effect_is_mixed_unless_three_quarters_of_the_effects_agree() {
+        let check = |parts: &[f64], expected: Reading| {
+            let found = Reading::of_lifetime(GOOD, Some(&band(-0.4, 0.002, Some(0.02))), parts);
+            assert_eq!(found, Some(expected), "{parts:?}");
+        };
+        check(&[], Reading::Bad);
+        check(&[-0.4], Reading::Bad);
+        // A task that hardly changed takes nothing away.
+        check(&[-0.743, -0.688, 0.016], Reading::Bad);
+        check(&[-0.9, 0.29], Reading::Bad);
+        check(&[-0.9, 0.31], Reading::Mixed);
+    }
+
+    #[test]
+    fn one_sentence_tells_of_contrast_and_ratio_that_disagree() {
+        let found = disagreements(|name| match name {
+            "forward_transfer_contrast" => Some(Reading::Unclear),
+            "forward_transfer_ratio" | "backward_transfer_ratio" => Some(Reading::Good),
+            _ => None,
+        });
+        let [sentence] = found.as_slice() else {
+            panic!("{found:?}")
+        };
+        assert!(
+            sentence.starts_with(
+                "forward transfer: the contrast says \"no clear effect\", the ratio \"helps\"; prefer the contrast"
+            ),
+            "{sentence}"
+        );
+        assert!(disagreements(|_| Some(Reading::Bad)).is_empty());
+    }
+}
