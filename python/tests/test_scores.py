@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import copy
+import html
 import json
+import os
 import pickle
 import subprocess
 import sys
@@ -62,6 +64,30 @@ def test_one_lifetime_has_the_commands_scores(logs: list[Path]) -> None:
     assert set(found.reached) == set(TASKS)
     assert found.curves == expected["curves"]
     assert all(curve["forgetting"] >= 0 and not curve["is_scaled"] for curve in found.curves.values())
+
+
+def test_a_notebook_shows_the_rows_of_the_commands_table(logs: list[Path]) -> None:
+    found = metrics(logs[0])
+    assert found.readings == commanded("metrics", logs[0])["readings"]
+    command = [sys.executable, "-m", "driftworld", "metrics", str(logs[0])]
+    wide = {**os.environ, "COLUMNS": "400"}
+    text = subprocess.run(command, check=True, capture_output=True, text=True, env=wide).stdout
+    told = found._repr_html_()
+    assert "forward_transfer_contrast" in found.readings and "forward_transfer_contrast" not in found.lifetime
+    for name, row in found.readings.items():
+        [line] = [line for line in text.splitlines() if line.startswith(f"{name} ")]
+        [cells] = [part for part in told.split("<tr>") if f">{name}<" in part]
+        assert row["explanation"] in line and row["explanation"] in cells
+        if row["word"] is not None:
+            assert f"  {row['word']}  " in line and f">{row['word']}<" in cells
+        if row["null_band"] is not None:
+            assert "\N{PLUS-MINUS SIGN}" in cells and f">{row['null_band']['p']:.3f}<" in cells
+    for text in found.lifetimes[0].get("cautions", []):
+        assert html.escape(text) in told
+    several = metrics(logs)
+    told = several._repr_html_()
+    assert all(f">{row['name']}<" in told and (row["word"] or "") in told for row in several.repeats)
+    assert {row["name"] for row in several.repeats} >= {"backward_transfer_contrast"}
 
 
 def test_floor_and_ceiling_are_a_file_or_a_dictionary(logs: list[Path], tmp_path: Path) -> None:

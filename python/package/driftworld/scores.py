@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from driftworld import _native
-from driftworld._html import number, table
+from driftworld._html import note, number, table
 from driftworld._literals import (
     Aggregation,
     Maintenance,
@@ -60,8 +60,8 @@ class Metrics:
     Attributes:
         lifetimes: Of each lifetime everything that was computed, as ``driftworld metrics --json`` says it.
         repeats: Of several lifetimes each metric over all of them, with interquartile mean, mean and median and their bootstrap
-            intervals; ``null`` is the null band of the mean over lifetimes, where evaluations alone decide the metric.
-            Empty for one.
+            intervals; ``null`` is the null band of the mean over lifetimes, where evaluations alone decide the metric;
+            ``reading`` and ``word`` say what may be said of it, as in :attr:`readings`. Empty for one.
         improvement: With ``against``, of each metric how probably a lifetime is better than one of the other agent.
         lifetimes_against: The other agent's lifetimes.
         repeats_against: Each metric over those.
@@ -90,16 +90,15 @@ class Metrics:
         return f"<Metrics of {count} {'lifetime' if count == 1 else 'lifetimes'}: {told}>"
 
     def _repr_html_(self) -> str:
-        if len(self.lifetimes) != 1:
-            means = [(name, number(value)) for name, value in self.lifetime.items()]
-            return table(("metric", "mean"), means, f"{len(self.lifetimes)} lifetimes")
-        bands = self.lifetimes[0].get("null", {})
-        rows = []
-        for name, value in self.lifetime.items():
-            band = bands.get(name)
-            told = "" if band is None else f"{number(band['low'])} … {number(band['high'])}"
-            rows.append((name, number(value), told))
-        return table(("metric", "value", "if the agent never changed"), rows)
+        if self.repeats or len(self.lifetimes) != 1:
+            head = ("metric", "IQM", "interval", "mean", "null band", "p", "reading")
+            told = table(head, [_row_of_several(row) for row in self.repeats], f"{len(self.lifetimes)} lifetimes")
+            cautions = dict.fromkeys(row["caution"] for row in self.repeats if row.get("caution"))
+            return told + "".join(note(f"note: {text}") for text in cautions)
+        rows = [_row_of_one(row) for row in self.readings.values()]
+        said = [*self.lifetimes[0].get("notes", []), *self.lifetimes[0].get("cautions", [])]
+        told = table(("metric", "value", "null band", "p", "reading", "what it says"), rows)
+        return told + "".join(note(f"note: {text}") for text in said)
 
     @property
     def lifetime(self) -> dict[str, Any]:
@@ -138,6 +137,22 @@ class Metrics:
         """
         bands: dict[str, dict[str, Any]] = self._only("null", "null")
         return bands
+
+    @property
+    def readings(self) -> dict[str, dict[str, Any]]:
+        """What may be said of each metric of the one lifetime: the rows of the table that ``driftworld metrics`` prints.
+
+        Each has ``value``; ``explanation``, what it says; ``good``, which way is good; ``null_band``, as in :attr:`null`, or
+        ``None``; ``reading``, ``"good"``, ``"bad"``, ``"mixed"``, ``"unclear"``, ``"untested"`` or ``"undefined"``, or ``None``
+        for a metric without a value that means no effect; and ``word``, the reading as every table and page has it, such as
+        ``"helps"`` or ``"no clear effect"``. ``docs/metrics.md`` says what decides it.
+
+        Raises:
+            ValueError: If there are several lifetimes; ask each of :attr:`lifetimes` for its ``"readings"`` then, and
+                :attr:`repeats` for what they say together.
+        """
+        rows: dict[str, dict[str, Any]] = self._only("readings", "readings")
+        return rows
 
     @property
     def reached(self) -> dict[str, dict[str, Any]]:
@@ -350,6 +365,26 @@ def report(
 
         write_whole(Path(file), page.encode())
     return page
+
+
+def _row_of_one(row: Mapping[str, Any]) -> tuple[str, ...]:
+    """A row of the table of one lifetime, as ``driftworld metrics`` has it."""
+    error = (row["null_band"] or {}).get("standard_error")
+    value = number(row["value"]) + ("" if error is None else f"\N{NO-BREAK SPACE}±\N{NO-BREAK SPACE}{number(error)}")
+    return (row["name"], value, *_beside_null(row["null_band"]), row["word"] or "", row["explanation"])
+
+
+def _row_of_several(row: Mapping[str, Any]) -> tuple[str, ...]:
+    """A row of the table of several lifetimes: Student's interval where there are few, else the bootstrap's."""
+    interval = row["iqm"].get("t_interval") or row["iqm"].get("interval")
+    ends = "" if interval is None else f"{number(interval['low'])} to {number(interval['high'])}"
+    mean = number(row["mean"]["value"])
+    return (row["name"], number(row["iqm"]["value"]), ends, mean, *_beside_null(row.get("null")), row["word"] or "")
+
+
+def _beside_null(band: Mapping[str, Any] | None) -> tuple[str, str]:
+    """The null band of a value, and its p."""
+    return ("no null", "") if band is None else (f"{number(band['low'])} to {number(band['high'])}", number(band["p"]))
 
 
 def _warn(said: Iterable[str]) -> None:
