@@ -219,13 +219,13 @@ pub(super) fn curves(scores: &LifetimeMetrics, names: &VariantNames) -> Option<S
     }
     let headings = ["curve", "area", "forgetting", "lag", "regret", ""];
     let headings = headings.into_iter().map(str::to_owned).collect();
-    let told = |is_there: bool, text: &'static str| if is_there { text } else { "" };
-    let lag = told(
+    let explained = |is_there: bool, text: &'static str| if is_there { text } else { "" };
+    let lag = explained(
         shown().any(|(_, curve)| curve.lag.is_some()),
         " lag: learning experiences of any task, from where the task was first learned (if never, from its first \
          evaluation) until half of the later gain.",
     );
-    let regret = told(
+    let regret = explained(
         shown().any(|(_, curve)| curve.regret.is_some()),
         " regret: expert, or else ceiling, less curve while the task was present.",
     );
