@@ -398,6 +398,12 @@ fn change(world: &mut Json, place: &FieldPlace, full: &Json) -> bool {
 /// A world whose object moves in a way in which what stands at a place is read.
 fn read_by(place: &FieldPlace) -> Json {
     let mut full = full_with(place);
+    match place.pointer.as_str() {
+        // Nobody sees them through a ceiling.
+        "/environment_params/looks/clouds" => full["environment_params"]["looks"]["ceiling"] = json!(false),
+        "/objects/*/text" => full["objects"][0]["class"] = json!("sign"),
+        _ => {}
+    }
     let motion = match place.pointer.split('/').nth(3) {
         Some("pushable") => "stationary",
         Some("sight_range") => "predator",

@@ -54,11 +54,11 @@ fields! {
     #[schemars(extend("examples" = [{ "surface": "brick", "scale": 1.5 }]))]
     pub struct Covering {
         /// Which pattern.
-        pub surface: Surface => Field::ours(AsPart),
+        pub surface: Surface => Field::ours(Measured(&[CameraAndWeather])),
         /// Factor on the pattern's size in metres.
         #[serde(default = "one", skip_serializing_if = "is_one")]
         #[schemars(range(min = 0.1, max = 100.0))]
-        pub scale: f64 => Field::ours(AsPart),
+        pub scale: f64 => Field::ours(Measured(&[CameraAndWeather])),
     }
 }
 
@@ -71,32 +71,33 @@ fields! {
     ]))]
     pub struct Looks {
         /// How the world is drawn. In the plain style nothing else counts here but `fog_in_depth`.
-        pub style: Style = Style::Plain => Field::ours(AsPart),
+        pub style: Style = Style::Plain
+            => Field::ours(Measured(&[CameraAndWeather, ColorsOfSurroundings, ModelsOfObjects])),
         /// What covers the ground, zones too; if absent, noise, or tiles under a ceiling.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(with = "Option<CoveringForm>")]
-        pub ground: Option<Covering> = None => Field::ours(AsPart),
+        pub ground: Option<Covering> = None => Field::ours(Measured(&[CameraAndWeather])),
         /// What covers walls; bricks if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(with = "Option<CoveringForm>")]
-        pub walls: Option<Covering> = None => Field::ours(AsPart),
+        pub walls: Option<Covering> = None => Field::ours(Measured(&[CameraAndWeather])),
         /// Whether there is a ceiling, as high as the highest wall of the layout or else of the arena, and light that comes from
         /// everywhere beneath it; if absent, where the layout is a maze, rooms, or drawn with letters.
         #[serde(skip_serializing_if = "Option::is_none")]
-        pub ceiling: Option<bool> = None => Field::ours(AsPart),
+        pub ceiling: Option<bool> = None => Field::ours(Measured(&[CameraAndWeather, ColorsOfSurroundings])),
         /// Colour of the ceiling.
         #[serde(skip_serializing_if = "is_white_enough")]
-        pub ceiling_color: Color = CEILING => Field::ours(AsPart),
+        pub ceiling_color: Color = CEILING => Field::ours(Measured(&[ColorsOfSurroundings])),
         /// Whether objects and walls cast shadows on the ground; they do if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
-        pub shadows: Option<bool> = None => Field::ours(AsPart),
+        pub shadows: Option<bool> = None => Field::ours(Measured(&[CameraAndWeather])),
         /// Whether there are clouds in the sky; there are if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
-        pub clouds: Option<bool> = None => Field::ours(AsPart),
+        pub clouds: Option<bool> = None => Field::ours(Measured(&[CameraAndWeather])),
         /// Whether depth sees the fog: no distance d is then greater than that of the fog f, and each is
         /// d · f / √(d² + f²). It looks through the fog otherwise.
         #[serde(skip_serializing_if = "is_default")]
-        pub fog_in_depth: bool = false => Field::ours(AsPart),
+        pub fog_in_depth: bool = false => Field::ours(Measured(&[CameraAndWeather])),
     }
 }
 
