@@ -28,8 +28,14 @@ pub(crate) fn measure(
     scripts: &Path,
     jaxenstein: Option<&Path>,
 ) -> Result<(), XtaskError> {
+    let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let scripts = absolute(scripts);
     let mut vizdoom = Command::new("taskset");
-    vizdoom.args(["-c", "0", python]).arg(scripts.join("peer_vizdoom.py"));
+    vizdoom
+        .args(["-c", "0", python])
+        .arg(scripts.join("peer_vizdoom.py"))
+        // It leaves a file where it runs.
+        .current_dir(std::env::temp_dir());
     let mut miniworld = Command::new("xvfb-run");
     miniworld
         .args(["-a", "taskset", "-c", "0", python])

@@ -19,7 +19,7 @@ const SHIFT: f32 = 65536.0;
 const SHARPNESS: f32 = 1.25;
 
 /// How many of the finest texels a pixel shows where the first of their detail is seen, and where all of it is.
-const DETAIL: [f32; 2] = [0.7, 0.3];
+const DETAIL: [f32; 2] = [0.5, 0.25];
 
 /// A layer of clouds: metres above the eye, metres to a side of its tile, and from which rise on it is seen in full.
 const CLOUDS: [f32; 3] = [40.0, 150.0, 0.22];
