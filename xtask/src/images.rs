@@ -15,11 +15,7 @@ const FOLDER: &str = "docs/images";
 
 /// Pictures that are made elsewhere, and how.
 #[cfg_attr(not(test), expect(dead_code, reason = "what is not made here is only listed"))]
-const ORIGINS: [(&str, &str); 14] = [
-    (
-        "looks.png",
-        "first views in natural looks: a park, a dusk, a room and a maze, as docs/looks.md has them",
-    ),
+const ORIGINS: [(&str, &str); 13] = [
     ("book-desktop.png", "python book/screenshots.py target/book"),
     ("book-phone.png", "python book/screenshots.py target/book"),
     ("book-search.png", "python book/screenshots.py target/book"),
@@ -169,6 +165,13 @@ const IMAGES: &[(&str, &[&str])] = &[
         ],
     ),
     ("task-blue_red_green.png", &["sheet blue_red_green --size 150 -o {}"]),
+    (
+        "looks.png",
+        &[
+            "sheet find_objects#huddle find_objects#dusk examples/worlds/four_rooms.json#nine \
+          examples/worlds/key_corridor.json#closed --size 160 -o {}",
+        ],
+    ),
     ("world-maze.png", &["sheet examples/worlds/maze.json --size 150 -o {}"]),
     (
         "world-four_rooms.png",
