@@ -5,9 +5,9 @@ use driftworld_env::{
     Agent, Catalogue, Effect, EndedBy, Environment, Event, Recorder, Recording, Renderer, Replay, Step, category_color,
     depth_to_gray, top_down_with_way,
 };
-use driftworld_report::picture::{Picture, SheetRow, whole};
+use driftworld_report::picture::{Picture, SheetRow};
 use driftworld_spec::{Object, Stimulus, World};
-use driftworld_text::amount;
+use driftworld_text::{amount, whole};
 
 use crate::Failure;
 use crate::film::{FilmModality, FilmOptions, FilmView};

@@ -12,7 +12,7 @@ const HEIGHT: u32 = 192;
 const NEAR: i32 = 48;
 /// So far, squared, light and shadow change a paint.
 const SHADE: i32 = 96 * 96;
-/// The most colours of a group that are told.
+/// The most colours that a swatch has.
 const MOST: usize = 3;
 /// Rims of doors and keys.
 const RIM: Rgb = [20, 24, 30];
@@ -93,7 +93,7 @@ impl MapColors {
         }
         let with_color = |(index, pixels): (&usize, &Vec<Rgb>)| {
             let shaded = median(pixels)?;
-            // What is painted is told by its paint, if that is what is seen of it: not so a trunk's below leaves.
+            // Paint is shown as it is, if it is what one sees: not so a trunk's below leaves.
             let paint = scene.items[*index]
                 .color
                 .map(|paint| paint.map(|share| (share * 255.0) as u8));
@@ -177,7 +177,7 @@ mod tests {
         }
     }
 
-    /// The green of trees is told, not their wood; of doors in three colours each.
+    /// Trees are green, not as brown as their wood; doors of three colours have all three.
     #[test]
     fn issue_24_groups_of_several_colors() {
         let of_class = |name: &str, class: &str| {

@@ -261,6 +261,16 @@ pub(crate) fn arrow(map: &mut Drawing, [x, y]: [f32; 2], heading_deg: f32, size:
     map.area(corners(0.0), WHITE);
 }
 
+/// A square arena without anything but the agent, at this share of its side from the middle.
+#[cfg(test)]
+pub(crate) fn world_of_agent(side: f64, place: [f64; 2], heading: f64) -> World {
+    let mut draft = driftworld_spec::WorldDraft::default();
+    draft.environment_params.map_size = [side, side];
+    draft.agent_params.coordinates = place.map(|share| share * side);
+    draft.agent_params.heading = heading;
+    draft.check().expect("the agent is within the arena")
+}
+
 #[cfg(test)]
 mod tests {
     use driftworld_spec::WorldDraft;
@@ -323,12 +333,7 @@ mod tests {
         /// Scale and north stand where the agent is not, wherever it stands.
         #[test]
         fn nothing_covers_the_agent(x in -0.46..0.46_f64, y in -0.46..0.46_f64, heading in 0.0..360.0_f64, size in 80_u32..300) {
-            let side = 16.0;
-            let mut draft = WorldDraft::default();
-            draft.environment_params.map_size = [side, side];
-            draft.agent_params.coordinates = [x * side, y * side];
-            draft.agent_params.heading = heading;
-            let world = draft.check().expect("the world is sound");
+            let world = world_of_agent(16.0, [x, y], heading);
             let scene = Scene::from_world(&world);
             let bare = annotated(&world, &scene, &Moves::none(&world), ground(&scene, [size, size])).to_picture();
             let alone = drawn(&world, size);

@@ -298,6 +298,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::map_drawing::world_of_agent;
 
     fn object(class: &str, at: [f64; 2], reward: f64) -> Object {
         let mut object = Object::new(class, at);
@@ -315,11 +316,7 @@ mod tests {
         #[test]
         fn the_map_beside_a_legend_is_bare(x in -0.46..0.46_f64, y in -0.46..0.46_f64, heading in 0.0..360.0_f64, size in 80_u32..300) {
             let side = 16.0;
-            let mut draft = WorldDraft::default();
-            draft.environment_params.map_size = [side, side];
-            draft.agent_params.coordinates = [x * side, y * side];
-            draft.agent_params.heading = heading;
-            let world = draft.check().expect("the world is sound");
+            let world = world_of_agent(side, [x, y], heading);
             let scene = Scene::from_world(&world);
             let bare = annotated(&world, &scene, &Moves::none(&world), ground(&scene, [size, size])).to_picture();
             let beside = map_with_legend(&world, &scene, &Moves::none(&world), size).to_picture();

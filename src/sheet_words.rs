@@ -1,8 +1,8 @@
 //! What is said in a contact sheet: which world and which camera a cell shows, what differs from another variant, and what
 //! holds for all cells. Which they show is chosen in `contact_sheet.rs`.
 
-use driftworld_report::picture::whole;
 use driftworld_spec::{Element, Modality, Variant};
+use driftworld_text::whole;
 
 use crate::contact_sheet::{Choice, Look, Shown};
 use crate::value_words::short;

@@ -12,9 +12,6 @@ const GAP: usize = 2;
 /// The narrowest that a column of sentences is made before the table is given up, in columns of the terminal.
 const NARROW: usize = 12;
 
-/// A blank at which no line ends: a no-break space.
-const UNBROKEN: &str = "\u{a0}";
-
 /// How texts stand in a table for spreadsheets, by the option `--raw-cells`.
 pub(crate) fn cells(raw: bool) -> Cells {
     if raw { Cells::Raw } else { Cells::Guarded }
@@ -35,20 +32,27 @@ pub(crate) fn wide_table(headings: Vec<String>, rows: Vec<Vec<String>>, numbers:
 }
 
 /// The same without the columns in which no row says anything.
-pub(crate) fn without_empty(headings: Vec<String>, rows: Vec<Vec<String>>, numbers: &[usize]) -> String {
-    let kept: Vec<usize> = (0..headings.len())
-        .filter(|column| rows.is_empty() || rows.iter().any(|row| !row[*column].is_empty()))
-        .collect();
-    let only = |cells: Vec<String>| -> Vec<String> { kept.iter().map(|column| cells[*column].clone()).collect() };
-    let numbers: Vec<usize> = (0..kept.len())
-        .filter(|place| numbers.contains(&kept[*place]))
-        .collect();
-    wide_table(only(headings), rows.into_iter().map(only).collect(), &numbers)
+pub(crate) fn without_empty(headings: &[String], rows: &[Vec<String>], numbers: &[usize]) -> String {
+    let says = |column: &usize| rows.is_empty() || rows.iter().any(|row| !row[*column].is_empty());
+    let kept: Vec<usize> = (0..headings.len()).filter(says).collect();
+    let (headings, rows, numbers) = only(&kept, headings, rows, numbers);
+    wide_table(headings, rows, &numbers)
 }
 
-/// A text that tables do not break, such as a value with its error. Blanks are blanks again when it is printed.
-pub(crate) fn whole(text: &str) -> String {
-    text.replace(' ', UNBROKEN)
+/// A table with these of its columns alone: headings, rows, and which columns are set to the right.
+fn only(
+    kept: &[usize],
+    headings: &[String],
+    rows: &[Vec<String>],
+    numbers: &[usize],
+) -> (Vec<String>, Vec<Vec<String>>, Vec<usize>) {
+    let of = |cells: &[String]| kept.iter().map(|column| cells[*column].clone()).collect();
+    let numbers = (0..kept.len()).filter(|place| numbers.contains(&kept[*place]));
+    (
+        of(headings),
+        rows.iter().map(|row| of(row)).collect(),
+        numbers.collect(),
+    )
 }
 
 /// A table of at most `width` columns of the terminal. Cells go on in further lines where need be, broken between words; where
@@ -80,12 +84,8 @@ fn narrow(headings: &[String], rows: &[Vec<String>], numbers: &[usize], width: u
     let says = |column: &usize| rows.iter().any(|row| !matches!(row[*column].as_str(), "" | "-"));
     let kept: Vec<usize> = (0..headings.len()).filter(says).collect();
     if kept.len() < headings.len() {
-        let only = |cells: &[String]| kept.iter().map(|column| cells[*column].clone()).collect();
-        let numbers: Vec<usize> = (0..kept.len())
-            .filter(|place| numbers.contains(&kept[*place]))
-            .collect();
-        let rows = rows.iter().map(|row| only(row)).collect();
-        return fitted(only(headings), rows, &numbers, Some(width));
+        let (headings, rows, numbers) = only(&kept, headings, rows, numbers);
+        return fitted(headings, rows, &numbers, Some(width));
     }
     let last = headings.len() - 1;
     let firsts: Vec<Vec<String>> = rows.iter().map(|row| row[..last].to_vec()).collect();
@@ -99,7 +99,7 @@ fn narrow(headings: &[String], rows: &[Vec<String>], numbers: &[usize], width: u
         .collect();
     for (row, first) in rows.iter().zip(&firsts) {
         shown.extend(lines(first, &widths, numbers));
-        let below = broken(&row[last], width.saturating_sub(2 * GAP));
+        let below = wrap(&row[last], width.saturating_sub(2 * GAP));
         shown.extend(
             below
                 .iter()
@@ -137,18 +137,12 @@ fn widths(headings: &[String], rows: &[Vec<String>], width: Option<usize>) -> Op
     Some(under(cap))
 }
 
-/// A cell in lines, with blanks for what was not to be broken.
-fn broken(cell: &str, width: usize) -> Vec<String> {
-    let lines = wrap(cell, width).into_iter();
-    lines.map(|line| line.replace(UNBROKEN, " ")).collect()
-}
-
 /// A row in as many lines as its highest cell needs.
 fn lines(row: &[String], widths: &[usize], numbers: &[usize]) -> Vec<String> {
     let cells: Vec<Vec<String>> = row
         .iter()
         .zip(widths)
-        .map(|(cell, width)| broken(cell, (*width).max(1)))
+        .map(|(cell, width)| wrap(cell, (*width).max(1)))
         .collect();
     let height = cells.iter().map(Vec::len).max().unwrap_or(0);
     let line = |number: usize| {
@@ -187,7 +181,7 @@ fn listed(headings: &[String], rows: &[Vec<String>], width: usize) -> String {
         lines.push(Style::Strong.on(row.first().map_or("", String::as_str)));
         for (heading, cell) in headings.iter().zip(row).skip(1).filter(|(_, cell)| !cell.is_empty()) {
             let room = width.saturating_sub(name + 2 * GAP).max(1);
-            for (number, text) in broken(cell, room).into_iter().enumerate() {
+            for (number, text) in wrap(cell, room).into_iter().enumerate() {
                 let heading = if number == 0 { heading.as_str() } else { "" };
                 let blanks = " ".repeat(name.saturating_sub(columns_of(heading)));
                 lines.push(format!("  {heading}{blanks}  {text}").trim_end().to_owned());
@@ -200,6 +194,7 @@ fn listed(headings: &[String], rows: &[Vec<String>], width: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use driftworld_text::whole;
     use proptest::prelude::*;
 
     fn example(width: Option<usize>) -> String {
@@ -267,7 +262,7 @@ mod tests {
         let row = |cells: [&str; 3]| cells.map(str::to_owned).to_vec();
         let rows = vec![row(["a", "", "1"]), row(["b", "", "22"])];
         assert_eq!(
-            without_empty(row(["name", "nothing", "number"]), rows, &[2]),
+            without_empty(&row(["name", "nothing", "number"]), &rows, &[2]),
             "name  number\na          1\nb         22"
         );
     }

@@ -2,15 +2,13 @@
 
 use std::io::IsTerminal;
 
+use driftworld_text::{NO_BREAK, with_blanks};
 use unicode_width::UnicodeWidthStr;
 
 use crate::style;
 
 /// The narrowest width that is taken seriously, in columns.
 const NARROWEST: usize = 40;
-
-/// Stands for a blank behind which no line is broken.
-const NO_BREAK: char = '\u{a0}';
 
 /// The columns of standard output: what `COLUMNS` says, else those of the terminal; nothing where lines may be of any length.
 pub(crate) fn columns_of_stdout() -> Option<usize> {
@@ -63,12 +61,12 @@ pub(crate) fn wrap(text: &str, width: usize) -> Vec<String> {
     let mut line = String::new();
     for piece in pieces(text) {
         if !line.is_empty() && columns_of(&line) + columns_of(piece.trim_end()) > width {
-            lines.push(line.trim_end().replace(NO_BREAK, " "));
+            lines.push(with_blanks(line.trim_end()));
             line.clear();
         }
         line.push_str(piece);
     }
-    lines.push(line.trim_end().replace(NO_BREAK, " "));
+    lines.push(with_blanks(line.trim_end()));
     lines
 }
 

@@ -161,7 +161,7 @@ mod system {
                 }
                 Some(words) if ASKED.load(Ordering::SeqCst) => end(&words, signal),
                 Some(_) => {
-                    // Before it is asked: whoever gives up is told the number.
+                    // Before it is asked: whoever gives up reads the number.
                     SIGNAL.store(u8::try_from(signal).unwrap_or(INTERRUPT), Ordering::SeqCst);
                     ASKED.store(true, Ordering::SeqCst);
                     let waits = thread::Builder::new().spawn(move || {

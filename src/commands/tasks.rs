@@ -5,11 +5,10 @@ use std::sync::Arc;
 use crate::spec::{Domain, Parameter, ParameterType, Role, TaskSpec, Value, Variant};
 use crate::tasks;
 use clap::{Args, Subcommand};
-use driftworld_text::{one_line, printable};
+use driftworld_text::{NO_BREAK, one_line, printable, whole};
 use serde_json::json;
 
 use super::{Failure, output};
-use crate::report::picture::whole;
 use crate::table::table;
 use crate::value_words::short;
 
@@ -145,7 +144,7 @@ fn differing(variant: &Variant) -> String {
             .as_ref()
             .and_then(|default| default.cast(parameter.kind));
         let own = variant.value(name).filter(|own| default.as_ref() != Some(*own))?;
-        (parameter.role == Role::Variant).then(|| format!("{name}\u{a0}=\u{a0}{}", in_few_words(own, parameter)))
+        (parameter.role == Role::Variant).then(|| whole(&format!("{name} = ")) + &in_few_words(own, parameter))
     });
     differing.collect::<Vec<_>>().join(", ")
 }
@@ -162,7 +161,7 @@ fn in_few_words(value: &Value, parameter: &Parameter) -> String {
     for word in words.split(' ') {
         if !bound.is_empty() {
             let is_bound = bound.ends_with(is_of_number) || (word.starts_with(is_of_number) && !bound.ends_with(','));
-            bound.push(if is_bound { '\u{a0}' } else { ' ' });
+            bound.push(if is_bound { NO_BREAK } else { ' ' });
         }
         bound.push_str(word);
     }
@@ -204,7 +203,7 @@ fn in_words(domain: &Domain, parameter: &Parameter) -> String {
                 _ => String::new(),
             };
             let listed = words.iter().take(MOST_CHOICES).map(String::as_str).collect::<Vec<_>>();
-            listed.join(between) + &more + &unit.replace(' ', "\u{a0}")
+            listed.join(between) + &more + &whole(&unit)
         }
     }
 }

@@ -32,7 +32,7 @@ impl Direction {
     }
 
     /// Whether a value is good or bad, by its side of no effect alone; unclear on neither.
-    pub(crate) fn side(self, value: f64) -> Reading {
+    pub fn side(self, value: f64) -> Reading {
         let (is_better, is_worse) = match self {
             Self::HigherThan(neutral) => (value > neutral, value < neutral),
             Self::LowerThan(neutral) => (value < neutral, value > neutral),

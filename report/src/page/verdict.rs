@@ -37,17 +37,13 @@ const LEAST_OF_PAIRS: f64 = 0.05;
 /// The side of no effect on which a pair of tasks is, where the metric of all pairs has an effect at all.
 pub(super) fn of_pair(value: f64, good: Direction, whole: Option<Reading>) -> Reading {
     let is_named = matches!(whole, Some(Reading::Good | Reading::Bad | Reading::Mixed));
-    let Some(neutral) = good
+    let is_far = good
         .neutral()
-        .filter(|neutral| is_named && (value - neutral).abs() >= LEAST_OF_PAIRS)
-    else {
-        return Reading::Unclear;
-    };
-    let higher_is_better = !matches!(good, Direction::LowerThan(_));
-    if (value > neutral) == higher_is_better {
-        Reading::Good
+        .is_some_and(|neutral| (value - neutral).abs() >= LEAST_OF_PAIRS);
+    if is_named && is_far {
+        good.side(value)
     } else {
-        Reading::Bad
+        Reading::Unclear
     }
 }
 

@@ -1,25 +1,20 @@
 //! Texts in lines of a width: broken at blanks, and only where need be inside what belongs together. How many lines there is
 //! room for, the callers know.
 
+use driftworld_text::{NO_BREAK, with_blanks};
+
 use super::text_width;
 
-/// Stands for a blank at which no line is broken if it can be helped.
-const NO_BREAK: char = '\u{a0}';
-
-/// A text that belongs together: a line is broken inside it only if it is wider than the line.
+/// A text in lines of this width at most, in letters of `size` pixels: broken at blanks; inside what is [whole](driftworld_text::whole) behind commas and
+/// before brackets, and between words without numbers, if it is wider than a line. What is still too wide is cut.
 ///
 /// # Example
 /// ```
-/// use driftworld_report::picture::{text_lines, whole};
+/// use driftworld_report::picture::text_lines;
+/// use driftworld_text::whole;
 /// let text = format!("It is {}.", whole("8 × 8 m"));
 /// assert_eq!(text_lines(&text, 10.0, 50.0), ["It is", "8 × 8 m."]);
 /// ```
-pub fn whole(text: &str) -> String {
-    text.replace(' ', &NO_BREAK.to_string())
-}
-
-/// A text in lines of this width at most, in letters of `size` pixels: broken at blanks; inside what is [`whole`] behind commas and
-/// before brackets, and between words without numbers, if it is wider than a line. What is still too wide is cut.
 pub fn text_lines(text: &str, size: f32, width: f32) -> Vec<String> {
     let fits = |text: &str| text_width(text, size) <= width;
     let mut lines: Vec<String> = Vec::new();
@@ -53,7 +48,7 @@ fn pieces(text: &str, fits: &dyn Fn(&str) -> bool) -> Vec<String> {
         });
         pieces = broken.collect();
     }
-    let pieces = pieces.into_iter().map(|piece| piece.replace(NO_BREAK, " "));
+    let pieces = pieces.into_iter().map(|piece| with_blanks(&piece));
     pieces.filter(|piece| !piece.is_empty()).collect()
 }
 
@@ -96,6 +91,7 @@ pub(super) fn cut(text: &str, size: f32, width: f32) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use driftworld_text::whole;
     use proptest::prelude::*;
 
     proptest! {

@@ -17,7 +17,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 pub use blocks::blocks;
 pub use caption::{MAX_CAPTION_LINES, caption_lines};
 pub use heat_map::heat_map;
-pub use lines::{text_lines, whole};
+pub use lines::text_lines;
 pub use path_map::path_map;
 pub use scatter::{Panel, Point, scatter};
 pub use sheet::{SheetRow, sheet};

@@ -5,8 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::metrics::{EvaluationCell, LEARNED_SHARE, LifetimeMetrics, Reached, Unlabelled};
 
+use driftworld_text::whole;
+
 use super::tables::{number, with_error};
-use crate::table::{whole, without_empty};
+use crate::table::without_empty;
 use crate::variant_names::VariantNames;
 
 /// Tasks beyond these are in the JSON only.
@@ -81,8 +83,8 @@ pub(super) fn reached(scores: &LifetimeMetrics, names: &VariantNames) -> Option<
             evaluated().count() - MOST_ROWS
         ));
     }
-    let headings = headings.into_iter().map(str::to_owned).collect();
-    let mut lines = vec![without_empty(headings, rows, &numbers), notes.join(" ")];
+    let headings: Vec<String> = headings.into_iter().map(str::to_owned).collect();
+    let mut lines = vec![without_empty(&headings, &rows, &numbers), notes.join(" ")];
     lines.extend(unlabelled(scores, names));
     Some(lines.join("\n"))
 }
@@ -178,11 +180,11 @@ pub(super) fn reached_by_several(agent: &str, lifetimes: &[LifetimeMetrics], nam
         "best / expert",
         "",
     ];
-    let headings = headings.into_iter().map(str::to_owned).collect();
+    let headings: Vec<String> = headings.into_iter().map(str::to_owned).collect();
     let is_scaled = tasks.values().flatten().any(|task| task.is_scaled());
     let unit = if is_scaled { UNITS } else { "" };
     let alike: BTreeSet<String> = lifetimes.iter().flat_map(|scores| unlabelled(scores, names)).collect();
-    let table = |rows: Vec<Vec<String>>| without_empty(headings, rows, &[1, 2, 3, 4]) + unit;
+    let table = |rows: Vec<Vec<String>>| without_empty(&headings, &rows, &[1, 2, 3, 4]) + unit;
     (!rows.is_empty()).then(|| std::iter::once(table(rows)).chain(alike).collect::<Vec<_>>().join("\n"))
 }
 
@@ -218,7 +220,7 @@ pub(super) fn curves(scores: &LifetimeMetrics, names: &VariantNames) -> Option<S
         return None;
     }
     let headings = ["curve", "area", "forgetting", "lag", "regret", ""];
-    let headings = headings.into_iter().map(str::to_owned).collect();
+    let headings: Vec<String> = headings.into_iter().map(str::to_owned).collect();
     let explained = |is_there: bool, text: &'static str| if is_there { text } else { "" };
     let lag = explained(
         shown().any(|(_, curve)| curve.lag.is_some()),
@@ -231,7 +233,7 @@ pub(super) fn curves(scores: &LifetimeMetrics, names: &VariantNames) -> Option<S
     );
     Some(format!(
         "{}\nOf evaluation curves alone. area: mean height. forgetting: highest less last.{lag}{regret}",
-        without_empty(headings, rows, &[1, 2, 3, 4])
+        without_empty(&headings, &rows, &[1, 2, 3, 4])
     ))
 }
 

@@ -7,11 +7,11 @@ use crate::metrics::{
     NULL_PERMUTATIONS, NullBand, RepeatedMetric, ScaledBy,
 };
 
-use driftworld_text::{one_line, printable};
+use driftworld_text::{one_line, printable, whole};
 
 use super::reached_table::{curves, reached, reached_by_several};
 use crate::scoring::{Comparison, Scores, Varied, own_scale};
-use crate::table::{table, whole, without_empty};
+use crate::table::{table, without_empty};
 use crate::variant_names::VariantNames;
 
 /// The scores of one lifetime, or of several with what they say together.
@@ -60,7 +60,7 @@ pub(crate) fn summary(scores: &LifetimeMetrics, names: &VariantNames) -> String 
     parts.extend(scaled(scores, names));
     let headings = ["metric", "value", "null band", "p", "reading", "what it says"];
     let headings = headings.map(str::to_owned).to_vec();
-    let mut metrics = without_empty(headings, rows.into_iter().map(Vec::from).collect(), &[1, 3]);
+    let mut metrics = without_empty(&headings, &rows.into_iter().map(Vec::from).collect::<Vec<_>>(), &[1, 3]);
     if has_bands {
         metrics.push('\n');
         metrics.push_str(&what_bands_are(scores));
@@ -278,9 +278,9 @@ fn repeats(metrics: &[RepeatedMetric], share: &str) -> String {
     headings.extend(few.then_some(t.as_str()));
     headings.extend(["null band", "p", "reading", "runs x tasks", "better"]);
     let numbers = if few { [1, 4, 7] } else { [1, 3, 5] };
-    let headings = headings.into_iter().map(str::to_owned).collect();
+    let headings: Vec<String> = headings.into_iter().map(str::to_owned).collect();
     let cautions: BTreeSet<&str> = metrics.iter().filter_map(|row| row.caution.as_deref()).collect();
-    let mut lines = vec![without_empty(headings, rows.collect(), &numbers)];
+    let mut lines = vec![without_empty(&headings, &rows.collect::<Vec<_>>(), &numbers)];
     if metrics.iter().any(|row| row.null.is_some()) {
         lines.push(format!(
             "Null band: the central 95% of means over lifetimes when the rows of each world are permuted across evaluations \
