@@ -67,7 +67,7 @@ impl Batch {
     /// [`EnvError::BatchSize`] for none or more than [`MAX_ENVS`]; [`EnvError::BatchMemory`] where outputs would take
     /// more than [`MAX_BATCH_BYTES`], or more than can be had; [`EnvError::BatchWorld`] where the source has no world;
     /// [`EnvError::BatchImages`] where worlds ask for images of other sizes, or for some that there are not;
-    /// [`EnvError::BatchThreads`] if threads cannot be had; [`EnvError::NoGpu`] if a graphics card is asked for and none works;
+    /// [`EnvError::BatchThreads`] if there are no threads; [`EnvError::NoGpu`] if a graphics card is asked for and none works;
     /// and as [`Renderer::draw_batch`].
     pub fn new(num_envs: usize, source: WorldSource, options: BatchOptions) -> Result<Self, EnvError> {
         Self::with_catalogue(num_envs, source, options, &Catalogue::default())

@@ -157,6 +157,16 @@ mod tests {
         assert!(warmth(Daylight::new(&light(0.08, 1.0), false).sun) > 1.7);
     }
 
+    /// Under a ceiling nothing depends on where the sun is, what fog looks like neither.
+    #[test]
+    fn under_a_ceiling_the_sun_does_nothing() {
+        let noon = Daylight::new(&light(1.0, 0.7), true);
+        for height in [-0.5, 0.04, 0.3, 0.9] {
+            let inside = Daylight::new(&light(height, 0.7), true);
+            assert_eq!(inside, noon, "{height}");
+        }
+    }
+
     /// A saturated colour in full daylight is not cut off: faces that look elsewhere have other levels.
     #[test]
     fn saturated_colours_keep_their_shading() {

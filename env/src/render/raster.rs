@@ -128,10 +128,11 @@ fn draw_lanes<L: Lanes, const ITEMS: bool, S: Shading>(
         return;
     }
     // Edge k lies opposite to corner k; each is the same line, to the bit, for the triangle on its other side.
-    let mut edges = [edge(l, x, y, 1, 2), edge(l, x, y, 2, 0), edge(l, x, y, 0, 1)];
-    if params.is_turned() {
-        edges = [edge(l, x, y, 2, 1), edge(l, x, y, 0, 2), edge(l, x, y, 1, 0)];
-    }
+    let edges = if params.is_turned() {
+        [edge(l, x, y, 2, 1), edge(l, x, y, 0, 2), edge(l, x, y, 1, 0)]
+    } else {
+        [edge(l, x, y, 1, 2), edge(l, x, y, 2, 0), edge(l, x, y, 0, 1)]
+    };
     let area = l.add(edges[0][0], l.add(edges[1][0], edges[2][0]));
     let share = l.div(one, area);
     let mut rows = [[0.0; BLOCK]; 16];

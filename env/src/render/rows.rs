@@ -293,3 +293,74 @@ pub(super) fn packed(levels: [f32; 3], category: u8) -> u32 {
     let [red, green, blue] = levels.map(|level| (level + ROUNDING).clamp(0.0, FULL_LEVEL) as u8);
     u32::from_le_bytes([red, green, blue, category])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Detail of the ground comes in with the first of its rows and grows row by row, the nearer the faster: no row shows much more
+    /// of it than the next.
+    #[test]
+    fn detail_comes_in_row_by_row() {
+        let tile = surfaces::tile(Surface::Noise);
+        for side in [160.0, 320.0, 640.0] {
+            let step = 2.0 * libm::tanf(30_f32.to_radians()) / side;
+            let share = |rows: f32| {
+                let offset = -rows * step;
+                let plane = Plane {
+                    rise: offset,
+                    below: 1.0,
+                    color: [0.5; 3],
+                    scale: 1.0,
+                };
+                let key = Key {
+                    size: [side; 2],
+                    step,
+                    height: 1.0,
+                    forward: 0.0,
+                    up: 1.0,
+                    light: LIGHT,
+                    ground: [0.5; 3],
+                    looks: LOOKS,
+                };
+                plane.look(&key, offset, Shows::Floor, tile).row.detail_share
+            };
+            let shares: Vec<u32> = (1..side as u32 / 2).map(|row| share(row as f32)).collect();
+            let most = 255.0 * 64.0 / side;
+            for pair in shares.windows(2) {
+                assert!(
+                    pair[0] <= pair[1] && (pair[1] - pair[0]) as f32 <= most,
+                    "{side}: {pair:?}"
+                );
+            }
+            assert!(
+                shares[0] == 0 && shares[shares.len() - 1] > 0,
+                "{side}: from none to some"
+            );
+        }
+    }
+
+    const LIGHT: Light = Light {
+        direction: [0.0, 0.0, 1.0],
+        color: [1.0; 3],
+        exposure: 1.0,
+        ambient: 0.35,
+        sky_color: [0.36, 0.62, 0.9],
+        fog_distance: None,
+        fog_in_depth: false,
+    };
+
+    const LOOKS: NaturalLooks = NaturalLooks {
+        ground: driftworld_spec::Covering {
+            surface: Surface::Noise,
+            scale: 1.0,
+        },
+        walls: driftworld_spec::Covering {
+            surface: Surface::Brick,
+            scale: 1.0,
+        },
+        ceiling: None,
+        has_shadows: true,
+        has_clouds: true,
+    };
+}
