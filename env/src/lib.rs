@@ -63,7 +63,3 @@ pub use scene::{Item, Light, Scene, WallPanel};
 pub use sim::{
     Action, AgentState, Effect, EndedBy, Environment, Event, ObjectState, Obstacle, Snapshot, Step, Warning,
 };
-
-#[cfg(doctest)]
-#[doc = include_str!("../../docs/zones.md")]
-struct ZonesPage;

@@ -266,13 +266,13 @@ fn it_opens_doors_in_the_order_of_a_sequence_and_takes_what_pays_first() {
     });
 }
 
-/// The world of `docs/things.md` is as the page says.
+/// The world of `docs/worlds.md` with a locked door is as the page says.
 #[test]
 fn the_world_of_the_page_is_solved() {
-    let page = include_str!("../../docs/things.md");
+    let page = include_str!("../../docs/worlds.md");
     let text = page.split("```").find_map(|part| part.strip_prefix("json\n"));
-    let world = World::from_json("docs/things.md", text.expect("the page has a world")).expect("it is sound");
-    assert_eq!(world.remarks("docs/things.md", text.unwrap_or_default()), []);
+    let world = World::from_json("docs/worlds.md", text.expect("the page has a world")).expect("it is sound");
+    assert_eq!(world.remarks("docs/worlds.md", text.unwrap_or_default()), []);
     assert!(solved(&world).is_some_and(|steps| steps < 300));
 }
 

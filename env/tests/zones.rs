@@ -236,16 +236,17 @@ fn who_is_put_into_a_zone_from_outside_has_not_entered_it() {
 
 #[test]
 fn the_worlds_of_the_page_are_sound() {
-    let page = include_str!("../../docs/zones.md");
+    let page = include_str!("../../docs/worlds.md");
     let texts: Vec<&str> = page
         .split("```json\n")
         .skip(1)
         .filter_map(|rest| rest.split("```").next())
+        .filter(|text| text.contains("\"zones\"") || text.contains("\"energy\""))
         .collect();
     assert_eq!(texts.len(), 2);
     for text in texts {
-        let world = World::from_json("docs/zones.md", text).unwrap_or_else(|error| panic!("{error}"));
-        assert!(world.remarks("docs/zones.md", text).is_empty());
+        let world = World::from_json("docs/worlds.md", text).unwrap_or_else(|error| panic!("{error}"));
+        assert!(world.remarks("docs/worlds.md", text).is_empty());
         step(&mut Environment::new(world), REST);
     }
 }

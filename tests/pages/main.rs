@@ -64,7 +64,6 @@ const BY_HAND: &[(&str, usize, &str)] = &[
 const WITH_RUST: &[(&str, &str)] = &[
     ("docs/rust.md", "src/lib.rs"),
     ("docs/metrics.md", "metrics/src/lib.rs"),
-    ("docs/zones.md", "env/src/lib.rs"),
 ];
 
 fn root() -> PathBuf {

@@ -1,5 +1,5 @@
 //! What an object can be beside a body: a door, a switch, a thing that is carried. What each does when is in
-//! `docs/things.md`; doing it is `env`'s.
+//! `docs/worlds.md`; doing it is `env`'s.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -56,7 +56,7 @@ fields! {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(inner(inner(range(min = -300.0, max = 300.0))))]
         pub teleport: Option<[f64; 2]> => Field::ours(Measured(&[Zones])).unit("m"),
-        /// Colour of its ground; if absent, that of what it does, as `docs/zones.md` lists them.
+        /// Colour of its ground; if absent, that of what it does, as `docs/worlds.md` lists them.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub color: Option<Color> => Field::ours(Measured(&[ZoneLooks])),
         /// Whether its ground has its colour.
