@@ -1,6 +1,6 @@
 """Which elements of the decision process the variants of a task change, tried out.
 
-The experiment is that of ``driftworld elements``, with the same result. What elements are is in ``docs/elements.md``.
+The experiment is that of ``driftworld elements``, with the same result. What elements are is in ``docs/similarity.md``.
 """
 
 from __future__ import annotations
