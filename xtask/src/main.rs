@@ -32,7 +32,9 @@ mod runner;
 mod sbom;
 mod schemas;
 mod side_by_side;
+mod size;
 mod soundness;
+mod sources;
 mod stage;
 mod tidy;
 mod unity;
@@ -54,8 +56,9 @@ Usage:
   cargo xtask test --all            these, and those that want a graphics driver, several Pythons or large packages
   cargo xtask test --only STAGE     one stage (may be given several times)
   cargo xtask test --list           the stages and what each holds
-  cargo xtask STAGE                 the same as `test --only STAGE`, but for `schemas` and `protocol`
+  cargo xtask STAGE                 the same as `test --only STAGE`, but for `schemas`, `protocol` and `size`
   cargo xtask schemas               rewrite schemas/*.json and docs/reference/*.md from the Rust types
+  cargo xtask size                  write the counts of lines of code in SIZE.md anew
   cargo xtask docs                  the documentation of the crates, and the book of docs/ as target/book/index.html
   cargo xtask images [--command FILE] [WORD]...
                                     draw docs/images anew, or those whose names hold a WORD; FILE is a driftworld that is built
@@ -85,6 +88,7 @@ enum Request {
     Run(Vec<Stage>),
     RewriteSchemas,
     RewriteProtocol,
+    RewriteSize,
     Advisories,
     Images {
         command: Option<PathBuf>,
@@ -121,6 +125,7 @@ fn parse(arguments: &[String]) -> Result<Request, String> {
         ["-h" | "--help" | "help", ..] => Ok(Request::Help),
         ["schemas"] => Ok(Request::RewriteSchemas),
         ["protocol"] => Ok(Request::RewriteProtocol),
+        ["size"] => Ok(Request::RewriteSize),
         ["images", "--command", file, rest @ ..] => Ok(Request::Images {
             command: Some(file.into()),
             words: rest.iter().map(|word| (*word).to_owned()).collect(),
@@ -204,6 +209,7 @@ fn execute(request: Request) -> ExitCode {
         Request::Run(stages) => Workspace::load().and_then(|workspace| stage::run_all(&workspace, &stages)),
         Request::RewriteSchemas => Workspace::load().and_then(|workspace| schemas::rewrite(&workspace)),
         Request::RewriteProtocol => Workspace::load().and_then(|workspace| protocol::rewrite(&workspace)),
+        Request::RewriteSize => Workspace::load().and_then(|workspace| size::rewrite(&workspace)),
         Request::Chaos(options) => Workspace::load().and_then(|workspace| chaos::unleash(&workspace, &options)),
         Request::Images { command, words } => {
             Workspace::load().and_then(|workspace| images::draw(&workspace, command.as_deref(), &words))
@@ -250,6 +256,7 @@ mod tests {
             let bare = match stage {
                 Stage::Schemas => Request::RewriteSchemas,
                 Stage::Protocol => Request::RewriteProtocol,
+                Stage::Size => Request::RewriteSize,
                 _ => Request::Run(vec![stage]),
             };
             check(stage.name(), &Ok(bare));

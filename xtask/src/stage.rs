@@ -7,7 +7,9 @@ use crate::error::XtaskError;
 use crate::outcome::Outcome;
 use crate::process::{AS_TESTED, cargo, run};
 use crate::workspace::Workspace;
-use crate::{bench, book, deny, documents, examples, layers, protocol, python, rebuilds, runner, schemas, tidy, unity};
+use crate::{
+    bench, book, deny, documents, examples, layers, protocol, python, rebuilds, runner, schemas, size, tidy, unity,
+};
 
 /// One step of `cargo xtask test`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,6 +17,7 @@ pub(crate) enum Stage {
     Fmt,
     Layers,
     Tidy,
+    Size,
     Clippy,
     Tests,
     Doctests,
@@ -36,10 +39,11 @@ pub(crate) enum Stage {
 impl Stage {
     /// First the quick ones, of these the quickest first; then those that want a graphics driver, several Pythons or
     /// packages of gigabytes.
-    pub(crate) const ALL: [Self; 19] = [
+    pub(crate) const ALL: [Self; 20] = [
         Self::Fmt,
         Self::Layers,
         Self::Tidy,
+        Self::Size,
         Self::Clippy,
         Self::Tests,
         Self::Doctests,
@@ -70,6 +74,7 @@ impl Stage {
             Self::Fmt => "fmt",
             Self::Layers => "layers",
             Self::Tidy => "tidy",
+            Self::Size => "size",
             Self::Clippy => "clippy",
             Self::Tests => "tests",
             Self::Gpu => "gpu",
@@ -95,6 +100,7 @@ impl Stage {
             Self::Fmt => "every file is formatted by rustfmt",
             Self::Layers => "crates import only what their floor allows, and versions live in the root Cargo.toml",
             Self::Tidy => "files open with their purpose, carry telling names, and link to what exists",
+            Self::Size => "no room has more lines of code than SIZE.md allows",
             Self::Clippy => "no compiler or clippy warning in any target, with all features",
             Self::Tests => "unit, integration, property and golden tests pass",
             Self::Gpu => {
@@ -135,6 +141,7 @@ impl Stage {
             Self::Fmt => passed(&["fmt", "--all", "--check"]),
             Self::Layers => layers::stage().map(Outcome::PassedWith),
             Self::Tidy => tidy::stage(workspace).map(Outcome::PassedWith),
+            Self::Size => size::check(workspace).map(Outcome::PassedWith),
             Self::Clippy => passed(&[
                 "clippy",
                 "--workspace",

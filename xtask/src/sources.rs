@@ -1,0 +1,145 @@
+//! The files of the checkout as git lists them, and the code of Rust and Python files without blank lines, comments and tests.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use crate::error::XtaskError;
+use crate::process::quiet_output;
+
+/// Paths relative to the root, `/` between folders, each with its text; files that are not UTF-8 have an empty text.
+pub(crate) struct Sources {
+    files: BTreeMap<String, String>,
+}
+
+impl Sources {
+    /// Reads tracked files, and new ones that git does not ignore.
+    pub(crate) fn read(root: &Path) -> Result<Self, XtaskError> {
+        let mut list = Command::new("git");
+        // A checkout that another user owns, as in a container, is read all the same.
+        list.args(["-c", &format!("safe.directory={}", root.display())])
+            .args(["ls-files", "-z", "--cached", "--others", "--exclude-standard"])
+            .current_dir(root);
+        let names = quiet_output(list)?;
+        let existing = names.split('\0').filter(|name| root.join(name).is_file());
+        let files = existing.map(|name| (name.to_owned(), fs::read_to_string(root.join(name)).unwrap_or_default()));
+        Ok(Self { files: files.collect() })
+    }
+
+    /// Sources made of these files.
+    #[cfg(test)]
+    pub(crate) fn of(files: &[(&str, &str)]) -> Self {
+        let owned = files
+            .iter()
+            .map(|(path, text)| ((*path).to_owned(), (*text).to_owned()));
+        Self { files: owned.collect() }
+    }
+
+    /// Path and text of the files with one of these extensions.
+    pub(crate) fn with_extensions<'a>(&'a self, extensions: &'a [&str]) -> impl Iterator<Item = (&'a str, &'a str)> {
+        let files = self.files.iter().map(|(path, text)| (path.as_str(), text.as_str()));
+        files.filter(|(path, _)| extensions.contains(&extension(path)))
+    }
+}
+
+/// The letters after the last dot of a file's name; empty for a name without a dot.
+pub(crate) fn extension(path: &str) -> &str {
+    let name = path.rsplit('/').next().unwrap_or(path);
+    name.rsplit_once('.').map_or("", |(_, extension)| extension)
+}
+
+/// Whether a whole file is made for tests, benches, examples or fuzzing.
+pub(crate) fn is_test_file(path: &str) -> bool {
+    let (folders, name) = path.rsplit_once('/').unwrap_or(("", path));
+    let is_test_folder = |folder: &str| ["tests", "benches", "examples", "fuzz"].contains(&folder);
+    name == "tests.rs" || folders.split('/').any(is_test_folder)
+}
+
+/// A file's lines of code: for each line whether it is one, and whether it belongs to a test.
+pub(crate) fn lines_of_code(path: &str, text: &str) -> Vec<Line> {
+    let lines: Vec<&str> = text.lines().collect();
+    let is_python = extension(path) == "py";
+    let mut found = vec![Line::NoCode; lines.len()];
+    let mut comment_end: Option<&str> = None;
+    let mut in_test_module = false;
+    for (number, line) in lines.iter().enumerate() {
+        let word = line.trim();
+        let opens_module = |next: &&str| next.ends_with(" {") && next.contains("mod ") && !next.starts_with(' ');
+        in_test_module |= !is_python && word == "#[cfg(test)]" && lines.get(number + 1).is_some_and(opens_module);
+        if let Some(end) = comment_end {
+            comment_end = (!word.contains(end)).then_some(end);
+        } else if let Some((end, rest)) = opened_comment(word, is_python) {
+            comment_end = (!rest.contains(end)).then_some(end);
+        } else if !word.is_empty() && !word.starts_with(if is_python { "#" } else { "//" }) {
+            found[number] = if in_test_module || is_test_file(path) {
+                Line::Test
+            } else {
+                Line::Code
+            };
+        }
+        in_test_module &= *line != "}";
+    }
+    found
+}
+
+/// What a line of a file is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Line {
+    /// Blank, or a comment.
+    NoCode,
+    Code,
+    Test,
+}
+
+/// The end of the block comment or docstring that begins a line, and what follows its opening.
+fn opened_comment(word: &str, is_python: bool) -> Option<(&'static str, &str)> {
+    if is_python {
+        let word = word.strip_prefix('r').unwrap_or(word);
+        return word.strip_prefix("\"\"\"").map(|rest| ("\"\"\"", rest));
+    }
+    word.strip_prefix("/*").map(|rest| ("*/", rest))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Line::{Code, NoCode, Test};
+    use super::*;
+
+    #[test]
+    fn blank_lines_and_comments_are_no_code() {
+        let rust = "//! Opens.\n\nuse a; // why\n/* one\n   two */\n/* three */\nfn f() {\n    // note\n}\n";
+        assert_eq!(
+            lines_of_code("spec/src/a.rs", rust),
+            [NoCode, NoCode, Code, NoCode, NoCode, NoCode, Code, NoCode, Code]
+        );
+        let python = "\"\"\"Opens.\n\nMore.\n\"\"\"\nimport a  # why\n# note\ndef f():\n    \"\"\"Short.\"\"\"\n    return \"\"\"x\"\"\"\n";
+        assert_eq!(
+            lines_of_code("python/a.py", python),
+            [NoCode, NoCode, NoCode, NoCode, Code, NoCode, Code, NoCode, Code]
+        );
+    }
+
+    #[test]
+    fn tests_are_counted_apart() {
+        let inline = "fn f() {}\n#[cfg(test)]\nmod tests {\n    fn g() {}\n}\nfn h() {}\n";
+        assert_eq!(
+            lines_of_code("spec/src/a.rs", inline),
+            [Code, Test, Test, Test, Test, Code]
+        );
+        for path in [
+            "spec/tests/a.rs",
+            "spec/src/tests.rs",
+            "env/benches/a.rs",
+            "examples/a.rs",
+            "fuzz/src/a.rs",
+        ] {
+            assert_eq!(lines_of_code(path, "fn f() {}\n"), [Test], "{path}");
+        }
+        // A module in a file of its own is no block to skip.
+        assert_eq!(
+            lines_of_code("spec/src/a.rs", "#[cfg(test)]\nmod tests;\nfn f() {}\n"),
+            [Code, Code, Code]
+        );
+    }
+}
