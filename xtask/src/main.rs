@@ -38,6 +38,7 @@ mod sources;
 mod stage;
 mod tidy;
 mod unity;
+mod unreached;
 mod virtual_environment;
 mod workspace;
 

@@ -17,6 +17,8 @@ mod unsafety;
 
 use crate::error::XtaskError;
 use crate::finding::{self, Finding};
+use crate::sources::Sources;
+use crate::unreached;
 use crate::workspace::Workspace;
 use tree::Tree;
 
@@ -25,7 +27,15 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<String, XtaskError> {
     let tree = Tree::read(&workspace.root)?;
     let sizes = sizes::summary(&tree);
     println!("{sizes}");
-    finding::report(check(&tree, &workspace.members()))?;
+    let mut findings = check(&tree, &workspace.members());
+    let sources = Sources::read(&workspace.root)?;
+    findings.extend(unreached::find(&sources).into_iter().map(|item| {
+        let found = format!("the public item `{}`", item.name);
+        let expected = "other code outside tests to name it";
+        let advice = "remove it, make it private, or give a reason in xtask/src/unreached.rs";
+        Finding::new(item.path, item.line, found, expected, advice)
+    }));
+    finding::report(findings)?;
     Ok(sizes)
 }
 
