@@ -161,16 +161,9 @@ fn rust_is_a_test_of_documentation() {
 #[test]
 fn blocks_are_of_languages_that_are_run() {
     for page in all_pages() {
-        let generated = page.starts_with("docs/python-api/");
         for block in blocks(&read(&page)) {
             let known = ["sh", "json", "text", "python", "rust", "rust,no_run"].contains(&block.language.as_str());
-            // Signatures, which are no programs.
-            assert!(
-                known || generated && block.language == "py",
-                "{page}:{}: {:?}",
-                block.line,
-                block.language
-            );
+            assert!(known, "{page}:{}: {:?}", block.line, block.language);
         }
     }
 }

@@ -1,41 +1,38 @@
-//! The book, second half of the stage `docs`: builds the project in `book/`, which makes HTML of `docs/` and checks every
-//! link of it. It has a build folder of its own, for it asks other features of the crates that it shares with us.
+//! The book, second half of the stage `docs`: `book/build.py` checks the links of every page, and makes HTML of `docs/`
+//! where mdBook is installed.
 
-use std::path::PathBuf;
+use std::path::Path;
 use std::process::Command;
 
 use crate::error::XtaskError;
-use crate::process::{cargo, run};
+use crate::process::{run, works};
 use crate::virtual_environment::interpreter;
 use crate::workspace::Workspace;
 
-/// Compares the pages of the Python API and the recording with their sources, where there is a Python; then formats, tests and runs the
-/// builder. Returns where the book is.
-pub(crate) fn build(workspace: &Workspace) -> Result<String, XtaskError> {
-    let builder = |arguments: &[&str]| {
-        let mut command = cargo(workspace, arguments);
-        command.env("CARGO_TARGET_DIR", workspace.target.join("book-builder"));
-        command
-    };
-    if let Some(python) = interpreter() {
-        for program in ["python/api_pages.py", "book/record.py"] {
-            let mut check = Command::new(&python);
-            check.args([program, "--check"]).current_dir(&workspace.root);
-            run(check)?;
-        }
-    }
-    let manifest = ["--manifest-path", "book/Cargo.toml"];
-    let locked = [&manifest[..], &["--quiet", "--locked"]].concat();
-    run(builder(&[&["fmt", "--check"], &manifest[..]].concat()))?;
-    run(builder(&[&["test"], &locked[..]].concat()))?;
-    let mut make = builder(&[&["run"], &locked[..], &["--", "."]].concat());
-    let book = folder(workspace);
-    make.arg(&book);
-    run(make)?;
-    Ok(format!("the book is {}", book.join("index.html").display()))
-}
+/// How mdBook is installed: without its server.
+const INSTALL: &str = "cargo install mdbook@0.5.4 --locked --no-default-features --features search";
 
-/// Where the finished book is.
-fn folder(workspace: &Workspace) -> PathBuf {
-    workspace.target.join("book")
+/// Checks the recording of the first hour and every link, and builds the book. Returns where it is, or what is missing.
+pub(crate) fn build(workspace: &Workspace) -> Result<String, XtaskError> {
+    let Some(python) = interpreter() else {
+        return Ok("no link was checked and no book built, for want of Python 3.10 or later".to_owned());
+    };
+    let program = |program: &str, argument: &Path| {
+        let mut command = Command::new(&python);
+        command.arg(program).arg(argument).current_dir(&workspace.root);
+        run(command)
+    };
+    let check = Path::new("--check");
+    program("book/record.py", check)?;
+    let mut version = Command::new("mdbook");
+    version.arg("--version");
+    if !works(version) {
+        program("book/build.py", check)?;
+        return Ok(format!(
+            "every link was checked; no book was built without mdBook ({INSTALL})"
+        ));
+    }
+    let book = workspace.target.join("book");
+    program("book/build.py", &book)?;
+    Ok(format!("the book is {}", book.join("index.html").display()))
 }

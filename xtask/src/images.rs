@@ -1,7 +1,7 @@
 //! `cargo xtask images`: draws the pictures of `docs/images` anew, each by the command that its page names.
 //!
 //! Which picture is made how stands in the two lists; a test compares them with the folder. Not here: `speed.svg`, which
-//! `cargo xtask bench peers` draws, and screenshots of pages.
+//! `cargo xtask bench peers` draws, and a screenshot of a report.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -15,10 +15,7 @@ const FOLDER: &str = "docs/images";
 
 /// Pictures that are made elsewhere, and how.
 #[cfg_attr(not(test), expect(dead_code, reason = "what is not made here is only listed"))]
-const ORIGINS: [(&str, &str); 13] = [
-    ("book-desktop.png", "python book/screenshots.py target/book"),
-    ("book-phone.png", "python book/screenshots.py target/book"),
-    ("book-search.png", "python book/screenshots.py target/book"),
+const ORIGINS: [(&str, &str); 10] = [
     (
         "first-hour-berries.png",
         "docs/first-hour.md: DRIFTWORLD_UPDATE_PAGES=1 cargo test --test pages",

@@ -11,7 +11,7 @@ use crate::sources::{Sources, is_test_file};
 const KEPT: &[(&str, &str)] = &[];
 
 /// Folders whose code is left out: developer tools, and generated code.
-const LEFT_OUT: [&str; 4] = ["xtask/", "book/", "fuzz/", "unity/src/protocol.rs"];
+const LEFT_OUT: [&str; 3] = ["xtask/", "fuzz/", "unity/src/protocol.rs"];
 
 /// Folders of programs. They reach what they name, and nobody has to reach what they have.
 const PROGRAMS: [&str; 4] = ["src/commands/", "src/console/", "python/", "examples/"];
