@@ -51,4 +51,4 @@ for options in CASES:
 
 made_with = f"numpy {np.__version__}, pandas {pd.__version__}, scipy {scipy.__version__}"
 target = Path(__file__).with_suffix(".json")
-target.write_text(json.dumps({"made_with": made_with, "cases": cases}, indent=1) + "\n")
+target.write_text(json.dumps({"made_with": made_with, "cases": cases}) + "\n")

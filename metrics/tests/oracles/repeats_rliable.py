@@ -91,7 +91,6 @@ text = json.dumps(
         "thresholds": THRESHOLDS,
         "cases": cases,
         "comparisons": comparisons,
-    },
-    indent=1,
+    }
 )
 Path(__file__).with_suffix(".json").write_text(text + "\n")

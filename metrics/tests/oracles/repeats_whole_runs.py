@@ -82,5 +82,5 @@ for name, (a, b) in pairs.items():
         }
     )
 
-text = json.dumps({"made_with": f"numpy {np.__version__}", "resamples": RESAMPLES, "comparisons": comparisons}, indent=1)
+text = json.dumps({"made_with": f"numpy {np.__version__}", "resamples": RESAMPLES, "comparisons": comparisons})
 Path(__file__).with_suffix(".json").write_text(text + "\n")

@@ -63,4 +63,4 @@ if __name__ == "__main__":
     found = [c for c in cases()]
     for c in found:
         c["quantile"] = [[p, q] for p, q in c["quantile"] if np.isfinite(q)]
-    print(json.dumps(found, indent=1))
+    print("[\n" + ",\n".join(json.dumps(c) for c in found) + "\n]")
