@@ -10,7 +10,7 @@ What it shows beside PPO is how autoreset NEXT_STEP is handled right:
 Then it is evaluated in worlds that it never learned from, by `Curriculum.run_vector`.
 
     python examples/python/cleanrl_ppo.py              # a few minutes on two cores
-    python examples/python/cleanrl_ppo.py --results    # what is written down in results/cleanrl_ppo
+    python examples/python/cleanrl_ppo.py --results    # what can be written down in results/
     python examples/python/cleanrl_ppo.py --quick      # does it run?
 
 Needs PyTorch (`pip install torch`).

@@ -152,7 +152,7 @@ class Record:
         config = self._config()
         (folder / "config.json").write_text(json.dumps(config, indent=2) + "\n", encoding="utf-8")
         for name, document in self.files.items():
-            text = document if isinstance(document, str) else json.dumps(document, indent=1) + "\n"
+            text = document if isinstance(document, str) else json.dumps(document) + "\n"
             (folder / name).write_text(text, encoding="utf-8")
         if self.curve:
             with (folder / "curve.csv").open("w", newline="", encoding="utf-8") as file:
