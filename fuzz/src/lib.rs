@@ -1,7 +1,7 @@
 //! What must hold of everything that Driftworld reads, whatever its bytes are: a law for each kind of document, file
 //! and message.
 //!
-//! `tests/replay.rs` checks the laws on the seeds and on small changes of them; `cargo xtask fuzz` lets libFuzzer look
+//! `tests/replay.rs` checks the laws on the seeds and on small changes of them; `scripts/fuzz.sh` lets libFuzzer look
 //! for bytes that break them. Not here: what a sound document may say, which the tests of each crate say.
 
 mod agent_script;

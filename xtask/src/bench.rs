@@ -4,7 +4,6 @@
 use crate::error::XtaskError;
 use crate::process::AS_TESTED;
 use crate::process::{cargo, run};
-use crate::side_by_side;
 use crate::workspace::Workspace;
 
 /// The benches of one part of the house.
@@ -48,17 +47,16 @@ impl Suite {
     }
 }
 
-/// Measures: criterion's benches, then the figures that `driftworld bench` prints, those of distances beside their peers'.
+/// Measures: criterion's benches, then the figures that `driftworld bench` prints.
 pub(crate) fn measure(workspace: &Workspace, suites: &[Suite]) -> Result<(), XtaskError> {
     for suite in suites {
         for package in suite.packages() {
             run(cargo(workspace, &["bench", "--package", package]))?;
         }
         match suite {
-            Suite::Similarity => side_by_side::measure(workspace)?,
             // With a client it is measured by `unity/benches/client.py`, which wants a Python with mlagents-envs.
             Suite::Unity => {}
-            Suite::Generator | Suite::Env | Suite::Metrics => run(cargo(
+            Suite::Generator | Suite::Similarity | Suite::Env | Suite::Metrics => run(cargo(
                 workspace,
                 &["run", "--release", "--quiet", "--", "bench", suite.name()],
             ))?,

@@ -45,21 +45,12 @@ pub(crate) enum XtaskError {
     /// An example went on past its limit.
     #[error("example `{name}` still ran after {limit_secs} s and was ended; an example ends by itself, and soon")]
     ExampleTooSlow { name: String, limit_secs: u64 },
-    /// A program went on past its limit.
-    #[error("`{command}` still ran after {limit_secs} s and was ended")]
-    TooSlow { command: String, limit_secs: u64 },
     /// A stage lacks what it needs, on a machine that promised to have it.
     #[error("{reason}; {variable} is set, so that this is not skipped")]
     Required { variable: &'static str, reason: String },
     /// A command lacks what it needs.
     #[error("{what}: {reason}")]
     Missing { what: &'static str, reason: &'static str },
-    /// There is nothing to fuzz of this name.
-    #[error("found no target `{found}` of the fuzzer, expected one of {known}")]
-    UnknownTarget { found: String, known: String },
-    /// The fuzzer found input that breaks a law.
-    #[error("laws broken: {targets}; the input is in fuzz/artifacts/, and makes a seed once it is mended")]
-    LawBroken { targets: String },
     /// A stage failed; the last line a user reads.
     #[error("stage `{stage}` failed after {seconds:.1} s: {source}; rerun it alone: cargo xtask test --only {stage}")]
     Stage {

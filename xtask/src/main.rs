@@ -17,13 +17,10 @@ mod documents;
 mod error;
 mod examples;
 mod finding;
-mod fuzz;
-mod images;
 mod layers;
 mod lock;
 mod metadata;
 mod outcome;
-mod peers;
 mod process;
 mod protocol;
 mod python;
@@ -31,9 +28,7 @@ mod rebuilds;
 mod runner;
 mod sbom;
 mod schemas;
-mod side_by_side;
 mod size;
-mod soundness;
 mod sources;
 mod stage;
 mod tidy;
@@ -42,12 +37,9 @@ mod unreached;
 mod virtual_environment;
 mod workspace;
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use bench::Suite;
-use fuzz::Fuzz;
-use soundness::Tool;
 use stage::Stage;
 use workspace::Workspace;
 
@@ -61,25 +53,16 @@ Usage:
   cargo xtask schemas               rewrite schemas/*.json and docs/reference/*.md from the Rust types
   cargo xtask size                  write the counts of lines of code in SIZE.md anew
   cargo xtask docs                  the documentation of the crates, and the book of docs/ as target/book/index.html
-  cargo xtask images [--command FILE] [WORD]...
-                                    draw docs/images anew, or those whose names hold a WORD; FILE is a driftworld that is built
   cargo xtask protocol              rewrite unity/src/protocol.rs from unity/proto/*.proto
   cargo xtask advisories            check advisories, and write xtask/advisories-checked.txt
-  cargo xtask fuzz SECONDS [TARGET]...
-                                    look for input that breaks a law, so many seconds for each target; wants nightly Rust
   cargo xtask chaos [--quick] [--kills N] [--seed S] [--only KIND]
                                     the command under faults, for minutes (--quick: one): killed 1,000 times or N, system calls that
                                     fail, full disks, a clock that jumps, logs that go away, signals; KIND is kills, python,
                                     syscalls, disk, clock, folders or signals (may be given several times)
   cargo xtask dist                  what is handed out: the command with everything in, a wheel, of each a bill of materials (CycloneDX) and
                                     checksums; into target/dist-files
-  cargo xtask soundness [TOOL]      tests under Miri, AddressSanitizer and ThreadSanitizer, which need a nightly Rust; half an hour.
-                                    TOOL: miri, address, threads
   cargo xtask bench [NAME]          measure, optimised: all benches, or those of NAME (generator, similarity,
-                                    env, metrics, unity)
-  cargo xtask bench peers PYTHON SCRIPTS [JAXENSTEIN]
-                                    ours beside the peers that PYTHON has, by the scripts in a folder; JAXENSTEIN is a checkout of it;
-                                    draws docs/images/speed.svg";
+                                    env, metrics, unity)";
 
 /// What the arguments ask for.
 #[derive(Debug, PartialEq)]
@@ -91,20 +74,9 @@ enum Request {
     RewriteProtocol,
     RewriteSize,
     Advisories,
-    Images {
-        command: Option<PathBuf>,
-        words: Vec<String>,
-    },
     Dist,
-    Fuzz(Fuzz),
     Chaos(chaos::Options),
-    Soundness(Vec<Tool>),
     Bench(Vec<Suite>),
-    Peers {
-        python: String,
-        scripts: PathBuf,
-        jaxenstein: Option<PathBuf>,
-    },
 }
 
 fn main() -> ExitCode {
@@ -127,32 +99,10 @@ fn parse(arguments: &[String]) -> Result<Request, String> {
         ["schemas"] => Ok(Request::RewriteSchemas),
         ["protocol"] => Ok(Request::RewriteProtocol),
         ["size"] => Ok(Request::RewriteSize),
-        ["images", "--command", file, rest @ ..] => Ok(Request::Images {
-            command: Some(file.into()),
-            words: rest.iter().map(|word| (*word).to_owned()).collect(),
-        }),
-        ["images", rest @ ..] => Ok(Request::Images {
-            command: None,
-            words: rest.iter().map(|word| (*word).to_owned()).collect(),
-        }),
         ["advisories"] => Ok(Request::Advisories),
         ["dist"] => Ok(Request::Dist),
-        ["fuzz", rest @ ..] => Fuzz::parse(rest).map(Request::Fuzz),
         ["chaos", rest @ ..] => chaos::Options::parse(rest).map(Request::Chaos),
-        ["soundness"] => Ok(Request::Soundness(Tool::ALL.to_vec())),
-        ["soundness", name] => match Tool::from_name(name) {
-            Some(tool) => Ok(Request::Soundness(vec![tool])),
-            None => Err(format!(
-                "found unknown tool `{name}`, expected one of {}",
-                Tool::ALL.map(Tool::name).join(", ")
-            )),
-        },
         ["bench"] => Ok(Request::Bench(Suite::ALL.to_vec())),
-        ["bench", "peers", python, scripts, jaxenstein @ ..] if jaxenstein.len() <= 1 => Ok(Request::Peers {
-            python: (*python).to_owned(),
-            scripts: scripts.into(),
-            jaxenstein: jaxenstein.first().map(PathBuf::from),
-        }),
         ["bench", name] => match Suite::from_name(name) {
             Some(suite) => Ok(Request::Bench(vec![suite])),
             None => Err(format!(
@@ -212,20 +162,8 @@ fn execute(request: Request) -> ExitCode {
         Request::RewriteProtocol => Workspace::load().and_then(|workspace| protocol::rewrite(&workspace)),
         Request::RewriteSize => Workspace::load().and_then(|workspace| size::rewrite(&workspace)),
         Request::Chaos(options) => Workspace::load().and_then(|workspace| chaos::unleash(&workspace, &options)),
-        Request::Images { command, words } => {
-            Workspace::load().and_then(|workspace| images::draw(&workspace, command.as_deref(), &words))
-        }
         Request::Advisories => Workspace::load().and_then(|workspace| deny::write_down(&workspace)),
         Request::Dist => Workspace::load().and_then(|workspace| dist::make(&workspace)),
-        Request::Fuzz(wanted) => Workspace::load().and_then(|workspace| fuzz::search(&workspace, &wanted)),
-        Request::Soundness(tools) => Workspace::load().and_then(|workspace| soundness::check(&workspace, &tools)),
-        Request::Peers {
-            python,
-            scripts,
-            jaxenstein,
-        } => {
-            Workspace::load().and_then(|workspace| peers::measure(&workspace, &python, &scripts, jaxenstein.as_deref()))
-        }
         Request::Bench(suites) => Workspace::load().and_then(|workspace| bench::measure(&workspace, &suites)),
     };
     match outcome {
@@ -273,8 +211,6 @@ mod tests {
         check("--help", &Ok(Request::Help));
         check("bench generator", &Ok(Request::Bench(vec![Suite::Generator])));
         check("bench", &Ok(Request::Bench(Suite::ALL.to_vec())));
-        check("soundness miri", &Ok(Request::Soundness(vec![Tool::Miri])));
-        check("soundness", &Ok(Request::Soundness(Tool::ALL.to_vec())));
     }
 
     #[test]
@@ -286,7 +222,6 @@ mod tests {
         check("test --every", &Err("unknown argument `--every`"));
         check("test --only", &Err("without the name"));
         check("test --only bake", &Err("unknown stage `bake`"));
-        check("soundness sleep", &Err("unknown tool `sleep`, expected one of miri"));
         check("bench cakes", &Err("unknown bench `cakes`, expected one of generator"));
         check("test --list --only fmt", &Err("unknown argument `--list`"));
     }

@@ -26,17 +26,6 @@ pub(crate) fn bare(program: &str) -> Command {
     Command::new(program)
 }
 
-/// The Cargo of the nightly toolchain, which some tools need. By rustup's own command: the Cargo that started us knows
-/// no other toolchain than its own, and hands on the names of its compiler.
-pub(crate) fn nightly_cargo() -> Command {
-    let mut command = Command::new("rustup");
-    command.args(["run", "nightly", "cargo"]);
-    for variable in ["CARGO", "RUSTC", "RUSTUP_TOOLCHAIN"] {
-        command.env_remove(variable);
-    }
-    command
-}
-
 /// Prints the command, runs it with our own input and output, and fails when it does.
 pub(crate) fn run(mut command: Command) -> Result<(), XtaskError> {
     let shown = shown(&command);
