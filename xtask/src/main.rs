@@ -12,7 +12,6 @@ mod bench;
 mod book;
 mod chaos;
 mod deny;
-mod dist;
 mod documents;
 mod error;
 mod examples;
@@ -26,7 +25,6 @@ mod protocol;
 mod python;
 mod rebuilds;
 mod runner;
-mod sbom;
 mod schemas;
 mod size;
 mod sources;
@@ -59,8 +57,6 @@ Usage:
                                     the command under faults, for minutes (--quick: one): killed 1,000 times or N, system calls that
                                     fail, full disks, a clock that jumps, logs that go away, signals; KIND is kills, python,
                                     syscalls, disk, clock, folders or signals (may be given several times)
-  cargo xtask dist                  what is handed out: the command with everything in, a wheel, of each a bill of materials (CycloneDX) and
-                                    checksums; into target/dist-files
   cargo xtask bench [NAME]          measure, optimised: all benches, or those of NAME (generator, similarity,
                                     env, metrics, unity)";
 
@@ -74,7 +70,6 @@ enum Request {
     RewriteProtocol,
     RewriteSize,
     Advisories,
-    Dist,
     Chaos(chaos::Options),
     Bench(Vec<Suite>),
 }
@@ -100,7 +95,6 @@ fn parse(arguments: &[String]) -> Result<Request, String> {
         ["protocol"] => Ok(Request::RewriteProtocol),
         ["size"] => Ok(Request::RewriteSize),
         ["advisories"] => Ok(Request::Advisories),
-        ["dist"] => Ok(Request::Dist),
         ["chaos", rest @ ..] => chaos::Options::parse(rest).map(Request::Chaos),
         ["bench"] => Ok(Request::Bench(Suite::ALL.to_vec())),
         ["bench", name] => match Suite::from_name(name) {
@@ -163,7 +157,6 @@ fn execute(request: Request) -> ExitCode {
         Request::RewriteSize => Workspace::load().and_then(|workspace| size::rewrite(&workspace)),
         Request::Chaos(options) => Workspace::load().and_then(|workspace| chaos::unleash(&workspace, &options)),
         Request::Advisories => Workspace::load().and_then(|workspace| deny::write_down(&workspace)),
-        Request::Dist => Workspace::load().and_then(|workspace| dist::make(&workspace)),
         Request::Bench(suites) => Workspace::load().and_then(|workspace| bench::measure(&workspace, &suites)),
     };
     match outcome {
@@ -206,7 +199,6 @@ mod tests {
         );
         check("test", &Ok(Request::Run(Stage::quick().to_vec())));
         check("test --all", &Ok(Request::Run(Stage::ALL.to_vec())));
-        check("dist", &Ok(Request::Dist));
         check("test --list", &Ok(Request::List));
         check("--help", &Ok(Request::Help));
         check("bench generator", &Ok(Request::Bench(vec![Suite::Generator])));

@@ -144,14 +144,6 @@ impl VirtualEnvironment {
         command
     }
 
-    /// The folders of a `PATH` with that of the environment's programs in front.
-    pub(crate) fn path_before(&self, path: &std::ffi::OsStr) -> std::ffi::OsString {
-        let programs = self.program("python").parent().map(Path::to_owned);
-        let folders = programs.into_iter().chain(env::split_paths(path));
-        // Folders that a `PATH` held can be joined to one again.
-        env::join_paths(folders).unwrap_or_else(|_| path.to_owned())
-    }
-
     /// A program that one of its packages brought.
     pub(crate) fn program(&self, name: &str) -> PathBuf {
         let programs = if cfg!(windows) { "Scripts" } else { "bin" };
