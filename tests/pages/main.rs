@@ -47,11 +47,7 @@ pages! {
 /// Blocks of commands marked `by-hand`: how many a page has, and who runs them if not this test.
 const BY_HAND: &[(&str, usize, &str)] = &[
     ("README.md", 2, ".ci/run, and the stage `wheel`"),
-    (
-        "docs/benchmarks.md",
-        8,
-        "benches: `cargo xtask bench` and the stage `benches`",
-    ),
+    ("docs/benchmarks.md", 8, "benches: the stage `benches`"),
     ("docs/curricula.md", 1, "half a minute, and tests of `curriculum`"),
     ("docs/first-hour.md", 1, "how the command is installed"),
     ("docs/l2explorer.md", 5, "the stage `unity`, with the published clients"),

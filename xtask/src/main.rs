@@ -8,7 +8,6 @@
 )]
 
 mod advisories;
-mod bench;
 mod book;
 mod chaos;
 mod deny;
@@ -37,7 +36,6 @@ mod workspace;
 
 use std::process::ExitCode;
 
-use bench::Suite;
 use stage::Stage;
 use workspace::Workspace;
 
@@ -56,9 +54,7 @@ Usage:
   cargo xtask chaos [--quick] [--kills N] [--seed S] [--only KIND]
                                     the command under faults, for minutes (--quick: one): killed 1,000 times or N, system calls that
                                     fail, full disks, a clock that jumps, logs that go away, signals; KIND is kills, python,
-                                    syscalls, disk, clock, folders or signals (may be given several times)
-  cargo xtask bench [NAME]          measure, optimised: all benches, or those of NAME (generator, similarity,
-                                    env, metrics, unity)";
+                                    syscalls, disk, clock, folders or signals (may be given several times)";
 
 /// What the arguments ask for.
 #[derive(Debug, PartialEq)]
@@ -71,7 +67,6 @@ enum Request {
     RewriteSize,
     Advisories,
     Chaos(chaos::Options),
-    Bench(Vec<Suite>),
 }
 
 fn main() -> ExitCode {
@@ -96,14 +91,6 @@ fn parse(arguments: &[String]) -> Result<Request, String> {
         ["size"] => Ok(Request::RewriteSize),
         ["advisories"] => Ok(Request::Advisories),
         ["chaos", rest @ ..] => chaos::Options::parse(rest).map(Request::Chaos),
-        ["bench"] => Ok(Request::Bench(Suite::ALL.to_vec())),
-        ["bench", name] => match Suite::from_name(name) {
-            Some(suite) => Ok(Request::Bench(vec![suite])),
-            None => Err(format!(
-                "found unknown bench `{name}`, expected one of {}",
-                Suite::ALL.map(Suite::name).join(", ")
-            )),
-        },
         ["test", "--list"] => Ok(Request::List),
         ["test"] => Ok(Request::Run(Stage::quick().to_vec())),
         ["test", "--all"] => Ok(Request::Run(Stage::ALL.to_vec())),
@@ -157,7 +144,6 @@ fn execute(request: Request) -> ExitCode {
         Request::RewriteSize => Workspace::load().and_then(|workspace| size::rewrite(&workspace)),
         Request::Chaos(options) => Workspace::load().and_then(|workspace| chaos::unleash(&workspace, &options)),
         Request::Advisories => Workspace::load().and_then(|workspace| deny::write_down(&workspace)),
-        Request::Bench(suites) => Workspace::load().and_then(|workspace| bench::measure(&workspace, &suites)),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
@@ -201,8 +187,6 @@ mod tests {
         check("test --all", &Ok(Request::Run(Stage::ALL.to_vec())));
         check("test --list", &Ok(Request::List));
         check("--help", &Ok(Request::Help));
-        check("bench generator", &Ok(Request::Bench(vec![Suite::Generator])));
-        check("bench", &Ok(Request::Bench(Suite::ALL.to_vec())));
     }
 
     #[test]
@@ -214,7 +198,6 @@ mod tests {
         check("test --every", &Err("unknown argument `--every`"));
         check("test --only", &Err("without the name"));
         check("test --only bake", &Err("unknown stage `bake`"));
-        check("bench cakes", &Err("unknown bench `cakes`, expected one of generator"));
         check("test --list --only fmt", &Err("unknown argument `--list`"));
     }
 }

@@ -166,7 +166,7 @@ impl Stage {
                 book::build(workspace).map(Outcome::PassedWith)
             }
             Self::Examples => examples::stage(workspace).map(Outcome::PassedWith),
-            Self::Benches => bench::stage(workspace).map(|()| Outcome::Passed),
+            Self::Benches => passed(&[&["test", "--bench", "*", "--quiet"], &AS_TESTED[..]].concat()),
             Self::Schemas => schemas::check(workspace).map(|()| Outcome::Passed),
             Self::Documents => documents::stage(workspace),
             Self::Wheel => python::wheel(workspace),
