@@ -7,9 +7,7 @@ use crate::error::XtaskError;
 use crate::outcome::Outcome;
 use crate::process::{AS_TESTED, cargo, run};
 use crate::workspace::Workspace;
-use crate::{
-    bench, book, deny, documents, examples, layers, protocol, python, rebuilds, runner, schemas, size, tidy, unity,
-};
+use crate::{book, deny, documents, examples, layers, protocol, python, rebuilds, runner, schemas, size, tidy, unity};
 
 /// One step of `cargo xtask test`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
