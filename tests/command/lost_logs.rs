@@ -1,7 +1,7 @@
 //! A log that is removed, renamed, replaced or cut while `run` writes it: the run ends with exit code 1 and says what
 //! is lost.
 //!
-//! What the writer of logs does by itself is tested in its room; runs are hit at random moments by `cargo xtask chaos`.
+//! What the writer of logs does by itself is tested in its room; runs are hit at random moments in `faults.rs`.
 #![cfg(unix)]
 
 use std::fs;

@@ -10,6 +10,7 @@ mod distance_findings;
 mod distances;
 mod elements;
 mod endings;
+mod faults;
 mod first_hour;
 mod general;
 mod half_written;

@@ -1,6 +1,5 @@
 //! A signal ends a command wherever it is, also where it waits for somebody who never comes, and a shell sees the same exit
-//! code of all: 130 for an interrupt. How soon,
-//! `cargo xtask chaos` measures; here a command that does not end lets the test run into its limit.
+//! code of all: 130 for an interrupt. A command that does not end lets the test run into its limit.
 #![cfg(unix)]
 
 use std::fs;

@@ -9,7 +9,6 @@
 
 mod advisories;
 mod book;
-mod chaos;
 mod deny;
 mod documents;
 mod error;
@@ -50,11 +49,7 @@ Usage:
   cargo xtask size                  write the counts of lines of code in SIZE.md anew
   cargo xtask docs                  the documentation of the crates, and the book of docs/ as target/book/index.html
   cargo xtask protocol              rewrite unity/src/protocol.rs from unity/proto/*.proto
-  cargo xtask advisories            check advisories, and write xtask/advisories-checked.txt
-  cargo xtask chaos [--quick] [--kills N] [--seed S] [--only KIND]
-                                    the command under faults, for minutes (--quick: one): killed 1,000 times or N, system calls that
-                                    fail, full disks, a clock that jumps, logs that go away, signals; KIND is kills, python,
-                                    syscalls, disk, clock, folders or signals (may be given several times)";
+  cargo xtask advisories            check advisories, and write xtask/advisories-checked.txt";
 
 /// What the arguments ask for.
 #[derive(Debug, PartialEq)]
@@ -66,7 +61,6 @@ enum Request {
     RewriteProtocol,
     RewriteSize,
     Advisories,
-    Chaos(chaos::Options),
 }
 
 fn main() -> ExitCode {
@@ -90,7 +84,6 @@ fn parse(arguments: &[String]) -> Result<Request, String> {
         ["protocol"] => Ok(Request::RewriteProtocol),
         ["size"] => Ok(Request::RewriteSize),
         ["advisories"] => Ok(Request::Advisories),
-        ["chaos", rest @ ..] => chaos::Options::parse(rest).map(Request::Chaos),
         ["test", "--list"] => Ok(Request::List),
         ["test"] => Ok(Request::Run(Stage::quick().to_vec())),
         ["test", "--all"] => Ok(Request::Run(Stage::ALL.to_vec())),
@@ -142,7 +135,6 @@ fn execute(request: Request) -> ExitCode {
         Request::RewriteSchemas => Workspace::load().and_then(|workspace| schemas::rewrite(&workspace)),
         Request::RewriteProtocol => Workspace::load().and_then(|workspace| protocol::rewrite(&workspace)),
         Request::RewriteSize => Workspace::load().and_then(|workspace| size::rewrite(&workspace)),
-        Request::Chaos(options) => Workspace::load().and_then(|workspace| chaos::unleash(&workspace, &options)),
         Request::Advisories => Workspace::load().and_then(|workspace| deny::write_down(&workspace)),
     };
     match outcome {

@@ -1,0 +1,247 @@
+//! Runs that are killed, stopped by signals or out of room at random moments: they continue to the bytes of a run that nothing
+//! happened to. Other commands leave what was there as it was.
+//!
+//! `DRIFTWORLD_FAULTS` sets how many faults runs meet, `DRIFTWORLD_FAULTS_SEED` which.
+#![cfg(unix)]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::os::unix::process::ExitStatusExt;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use crate::run_files::{is_table, write};
+use crate::terminal::{driftworld_in, output, root, scratch, signals, succeed_in, text};
+
+/// Most faults in one lifetime: then it is left alone.
+const MOST: u64 = 12;
+
+/// All rows get this time, so that logs can be compared to the byte.
+const CLOCK: (&str, &str) = ("DRIFTWORLD_CLOCK", "2026-01-31T12:00:00Z");
+
+/// Random numbers, by `SplitMix64`.
+struct Rng(u64);
+
+impl Rng {
+    fn below(&mut self, end: u64) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        (mixed ^ (mixed >> 31)) % end
+    }
+}
+
+fn setting(name: &str, default: u64) -> u64 {
+    let set = std::env::var(name).ok();
+    set.map_or(default, |text| {
+        text.parse()
+            .unwrap_or_else(|_| panic!("{name}: found `{text}`, expected a number"))
+    })
+}
+
+/// All files below a folder; none where there is no folder.
+fn bytes_below(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next).into_iter().flatten().flatten() {
+            let path = entry.path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if let Ok(bytes) = fs::read(&path) {
+                found.insert(path.display().to_string().replace(text(folder), ""), bytes);
+            }
+        }
+    }
+    found
+}
+
+/// The command with files of so many half kilobytes at most. More is an error, as on a full disk, not a signal.
+fn with_room(folder: &Path, half_kilobytes: u64, arguments: &[&str]) -> Command {
+    let mut command = Command::new("sh");
+    command.args(["-c", "trap '' XFSZ; ulimit -f \"$0\"; exec \"$@\""]);
+    command
+        .arg(half_kilobytes.to_string())
+        .arg(env!("CARGO_BIN_EXE_driftworld"));
+    command.args(arguments).current_dir(folder).env(CLOCK.0, CLOCK.1);
+    command
+}
+
+/// Whether it ended well, or with exit code 1 and a message.
+fn is_orderly(ended: &Output) -> bool {
+    let error = String::from_utf8_lossy(&ended.stderr);
+    let code = ended.status.code();
+    !error.contains("panicked") && (code == Some(0) || code == Some(1) && error.contains("error: "))
+}
+
+/// A lifetime of three blocks.
+fn scenario(folder: &Path) {
+    let regime = |variant: &str, count: u64| {
+        format!(
+            r#"{{ "task": "find_objects", "variant": "{variant}", "count": {count}, "seed": 5, "max_steps": 120 }}"#
+        )
+    };
+    let (blue, red, learned) = (regime("blue", 4), regime("red", 4), regime("red", 15));
+    let scenario = format!(
+        r#"{{ "name": "faults", "blocks": [
+            {{ "type": "evaluation", "regimes": [{blue}, {red}] }},
+            {{ "type": "learning", "regimes": [{learned}] }},
+            {{ "type": "evaluation", "regimes": [{blue}, {red}] }} ] }}"#
+    );
+    write(&folder.join("scenario.json"), &scenario);
+}
+
+/// Starts a run, or continues it, lets one fault happen to it, and says whether it ended before.
+fn meet_a_fault(folder: &Path, arguments: &[&str], took: Duration, size: u64, rng: &mut Rng) -> bool {
+    let kind = rng.below(4);
+    if kind == 0 {
+        let ended = output(&mut with_room(folder, 1 + rng.below(size / 512 + 1), arguments));
+        let error = String::from_utf8_lossy(&ended.stderr).into_owned();
+        assert!(is_orderly(&ended), "{}: {error}", ended.status);
+        assert!(ended.status.success() || error.contains("File too large"), "{error}");
+        let tables = bytes_below(&folder.join("log"))
+            .into_iter()
+            .filter(|(name, _)| is_table(name));
+        let torn: Vec<_> = tables.filter(|(_, bytes)| bytes.last() != Some(&b'\n')).collect();
+        assert_eq!(torn, [], "half a row stays");
+        return ended.status.success();
+    }
+    let mut command = driftworld_in(folder, arguments);
+    command
+        .env(CLOCK.0, CLOCK.1)
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped());
+    let child = command.spawn().expect("the command starts");
+    thread::sleep(took.mul_f64(rng.below(1000) as f64 / 800.0));
+    let signals: Vec<_> = signals().chain([("-KILL", 9), ("-KILL", 9), ("-KILL", 9)]).collect();
+    let (signal, number) = signals[rng.below(signals.len() as u64) as usize];
+    // Fails where the run has ended.
+    let _ = Command::new("kill")
+        .args([signal, &child.id().to_string()])
+        .stderr(Stdio::null())
+        .status();
+    let ended = child.wait_with_output().expect("it ends");
+    let error = String::from_utf8_lossy(&ended.stderr).into_owned();
+    let is_stopped = ended.status.signal() == Some(number) || ended.status.code() == Some(128 + number);
+    assert!(
+        is_stopped || ended.status.success(),
+        "{signal}: {}: {error}",
+        ended.status
+    );
+    assert!(!error.contains("panicked"), "{signal}: {error}");
+    !is_stopped
+}
+
+#[test]
+fn disturbed_runs_continue_to_the_same_bytes() {
+    let seed = setting("DRIFTWORLD_FAULTS_SEED", 2026);
+    let mut rng = Rng(seed);
+    let is_full = std::env::var_os("DRIFTWORLD_FULL").is_some();
+    let mut left = setting("DRIFTWORLD_FAULTS", if is_full { 30 } else { 10 });
+    let folder = scratch();
+    let folder = folder.path();
+    scenario(folder);
+    let mut undisturbed = BTreeMap::new();
+    while left > 0 {
+        let agent = ["random", "onrails"][rng.below(2) as usize];
+        let jobs = ["1", "2", "4"][rng.below(3) as usize];
+        let run = |log: &'static str| {
+            [
+                "run",
+                "scenario.json",
+                "--agent",
+                agent,
+                "--resume",
+                "--jobs",
+                jobs,
+                "--output",
+                log,
+            ]
+        };
+        let (expected, took) = undisturbed.entry(agent).or_insert_with(|| {
+            let start = Instant::now();
+            let done = output(driftworld_in(folder, &run("undisturbed")).env(CLOCK.0, CLOCK.1));
+            assert!(done.status.success());
+            let files = bytes_below(&folder.join("undisturbed"));
+            fs::remove_dir_all(folder.join("undisturbed")).expect("it was written");
+            (files, start.elapsed())
+        });
+        let largest = expected.values().map(Vec::len).max().unwrap_or_default() as u64;
+        for _ in 0..MOST.min(left) {
+            if meet_a_fault(folder, &run("log"), *took, largest, &mut rng) {
+                break;
+            }
+            left -= 1;
+        }
+        let last = output(driftworld_in(folder, &run("log")).env(CLOCK.0, CLOCK.1));
+        let error = String::from_utf8_lossy(&last.stderr);
+        assert!(last.status.success(), "seed {seed}, {left} faults left: {error}");
+        let found = bytes_below(&folder.join("log"));
+        let names = found.keys().chain(expected.keys());
+        let differing: Vec<&String> = names.filter(|name| found.get(*name) != expected.get(*name)).collect();
+        assert_eq!(
+            differing, [""; 0],
+            "seed {seed}, {left} faults left, {agent}, {jobs} jobs"
+        );
+        fs::remove_dir_all(folder.join("log")).expect("it was written");
+    }
+}
+
+#[test]
+fn without_room_files_stay_as_they_were() {
+    let folder = scratch();
+    let folder = folder.path();
+    scenario(folder);
+    succeed_in(
+        folder,
+        &["run", "scenario.json", "--agent", "random", "--output", "log"],
+    );
+    for (line, name) in [
+        (
+            "sample find_objects#red --count 60 --jsonl -o out/worlds.jsonl",
+            "worlds.jsonl",
+        ),
+        ("sample find_objects#red -o out/world.json", "world.json"),
+        ("order find_objects --matrix out/matrix.csv", "matrix.csv"),
+        (
+            "curriculum find_objects#red find_objects#blue -o out/scenario.json",
+            "scenario.json",
+        ),
+        ("sheet find_objects#red --size 32 -o out/sheet.png", "sheet.png"),
+        ("logs aggregate log -o out/rows.tsv", "rows.tsv"),
+        ("metrics log --output-dir out --output scores", "scores.json"),
+        ("report log -o out/page.html", "page.html"),
+    ] {
+        let arguments: Vec<&str> = line.split(' ').collect();
+        let path = folder.join("out").join(name);
+        write(&path, "older");
+        let before = bytes_below(&folder.join("out"));
+        let ended = output(&mut with_room(folder, 0, &arguments));
+        let error = String::from_utf8_lossy(&ended.stderr).into_owned();
+        assert_eq!(ended.status.code(), Some(1), "{line}: {error}");
+        assert!(
+            is_orderly(&ended) && error.contains("File too large"),
+            "{line}: {error}"
+        );
+        assert_eq!(bytes_below(&folder.join("out")), before, "{line}");
+        succeed_in(folder, &arguments);
+        assert_ne!(bytes_below(&folder.join("out")), before, "{line}");
+        fs::remove_dir_all(folder.join("out")).expect("it was written");
+    }
+}
+
+#[test]
+fn a_full_device_is_an_error() {
+    for line in [
+        "sample find_objects#red --count 60 --jsonl -o /dev/full",
+        "sheet find_objects#red --size 32 -o /dev/full",
+    ] {
+        let arguments: Vec<&str> = line.split(' ').collect();
+        let ended = output(&mut driftworld_in(root(), &arguments));
+        let error = String::from_utf8_lossy(&ended.stderr).into_owned();
+        assert_eq!(ended.status.code(), Some(1), "{line}: {error}");
+        assert!(is_orderly(&ended) && error.contains("No space left"), "{line}: {error}");
+    }
+}
