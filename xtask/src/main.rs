@@ -1,195 +1,164 @@
-//! The developer commands: `cargo xtask test`, each of its stages alone, `cargo xtask schemas`.
-//!
-//! This file reads the arguments and sets the exit status; what a stage does stands in the file named after it.
+//! The developer commands: `cargo xtask test`, each of its stages alone, and what writes generated files.
 #![expect(
     clippy::print_stdout,
     clippy::print_stderr,
     reason = "a command line speaks through its terminal"
 )]
 
-mod advisories;
-mod book;
-mod deny;
-mod documents;
-mod error;
 mod examples;
-mod finding;
-mod layers;
-mod lock;
-mod metadata;
-mod outcome;
+mod fences;
 mod process;
 mod protocol;
 mod python;
 mod rebuilds;
+mod rooms;
 mod runner;
 mod schemas;
 mod size;
 mod sources;
 mod stage;
-mod tidy;
 mod unity;
 mod unreached;
-mod virtual_environment;
-mod workspace;
 
+use std::env;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
-use stage::Stage;
-use workspace::Workspace;
+use process::{Result, Workspace, output};
+use serde_json::Value;
+use stage::{STAGES, Stage};
 
 const USAGE: &str = "\
 Usage:
   cargo xtask test                  what a change has to pass: the quick stages, in order, up to the first that fails
-  cargo xtask test --all            these, and those that want a graphics driver, several Pythons or large packages
-  cargo xtask test --only STAGE     one stage (may be given several times)
-  cargo xtask test --list           the stages and what each holds
-  cargo xtask STAGE                 the same as `test --only STAGE`, but for `schemas`, `protocol` and `size`
-  cargo xtask schemas               rewrite schemas/*.json and docs/reference/*.md from the Rust types
+  cargo xtask test --all            all stages, with all features and tests at full size: CI runs this
+  cargo xtask test --only STAGE     one stage (may be given several times, and with --all)
+  cargo xtask test --list           the stages and what each checks
+  cargo xtask STAGE                 the same as `test --only STAGE`, except for the three below
+  cargo xtask schemas               write schemas/*.json and docs/reference/*.md anew from the Rust types
+  cargo xtask protocol              write unity/src/protocol.rs anew from unity/proto/*.proto
   cargo xtask size                  write the counts of lines of code in SIZE.md anew
-  cargo xtask docs                  the documentation of the crates, and the book of docs/ as target/book/index.html
-  cargo xtask protocol              rewrite unity/src/protocol.rs from unity/proto/*.proto
-  cargo xtask advisories            check advisories, and write xtask/advisories-checked.txt";
 
-/// What the arguments ask for.
-#[derive(Debug, PartialEq)]
-enum Request {
-    Help,
-    List,
-    Run(Vec<Stage>),
-    RewriteSchemas,
-    RewriteProtocol,
-    RewriteSize,
-    Advisories,
-}
+CONTRIBUTING.md has the commands for benches, fuzzing, sanitizers, pictures and releases.";
 
 fn main() -> ExitCode {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    match parse(&arguments) {
-        Ok(request) => execute(request),
-        Err(complaint) => {
-            eprintln!("xtask: {complaint}\n\n{USAGE}");
-            ExitCode::from(2)
-        }
-    }
-}
-
-/// Turns the arguments (without the program's name) into a request, or says which of them it does not know.
-fn parse(arguments: &[String]) -> Result<Request, String> {
+    let arguments: Vec<String> = env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    match words.as_slice() {
-        [] => Err("found no command".into()),
-        ["-h" | "--help" | "help", ..] => Ok(Request::Help),
-        ["schemas"] => Ok(Request::RewriteSchemas),
-        ["protocol"] => Ok(Request::RewriteProtocol),
-        ["size"] => Ok(Request::RewriteSize),
-        ["advisories"] => Ok(Request::Advisories),
-        ["test", "--list"] => Ok(Request::List),
-        ["test"] => Ok(Request::Run(Stage::quick().to_vec())),
-        ["test", "--all"] => Ok(Request::Run(Stage::ALL.to_vec())),
-        ["test", rest @ ..] => parse_only(rest).map(Request::Run),
-        [name] => parse_stage(name).map(|stage| Request::Run(vec![stage])),
-        [name, extra, ..] => match Stage::from_name(name) {
-            Some(_) => Err(format!("found `{extra}` after `{name}`, which takes no arguments")),
-            None => Err(format!("found unknown command `{name}`")),
-        },
-    }
-}
-
-fn parse_only(words: &[&str]) -> Result<Vec<Stage>, String> {
-    let mut stages = Vec::new();
-    let mut words = words.iter();
-    while let Some(word) = words.next() {
-        match (*word, words.next()) {
-            ("--only", Some(name)) => stages.push(parse_stage(name)?),
-            ("--only", None) => return Err("found `--only` without the name of a stage".into()),
-            (other, _) => return Err(format!("found unknown argument `{other}`")),
-        }
-    }
-    Ok(stages)
-}
-
-fn parse_stage(name: &str) -> Result<Stage, String> {
-    let known = || Stage::ALL.map(Stage::name).join(", ");
-    Stage::from_name(name).ok_or_else(|| format!("found unknown stage `{name}`, expected one of {}", known()))
-}
-
-fn execute(request: Request) -> ExitCode {
-    let outcome = match request {
-        Request::Help => {
+    let done = match words[..] {
+        ["-h" | "--help" | "help"] => {
             println!("{USAGE}");
-            return ExitCode::SUCCESS;
+            Ok(())
         }
-        Request::List => {
-            for stage in Stage::ALL {
-                let tier = if Stage::quick().contains(&stage) {
-                    ""
-                } else {
-                    " (--all)"
-                };
-                println!("{:<9} {}{tier}", stage.name(), stage.about());
+        ["test", "--list"] => {
+            stage::list();
+            Ok(())
+        }
+        ["schemas"] => workspace(false).and_then(|workspace| schemas::rewrite(&workspace)),
+        ["protocol"] => workspace(false).and_then(|workspace| protocol::rewrite(&workspace)),
+        ["size"] => workspace(false).and_then(|workspace| size::rewrite(&workspace)),
+        _ => match parse(&words) {
+            Ok((stages, is_full)) => workspace(is_full).and_then(|workspace| stage::run_all(&workspace, &stages)),
+            Err(complaint) => {
+                eprintln!("xtask: {complaint}\n\n{USAGE}");
+                return ExitCode::from(2);
             }
-            return ExitCode::SUCCESS;
-        }
-        Request::Run(stages) => Workspace::load().and_then(|workspace| stage::run_all(&workspace, &stages)),
-        Request::RewriteSchemas => Workspace::load().and_then(|workspace| schemas::rewrite(&workspace)),
-        Request::RewriteProtocol => Workspace::load().and_then(|workspace| protocol::rewrite(&workspace)),
-        Request::RewriteSize => Workspace::load().and_then(|workspace| size::rewrite(&workspace)),
-        Request::Advisories => Workspace::load().and_then(|workspace| deny::write_down(&workspace)),
+        },
     };
-    match outcome {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("xtask: {error}");
-            ExitCode::FAILURE
+    if let Err(error) = done {
+        eprintln!("xtask: {error}");
+        return ExitCode::FAILURE;
+    }
+    ExitCode::SUCCESS
+}
+
+/// The stages that the arguments name, and whether `--all` is among these.
+fn parse(words: &[&str]) -> Result<(Vec<&'static Stage>, bool)> {
+    let named = |name: &str| {
+        let known = || STAGES.map(|stage| stage.name).join(", ");
+        let stage = STAGES.iter().find(|stage| stage.name == name);
+        stage.ok_or_else(|| format!("found unknown stage `{name}`, expected one of {}", known()))
+    };
+    let mut words = match words {
+        [] => return Err("found no command".into()),
+        ["test", rest @ ..] => rest.iter(),
+        [name] => return Ok((vec![named(name)?], false)),
+        [name, ..] => return Err(format!("found arguments after `{name}`, which takes none")),
+    };
+    let (mut only, mut is_full) = (Vec::new(), false);
+    while let Some(word) = words.next() {
+        match *word {
+            "--all" => is_full = true,
+            "--only" => only.push(named(
+                words.next().ok_or("found `--only` without the name of a stage")?,
+            )?),
+            other => return Err(format!("found unknown argument `{other}`")),
         }
     }
+    if only.is_empty() {
+        only = STAGES.iter().filter(|stage| is_full || stage.is_quick).collect();
+    }
+    Ok((only, is_full))
+}
+
+fn workspace(is_full: bool) -> Result<Workspace> {
+    let metadata = metadata()?;
+    let folder = |key: &str| PathBuf::from(metadata[key].as_str().unwrap_or_default());
+    Ok(Workspace {
+        root: folder("workspace_root"),
+        target: folder("target_directory"),
+        is_full,
+    })
+}
+
+/// What Cargo says of the workspace around the current folder. Dependencies are not resolved, so no network is needed.
+fn metadata() -> Result<Value> {
+    let mut cargo = std::process::Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.args(["metadata", "--no-deps", "--format-version", "1"]);
+    serde_json::from_str(&output(cargo)?).map_err(|error| format!("`cargo metadata` was not understood: {error}"))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn check(words: &str, expected: &Result<Request, &str>) {
-        let arguments: Vec<String> = words.split_whitespace().map(String::from).collect();
-        let found = parse(&arguments);
+    fn check(words: &str, expected: std::result::Result<(&[&str], bool), &str>) {
+        let words: Vec<&str> = words.split_whitespace().collect();
+        let found =
+            parse(&words).map(|(stages, is_full)| (stages.iter().map(|stage| stage.name).collect::<Vec<_>>(), is_full));
         match (&found, expected) {
-            (Err(complaint), Err(part)) => assert!(complaint.contains(part), "{words}: {complaint}"),
-            _ => assert_eq!(found.as_ref().ok(), expected.as_ref().ok(), "{words}: {found:?}"),
+            (Err(complaint), Err(part)) => assert!(complaint.contains(part), "{words:?}: {complaint}"),
+            _ => assert_eq!(
+                found,
+                expected
+                    .map(|(names, is_full)| (names.to_vec(), is_full))
+                    .map_err(str::to_owned)
+            ),
         }
     }
 
     #[test]
-    fn every_stage_can_be_asked_for_alone() {
-        for stage in Stage::ALL {
-            check(&format!("test --only {}", stage.name()), &Ok(Request::Run(vec![stage])));
-            let bare = match stage {
-                Stage::Schemas => Request::RewriteSchemas,
-                Stage::Protocol => Request::RewriteProtocol,
-                Stage::Size => Request::RewriteSize,
-                _ => Request::Run(vec![stage]),
-            };
-            check(stage.name(), &Ok(bare));
-        }
-        check(
-            "test --only fmt --only deny",
-            &Ok(Request::Run(vec![Stage::Fmt, Stage::Deny])),
+    fn stages_are_asked_for_alone_or_together() {
+        let (all, quick): (Vec<_>, Vec<_>) = (
+            STAGES.iter().map(|stage| stage.name).collect(),
+            STAGES
+                .iter()
+                .filter(|stage| stage.is_quick)
+                .map(|stage| stage.name)
+                .collect(),
         );
-        check("test", &Ok(Request::Run(Stage::quick().to_vec())));
-        check("test --all", &Ok(Request::Run(Stage::ALL.to_vec())));
-        check("test --list", &Ok(Request::List));
-        check("--help", &Ok(Request::Help));
+        check("test", Ok((&quick, false)));
+        check("test --all", Ok((&all, true)));
+        check("fmt", Ok((&["fmt"], false)));
+        check("test --only fmt --only deny", Ok((&["fmt", "deny"], false)));
+        check("test --all --only tests", Ok((&["tests"], true)));
     }
 
     #[test]
-    fn what_is_not_known_is_named() {
-        check("", &Err("no command"));
-        check("bake", &Err("unknown stage `bake`, expected one of fmt, layers"));
-        check("bake bread", &Err("unknown command `bake`"));
-        check("fmt now", &Err("`now` after `fmt`"));
-        check("test --every", &Err("unknown argument `--every`"));
-        check("test --only", &Err("without the name"));
-        check("test --only bake", &Err("unknown stage `bake`"));
-        check("test --list --only fmt", &Err("unknown argument `--list`"));
+    fn unknown_words_are_named() {
+        check("", Err("no command"));
+        check("bake", Err("unknown stage `bake`, expected one of fmt, clippy"));
+        check("fmt now", Err("arguments after `fmt`"));
+        check("test --every", Err("unknown argument `--every`"));
+        check("test --only", Err("without the name"));
     }
 }

@@ -1,107 +1,92 @@
-//! Starts other programs and turns their exit status into an error. Which programs, the stages say.
+//! Runs other programs. An error is a sentence that names the command and how it ended.
 
 use std::env;
+use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 
-use crate::error::XtaskError;
-use crate::workspace::Workspace;
+/// An error is printed and ends the command; nothing else is done with it.
+pub(crate) type Result<T = ()> = std::result::Result<T, String>;
 
-/// What is built for tests: everything but the renderer for graphics cards, whose driver and whose crates few have.
-pub(crate) const AS_TESTED: [&str; 3] = ["--workspace", "--features", "gltf,line-editor,parquet"];
-
-/// The Cargo that started us, in the workspace's root, with these arguments.
-pub(crate) fn cargo(workspace: &Workspace, arguments: &[&str]) -> Command {
-    let mut command = bare_cargo();
-    command.current_dir(&workspace.root).args(arguments);
-    command
+/// The checkout that xtask was called in.
+pub(crate) struct Workspace {
+    /// The folder of the root `Cargo.toml`.
+    pub(crate) root: PathBuf,
+    /// Cargo's build folder.
+    pub(crate) target: PathBuf,
+    /// Whether everything is checked, with all features and at full size, as `--all` asks.
+    pub(crate) is_full: bool,
 }
 
-/// The Cargo that started us.
-pub(crate) fn bare_cargo() -> Command {
-    Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
-}
+impl Workspace {
+    /// `cargo` with these arguments, in the root.
+    pub(crate) fn cargo(&self, arguments: &[&str]) -> Command {
+        let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        self.program(cargo.as_ref(), arguments)
+    }
 
-/// A program by its name.
-pub(crate) fn bare(program: &str) -> Command {
-    Command::new(program)
+    /// `cargo` over all crates with one set of features, so that no stage builds what another has built.
+    pub(crate) fn cargo_everywhere(&self, arguments: &[&str]) -> Command {
+        let mut command = self.cargo(arguments);
+        command.arg("--workspace");
+        if self.is_full {
+            command.args(["--features", "full"]);
+        }
+        command
+    }
+
+    /// A program with these arguments, in the root.
+    pub(crate) fn program(&self, program: &Path, arguments: &[&str]) -> Command {
+        let mut command = Command::new(program);
+        command.args(arguments).current_dir(&self.root);
+        command
+    }
 }
 
 /// Prints the command, runs it with our own input and output, and fails when it does.
-pub(crate) fn run(mut command: Command) -> Result<(), XtaskError> {
-    let shown = shown(&command);
-    println!("$ {shown}");
-    let status = command.status().map_err(|source| not_started(&command, source))?;
-    succeeded(&shown, status)
+pub(crate) fn run(mut command: Command) -> Result {
+    println!("$ {}", shown(&command));
+    let status = command.status();
+    ended(&command, status)
 }
 
-/// Whether the command can be started and ends well; what it prints is thrown away.
+/// Whether the command starts and ends well; its output is thrown away.
 pub(crate) fn works(mut command: Command) -> bool {
     let quiet = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     quiet.status().is_ok_and(|status| status.success())
 }
 
-/// The error for a command that the system would not start.
-pub(crate) fn not_started(command: &Command, source: std::io::Error) -> XtaskError {
-    XtaskError::NotStarted {
-        command: shown(command),
-        program: program(command),
-        source,
-    }
+/// What the command prints; its errors go to ours.
+pub(crate) fn output(mut command: Command) -> Result<String> {
+    let done = command.stderr(Stdio::inherit()).output();
+    let text = done.as_ref().map_or_else(
+        |_| String::new(),
+        |done| String::from_utf8_lossy(&done.stdout).into_owned(),
+    );
+    ended(&command, done.map(|done| done.status)).map(|()| text)
 }
 
 /// `Ok` for exit status 0.
-pub(crate) fn succeeded(command: &str, status: ExitStatus) -> Result<(), XtaskError> {
-    if status.success() {
-        Ok(())
-    } else {
-        Err(XtaskError::Failed {
-            command: command.to_owned(),
-            status,
-        })
+pub(crate) fn ended(command: &Command, status: std::io::Result<ExitStatus>) -> Result {
+    match status {
+        Ok(status) if status.success() => Ok(()),
+        Ok(status) => Err(format!("`{}` ended with {status}", shown(command))),
+        Err(error) => Err(format!("`{}` could not be started: {error}", shown(command))),
     }
 }
 
 /// The command as a user would type it: variables, program, arguments.
-pub(crate) fn shown(command: &Command) -> String {
-    let variables = command.get_envs().filter_map(|(name, value)| {
-        value.map(|value| format!("{}='{}'", name.to_string_lossy(), value.to_string_lossy()))
-    });
-    let arguments = command
-        .get_args()
-        .map(|argument| argument.to_string_lossy().into_owned());
-    variables
-        .chain([program(command)])
-        .chain(arguments)
-        .collect::<Vec<_>>()
-        .join(" ")
+fn shown(command: &Command) -> String {
+    let variables = command.get_envs().filter_map(|(name, value)| Some((name, value?)));
+    let variables = variables.map(|(name, value)| format!("{}='{}'", name.display(), value.display()));
+    let program = Path::new(command.get_program()).file_stem().unwrap_or_default();
+    let arguments = command.get_args().map(|argument| argument.display().to_string());
+    let words = variables.chain([program.display().to_string()]).chain(arguments);
+    words.collect::<Vec<_>>().join(" ")
 }
 
-/// The program's name without its folders.
-pub(crate) fn program(command: &Command) -> String {
-    let path = std::path::Path::new(command.get_program());
-    path.file_stem()
-        .unwrap_or(path.as_os_str())
-        .to_string_lossy()
-        .into_owned()
-}
-
-/// What a command prints; its errors are shown as they come.
-pub(crate) fn output(command: Command) -> Result<String, XtaskError> {
-    println!("$ {}", shown(&command));
-    let text = quiet_output(command)?;
-    print!("{text}");
-    Ok(text)
-}
-
-/// What a command prints, shown to nobody; its errors are.
-pub(crate) fn quiet_output(mut command: Command) -> Result<String, XtaskError> {
-    let line = shown(&command);
-    let done = command
-        .stderr(Stdio::inherit())
-        .output()
-        .map_err(|source| not_started(&command, source))?;
-    succeeded(&line, done.status)?;
-    Ok(String::from_utf8_lossy(&done.stdout).into_owned())
+/// Turns an error about a file into a sentence.
+pub(crate) fn about(path: &Path) -> impl Fn(std::io::Error) -> String {
+    move |error| format!("{}: {error}", path.display())
 }
 
 #[cfg(test)]
@@ -109,19 +94,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_command_is_shown_as_a_user_would_type_it() {
-        let mut command = Command::new("/opt/rust/bin/cargo");
+    fn errors_show_the_command_as_a_user_would_type_it() {
+        let mut command = Command::new("/opt/rust/bin/no-such-cargo");
         command.args(["doc", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings");
-        assert_eq!(shown(&command), "RUSTDOCFLAGS='-D warnings' cargo doc --no-deps");
-    }
-
-    #[test]
-    fn a_missing_program_is_named() {
-        let error = run(Command::new("no-such-program-of-ours")).unwrap_err().to_string();
+        let error = run(command).unwrap_err();
         assert!(
-            error.contains("`no-such-program-of-ours` could not be started"),
+            error.starts_with("`RUSTDOCFLAGS='-D warnings' no-such-cargo doc --no-deps` could not be started: "),
             "{error}"
         );
-        assert!(!works(Command::new("no-such-program-of-ours")));
+        let mut shell = Command::new("sh");
+        shell.args(["-c", "exit 3"]);
+        assert!(
+            run(shell)
+                .unwrap_err()
+                .starts_with("`sh -c exit 3` ended with exit status: 3")
+        );
     }
 }

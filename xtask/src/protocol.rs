@@ -1,13 +1,11 @@
-//! The `protocol` stage and `cargo xtask protocol`: `unity/src/protocol.rs` against the `.proto` files. It is kept in the tree because
-//! what makes it takes longer to build than the crate; that is the business of `unity/proto/generate`, a project of its own.
+//! The stage `protocol` and `cargo xtask protocol`: `unity/src/protocol.rs` against the `.proto` files. It is committed
+//! because its generator, `unity/proto/generate`, takes longer to build than the crate.
 
 use std::fs;
-use std::path::PathBuf;
-use std::process::Command;
+use std::path::Path;
 
-use crate::error::XtaskError;
-use crate::process::{cargo, run};
-use crate::workspace::Workspace;
+use crate::process::{Result, Workspace, about, run};
+use crate::stage::Outcome;
 
 const COMMITTED: &str = "unity/src/protocol.rs";
 
@@ -18,46 +16,37 @@ const OPENING: &str = "//! The messages of the ML-Agents protocol and its one ca
 /// What stands before the two marks in the file's second line.
 const MARKED: &str = "// Marks of the sources and of what follows: ";
 
-/// Fails when the `.proto` files, or the file itself, are others than when it was written. Nothing is generated for that: it would take
-/// longer than the rest of the stages.
-pub(crate) fn check(workspace: &Workspace) -> Result<(), XtaskError> {
+/// Fails when the `.proto` files, or the file itself, changed since it was written. Nothing is generated for that.
+pub(crate) fn check(workspace: &Workspace) -> Result<Outcome> {
     let path = workspace.root.join(COMMITTED);
-    let committed = fs::read_to_string(&path).map_err(|source| XtaskError::File { path, source })?;
+    let committed = fs::read_to_string(&path).map_err(about(&path))?;
     if is_fresh(&sources(workspace)?, &committed) {
-        return Ok(());
+        return Ok(Outcome::Passed(String::new()));
     }
-    Err(XtaskError::Stale {
-        path: COMMITTED,
-        made_from: "unity/proto/*.proto",
-        command: "cargo xtask protocol",
-    })
+    Err(format!(
+        "{COMMITTED}: found other text than unity/proto/*.proto makes; write it anew: cargo xtask protocol"
+    ))
 }
 
 /// Writes the file anew.
-pub(crate) fn rewrite(workspace: &Workspace) -> Result<(), XtaskError> {
+pub(crate) fn rewrite(workspace: &Workspace) -> Result {
     let path = workspace.root.join(COMMITTED);
     let text = marked(&sources(workspace)?, &generate(workspace)?);
-    fs::write(&path, text).map_err(|source| XtaskError::File { path, source })?;
+    fs::write(&path, text).map_err(about(&path))?;
     println!("wrote {COMMITTED}");
     Ok(())
 }
 
 /// The `.proto` files one after the other, in the order of their names.
-fn sources(workspace: &Workspace) -> Result<String, XtaskError> {
+fn sources(workspace: &Workspace) -> Result<String> {
     let folder = workspace.root.join("unity/proto");
-    let failed = |source| XtaskError::File {
-        path: folder.clone(),
-        source,
-    };
-    let entries = fs::read_dir(&folder).map_err(failed)?;
-    let mut paths: Vec<PathBuf> = entries
-        .filter_map(|entry| entry.ok().map(|entry| entry.path()))
-        .collect();
-    paths.retain(|path| path.extension().is_some_and(|ending| ending == "proto"));
+    let entries = fs::read_dir(&folder).map_err(about(&folder))?;
+    let mut paths: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "proto"));
     paths.sort();
     paths
         .iter()
-        .map(|path| fs::read_to_string(path).map_err(failed))
+        .map(|path| fs::read_to_string(path).map_err(about(path)))
         .collect()
 }
 
@@ -68,15 +57,11 @@ fn marked(sources: &str, text: &str) -> String {
 }
 
 fn is_fresh(sources: &str, committed: &str) -> bool {
-    let mut lines = committed.splitn(3, '\n');
-    let (opening, marks, rest) = (lines.next(), lines.next(), lines.next());
-    let (Some(opening), Some(_), Some(rest)) = (opening, marks, rest) else {
-        return false;
-    };
-    committed == marked(sources, &format!("{opening}\n{rest}"))
+    let lines: Vec<&str> = committed.splitn(3, '\n').collect();
+    matches!(lines[..], [opening, _, rest] if committed == marked(sources, &format!("{opening}\n{rest}")))
 }
 
-/// FNV-1a: tells edits apart, no more is asked of it.
+/// FNV-1a, which tells edits apart; no more is asked of it.
 fn mark(text: &str) -> u64 {
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
@@ -84,17 +69,10 @@ fn mark(text: &str) -> u64 {
 }
 
 /// The file's text, formatted.
-fn generate(workspace: &Workspace) -> Result<String, XtaskError> {
+fn generate(workspace: &Workspace) -> Result<String> {
     let folder = workspace.target.join("protocol");
-    let failed = |path: &PathBuf| {
-        let path = path.clone();
-        move |source| XtaskError::File { path, source }
-    };
-    fs::create_dir_all(&folder).map_err(failed(&folder))?;
-    let mut generator = cargo(
-        workspace,
-        &["run", "--quiet", "--manifest-path", "unity/proto/generate/Cargo.toml"],
-    );
+    fs::create_dir_all(&folder).map_err(about(&folder))?;
+    let mut generator = workspace.cargo(&["run", "--quiet", "--manifest-path", "unity/proto/generate/Cargo.toml"]);
     generator
         .arg("--target-dir")
         .arg(&folder)
@@ -102,16 +80,13 @@ fn generate(workspace: &Workspace) -> Result<String, XtaskError> {
         .arg(&folder);
     run(generator)?;
     let written = folder.join("communicator_objects.rs");
-    let text = fs::read_to_string(&written).map_err(failed(&written))?;
+    let text = fs::read_to_string(&written).map_err(about(&written))?;
     let formatted = folder.join("protocol.rs");
-    fs::write(&formatted, format!("{OPENING}{text}")).map_err(failed(&formatted))?;
-    let mut rustfmt = Command::new("rustfmt");
-    rustfmt
-        .args(["--edition", "2024", "--config-path"])
-        .arg(&workspace.root)
-        .arg(&formatted);
+    fs::write(&formatted, format!("{OPENING}{text}")).map_err(about(&formatted))?;
+    let mut rustfmt = workspace.program(Path::new("rustfmt"), &["--edition", "2024", "--config-path", "."]);
+    rustfmt.arg(&formatted);
     run(rustfmt)?;
-    fs::read_to_string(&formatted).map_err(failed(&formatted))
+    fs::read_to_string(&formatted).map_err(about(&formatted))
 }
 
 #[cfg(test)]

@@ -1,27 +1,20 @@
-//! The stages `wheel`, `python` and `learners`: a wheel built as a user would build it, what a newcomer does with it, and pytest on it under
-//! the newest and the oldest Gymnasium, then with the large packages of people who train. What is tested stands in `python/tests/`.
+//! The stages that need Python, and the virtual environments that they run in, below Cargo's build folder.
 
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
-use crate::error::XtaskError;
-use crate::outcome::Outcome;
-use crate::process::run;
-use crate::virtual_environment::{VirtualEnvironment, interpreter};
-use crate::workspace::Workspace;
-
-/// Set, they turn "cannot be had here" into a failure.
-const REQUIRE_PYTHON: &str = "DRIFTWORLD_REQUIRE_PYTHON";
-const REQUIRE_LEARNERS: &str = "DRIFTWORLD_REQUIRE_LEARNERS";
+use crate::process::{Result, Workspace, about, run, works};
+use crate::stage::{Outcome, missing};
 
 pub(crate) const NO_INTERPRETER: &str =
     "no Python from 3.10 on with venv and pip (Debian: apt install python3-venv), or name one in DRIFTWORLD_PYTHON";
 
-/// The environment that holds what a newcomer installed, and nothing else.
-const NEWCOMER: &str = "newcomer";
+/// Any Python that the package supports.
+pub(crate) const ANY: &str = "(3, 10) <= sys.version_info";
 
-/// The tests that hold whatever version of Gymnasium there is: run once more with the oldest.
+/// Tests that hold with every version of Gymnasium: run once more with the oldest.
 const ANY_GYMNASIUM: [&str; 4] = [
     "tests/test_gymnasium.py",
     "tests/test_vector.py",
@@ -29,141 +22,180 @@ const ANY_GYMNASIUM: [&str; 4] = [
     "tests/test_check.py",
 ];
 
-/// Does what a newcomer does: an empty environment, the README's command, its examples, the command of the console.
-pub(crate) fn wheel(workspace: &Workspace) -> Result<Outcome, XtaskError> {
-    match interpreter() {
-        Some(interpreter) => newcomer(workspace, &interpreter).map(|()| Outcome::Passed),
-        None => missing(REQUIRE_PYTHON, NO_INTERPRETER.to_owned()),
-    }
+/// A virtual environment.
+pub(crate) struct Environment {
+    interpreter: PathBuf,
 }
 
-/// Checks and tests the package with the libraries that are quick to install.
-pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome, XtaskError> {
-    let Some(interpreter) = interpreter() else {
-        return missing(REQUIRE_PYTHON, NO_INTERPRETER.to_owned());
-    };
-    let newest =
-        match VirtualEnvironment::with_requirements(workspace, &interpreter, "newest", &requirements("requirements")) {
-            Ok(environment) => environment,
-            Err(error) => return missing(REQUIRE_PYTHON, error.to_string()),
+/// The interpreter that `DRIFTWORLD_PYTHON` names, else the first of the usual names, of such a version and with venv and pip.
+pub(crate) fn interpreter(version: &str) -> Option<PathBuf> {
+    let usual = [
+        "python3",
+        "python",
+        "python3.13",
+        "python3.12",
+        "python3.11",
+        "python3.10",
+    ];
+    let names = env::var_os("DRIFTWORLD_PYTHON")
+        .into_iter()
+        .chain(usual.map(Into::into));
+    let program = format!("import sys, venv, ensurepip; sys.exit(not ({version}))");
+    names
+        .map(PathBuf::from)
+        .find(|name| works(python(name, &["-c", &program])))
+}
+
+/// The interpreter with these arguments, without the variables of a user's own environment.
+fn python(interpreter: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(interpreter);
+    command
+        .args(arguments)
+        .env_remove("PYTHONPATH")
+        .env_remove("PYTHONHOME")
+        .env_remove("VIRTUAL_ENV");
+    command
+}
+
+impl Environment {
+    /// The one of that name with all that lists of packages ask for; made if it does not work.
+    pub(crate) fn with(workspace: &Workspace, interpreter: &Path, name: &str, lists: &[&str]) -> Result<Self> {
+        let folder = workspace.target.join("python").join(name);
+        let environment = Self {
+            interpreter: folder.join(if cfg!(windows) { "Scripts/python" } else { "bin/python" }),
         };
-    // Before anything is built: these take seconds.
-    let project = workspace.root.join("python");
-    let linted = [".", "../examples/python", "../unity/tests/clients"];
-    for (arguments, folders) in [(&["-m", "ruff", "check"][..], &linted[..]), (&["-m", "mypy"], &[])] {
-        let mut check = newest.python(arguments);
-        check.args(folders).current_dir(&project);
-        run(check)?;
+        if !works(environment.python(workspace, &["-m", "pip", "--version"])) {
+            let mut make = python(interpreter, &["-m", "venv", "--clear"]);
+            make.arg(&folder);
+            run(make)?;
+        }
+        for list in lists {
+            environment.pip(workspace, &["install", "--quiet", "--requirement", list])?;
+        }
+        Ok(environment)
     }
-    let builder = VirtualEnvironment::kept(workspace, &interpreter, NEWCOMER)?;
-    let wheel = build(workspace, &builder)?;
-    install(&newest, &wheel)?;
-    pytest(workspace, &newest, &["-m", "not learners"])?;
-    let oldest = requirements("requirements-oldest");
-    let oldest = VirtualEnvironment::with_requirements(workspace, &interpreter, "oldest", &oldest)?;
-    install(&oldest, &wheel)?;
-    let small = ["-m", "not learners"];
-    pytest(workspace, &oldest, &[&small[..], &ANY_GYMNASIUM[..]].concat())?;
-    Ok(Outcome::PassedWith(
-        "under the newest and the oldest Gymnasium".to_owned(),
-    ))
+
+    /// Its interpreter with these arguments, in the root.
+    pub(crate) fn python(&self, workspace: &Workspace, arguments: &[&str]) -> Command {
+        let mut command = python(&self.interpreter, arguments);
+        command.current_dir(&workspace.root);
+        command
+    }
+
+    /// Runs its pip in the root.
+    pub(crate) fn pip(&self, workspace: &Workspace, arguments: &[&str]) -> Result {
+        let mut pip = self.python(workspace, &["-m", "pip", "--disable-pip-version-check"]);
+        pip.args(arguments);
+        run(pip)
+    }
+
+    /// Installs the wheel without what it needs, which is there already. One interpreter builds it, whatever the environment's own,
+    /// so that Cargo finds nothing to do.
+    pub(crate) fn install_driftworld(&self, workspace: &Workspace) -> Result {
+        let builder = Self::with(workspace, &interpreter(ANY).ok_or(NO_INTERPRETER)?, "newcomer", &[])?;
+        let wheels = workspace.target.join("python/wheels");
+        let wheels = wheels.to_str().ok_or("the build folder's path is not UTF-8")?;
+        builder.pip(
+            workspace,
+            &["wheel", "--quiet", "--no-deps", "./python", "--wheel-dir", wheels],
+        )?;
+        let found = [
+            "install",
+            "--quiet",
+            "--no-deps",
+            "--force-reinstall",
+            "--no-index",
+            "--find-links",
+        ];
+        self.pip(workspace, &[&found[..], &[wheels, "driftworld"]].concat())
+    }
+
+    /// Runs tests of the package on the installed wheel, without a display.
+    fn pytest(&self, workspace: &Workspace, arguments: &[&str]) -> Result {
+        let mut pytest = self.python(workspace, &["-m", "pytest", "--quiet"]);
+        pytest
+            .args(arguments)
+            .current_dir(workspace.root.join("python"))
+            .env("SDL_VIDEODRIVER", "dummy");
+        run(pytest)
+    }
 }
 
-/// Tests with torch, Stable-Baselines3, Minari and Ray; they are gigabytes, so who cannot install them is not held up.
-pub(crate) fn learners(workspace: &Workspace) -> Result<Outcome, XtaskError> {
-    let Some(interpreter) = interpreter() else {
-        return missing(REQUIRE_LEARNERS, NO_INTERPRETER.to_owned());
+/// Does what a newcomer does: an empty environment, the README's command, its examples, the command of the console.
+pub(crate) fn wheel(workspace: &Workspace) -> Result<Outcome> {
+    let Some(interpreter) = interpreter(ANY) else {
+        return missing("PYTHON", NO_INTERPRETER.into());
     };
-    let file = requirements("requirements-learners");
-    let environment = match VirtualEnvironment::with_requirements(workspace, &interpreter, "learners", &file) {
-        Ok(environment) => environment,
-        Err(error) => return missing(REQUIRE_LEARNERS, error.to_string()),
-    };
-    install_wheel(workspace, &interpreter, &environment)?;
-    pytest(workspace, &environment, &["-m", "learners"])?;
-    Ok(Outcome::Passed)
-}
-
-/// Puts the wheel into an environment; what it needs is there already. Whatever the environment's own interpreter, the wheel is built
-/// by the one that built it before, so that Cargo finds nothing to do.
-pub(crate) fn install_wheel(
-    workspace: &Workspace,
-    interpreter: &Path,
-    environment: &VirtualEnvironment,
-) -> Result<(), XtaskError> {
-    let builder = VirtualEnvironment::kept(workspace, interpreter, NEWCOMER)?;
-    install(environment, &build(workspace, &builder)?)
-}
-
-/// What somebody does who has just read the README.
-fn newcomer(workspace: &Workspace, interpreter: &Path) -> Result<(), XtaskError> {
-    let newcomer = VirtualEnvironment::empty(workspace, interpreter, NEWCOMER)?;
-    let mut by_the_readme = newcomer.pip(&["install", "--quiet", "./python"]);
-    by_the_readme.current_dir(&workspace.root);
-    run(by_the_readme)?;
-    let mut first_steps = newcomer.python(&["-W", "error"]);
+    let folder = workspace.target.join("python/newcomer");
+    if folder.exists() {
+        fs::remove_dir_all(&folder).map_err(about(&folder))?;
+    }
+    let newcomer = Environment::with(workspace, &interpreter, "newcomer", &[])?;
+    newcomer.pip(workspace, &["install", "--quiet", "./python"])?;
+    let mut first_steps = newcomer.python(workspace, &["-W", "error"]);
     first_steps.arg(workspace.root.join("python/tests/newcomer.py"));
     // From a folder outside the checkout's packages: what runs is what was installed.
     first_steps.current_dir(workspace.target.join("python"));
-    run(first_steps)
+    run(first_steps)?;
+    Ok(Outcome::Passed(String::new()))
 }
 
-/// The wheel, by the pip of that environment; Cargo builds only what changed.
-fn build(workspace: &Workspace, environment: &VirtualEnvironment) -> Result<PathBuf, XtaskError> {
-    let wheels = workspace.target.join("python").join("wheels");
-    if wheels.exists() {
-        fs::remove_dir_all(&wheels).map_err(|source| file_error(&wheels, source))?;
-    }
-    let mut wheel = environment.pip(&["wheel", "--quiet", "--no-deps", "./python", "--wheel-dir"]);
-    wheel.arg(&wheels).current_dir(&workspace.root);
-    run(wheel)?;
-    let entries = fs::read_dir(&wheels).map_err(|source| file_error(&wheels, source))?;
-    let mut paths = entries.filter_map(|entry| entry.ok().map(|entry| entry.path()));
-    paths
-        .find(|path| path.extension().is_some_and(|ending| ending == "whl"))
-        .ok_or_else(|| file_error(&wheels, std::io::ErrorKind::NotFound.into()))
-}
-
-/// Puts a wheel in place of the one that is there.
-fn install(environment: &VirtualEnvironment, wheel: &Path) -> Result<(), XtaskError> {
-    let mut install = environment.pip(&["install", "--quiet", "--no-deps", "--force-reinstall"]);
-    install.arg(wheel);
-    run(install)
-}
-
-/// Runs the tests on the installed wheel, without a display.
-fn pytest(workspace: &Workspace, environment: &VirtualEnvironment, arguments: &[&str]) -> Result<(), XtaskError> {
-    let mut pytest = environment.python(&["-m", "pytest", "--quiet"]);
-    pytest
-        .args(arguments)
-        .current_dir(workspace.root.join("python"))
-        .env("SDL_VIDEODRIVER", "dummy");
-    run(pytest)
-}
-
-/// Where a list of packages is, from the workspace's root.
-fn requirements(name: &str) -> PathBuf {
-    Path::new("python").join("tests").join(name).with_extension("txt")
-}
-
-/// A stage without what it needs: skipped, or a failure where the variable asks for it.
-pub(crate) fn missing(variable: &'static str, reason: String) -> Result<Outcome, XtaskError> {
-    outcome(env::var_os(variable).is_some(), variable, reason)
-}
-
-fn outcome(is_required: bool, variable: &'static str, reason: String) -> Result<Outcome, XtaskError> {
-    if is_required {
-        Err(XtaskError::Required { variable, reason })
-    } else {
-        Ok(Outcome::Skipped(reason))
+/// Judges `tests/documents` by the committed schemas, with the `jsonschema` of Python.
+pub(crate) fn documents(workspace: &Workspace) -> Result<Outcome> {
+    let list = "tests/documents/requirements.txt";
+    match quick_environment(workspace, list) {
+        Ok(tests) => {
+            run(tests.python(workspace, &["tests/documents/validate.py"])).map(|()| Outcome::Passed(String::new()))
+        }
+        Err(reason) => missing("PYTHON", reason),
     }
 }
 
-fn file_error(path: &Path, source: std::io::Error) -> XtaskError {
-    XtaskError::File {
-        path: path.to_owned(),
-        source,
+/// Checks and tests the package with the libraries that are quick to install, then with the oldest Gymnasium in their place.
+pub(crate) fn package(workspace: &Workspace) -> Result<Outcome> {
+    let tests = match quick_environment(workspace, "python/tests/requirements.txt") {
+        Ok(tests) => tests,
+        Err(reason) => return missing("PYTHON", reason),
+    };
+    let linted = [".", "../examples/python", "../unity/tests/clients"];
+    for (arguments, folders) in [(&["-m", "ruff", "check"][..], &linted[..]), (&["-m", "mypy"], &[])] {
+        let mut check = tests.python(workspace, arguments);
+        check.args(folders).current_dir(workspace.root.join("python"));
+        run(check)?;
     }
+    tests.install_driftworld(workspace)?;
+    tests.pytest(workspace, &["-m", "not learners"])?;
+    tests.pip(
+        workspace,
+        &[
+            "install",
+            "--quiet",
+            "--requirement",
+            "python/tests/requirements-oldest.txt",
+        ],
+    )?;
+    tests.pytest(workspace, &[&["-m", "not learners"], &ANY_GYMNASIUM[..]].concat())?;
+    Ok(Outcome::Passed("with the newest and the oldest Gymnasium".into()))
+}
+
+/// Tests with torch, Stable-Baselines3, Minari and Ray, which are gigabytes.
+pub(crate) fn learners(workspace: &Workspace) -> Result<Outcome> {
+    let made = interpreter(ANY).ok_or_else(|| NO_INTERPRETER.to_owned());
+    let list = ["python/tests/requirements-learners.txt"];
+    match made.and_then(|interpreter| Environment::with(workspace, &interpreter, "learners", &list)) {
+        Ok(learners) => {
+            learners.install_driftworld(workspace)?;
+            learners.pytest(workspace, &["-m", "learners"])?;
+            Ok(Outcome::Passed(String::new()))
+        }
+        Err(reason) => missing("LEARNERS", reason),
+    }
+}
+
+/// The environment of the quick tests, with the packages of a list.
+fn quick_environment(workspace: &Workspace, list: &str) -> Result<Environment> {
+    let interpreter = interpreter(ANY).ok_or(NO_INTERPRETER)?;
+    Environment::with(workspace, &interpreter, "tests", &[list])
 }
 
 #[cfg(test)]
@@ -171,24 +203,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_missing_fails_only_where_it_is_required() {
-        let ending = |is_required| outcome(is_required, REQUIRE_LEARNERS, "no room".to_owned());
-        assert!(matches!(ending(false), Ok(Outcome::Skipped(reason)) if reason == "no room"));
-        let message = ending(true).err().map(|error| error.to_string());
-        assert_eq!(
-            message.as_deref(),
-            Some("no room; DRIFTWORLD_REQUIRE_LEARNERS is set, so that this is not skipped")
-        );
+    fn a_users_own_environment_is_left_out() {
+        let command = python(Path::new("python3"), &["-c", ""]);
+        assert_eq!(command.get_envs().filter(|(_, value)| value.is_none()).count(), 3);
+        assert!(!works(python(Path::new("no-such-python"), &["-c", ""])));
     }
 
     #[test]
-    fn lists_of_packages_are_where_they_are_looked_for() {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-        for name in ["requirements", "requirements-oldest", "requirements-learners"] {
-            assert!(root.join(requirements(name)).is_file(), "{name}");
-        }
+    fn lists_and_tests_are_where_they_are_looked_for() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../python");
         for test in ANY_GYMNASIUM {
-            assert!(root.join("python").join(test).is_file(), "{test}");
+            assert!(folder.join(test).is_file(), "{test}");
         }
     }
 }

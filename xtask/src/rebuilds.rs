@@ -1,81 +1,60 @@
-//! The `rebuilds` stage: no crate of others lies in the build folder twice under one profile. Twice means that two parts of the house asked
-//! different features of it, and everybody waits for it twice; `features/Cargo.toml` is where they are made one.
+//! The stage `rebuilds`: no third-party crate lies in the build folder twice under one profile. Twice means that two of our
+//! crates ask different features of it, and everybody waits for it twice; `features/Cargo.toml` makes them one.
 
 use std::collections::BTreeMap;
-use std::env;
 use std::fs;
 use std::path::Path;
 
-use crate::error::XtaskError;
-use crate::outcome::Outcome;
-use crate::workspace::Workspace;
-
-/// Set, it turns "found some" into a failure: in a folder that was empty, nothing older can be meant.
-const REQUIRE: &str = "DRIFTWORLD_REQUIRE_NO_REBUILDS";
-
-/// The folders that profiles build into.
-const PROFILES: [&str; 3] = ["debug", "release", "dist"];
+use crate::process::{Result, Workspace, about};
+use crate::stage::{Outcome, missing};
 
 /// Looks through the build folder, after all that the other stages built into it.
-pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome, XtaskError> {
+pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
     let mut built = 0;
     let mut twice = Vec::new();
-    for profile in PROFILES {
+    for profile in ["debug", "release"] {
         let folder = workspace.target.join(profile).join("deps");
-        if !folder.is_dir() {
-            continue;
+        for (package, times) in builds(&folder)? {
+            built += 1;
+            if times > 1 {
+                twice.push(format!("{package} ({times} times in {profile})"));
+            }
         }
-        let builds = builds(&folder)?;
-        built += builds.len();
-        let often = builds.into_iter().filter(|(_, times)| *times > 1);
-        twice.extend(often.map(|(package, times)| format!("{package} ({times} times in {profile})")));
     }
     if twice.is_empty() {
-        return Ok(Outcome::PassedWith(format!(
-            "{built} crates of others, each built once"
-        )));
+        return Ok(Outcome::Passed(format!("{built} third-party crates, each built once")));
     }
-    let twice = twice.join(", ");
-    if env::var_os(REQUIRE).is_some() {
-        return Err(XtaskError::BuiltTwice { packages: twice });
-    }
-    Ok(Outcome::Skipped(format!(
-        "built more than once, maybe long ago: {twice}; `cargo clean` and run again to know"
-    )))
+    let advice = "see who asks which features of it (cargo tree -e features -i CRATE --workspace), and name it with all of them in \
+                  features/Cargo.toml; in a build folder that was not empty, it may be long ago";
+    missing(
+        "NO_REBUILDS",
+        format!("built more than once: {}; {advice}", twice.join(", ")),
+    )
 }
 
-/// How many times each library of another's package lies in a folder, as `name-version`. What is only checked leaves no library.
-fn builds(folder: &Path) -> Result<BTreeMap<String, usize>, XtaskError> {
-    let failed = |source| XtaskError::File {
-        path: folder.to_owned(),
-        source,
-    };
+/// How many times each third-party library lies in a folder, as `name-version`. Checks leave no library.
+fn builds(folder: &Path) -> Result<BTreeMap<String, usize>> {
     let mut builds = BTreeMap::new();
-    for entry in fs::read_dir(folder).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
-        let is_library = path
-            .extension()
-            .is_some_and(|ending| ending == "rlib" || ending == "so");
-        let stem = path
-            .file_stem()
-            .and_then(|stem| stem.to_str())
-            .and_then(|stem| stem.strip_prefix("lib"));
-        let Some(stem) = stem.filter(|_| is_library) else {
-            continue;
-        };
-        // What it was made of stands in the file beside it.
-        let sources = fs::read_to_string(folder.join(stem).with_extension("d")).unwrap_or_default();
-        if let Some(package) = package(&sources) {
-            *builds.entry(package).or_insert(0) += 1;
+    if !folder.exists() {
+        return Ok(builds);
+    }
+    for entry in fs::read_dir(folder).map_err(about(folder))? {
+        let path = entry.map_err(about(folder))?.path();
+        let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+        let stem = name.strip_suffix(".rlib").or_else(|| name.strip_suffix(".so"));
+        // The sources that it was made of stand in the file beside it, as a rule for `make`.
+        let list = stem
+            .and_then(|stem| stem.strip_prefix("lib"))
+            .map(|stem| folder.join(format!("{stem}.d")));
+        let sources = list.and_then(|list| fs::read_to_string(list).ok()).unwrap_or_default();
+        let package = sources
+            .split_once("/registry/src/")
+            .and_then(|(_, below)| below.split('/').nth(1));
+        if let Some(package) = package {
+            *builds.entry(package.to_owned()).or_insert(0) += 1;
         }
     }
     Ok(builds)
-}
-
-/// The package below Cargo's registry that the first source in a list for `make` belongs to.
-fn package(sources: &str) -> Option<String> {
-    let (_, below) = sources.split_once("/registry/src/")?;
-    Some(below.split('/').nth(1)?.to_owned())
 }
 
 #[cfg(test)]
@@ -83,31 +62,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn libraries_of_others_are_counted_by_package() {
-        let folder = env::temp_dir().join(format!("xtask-rebuilds-{}", std::process::id()));
+    fn third_party_libraries_are_counted_by_package() {
+        let folder = std::env::temp_dir().join(format!("xtask-rebuilds-{}", std::process::id()));
         fs::create_dir_all(&folder).unwrap();
-        let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
-        let registry = "/home/user/.cargo/registry/src/index-0a1b";
-        for (library, package) in [
-            ("liba-1.rlib", "a-1.0.0"),
-            ("liba-2.rlib", "a-1.0.0"),
-            ("liba-3.so", "a-2.0.0"),
+        let registry = "x.d: /home/user/.cargo/registry/src/index-0a1b";
+        // The fourth was only checked, the fifth is one of ours.
+        for (library, list, sources) in [
+            ("liba-1.rlib", "a-1.d", format!("{registry}/a-1.0.0/src/lib.rs\n")),
+            ("liba-2.rlib", "a-2.d", format!("{registry}/a-1.0.0/src/lib.rs\n")),
+            ("liba-3.so", "a-3.d", format!("{registry}/a-2.0.0/src/lib.rs\n")),
+            ("liba-4.rmeta", "a-4.d", format!("{registry}/a-1.0.0/src/lib.rs\n")),
+            ("libours-5.rlib", "ours-5.d", "x.d: ours/src/lib.rs\n".to_owned()),
         ] {
-            write(library, "");
-            let list = Path::new(library.trim_start_matches("lib")).with_extension("d");
-            write(
-                &list.to_string_lossy(),
-                &format!("x.d: {registry}/{package}/src/lib.rs\n"),
-            );
+            fs::write(folder.join(library), "").unwrap();
+            fs::write(folder.join(list), sources).unwrap();
         }
-        // Only checked, and one of ours.
-        write("liba-4.rmeta", "");
-        write("a-4.d", &format!("x.d: {registry}/a-1.0.0/src/lib.rs\n"));
-        write("libours-5.rlib", "");
-        write("ours-5.d", "x.d: ours/src/lib.rs\n");
-        let found = builds(&folder).unwrap();
+        let found = builds(&folder);
         fs::remove_dir_all(&folder).unwrap();
         let expected = [("a-1.0.0".to_owned(), 2), ("a-2.0.0".to_owned(), 1)];
-        assert_eq!(found, BTreeMap::from(expected));
+        assert_eq!(found, Ok(BTreeMap::from(expected)));
     }
 }

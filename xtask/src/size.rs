@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 use std::fs;
 
-use crate::error::XtaskError;
+use crate::process::{Result, Workspace, about};
 use crate::sources::{Line, Sources, extension, lines_of_code};
-use crate::workspace::Workspace;
+use crate::stage::Outcome;
 
 const FILE: &str = "SIZE.md";
 
@@ -67,19 +67,19 @@ struct Row {
 }
 
 /// Fails if a room is over its limit or the counts in the file are out of date.
-pub(crate) fn check(workspace: &Workspace) -> Result<String, XtaskError> {
+pub(crate) fn check(workspace: &Workspace) -> Result<Outcome> {
     let counts = count(&Sources::read(&workspace.root)?);
     let written = fs::read_to_string(workspace.root.join(FILE)).unwrap_or_default();
     report(&complaints(&counts, &rows(&written), true))?;
-    Ok(summary(&counts))
+    Ok(Outcome::Passed(summary(&counts)))
 }
 
 /// Writes the counts anew and keeps limits and reasons; fails if a room is over its limit.
-pub(crate) fn rewrite(workspace: &Workspace) -> Result<(), XtaskError> {
+pub(crate) fn rewrite(workspace: &Workspace) -> Result {
     let counts = count(&Sources::read(&workspace.root)?);
     let path = workspace.root.join(FILE);
     let written = rows(&fs::read_to_string(&path).unwrap_or_default());
-    fs::write(&path, table(&counts, &written)).map_err(|source| XtaskError::File { path, source })?;
+    fs::write(&path, table(&counts, &written)).map_err(about(&path))?;
     println!("wrote {FILE}: {}", summary(&counts));
     report(&complaints(&counts, &written, false))
 }
@@ -177,13 +177,13 @@ fn complaints(counts: &[(&str, usize)], written: &[Row], are_counts_compared: bo
     complaints
 }
 
-fn report(complaints: &[String]) -> Result<(), XtaskError> {
+fn report(complaints: &[String]) -> Result {
     for complaint in complaints {
         eprintln!("{FILE}: {complaint}");
     }
     match complaints.len() {
         0 => Ok(()),
-        count => Err(XtaskError::Findings { count }),
+        count => Err(format!("{count} findings, listed above")),
     }
 }
 

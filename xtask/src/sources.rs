@@ -5,8 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use crate::error::XtaskError;
-use crate::process::quiet_output;
+use crate::process::{Result, output};
 
 /// Paths relative to the root, `/` between folders, each with its text; files that are not UTF-8 have an empty text.
 pub(crate) struct Sources {
@@ -15,13 +14,13 @@ pub(crate) struct Sources {
 
 impl Sources {
     /// Reads tracked files, and new ones that git does not ignore.
-    pub(crate) fn read(root: &Path) -> Result<Self, XtaskError> {
+    pub(crate) fn read(root: &Path) -> Result<Self> {
         let mut list = Command::new("git");
         // A checkout that another user owns, as in a container, is read all the same.
         list.args(["-c", &format!("safe.directory={}", root.display())])
             .args(["ls-files", "-z", "--cached", "--others", "--exclude-standard"])
             .current_dir(root);
-        let names = quiet_output(list)?;
+        let names = output(list)?;
         let existing = names.split('\0').filter(|name| root.join(name).is_file());
         let files = existing.map(|name| (name.to_owned(), fs::read_to_string(root.join(name)).unwrap_or_default()));
         Ok(Self { files: files.collect() })
@@ -40,6 +39,29 @@ impl Sources {
     pub(crate) fn with_extensions<'a>(&'a self, extensions: &'a [&str]) -> impl Iterator<Item = (&'a str, &'a str)> {
         let files = self.files.iter().map(|(path, text)| (path.as_str(), text.as_str()));
         files.filter(|(path, _)| extensions.contains(&extension(path)))
+    }
+
+    /// The text of a file; empty without one.
+    pub(crate) fn text(&self, path: &str) -> &str {
+        self.files.get(path).map_or("", String::as_str)
+    }
+
+    /// Whether a file, or a folder with a file in it, has this path; the empty path is the root.
+    pub(crate) fn has(&self, path: &str) -> bool {
+        let path = path.trim_end_matches('/');
+        let folder = format!("{path}/");
+        path.is_empty()
+            || self.files.contains_key(path)
+            || self
+                .files
+                .range(folder.clone()..)
+                .next()
+                .is_some_and(|(file, _)| file.starts_with(&folder))
+    }
+
+    /// Whether any file, in whatever folder, has this name.
+    pub(crate) fn has_name(&self, name: &str) -> bool {
+        self.files.keys().any(|file| file.rsplit('/').next() == Some(name))
     }
 }
 
@@ -99,6 +121,51 @@ fn opened_comment(word: &str, is_python: bool) -> Option<(&'static str, &str)> {
         return word.strip_prefix("\"\"\"").map(|rest| ("\"\"\"", rest));
     }
     word.strip_prefix("/*").map(|rest| ("*/", rest))
+}
+
+/// The lines of a file; those of comments and of tests are empty.
+pub(crate) fn shipped_lines(text: &str) -> Vec<&str> {
+    let code = |line: &'_ str| !line.trim_start().starts_with("//");
+    let mut lines: Vec<&str> = text
+        .lines()
+        .map(|line| {
+            if code(line) {
+                line.split(" // ").next().unwrap_or(line)
+            } else {
+                ""
+            }
+        })
+        .collect();
+    for start in 0..lines.len() {
+        if lines[start].trim_start().starts_with("#[cfg(test)]") {
+            let is_attribute = |line: &&str| line.trim_start().starts_with('#') || line.is_empty();
+            let first = start + lines[start..].iter().take_while(|line| is_attribute(line)).count();
+            let end = end(&lines, first);
+            lines[start..=end].fill("");
+        }
+    }
+    lines
+}
+
+/// The last line of the item, field or statement that begins at a line; files are formatted.
+pub(crate) fn end(lines: &[&str], start: usize) -> usize {
+    let indent = |line: &str| line.len() - line.trim_start().len();
+    let Some(first) = lines.get(start) else {
+        return lines.len() - 1;
+    };
+    let closes = |line: &&&str| {
+        indent(line) == indent(first) && (line.trim_start().starts_with('}') || line.ends_with([';', ',']))
+    };
+    if first.ends_with([';', ',', '}']) {
+        return start;
+    }
+    let rest = lines[start..].iter().position(|line| closes(&line));
+    rest.map_or(lines.len() - 1, |length| start + length)
+}
+
+/// Whether a letter may stand in a name.
+pub(crate) fn is_of_name(letter: char) -> bool {
+    letter.is_alphanumeric() || letter == '_'
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::sources::{Sources, is_test_file};
+use crate::sources::{Sources, end, is_of_name, is_test_file, shipped_lines};
 
 /// Items that only tests name, each with the reason to keep it.
 const KEPT: &[(&str, &str)] = &[];
@@ -100,46 +100,6 @@ impl Kind {
             Self::Other => true,
         }
     }
-}
-
-/// The lines of a file; those of comments and of tests are empty.
-fn shipped_lines(text: &str) -> Vec<&str> {
-    let code = |line: &'_ str| !line.trim_start().starts_with("//");
-    let mut lines: Vec<&str> = text
-        .lines()
-        .map(|line| {
-            if code(line) {
-                line.split(" // ").next().unwrap_or(line)
-            } else {
-                ""
-            }
-        })
-        .collect();
-    for start in 0..lines.len() {
-        if lines[start].trim_start().starts_with("#[cfg(test)]") {
-            let is_attribute = |line: &&str| line.trim_start().starts_with('#') || line.is_empty();
-            let first = start + lines[start..].iter().take_while(|line| is_attribute(line)).count();
-            let end = end(&lines, first);
-            lines[start..=end].fill("");
-        }
-    }
-    lines
-}
-
-/// The last line of the item, field or statement that begins at a line; files are formatted.
-fn end(lines: &[&str], start: usize) -> usize {
-    let indent = |line: &str| line.len() - line.trim_start().len();
-    let Some(first) = lines.get(start) else {
-        return lines.len() - 1;
-    };
-    let closes = |line: &&&str| {
-        indent(line) == indent(first) && (line.trim_start().starts_with('}') || line.ends_with([';', ',']))
-    };
-    if first.ends_with([';', ',', '}']) {
-        return start;
-    }
-    let rest = lines[start..].iter().position(|line| closes(&line));
-    rest.map_or(lines.len() - 1, |length| start + length)
 }
 
 /// The public item that begins at a line.
@@ -239,10 +199,6 @@ fn names(line: &str) -> Vec<(usize, &str)> {
         rest = &word[length..];
     }
     found
-}
-
-fn is_of_name(letter: char) -> bool {
-    letter.is_alphanumeric() || letter == '_'
 }
 
 #[cfg(test)]
