@@ -4,33 +4,37 @@
 use serde_json::Value;
 
 /// Each crate with the crates of ours that it may import in any way, without `driftworld-` in front.
-const ROOMS: [(&str, &str); 16] = [
+const ROOMS: [(&str, &str); 17] = [
     ("features", ""),
     ("text", ""),
     ("atomic-files", ""),
     ("files", "text"),
-    ("spec", "features text"),
-    ("generator", "features text spec"),
-    ("similarity", "features text spec"),
-    ("env", "features text spec"),
+    ("schema-errors", "features"),
+    ("spec", "features text schema-errors"),
+    ("generator", "features text schema-errors spec"),
+    ("similarity", "features text schema-errors spec"),
+    ("env", "features text schema-errors spec"),
     ("metrics", "text atomic-files files"),
     (
         "curriculum",
-        "features text atomic-files files spec generator similarity env metrics",
+        "features text atomic-files files schema-errors spec generator similarity env metrics",
     ),
-    ("report", "features text atomic-files files spec similarity metrics"),
+    (
+        "report",
+        "features text atomic-files files schema-errors spec similarity metrics",
+    ),
     (
         "driftworld",
-        "features text atomic-files files spec generator similarity env metrics curriculum report",
+        "features text atomic-files files schema-errors spec generator similarity env metrics curriculum report",
     ),
     (
         "python",
-        "features text atomic-files files spec generator similarity env metrics curriculum report driftworld",
+        "features text atomic-files files schema-errors spec generator similarity env metrics curriculum report driftworld",
     ),
-    ("unity", "features text atomic-files files spec env"),
+    ("unity", "features text atomic-files files schema-errors spec env"),
     (
         "fuzz",
-        "features text atomic-files files spec generator similarity env metrics curriculum unity",
+        "features text atomic-files files schema-errors spec generator similarity env metrics curriculum unity",
     ),
     ("xtask", "features"),
 ];

@@ -3,21 +3,21 @@
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
+use driftworld_schema_errors::BoundedErrors;
 use jsonschema::Validator;
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
 use serde_json::{Value, json};
 
-use super::counted::{Counted, Counting, Tally};
 use super::explain;
-use crate::error::Listed;
+use crate::error::{Listed, MAX_PROBLEMS};
 
 /// One document type's schema, ready to check values.
 pub struct DocumentSchema {
     json: Value,
     validator: Validator,
-    /// The same for values that count their errors: only for documents that have some.
-    listing: OnceLock<Validator<Counting>>,
+    /// Lists errors: only for documents that have some.
+    listing: OnceLock<BoundedErrors>,
 }
 
 impl DocumentSchema {
@@ -46,24 +46,17 @@ impl DocumentSchema {
         self.validator.is_valid(value)
     }
 
-    /// What in a value the schema does not allow; of any one list or object about [`MAX_PROBLEMS`](crate::MAX_PROBLEMS)
-    /// of it.
+    /// What in a value the schema does not allow; of any one list or object about [`MAX_PROBLEMS`] of it.
     pub(crate) fn problems(&self, value: &Value) -> Listed {
         // Nearly every document is sound, and the short answer is much faster than the list.
         if self.allows(value) {
             return Listed::default();
         }
-        let listing = self.listing.get_or_init(|| {
-            jsonschema::options_for::<Counting>()
-                .build(&self.json)
-                .expect("the other validator was built of it")
-        });
-        let tally = Tally::default();
-        let problems = explain::problems(&self.json, value, listing.iter_errors(Counted::new(value, &tally)));
-        Listed {
-            problems,
-            more: tally.has_stopped(),
-        }
+        let listing = self
+            .listing
+            .get_or_init(|| BoundedErrors::new(&self.json, MAX_PROBLEMS).expect("the other validator was built of it"));
+        let (problems, more) = listing.list(value, |errors| explain::problems(&self.json, value, errors));
+        Listed { problems, more }
     }
 }
 

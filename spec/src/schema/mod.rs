@@ -2,7 +2,6 @@
 
 mod advice;
 mod color;
-mod counted;
 pub(crate) mod document;
 mod explain;
 mod forms;

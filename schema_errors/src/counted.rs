@@ -1,6 +1,5 @@
 //! JSON values that count the errors found in them, so that a schema stops listing after a few hundred in any one list
-//! or object: its errors take a kilobyte each, and a wrong list may have millions of items. What the errors mean is
-//! `explain.rs`'s.
+//! or object: its errors take a kilobyte each, and a wrong list may have millions of items.
 
 use std::borrow::Cow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
@@ -9,14 +8,13 @@ use jsonschema::JsonType;
 use jsonschema::json::{Array, Json, Node, NodeIdentity, Object};
 use serde_json::{Map, Number, Value};
 
-use crate::error::MAX_PROBLEMS;
-
 /// The representation, for validators.
 pub(super) struct Counting;
 
 /// What has been counted so far.
-#[derive(Default)]
 pub(super) struct Tally {
+    /// Errors of one list or object after which no more of it is looked at.
+    limit: usize,
     errors: AtomicUsize,
     /// How often anything was asked of a value.
     looks: AtomicUsize,
@@ -25,6 +23,15 @@ pub(super) struct Tally {
 }
 
 impl Tally {
+    pub(super) fn new(limit: usize) -> Self {
+        Self {
+            limit,
+            errors: AtomicUsize::new(0),
+            looks: AtomicUsize::new(0),
+            stopped: AtomicBool::new(false),
+        }
+    }
+
     /// Whether there may be more errors than were listed.
     pub(super) fn has_stopped(&self) -> bool {
         self.stopped.load(Relaxed)
@@ -50,6 +57,11 @@ impl<'a> Counted<'a> {
 
     fn looks(&self) -> usize {
         self.tally.map_or(0, |tally| tally.looks.load(Relaxed))
+    }
+
+    /// Most errors that are listed of one list or object.
+    fn limit(&self) -> usize {
+        self.tally.map_or(usize::MAX, |tally| tally.limit)
     }
 
     /// The value, of which something is asked.
@@ -128,7 +140,7 @@ impl<'a> Node<'a, Counting> for Counted<'a> {
     }
 
     /// Every error asks for the value that it is about: so they are counted. It gets none, for some errors keep a copy
-    /// of their own: `explain.rs` looks the value up by its place. Names are no part of the document, and are handed
+    /// of their own: readers look the value up by its place. Names are no part of the document, and are handed
     /// out.
     fn to_value(&self) -> Cow<'a, Value> {
         match self.tally {
@@ -168,7 +180,7 @@ impl<'a, I> UntilFull<'a, I> {
     }
 
     fn is_full(&self) -> bool {
-        self.holder.errors() > self.before + MAX_PROBLEMS
+        self.holder.errors() > self.before.saturating_add(self.holder.limit())
     }
 
     fn counted(&self, value: &'a Value) -> Counted<'a> {
@@ -205,7 +217,7 @@ impl<'a> Iterator for UntilFull<'a, serde_json::map::Iter<'a>> {
         let looks = self.holder.looks();
         self.unseen = if looks == self.looks { self.unseen + 1 } else { 0 };
         self.looks = looks;
-        if self.is_full() || (self.holder.tally.is_some() && self.unseen > MAX_PROBLEMS) {
+        if self.is_full() || self.unseen > self.holder.limit() {
             return self.stop();
         }
         let (key, value) = self.inner.next()?;
