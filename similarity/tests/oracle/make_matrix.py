@@ -45,5 +45,4 @@ json.dump(
         "not_euclidean": classical(bent, 2),
     },
     open("mds.json", "w"),
-    indent=1,
 )
