@@ -1,7 +1,7 @@
 //! Mean and variance of the distributions that draw numbers. Those of points are in `planar.rs`.
 
+use super::Distribution;
 use super::special::{normal_cdf, normal_density};
-use super::{Distribution, von_mises};
 use crate::value::Value;
 
 impl Distribution<f64> {
@@ -14,20 +14,12 @@ impl Distribution<f64> {
 
     /// The variance of what it draws, in the square of its unit; of a Bernoulli p (1 − p).
     ///
-    /// `None` if it draws no numbers, and for `von_mises`: see [`Distribution::circular_variance`].
+    /// `None` if it draws no numbers, and for `von_mises`.
     pub fn variance(&self) -> Option<f64> {
         if matches!(self, Self::VonMises { .. }) {
             return None;
         }
         self.mean_and_variance().map(|(_, variance)| variance)
-    }
-
-    /// How far headings scatter: 1 − the length of their mean vector, 0 (all the same) to 1 (all alike). Only `von_mises` has one.
-    pub fn circular_variance(&self) -> Option<f64> {
-        match self {
-            Self::VonMises { kappa, .. } => Some(1.0 - von_mises::resultant_length(*kappa)),
-            _ => None,
-        }
     }
 
     fn mean_and_variance(&self) -> Option<(f64, f64)> {
@@ -78,13 +70,6 @@ impl Distribution<f64> {
             }
             _ => return None,
         })
-    }
-
-    /// The mean of each share of a `dirichlet`; `None` for any other distribution.
-    pub fn mean_shares(&self) -> Option<Vec<f64>> {
-        let Self::Dirichlet { alpha } = self else { return None };
-        let sum: f64 = alpha.iter().sum();
-        Some(alpha.iter().map(|shape| shape / sum).collect())
     }
 }
 

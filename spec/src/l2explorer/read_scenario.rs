@@ -47,11 +47,6 @@ impl Scenario {
         document.fail_on(reader.problems)?;
         Ok((scenario, reader.warnings.in_text(name, text)))
     }
-
-    /// Whether a JSON value is a scenario in the original's form, by its keys.
-    pub fn is_l2explorer(json: &Json) -> bool {
-        json.get("scenario").is_some_and(Json::is_array) && json.get("blocks").is_none()
-    }
 }
 
 #[derive(Default)]
