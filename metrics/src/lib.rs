@@ -47,8 +47,7 @@ pub use log::{
     LOG_FORMAT_VERSION, Log, LogColumn, LogCounts, LogTable, LogWarning, LogWriter, LoggerInfo, MAX_CELL_BYTES,
     MAX_CELLS, MAX_COLUMNS, MAX_FILE_BYTES, MAX_JSON_BYTES, MAX_JSON_VALUES, MAX_LISTED, MAX_LOG_FILES, MAX_RECORDS,
     Record, Row, Rows, ScenarioInfo, ScenarioType, SharedColumn, SteStoreMode, StoredRun, StoredTask, TaskParams,
-    TextColumn, Timestamp, Validation, begun_log, clear_ste, find_ste, read_log, read_log_with_texts, store_ste,
-    validate_log,
+    TextColumn, Timestamp, Validation, begun_log, find_ste, read_log, read_log_with_texts, store_ste, validate_log,
 };
 pub use options::{
     AggregationMethod, Anchors, DataRange, DataRanges, Definitions, MAX_WINDOW_LENGTH, MaintenanceMethod, Noise,
@@ -57,8 +56,7 @@ pub use options::{
 pub use repeats::{
     Aggregate, BootstrapOptions, Estimate, FEW_RUNS, Improvement, Interval, MAX_POWER_LIFETIMES, MAX_RESAMPLES,
     MAX_RUNS, MAX_SCORES, MAX_SCORES_DRAWN, MAX_STRATA, POWER_LEVEL, POWER_WANTED, Resampling, ScoreTable,
-    StratumImprovement, estimate, lifetimes_for, performance_profile, probability_of_improvement, smallest_effect,
-    welch_power,
+    StratumImprovement, estimate, lifetimes_for, probability_of_improvement, smallest_effect, welch_power,
 };
 pub use results::{
     AGREEING_PART, AsLogged, BesideExpert, ComparedMetric, CurvePoint, Direction, EvaluationCell, EvaluationCurve,

@@ -5,8 +5,7 @@
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
 use driftworld_metrics::{
-    Aggregate, BootstrapOptions, Estimate, Resampling, ScoreTable, estimate, performance_profile,
-    probability_of_improvement,
+    Aggregate, BootstrapOptions, Estimate, Resampling, ScoreTable, estimate, probability_of_improvement,
 };
 use proptest::prelude::*;
 
@@ -144,15 +143,5 @@ proptest! {
         let of = |a: &ScoreTable, b: &ScoreTable| probability_of_improvement(a, b, &options(how)).unwrap();
         let map = |score: f64| score.powi(3) + score;
         prop_assert_eq!(of(&table_of(&a), &table_of(&b)), of(&mapped(&a, map), &mapped(&b, map)));
-    }
-
-    #[test]
-    fn profiles_fall(rows in rows(), mut thresholds in prop::collection::vec(-120.0..120.0_f64, 1..6)) {
-        thresholds.sort_by(f64::total_cmp);
-        let profile = performance_profile(&table_of(&rows), &thresholds, &options(Resampling::Strata)).unwrap();
-        for pair in profile.windows(2) {
-            let falls = numbers(&pair[0]).iter().zip(&numbers(&pair[1])).all(|(before, after)| before >= after);
-            prop_assert!(falls, "{pair:?}");
-        }
     }
 }

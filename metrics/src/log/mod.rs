@@ -52,7 +52,7 @@ pub use record::{BlockSubtype, BlockType, DEFAULT_WORKER, ExpStatus, Record, Tas
 pub use rows::{Row, Rows};
 pub use scenario_info::{Complexity, Difficulty, ScenarioInfo, ScenarioType};
 pub use shared_column::SharedColumn;
-pub use ste_store::{SteStoreMode, StoredRun, StoredTask, clear_ste, find_ste, store_ste};
+pub use ste_store::{SteStoreMode, StoredRun, StoredTask, find_ste, store_ste};
 pub use table::{MAX_CELLS, MAX_COLUMNS, MAX_RECORDS};
 pub use text_column::TextColumn;
 pub use timestamp::Timestamp;

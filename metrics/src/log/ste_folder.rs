@@ -89,18 +89,6 @@ pub(super) fn remove(temporary: ScratchFolder) -> Result<(), MetricsError> {
         .map_err(MetricsError::io(path, "remove this directory"))
 }
 
-pub(super) fn leftovers(data_folder: &Path) -> Result<Vec<PathBuf>, MetricsError> {
-    let list = |error| MetricsError::io(data_folder, "list this directory")(error);
-    let mut left = Vec::new();
-    for entry in fs::read_dir(data_folder).map_err(list)? {
-        let entry = entry.map_err(list)?;
-        if entry.file_name().to_string_lossy().starts_with(TEMPORARY) && entry.path().is_dir() {
-            left.push(entry.path());
-        }
-    }
-    Ok(left)
-}
-
 pub(super) fn is_run(dir: &Path) -> bool {
     dir.join(logger_info::FILE_NAME).is_file()
 }

@@ -6,8 +6,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::ste_folder::{
-    check_outside, copy, directories, give_name, is_run, leftovers, own_directory, refuse_pickles, remove, runs_of,
-    take_away, temporary,
+    check_outside, copy, directories, give_name, is_run, own_directory, refuse_pickles, remove, runs_of, take_away,
+    temporary,
 };
 use super::{data_files, folder_name, log_folder};
 use crate::MetricsError;
@@ -132,43 +132,6 @@ pub fn find_ste(data_folder: impl AsRef<Path>) -> Result<Vec<StoredTask>, Metric
     Ok(tasks)
 }
 
-/// Removes the stored runs of one task, or of all, and what interrupted storing left; returns the runs that are gone. Anything else
-/// in the folder stays.
-///
-/// # Errors
-/// Those of [`find_ste`]; [`MetricsError::UnknownWord`] for a task of which nothing is stored.
-pub fn clear_ste(data_folder: impl AsRef<Path>, task: Option<&str>) -> Result<Vec<PathBuf>, MetricsError> {
-    let data_folder = data_folder.as_ref();
-    let mut tasks = find_ste(data_folder)?;
-    if let Some(wanted) = task.map(str::to_lowercase) {
-        let names: Vec<&str> = tasks.iter().map(|stored| stored.task_name.as_str()).collect();
-        let expected = names.join(", ");
-        tasks.retain(|stored| stored.task_name == wanted);
-        if tasks.is_empty() {
-            return Err(MetricsError::UnknownWord {
-                what: "stored task",
-                found: wanted,
-                expected,
-            });
-        }
-    }
-    let temporary = temporary(data_folder)?;
-    let mut removed = Vec::new();
-    for run in tasks.into_iter().flat_map(|stored| stored.runs) {
-        take_away(&run, &temporary)?;
-        // Only an empty one goes: what is not ours stays.
-        let _ = run.parent().map(fs::remove_dir);
-        removed.push(run);
-    }
-    remove(temporary)?;
-    if task.is_none() {
-        for left in leftovers(data_folder)? {
-            fs::remove_dir_all(&left).map_err(MetricsError::io(&left, "remove this directory"))?;
-        }
-    }
-    Ok(removed)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -203,7 +166,8 @@ mod tests {
             .map(|(task, runs)| ((*task).to_owned(), owned(runs)))
             .collect();
         assert_eq!(stored(data), expected);
-        assert!(leftovers(data).unwrap().is_empty());
+        let names = fs::read_dir(data).unwrap().map(|entry| entry.unwrap().file_name());
+        assert_eq!(names.filter(|name| name.to_string_lossy().starts_with('.')).count(), 0);
     }
 
     #[test]
@@ -227,27 +191,6 @@ mod tests {
         let copied = read_log(&again.dir).unwrap();
         let original = read_log(&other).unwrap();
         assert_eq!(copied, original);
-    }
-
-    #[test]
-    fn a_task_or_all_are_removed_and_nothing_else() {
-        let base = tempfile::tempdir().unwrap();
-        let data = base.path().join("data");
-        for task in ["a_1", "b_1", "c_1"] {
-            store_ste(&data, expert(base.path(), task, task, 1.0), SteStoreMode::Append).unwrap();
-        }
-        fs::write(data.join("b_1/notes.txt"), "mine").unwrap();
-        fs::create_dir_all(data.join(".storing-killed/new")).unwrap();
-        let error = clear_ste(&data, Some("d_1")).unwrap_err().to_string();
-        assert_eq!(error, "stored task: found \"d_1\", expected one of a_1, b_1, c_1");
-        assert_eq!(clear_ste(&data, Some("A_1")).unwrap(), [data.join("a_1").join("a_1")]);
-        assert_eq!(clear_ste(&data, None).unwrap().len(), 2);
-        check(&data, &[]);
-        let left: Vec<_> = fs::read_dir(&data)
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name())
-            .collect();
-        assert_eq!(left, ["b_1"], "the folder with a file that is not ours");
     }
 
     #[test]

@@ -14,7 +14,6 @@ mod interval;
 mod jackknife;
 mod permutation;
 mod power;
-mod profile;
 mod resample;
 mod score_table;
 mod student;
@@ -26,5 +25,4 @@ pub use improvement::{Improvement, StratumImprovement, probability_of_improvemen
 pub use interval::Interval;
 pub use jackknife::FEW_RUNS;
 pub use power::{MAX_POWER_LIFETIMES, POWER_LEVEL, POWER_WANTED, lifetimes_for, smallest_effect, welch_power};
-pub use profile::performance_profile;
 pub use score_table::{MAX_RUNS, MAX_SCORES, MAX_STRATA, ScoreTable};

@@ -16,7 +16,6 @@ from rliable import library, metrics
 GAMMA = 0.8
 RESAMPLES = {"aggregates": 50_000, "improvement": 20_000}
 SEEDS = {"aggregates": 6, "improvement": 3}
-THRESHOLDS = [-1.0, 0.0, 0.25, 0.5, 1.0, 3.0]
 
 
 def aggregates(scores):
@@ -57,7 +56,6 @@ for name, scores in tables.items():
             "scores": scores.tolist(),
             "values": aggregates(scores).tolist(),
             "ends": ends([scores], aggregates, "aggregates"),
-            "profile": library.score_distributions(scores, THRESHOLDS).tolist(),
         }
     )
 
@@ -88,7 +86,6 @@ text = json.dumps(
         "gamma": GAMMA,
         "resamples": RESAMPLES,
         "seeds": SEEDS,
-        "thresholds": THRESHOLDS,
         "cases": cases,
         "comparisons": comparisons,
     }
