@@ -161,7 +161,7 @@ fn without_autoreset_an_ended_episode_waits_for_its_reset() {
     assert_eq!(batch.environment(1).map(Environment::num_steps), Some(9));
 
     batch
-        .reset_where(&[true, false, false, false, false])
+        .reset_where_while(&[true, false, false, false, false], &|| true)
         .expect("the source has a next world");
     assert_eq!(batch.episode(0), Some(Episode { env: 0, index: 1 }));
     assert_eq!(
@@ -170,7 +170,10 @@ fn without_autoreset_an_ended_episode_waits_for_its_reset() {
         "the others go on"
     );
     batch.step(&still).expect("environment 0 has begun again");
-    assert!(batch.reset_where(&[true]).is_err(), "one answer for five environments");
+    assert!(
+        batch.reset_where_while(&[true], &|| true).is_err(),
+        "one answer for five environments"
+    );
     batch.reset().expect("the source has worlds");
     assert!((0..NUM_ENVS).all(|env| batch.environment(env).map(Environment::num_steps) == Some(0)));
 }
@@ -190,30 +193,6 @@ fn one_bad_action_changes_no_environment() {
     assert!((0..NUM_ENVS).all(|env| batch.environment(env).map(Environment::num_steps) == Some(0)));
     let error = batch.step(&actions[..2]).expect_err("two actions for five");
     assert!(matches!(error, EnvError::BatchLength { found: 2, num_envs: 5 }));
-}
-
-#[test]
-fn each_environment_may_have_a_task_of_its_own() {
-    let mut batch = batch(Autoreset::NextStep, 1);
-    let other: WorldSource = Arc::new(|episode| {
-        let changed = world(episode).edit(|world| world.rules.step_reward = -5.0);
-        changed.map_err(|error| error.to_string())
-    });
-    batch
-        .set_source(2, Arc::clone(&other), Some(100))
-        .expect("there is an environment 2");
-    assert!(batch.set_source(5, other, None).is_err());
-    assert_eq!(
-        batch.episode(2),
-        Some(Episode { env: 2, index: 0 }),
-        "the old episode still runs"
-    );
-    batch.reset().expect("all sources have worlds");
-    assert_eq!(batch.episode(2), Some(Episode { env: 2, index: 100 }));
-    batch
-        .step(&[Action::Continuous([0.0; 3]); NUM_ENVS])
-        .expect("the actions are sound");
-    assert_eq!(batch.outputs().rewards, [0.0, 0.0, -5.0, 0.0, 0.0]);
 }
 
 #[test]
@@ -321,7 +300,7 @@ fn a_reset_that_is_stopped_leaves_the_rest_where_they_were_and_the_next_begins_t
         Err(EnvError::BatchAction { env: 2, .. })
     ));
     batch
-        .reset_where(&[false, false, true, true, true])
+        .reset_where_while(&[false, false, true, true, true], &|| true)
         .expect("the worlds are sound");
     assert_eq!(episodes(&batch), [1; NUM_ENVS]);
     batch.step(&actions).expect("all have begun");

@@ -236,45 +236,23 @@ impl Batch {
         Ok(())
     }
 
-    /// Gives one environment another source of worlds: another task, say. It holds from its next episode on; with
-    /// `restart` given, that is the episode of this number.
-    ///
-    /// # Errors
-    /// [`EnvError::NoSuchEnv`].
-    pub fn set_source(&mut self, env: usize, source: WorldSource, restart: Option<u64>) -> Result<(), EnvError> {
-        let num_envs = self.slots.len();
-        let slot = self
-            .slots
-            .get_mut(env)
-            .ok_or(EnvError::NoSuchEnv { found: env, num_envs })?;
-        slot.set_source(source, restart);
-        Ok(())
-    }
-
     /// Begins the next episode in every environment, ended or not.
     ///
     /// # Errors
-    /// As [`Batch::reset_where`].
+    /// [`EnvError::BatchWorld`] and [`EnvError::BatchImages`] for the first environment that gets no world: all others have begun.
     pub fn reset(&mut self) -> Result<(), EnvError> {
         self.begin_next(|_| true);
         let go_on = &always;
         self.work(Work::Reset { chosen: &[], go_on })
     }
 
-    /// Begins the next episode in the environments that `chosen` says true for; the others' outputs stay.
+    /// Begins the next episode in the environments that `chosen` says true for, as long as `go_on` says so; the others' outputs
+    /// stay.
     ///
     /// # Errors
-    /// [`EnvError::BatchLength`] unless there is one answer for each environment; [`EnvError::BatchWorld`] and
-    /// [`EnvError::BatchImages`] for the first environment that gets no world: all others have begun.
-    pub fn reset_where(&mut self, chosen: &[bool]) -> Result<(), EnvError> {
-        self.reset_where_while(chosen, &always)
-    }
-
-    /// The same as long as `go_on` says so.
-    ///
-    /// # Errors
-    /// As [`Batch::reset_where`]; [`EnvError::Stopped`] if some have not begun: they do so with the next reset, or with
-    /// the next step where episodes begin by themselves.
+    /// [`EnvError::BatchLength`] unless there is one answer for each environment; those of [`Batch::reset`];
+    /// [`EnvError::Stopped`] if some have not begun: they do so with the next reset, or with the next step where episodes begin by
+    /// themselves.
     pub fn reset_where_while(&mut self, chosen: &[bool], go_on: GoOn<'_>) -> Result<(), EnvError> {
         self.expect_one_each(chosen.len())?;
         self.begin_next(|env| chosen[env]);

@@ -27,7 +27,7 @@ pub enum Autoreset {
     /// In the same step: it hands out the first observation of the next episode, and keeps the last of the old one in
     /// [`Batch::final_outputs`](super::Batch::final_outputs).
     SameStep,
-    /// When [`Batch::reset_where`](super::Batch::reset_where) says so; stepping before is an error.
+    /// When [`Batch::reset_where_while`](super::Batch::reset_where_while) says so; stepping before is an error.
     Disabled,
 }
 

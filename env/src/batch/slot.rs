@@ -115,13 +115,6 @@ impl Slot {
         self.is_over |= self.limit.is_some_and(|limit| steps >= limit.get());
     }
 
-    pub(super) fn set_source(&mut self, source: WorldSource, restart: Option<u64>) {
-        self.source = source;
-        if let Some(index) = restart {
-            self.next = index;
-        }
-    }
-
     /// Whether the action can be carried out as things are.
     pub(super) fn check(&self, action: Action, autoreset: Autoreset) -> Result<(), EnvError> {
         if !self.is_over {

@@ -12,7 +12,7 @@ use crate::render::{CpuRenderer, Frame, Target};
 impl Environment {
     /// What the agent sees now, at the world's observation size. Drawn when asked for, never before.
     ///
-    /// Should a graphics card fail, the processor draws in its place; [`Environment::try_observe`] says so instead.
+    /// Should a graphics card fail, the processor draws in its place.
     pub fn observe(&mut self) -> &Frame {
         if self.draw_observation().is_err() {
             let camera = self.camera();
@@ -23,15 +23,6 @@ impl Environment {
             renderer.draw_carried(&self.views.scene, shown(&self.world, &self.state), &mut target);
         }
         &self.frame
-    }
-
-    /// As [`Environment::observe`], but nothing takes the place of a graphics card that fails.
-    ///
-    /// # Errors
-    /// As [`Renderer::draw_batch`](crate::Renderer::draw_batch).
-    pub fn try_observe(&mut self) -> Result<&Frame, EnvError> {
-        self.draw_observation()?;
-        Ok(&self.frame)
     }
 
     fn draw_observation(&mut self) -> Result<(), EnvError> {
