@@ -25,7 +25,6 @@ mod metrics;
 mod mix;
 mod new;
 mod numbers;
-mod old_spellings;
 mod optional;
 mod order;
 mod output;
@@ -53,8 +52,9 @@ use std::borrow::Cow;
 use std::ffi::OsString;
 use std::sync::{Mutex, PoisonError};
 
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{ColorChoice, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
-use driftworld_text::printable;
+use driftworld_text::{WordKind, printable, removed};
 
 pub(crate) use crate::Failure;
 use crate::{documents, log_folders, matrix_file, overwrite, style};
@@ -72,13 +72,10 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> u8 {
     let _one_at_a_time = RUNNING.lock().unwrap_or_else(PoisonError::into_inner);
     translate_panics();
     documents::accept_standard_input();
-    let (args, notes) = old_spellings::translated(args.into_iter().collect());
+    let args: Vec<OsString> = args.into_iter().map(variant_of_standard_input).collect();
     style::follow(asked_color(&args));
     match parse(&args) {
         Ok(command) => {
-            for note in &notes {
-                output::note(format!("note: {note}"));
-            }
             let done = interrupt::watch().and_then(|_watch| command.run());
             let reported = output::tell_what_was_written();
             done.and(reported).map_or_else(|failure| report(&failure), |()| 0)
@@ -134,8 +131,45 @@ fn parse(args: &[OsString]) -> Result<Command, clap::Error> {
             Some(Cow::Owned(shown)) => shown.into(),
             _ => arg.clone(),
         };
-        read(args.iter().map(shown).collect()).err().unwrap_or(said)
+        let said = read(args.iter().map(shown).collect()).err().unwrap_or(said);
+        removed_word(args, &said).unwrap_or(said)
     })
+}
+
+/// The error for an option or command that was removed, in place of clap's.
+fn removed_word(args: &[OsString], said: &clap::Error) -> Option<clap::Error> {
+    let text = |kind| match said.get(kind)? {
+        ContextValue::String(text) => Some(text.as_str()),
+        _ => None,
+    };
+    let mut root = command();
+    let below_command = |word: &str| format!("{} {word}", command_path(&root, args)).trim_start().to_owned();
+    let (kind, word) = match said.kind() {
+        ErrorKind::InvalidSubcommand => (WordKind::Command, below_command(text(ContextKind::InvalidSubcommand)?)),
+        ErrorKind::UnknownArgument => (WordKind::Option, below_command(text(ContextKind::InvalidArg)?)),
+        _ => return None,
+    };
+    let message = removed(kind, &word)?;
+    Some(root.error(said.kind(), format!("{word}: {message}")))
+}
+
+/// The subcommands that arguments name, such as `logs aggregate`.
+fn command_path(root: &clap::Command, args: &[OsString]) -> String {
+    let (mut at, mut path) = (root, Vec::new());
+    for word in args.iter().skip(1).filter_map(|arg| arg.to_str()) {
+        if let Some(command) = at.find_subcommand(word) {
+            (at, path) = (command, [path, vec![word]].concat());
+        }
+    }
+    path.join(" ")
+}
+
+/// A variant of standard input, `-#red`, which looks like an option, as a path.
+fn variant_of_standard_input(arg: OsString) -> OsString {
+    match arg.to_str().and_then(|arg| arg.strip_prefix("-#")) {
+        Some(variant) => format!("/dev/stdin#{variant}").into(),
+        None => arg,
+    }
 }
 
 /// Lifelong reinforcement learning: task specs, worlds, distances, curricula, a first-person environment and metrics.

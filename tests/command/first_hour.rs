@@ -263,41 +263,6 @@ fn families_and_patterns_stand_for_their_members_everywhere() {
 }
 
 #[test]
-fn old_spellings_work_with_a_note() {
-    let folder = with_berries();
-    let path = folder.path();
-    let design = [
-        "curriculum",
-        "bush.json#plain",
-        "--learn",
-        "1",
-        "--eval-episodes",
-        "1",
-        "-o",
-        "s.json",
-    ];
-    succeed_in(path, &design);
-    let run = output(&mut driftworld_in(
-        path,
-        &["run", "s.json", "--agent", "still", "--logs", "log"],
-    ));
-    let said = String::from_utf8_lossy(&run.stderr);
-    assert!(run.status.success() && path.join("log").is_dir());
-    assert!(
-        said.contains("note: --logs of `driftworld run` is called --output now"),
-        "{said}"
-    );
-    let order = output(&mut driftworld_in(
-        path,
-        &["order", "bush.json", "--method", "nearest", "--json"],
-    ));
-    assert_eq!(
-        String::from_utf8_lossy(&order.stdout),
-        succeed_in(path, &["order", "bush.json", "--order", "nearest", "--json"])
-    );
-}
-
-#[test]
 fn whatever_is_written_is_told_in_one_line() {
     let folder = with_berries();
     let path = folder.path();

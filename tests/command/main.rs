@@ -26,6 +26,7 @@ mod other_contents;
 mod overwrite;
 mod pipes;
 mod readings;
+mod removed_words;
 mod report;
 mod run;
 mod run_files;

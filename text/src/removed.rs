@@ -1,0 +1,38 @@
+//! Words that earlier releases took, and what to use instead.
+
+/// What a word that a user types stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WordKind {
+    /// A command, with the commands before it: `bench metrics`.
+    Command,
+    /// An option, behind its command: `convert --to`.
+    Option,
+}
+
+/// Every removed word: its kind, the word, what to use instead.
+const REMOVED: &[(WordKind, &str, &str)] = &[
+    (WordKind::Option, "console --out", "--output"),
+    (WordKind::Option, "curriculum --method", "--order"),
+    (WordKind::Option, "order --method", "--order"),
+    (WordKind::Option, "run --logs", "--output"),
+    (WordKind::Option, "transfer-report --output", "--plot"),
+    (WordKind::Option, "transfer-report -o", "--plot"),
+];
+
+/// What a message says of a removed word, `removed in 0.3; use …`; `None` for any other word.
+///
+/// ```
+/// # use driftworld_text::{WordKind, removed};
+/// let said = removed(WordKind::Option, "run --logs");
+/// assert_eq!(said.as_deref(), Some("removed in 0.3; use --output"));
+/// ```
+pub fn removed(kind: WordKind, word: &str) -> Option<String> {
+    let mut rows = removed_words().filter(|(of, known, _)| *of == kind && *known == word);
+    rows.next()
+        .map(|(_, _, instead)| format!("removed in 0.3; use {instead}"))
+}
+
+/// Every removed word: its kind, the word, what to use instead.
+pub fn removed_words() -> impl Iterator<Item = (WordKind, &'static str, &'static str)> {
+    REMOVED.iter().copied()
+}
