@@ -23,7 +23,6 @@ pub use driftworld_spec as spec;
 pub mod behavior;
 mod checksum;
 pub mod clock;
-pub mod columns;
 pub mod commands;
 mod console;
 mod contact_sheet;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use driftworld_atomic_files::AtomicFile;
 use driftworld_report::picture::Drawing;
-use driftworld_text::ShownPath;
+use driftworld_text::{ShownPath, WordKind, removed};
 
 use crate::{Failure, overwrite};
 
@@ -46,6 +46,14 @@ pub(crate) fn write_picture(path: &Path, picture: &Drawing) -> Result<(), Failur
         )));
     }
     write(path, &picture.to_png()?)
+}
+
+/// Refuses the name of a file whose ending names a format that was removed.
+pub(crate) fn refuse_removed_ending(path: &Path) -> Result<(), Failure> {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    removed(WordKind::Format, ending).map_or(Ok(()), |message| {
+        Err(Failure::usage(format!("{}: .{ending} was {message}", path.shown())))
+    })
 }
 
 /// Why a file cannot be written.

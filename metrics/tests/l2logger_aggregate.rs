@@ -35,7 +35,7 @@ fn a_log_of_two_workers_gives_the_table_of_l2logger() {
     let dir = oracles.join("l2logger_aggregate");
     assert!(validate_log(&dir).is_valid());
     let mut table = LogTable::new(KeptRows::Complete);
-    table.add(&read_log_with_texts(&dir).unwrap()).unwrap();
+    table.add(read_log_with_texts(&dir).unwrap()).unwrap();
     let mut bytes = Vec::new();
     table.write(&mut bytes, Delimiter::Tab, Cells::Guarded).unwrap();
     let (found, expected) = (cells(&bytes), cells(include_bytes!("oracles/l2logger_aggregate.tsv")));

@@ -30,7 +30,6 @@ def optional(command: str, folder: Path) -> None:
     for feature, arguments in {
         "gltf": ["assets", "pack", str(lighthouse), "-o", "lighthouse.assets"],
         "gpu": ["render", "find_objects", "--renderer", "gpu", "-o", "gpu.png"],
-        "parquet": ["sample", "find_objects", "--count", "3", "-o", "worlds.parquet"],
     }.items():
         done = subprocess.run([command, *arguments], cwd=folder, capture_output=True, text=True, check=False, timeout=300)
         if report["features"][feature]:

@@ -136,7 +136,7 @@ fn parse(args: &[OsString]) -> Result<Command, clap::Error> {
     })
 }
 
-/// The error for an option or command that was removed, in place of clap's.
+/// The error for an option, command or format that was removed, in place of clap's.
 fn removed_word(args: &[OsString], said: &clap::Error) -> Option<clap::Error> {
     let text = |kind| match said.get(kind)? {
         ContextValue::String(text) => Some(text.as_str()),
@@ -147,6 +147,7 @@ fn removed_word(args: &[OsString], said: &clap::Error) -> Option<clap::Error> {
     let (kind, word) = match said.kind() {
         ErrorKind::InvalidSubcommand => (WordKind::Command, below_command(text(ContextKind::InvalidSubcommand)?)),
         ErrorKind::UnknownArgument => (WordKind::Option, below_command(text(ContextKind::InvalidArg)?)),
+        ErrorKind::InvalidValue => (WordKind::Format, text(ContextKind::InvalidValue)?.to_owned()),
         _ => return None,
     };
     let message = removed(kind, &word)?;

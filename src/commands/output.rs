@@ -13,7 +13,7 @@ use serde::Serialize;
 use serde_json::json;
 
 use crate::Failure;
-pub(crate) use crate::output_file::{create, unwritable, write, write_picture};
+pub(crate) use crate::output_file::{create, refuse_removed_ending, unwritable, write, write_picture};
 use crate::report::picture::Drawing;
 use crate::style::{self, Style};
 use crate::wrap::{columns_of_stderr, columns_of_stdout, wrap_lines};

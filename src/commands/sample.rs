@@ -4,9 +4,6 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::columns::Format;
-#[cfg(feature = "parquet")]
-use crate::columns::{Row, WorldTable};
 use crate::generator::{Drift, GeneratorError, Sampler, Schedule, Sequence, Switch};
 use crate::spec::{Variant, World, maps::MapLibrary};
 use crate::tasks;
@@ -29,12 +26,12 @@ const OBJECTS: u64 = 100_000;
 /// Draw worlds from a variant of a task.
 ///
 /// World INDEX under a seed is always the same, on every machine and in every order. Write worlds to standard output, a
-/// file, a folder (one file each), JSON lines (--jsonl), or a table (a file ending in .parquet or .arrow).
+/// file, a folder (one file each), or JSON lines (--jsonl).
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld sample find_objects#red --seed 7 --index 12345 -o -
   driftworld sample find_objects#red --seed 7 --count 1000 --jsonl -o worlds.jsonl
-  driftworld sample find_objects#red --count 100000 --shard 2/8 -o worlds-2.parquet
+  driftworld sample find_objects#red --count 100000 --shard 2/8 --jsonl -o worlds-2.jsonl
   driftworld sample find_objects#red --count 256 --sequence sobol -o worlds/
   driftworld sample find_objects#blue --drift-to red --schedule cosine --count 50 -o drift/
   driftworld sample my_task.json#night --maps my_maps.json --count 10 -o worlds/")]
@@ -196,19 +193,12 @@ impl Sample {
             )));
         }
         overwrite::refuse_inputs(&self.output, [self.task.as_str()])?;
+        output::refuse_removed_ending(&self.output)?;
         let variant = tasks::variant(&self.task)?;
         let source = self.source(&variant, count)?;
         let range = self
             .shard
             .map_or(self.index..self.index + count, |shard| shard.of(self.index, count));
-        if let Some(format) = Format::of(&self.output) {
-            if self.jsonl {
-                return Err(Failure::usage(
-                    "--jsonl: found with a table as output; leave out --jsonl, or name a file ending in .jsonl",
-                ));
-            }
-            return self.table(&source, &variant, range, format);
-        }
         if self.jsonl {
             return self.stream(&source, range);
         }
@@ -217,8 +207,7 @@ impl Sample {
         }
         if self.output == Path::new("-") {
             return Err(Failure::usage(
-                "found several worlds for one document, expected a folder (-o DIR), one world per line (--jsonl), or \
-                 a table (-o FILE.parquet)",
+                "found several worlds for one document, expected a folder (-o DIR), or one world per line (--jsonl)",
             ));
         }
         self.files(&source, range)
@@ -289,43 +278,6 @@ impl Sample {
             written.map_err(|error| self.failed(&error))
         })?;
         self.commit(file)?;
-        output::wrote(&self.output, format!("{count} worlds"));
-        Ok(())
-    }
-
-    #[cfg(not(feature = "parquet"))]
-    #[expect(clippy::unused_self, reason = "as where there is the feature")]
-    fn table(&self, _: &Source, _: &Variant, _: std::ops::Range<u64>, _: Format) -> Result<(), Failure> {
-        let instead = ", or write JSON lines (--jsonl)";
-        Err(super::optional::missing(
-            "parquet",
-            "writing Parquet and Arrow",
-            instead,
-        ))
-    }
-
-    #[cfg(feature = "parquet")]
-    fn table(
-        &self,
-        source: &Source,
-        variant: &Variant,
-        range: std::ops::Range<u64>,
-        format: Format,
-    ) -> Result<(), Failure> {
-        let mut table = WorldTable::new(BufWriter::new(output::create(&self.output)?), format)
-            .map_err(|error| self.failed(&error))?;
-        let (task, seed, count) = (variant.task().name(), self.seed, range.end - range.start);
-        each(source, range, |(index, variant, world)| {
-            let row = Row {
-                task,
-                variant: &variant,
-                seed,
-                index,
-                world: &world,
-            };
-            table.push(row).map_err(|error| self.failed(&error))
-        })?;
-        self.commit(table.finish().map_err(|error| self.failed(&error))?)?;
         output::wrote(&self.output, format!("{count} worlds"));
         Ok(())
     }

@@ -4,8 +4,6 @@
 
 use std::fs;
 use std::path::Path;
-#[cfg(feature = "parquet")]
-use std::process::Command;
 
 use crate::run_files::write;
 use crate::terminal::{driftworld_in, output, scratch};
@@ -201,88 +199,15 @@ fn a_log_is_never_written_over() {
 }
 
 #[test]
-fn formats_are_known_by_name_and_binary_ones_need_a_file() {
+fn formats_are_known_by_name() {
     let base = scratch();
     write_log(&base.path().join("run"));
     let (_, error) = run(base.path(), 2, &["logs", "aggregate", "run", "-o", "table.xlsx"]);
-    assert!(
-        error.contains("expected a name ending in .tsv, .csv, .parquet, .feather or .arrow"),
-        "{error}"
-    );
+    assert!(error.contains("expected a name ending in .tsv or .csv"), "{error}");
     let contradiction = ["logs", "aggregate", "run", "-o", "table.csv", "--format", "tsv"];
     let (_, error) = run(base.path(), 2, &contradiction);
     assert!(
         error.contains("found a format that differs from the ending of \"table.csv\""),
         "{error}"
     );
-    let (_, error) = run(
-        base.path(),
-        2,
-        &["logs", "aggregate", "run", "-o", "-", "--format", "parquet"],
-    );
-    assert!(error.contains("expected the name of a file"), "{error}");
-}
-
-/// Prints the types of a table's columns and its rows, as pyarrow reads them, as JSON.
-#[cfg(feature = "parquet")]
-const READ: &str = "
-import json, sys
-import pyarrow.feather, pyarrow.parquet
-read = pyarrow.parquet.read_table if sys.argv[1].endswith('parquet') else pyarrow.feather.read_table
-table = read(sys.argv[1])
-print(json.dumps([[str(field.type) for field in table.schema], table.to_pylist()], default=str))
-";
-
-#[cfg(feature = "parquet")]
-#[test]
-fn pyarrow_reads_parquet_and_feather_with_their_types() {
-    let python = std::env::var_os("DRIFTWORLD_PYTHON").unwrap_or_else(|| "python3".into());
-    let read = |file: &Path| Command::new(&python).args(["-c", READ]).arg(file).output();
-    let has_pyarrow = Command::new(&python)
-        .args(["-c", "import pyarrow.parquet, pyarrow.feather"])
-        .output();
-    if !has_pyarrow.is_ok_and(|output| output.status.success()) {
-        println!(
-            "skipped: {} cannot import pyarrow; name a Python that can in DRIFTWORLD_PYTHON",
-            python.display()
-        );
-        return;
-    }
-    let base = scratch();
-    write_log(&base.path().join("logs/one"));
-    write_log(&base.path().join("logs/two"));
-    for name in ["table.parquet", "table.feather", "table.arrow"] {
-        run(base.path(), 0, &["logs", "aggregate", "-R", "logs", "-o", name]);
-        let output = read(&base.path().join(name)).expect("it ran just now");
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        let found: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
-        let word = "dictionary<values=string, indices=int32, ordered=0>";
-        let (whole, time) = ("int64", "timestamp[us]");
-        let types = [
-            word, whole, whole, whole, word, word, word, word, word, word, time, "string", "double",
-        ];
-        assert_eq!(found[0], serde_json::json!(types), "{name}");
-        let row = |run: &str, rest: serde_json::Value| {
-            let mut row = serde_json::json!({ "run_id": run, "worker_id": "w", "block_subtype": "wake", "task_name": "a_b",
-                "exp_status": "complete" });
-            let cells = rest.as_object().into_iter().flatten();
-            cells.for_each(|(column, cell)| row[column] = cell.clone());
-            row
-        };
-        let of = |run: &str| {
-            [
-                row(
-                    run,
-                    serde_json::json!({ "block_num": 0, "regime_num": 0, "exp_num": 0, "block_type": "train",
-                        "task_params": "{\"size\": 0.1}", "timestamp": "2020-01-01 00:00:01.250000", "debug": "a, b", "reward": 0.1 }),
-                ),
-                row(
-                    run,
-                    serde_json::json!({ "block_num": 1, "regime_num": 1, "exp_num": 1, "block_type": "test", "task_params": "{}",
-                        "timestamp": "2020-01-01 00:00:02", "debug": null, "reward": null }),
-                ),
-            ]
-        };
-        assert_eq!(found[1], serde_json::json!([of("one"), of("two")].concat()), "{name}");
-    }
 }

@@ -9,6 +9,7 @@ fn every_removed_word_names_what_to_use_instead() {
     for (kind, word, instead) in removed_words() {
         let arguments = match kind {
             WordKind::Command | WordKind::Option => word.to_owned(),
+            WordKind::Format => format!("sample find_objects#red -o worlds.{word}"),
         };
         let said = fail(2, &arguments.split(' ').collect::<Vec<_>>());
         let expected = format!("removed in 0.3; use {instead}");

@@ -1,7 +1,8 @@
 //! Runs the commands of a page as its reader would: one block after the other, in a folder of their own in which
 //! `examples/` is the checkout's. A block `sh terminal=KEYS` is run on a terminal on which these keys are pressed, one after each
 //! step that it shows. A block `json file=NAME` or `text file=NAME` is saved; a block `sh fails` must fail; a
-//! block `text output` is what the commands above it print.
+//! block `text output` is what the commands above it print. A block `sh needs=MODULE` is skipped, and what it prints with it,
+//! where `python3`, or the Python that `DRIFTWORLD_PYTHON` names, cannot import the module.
 //!
 //! `DRIFTWORLD_UPDATE_PAGES=1` writes what is printed into the page, and copies the pictures that the commands made to where
 //! the page shows them: `sheet.png` is `images/PAGE-sheet.png`. Read the difference before you commit it.
@@ -34,13 +35,16 @@ pub(crate) fn run(page: &str) {
     for block in blocks(&text.clone()) {
         if let Some(name) = block.file() {
             std::fs::write(folder.join(name), &block.text).unwrap();
+        } else if let Some(module) = missing_module(&block, folder) {
+            println!("{page}:{}: skipped: Python cannot import {module}", block.line);
+            printed = LEFT_OUT.to_owned();
         } else if block.language == "sh" && !block.has("by-hand") {
             printed = run_block(page, &block, folder);
             if is_recorded {
                 compare(page, &block, &printed, &mut recorded);
             }
         } else if block.has("output") {
-            if same(&block.text, &printed) {
+            if printed == LEFT_OUT || same(&block.text, &printed) {
                 continue;
             }
             assert!(
@@ -96,6 +100,13 @@ fn compare(page: &str, block: &Block, printed: &str, recorded: &mut Vec<Recorded
     );
 }
 
+/// The module of Python that a block needs and this machine lacks.
+fn missing_module<'a>(block: &'a Block, folder: &Path) -> Option<&'a str> {
+    let module = block.marks.iter().find_map(|mark| mark.strip_prefix("needs="))?;
+    let tried = command(&["python3", "-c", &format!("import {module}")], folder).output();
+    (!tried.is_ok_and(|done| done.status.success())).then_some(module)
+}
+
 fn updates() -> bool {
     std::env::var_os("DRIFTWORLD_UPDATE_PAGES").is_some()
 }
@@ -143,7 +154,12 @@ fn run_block(page: &str, block: &Block, folder: &Path) -> String {
 /// A command that knows ours.
 fn command(words: &[&str], folder: &Path) -> Command {
     let ours = Path::new(env!("CARGO_BIN_EXE_driftworld"));
-    let path = std::env::var("PATH").unwrap_or_default();
+    let mut path = std::env::var("PATH").unwrap_or_default();
+    // As if its virtual environment were active.
+    let python = std::env::var("DRIFTWORLD_PYTHON").unwrap_or_default();
+    if let Some(folder) = Path::new(&python).parent().filter(|folder| folder.is_dir()) {
+        path = format!("{}:{path}", folder.display());
+    }
     let mut command = Command::new(words[0]);
     command
         .args(&words[1..])

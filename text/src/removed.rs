@@ -7,10 +7,17 @@ pub enum WordKind {
     Command,
     /// An option, behind its command: `convert --to`.
     Option,
+    /// The ending of a file's name, or a format by its own name.
+    Format,
 }
+
+const TABLES: &str = ".jsonl for worlds, .tsv or .csv for logs; docs/how-to/interoperate.md makes Parquet of either";
 
 /// Every removed word: its kind, the word, what to use instead.
 const REMOVED: &[(WordKind, &str, &str)] = &[
+    (WordKind::Format, "arrow", TABLES),
+    (WordKind::Format, "feather", TABLES),
+    (WordKind::Format, "parquet", TABLES),
     (WordKind::Option, "console --out", "--output"),
     (WordKind::Option, "curriculum --method", "--order"),
     (WordKind::Option, "order --method", "--order"),

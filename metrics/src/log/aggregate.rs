@@ -1,27 +1,34 @@
-//! The rows of one log or several as one table, the form in which other programs take them, and that table as text.
-//!
-//! Not here: the table as Parquet or Arrow, which the facade writes from its columns.
+//! The rows of one log or several as one table of text, the form in which other programs take them.
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 use std::io::{self, Write};
 
 use driftworld_text::Cells;
 
 use super::columns::delimited;
-use super::custom_column::{CustomColumn, number_text};
-use super::dictionary_column::{DictionaryColumn, Keys};
-use super::log_column::LogColumn;
 use super::record::ExpStatus;
 use super::rows::Row;
 use super::table::{MAX_CELLS, MAX_RECORDS};
-use super::text_column::TextColumn;
-use super::timestamp::Timestamp;
 use super::{Log, spaced_json};
 use crate::MetricsError;
 
 /// Columns of the table that no log has.
 const ADDED: [&str; 2] = ["run_id", "regime_num"];
+
+/// The columns that every table has.
+const STANDARD: [&str; 10] = [
+    "block_num",
+    "regime_num",
+    "exp_num",
+    "worker_id",
+    "block_type",
+    "block_subtype",
+    "task_name",
+    "task_params",
+    "exp_status",
+    "timestamp",
+];
 
 /// Which rows of a log come into a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -54,19 +61,9 @@ pub enum Delimiter {
 #[derive(Debug, Clone, Default)]
 pub struct LogTable {
     kept: KeptRows,
-    num_logs: usize,
-    run_ids: DictionaryColumn,
-    block_nums: Vec<u64>,
-    regime_nums: Vec<u64>,
-    exp_nums: Vec<u64>,
-    workers: DictionaryColumn,
-    block_types: DictionaryColumn,
-    block_subtypes: DictionaryColumn,
-    task_names: DictionaryColumn,
-    task_params: DictionaryColumn,
-    exp_statuses: DictionaryColumn,
-    timestamps: Vec<Timestamp>,
-    custom: BTreeMap<String, CustomColumn>,
+    logs: Vec<Log>,
+    num_rows: usize,
+    own: BTreeSet<String>,
 }
 
 impl LogTable {
@@ -79,71 +76,28 @@ impl LogTable {
     }
 
     /// Adds the rows of a log. Read it with [`read_log_with_texts`](crate::read_log_with_texts) to have its columns of words, too.
-    /// A column that is missing in some logs has no values there; one of numbers in some logs and words in others becomes one of
-    /// words.
+    /// A column that is missing in some logs has empty cells there.
     ///
     /// # Errors
     /// [`MetricsError::TableColumn`] where the log has a column `run_id` or `regime_num` of its own, [`MetricsError::TooLarge`]
     /// where the table would pass its limits. The table is as before then.
-    pub fn add(&mut self, log: &Log) -> Result<(), MetricsError> {
-        let kept: Vec<Row<'_>> = (log.rows.iter())
-            .filter(|row| self.kept == KeptRows::All || row.exp_status() == ExpStatus::Complete)
-            .collect();
-        self.check(log, kept.len())?;
-        let before = self.len();
-        self.num_logs += 1;
-        let run = self.run_ids.key(&log.run_id);
-        let mut workers = Keys::new(log.rows.workers());
-        let mut tasks = Keys::new(log.rows.task_names());
-        let mut params = Keys::new(log.rows.task_params());
-        for row in &kept {
-            let index = row.index();
-            self.run_ids.push_key(run);
-            self.block_nums.push(row.block_num());
-            self.exp_nums.push(row.exp_num());
-            workers.push(&mut self.workers, index, String::clone);
-            self.block_types.push(row.block_type().name());
-            self.block_subtypes.push(row.block_subtype().name());
-            tasks.push(&mut self.task_names, index, |name| name.to_lowercase());
-            params.push(&mut self.task_params, index, |params| spaced_json(params));
-            self.exp_statuses.push(row.exp_status().name());
-            self.timestamps.push(row.timestamp());
-            self.push_regime(before);
-        }
-        self.add_own(log, &kept, before);
+    pub fn add(&mut self, log: Log) -> Result<(), MetricsError> {
+        let num_rows = rows(&log, self.kept).count();
+        self.check(&log, num_rows)?;
+        self.num_rows += num_rows;
+        self.own.extend(own_columns(&log).map(str::to_owned));
+        self.logs.push(log);
         Ok(())
     }
 
     /// Number of rows.
     pub fn len(&self) -> usize {
-        self.block_nums.len()
+        self.num_rows
     }
 
     /// Whether there are no rows.
     pub fn is_empty(&self) -> bool {
-        self.block_nums.is_empty()
-    }
-
-    /// All columns with their names, in order.
-    pub fn columns(&self) -> Vec<(&str, LogColumn<'_>)> {
-        let run_ids = (self.num_logs > 1).then_some(("run_id", LogColumn::Dictionary(&self.run_ids)));
-        let standard = [
-            ("block_num", LogColumn::Integers(&self.block_nums)),
-            ("regime_num", LogColumn::Integers(&self.regime_nums)),
-            ("exp_num", LogColumn::Integers(&self.exp_nums)),
-            ("worker_id", LogColumn::Dictionary(&self.workers)),
-            ("block_type", LogColumn::Dictionary(&self.block_types)),
-            ("block_subtype", LogColumn::Dictionary(&self.block_subtypes)),
-            ("task_name", LogColumn::Dictionary(&self.task_names)),
-            ("task_params", LogColumn::Dictionary(&self.task_params)),
-            ("exp_status", LogColumn::Dictionary(&self.exp_statuses)),
-            ("timestamp", LogColumn::Times(&self.timestamps)),
-        ];
-        let custom = self.custom.iter().map(|(name, column)| match column {
-            CustomColumn::Numbers(numbers) => (name.as_str(), LogColumn::Numbers(numbers)),
-            CustomColumn::Texts(texts) => (name.as_str(), LogColumn::Texts(texts)),
-        });
-        run_ids.into_iter().chain(standard).chain(custom).collect()
+        self.num_rows == 0
     }
 
     /// Writes the table as text with a header line; lines end with `\n`, cells are quoted where they must be, and texts
@@ -156,36 +110,67 @@ impl LogTable {
             Delimiter::Tab => b'\t',
             Delimiter::Comma => b',',
         };
-        let columns = self.columns();
-        out.write_all(&delimited(
-            delimiter,
-            columns.iter().map(|(name, _)| cells.cell(name).into_owned()),
-        ))?;
-        let mut line = vec![String::new(); columns.len()];
-        for row in 0..self.len() {
-            for (cell, (_, column)) in line.iter_mut().zip(&columns) {
-                cell.clear();
-                column.write(row, cell);
+        let mut write = |mut line: Vec<String>| {
+            for cell in &mut line {
                 if let Cow::Owned(guarded) = cells.cell(cell) {
                     *cell = guarded;
                 }
             }
-            out.write_all(&delimited(delimiter, &line))?;
+            out.write_all(&delimited(delimiter, &line))
+        };
+        let has_run_id = self.logs.len() > 1;
+        let names = has_run_id.then_some(ADDED[0]).into_iter().chain(STANDARD);
+        write(
+            names
+                .chain(self.own.iter().map(String::as_str))
+                .map(str::to_owned)
+                .collect(),
+        )?;
+        for log in &self.logs {
+            let params: Vec<String> = log
+                .rows
+                .task_params()
+                .values()
+                .iter()
+                .map(|it| spaced_json(it))
+                .collect();
+            let mut regime_num = 0;
+            let mut last = None;
+            for row in rows(log, self.kept) {
+                let task = row.task_name().to_lowercase();
+                let regime = (row.block_num(), row.block_type(), row.block_subtype(), task.clone());
+                regime_num += u64::from(last.as_ref().is_some_and(|last| *last != regime));
+                last = Some(regime);
+                let standard = [
+                    row.block_num().to_string(),
+                    regime_num.to_string(),
+                    row.exp_num().to_string(),
+                    row.worker_id().to_owned(),
+                    row.block_type().name().to_owned(),
+                    row.block_subtype().name().to_owned(),
+                    task,
+                    params[log.rows.task_params().ids()[row.index()] as usize].clone(),
+                    row.exp_status().name().to_owned(),
+                    row.timestamp().to_string(),
+                ];
+                let run_id = has_run_id.then(|| log.run_id.clone());
+                let own = self.own.iter().map(|name| own_cell(row, name));
+                write(run_id.into_iter().chain(standard).chain(own).collect())?;
+            }
         }
         out.flush()
     }
 
     fn check(&self, log: &Log, num_rows: usize) -> Result<(), MetricsError> {
-        let names = || log.rows.metric_names().chain(log.rows.text_names());
-        if let Some(column) = names().find(|name| ADDED.contains(name)) {
+        if let Some(column) = own_columns(log).find(|name| ADDED.contains(name)) {
             return Err(MetricsError::TableColumn {
                 run_id: log.run_id.clone(),
                 column: column.to_owned(),
             });
         }
-        let rows = (self.len() + num_rows) as u64;
-        let new = names().filter(|name| !self.custom.contains_key(*name)).count();
-        let cells = rows * (self.custom.len() + new) as u64;
+        let rows = (self.num_rows + num_rows) as u64;
+        let new = own_columns(log).filter(|name| !self.own.contains(*name)).count();
+        let cells = rows * (self.own.len() + new) as u64;
         for (what, found, limit) in [("rows", rows, MAX_RECORDS as u64), ("cells", cells, MAX_CELLS)] {
             if found > limit {
                 return Err(MetricsError::TooLarge {
@@ -198,60 +183,24 @@ impl LogTable {
         }
         Ok(())
     }
+}
 
-    /// Numbers the regime of the row whose other cells were just added; the log's first row is at `first`.
-    fn push_regime(&mut self, first: usize) {
-        let row = self.regime_nums.len();
-        let regime = |row: usize| {
-            let words = [&self.block_types, &self.block_subtypes, &self.task_names].map(|words| words.keys()[row]);
-            (self.block_nums[row], words)
-        };
-        let regime_num = match row.checked_sub(1).filter(|before| *before >= first) {
-            None => 0,
-            Some(before) => self.regime_nums[before] + u64::from(regime(before) != regime(row)),
-        };
-        self.regime_nums.push(regime_num);
-    }
+fn rows(log: &Log, kept: KeptRows) -> impl Iterator<Item = Row<'_>> {
+    let is_kept = move |row: &Row| kept == KeptRows::All || row.exp_status() == ExpStatus::Complete;
+    log.rows.iter().filter(is_kept)
+}
 
-    /// Adds the columns that the log names; the table had `before` rows.
-    fn add_own(&mut self, log: &Log, kept: &[Row<'_>], before: usize) {
-        for name in log.rows.metric_names() {
-            let numbers = log.rows.metric(name).unwrap_or_default();
-            match self
-                .custom
-                .entry(name.to_owned())
-                .or_insert_with(|| CustomColumn::Numbers(Vec::new()))
-            {
-                CustomColumn::Numbers(column) => {
-                    column.resize(before, f64::NAN);
-                    column.extend(kept.iter().map(|row| numbers[row.index()]));
-                }
-                CustomColumn::Texts(column) => {
-                    column.pad(before);
-                    for row in kept {
-                        column.push(&number_text(numbers[row.index()]));
-                    }
-                }
-            }
-        }
-        for name in log.rows.text_names() {
-            let column = self
-                .custom
-                .entry(name.to_owned())
-                .or_insert_with(|| CustomColumn::Texts(TextColumn::default()));
-            let column = column.as_texts();
-            column.pad(before);
-            for row in kept {
-                column.push(row.text(name).unwrap_or_default());
-            }
-        }
-        let num_rows = self.block_nums.len();
-        for column in self.custom.values_mut() {
-            match column {
-                CustomColumn::Numbers(column) => column.resize(num_rows, f64::NAN),
-                CustomColumn::Texts(column) => column.pad(num_rows),
-            }
-        }
+/// The columns that a log names, beside the standard ones.
+fn own_columns(log: &Log) -> impl Iterator<Item = &str> {
+    log.rows.metric_names().chain(log.rows.text_names())
+}
+
+/// A cell of such a column: a number as the shortest text that reads back as the same, nothing where there is none.
+fn own_cell(row: Row, name: &str) -> String {
+    match row.metric(name) {
+        Some(number) if number.is_nan() => String::new(),
+        Some(number) => format!("{number:?}"),
+        None => row.text(name).unwrap_or_default().to_owned(),
     }
 }
 
@@ -299,7 +248,7 @@ mod tests {
     #[test]
     fn a_table_has_the_columns_and_rows_of_l2logger() {
         let mut table = LogTable::new(KeptRows::Complete);
-        table.add(&rows()).unwrap();
+        table.add(rows()).unwrap();
         let expected = "block_num\tregime_num\texp_num\tworker_id\tblock_type\tblock_subtype\ttask_name\ttask_params\texp_status\ttimestamp\t\
                         debug\treward\n\
                         0\t0\t0\tw\ttrain\twake\ta_x\t\"{\"\"k\"\": 1}\"\tcomplete\t20200101T000001.000000\tok\t1.0\n\
@@ -311,7 +260,7 @@ mod tests {
     #[test]
     fn all_rows_are_kept_where_they_are_wanted() {
         let mut table = LogTable::new(KeptRows::All);
-        table.add(&rows()).unwrap();
+        table.add(rows()).unwrap();
         assert_eq!(table.len(), 4);
         let csv = text(&table, Delimiter::Comma);
         let first = csv.lines().nth(1).unwrap();
@@ -329,9 +278,9 @@ mod tests {
             &["7\t9\tv\ttrain\tb_y\t{}\tcomplete\t20200101T000000.0\t3\t12\t4"],
         );
         let mut table = LogTable::new(KeptRows::Complete);
-        table.add(&rows()).unwrap();
-        table.add(&other).unwrap();
-        table.add(&rows()).unwrap();
+        table.add(rows()).unwrap();
+        table.add(other).unwrap();
+        table.add(rows()).unwrap();
         let cells: Vec<Vec<String>> = text(&table, Delimiter::Comma)
             .lines()
             .map(|line| line.split(',').map(str::to_owned).collect())
@@ -350,27 +299,24 @@ mod tests {
     }
 
     #[test]
-    fn a_column_of_numbers_becomes_words_where_a_later_log_has_words() {
+    fn a_column_may_hold_numbers_in_one_log_and_words_in_another() {
         let row = "0\t0\tw\ttrain\ta_x\t{}\tcomplete\t20200101T000000.0\t1";
         let mut table = LogTable::new(KeptRows::Complete);
         for cell in ["2", "two"] {
             table
-                .add(&log("run", "reward\tnote", &[&format!("{row}\t{cell}")]))
+                .add(log("run", "reward\tnote", &[&format!("{row}\t{cell}")]))
                 .unwrap();
         }
-        let (name, column) = table.columns()[11];
-        assert_eq!(name, "note");
-        let LogColumn::Texts(texts) = column else {
-            panic!("{column:?}")
-        };
-        assert_eq!((texts.get(0), texts.get(1)), (Some("2.0"), Some("two")));
+        let csv = text(&table, Delimiter::Comma);
+        let notes: Vec<&str> = csv.lines().filter_map(|line| line.split(',').nth(11)).collect();
+        assert_eq!(notes, ["note", "2.0", "two"]);
     }
 
     #[test]
     fn a_column_that_the_table_adds_itself_is_refused() {
         let row = "0\t0\tw\ttrain\ta_x\t{}\tcomplete\t20200101T000000.0\t1\t1";
         let mut table = LogTable::new(KeptRows::Complete);
-        let error = table.add(&log("run", "reward\tregime_num", &[row])).unwrap_err();
+        let error = table.add(log("run", "reward\tregime_num", &[row])).unwrap_err();
         assert_eq!(error.code(), "metrics/table-column");
         assert!(table.is_empty());
     }
@@ -391,8 +337,8 @@ mod tests {
         writer.write(&record).unwrap();
         writer.finish().unwrap();
         let mut table = LogTable::new(KeptRows::Complete);
-        table.add(&read_log_with_texts(&dir).unwrap()).unwrap();
+        table.add(read_log_with_texts(&dir).unwrap()).unwrap();
         assert!(table.is_empty());
-        assert_eq!(table.columns().len(), 11);
+        assert_eq!(text(&table, Delimiter::Tab).split('\t').count(), 11);
     }
 }

@@ -1,13 +1,10 @@
 //! `driftworld logs aggregate`: the rows of logs as one table in a file. Which rows and columns it has is `metrics`'s business.
 
-use std::io::{BufWriter, Write};
+use std::io::BufWriter;
 use std::path::PathBuf;
 
-#[cfg(feature = "parquet")]
-use crate::columns;
 use crate::metrics::{Delimiter, KeptRows, LogTable, read_log_with_texts};
 use clap::{Args, ValueEnum};
-use driftworld_text::Cells;
 
 use super::super::{Failure, log_folders, output, overwrite};
 use super::count;
@@ -19,20 +16,17 @@ use crate::table::cells;
 /// then the log's own in alphabetical order. With several logs, `run_id` comes first: the name of the log's folder,
 /// preceded by parent folders if names repeat. A regime is a run of rows with one block, subtype and task. Task names
 /// are in lower case, as for scoring. Rows of incomplete experiences are left out unless --incomplete is given.
-///
-/// Parquet and Feather keep types: integers, dictionaries for repeated strings, time stamps in microseconds, floats,
-/// and null for missing values. Feather is the Arrow file format, which pandas, polars and pyarrow read.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld logs aggregate demo-out/log -o demo.tsv
-  driftworld logs aggregate logs --recursive -o all.parquet
+  driftworld logs aggregate logs --recursive -o all.csv
   driftworld logs aggregate demo-out/log --format csv -o - | head")]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag of the command line")]
 pub(crate) struct Aggregate {
     /// Folders of logs.
     #[arg(required = true, value_name = "DIR")]
     logs: Vec<PathBuf>,
-    /// File to write: .tsv, .csv, .parquet, .feather or .arrow, or - for standard output.
+    /// File to write: .tsv or .csv, or - for standard output.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Format, if the file name does not tell it.
@@ -61,19 +55,20 @@ enum Format {
     Tsv,
     /// Comma-separated values.
     Csv,
-    /// Apache Parquet.
-    Parquet,
-    /// Feather version 2, the Arrow file format.
-    Feather,
+}
+
+impl Format {
+    fn delimiter(self) -> Delimiter {
+        match self {
+            Self::Tsv => Delimiter::Tab,
+            Self::Csv => Delimiter::Comma,
+        }
+    }
 }
 
 impl Aggregate {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let format = self.format()?;
-        #[cfg(not(feature = "parquet"))]
-        if matches!(format, Format::Parquet | Format::Feather) {
-            return Err(lacks_parquet());
-        }
         let logs = if self.recursive {
             log_folders::below(&self.logs)?
         } else {
@@ -89,7 +84,7 @@ impl Aggregate {
             // Warnings are the business of `logs validate`: nothing of a row is lost for them.
             let mut log = read_log_with_texts(log)?;
             log.run_id = name;
-            table.add(&log)?;
+            table.add(log)?;
         }
         if output::is_stdout(&self.output) {
             return self.print(&table, format);
@@ -113,10 +108,9 @@ impl Aggregate {
         let by_name = match ending {
             "tsv" => Some(Format::Tsv),
             "csv" => Some(Format::Csv),
-            "parquet" => Some(Format::Parquet),
-            "feather" | "arrow" => Some(Format::Feather),
             _ => None,
         };
+        output::refuse_removed_ending(&self.output)?;
         let found = self.output.display().to_string();
         match (self.format, by_name) {
             (Some(format), Some(by_name)) if format != by_name => Err(Failure::usage(format!(
@@ -125,30 +119,27 @@ impl Aggregate {
             ))),
             (Some(format), _) | (None, Some(format)) => Ok(format),
             (None, None) => Err(Failure::usage(format!(
-                "--output: found {found:?}, expected a name ending in .tsv, .csv, .parquet, .feather or .arrow, or \
-                 the format as \
-                 --format tsv"
+                "--output: found {found:?}, expected a name ending in .tsv or .csv, or the format as --format tsv"
             ))),
         }
     }
 
     fn write(&self, table: &LogTable, format: Format) -> Result<(), Failure> {
         let failed = |error: &dyn std::fmt::Display| output::unwritable(&self.output, error);
-        let file = output::create(&self.output)?;
-        let file =
-            written(table, format, cells(self.raw_cells), BufWriter::new(file)).map_err(|error| failed(&error))?;
+        let mut file = BufWriter::new(output::create(&self.output)?);
+        table
+            .write(&mut file, format.delimiter(), cells(self.raw_cells))
+            .map_err(|error| failed(&error))?;
         let file = file.into_inner().map_err(|error| failed(&error.into_error()))?;
         file.commit().map_err(|error| failed(&error))
     }
 
     fn print(&self, table: &LogTable, format: Format) -> Result<(), Failure> {
-        if matches!(format, Format::Parquet | Format::Feather) {
-            return Err(Failure::usage(
-                "--output: found - for Parquet or Feather, which are not text, expected the name of a file",
-            ));
-        }
         let failed = |error: &dyn std::fmt::Display| Failure::input(format!("standard output: {error}"));
-        let bytes = written(table, format, cells(self.raw_cells), Vec::new()).map_err(|error| failed(&error))?;
+        let mut bytes = Vec::new();
+        table
+            .write(&mut bytes, format.delimiter(), cells(self.raw_cells))
+            .map_err(|error| failed(&error))?;
         let text = String::from_utf8(bytes).map_err(|error| failed(&error))?;
         output::carries_data();
         if self.raw_cells {
@@ -157,29 +148,4 @@ impl Aggregate {
             output::print(&text)
         }
     }
-}
-
-#[cfg(not(feature = "parquet"))]
-fn lacks_parquet() -> Failure {
-    super::super::optional::missing("parquet", "writing Parquet and Feather", ", or write .tsv or .csv")
-}
-
-/// Writes the table and hands back what it was written to.
-fn written<W: Write + Send>(
-    table: &LogTable,
-    format: Format,
-    cells: Cells,
-    mut to: W,
-) -> Result<W, Box<dyn std::error::Error>> {
-    match format {
-        Format::Tsv => table.write(&mut to, Delimiter::Tab, cells)?,
-        Format::Csv => table.write(&mut to, Delimiter::Comma, cells)?,
-        #[cfg(feature = "parquet")]
-        Format::Parquet => return Ok(columns::write_log_table(table, to, columns::Format::Parquet)?),
-        #[cfg(feature = "parquet")]
-        Format::Feather => return Ok(columns::write_log_table(table, to, columns::Format::Arrow)?),
-        #[cfg(not(feature = "parquet"))]
-        Format::Parquet | Format::Feather => return Err("the feature `parquet` is missing".into()),
-    }
-    Ok(to)
 }

@@ -14,7 +14,7 @@ use super::Failure;
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld logs validate demo-out/log
-  driftworld logs aggregate demo-out/log -o demo.parquet
+  driftworld logs aggregate demo-out/log -o demo.tsv
   driftworld logs aggregate logs --recursive -o all.csv")]
 pub(crate) struct Logs {
     #[command(subcommand)]
