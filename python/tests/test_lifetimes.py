@@ -242,16 +242,21 @@ def test_a_label_is_told_where_the_scenario_says_so(told: str) -> None:
 
 
 def test_a_scenario_of_the_originals_is_lived_as_the_command_lives_it(tmp_path: Path) -> None:
-    theirs, maps = tmp_path / "theirs.json", tmp_path / "theirs-maps"
-    small(max_steps=5).save(tmp_path / "ours.json")
-    argv = ["convert", str(tmp_path / "ours.json"), "--to", "l2explorer", "-o", str(theirs)]
-    subprocess.run([sys.executable, "-m", "driftworld", *argv], check=True, capture_output=True)
+    theirs, maps = tmp_path / "theirs.json", tmp_path / "maps"
+    maps.mkdir()
+    regimes = []
+    for name, count in [("near", 2), ("far", 1)]:
+        tree = {"class": "tree", "coordinates": [3, 4] if name == "near" else [30, 40]}
+        (maps / f"{name}.json").write_text(json.dumps({"game_mode": "learn", "objects": [tree]}), encoding="utf-8")
+        regimes.append({"task": "trees", "count": count, "params": {"map": f"maps/{name}.json", "maxsteps": 5}})
+    blocks = [{"type": "train", "regimes": regimes}, {"type": "test", "regimes": regimes}]
+    theirs.write_text(json.dumps({"logging_base_dir": "logs", "scenario": blocks}), encoding="utf-8")
     # A map that is nowhere: another stands in for it, as the original's own scenario needs it.
     min(maps.iterdir()).unlink()
     with pytest.warns(UserWarning, match="stood in for it"):
         curriculum = Curriculum.load(theirs)
     summary = curriculum.run(Circler(), tmp_path / "log", **SMALL)
-    assert summary.finished and summary.experiences == curriculum.num_experiences == small().num_experiences
+    assert summary.finished and summary.experiences == curriculum.num_experiences == 6
     with pytest.raises(CurriculumError, match="expected a world file"):
         Curriculum.load(theirs, stand_in=False)
 

@@ -8,14 +8,14 @@ use driftworld_text::one_line;
 use crate::document::places_in;
 use crate::error::MAX_PROBLEMS;
 
-/// Something that did not pass between a file of the original and a world as it stands.
+/// Something of a document that was not taken as it stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
-    /// The document's name; `world` for a warning of [`World::to_l2explorer`](crate::World::to_l2explorer).
+    /// The document's name.
     pub name: String,
-    /// JSON pointer to the value: into the file that was read, or into the world that was written.
+    /// JSON pointer to the value.
     pub pointer: String,
-    /// Line in the text, from 1; 0 for a warning about a world, which need not have a text.
+    /// Line in the text, from 1; 0 where there is no text.
     pub line: usize,
     /// Column in the line, from 1; 0 where `line` is 0.
     pub column: usize,

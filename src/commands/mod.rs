@@ -13,7 +13,6 @@ mod curriculum;
 mod demo;
 mod distance;
 mod doctor;
-mod draw_maps;
 mod elements;
 mod figures;
 mod film;

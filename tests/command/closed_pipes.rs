@@ -18,7 +18,7 @@ const COMMANDS: [&str; 42] = [
     "sample nowhere",
     "vary find_objects#red --element R --distance 0.1",
     "elements blue_red_green --worlds 1",
-    "convert find_objects --to l2explorer",
+    "convert find_objects",
     "render find_objects --size 32 -o a.png",
     "sheet find_objects#red --size 32 -o b.png",
     "assets list",

@@ -272,7 +272,7 @@ fn whatever_is_written_is_told_in_one_line() {
         ("sample bush.json --count 2 --jsonl -o w.jsonl", &["w.jsonl"]),
         ("render w.json --size 32 -o r.png", &["r.png"]),
         ("sheet bush.json --size 32 -o s.png", &["s.png"]),
-        ("convert w.json --to l2explorer -o c.json", &["c.json"]),
+        ("convert w.json -o c.json", &["c.json"]),
         ("vary bush.json --element O --distance 0.1 -o v.json", &["v.json"]),
         ("order bush.json --matrix m.csv --plot p.png", &["m.csv", "p.png"]),
         (
@@ -493,17 +493,6 @@ fn a_byte_order_mark_a_negative_seed_and_three_numbers_are_answered() {
     assert!(seed.contains("expected a whole number from 0 to"), "{seed}");
     let (_, _, said) = fed(folder.path(), "step 1 2.5 0\n", &["console", "find_objects"]);
     assert!(said.contains("write: step 1 1 2.5 0"), "{said}");
-}
-
-#[test]
-fn converting_a_task_warns_once_of_each_thing() {
-    let folder = scratch();
-    let done = output(&mut driftworld_in(
-        folder.path(),
-        &["convert", "find_objects", "--to", "l2explorer", "-o", "c.json"],
-    ));
-    let said = String::from_utf8_lossy(&done.stderr).into_owned();
-    assert!(said.lines().count() <= 3, "{said}");
 }
 
 // 11. The order of what is named.

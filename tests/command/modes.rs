@@ -9,12 +9,12 @@ use std::process::Command;
 use crate::terminal::{output, scratch, text};
 
 /// Every command that writes, one after the other: some read what others wrote. All of it goes below the folder `out`.
-const COMMANDS: [&str; 25] = [
+const COMMANDS: [&str; 23] = [
     "demo --output out/demo",
     "sample find_objects#red -o out/world.json",
     "sample find_objects#red --count 3 --jsonl -o out/worlds.jsonl",
     "sample find_objects#red --count 3 -o out/worlds",
-    "convert out/world.json --to l2explorer -o out/original.json",
+    "convert find_objects#red -o out/converted.json",
     "render out/world.json --size 16 -o out/view.png",
     "sheet find_objects#red --size 32 -o out/sheet.png",
     "photograph small.json -o out/photographs",

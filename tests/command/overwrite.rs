@@ -18,7 +18,7 @@ fn what_a_command_reads_is_not_written_over() {
         &["sample", &named, "-o", task],
         &["sample", &named, "--count", "3", "--jsonl", "-o", task],
         &["curriculum", task, "-o", task],
-        &["convert", &named, "--to", "l2explorer", "-o", task],
+        &["convert", &named, "-o", task],
         &["order", task, "--matrix", task],
     ];
     for way in ways {

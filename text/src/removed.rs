@@ -19,6 +19,11 @@ const REMOVED: &[(WordKind, &str, &str)] = &[
     (WordKind::Format, "feather", TABLES),
     (WordKind::Format, "parquet", TABLES),
     (WordKind::Option, "console --out", "--output"),
+    (
+        WordKind::Option,
+        "convert --to",
+        "no --to: worlds and scenarios are written in Driftworld's form",
+    ),
     (WordKind::Option, "curriculum --method", "--order"),
     (WordKind::Option, "order --method", "--order"),
     (WordKind::Option, "run --logs", "--output"),

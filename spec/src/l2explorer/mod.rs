@@ -1,38 +1,30 @@
 //! The dialect of L2Explorer's reset files: its keys, and what is said where it and a [`World`](crate::World) differ.
 //! Reading it is in `read.rs`, its objects in `read_objects.rs`, with the leniency for single values in `lenient.rs`
-//! and what is assumed in place of entries that say nothing in `mend.rs`; writing it is in `write.rs` and
-//! `write_objects.rs`, with the summary of what is left out in `left_out.rs`. Its scenario files, which name such reset
-//! files, are read in `read_scenario.rs` and written in `write_scenario.rs`.
+//! and what is assumed in place of entries that say nothing in `mend.rs`. Its scenario files, which name such reset
+//! files, are read in `read_scenario.rs`.
 //!
-//! The dialect is the smaller language: every file of it becomes a world, but a world may hold more than a file can.
-//! Both directions hand back a [`Warning`](crate::Warning) for whatever did not pass as it stood. A number of a
-//! predefined map means the original's regions there, and our own here.
+//! Every file of the dialect becomes a world, with a [`Warning`](crate::Warning) for whatever is not taken as it stands. A
+//! number of a predefined map means the original's regions there, and our own here.
 
-mod left_out;
 mod lenient;
 mod mend;
 mod read;
 mod read_objects;
 mod read_scenario;
-mod write;
-mod write_objects;
-mod write_scenario;
 
 use std::sync::LazyLock;
 
 use serde::Serialize;
 use serde_json::{Map, Value as Json};
 
-use crate::world::{
-    AgentParams, EnvironmentParams, Fields, ImageParams, MotionModel, Object, Rules, World, WorldDraft,
-};
+use crate::world::{AgentParams, EnvironmentParams, Fields, ImageParams, Object, Rules, World, WorldDraft};
 use mend::Entry;
 
 /// What the table of fields says of one part of a reset file.
 struct Part {
     /// The keys of the original, in the order of the table.
     original: Vec<&'static str>,
-    /// Those that only our worlds have. The reader takes them, the writer leaves them out.
+    /// Those that only our worlds have.
     ours: Vec<&'static str>,
     /// Those of early files, which the reader turns into others.
     old: &'static [&'static str],
@@ -106,11 +98,6 @@ fn map_of(value: &impl Serialize) -> Map<String, Json> {
 /// How fast an object of the original moves, in metres per second: its documents do not say. It is what the balls of the
 /// built-in `moving_object` do, a fifth of what the agent can.
 const ASSUMED_SPEED: f64 = 2.0;
-
-/// Whether an object of the original moves by itself; a patrol is ours, and is written as what stands still.
-fn moves(model: MotionModel) -> bool {
-    !matches!(model, MotionModel::Stationary | MotionModel::Patrol)
-}
 
 /// Whether black on this class (in lower case) is a choice; on all others it is the default and means the asset's own
 /// colours.

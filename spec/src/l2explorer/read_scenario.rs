@@ -36,9 +36,8 @@ impl Scenario {
     /// let (scenario, warnings) = Scenario::from_l2explorer("s.json", text)?;
     /// let regime = &scenario.blocks[0].regimes[0];
     /// assert_eq!((regime.task.as_str(), regime.variant.as_str(), regime.max_steps), ("Task1", "map_1", Some(200)));
-    /// assert_eq!(scenario.to_l2explorer()?.0.parse::<serde_json::Value>()?, text.parse::<serde_json::Value>()?);
     /// assert!(warnings.is_empty());
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// # Ok::<(), driftworld_spec::SpecError>(())
     /// ```
     pub fn from_l2explorer(name: &str, text: &str) -> Result<(Self, Vec<Warning>), SpecError> {
         let document = Document::parse(name, text, MAX_SCENARIO_VALUES)?;
@@ -234,7 +233,7 @@ impl Reader {
 }
 
 /// The name of a file without folders and ending.
-pub(super) fn stem(path: &str) -> String {
+fn stem(path: &str) -> String {
     let file = path.rsplit(['/', '\\']).next().unwrap_or(path);
     let stem = file.rsplit_once('.').map_or(file, |(stem, _)| stem);
     let stem: String = stem.chars().take(90).collect();

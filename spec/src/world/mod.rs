@@ -1,4 +1,4 @@
-//! [`World`]: the reset JSON, one fully concrete world. Its L2Explorer dialect is read and written in `l2explorer/`.
+//! [`World`]: the reset JSON, one fully concrete world. Its L2Explorer dialect is read in `l2explorer/`.
 
 mod agent;
 mod check;
