@@ -21,7 +21,6 @@ pub mod reference;
 mod scenario;
 pub mod schema;
 mod task;
-mod text_maps;
 mod value;
 mod version;
 mod warning;

@@ -113,7 +113,6 @@ fn cases() -> Vec<SpecError> {
             Some(&Classes::new(["shrub", "tree"]).with_advice("name the library that has it")),
         )
         .expect_err("there is no such class"),
-        World::from_minigrid_text("grid.txt", "once upon a time").expect_err("that is no grid"),
         limited
             .variant("default")
             .expect_err("the default breaks the requirement"),

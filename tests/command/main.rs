@@ -35,7 +35,6 @@ mod several_lifetimes;
 mod signals;
 mod special_files;
 mod terminal;
-mod text_maps;
 mod transfer_report;
 mod undrawable;
 mod unity;

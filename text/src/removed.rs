@@ -19,6 +19,7 @@ const REMOVED: &[(WordKind, &str, &str)] = &[
     (WordKind::Format, "feather", TABLES),
     (WordKind::Format, "parquet", TABLES),
     (WordKind::Option, "console --out", "--output"),
+    (WordKind::Option, "convert --from", "examples/python/text_maps.py"),
     (
         WordKind::Option,
         "convert --to",

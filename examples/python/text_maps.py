@@ -1,0 +1,258 @@
+"""Maps drawn with letters, text levels of DeepMind Lab and grids of MiniGrid, as worlds.
+
+    python examples/python/text_maps.py level.txt --of dmlab -o world.json
+    python examples/python/text_maps.py grid.txt --of minigrid -o world.json
+
+DeepMind Lab: the entity layer of a text level. `*` is a wall, `P` where an agent may start, `G` a goal of 10 points that ends
+the episode, `A` an apple of 1 point, `I` and `H` doors, which open when the agent comes to them. Cells are 3.125 m wide, as
+there. A variations layer behind an empty line is left out: it says how rooms look.
+
+MiniGrid: what `env.unwrapped.pprint_grid()` gives, two characters a cell, the second its colour. `W` is a wall, `F` and two
+spaces are floor, `G` a goal of 1 point that ends the episode, `V` lava, which ends it as a failure, `K` a key, `A` a ball, `B` a
+box, `D` a closed door, `L` one that a key of its colour unlocks, `__` an open one; `>>`, `VV`, `<<` and `^^` are the agent. It
+carries one thing at a time. Cells are 2 m wide.
+
+What is not known is read as floor, and named on standard error with its line and column. Needs no package.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import string
+import sys
+from pathlib import Path
+from typing import Any
+
+FLOOR = " "
+COLORS = {"R": "red", "G": "green", "B": "blue", "P": "purple", "Y": "yellow"}
+HEADINGS = {">>": 90.0, "VV": 180.0, "<<": 270.0, "^^": 0.0}
+
+
+class Map:
+    """Letters of a layout as they are read, and what stands on them."""
+
+    def __init__(self, name: str, cell: float) -> None:
+        self.name, self.cell = name, cell
+        self.rows: list[list[str]] = []
+        self.legend: dict[str, Any] = {}
+        self.starts: list[tuple[tuple[int, int], float]] = []
+        self.objects: list[tuple[dict[str, Any], tuple[int, int]]] = []
+        self.doors: list[tuple[dict[str, Any], tuple[int, int]]] = []
+        self.lava: list[tuple[int, int]] = []
+        self.unknown: dict[str, list[tuple[int, int]]] = {}
+
+    def warn(self, place: str, text: str) -> None:
+        """Says what did not pass as it stands."""
+        print(f"warning: {self.name}{place}: {text}", file=sys.stderr)
+
+    def put(self, letter: str, thing: dict[str, Any], at: tuple[int, int]) -> str:
+        """Adds a thing; returns the letter of its group, another than the given one if that stands for another group."""
+        group = {"group": thing["tag"]}
+        self.objects.append((thing, at))
+        letters = [letter, letter.lower(), *"123456789"]
+        own = next((one for one in letters if self.legend.get(one, group) == group), letter)
+        self.legend[own] = group
+        return own
+
+    def put_door(self, letter: str, door: dict[str, Any], color: str | None, at: tuple[int, int]) -> str:
+        """Adds a door in a doorway; returns its letter."""
+        self.legend[letter] = "doorway"
+        paint = {"color": color} if color else {}
+        self.doors.append(({"class": "door", **paint, "tag": "door", "scale": self.cell, "door": door}, at))
+        return letter
+
+    def floor_for_unknown(self, what: str, place: tuple[int, int]) -> str:
+        """Remembers a sign that is not known."""
+        self.unknown.setdefault(what, []).append(place)
+        return FLOOR
+
+    def place(self, at: tuple[int, int]) -> list[float]:
+        """The middle of a cell in metres."""
+        columns, rows = len(self.rows[0]), len(self.rows)
+        return [(at[0] + 0.5 - columns / 2) * self.cell, (rows / 2 - 0.5 - at[1]) * self.cell]
+
+    def is_open(self, column: int, row: int) -> bool:
+        """Whether a cell lies on the map and is no wall."""
+        return 0 <= row < len(self.rows) and 0 <= column < len(self.rows[0]) and self.rows[row][column] not in "#*"
+
+    def start(self) -> tuple[tuple[int, int], float] | None:
+        """Where the agent starts: the first place said, else the first free cell."""
+        if self.starts:
+            if len(self.starts) > 1:
+                self.warn("", f"of {len(self.starts)} places where the agent may start, it starts in the first")
+            return self.starts[0]
+        self.warn("", "nothing says where the agent starts; it starts in the first free cell")
+        taken = {at for _, at in self.objects} | set(self.lava)
+        cells = ((column, row) for row in range(len(self.rows)) for column in range(len(self.rows[0])))
+        return next(((at, 0.0) for at in cells if self.is_open(*at) and at not in taken), None)
+
+    def zones(self) -> list[dict[str, Any]]:
+        """Lava: a zone for each stretch of cells in a row."""
+        stretches: list[list[tuple[int, int]]] = []
+        for column, row in self.lava:
+            if stretches and stretches[-1][-1] == (column - 1, row):
+                stretches[-1].append((column, row))
+            else:
+                stretches.append([(column, row)])
+        zones = []
+        for stretch in stretches:
+            (west, y), (east, _), half = self.place(stretch[0]), self.place(stretch[-1]), self.cell / 2
+            low, high = (west - half, y - half), (east + half, y + half)
+            corners = [[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]]
+            zones.append({"polygon": corners, "name": "lava", "ends": "failure", "color": "orangered"})
+        return zones
+
+    def door(self, door: dict[str, Any], at: tuple[int, int]) -> dict[str, Any]:
+        """A door across its doorway, which is passed along the axis on which more of its neighbours are open."""
+        column, row = at
+        along_x = self.is_open(column - 1, row) + self.is_open(column + 1, row)
+        along_y = self.is_open(column, row - 1) + self.is_open(column, row + 1)
+        return {**door, "coordinates": self.place(at), "heading": 90.0 if along_x > along_y else 0.0}
+
+    def world(self, expected: str) -> dict[str, Any]:
+        """The world; lines that are too short are filled up with walls."""
+        for what, places in sorted(self.unknown.items(), key=lambda item: item[1][0]):
+            times = f" ({len(places)} of it, this one first)" if len(places) > 1 else ""
+            self.warn(f":{places[0][0]}:{places[0][1]}", f"{what} is not known{times}; it is read as floor")
+        known = sum(letter != FLOOR for row in self.rows for letter in row)
+        unknown = sum(map(len, self.unknown.values()))
+        if unknown > known:
+            sys.exit(f"error: {self.name}: found {unknown} of {unknown + known} signs that are not known, expected {expected}")
+        columns = max(map(len, self.rows), default=0)
+        self.rows = [row + ["#"] * (columns - len(row)) for row in self.rows]
+        if not any(self.is_open(column, row) for row in range(len(self.rows)) for column in range(columns)):
+            sys.exit(f"error: {self.name}: found no free cell, expected a letter that is floor")
+        used = {letter for row in self.rows for letter in row}
+        layout = {
+            "text": ["".join(row) for row in self.rows],
+            "cell": self.cell,
+            "height": min(self.cell, 4.0),
+            "legend": {letter: meaning for letter, meaning in sorted(self.legend.items()) if letter in used},
+        }
+        # What fits through a cell in the other program fits here.
+        agent: dict[str, Any] = {"agent_width": min(self.cell / 3, 1.0)}
+        if start := self.start():
+            agent |= {"coordinates": self.place(start[0]), "heading": start[1]}
+        agent["carry_limit"] = int(any("portable" in thing for thing, _ in self.objects))
+        goals = [thing for thing, _ in self.objects if thing["tag"] == "goal"]
+        things = [{**thing, "coordinates": self.place(at)} for thing, at in self.objects]
+        return {
+            "environment_params": {"layout": layout, "zones": self.zones()},
+            "agent_params": agent,
+            "rules": {"success": [{"touch": "goal"}]} if goals else {},
+            "objects": things + [self.door(door, at) for door, at in self.doors],
+        }
+
+
+def thing(kind: str, color: str, group: str) -> dict[str, Any]:
+    """An object that the agent passes through."""
+    return {"class": kind, "color": color, "solid": False, "tag": group}
+
+
+def pays(reward: float) -> dict[str, Any]:
+    """What an object has that pays once when the agent comes to it, and is gone then."""
+    return {"reward": reward, "reward_once_stimulus": ["AgentCollide"], "destroy_stimulus": ["AgentCollide"]}
+
+
+def variations(lines: list[str]) -> int:
+    """The line in which a variations layer begins: behind an empty line, as many lines as before it, without walls."""
+    texts = [number for number, line in enumerate(lines) if line]
+    first = texts[0] if texts else 0
+    empty = next((number for number in range(first, len(lines)) if not lines[number]), len(lines))
+    rest = [number for number in texts if number > empty]
+    allowed = set(string.ascii_uppercase + ". ")
+    is_layer = rest and len(rest) == empty - first and all(set(lines[number]) <= allowed for number in rest)
+    return rest[0] if is_layer else len(lines)
+
+
+def dmlab(name: str, text: str) -> dict[str, Any]:
+    """The world of the entity layer of a text level of DeepMind Lab."""
+    found, lines = Map(name, 3.125), text.splitlines()
+    end = variations(lines)
+    if end < len(lines):
+        found.warn(f":{end + 1}:1", "the variations layer is left out: it says how rooms look")
+    for number, line in enumerate(lines[:end]):
+        if not line:
+            continue
+        row: list[str] = []
+        for column, letter in enumerate(line):
+            at, place, own = (column, len(found.rows)), (number + 1, column + 1), letter
+            if letter == "P":
+                found.starts.append((at, 0.0))
+            elif letter == "G":
+                found.put(letter, {**thing("geometric", "gold", "goal"), **pays(10.0)}, at)
+            elif letter == "A":
+                found.put(letter, {**thing("icosphere", "limegreen", "apple"), **pays(1.0), "scale": 0.5}, at)
+            elif letter in "IH":
+                found.put_door(letter, {"opens_on": ["AgentCollide"]}, None, at)
+            elif letter not in "* ":
+                own = found.floor_for_unknown(f"the letter {letter!r}", place)
+            row.append(own)
+        found.rows.append(row)
+    return found.world("a letter for each cell, such as * for a wall, P for the start, G for a goal")
+
+
+def minigrid(name: str, text: str) -> dict[str, Any]:
+    """The world of a grid of MiniGrid."""
+    found = Map(name, 2.0)
+    for number, line in enumerate(text.splitlines()):
+        shown = line.strip()
+        # What an environment is called may stand above its grid, which has no small letters.
+        if not line or (shown.startswith("<") and shown.endswith(">") and shown != shown.upper()):
+            continue
+        # Spaces at the end of a line get lost.
+        pairs = [line[column : column + 2].ljust(2) for column in range(0, len(line), 2)]
+        row = len(found.rows)
+        cells = [cell_of_minigrid(found, pair, (column, row), (number + 1, 2 * column + 1)) for column, pair in enumerate(pairs)]
+        found.rows.append(cells)
+    return found.world("two signs for each cell, such as WG for a wall, >> for the agent, GG for a goal")
+
+
+def cell_of_minigrid(found: Map, pair: str, at: tuple[int, int], place: tuple[int, int]) -> str:
+    """The letter of the layout for two characters, with what stands there."""
+    what, color = pair[0], COLORS.get(pair[1])
+    toggled = {"closes_on": ["AgentInteract"]}
+    if pair in HEADINGS:
+        found.starts.append((at, HEADINGS[pair]))
+        return "A"
+    if pair == "__":
+        return found.put_door("D", {**toggled, "open": True}, None, at)
+    if pair == "  " or what in "WF":
+        return "#" if what == "W" else FLOOR
+    if color is None or what not in "VDLGKAB":
+        return found.floor_for_unknown(f'"{pair}"', place)
+    if what == "V":
+        found.lava.append(at)
+        found.legend["V"] = "floor"
+        return "V"
+    if what in "DL":
+        lock = {"key": f"{color}_key"} if what == "L" else {}
+        return found.put_door("D", {**toggled, **lock}, color, at)
+    if what == "G":
+        return found.put("G", {**thing("geometric", color, "goal"), **pays(1.0)}, at)
+    kind, group = {"K": ("key", f"{color}_key"), "A": ("icosphere", "ball"), "B": ("cube", "box")}[what]
+    # `A` is the agent in a layout.
+    return found.put("O" if what == "A" else what, {**thing(kind, color, group), "portable": {}}, at)
+
+
+READERS = {"dmlab": dmlab, "minigrid": minigrid}
+
+
+def main() -> None:
+    """Reads a map and writes its world."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("map", type=Path, help="the text file")
+    parser.add_argument("--of", choices=READERS, required=True, help="whose map it is")
+    parser.add_argument("-o", "--output", type=Path, help="file to write (default: standard output)")
+    asked = parser.parse_args()
+    world = READERS[asked.of](asked.map.name, asked.map.read_text(encoding="utf-8"))
+    text = json.dumps(world, indent=2) + "\n"
+    if asked.output:
+        asked.output.write_text(text, encoding="utf-8")
+    else:
+        sys.stdout.write(text)
+
+
+if __name__ == "__main__":
+    main()
