@@ -42,18 +42,9 @@ impl AtomicFile {
     /// Those of the system; [`io::ErrorKind::IsADirectory`] for a folder.
     pub fn create(path: &Path) -> io::Result<Self> {
         match Destination::of(path)? {
-            Destination::File(target) => Self::beside(target, permissions::PLAIN),
+            Destination::File(target) => Self::beside(target),
             Destination::Straight(file) => Ok(Self(Kind::Straight(file))),
         }
-    }
-
-    /// The same for a program: whoever may read it may run it. A link of that name is replaced, and what it leads to
-    /// stays as it is.
-    ///
-    /// # Errors
-    /// As [`create`](Self::create).
-    pub fn create_executable(path: &Path) -> io::Result<Self> {
-        Self::beside(path.to_owned(), permissions::PROGRAM)
     }
 
     /// The same for a name that is no other's: a link of that name is replaced, and what it leads to stays as it is.
@@ -61,10 +52,10 @@ impl AtomicFile {
     /// # Errors
     /// As [`create`](Self::create).
     pub fn create_in_place_of_links(path: &Path) -> io::Result<Self> {
-        Self::beside(path.to_owned(), permissions::PLAIN)
+        Self::beside(path.to_owned())
     }
 
-    fn beside(target: PathBuf, mode: u32) -> io::Result<Self> {
+    fn beside(target: PathBuf) -> io::Result<Self> {
         let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
         let folder = folder.unwrap_or(Path::new("."));
         fs::create_dir_all(folder)?;
@@ -75,7 +66,7 @@ impl AtomicFile {
         let prefix = format!(".{prefix}.");
         let mut builder = Builder::new();
         builder.prefix(&prefix).suffix(ENDING);
-        permissions::begin(&mut builder, mode, before.as_ref());
+        permissions::begin(&mut builder, before.as_ref());
         let mut tries = 0;
         loop {
             let (file, unfinished) = Unfinished::make(|| builder.tempfile_in(folder), NamedTempFile::path)?;
@@ -84,7 +75,7 @@ impl AtomicFile {
             tries += 1;
             if file.path().exists() || tries == TRIES {
                 if let Some(before) = &before {
-                    permissions::keep(file.as_file(), mode, before);
+                    permissions::keep(file.as_file(), before);
                 }
                 return Ok(Self(Kind::Beside {
                     file,

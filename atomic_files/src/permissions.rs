@@ -5,34 +5,27 @@ use std::fs::{File, Metadata};
 use tempfile::Builder;
 
 /// The mode of a file that is new, before the umask takes from it.
-pub(crate) const PLAIN: u32 = 0o666;
-
-/// That of a program.
-pub(crate) const PROGRAM: u32 = 0o777;
+const PLAIN: u32 = 0o666;
 
 /// Lets a temporary file begin with no more than it will end with; the umask takes from that.
 #[cfg(unix)]
-pub(crate) fn begin(builder: &mut Builder<'_, '_>, mode: u32, before: Option<&Metadata>) {
+pub(crate) fn begin(builder: &mut Builder<'_, '_>, before: Option<&Metadata>) {
     use std::os::unix::fs::PermissionsExt;
-    let mode = before.map_or(mode, |before| before.permissions().mode() & 0o777);
+    let mode = before.map_or(PLAIN, |before| before.permissions().mode() & 0o777);
     builder.permissions(std::fs::Permissions::from_mode(mode));
 }
 
 #[cfg(not(unix))]
-pub(crate) fn begin(_: &mut Builder<'_, '_>, _: u32, _: Option<&Metadata>) {}
+pub(crate) fn begin(_: &mut Builder<'_, '_>, _: Option<&Metadata>) {}
 
-/// Gives a file the owner and the mode of the one whose place it takes; `mode` is what a new one would have: those who
-/// may read it may run it where that one could be run.
+/// Gives a file the owner and the mode of the one whose place it takes.
 ///
 /// Where it cannot have the same group, the group may do what everybody may.
 #[cfg(unix)]
-pub(crate) fn keep(file: &File, mode: u32, before: &Metadata) {
+pub(crate) fn keep(file: &File, before: &Metadata) {
     use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
     let Ok(own) = file.metadata() else { return };
     let (mut kept, wanted) = (before.permissions().mode() & 0o777, (before.uid(), before.gid()));
-    if mode & 0o100 != 0 {
-        kept |= (kept & 0o444) >> 2;
-    }
     if (own.uid(), own.gid()) != wanted {
         let both = fchown(file, Some(wanted.0), Some(wanted.1));
         let group = both.or_else(|_| fchown(file, None, Some(wanted.1)));
@@ -45,4 +38,4 @@ pub(crate) fn keep(file: &File, mode: u32, before: &Metadata) {
 }
 
 #[cfg(not(unix))]
-pub(crate) fn keep(_: &File, _: u32, _: &Metadata) {}
+pub(crate) fn keep(_: &File, _: &Metadata) {}

@@ -135,22 +135,6 @@ mod unix {
     }
 
     #[test]
-    fn programs_can_be_run_by_whoever_may_read_them() {
-        let folder = scratch();
-        let at = |name: &str| folder.path().join(name);
-        let install = |path: &Path| {
-            let file = AtomicFile::create_executable(path).expect("the folder is ours");
-            file.commit().expect("the folder is ours");
-        };
-        install(&at("new"));
-        assert_eq!(mode(&at("new")) & 0o700, 0o700);
-        fs::write(at("private"), "").expect("the folder is ours");
-        fs::set_permissions(at("private"), fs::Permissions::from_mode(0o640)).expect("it is ours");
-        install(&at("private"));
-        assert_eq!(mode(&at("private")), 0o750);
-    }
-
-    #[test]
     fn links_stay_and_what_they_lead_to_is_written() {
         let folder = scratch();
         let at = |name: &str| folder.path().join(name);

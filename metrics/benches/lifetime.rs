@@ -1,5 +1,4 @@
-//! How long it takes to read, to validate and to score a lifetime. Larger ones, and writing, are measured by
-//! `driftworld bench metrics`.
+//! How long it takes to write, read, validate and score a lifetime.
 
 use std::hint::black_box;
 use std::path::Path;
@@ -31,7 +30,12 @@ fn write(dir: &Path) -> Result<(), MetricsError> {
 fn lifetime(c: &mut Criterion) {
     let base = tempfile::tempdir().expect("the machine has a folder for temporary files");
     let dir = base.path().join("log");
-    write(&dir).expect("the folder is new");
+    c.bench_function("write a log of 10,000 rows", |bench| {
+        bench.iter(|| {
+            let _ = std::fs::remove_dir_all(&dir);
+            write(&dir).expect("the folder is gone");
+        });
+    });
     c.bench_function("read a log of 10,000 rows", |bench| {
         bench.iter(|| read_log(black_box(&dir)).expect("it is sound"));
     });

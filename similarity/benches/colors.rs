@@ -1,4 +1,4 @@
-//! How long distances of colours, pictures and sets take. What is measured beside other tools is in `driftworld bench similarity`.
+//! How long distances of colours, pictures and sets take.
 
 #![expect(clippy::disallowed_methods, reason = "only its speed is measured")]
 

@@ -1,5 +1,5 @@
 //! How many pairs of grids and of points are measured a second: `cargo bench -p driftworld-similarity --bench occupancy`. Inputs by a
-//! fixed chance, as many and as large as those on which the Python tools are measured. Beside them, `driftworld bench` runs.
+//! fixed chance, as many and as large as those on which the Python tools were measured.
 
 use std::hint::black_box;
 

@@ -31,10 +31,7 @@ const GROUPS: [(&str, &[&str]); 7] = [
         &["scales", "metrics", "report", "transfer-report", "logs"],
     ),
     ("Watch and play", &["play", "console", "film", "replay"]),
-    (
-        "Work with other tools",
-        &["convert", "unity", "completions", "bench", "help"],
-    ),
+    ("Work with other tools", &["convert", "completions", "bench", "help"]),
 ];
 
 /// Blanks in front of a command's name, and between the longest name and what it does.

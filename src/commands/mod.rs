@@ -41,7 +41,6 @@ mod scoring;
 mod sheet;
 mod tasks;
 mod transfer_report;
-mod unity;
 mod validate;
 mod vary;
 mod weights;
@@ -214,7 +213,6 @@ enum Command {
     Report(report::Report),
     TransferReport(transfer_report::TransferReport),
     Schema(schema::Schema),
-    Unity(unity::Unity),
     Bench(bench::Bench),
     Completions(completions::Completions),
     Doctor(doctor::Doctor),
@@ -252,7 +250,6 @@ impl Command {
             Self::Report(command) => command.run(),
             Self::TransferReport(command) => command.run(),
             Self::Schema(command) => command.run(),
-            Self::Unity(command) => command.run(),
             Self::Bench(command) => command.run(),
             Self::Completions(command) => command.run(),
             Self::Doctor(command) => command.run(),

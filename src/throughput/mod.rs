@@ -1,16 +1,11 @@
-//! How fast this build is on this machine, one core at a time: the figures of `driftworld bench`. The benches of single
-//! functions are criterion's, beside each crate.
+//! How fast environments are on this machine: the figures of `driftworld bench env`. All other benches are criterion's, beside
+//! each crate.
 
 pub(crate) mod environment;
-pub(crate) mod generator;
-pub(crate) mod metrics;
-pub(crate) mod similarity;
 
 use std::time::{Duration, Instant};
 
 use serde_json::{Map, Value, json};
-
-use crate::Failure;
 
 /// Figures under their names.
 pub(crate) type Figures = Map<String, Value>;
@@ -46,15 +41,4 @@ fn rates<const N: usize>(figures: [(&str, f64); N]) -> Figures {
     named
         .map(|(name, rate)| (name.to_owned(), json!(rate.round())))
         .collect()
-}
-
-/// The least seconds that a job takes in three times.
-fn best_of_three<E: Into<Failure>>(mut job: impl FnMut() -> Result<(), E>) -> Result<f64, Failure> {
-    let mut best = f64::INFINITY;
-    for _ in 0..3 {
-        let start = Instant::now();
-        job().map_err(Into::into)?;
-        best = best.min(start.elapsed().as_secs_f64());
-    }
-    Ok(best)
 }

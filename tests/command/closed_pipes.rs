@@ -5,7 +5,7 @@ use std::process::Stdio;
 use crate::terminal::{driftworld_in, root, scratch, succeed, succeed_in};
 
 /// Every subcommand, as it prints something: results, messages, or both.
-const COMMANDS: [&str; 42] = [
+const COMMANDS: [&str; 41] = [
     "--help",
     "run --help",
     "nonsense",
@@ -43,7 +43,6 @@ const COMMANDS: [&str; 42] = [
     "schema task",
     "new closed_pipe --force",
     "export find_objects -o -",
-    "unity --list",
     "completions zsh",
     "bench nothing",
     "doctor",

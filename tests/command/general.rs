@@ -27,7 +27,6 @@ fn every_subcommand_has_help_with_an_example() {
         "report",
         "transfer-report",
         "schema",
-        "unity",
         "completions",
         "bench",
         "doctor",
@@ -558,34 +557,6 @@ fn maps_of_the_original_go_into_worlds() {
     succeed(&["validate", text(&maps)]);
 }
 
-#[test]
-fn the_bench_prints_its_figures_under_their_names() {
-    let figures = succeed(&["bench", "generator", "--json", "--seconds", "0.002"]);
-    let figures: serde_json::Value = serde_json::from_str(&figures).expect("--json prints JSON");
-    for name in [
-        "worlds_per_second_per_core_map_86",
-        "worlds_per_second_per_core_find_objects",
-        "validations_per_second_per_core",
-    ] {
-        assert!(figures[name].as_f64().is_some_and(|rate| rate > 0.0), "{figures}");
-    }
-}
-
-#[test]
-fn the_bench_of_logs_reads_and_scores_what_it_wrote() {
-    let figures = succeed(&["bench", "metrics", "--json", "--quick"]);
-    let figures: serde_json::Value = serde_json::from_str(&figures).expect("--json prints JSON");
-    assert_eq!(figures["rows"], 20_000);
-    for name in ["write", "read", "score"] {
-        for unit in ["seconds", "rows_per_second"] {
-            let figure = &figures[format!("{name}_{unit}")];
-            assert!(figure.as_f64().is_some_and(|figure| figure > 0.0), "{figures}");
-        }
-    }
-}
-
-/// A result that was renamed over a device would take the device's place; over a link, the link's.
-#[cfg(unix)]
 #[test]
 fn devices_and_links_stay_what_they_are() {
     use std::os::unix::fs::FileTypeExt;

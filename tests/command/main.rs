@@ -37,6 +37,5 @@ mod special_files;
 mod terminal;
 mod transfer_report;
 mod undrawable;
-mod unity;
 mod watch;
 mod widths;

@@ -9,7 +9,7 @@ use std::process::Command;
 use crate::terminal::{output, scratch, text};
 
 /// Every command that writes, one after the other: some read what others wrote. All of it goes below the folder `out`.
-const COMMANDS: [&str; 23] = [
+const COMMANDS: [&str; 22] = [
     "demo --output out/demo",
     "sample find_objects#red -o out/world.json",
     "sample find_objects#red --count 3 --jsonl -o out/worlds.jsonl",
@@ -31,13 +31,12 @@ const COMMANDS: [&str; 23] = [
     "report out/log -o out/page.html --plots out/figures",
     "transfer-report out/log --distances out/matrix.csv --plot out/transfer.png",
     "schema -o out/schemas",
-    "unity install out/app --executable driftworld-unity",
     "console out/world.json --script screen.txt",
 ];
 
 /// Commands that may fail here: their input is not always there.
 fn may_fail(command: &str) -> bool {
-    ["unity", "console", "transfer-report"]
+    ["console", "transfer-report"]
         .iter()
         .any(|name| command.starts_with(name))
 }

@@ -85,7 +85,6 @@ fn command_lines() -> Vec<Vec<&'static str>> {
         "transfer-report SPECIAL --distances matrix.csv",
         "transfer-report log --distances SPECIAL.csv",
         "schema --check schemas",
-        "unity install out --executable SPECIAL",
     ];
     #[cfg(feature = "gltf")]
     let lines = lines.into_iter().chain([

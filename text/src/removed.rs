@@ -15,6 +15,22 @@ const TABLES: &str = ".jsonl for worlds, .tsv or .csv for logs; docs/how-to/inte
 
 /// Every removed word: its kind, the word, what to use instead.
 const REMOVED: &[(WordKind, &str, &str)] = &[
+    (
+        WordKind::Command,
+        "bench generator",
+        "cargo bench -p driftworld-generator",
+    ),
+    (WordKind::Command, "bench metrics", "cargo bench -p driftworld-metrics"),
+    (
+        WordKind::Command,
+        "bench similarity",
+        "cargo bench -p driftworld-similarity",
+    ),
+    (
+        WordKind::Command,
+        "unity",
+        "cp target/release/driftworld-unity DIR/l2explorer.x86_64, as docs/l2explorer.md shows",
+    ),
     (WordKind::Format, "arrow", TABLES),
     (WordKind::Format, "feather", TABLES),
     (WordKind::Format, "parquet", TABLES),

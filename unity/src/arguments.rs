@@ -9,7 +9,7 @@ use driftworld_spec::nearest;
 use crate::error::UnityError;
 use crate::observation::PictureForm;
 
-/// What this executable is, in words by which `driftworld unity install` knows it from a real Unity build.
+/// What this executable is.
 pub const MARK: &str = "driftworld-unity: a stand-in for the L2Explorer executable";
 
 /// What `--help` prints.
@@ -19,7 +19,8 @@ Runs Driftworld's worlds in place of L2Explorer's Unity executable, for clients 
 Usage: driftworld-unity [OPTIONS] [UNITY'S OPTIONS]
 
 A client that was given this file as its executable starts it by itself:
-  eval \"$(driftworld unity install ~/l2explorer)\"
+  cp driftworld-unity ~/l2explorer/l2explorer.x86_64
+  export L2EXPLORER_APP=~/l2explorer/l2explorer.x86_64 L2EXPLORER_WORKER_ID=0
 To meet a client that waits by itself (`file_name=None`, the \"editor mode\"), start it by hand, without options.
 
 Options:

@@ -21,7 +21,7 @@ BLOCK = re.compile(r"^```python(?: by-hand)?\n(.*?)^```", re.DOTALL | re.MULTILI
     reason="the guide is written for 0.16, and says in comments what differs",
 )
 def test_the_guides_example_runs(tmp_path: Path) -> None:
-    """As its reader runs it, with the two variables that `driftworld unity install` prints."""
+    """As its reader runs it, with the two variables that the guide exports."""
     link = tmp_path / "l2explorer.x86_64"
     link.symlink_to(Path(os.environ["DRIFTWORLD_UNITY"]).resolve())
     with socket.socket() as free:
