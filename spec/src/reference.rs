@@ -1,64 +1,73 @@
 //! The reference of every key of a world, as Markdown: what the table of fields and the schema say of it. The committed
 //! pages are in `docs/reference/`; `cargo xtask schemas` writes them.
 
-use std::fmt::Write;
-
 use serde_json::Value as Json;
 
 use crate::schema::part;
 use crate::world::{Compared, Comparison, FieldPlace, World};
 
-/// A page for each part of a world: its file, its title, and the pointer to the part.
-const PARTS: [(&str, &str, &str); 7] = [
-    ("world.md", "The world as a whole", ""),
-    ("environment.md", "The arena and its light", "/environment_params"),
-    ("agent.md", "The agent", "/agent_params"),
-    ("images.md", "How objects are photographed", "/image_params"),
-    ("rules.md", "Rewards and endings of the world", "/rules"),
-    ("object.md", "An object", "/objects/*"),
-    ("progress.md", "How far a world has come", "/progress"),
+/// The parts of a world, a table each: the title, and the pointer to the part.
+const PARTS: [(&str, &str); 7] = [
+    ("The world as a whole", ""),
+    ("The arena and its light", "/environment_params"),
+    ("The agent", "/agent_params"),
+    ("How objects are photographed", "/image_params"),
+    ("Rewards and endings of the world", "/rules"),
+    ("An object", "/objects/*"),
+    ("How far a world has come", "/progress"),
 ];
 
-/// Longest line of a page, in characters.
-const WIDTH: usize = 116;
+const KEYS: &str = "# Every key of a world
+
+A key in bold is L2Explorer's, too. In the `world` of a task, and in the `object` of a group, a parameter or a distribution
+can stand at every key, and at what is in it: the column *parameter* has the type that a parameter needs, and why a key takes
+none. A parameter of type `json` fits every place: each of its values has to be what the schema allows there, `null` where the
+key may be absent. So does a `choice` or `constant` of such values. Where the objects of a group stand is its `placement`, not
+`coordinates`; how many there are is its `count`. The column *compared* names the [part of a distance](comparison.md) that
+looks at the key. `cargo xtask schemas` generates this page.
+";
+
+const COMPARISON: &str = "# How worlds are compared
+
+The distance of two worlds is the sum of these parts. Each counts for an element of the decision process, in the unit that the
+table gives: `the larger one` is the difference of two numbers over the larger of them, so that 1 is something against nothing.
+Corners of walls and waypoints count by the way between them, 10 m for 1, and 1 where there is none to compare with. Parts of
+objects are sums over objects; colours of surroundings are sums over four colours. What nothing reads counts nothing, as the
+reward of an object without a stimulus. Each key counts once, for the element that it belongs to first; [the table of
+keys](world.md) says which parts look at it. What it changes beside that, as `order` changes which objects move, is measured
+by `driftworld elements`. `cargo xtask schemas` generates this page.
+
+| part | element | 1 is |
+|---|---|---|
+";
 
 /// The pages with their file names.
 pub fn pages() -> Vec<(&'static str, String)> {
-    let pages = PARTS.map(|(file, title, pointer)| (file, page(title, pointer)));
-    let others = [("parameters.md", parameters()), ("comparison.md", comparison())];
-    pages.into_iter().chain(others).collect()
-}
-
-/// Whether a key stands on the page of a part: below it, and on no page of a part in it.
-fn is_on(pointer: &str, part: &str) -> bool {
-    let parts = PARTS.iter().map(|(_, _, pointer)| *pointer);
-    let page = parts
-        .filter(|part| is_below(pointer, part))
-        .max_by_key(|part| part.len());
-    page == Some(part)
+    let all = keys();
+    let part_of = |key: &FieldPlace| {
+        let parts = PARTS.iter().map(|(_, part)| *part);
+        parts
+            .filter(|part| is_below(&key.pointer, part))
+            .max_by_key(|part| part.len())
+    };
+    let tables = PARTS.map(|(title, part)| {
+        let own = all.iter().filter(|key| part_of(key) == Some(part));
+        let rows: String = own.map(|key| row(key, part)).collect();
+        let place = if part.is_empty() { String::new() } else { format!("At `{part}`:\n\n") };
+        format!("\n## {title}\n\n{place}| key | meaning | type | default | parameter | compared |\n|---|---|---|---|---|---|\n{rows}")
+    });
+    let parts = Comparison::ALL.iter().map(|part| {
+        let (element, unit) = (part.element().name(), part.unit());
+        format!("| {} | {element} | {unit} |\n", part.name())
+    });
+    vec![
+        ("world.md", format!("{KEYS}{}", tables.concat())),
+        ("comparison.md", format!("{COMPARISON}{}", parts.collect::<String>())),
+    ]
 }
 
 fn is_below(pointer: &str, part: &str) -> bool {
     pointer.strip_prefix(part).is_some_and(|rest| rest.starts_with('/'))
-}
-
-fn page(title: &str, part: &str) -> String {
-    let mut page = format!("# {title}\n\n");
-    let at = if part.is_empty() {
-        "These keys stand at the top of a reset document.".to_owned()
-    } else {
-        format!("These keys stand at `{part}` of a reset document.")
-    };
-    paragraph(
-        &mut page,
-        &format!("{at} This page is generated by `cargo xtask schemas`."),
-    );
-    for key in keys().iter().filter(|key| is_on(&key.pointer, part)) {
-        section(&mut page, key, part);
-    }
-    page.truncate(page.trim_end().len());
-    page.push('\n');
-    page
 }
 
 /// The keys in the order of the table, and those of progress, of which it has only the whole.
@@ -67,66 +76,57 @@ fn keys() -> Vec<FieldPlace> {
     for place in World::places().iter().filter(|place| place.is_key) {
         keys.push(place.clone());
         if place.pointer == "/progress" {
-            add_inside(place, &mut keys);
+            add_inside(place, &place.pointer, &mut keys);
         }
     }
     keys
 }
 
 /// The keys in a place that the table knows as a whole, as the schema has them.
-fn add_inside(place: &FieldPlace, keys: &mut Vec<FieldPlace>) {
+fn add_inside(place: &FieldPlace, pointer: &str, keys: &mut Vec<FieldPlace>) {
     let root = World::schema().json();
-    let part = part::at(root, root, &place.pointer);
-    let items = part.and_then(|part| part.get("items"));
-    if items.is_some() {
-        let item = FieldPlace {
-            pointer: format!("{}/*", place.pointer),
-            ..place.clone()
-        };
-        return add_inside(&item, keys);
+    let part = part::at(root, root, pointer).unwrap_or(&Json::Null);
+    if part.get("items").is_some() {
+        return add_inside(place, &format!("{pointer}/*"), keys);
     }
-    let properties = part
-        .and_then(|part| part["properties"].as_object())
-        .into_iter()
-        .flatten();
-    for (key, _) in properties {
-        let inside = FieldPlace {
-            pointer: format!("{}/{key}", place.pointer),
-            is_key: true,
+    for (key, _) in part["properties"].as_object().into_iter().flatten() {
+        let pointer = format!("{pointer}/{key}");
+        keys.push(FieldPlace {
+            pointer: pointer.clone(),
             ..place.clone()
-        };
-        keys.push(inside.clone());
-        add_inside(&inside, keys);
+        });
+        add_inside(place, &pointer, keys);
     }
 }
 
-fn section(page: &mut String, key: &FieldPlace, part: &str) {
+fn row(key: &FieldPlace, part: &str) -> String {
     let root = World::schema().json();
     let own = part::property(root, root, &key.pointer).unwrap_or(&Json::Null);
     let value = part::at(root, root, &key.pointer).unwrap_or(&Json::Null);
-    put(page, format_args!("## `{}`\n\n", &key.pointer[part.len() + 1..]));
+    let mark = if key.field.is_original { "**" } else { "" };
     let described = own.get("description").or_else(|| value.get("description"));
-    paragraph(page, described.and_then(Json::as_str).unwrap_or_default());
     let unit = key.field.unit.map(|unit| format!(", in {unit}")).unwrap_or_default();
-    let mut facts = vec![format!("Type: {}{unit}.", type_of(own, value))];
-    facts.extend(is_required(&key.pointer).then(|| "Required.".to_owned()));
-    facts.extend(
-        own.get("default")
-            .filter(|default| !default.is_object())
-            .map(|default| format!("Default: `{default}`.")),
-    );
-    facts.push(parameter(key));
-    facts.push(compared(key));
-    let known = if key.field.is_original {
-        "the same key"
-    } else {
-        "no such key"
+    let default = own.get("default").filter(|default| !default.is_object());
+    let default = match default {
+        Some(default) => format!("`{default}`"),
+        None if is_required(&key.pointer) => "required".to_owned(),
+        None => String::new(),
     };
-    facts.push(format!("L2Explorer: {known}."));
-    for fact in facts {
-        wrap(page, "- ", "  ", &fact);
-    }
-    page.push('\n');
+    let cells = [
+        format!("{mark}`{}`{mark}", &key.pointer[part.len() + 1..]),
+        described.and_then(Json::as_str).unwrap_or_default().to_owned(),
+        format!("{}{unit}", type_of(own, value)),
+        default,
+        parameter(key),
+        compared(key),
+    ];
+    let cells = cells.map(|cell| {
+        cell.split_whitespace()
+            .collect::<Vec<_>>()
+            .join(" ")
+            .replace('|', "\\|")
+    });
+    format!("| {} |\n", cells.join(" | "))
 }
 
 /// Whether a key has to be there wherever what it stands in is.
@@ -143,14 +143,12 @@ fn type_of(own: &Json, value: &Json) -> String {
     if named.is_some_and(|name| name.ends_with("/Color")) {
         return "colour, `[r, g, b]` in 0..1 or a CSS name".to_owned();
     }
-    let limits = |value: &Json| match [&value["minimum"], &value["maximum"]] {
-        [Json::Number(low), Json::Number(high)] => format!(" from {} to {}", plain(low), plain(high)),
+    // Whole numbers without a point.
+    let limits = |value: &Json| match [value["minimum"].as_f64(), value["maximum"].as_f64()] {
+        [Some(low), Some(high)] => format!(" from {low} to {high}"),
         _ => String::new(),
     };
-    let name = match &value["type"] {
-        Json::Array(names) => names[0].as_str(),
-        name => name.as_str(),
-    };
+    let name = value["type"].get(0).unwrap_or(&value["type"]).as_str();
     match name {
         Some("number") => format!("number{}", limits(value)),
         Some("integer") => format!("whole number{}", limits(value)),
@@ -171,13 +169,12 @@ fn type_of(own: &Json, value: &Json) -> String {
 /// The words that may stand there, and the keys of other forms.
 fn forms(value: &Json) -> String {
     let forms = value["oneOf"].as_array().into_iter().flatten();
-    let words: Vec<String> = forms
-        .filter_map(|form| {
-            let key = form["properties"].as_object().and_then(|keys| keys.keys().next());
-            let word = form["const"].as_str().map(|word| format!("`\"{word}\"`"));
-            word.or_else(|| Some(format!("an object with `{}`", key?)))
-        })
-        .collect();
+    let words = forms.filter_map(|form| {
+        let key = form["properties"].as_object().and_then(|keys| keys.keys().next());
+        let word = form["const"].as_str().map(|word| format!("`\"{word}\"`"));
+        word.or_else(|| Some(format!("an object with `{}`", key?)))
+    });
+    let words: Vec<String> = words.collect();
     if words.is_empty() {
         "text, or a whole number".to_owned()
     } else {
@@ -185,160 +182,34 @@ fn forms(value: &Json) -> String {
     }
 }
 
-/// Which parameters set it, or why none does.
+/// The type of the parameter that sets it, or why none does.
 fn parameter(key: &FieldPlace) -> String {
     if let Some(reason) = key.field.fixed {
-        return format!("Parameter: none; {reason}.");
+        return format!("none: {reason}");
     }
     if let Some(reason) = key.field.in_parts {
-        return format!("Parameter: what stands in it; {reason}.");
+        return format!("in parts: {reason}");
     }
     let inside = World::places()
         .iter()
         .filter(|place| is_below(&place.pointer, &key.pointer));
     let items = inside.take_while(|place| !place.is_key);
-    let items = items.filter_map(|item| Some(format!("`{}` takes a {}", item.pointer, item.kind?.name())));
+    let items = items.filter_map(|item| {
+        Some(format!(
+            "`{}` a {}",
+            &item.pointer[key.pointer.len()..],
+            item.kind?.name()
+        ))
+    });
     let whole = key.kind.map(|kind| kind.name().to_owned());
-    let all: Vec<String> = whole.into_iter().chain(items).collect();
-    match all.as_slice() {
-        [] => "Parameter: what stands in it.".to_owned(),
-        all => format!("Parameter: {}.", all.join("; ")),
-    }
+    whole.into_iter().chain(items).collect::<Vec<_>>().join("; ")
 }
 
 fn compared(key: &FieldPlace) -> String {
+    let names = key.field.compared.comparisons().iter().map(|part| part.name());
     match key.field.compared {
-        Compared::Not(reason) => format!("Compared: no; {reason}."),
-        Compared::AsPart => "Compared: key by key.".to_owned(),
-        Compared::Leaves(comparison) => format!("Compared: {}.", described(comparison)),
-        Compared::Measured(comparisons) => {
-            let all: Vec<String> = comparisons.iter().map(|comparison| described(*comparison)).collect();
-            format!("Compared: {}.", all.join("; "))
-        }
+        Compared::Not(reason) => format!("no: {reason}"),
+        Compared::AsPart => "key by key".to_owned(),
+        Compared::Leaves(_) | Compared::Measured(_) => names.collect::<Vec<_>>().join(", "),
     }
-}
-
-fn described(comparison: Comparison) -> String {
-    format!(
-        "{} ({}; 1 is {})",
-        comparison.name(),
-        comparison.element().name(),
-        comparison.unit()
-    )
-}
-
-/// Which keys no parameter sets, and why.
-fn parameters() -> String {
-    let mut page = "# Keys and parameters\n\n".to_owned();
-    paragraph(
-        &mut page,
-        "In the `world` of a task, and in the `object` of a group, a parameter or a distribution can stand at every key, \
-         and at what is in it: its keys, or the items of a list. A parameter of type `json` fits every place: each of its \
-         values has to be what the schema allows there, `null` where the key may be absent. So does a `choice` or `constant` \
-         of such values. This page is generated by `cargo xtask schemas`.",
-    );
-    page.push_str("## Keys that take values alone\n\n");
-    let fixed = World::places().iter().filter(|place| place.is_key);
-    for place in fixed {
-        if let Some(reason) = place.field.fixed {
-            wrap(&mut page, "- ", "  ", &format!("`{}`: {reason}.", place.pointer));
-        }
-    }
-    page.push_str("\n## Keys that take parameters in parts alone\n\n");
-    for place in World::places().iter().filter(|place| place.is_key) {
-        if let Some(reason) = place.field.in_parts {
-            wrap(&mut page, "- ", "  ", &format!("`{}`: {reason}.", place.pointer));
-        }
-    }
-    page.push('\n');
-    paragraph(
-        &mut page,
-        "Where the objects of a group stand is its `placement`, not `coordinates`; how many there are is its `count`.",
-    );
-    page.push_str("## Places by the type of parameter that they take\n\n| place | type |\n|---|---|\n");
-    for place in World::places() {
-        if let Some(kind) = place.kind {
-            put(&mut page, format_args!("| `{}` | {} |\n", place.pointer, kind.name()));
-        }
-    }
-    page
-}
-
-/// What each part of the distance of two worlds looks at.
-fn comparison() -> String {
-    let mut page = "# How worlds are compared\n\n".to_owned();
-    paragraph(
-        &mut page,
-        "The distance of two worlds is the sum of these parts. Each counts for an element of the decision process, in the \
-         unit that the table gives: `the larger one` is the difference of two numbers over the larger of them, so \
-         that 1 is something against nothing. Corners of walls and waypoints count by the way between them, 10 m for 1, and \
-         1 where there is none to compare with. Parts of objects are sums over objects; colours of surroundings are sums over \
-         four colours. What nothing reads counts nothing, as the reward of an object without a stimulus. \
-         Each key counts once, for the element that it belongs to first. What it changes beside that, as `order` changes which \
-         objects move, is measured by `driftworld elements`. \
-         This page is generated by `cargo xtask schemas`.",
-    );
-    page.push_str("| part | element | 1 is | keys |\n|---|---|---|---|\n");
-    let own = || World::places().iter().filter(|place| place.is_key);
-    // What a key inherits is said at the key that it has it from.
-    let is_own = |place: &FieldPlace| {
-        let above = place
-            .pointer
-            .rsplit_once('/')
-            .map_or("", |(above, _)| above)
-            .trim_end_matches("/*");
-        let above = own().find(|other| other.pointer == above);
-        above.is_none_or(|above| above.field.compared != place.field.compared)
-    };
-    for comparison in Comparison::ALL {
-        let keys = own().filter(|place| place.field.compared.comparisons().contains(comparison) && is_own(place));
-        let keys: Vec<String> = keys.map(|place| format!("`{}`", place.pointer)).collect();
-        let (name, element, unit) = (comparison.name(), comparison.element().name(), comparison.unit());
-        put(
-            &mut page,
-            format_args!("| {name} | {element} | {unit} | {} |\n", keys.join(", ")),
-        );
-    }
-    page.push_str("\n## Keys that are not compared\n\n");
-    for place in own().filter(|place| is_own(place)) {
-        if let Compared::Not(reason) = place.field.compared {
-            wrap(&mut page, "- ", "  ", &format!("`{}`: {reason}.", place.pointer));
-        }
-    }
-    page
-}
-
-fn paragraph(page: &mut String, text: &str) {
-    wrap(page, "", "", text);
-    page.push('\n');
-}
-
-/// Adds a text in lines that are not too long, the first behind `first`, the others behind `others`.
-fn wrap(page: &mut String, first: &str, others: &str, text: &str) {
-    let mut line = first.to_owned();
-    let mut is_empty = true;
-    for word in text.split_whitespace() {
-        if !is_empty && line.chars().count() + 1 + word.chars().count() > WIDTH {
-            put(page, format_args!("{line}\n"));
-            others.clone_into(&mut line);
-            is_empty = true;
-        }
-        if !is_empty {
-            line.push(' ');
-        }
-        line.push_str(word);
-        is_empty = false;
-    }
-    put(page, format_args!("{line}\n"));
-}
-
-fn put(page: &mut String, text: std::fmt::Arguments) {
-    page.write_fmt(text).expect("writing to a String does not fail");
-}
-
-/// A limit as people write it: whole numbers without a point.
-fn plain(number: &serde_json::Number) -> String {
-    number
-        .as_f64()
-        .map_or_else(|| number.to_string(), |number| number.to_string())
 }

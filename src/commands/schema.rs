@@ -35,13 +35,13 @@ impl Schema {
     pub(crate) fn run(self) -> Result<(), Failure> {
         if let Some(document) = &self.document {
             let file = format!("{document}.schema.json");
-            return schemas()?
+            return schemas()
                 .into_iter()
                 .filter(|(name, _)| *name == file)
                 .try_for_each(|(_, text)| output::print(&text));
         }
         if let Some(folder) = &self.check {
-            for (name, expected) in self.texts()? {
+            for (name, expected) in self.texts() {
                 let path = folder.join(name);
                 if documents::text(&path)? != expected {
                     let text = format!("{}: is stale; run: cargo xtask schemas", path.shown());
@@ -55,7 +55,7 @@ impl Schema {
                 "name a document (world, task, scenario, maps), a folder with -o, or one with --check",
             ));
         };
-        for (name, text) in self.texts()? {
+        for (name, text) in self.texts() {
             let path = folder.join(name);
             output::write(&path, text.as_bytes())?;
             output::wrote(&path, "");
@@ -67,19 +67,12 @@ impl Schema {
         }
     }
 
-    fn texts(&self) -> Result<Vec<(&'static str, String)>, Failure> {
-        if self.reference {
-            Ok(reference::pages())
-        } else {
-            schemas()
-        }
+    fn texts(&self) -> Vec<(&'static str, String)> {
+        if self.reference { reference::pages() } else { schemas() }
     }
 }
 
-fn schemas() -> Result<Vec<(&'static str, String)>, Failure> {
-    let text = |json| serde_json::to_string_pretty(json).map(|text| text + "\n");
-    schema::all()
-        .into_iter()
-        .map(|(name, schema)| Ok((name, text(schema.json())?)))
-        .collect()
+fn schemas() -> Vec<(&'static str, String)> {
+    let all = schema::all().into_iter();
+    all.map(|(name, schema)| (name, schema.text())).collect()
 }

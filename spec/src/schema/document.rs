@@ -12,6 +12,12 @@ use serde_json::{Value, json};
 use super::explain;
 use crate::error::{Listed, MAX_PROBLEMS};
 
+/// Values that lie deeper in a schema are written on one line: the keys of a definition stand here.
+const DEEPEST_BREAK: usize = 4;
+
+/// So many bytes are written on one line.
+const SHORT_LINE: usize = 100;
+
 /// One document type's schema, ready to check values.
 pub struct DocumentSchema {
     json: Value,
@@ -41,6 +47,13 @@ impl DocumentSchema {
         &self.json
     }
 
+    /// The schema as text: a line for each key of a definition.
+    pub fn text(&self) -> String {
+        let mut text = String::new();
+        write_lines(&self.json, 0, &mut text);
+        text + "\n"
+    }
+
     /// Whether the schema allows a value.
     pub(crate) fn allows(&self, value: &Value) -> bool {
         self.validator.is_valid(value)
@@ -58,6 +71,31 @@ impl DocumentSchema {
         let (problems, more) = listing.list(value, |errors| explain::problems(&self.json, value, errors));
         Listed { problems, more }
     }
+}
+
+/// Writes a value on one line if it is short or deep inside, else with a line for each entry.
+fn write_lines(value: &Value, depth: usize, text: &mut String) {
+    let line = value.to_string();
+    let entries: Vec<(String, &Value)> = match value {
+        _ if depth == DEEPEST_BREAK || line.len() <= SHORT_LINE => Vec::new(),
+        Value::Object(map) => map
+            .iter()
+            .map(|(key, value)| (format!("{}:", json!(key)), value))
+            .collect(),
+        Value::Array(items) => items.iter().map(|item| (String::new(), item)).collect(),
+        _ => Vec::new(),
+    };
+    if entries.is_empty() {
+        return text.push_str(&line);
+    }
+    let [open, close] = if value.is_array() { ["[", "]"] } else { ["{", "}"] };
+    let mut before = open;
+    for (key, value) in entries {
+        text.extend([before, "\n", &" ".repeat(depth + 1), &key]);
+        write_lines(value, depth + 1, text);
+        before = ",";
+    }
+    text.extend(["\n", &" ".repeat(depth), close]);
 }
 
 /// The schema of a Rust type under a title and an identifier of its own.
