@@ -34,6 +34,8 @@ pub(crate) struct FilmChoice {
     #[arg(long)]
     no_captions: bool,
     /// Where to render: cpu, gpu, or auto (gpu if there is one).
+    ///
+    /// Natural looks are always drawn on the CPU.
     #[arg(long, default_value_t, value_name = "RENDERER")]
     renderer: RendererKind,
 }

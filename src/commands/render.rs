@@ -44,7 +44,7 @@ pub(crate) struct Render {
     agent: Option<AgentArg>,
     /// Where to render: cpu, gpu, or auto (gpu if there is one).
     ///
-    /// Maps are always drawn on the CPU.
+    /// Maps and natural looks are always drawn on the CPU.
     #[arg(long, default_value_t, value_name = "RENDERER")]
     renderer: RendererKind,
     /// Draw depth, segmentation and the map alone, in exactly the size asked for: without legends, the map without its

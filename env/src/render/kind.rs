@@ -22,7 +22,7 @@ pub enum RendererKind {
     /// The processor: everywhere, and the same pixels on every machine.
     #[default]
     Cpu,
-    /// A graphics card, or software that stands in for one; an error if there is none.
+    /// A graphics card, or software that stands in for one; an error if there is none. Natural looks render on the processor.
     Gpu,
     /// A graphics card if there is one that works; else the processor. Never software that stands in for a graphics
     /// card: the processor's own renderer is faster.

@@ -65,12 +65,6 @@ impl Cast {
         }
     }
 
-    /// Whether a wall's face of this normal casts its shadow: it looks away from the light.
-    #[cfg(feature = "gpu")]
-    pub(super) fn is_cast_by(&self, normal: [f32; 3]) -> bool {
-        crate::vector::dot(normal, self.toward) < 0.0
-    }
-
     /// A ball around the shadow of a thing that stands in the middle of a circle.
     fn ball(&self, [x, y]: [f32; 2], radius: f32, height: f32) -> ([f32; 3], f32) {
         let away = [self.toward[0], self.toward[1]].map(|part| part * height / 2.0);

@@ -7,7 +7,6 @@
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 
 mod likeness;
-mod natural;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -17,7 +16,7 @@ use driftworld_env::{
     Action, Autoreset, Batch, BatchOptions, Camera, CpuRenderer, EnvError, Environment, Episode, Frame, Images,
     Picture, RendererKind, RendererReport, Scene, Target,
 };
-use driftworld_spec::{Color, Modality, Object, Portable, Wall, World, WorldDraft, Zone, ZoneEnd};
+use driftworld_spec::{Color, Looks, Modality, Object, Portable, Style, Wall, World, WorldDraft, Zone, ZoneEnd};
 
 fn world(file: &str) -> World {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(file);
@@ -342,4 +341,37 @@ fn what_is_carried_is_drawn_alike_alone_and_in_a_batch() {
     }
     let like = likeness(&shows, &on_card);
     assert!(like.colors >= 0.99 && like.instances >= 0.99, "{like:?}");
+}
+
+/// Plain and natural worlds in one batch: the processor draws the natural ones, to the bit.
+#[test]
+fn natural_pictures_of_a_batch_are_the_processors() {
+    let Some(mut gpu) = gpu() else { return };
+    let styles = [Style::Natural, Style::Plain, Style::Natural];
+    let scenes = styles.map(|style| {
+        let mut world = world("env/benches/scenes/arena_20.json").into_draft();
+        world.environment_params.looks = Looks::of(style);
+        world.environment_params.looks.fog_in_depth = true;
+        world.environment_params.fog_distance = Some(40.0);
+        Scene::from_world(&world.check().expect("the world is sound"))
+    });
+    let camera = Camera::first_person([0.1, -0.2], 20.0, 1.0, 70.0);
+    let mut found = styles.map(|_| Frame::new(48, 40));
+    let pictures = scenes.iter().zip(&mut found);
+    let mut pictures: Vec<_> = pictures
+        .map(|(scene, frame)| Picture {
+            scene,
+            camera,
+            target: frame.target(),
+        })
+        .collect();
+    gpu.draw_batch(&mut pictures).expect("the adapter draws");
+    for ((style, scene), found) in styles.iter().zip(&scenes).zip(&found) {
+        let mut expected = Frame::new(48, 40);
+        let drawn = CpuRenderer::new().draw(scene, &camera, &mut expected.target());
+        drawn.expect("it draws");
+        let like = likeness(found, &expected);
+        let least = if *style == Style::Natural { 1.0 } else { 0.99 };
+        assert!(like.colors >= least && like.depths >= least, "{style:?}: {like:?}");
+    }
 }

@@ -51,6 +51,8 @@ pub(crate) struct Play {
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     /// Where to render: cpu, gpu, or auto (gpu if there is one).
+    ///
+    /// Natural looks are always drawn on the CPU.
     #[arg(long, default_value_t, value_name = "RENDERER")]
     renderer: RendererKind,
 }

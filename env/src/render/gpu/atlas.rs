@@ -2,7 +2,7 @@
 //! What is drawn is said in `pass.rs`.
 
 use super::device::Device;
-use super::pipelines::{DEPTH_FORMAT, SHADOW_FORMAT, WORD_FORMAT};
+use super::pipelines::{DEPTH_FORMAT, WORD_FORMAT};
 
 /// Bytes of a pixel in each texture.
 const BYTES: u32 = 4;
@@ -87,12 +87,10 @@ pub(super) struct Atlases(Vec<Atlas>);
 
 impl Atlases {
     /// One for this grid; a new one if there is none.
-    pub(super) fn take(&mut self, device: &Device, grid: Grid, planes: Planes, natural: bool) -> Atlas {
+    pub(super) fn take(&mut self, device: &Device, grid: Grid, planes: Planes) -> Atlas {
         let serves = |atlas: &Atlas| {
             let room = atlas.back.size() >= bytes_back(grid, planes);
-            let has_items = atlas.items.is_some() || !planes.items;
-            let has_shadows = atlas.shadows.is_some() || !natural;
-            atlas.size == grid.size() && room && has_items && has_shadows
+            atlas.size == grid.size() && room && (atlas.items.is_some() || !planes.items)
         };
         if let Some(place) = self.0.iter().position(serves) {
             return self.0.remove(place);
@@ -107,7 +105,7 @@ impl Atlases {
         });
         let count = kept.count();
         self.0.drain(..self.0.len() - count);
-        Atlas::new(device, grid, planes, natural)
+        Atlas::new(device, grid, planes)
     }
 
     /// Keeps one for the next time.
@@ -124,15 +122,13 @@ pub(super) struct Atlas {
     words: wgpu::Texture,
     depth: wgpu::Texture,
     items: Option<wgpu::Texture>,
-    /// Where shadows fall, in the natural style.
-    shadows: Option<wgpu::Texture>,
     back: wgpu::Buffer,
 }
 
 impl Atlas {
-    fn new(device: &Device, grid: Grid, planes: Planes, natural: bool) -> Self {
+    fn new(device: &Device, grid: Grid, planes: Planes) -> Self {
         let [width, height] = grid.size();
-        let texture = |label, format, usage| {
+        let texture = |label, format| {
             device.card.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
                 size: extent(width, height),
@@ -140,18 +136,16 @@ impl Atlas {
                 sample_count: 1,
                 dimension: wgpu::TextureDimension::D2,
                 format,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | usage,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
                 view_formats: &[],
             })
         };
-        let comes_back = wgpu::TextureUsages::COPY_SRC;
         let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
         Self {
             size: [width, height],
-            words: texture("words", WORD_FORMAT, comes_back),
-            depth: texture("depth", DEPTH_FORMAT, comes_back),
-            items: planes.items.then(|| texture("items", WORD_FORMAT, comes_back)),
-            shadows: natural.then(|| texture("shadows", SHADOW_FORMAT, wgpu::TextureUsages::TEXTURE_BINDING)),
+            words: texture("words", WORD_FORMAT),
+            depth: texture("depth", DEPTH_FORMAT),
+            items: planes.items.then(|| texture("items", WORD_FORMAT)),
             back: device.buffer("images", bytes_back(grid, planes), usage),
         }
     }
@@ -162,12 +156,6 @@ impl Atlas {
 
     pub(super) fn back(&self) -> &wgpu::Buffer {
         &self.back
-    }
-
-    /// Where shadows fall; none unless it was made for the natural style.
-    pub(super) fn shadows(&self) -> Option<wgpu::TextureView> {
-        let shadows = self.shadows.as_ref()?;
-        Some(shadows.create_view(&wgpu::TextureViewDescriptor::default()))
     }
 
     /// Begins a pass over all of it.
@@ -273,7 +261,7 @@ fn extent(width: u32, height: u32) -> wgpu::Extent3d {
     }
 }
 
-pub(super) fn attachment(view: &wgpu::TextureView) -> wgpu::RenderPassColorAttachment<'_> {
+fn attachment(view: &wgpu::TextureView) -> wgpu::RenderPassColorAttachment<'_> {
     wgpu::RenderPassColorAttachment {
         view,
         depth_slice: None,

@@ -23,15 +23,23 @@ struct Whole {
     @location(11) @interpolate(flat, either) number: u32,
 }
 
+struct Behind {
+    @location(0) word: u32,
+    @location(1) item: u32,
+    @builtin(frag_depth) depth: f32,
+}
+
 @vertex
 fn backdrop_vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) number: u32) -> Whole {
     let tile = tiles[number];
-    let corner = tile_corner(tile.place, vertex);
+    let right = select(0.0, 1.0, vertex == 2u || vertex == 3u || vertex == 5u);
+    let below = select(0.0, 1.0, vertex == 1u || vertex == 4u || vertex == 5u);
+    let corner = tile.place.xy + vec2f(right, below) * tile.place.zw;
     let step = tile.forward_step.w;
     let height = tile.right_height.w;
 
     var whole: Whole;
-    whole.position = in_clip_space(corner);
+    whole.position = vec4f(corner.x * atlas.scale.x - 1.0, 1.0 - corner.y * atlas.scale.y, 0.0, 1.0);
     whole.middle_step_height = vec4f(tile.place.xy + tile.place.zw / 2.0, step, height);
     whole.place_right = vec4f(tile.position_walls.xy, tile.right_height.xy);
     whole.forward_up = vec4f(tile.forward_step.xy, tile.up_above.xy);

@@ -1,5 +1,5 @@
 //! What of one scene is drawn into one tile: an instance for each object in sight, and for each triangle of walls that
-//! are not drawn by formula. The natural style has `natural.rs`. The triangles of objects are kept in `library.rs`.
+//! are not drawn by formula. The triangles of objects are kept in `library.rs`.
 
 use std::sync::Arc;
 
@@ -9,19 +9,18 @@ use super::super::frame::CATEGORY_MAP;
 use super::super::shade::Shader;
 use super::super::view::{Placement, Pose, View};
 use super::super::visibility::{Drawable, Visible, find, level};
-use super::natural::NaturalContents;
-use super::tile::{self, Quad};
+use super::tile::{self, TileWords};
 use crate::assets::{Asset, BLOCK, Block};
 use crate::camera::Camera;
 use crate::scene::{Item, PanelGroup, Scene};
 
-/// Words of an instance: the size of `Instance` in `corner.wgsl`.
+/// Words of an instance: the size of `Instance` in `objects.wgsl`.
 pub(super) const WORDS: usize = 22;
 
 /// The word of an instance that holds the number of its tile.
 const TILE: usize = 19;
 
-/// One instance, in the order of `Instance` in `corner.wgsl`.
+/// One instance, in the order of `Instance` in `objects.wgsl`.
 pub(super) type InstanceWords = [u32; WORDS];
 
 /// What an instance is one of.
@@ -36,31 +35,11 @@ pub(super) enum Shape {
 /// What is drawn into one tile. Kept from pass to pass.
 #[derive(Debug, Default)]
 pub(super) struct TileContents {
-    pub(super) tile: Vec<Quad>,
-    pub(super) objects: Instances,
-    /// What casts shadows on the ground, in the natural style.
-    pub(super) shadows: Instances,
-    pub(super) natural: NaturalContents,
-    pub(super) visible: Vec<Visible>,
-}
-
-/// Instances, and what each is one of.
-#[derive(Debug, Default)]
-pub(super) struct Instances {
-    pub(super) words: Vec<InstanceWords>,
+    pub(super) tile: TileWords,
+    pub(super) instances: Vec<InstanceWords>,
+    /// One for each instance.
     pub(super) shapes: Vec<Shape>,
-}
-
-impl Instances {
-    pub(super) fn clear(&mut self) {
-        self.words.clear();
-        self.shapes.clear();
-    }
-
-    pub(super) fn push(&mut self, words: InstanceWords, shape: Shape) {
-        self.words.push(words);
-        self.shapes.push(shape);
-    }
+    visible: Vec<Visible>,
 }
 
 impl TileContents {
@@ -70,11 +49,9 @@ impl TileContents {
         let view = View::new(camera, size[0] as usize, size[1] as usize);
         let shader = Shader::new(&scene.light);
         let walls = Walls::around(scene, &view, &shader);
-        self.tile.clear();
-        self.tile
-            .extend(tile::words(scene, &view, &shader, walls.as_ref(), [0, 0]));
-        self.objects.clear();
-        self.shadows.clear();
+        self.tile = tile::words(scene, &view, &shader, walls.as_ref(), [0, 0]);
+        self.instances.clear();
+        self.shapes.clear();
         let mut all_visible = std::mem::take(&mut self.visible);
         find(scene, &view, walls.is_some(), &mut all_visible);
         for &visible in &all_visible {
@@ -92,19 +69,23 @@ impl TileContents {
     pub(super) fn place(&mut self, number: u32, corner: [u32; 2]) {
         self.tile[0][0] = (corner[0] as f32).to_bits();
         self.tile[0][1] = (corner[1] as f32).to_bits();
-        for instance in self.objects.words.iter_mut().chain(&mut self.shadows.words) {
+        for instance in &mut self.instances {
             instance[TILE] = number;
         }
     }
 
     fn add_item(&mut self, item: &Item, index: u32, visible: Visible, view: &View, scene: &Scene, labels: Labels) {
         let at = view.placement(&Pose::of(item), scene.light.direction);
-        let label = labels.class(item) | u32::from(category(item)) << 24;
+        let class = match labels {
+            Labels::WithClass => u32::from(item.class_id) << CATEGORY_BITS,
+            Labels::CategoryOnly => 0,
+        };
+        let label = (class | u32::from(category(item))) << 24;
         let color = item.color.map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
         let materials = level(item, visible, view);
-        let words = instance(&at, at.sun, color, [label, index + 1]);
-        let shape = Shape::Asset(Arc::clone(&item.asset), materials.as_ptr().addr());
-        self.objects.push(words, shape);
+        self.instances.push(instance(&at, at.sun, color, [label, index + 1]));
+        self.shapes
+            .push(Shape::Asset(Arc::clone(&item.asset), materials.as_ptr().addr()));
     }
 
     fn add_panels(&mut self, group: &PanelGroup, view: &View, scene: &Scene) {
@@ -115,8 +96,9 @@ impl TileContents {
             let normal = normal(block, lane);
             let lit = (0..3).map(|axis| normal[axis] * at.sun[axis]).sum();
             let of_corners = corners_as_rows(&at, corners(block, lane));
-            let words = instance(&of_corners, [lit, 0.0, 0.0], [r, g, b, 1.0], [label, 0]);
-            self.objects.push(words, Shape::Triangle);
+            self.instances
+                .push(instance(&of_corners, [lit, 0.0, 0.0], [r, g, b, 1.0], [label, 0]));
+            self.shapes.push(Shape::Triangle);
         }
     }
 }
@@ -128,16 +110,6 @@ pub(super) enum Labels {
     CategoryOnly,
     /// Class and category.
     WithClass,
-}
-
-impl Labels {
-    /// An item's class, where its label holds it.
-    pub(super) fn class(self, item: &Item) -> u32 {
-        match self {
-            Self::WithClass => u32::from(item.class_id) << CATEGORY_BITS << 24,
-            Self::CategoryOnly => 0,
-        }
-    }
 }
 
 /// The lanes of a block that hold a triangle.
@@ -156,7 +128,7 @@ pub(super) fn corners(block: &Block, lane: usize) -> [[f32; 3]; 3] {
 
 /// The way of a triangle's corners to the screen, as rows for corners (1, 0, 0), (0, 1, 0) and (0, 0, 1): neighbours
 /// then share their edges to the bit.
-pub(super) fn corners_as_rows(at: &Placement, corners: [[f32; 3]; 3]) -> Placement {
+fn corners_as_rows(at: &Placement, corners: [[f32; 3]; 3]) -> Placement {
     let row = |row: &[f32; 4]| {
         let [a, b, c] = corners.map(|[x, y, z]| x * row[0] + (y * row[1] + (z * row[2] + row[3])));
         [a, b, c, 0.0]
@@ -170,7 +142,7 @@ pub(super) fn corners_as_rows(at: &Placement, corners: [[f32; 3]; 3]) -> Placeme
 }
 
 /// The words of an instance; the tile's number comes later.
-pub(super) fn instance(at: &Placement, sun: [f32; 3], color: [f32; 4], [label, item]: [u32; 2]) -> InstanceWords {
+fn instance(at: &Placement, sun: [f32; 3], color: [f32; 4], [label, item]: [u32; 2]) -> InstanceWords {
     let mut words = [0; WORDS];
     let numbers = at
         .column

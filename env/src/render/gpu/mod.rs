@@ -9,11 +9,9 @@ mod atlas;
 mod device;
 mod instances;
 mod library;
-mod natural;
 mod pass;
 mod pipelines;
 mod survey;
-mod texels;
 mod tile;
 mod unpack;
 
@@ -27,7 +25,7 @@ use self::device::Device;
 use self::instances::{Labels, TileContents};
 use self::pass::{Pass, Stage, most_in_a_pass};
 use super::compose::CATEGORY_BITS;
-use super::cpu::average;
+use super::cpu::{CpuRenderer, average};
 use super::frame::Frame;
 use super::hand::Hand;
 use super::picture::Picture;
@@ -38,8 +36,8 @@ use crate::scene::Scene;
 
 /// Draws scenes on a graphics card. Keeps its buffers from picture to picture.
 ///
-/// Pictures are those of [`CpuRenderer`](super::CpuRenderer) but for single pixels at edges: each adapter rounds a
-/// little differently. One renderer draws one batch at a time, on the thread that asks and with rayon's threads beside
+/// Pictures are those of [`CpuRenderer`] but for single pixels at edges: each adapter rounds a little differently.
+/// Natural looks are drawn by that renderer. One renderer draws one batch at a time, on the thread that asks and with rayon's threads beside
 /// it.
 #[derive(Debug)]
 pub struct GpuRenderer {
@@ -56,8 +54,6 @@ struct Job {
     size: [u32; 2],
     planes: Planes,
     labels: Labels,
-    /// Whether it is in the natural style.
-    natural: bool,
     /// Points per pixel along each side.
     samples: u32,
 }
@@ -133,7 +129,7 @@ impl GpuRenderer {
         self.hand.draw(scene, carried, target);
     }
 
-    /// Draws many pictures, those of one size and style together.
+    /// Draws many pictures, those of one size together. The processor draws natural looks.
     ///
     /// # Errors
     /// [`EnvError::PictureSize`] as for [`CpuRenderer::draw`](super::CpuRenderer::draw), and [`EnvError::GpuPicture`]
@@ -143,7 +139,9 @@ impl GpuRenderer {
         let mut jobs = Vec::with_capacity(pictures.len());
         for (index, picture) in pictures.iter().enumerate() {
             picture.target.check()?;
-            jobs.extend(jobs_for(index, picture));
+            if picture.scene.natural.is_none() {
+                jobs.extend(jobs_for(index, picture));
+            }
         }
         let most = self.device.limits.max_texture_dimension_2d;
         for job in &jobs {
@@ -159,12 +157,11 @@ impl GpuRenderer {
                 });
             }
         }
-        let kind = |job: &Job| (job.natural, job.size, job.planes);
-        jobs.sort_by_key(kind);
-        for alike in jobs.chunk_by(|a, b| kind(a) == kind(b)) {
+        jobs.sort_by_key(|job| (job.size, job.planes));
+        let [most_tiles, _] = most_in_a_pass(&self.device.limits);
+        for alike in jobs.chunk_by(|a, b| (a.size, a.planes) == (b.size, b.planes)) {
             let mut rest = alike;
             while let Some(first) = rest.first() {
-                let [most_tiles, _] = most_in_a_pass(&self.device.limits, first.size[1]);
                 let grid = Grid::new(first.size, rest.len(), most);
                 let count = grid.map_or(1, Grid::capacity).min(rest.len()).min(most_tiles);
                 let (now, later) = rest.split_at(count);
@@ -172,10 +169,16 @@ impl GpuRenderer {
                 rest = later;
             }
         }
-        for picture in pictures {
+        let is_natural = |picture: &&mut Picture<'_>| picture.scene.natural.is_some();
+        let (mut natural, plain): (Vec<_>, Vec<_>) = pictures.iter_mut().partition(is_natural);
+        for picture in plain {
             picture.target.see_fog(&picture.scene.light);
         }
-        Ok(())
+        natural
+            .par_iter_mut()
+            .try_for_each_init(CpuRenderer::new, |renderer, picture| {
+                renderer.draw(picture.scene, &picture.camera, &mut picture.target)
+            })
     }
 
     /// Draws jobs that are alike and fit into one pass; or in halves, if they hold too many objects.
@@ -188,17 +191,13 @@ impl GpuRenderer {
         let together = contents[..jobs.len()].par_iter_mut().zip(jobs).with_min_len(8);
         together.for_each(|(content, job)| {
             let picture = &seen[job.picture];
-            let (scene, camera) = (picture.scene, &picture.camera);
-            match &scene.natural {
-                Some(looks) => content.gather_natural(scene, looks, camera, job.size, job.labels),
-                None => content.gather(scene, camera, job.size, job.labels),
-            }
+            content.gather(picture.scene, &picture.camera, job.size, job.labels);
         });
         let count: usize = contents[..jobs.len()]
             .iter()
-            .map(|content| content.objects.words.len() + content.shadows.words.len())
+            .map(|content| content.instances.len())
             .sum();
-        let [_, most] = most_in_a_pass(&self.device.limits, 1);
+        let [_, most] = most_in_a_pass(&self.device.limits);
         let outcome = if count <= most {
             self.draw_gathered(jobs, pictures, &mut contents[..jobs.len()])
         } else if jobs.len() > 1 {
@@ -230,7 +229,6 @@ impl GpuRenderer {
         let pass = Pass {
             grid,
             planes: first.planes,
-            natural: first.natural,
             fog,
             contents,
         };
@@ -280,7 +278,6 @@ fn jobs_for(index: usize, picture: &Picture<'_>) -> impl Iterator<Item = Job> + 
             items: target.instance.is_some() || (!fits && target.class.is_some()),
         },
         labels,
-        natural: picture.scene.natural.is_some(),
         samples: 1,
     };
     let fine = Job {
@@ -303,7 +300,6 @@ fn jobs_for(index: usize, picture: &Picture<'_>) -> impl Iterator<Item = Job> + 
 mod tests {
     use super::device::Clipping;
     use super::*;
-    use driftworld_spec::Style;
 
     /// A renderer on each adapter of this machine; none where there is none.
     fn each(clipping: Clipping) -> Vec<GpuRenderer> {
@@ -312,12 +308,11 @@ mod tests {
         adapters.iter().filter_map(|adapter| open(adapter).ok()?.ok()).collect()
     }
 
-    fn several(renderer: &mut GpuRenderer, style: Style) -> Result<Vec<Frame>, EnvError> {
-        let mut world = driftworld_spec::WorldDraft {
+    fn several(renderer: &mut GpuRenderer) -> Result<Vec<Frame>, EnvError> {
+        let world = driftworld_spec::WorldDraft {
             objects: vec![driftworld_spec::Object::new("tree", [1.0, 4.0]); 3],
             ..Default::default()
         };
-        world.environment_params.looks = driftworld_spec::Looks::of(style);
         let scene = Scene::from_world(&world.check().expect("the world is sound"));
         let mut frames = vec![Frame::new(40, 30); 5];
         let mut pictures: Vec<_> = (0..)
@@ -338,19 +333,14 @@ mod tests {
         let together = each(Clipping::IfPossible).into_iter();
         for (mut clips, mut does_not) in together.zip(each(Clipping::Never)) {
             assert!(!does_not.device.has_clip_distances);
-            for style in [Style::Plain, Style::Natural] {
-                let pairs = several(&mut clips, style)
-                    .expect("it draws")
-                    .into_iter()
-                    .zip(several(&mut does_not, style).expect("it draws"));
-                for (a, b) in pairs {
-                    let differing = a.instance.iter().zip(&b.instance).filter(|(a, b)| a != b).count();
-                    assert!(differing <= 2, "{differing} of 1200 pixels");
-                    assert!(a.instance.iter().all(|item| *item <= 3));
-                    let pixels = a.rgb.chunks(3).zip(b.rgb.chunks(3));
-                    let differing = pixels.filter(|(a, b)| a != b).count();
-                    assert!(differing <= 6, "{differing} of 1200 colours in {style:?}");
-                }
+            let pairs = several(&mut clips)
+                .expect("it draws")
+                .into_iter()
+                .zip(several(&mut does_not).expect("it draws"));
+            for (a, b) in pairs {
+                let differing = a.instance.iter().zip(&b.instance).filter(|(a, b)| a != b).count();
+                assert!(differing <= 2, "{differing} of 1200 pixels");
+                assert!(a.instance.iter().all(|item| *item <= 3));
             }
         }
     }
@@ -360,7 +350,7 @@ mod tests {
         for mut renderer in each(Clipping::IfPossible) {
             renderer.device.card.destroy();
             for _ in 0..2 {
-                let error = several(&mut renderer, Style::Natural).expect_err("there is no device any more");
+                let error = several(&mut renderer).expect_err("there is no device any more");
                 assert_eq!(error.code(), "env/gpu", "{error}");
             }
         }

@@ -1,5 +1,5 @@
-//! One picture of a pass in numbers for the shaders of the plain style: camera, light, ground, walls. `tile.wgsl` reads what is
-//! written here; which objects are in it is found in `instances.rs`. The natural style has `natural.rs`.
+//! One picture of a pass in numbers for the shaders: camera, light, ground, walls. `tile.wgsl` reads what is written
+//! here; which objects are in it is found in `instances.rs`.
 
 use super::super::compose::Walls;
 use super::super::shade::{FULL_LEVEL, Shader};
@@ -9,17 +9,11 @@ use crate::scene::Scene;
 /// Numbers of four in a tile: the size of `Tile` in `tile.wgsl`.
 pub(super) const QUADS: usize = 14;
 
-/// Four words of a tile.
-pub(super) type Quad = [u32; 4];
+/// The words of one tile, in the order of `Tile` in `tile.wgsl`.
+pub(super) type TileWords = [[u32; 4]; QUADS];
 
-/// The words of one tile, in the order of `Tile` in `tile.wgsl`: a picture whose left upper corner is at `corner` of the atlas, in pixels.
-pub(super) fn words(
-    scene: &Scene,
-    view: &View,
-    shader: &Shader,
-    walls: Option<&Walls>,
-    corner: [u32; 2],
-) -> [Quad; QUADS] {
+/// Describes a picture whose left upper corner is at `corner` of the atlas, in pixels.
+pub(super) fn words(scene: &Scene, view: &View, shader: &Shader, walls: Option<&Walls>, corner: [u32; 2]) -> TileWords {
     let with = |[a, b, c]: [f32; 3], d: f32| [a, b, c, d].map(f32::to_bits);
     let four = |numbers: [f32; 4]| numbers.map(f32::to_bits);
     let [zenith, horizon] = shader.sky(scene.light.sky_color);

@@ -1,5 +1,5 @@
-// What the shaders of the plain style share: the pictures of a pass, and fog. Written after compose.rs; the natural style has
-// natural.wgsl.
+// What every shader shares: the pictures of a pass, and how colours become bytes. Written after shade.rs and compose.rs;
+// the constants come from there.
 
 // One picture of a pass, as `tile.rs` writes it. Angles and metres are those of view.rs.
 struct Tile {
@@ -23,6 +23,28 @@ struct Tile {
     tint_ambient: vec4f,
     // Colour of fog, and the distance at which half of what is seen is fog; 0 where there is none.
     fog: vec4f,
+}
+
+struct Atlas {
+    // From pixels to clip space: 2 / width and 2 / height.
+    scale: vec2f,
+}
+
+// What a fragment may write: bytes of colour and label; the item's number.
+struct Pixel {
+    @location(0) word: u32,
+    @location(1) item: u32,
+}
+
+@group(0) @binding(0) var<storage, read> tiles: array<Tile>;
+@group(0) @binding(1) var<uniform> atlas: Atlas;
+
+// Whether any tile of the pass has fog.
+override FOG: bool = false;
+
+fn packed_pixel(levels: vec3f, label: u32) -> u32 {
+    let bytes = vec3u(min(levels + ROUNDING, vec3f(FULL_LEVEL)));
+    return (label << 24u) | (bytes.z << 16u) | (bytes.y << 8u) | bytes.x;
 }
 
 // A word's colours turned into the fog's with distance; the sky stays.
