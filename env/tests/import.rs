@@ -2,6 +2,7 @@
 //! find them.
 #![cfg(feature = "gltf")]
 
+use std::path::Path;
 use std::sync::Arc;
 
 use driftworld_env::{
@@ -375,4 +376,18 @@ fn batches_and_spawned_objects_use_the_library() {
         "{:?}",
         alone.agent().position
     );
+}
+
+#[test]
+fn files_of_built_in_models_are_imported_without_a_warning() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/models");
+    let files = std::fs::read_dir(folder).expect("it is part of the repository");
+    let paths: Vec<_> = files.map(|file| file.expect("it can be listed").path()).collect();
+    assert_eq!(paths.len(), 35);
+    for path in paths {
+        let bytes = std::fs::read(&path).expect("it can be read");
+        let imported = LibraryModel::from_gltf(&bytes, &options("row"), &mut |_| Err("one file".into()));
+        let imported = imported.unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        assert_eq!(imported.warnings, [], "{}", path.display());
+    }
 }

@@ -42,7 +42,7 @@ pub use limits::{
     MAX_BYTES, MAX_DEPTH, MAX_KEY_BYTES, MAX_SCENARIO_VALUES, MAX_TASK_DEPTH, MAX_VALUES, MAX_WORLD_VALUES,
 };
 pub use names::sound_name;
-pub use oklab::{Oklab, linear_from_srgb};
+pub use oklab::{Oklab, linear_from_srgb, srgb_from_linear};
 pub use philox::philox;
 pub use scenario::{
     Block, BlockKind, BlockMix, DriftSchedule, DriftSwitch, MAX_EXPERIENCES, Phase, ProvenVariant, Regime, RegimeDrift,

@@ -63,14 +63,7 @@ impl Oklab {
     /// The colour in sRGB; each channel is cut off at what a screen can show.
     fn to_srgb(self) -> Color {
         let cones = times(&ROOTS_FROM_LAB, self.0).map(|root| root * root * root);
-        let encode = |c: f64| {
-            if c <= 0.003_130_8 {
-                12.92 * c
-            } else {
-                1.055 * libm::pow(c, 1.0 / 2.4) - 0.055
-            }
-        };
-        Color(times(&LINEAR_FROM_CONES, cones).map(|c| encode(c).clamp(0.0, 1.0)))
+        Color(times(&LINEAR_FROM_CONES, cones).map(|light| srgb_from_linear(light).clamp(0.0, 1.0)))
     }
 }
 
@@ -105,6 +98,16 @@ pub fn linear_from_srgb(channel: f64) -> f64 {
         channel / 12.92
     } else {
         libm::pow((channel + 0.055) / 1.055, 2.4)
+    }
+}
+
+/// The sRGB channel of an amount of light.
+#[inline]
+pub fn srgb_from_linear(light: f64) -> f64 {
+    if light <= 0.003_130_8 {
+        12.92 * light
+    } else {
+        1.055 * libm::pow(light, 1.0 / 2.4) - 0.055
     }
 }
 

@@ -1,153 +1,147 @@
-//! Which classes are built in, how many models each has, and who makes them.
+//! The built-in classes and their models: which file each has, and its number in class segmentation.
 
-use driftworld_spec::Model;
+use std::sync::{Arc, LazyLock, OnceLock};
 
-use super::animals::{self, ANIMALS};
-use super::furnishings::{self, FURNISHINGS};
-use super::signs::{self, Lettering, SIGNS};
-use super::{Asset, Builder, Mesh, furniture, nature, structures, things, trees};
+use driftworld_spec::{Model, Style};
 
-/// Every class of the original with its number of models, in alphabetical order.
-pub(crate) const CLASSES: &[(&str, u32)] = &[
-    ("bag", 6),
-    ("barrel", 5),
-    ("bed", 1),
-    ("bench", 3),
-    ("building", 3),
-    ("car", 1),
-    ("castleruin", 7),
-    ("chair", 4),
-    ("cube", 1),
-    ("fence", 31),
-    ("geometric", 3),
-    ("icosphere", 1),
-    ("mushroom", 6),
-    ("nature", 1),
-    ("pot", 4),
-    ("roadblock", 1),
-    ("rock", 44),
-    ("shelf", 1),
-    ("shrub", 11),
-    ("streetsign", 1),
-    ("table", 3),
-    ("tent", 3),
-    ("tree", 49),
-];
+use super::{Asset, model_file};
 
-/// Classes of ours, in the order in which they came: a new one goes behind the others, up to the seventh.
-pub(crate) const OWN_CLASSES: &[(&str, u32)] = &[
-    ("door", 2),
-    ("key", 1),
-    ("switch", 1),
-    ("animal", ANIMALS.len() as u32),
-    ("sign", SIGNS.len() as u32),
-    ("furniture", FURNISHINGS.len() as u32),
-];
-
-/// The models that have names, by their class; their numbers are their places in the list, from 1 on.
-const NAMED: &[(&str, &[&str])] = &[("animal", &ANIMALS), ("sign", &SIGNS), ("furniture", &FURNISHINGS)];
-
-/// All built-in classes with their numbers of models, in the order of their numbers in class segmentation.
-pub(crate) fn classes() -> impl Iterator<Item = (&'static str, u32)> {
-    CLASSES.iter().chain(OWN_CLASSES).copied()
+/// The models of a class in a style, read when they are first asked for: their names and looks, in the order of their numbers.
+struct Models {
+    class: &'static str,
+    file: &'static str,
+    read: OnceLock<Vec<(String, Arc<Asset>)>>,
 }
 
-/// The number of a built-in class in class segmentation. Those of the original have 1 to 23, in alphabetical order; ours have
-/// the next numbers up to 30, in the order of their list: what was stored stays right.
+/// Classes, each with the file of its name and this ending.
+macro_rules! models {
+    ($ending:literal: $($class:ident)+) => {
+        [$(Models {
+            class: stringify!($class),
+            file: include_str!(concat!("../../assets/models/", stringify!($class), $ending)),
+            read: OnceLock::new(),
+        }),+]
+    };
+}
+
+/// All classes in the order of their numbers in class segmentation, which must not change: first those of the original in
+/// alphabetical order, then ours. A new one goes to the end, the next as number 30, the last that there is.
+static PLAIN: [Models; 29] = models!(".gltf":
+    bag barrel bed bench building car castleruin chair cube fence geometric icosphere mushroom nature pot roadblock rock
+    shelf shrub streetsign table tent tree
+    door key switch animal sign furniture
+);
+
+/// The classes with other models in natural looks: as many, with the same names and bodies.
+static NATURAL: [Models; 5] = models!("_natural.gltf": car mushroom rock shrub tree);
+
+/// What stands for a class that is not known: a striped bollard, something to stumble over.
+static UNKNOWN: [Models; 1] = models!(".gltf": unknown);
+
+impl Models {
+    fn read(&self) -> &[(String, Arc<Asset>)] {
+        self.read.get_or_init(|| model_file::read(self.file))
+    }
+}
+
+/// A class's models in a style; none if it is not built in, or looks as in the plain style.
+fn find(style: Style, class: &str) -> Option<&'static [(String, Arc<Asset>)]> {
+    let all = match style {
+        Style::Plain => PLAIN.as_slice(),
+        Style::Natural => &NATURAL,
+    };
+    all.iter().find(|models| models.class == class).map(Models::read)
+}
+
+/// The names of the built-in classes in the order of their numbers in class segmentation.
+pub(crate) fn class_names<'a>() -> impl Iterator<Item = &'a str> {
+    PLAIN.iter().map(|models| models.class)
+}
+
+/// The number of a built-in class in class segmentation.
 pub(crate) fn class_number(class: &str) -> Option<u16> {
-    let originals = CLASSES.binary_search_by_key(&class, |(name, _)| name).ok();
-    let own = || OWN_CLASSES.iter().position(|(name, _)| *name == class);
-    let place = originals.or_else(|| Some(CLASSES.len() + own()?))?;
+    let place = class_names().position(|name| name == class)?;
     u16::try_from(place + 1).ok()
 }
 
-/// How many models a class has, if it is known.
-pub(crate) fn models(class: &str) -> Option<u32> {
-    classes().find(|(name, _)| *name == class).map(|(_, models)| models)
+/// The models of a class in the order of their numbers, by their names.
+pub(crate) fn model_names(class: &str) -> impl Iterator<Item = &'static str> + use<> {
+    let models = find(Style::Plain, class).unwrap_or_default();
+    models.iter().map(|(name, _)| name.as_str())
 }
 
-/// Whether a class is built in and has a model of this number.
-pub(crate) fn has(class: &str, number: u32) -> bool {
-    models(class).is_some_and(|models| (1..=models).contains(&number))
-}
-
-/// The number that a model of a class has, by its name or as it is written; capitals do not matter.
+/// The number of a model of a class, by its name or its number in writing; capitals do not matter. None if there is no such
+/// model.
 pub(crate) fn number(class: &str, model: &Model) -> Option<u32> {
     let name = model.0.trim();
-    let named = names(class).iter().position(|own| own.eq_ignore_ascii_case(name));
-    named.map(|place| place as u32 + 1).or_else(|| model.number())
+    let named = model_names(class).position(|own| own.eq_ignore_ascii_case(name));
+    let number = named.map(|place| place as u32 + 1).or_else(|| model.number())?;
+    (1..=model_names(class).count() as u32)
+        .contains(&number)
+        .then_some(number)
 }
 
-/// The models of a class in the order of their numbers, by their names or else by their numbers.
-pub(crate) fn model_names(class: &str) -> impl Iterator<Item = String> {
-    let names = names(class);
-    let name = |number: u32| {
-        let own = names.get(number as usize - 1);
-        own.map_or_else(|| number.to_string(), |name| (*name).to_owned())
-    };
-    (1..=models(class).unwrap_or(0)).map(name)
+/// The built-in model of a number in a style, if there is one.
+pub(crate) fn asset(style: Style, class: &str, number: u32) -> Option<Arc<Asset>> {
+    let models = find(style, class).or_else(|| find(Style::Plain, class))?;
+    let (_, asset) = models.get((number as usize).checked_sub(1)?)?;
+    Some(Arc::clone(asset))
 }
 
-fn names(class: &str) -> &'static [&'static str] {
-    let found = NAMED.iter().find(|(named, _)| *named == class);
-    found.map_or(&[], |(_, names)| names)
+/// The asset of a class that is not known.
+pub(crate) fn placeholder() -> Arc<Asset> {
+    static MADE: LazyLock<Arc<Asset>> = LazyLock::new(|| {
+        let (_, asset) = &UNKNOWN[0].read()[0];
+        Arc::new(Asset {
+            known: false,
+            ..Asset::clone(asset)
+        })
+    });
+    Arc::clone(&MADE)
 }
 
-/// Makes an asset; what is not known is the placeholder.
-pub(crate) fn make(class: &str, model: u32) -> Asset {
-    match class {
-        "tree" => trees::tree(model),
-        "rock" => nature::rock(model),
-        "shrub" => nature::shrub(model),
-        "nature" => nature::stump(),
-        "mushroom" => nature::mushroom(model),
-        "geometric" | "cube" | "icosphere" => geometric(class, model),
-        "bag" => furniture::bag(model),
-        "barrel" => furniture::barrel(model),
-        "bed" => furniture::bed(),
-        "bench" => furniture::bench(model),
-        "chair" => furniture::chair(model),
-        "pot" => furniture::pot(model),
-        "shelf" => furniture::shelf(),
-        "table" => furniture::table(model),
-        "building" => structures::building(model),
-        "car" => structures::car(),
-        "castleruin" => structures::castle_ruin(model),
-        "fence" => structures::fence(model),
-        "roadblock" => structures::roadblock(),
-        "streetsign" => structures::street_sign(),
-        "tent" => structures::tent(model),
-        "door" => things::door(model),
-        "key" => things::key(),
-        "switch" => things::switch(),
-        "animal" => animals::animal(model),
-        "sign" => signs::sign(model, "", Lettering::Dark),
-        "furniture" => furnishings::furnishing(model),
-        _ => placeholder(),
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A checksum of all that is drawn and felt of models, to the bit.
+    fn checksum(models: &[(String, Arc<Asset>)]) -> String {
+        let mut bytes = Vec::new();
+        for (name, asset) in models {
+            let said = format!("{name} {:?} {} {}", asset.collider, asset.height, asset.radius);
+            bytes.extend(said.bytes());
+            for level in &asset.levels {
+                bytes.extend(level.error.to_le_bytes());
+                for material in &level.materials {
+                    bytes.extend(format!("{:?}", material.paint).bytes());
+                    for block in &material.blocks {
+                        let numbers = block.corners.iter().chain(&block.normal).chain([&block.offset]);
+                        bytes.extend(numbers.flatten().flat_map(|number| number.to_le_bytes()));
+                    }
+                }
+            }
+        }
+        format!("{:08x}", crc32fast::hash(&bytes))
     }
-}
 
-/// Cube, ball and cylinder of about 1 m: what a user puts where only colour matters.
-fn geometric(class: &str, model: u32) -> Asset {
-    let grey = [0.62, 0.62, 0.66];
-    match (class, model) {
-        ("icosphere", _) => Builder::default().main(grey, Mesh::ball(0.5, 0.5, 9, 5)).round(0.5),
-        ("geometric", 2) => Builder::default().main(grey, Mesh::ball(0.5, 0.5, 16, 10)).round(0.5),
-        ("geometric", 3) => Builder::default()
-            .main(grey, Mesh::cylinder(0.45, 0.0, 1.0, 16))
-            .round(0.45),
-        _ => Builder::default()
-            .main(grey, Mesh::cuboid([0.9, 0.9, 0.9], 0.0))
-            .boxed(),
+    /// Stored pictures and trajectories depend on these models.
+    #[test]
+    fn built_in_models_match_their_checksums() {
+        let all = |models: &[Models]| {
+            let lines = models
+                .iter()
+                .map(|models| format!("{} {}\n", models.class, checksum(models.read())));
+            lines.collect::<String>()
+        };
+        let [plain, unknown, natural] = [all(&PLAIN), all(&UNKNOWN), all(&NATURAL)];
+        insta::assert_snapshot!(format!("plain\n{plain}{unknown}natural\n{natural}"));
     }
-}
 
-/// Something to stumble over where the class is not known: a striped bollard.
-fn placeholder() -> Asset {
-    let stripe = |low: f32| Mesh::cylinder(0.25, low, low + 0.2, 8);
-    let asset = Builder::default()
-        .fixed([0.95, 0.2, 0.75], stripe(0.0).with(&stripe(0.4)).with(&stripe(0.8)))
-        .fixed([0.12, 0.1, 0.12], stripe(0.2).with(&stripe(0.6)))
-        .round(0.25);
-    Asset { known: false, ..asset }
+    #[test]
+    fn natural_models_have_the_names_of_the_plain_ones() {
+        for models in &NATURAL {
+            let names = models.read().iter().map(|(name, _)| name.as_str());
+            assert!(names.eq(model_names(models.class)), "{}", models.class);
+        }
+    }
 }

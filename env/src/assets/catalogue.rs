@@ -99,16 +99,14 @@ impl Catalogue {
 
     /// All classes that it knows with their numbers in class segmentation, in rising order of the numbers.
     pub fn class_numbers(&self) -> impl Iterator<Item = (&str, u16)> {
-        let built_in = builtin::classes().map(|(class, _)| class);
-        built_in
+        builtin::class_names()
             .chain(self.own_classes.iter().map(String::as_str))
             .map(|class| (class, self.class_number(class)))
     }
 
     /// The classes that it has models of: the built-in ones, and those of its libraries.
     pub fn classes(&self) -> Classes {
-        let built_in = super::classes().map(|(class, _)| class);
-        Classes::new(built_in.chain(self.models.keys().map(|(class, _)| class.as_str())))
+        Classes::new(builtin::class_names().chain(self.models.keys().map(|(class, _)| class.as_str())))
     }
 
     /// The asset of a class and model; what nobody knows is a placeholder.
@@ -134,7 +132,7 @@ impl Catalogue {
     pub fn asset_with_text(&self, class: &str, model: &Model, text: &str, color: Option<[f32; 3]>) -> Arc<Asset> {
         let is_built_in =
             class == "sign" && (self.models.is_empty() || !self.models.contains_key(&key(class, &model.0)));
-        match builtin::number(class, model).filter(|number| is_built_in && builtin::has(class, *number)) {
+        match builtin::number(class, model).filter(|_| is_built_in) {
             Some(number) => sign(number, text, color.map(Lettering::on).unwrap_or_default()),
             None => self.asset(class, model),
         }

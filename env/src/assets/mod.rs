@@ -1,30 +1,22 @@
-//! What objects look like: meshes made by code from class and model number or read from libraries, and their colliders.
-//! Where they stand is the scene's.
+//! What objects look like: their meshes and colliders, from the files of built-in models or from libraries.
 
-mod animals;
 mod blocks;
 mod builtin;
 mod catalogue;
-mod furnishings;
-mod furniture;
 #[cfg(feature = "gltf")]
 mod import;
 mod letters;
-mod levels;
 mod library;
 mod mesh;
-mod natural;
-mod nature;
+mod model_file;
 mod signs;
-mod structures;
-mod things;
-mod trees;
 
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 use driftworld_spec::{Model, Style};
+use serde::Deserialize;
 
 pub(crate) use blocks::{BLOCK, Block, Material};
 pub use catalogue::{Catalogue, FIRST_LIBRARY_CLASS, UNKNOWN_CLASS};
@@ -39,6 +31,8 @@ pub use library::{
 };
 pub use mesh::Mesh;
 pub(crate) use signs::Lettering;
+
+use crate::vector::{cross, dot, sub};
 
 /// The look and the body of one model of one class, at scale 1.
 #[derive(Clone, Debug)]
@@ -132,7 +126,8 @@ pub enum Paint {
 }
 
 /// The shape of a body, in metres at scale 1.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum ColliderShape {
     /// A box of these half sides.
     Box {
@@ -188,42 +183,9 @@ pub fn asset(class: &str, model: &Model) -> Arc<Asset> {
 
 /// The built-in asset of a class and model in a style. The body is the same in all styles, so that looks change what is seen alone.
 pub fn asset_in(style: Style, class: &str, model: &Model) -> Arc<Asset> {
-    /// By class, by the number of the model, plain and natural.
-    type Made = HashMap<String, Vec<[Option<Arc<Asset>>; 2]>>;
-    static MADE: LazyLock<Mutex<Made>> = LazyLock::new(Mutex::default);
     let class = lowercase(class);
-    let number = builtin::number(&class, model).unwrap_or(0);
-    let looks = usize::from(style == Style::Natural);
-    // What was made before a panic elsewhere is whole: assets are inserted when they are finished.
-    let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
-    let kept = made.get(&*class).and_then(|models| models.get(number as usize));
-    if let Some(asset) = kept.and_then(|styles| styles[looks].as_ref()) {
-        return Arc::clone(asset);
-    }
-    // Names that nobody knows share one placeholder, so that strangers cannot fill the memory.
-    let (class, number) = if builtin::has(&class, number) {
-        (class, number)
-    } else {
-        (Cow::Borrowed(""), 0)
-    };
-    let models = made.entry(class.to_string()).or_default();
-    if models.len() <= number as usize {
-        models.resize(number as usize + 1, [None, None]);
-    }
-    let [plain, natural] = &mut models[number as usize];
-    let plain = plain.get_or_insert_with(|| Arc::new(builtin::make(&class, number)));
-    if style != Style::Natural {
-        return Arc::clone(plain);
-    }
-    let of_nature = || {
-        let asset = natural::make(&class, number)?;
-        Some(Arc::new(Asset {
-            collider: plain.collider.clone(),
-            known: plain.known,
-            ..asset
-        }))
-    };
-    Arc::clone(natural.get_or_insert_with(|| of_nature().unwrap_or_else(|| Arc::clone(plain))))
+    let found = builtin::number(&class, model).and_then(|number| builtin::asset(style, &class, number));
+    found.unwrap_or_else(builtin::placeholder)
 }
 
 /// In small letters; what is written so is not copied.
@@ -240,7 +202,7 @@ pub(crate) fn lowercase(class: &str) -> Cow<'_, str> {
 pub(crate) fn sign(model: u32, text: &str, lettering: Lettering) -> Arc<Asset> {
     type Made = HashMap<(u32, String, Lettering), Arc<Asset>>;
     static MADE: LazyLock<Mutex<Made>> = LazyLock::new(Mutex::default);
-    // As for other assets, what is in it is whole.
+    // What was made before a panic elsewhere is whole: assets are inserted when they are finished.
     let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
     let key = (model, text.to_owned(), lettering);
     if let Some(asset) = made.get(&key) {
@@ -250,7 +212,8 @@ pub(crate) fn sign(model: u32, text: &str, lettering: Lettering) -> Arc<Asset> {
     if made.len() >= MOST_SIGNS {
         made.clear();
     }
-    let asset = Arc::new(signs::sign(model, text, lettering));
+    let bare = builtin::asset(Style::Plain, "sign", model).unwrap_or_else(builtin::placeholder);
+    let asset = Arc::new(signs::sign(&bare, model, text, lettering));
     made.insert(key, Arc::clone(&asset));
     asset
 }
@@ -260,7 +223,7 @@ const MOST_SIGNS: usize = 256;
 
 /// The built-in classes, and how many models each has, in the order of their numbers in class segmentation.
 pub fn classes() -> impl Iterator<Item = (&'static str, u32)> {
-    builtin::classes()
+    builtin::class_names().map(|class| (class, builtin::model_names(class).count() as u32))
 }
 
 /// The models of a built-in class in the order of their numbers: their names where they have some, else their numbers; none if
@@ -277,83 +240,17 @@ pub fn classes() -> impl Iterator<Item = (&'static str, u32)> {
 /// assert_eq!(asset("animal", &Model("7".into())).height, asset("animal", &Model("wolf".into())).height);
 /// ```
 pub fn model_names(class: &str) -> impl Iterator<Item = String> {
-    builtin::model_names(class)
-}
-
-/// Parts on their way to an asset.
-#[derive(Default)]
-pub(crate) struct Builder(Vec<Part>);
-
-impl Builder {
-    /// Adds a part that takes the object's colour.
-    pub(crate) fn main(mut self, own: [f32; 3], mesh: Mesh) -> Self {
-        self.0.push(Part::new(mesh, Paint::Main(own)));
-        self
-    }
-
-    /// Adds a part of fixed colour.
-    pub(crate) fn fixed(mut self, color: [f32; 3], mesh: Mesh) -> Self {
-        self.0.push(Part::new(mesh, Paint::Fixed(color)));
-        self
-    }
-
-    /// The asset with a cylinder of this radius around its axis as its body.
-    pub(crate) fn round(self, radius: f32) -> Asset {
-        let asset = self.asset();
-        Asset {
-            collider: ColliderShape::Cylinder {
-                radius,
-                half_height: asset.height / 2.0,
-            },
-            ..asset
-        }
-    }
-
-    /// The asset with the box around all its corners as its body.
-    pub(crate) fn boxed(self) -> Asset {
-        let asset = self.asset();
-        let corners = || asset.parts.iter().flat_map(|part| &part.mesh.corners);
-        let half = |axis: usize| corners().fold(0.0_f32, |most, corner| most.max(corner[axis].abs()));
-        Asset {
-            collider: ColliderShape::Box {
-                half: [half(0), half(1), asset.height / 2.0],
-            },
-            ..asset
-        }
-    }
-
-    /// The parts, without those of which nothing is drawn.
-    pub(crate) fn into_parts(self) -> Vec<Part> {
-        let mut parts = self.0;
-        parts.retain(|part| !part.mesh.triangles.is_empty());
-        parts
-    }
-
-    fn asset(self) -> Asset {
-        let cylinder = ColliderShape::Cylinder {
-            radius: 0.01,
-            half_height: 0.01,
-        };
-        Asset::of_levels(vec![(0.0, self.0)], cylinder)
-    }
+    builtin::model_names(class).map(str::to_owned)
 }
 
 impl Part {
     pub(crate) fn new(mesh: Mesh, paint: Paint) -> Self {
         let normal = |triangle: &[u32; 3]| {
             let [a, b, c] = triangle.map(|corner| mesh.corners[corner as usize]);
-            let (u, v) = (
-                [b[0] - a[0], b[1] - a[1], b[2] - a[2]],
-                [c[0] - a[0], c[1] - a[1], c[2] - a[2]],
-            );
-            let n = [
-                u[1] * v[2] - u[2] * v[1],
-                u[2] * v[0] - u[0] * v[2],
-                u[0] * v[1] - u[1] * v[0],
-            ];
-            let length = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
+            let upright = cross(sub(b, a), sub(c, a));
+            let length = dot(upright, upright).sqrt();
             if length > 0.0 {
-                n.map(|part| part / length)
+                upright.map(|part| part / length)
             } else {
                 [0.0, 0.0, 1.0]
             }
