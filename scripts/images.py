@@ -2,7 +2,7 @@
 
     python scripts/images.py target/release/driftworld [WORD]...     all of them, or those whose names hold a WORD
 
-Other pictures: first-hour-*.png come from docs/first-hour.md (`DRIFTWORLD_UPDATE_PAGES=1 cargo test --test pages`), except
+Other pictures: first-hour-*.png come from docs/first-hour.md (`DRIFTWORLD_UPDATE_PAGES=1 cargo test --test all pages`), except
 first-hour-report.png and report.png, a browser's pictures of reports; first-hour.svg from book/record.py; speed.svg from
 scripts/speed.py.
 """

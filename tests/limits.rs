@@ -1,23 +1,28 @@
-//! What checking a document takes of memory, whatever stands in it: at most 40 times its size and a little. A test of
-//! its own, because it counts for the whole process.
+//! What checking a document takes of memory, whatever stands in it: at most 40 times its size and a little.
 
 use std::alloc::{GlobalAlloc, Layout, System};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::cell::Cell;
 
 use driftworld::documents::{Checked, Kind, check};
 use driftworld::spec::{Classes, MAX_PROBLEMS};
 use driftworld::tasks;
 
-/// The system's allocator, counting what is taken of it at a time.
+/// The system's allocator, counting what each thread holds at a time.
 struct Counting;
 
-static TAKEN: AtomicUsize = AtomicUsize::new(0);
-static MOST: AtomicUsize = AtomicUsize::new(0);
+thread_local! {
+    static TAKEN: Cell<isize> = const { Cell::new(0) };
+    static MOST: Cell<isize> = const { Cell::new(0) };
+}
 
 fn take(bytes: usize) {
-    let taken = TAKEN.fetch_add(bytes, Relaxed) + bytes;
-    MOST.fetch_max(taken, Relaxed);
+    let taken = TAKEN.get() + bytes as isize;
+    TAKEN.set(taken);
+    MOST.set(MOST.get().max(taken));
+}
+
+fn give_back(bytes: usize) {
+    TAKEN.set(TAKEN.get() - bytes as isize);
 }
 
 #[expect(
@@ -33,14 +38,14 @@ unsafe impl GlobalAlloc for Counting {
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        TAKEN.fetch_sub(layout.size(), Relaxed);
+        give_back(layout.size());
         // SAFETY: as above.
         unsafe { System.dealloc(pointer, layout) }
     }
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         // Large blocks are moved without being copied: the old and the new one are never there together.
-        TAKEN.fetch_sub(layout.size(), Relaxed);
+        give_back(layout.size());
         take(size);
         // SAFETY: as above.
         unsafe { System.realloc(pointer, layout, size) }
@@ -172,19 +177,16 @@ fn kinds(text: &str) -> Vec<Kind> {
 
 /// What a check takes at most, in bytes, and what came of it.
 fn measured(text: &str, kind: Kind, classes: &Classes) -> (usize, Checked) {
-    let before = TAKEN.load(Relaxed);
-    MOST.store(before, Relaxed);
+    let before = TAKEN.get();
+    MOST.set(before);
     let checked = check("d.json", text, kind, &mut tasks::task, classes);
     // Saying it is part of it.
     drop(checked.error.as_ref().map(ToString::to_string));
-    (MOST.load(Relaxed) - before, checked)
+    ((MOST.get() - before).unsigned_abs(), checked)
 }
 
 /// Holds every filling at these places against the law.
 fn hold(places: &[&str]) {
-    // What is counted is the whole process's.
-    static ALONE: Mutex<()> = Mutex::new(());
-    let _alone = ALONE.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let classes = tasks::classes(&driftworld::env::Catalogue::default());
     // Larger ones by hand: minutes, and the same law.
     let bytes = std::env::var("DRIFTWORLD_LIMITS_BYTES");

@@ -1,15 +1,14 @@
 //! A world that is written down in the middle of a puzzle goes on from its text as if nothing had been: the locked door
 //! stands open, the agent carries the key, and half of its energy is used up.
 
-mod tagged;
-
 use driftworld_env::{Action, Agent, EndedBy, Environment, OnRailsAgent, RandomAgent, Step};
 use driftworld_spec::{
     ActionModel, Door, EndCondition, Energy, Layout, Modality, MotionModel, StateFeature, Stimulus, World, WorldDraft,
     Zone,
 };
 use proptest::prelude::*;
-use tagged::{key, thing};
+
+use crate::tagged::{key, thing};
 
 const MOST: f64 = 100.0;
 

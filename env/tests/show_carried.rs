@@ -1,7 +1,5 @@
 //! What the agent carries is shown at the lower edge of its colours, where the world says so, and nowhere else.
 
-mod tagged;
-
 use std::sync::Arc;
 
 use driftworld_env::{
@@ -9,7 +7,8 @@ use driftworld_env::{
 };
 use driftworld_spec::{Color, Modality, Object, World, WorldDraft};
 use proptest::prelude::*;
-use tagged::{key, thing};
+
+use crate::tagged::{key, thing};
 
 const USE: Action = Action::Continuous([0.0, 0.0, 1.0]);
 

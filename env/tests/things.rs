@@ -1,12 +1,11 @@
 //! Doors, switches and things that are carried: what opens when, what is put down where, and that a written world goes on.
 
-mod tagged;
-
 use driftworld_env::{Action, Effect, Environment, Event};
 use driftworld_spec::{
     Delivery, Door, EndCondition, Portable, StateFeature, Stimulus, Switch, SwitchAction, Wall, WorldDraft,
 };
-use tagged::{key, thing};
+
+use crate::tagged::{key, thing};
 
 const AHEAD: Action = Action::Continuous([2.0, 0.0, 0.0]);
 const USE: Action = Action::Continuous([0.0, 0.0, 1.0]);

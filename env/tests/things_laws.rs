@@ -1,12 +1,11 @@
 //! Laws of doors and of things that are carried, over drawn actions: nothing is lost, nothing is put into walls, no door closes
 //! on the agent, and a written world goes on.
 
-mod tagged;
-
 use driftworld_env::{Action, Effect, Environment};
 use driftworld_spec::{Door, Portable, Pushable, StateFeature, Stimulus, Switch, Wall, World, WorldDraft};
 use proptest::prelude::*;
-use tagged::{key, thing};
+
+use crate::tagged::{key, thing};
 
 /// A house of four rooms with doors of all kinds, keys, a switch, a box that is pushed and somebody who wanders.
 fn house() -> WorldDraft {

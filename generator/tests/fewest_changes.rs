@@ -1,13 +1,12 @@
 //! Laws of variants at a wanted distance: every distance that a search of everything finds is found, by no more changes, and nothing
 //! idle changes. Tasks have parameters of every type; where numbers alone are cut by requirements is in `at_distance.rs`.
 
-mod drawn_task;
-
 use std::collections::BTreeMap;
 
-use drawn_task::{Drawn, Numbers};
 use driftworld_generator::{GeneratorError, Subject, at_distance};
 use driftworld_spec::{Domain, Element, ParameterType, TaskSpec, Value, Variant};
+
+use crate::drawn_task::{Drawn, Numbers};
 
 /// How far off a found distance may be.
 const TOLERANCE: f64 = 1e-3;

@@ -5,17 +5,16 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
-mod generators;
-
 use std::path::Path;
 
 use driftworld_metrics::{
     LogWriter, LoggerInfo, MaintenanceMethod, NormalizationMethod, Options, Record, Row, ScenarioInfo, SmoothingMethod,
     TransferMethod, read_log, read_ste_log, score,
 };
-use generators::{Lived, any_log, expert, lay_out, lifetime};
 use proptest::prelude::*;
 use serde_json::Value;
+
+use crate::generators::{Lived, any_log, expert, lay_out, lifetime};
 
 /// Everything that is asked for at once.
 fn options(normalization_method: NormalizationMethod, smoothing_method: SmoothingMethod) -> Options {

@@ -9,9 +9,7 @@ use driftworld_metrics::{
 };
 use serde_json::Value;
 
-mod agreement;
-
-use agreement::compare;
+use crate::agreement::compare;
 
 fn text(value: &Value) -> &str {
     value.as_str().unwrap()

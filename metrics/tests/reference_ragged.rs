@@ -14,9 +14,7 @@ use driftworld_metrics::{LifetimeMetrics, Options, SteLog, read_log, read_ste_lo
 use flate2::read::GzDecoder;
 use serde_json::Value;
 
-mod agreement;
-
-use agreement::compare;
+use crate::agreement::compare;
 
 /// Lists with a value to an expert: the reference takes experts in the order in which a file system lists them.
 const PER_EXPERT: [&str; 6] = [

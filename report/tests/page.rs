@@ -2,10 +2,9 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
-mod lifetimes;
-
 use driftworld_report::{Chapter, ChapterOptions, Figure, FigureOptions, Figures, Report, Unit};
-use lifetimes::Life;
+
+use crate::lifetimes::{self, Life};
 
 /// Every tag of a page or a drawing: its name, and whether it closes.
 fn tags(text: &str) -> Vec<(String, bool)> {

@@ -1,11 +1,9 @@
 //! Distances of drawn decision processes against what `SciPy` finds by linear programs. The laws are tested beside the code.
 
-mod draws;
-
 use driftworld_similarity::{Mdp, bisimulation, w1_mdp, w1_mdp_pooled};
 use serde::Deserialize;
 
-use draws::Rng;
+use crate::draws::Rng;
 
 #[derive(Deserialize)]
 struct Oracle {

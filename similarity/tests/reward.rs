@@ -1,11 +1,9 @@
 //! EPIC against what `NumPy` finds by the definitions of the reference. The laws are tested beside the code.
 
-mod draws;
-
 use driftworld_similarity::{Epic, RewardTable};
 use serde::Deserialize;
 
-use draws::Rng;
+use crate::draws::Rng;
 
 #[derive(Deserialize)]
 struct Oracle {

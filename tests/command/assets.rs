@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use driftworld::env::{Action, Catalogue, Environment, Library, Warning};
 use driftworld::spec::World;
 
-use crate::terminal::{driftworld, fail, output, root, scratch, succeed, text};
+use super::terminal::{driftworld, fail, output, root, scratch, succeed, text};
 
 const MODEL: &str = "examples/assets/lighthouse.gltf";
 const WORLD: &str = "examples/assets/harbour.json";

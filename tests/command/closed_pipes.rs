@@ -2,7 +2,7 @@
 
 use std::process::Stdio;
 
-use crate::terminal::{driftworld_in, root, scratch, succeed, succeed_in};
+use super::terminal::{driftworld_in, root, scratch, succeed, succeed_in};
 
 /// Every subcommand, as it prints something: results, messages, or both.
 const COMMANDS: [&str; 41] = [

@@ -6,7 +6,7 @@ use std::process::{Output, Stdio};
 
 use driftworld::spec::World;
 
-use crate::terminal::{driftworld, root, scratch};
+use super::terminal::{driftworld, root, scratch};
 
 const WORLD: &str = "examples/console/world.json";
 

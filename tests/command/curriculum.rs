@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 use driftworld::design::{DEFAULT_STEPS, DEFAULT_TOLERANCE};
 use serde_json::Value;
 
-use crate::terminal::{driftworld, fail, output, scratch, text};
+use super::terminal::{driftworld, fail, output, scratch, text};
 
 /// A task that stays as it is when the built-in ones grow.
 static PARK: LazyLock<String> = LazyLock::new(|| {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::terminal::{driftworld_in, fail_in, output, scratch};
+use super::terminal::{driftworld_in, fail_in, output, scratch};
 
 const TWO: [&str; 2] = ["find_objects#blue", "find_objects#red"];
 

@@ -3,7 +3,7 @@
 
 use serde_json::Value;
 
-use crate::terminal::{fail, scratch, succeed, text};
+use super::terminal::{fail, scratch, succeed, text};
 
 /// The distance of the first two of a list, as `order` measures it.
 fn first_two(list: &[&str], by: &[&str]) -> f64 {

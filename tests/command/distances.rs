@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::terminal::{fail, scratch, succeed, text};
+use super::terminal::{fail, scratch, succeed, text};
 
 fn json(arguments: &[&str]) -> Value {
     serde_json::from_str(&succeed(arguments)).expect("--json prints JSON")

@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::terminal::{driftworld, fail, output, scratch, succeed, text};
+use super::terminal::{driftworld, fail, output, scratch, succeed, text};
 
 /// A task whose light is said to change what its parameter says, and which sets a reach that nothing reads.
 fn task(affects: &str) -> String {

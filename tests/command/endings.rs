@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::run_files::{files, is_table, write};
-use crate::terminal::{fail, scratch, succeed, text};
+use super::run_files::{files, is_table, write};
+use super::terminal::{fail, scratch, succeed, text};
 
 /// A field with a river of lava in the way, which some agents go around, and little time.
 const TASK: &str = r#"{ "name": "river", "world": {

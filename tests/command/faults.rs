@@ -12,8 +12,8 @@ use std::process::{Command, Output, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::run_files::{is_table, write};
-use crate::terminal::{driftworld_in, output, root, scratch, signals, succeed_in, text};
+use super::run_files::{is_table, write};
+use super::terminal::{driftworld_in, output, root, scratch, signals, succeed_in, text};
 
 /// Most faults in one lifetime: then it is left alone.
 const MOST: u64 = 12;

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::Path;
 use std::process::Stdio;
 
-use crate::terminal::{driftworld, driftworld_in, fail, fail_in, output, scratch, succeed, succeed_in};
+use super::terminal::{driftworld, driftworld_in, fail, fail_in, output, scratch, succeed, succeed_in};
 
 /// A small task with a family.
 const BERRIES: &str = r#"{ "name": "berries",

@@ -1,6 +1,6 @@
 //! The `driftworld` command as its users meet it: output, exit codes, messages, files that are whole or absent.
 
-use crate::terminal::{driftworld, fail, output, reference, scratch, succeed, text};
+use super::terminal::{driftworld, fail, output, reference, scratch, succeed, text};
 
 #[test]
 fn every_subcommand_has_help_with_an_example() {

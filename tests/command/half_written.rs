@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::terminal::{driftworld_in, fail_in, scratch, signals, succeed_in};
+use super::terminal::{driftworld_in, fail_in, scratch, signals, succeed_in};
 
 /// More worlds than can be drawn before the signal comes.
 const MANY: [&str; 4] = ["find_objects", "--count", "100000000", "--jsonl"];

@@ -11,8 +11,8 @@ use std::process::Output;
 use driftworld_text::is_unprintable;
 use serde_json::{Value, json};
 
-use crate::run_files::write;
-use crate::terminal::{driftworld_in, output, scratch, succeed, text};
+use super::run_files::write;
+use super::terminal::{driftworld_in, output, scratch, succeed, text};
 
 /// What a hostile text says, without what no file name can have.
 const HOSTILE: &str =

@@ -5,8 +5,8 @@
 use std::fs;
 use std::path::Path;
 
-use crate::run_files::write;
-use crate::terminal::{driftworld_in, output, scratch};
+use super::run_files::write;
+use super::terminal::{driftworld_in, output, scratch};
 
 const HEADER: &str = "block_num\texp_num\tworker_id\tblock_type\tblock_subtype\ttask_name\ttask_params\texp_status\ttimestamp\treward\tdebug\n";
 

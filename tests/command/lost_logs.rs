@@ -8,8 +8,8 @@ use std::fs;
 use std::path::Path;
 use std::process::Stdio;
 
-use crate::run_files::{files, write};
-use crate::terminal::{driftworld, scratch, succeed, text};
+use super::run_files::{files, write};
+use super::terminal::{driftworld, scratch, succeed, text};
 
 /// Many experiences, more than are lived before a mishap.
 fn scenario(folder: &Path) -> String {

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use crate::terminal::{fail_in, read, reference, scratch, succeed_in};
+use super::terminal::{fail_in, read, reference, scratch, succeed_in};
 use driftworld::metrics::{BlockType, LogWriter, LoggerInfo, Record, ScenarioInfo, Timestamp};
 use serde_json::{Value, json};
 
@@ -367,7 +367,7 @@ fn what_is_left_aside_is_told() {
     let table = folder.path().join("life/worker-default/0-test/data-log.tsv");
     let holed = read(&table).replacen("\t1.0\n", "\tnan\n", 1);
     std::fs::write(&table, holed).expect("the folder can be written");
-    let output = crate::terminal::output(&mut crate::terminal::driftworld_in(
+    let output = super::terminal::output(&mut super::terminal::driftworld_in(
         folder.path(),
         &["metrics", "life", "--ste", "expert"],
     ));

@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::terminal::{fail, scratch, succeed, text};
+use super::terminal::{fail, scratch, succeed, text};
 
 /// A design that drifts through variants of three tasks.
 fn design<'a>(more: &[&'a str]) -> Vec<&'a str> {

@@ -6,7 +6,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::terminal::{output, scratch, text};
+use super::terminal::{output, scratch, text};
 
 /// Every command that writes, one after the other: some read what others wrote. All of it goes below the folder `out`.
 const COMMANDS: [&str; 22] = [

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::terminal::{scratch, succeed_in};
+use super::terminal::{scratch, succeed_in};
 use driftworld::metrics::{BlockType, LogWriter, LoggerInfo, Record, ScenarioInfo, Timestamp};
 use serde_json::Value;
 

@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use crate::run_files::{files, num_rows, write};
-use crate::terminal::{driftworld, fail, output, reference, scratch, succeed, text};
+use super::run_files::{files, num_rows, write};
+use super::terminal::{driftworld, fail, output, reference, scratch, succeed, text};
 
 #[test]
 fn the_originals_scenario_is_lived_as_it_stands() {

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::terminal::{driftworld_in, fail_in, output, root, scratch, succeed_in};
+use super::terminal::{driftworld_in, fail_in, output, root, scratch, succeed_in};
 
 /// Each kind: a file or folder of it in the scratch folder, and what messages call it.
 const KINDS: [(&str, &str); 7] = [

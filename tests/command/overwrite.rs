@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::terminal::{fail, scratch, succeed, text};
+use super::terminal::{fail, scratch, succeed, text};
 
 const TASK: &str = r#"{ "name": "orchard", "version": 2, "variants": { "ripe": {}, "sour": {} } }"#;
 

@@ -7,7 +7,7 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use crate::terminal::{driftworld_in, output, scratch, succeed_in, text};
+use super::terminal::{driftworld_in, output, scratch, succeed_in, text};
 
 fn make_pipe(folder: &Path, name: &str) {
     let made = Command::new("mkfifo").arg(folder.join(name)).status();

@@ -7,8 +7,8 @@ use driftworld::metrics::BlockType;
 use proptest::prelude::*;
 use serde_json::Value;
 
-use crate::null_bands::{parsed, write};
-use crate::terminal::{driftworld_in, output, scratch, succeed_in};
+use super::null_bands::{parsed, write};
+use super::terminal::{driftworld_in, output, scratch, succeed_in};
 
 const TASKS: [&str; 3] = ["find_red", "find_blue", "find_green"];
 

@@ -4,8 +4,8 @@
 use std::fs;
 use std::path::Path;
 
-use crate::run_files::write;
-use crate::terminal::{driftworld_in, fail_in, output, read, root, scratch, succeed_in};
+use super::run_files::write;
+use super::terminal::{driftworld_in, fail_in, output, read, root, scratch, succeed_in};
 
 /// A lifetime of ours in `log`: three learning blocks of two variants with an evaluation before each.
 fn live(folder: &Path) {

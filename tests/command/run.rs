@@ -4,8 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
-use crate::run_files::{files, num_rows, write};
-use crate::terminal::{driftworld, fail, output, scratch, succeed, text};
+use super::run_files::{files, num_rows, write};
+use super::terminal::{driftworld, fail, output, scratch, succeed, text};
 
 /// A lifetime of 3 blocks and 36 experiences, a few milliseconds each.
 fn scenario(folder: &Path) -> PathBuf {

@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
-use crate::null_bands::{parsed, write};
-use crate::terminal::{driftworld_in, output, scratch, succeed_in};
+use super::null_bands::{parsed, write};
+use super::terminal::{driftworld_in, output, scratch, succeed_in};
 use driftworld::metrics::BlockType;
 
 /// Evaluates two variants before and after each is learned; `level` is earned in the worlds of the first by then.

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use driftworld::metrics::BlockType;
 
-use crate::null_bands::{parsed, write};
-use crate::terminal::{scratch, succeed_in};
+use super::null_bands::{parsed, write};
+use super::terminal::{scratch, succeed_in};
 
 const SCALES: &str =
     r#"{"scales": {"find_red": {"floor": 0, "ceiling": 100}, "find_held": {"floor": 0, "ceiling": 100}}}"#;

@@ -7,8 +7,8 @@ use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 
-use crate::run_files::write;
-use crate::terminal::{driftworld_in, scratch, signals};
+use super::run_files::write;
+use super::terminal::{driftworld_in, scratch, signals};
 
 fn start(folder: &Path, arguments: &[&str]) -> Child {
     let mut command = driftworld_in(folder, arguments);

@@ -7,7 +7,7 @@ use driftworld::metrics::{BlockType, LogWriter, LoggerInfo, Record, ScenarioInfo
 use driftworld::similarity::{DistanceMatrix, SimilarityError};
 use serde_json::Value;
 
-use crate::terminal::{fail_in, succeed_in};
+use super::terminal::{fail_in, succeed_in};
 
 /// Where six variants lie on a line.
 const PLACES: [f64; 6] = [0.0, 0.1, 0.25, 0.5, 0.8, 1.0];

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use crate::run_files::write;
-use crate::terminal::{driftworld_in, fail_in, output, scratch, succeed, succeed_in, text};
+use super::run_files::write;
+use super::terminal::{driftworld_in, fail_in, output, scratch, succeed, succeed_in, text};
 
 /// Rocks that find no place in some worlds, a number whose middle is forbidden, and variants with one name in logs.
 fn quarry(folder: &Path) -> PathBuf {
@@ -215,7 +215,7 @@ fn a_curriculum_begins_with_what_is_named_first() {
     let here = folder.path();
     let first = |names: &[&str]| {
         succeed_in(here, &[&["curriculum"], names, &["-o", "s.json"]].concat());
-        let scenario: Value = serde_json::from_str(&crate::terminal::read(here.join("s.json"))).expect("it is JSON");
+        let scenario: Value = serde_json::from_str(&super::terminal::read(here.join("s.json"))).expect("it is JSON");
         let blocks = scenario["blocks"].as_array().expect("there are blocks").clone();
         let learned = blocks.into_iter().filter(|block| block["type"] == "learning");
         learned

@@ -4,8 +4,8 @@
 use std::fs;
 use std::path::Path;
 
-use crate::run_files::{files, write};
-use crate::terminal::{driftworld, fail, output, read, root, scratch, succeed, succeed_in, text};
+use super::run_files::{files, write};
+use super::terminal::{driftworld, fail, output, read, root, scratch, succeed, succeed_in, text};
 
 /// A lifetime of 3 blocks and 14 experiences in two tasks, the last block shuffled.
 fn scenario(folder: &Path) -> std::path::PathBuf {

@@ -1,6 +1,6 @@
 //! Tables at 80 and at 120 columns: every line fits and no word is broken. The pictures of the tables are snapshots.
 
-use crate::terminal::{driftworld_in, output, scratch, succeed_in};
+use super::terminal::{driftworld_in, output, scratch, succeed_in};
 
 /// What a command prints for people, at a width.
 fn at(columns: usize, folder: &std::path::Path, arguments: &str) -> String {

@@ -7,7 +7,7 @@ use driftworld::spec::{DEFAULT_VARIANT, Domain, ParameterType, Role, TaskSpec, V
 use driftworld::tasks;
 use serde_json::{Map, Value as Json, json};
 
-use crate::laws_by_parameters::{are_close, measure, numbers};
+use super::laws_by_parameters::{are_close, measure, numbers};
 
 /// The built-in tasks, each with its document.
 fn built_in() -> Vec<(Arc<TaskSpec>, Json)> {

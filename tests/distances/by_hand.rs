@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value as Json};
 
-use crate::drawn_specs::{APART, Spec};
+use super::drawn_specs::{APART, Spec};
 
 /// A distance: the total, and that of each element.
 #[derive(Debug)]

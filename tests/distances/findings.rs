@@ -10,7 +10,7 @@ use driftworld::spec::{DEFAULT_VARIANT, Element, TaskSpec, Value, Variant};
 use driftworld::tasks;
 use serde_json::{Value as Json, json};
 
-use crate::laws_by_parameters::measure;
+use super::laws_by_parameters::measure;
 
 fn load(task: &Json) -> Arc<TaskSpec> {
     TaskSpec::from_json("t", &task.to_string()).unwrap_or_else(|error| panic!("{error}"))

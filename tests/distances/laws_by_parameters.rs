@@ -6,8 +6,8 @@ use proptest::prelude::*;
 use serde_json::{Map, Value as Json, json};
 use std::sync::Arc;
 
-use crate::by_hand;
-use crate::drawn_specs::{NAMES, Spec, specs, variants};
+use super::by_hand;
+use super::drawn_specs::{NAMES, Spec, specs, variants};
 
 pub(crate) fn measure(task: &Arc<TaskSpec>) -> VariantMeasure {
     VariantMeasure::new(task, Weights::of_task(task))

@@ -8,7 +8,7 @@ use driftworld::spec::{Element, Object, Variant, World};
 use driftworld::tasks;
 use proptest::prelude::*;
 
-use crate::drawn_worlds::{OTHER_CLASS, objects, worlds};
+use super::drawn_worlds::{OTHER_CLASS, objects, worlds};
 
 static VARIANTS: LazyLock<Vec<Variant>> = LazyLock::new(|| {
     let of = |(name, _): &(&str, &str)| tasks::variants(name).unwrap_or_else(|error| panic!("{error}"));

@@ -5,8 +5,8 @@ use driftworld::similarity::{Weights, world_distance};
 use driftworld::spec::{MotionModel, Object, Stimulus, World};
 use proptest::prelude::*;
 
-use crate::by_hand::oklab;
-use crate::drawn_worlds::worlds;
+use super::by_hand::oklab;
+use super::drawn_worlds::worlds;
 
 /// What keeps what is paid from deciding which objects are matched, unless all else is alike.
 const TIE_BREAK: f64 = 1e-9;

@@ -1,7 +1,7 @@
 //! The short answers are as many as the book says, each with something that runs.
 
-use crate::blocks::blocks;
-use crate::{all_pages, read};
+use super::blocks::blocks;
+use super::{all_pages, read};
 
 const FOLDER: &str = "docs/how-to/";
 const FEWEST: usize = 40;

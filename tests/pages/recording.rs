@@ -1,7 +1,7 @@
 //! The recording of the first hour says what its commands print today: `first_hour_runs` compares them. How it is made is
 //! `book/record.py`'s.
 
-use crate::read;
+use super::read;
 
 const CAST: &str = "docs/recordings/first-hour.cast";
 

@@ -11,9 +11,9 @@ use std::io::{Read, Write};
 use std::path::Path;
 use std::process::{Command, ExitStatus, Stdio};
 
-use crate::blocks::{Block, blocks};
-use crate::recording::{self, Recorded};
-use crate::{read, root};
+use super::blocks::{Block, blocks};
+use super::recording::{self, Recorded};
+use super::{read, root};
 
 /// It stands for whatever was printed there, be it lines or the rest of one.
 const LEFT_OUT: &str = "…";

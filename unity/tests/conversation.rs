@@ -4,8 +4,6 @@
 //! `golden/record.py` records the clients; `INSTA_UPDATE=always` writes the answers anew. Pictures count by a checksum of their
 //! pixels: the bytes of a PNG file are the encoder's affair.
 
-mod recorded;
-
 use std::fmt::Write;
 
 use driftworld_unity::protocol::observation_proto::ObservationData;
@@ -15,8 +13,9 @@ use driftworld_unity::protocol::{
 };
 use driftworld_unity::{BEHAVIOR, Screenshots, Session, Setup, Turn};
 use prost::Message;
-use recorded::{RELEASES, messages};
 use serde_json::Value;
+
+use crate::recorded::{RELEASES, messages};
 
 /// The channels of L2Explorer, as their identifiers travel.
 const CHANNELS: [([u8; 4], &str); 3] = [

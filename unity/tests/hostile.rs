@@ -1,8 +1,6 @@
 //! What a session is told by who means harm, or by who is merely broken: it is refused within limits, and the session goes on. How
 //! long a message may be on its way is in `executable`.
 
-mod recorded;
-
 use driftworld_spec::World;
 use driftworld_unity::protocol::unity_rl_input_proto::ListAgentActionProto;
 use driftworld_unity::protocol::{
@@ -11,7 +9,8 @@ use driftworld_unity::protocol::{
 use driftworld_unity::{BEHAVIOR, Screenshots, Session, Setup, Turn, UnityError};
 use proptest::prelude::*;
 use prost::Message;
-use recorded::{RELEASES, messages};
+
+use crate::recorded::{RELEASES, messages};
 
 /// The Reset channel's identifier, as it travels.
 const RESET: [u8; 16] = [

@@ -11,9 +11,9 @@ use driftworld_unity::protocol::observation_proto::ObservationData;
 use driftworld_unity::{BEHAVIOR, HELP, MARK};
 use prost::Message;
 
-use crate::played::{Client, command, who};
-use crate::process::{Ended, Executable};
-use crate::start;
+use super::played::{Client, command, who};
+use super::process::{Ended, Executable};
+use super::start;
 
 fn folder() -> tempfile::TempDir {
     tempfile::tempdir().expect("the machine has a folder for temporary files")

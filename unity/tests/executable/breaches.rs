@@ -7,8 +7,8 @@ use driftworld_unity::protocol::{
 };
 use driftworld_unity::{BEHAVIOR, MAX_INCOMING_BYTES};
 
-use crate::played::{Answer, command, says, status, who};
-use crate::session;
+use super::played::{Answer, command, says, status, who};
+use super::session;
 
 /// A client that is sound up to its last answer is told these words, and so is the terminal.
 fn check(last: Vec<Answer>, expected: &str) {

@@ -5,9 +5,9 @@ use driftworld_unity::{Screenshots, Session, Setup, Turn};
 use prost::Message;
 use tonic::Status;
 
-use crate::played::{Answer, Client, command, status, who};
+use super::played::{Answer, Client, command, status, who};
+use super::{session, start};
 use crate::recorded::{RELEASES, messages};
-use crate::{session, start};
 
 fn input(bytes: &[u8]) -> UnityInputProto {
     let message = UnityMessageProto::decode(bytes).expect("clients send messages");

@@ -5,9 +5,9 @@ use std::net::TcpListener;
 
 use driftworld_unity::protocol::CommandProto;
 
-use crate::played::{Client, command, free_port, who};
-use crate::process::{Ended, Executable};
-use crate::{session, start};
+use super::played::{Client, command, free_port, who};
+use super::process::{Ended, Executable};
+use super::{session, start};
 
 fn run(listener: &TcpListener, arguments: &[&str]) -> Executable {
     let port = listener.local_addr().expect("it is bound").port().to_string();

@@ -6,8 +6,6 @@ mod breaches;
 mod endings;
 mod played;
 mod process;
-#[path = "../recorded/mod.rs"]
-mod recorded;
 mod strangers;
 
 use std::path::Path;

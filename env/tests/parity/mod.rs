@@ -11,12 +11,12 @@ mod likeness;
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::likeness::{gpu, likeness, share, write_difference};
 use driftworld_env::{
     Action, Autoreset, Batch, BatchOptions, Camera, CpuRenderer, EnvError, Environment, Episode, Frame, Images,
     Picture, RendererKind, RendererReport, Scene, Target,
 };
 use driftworld_spec::{Color, Looks, Modality, Object, Portable, Style, Wall, World, WorldDraft, Zone, ZoneEnd};
+use likeness::{gpu, likeness, share, write_difference};
 
 fn world(file: &str) -> World {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(file);

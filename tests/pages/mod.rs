@@ -103,7 +103,7 @@ fn every_page_with_commands_has_its_test() {
     assert_eq!(
         found,
         names(WITH_COMMANDS.iter().copied()),
-        "add the page to `pages!` in tests/pages/main.rs"
+        "add the page to `pages!` in tests/pages/mod.rs"
     );
 }
 

@@ -1,0 +1,41 @@
+//! All integration tests of this crate, as one program: it is linked once. Only `allocation` is a program of its own: it
+//! counts the memory of the whole process.
+
+mod actions;
+mod batch;
+mod batch_modalities;
+mod channel;
+mod contacts;
+mod continuation;
+mod crowds;
+mod door_orders;
+mod editing;
+mod energy;
+mod errands;
+mod expert_of_puzzles;
+mod expert_of_what_remains;
+mod expert_of_zones;
+mod hostile;
+mod import;
+mod layouts;
+mod looks;
+mod maps;
+mod models;
+mod motion;
+mod natural;
+mod parity;
+mod pictures;
+mod pushing;
+mod rng;
+mod sarsa;
+mod show_carried;
+mod signs;
+mod simulation;
+mod state;
+mod tagged;
+mod things;
+mod things_laws;
+mod walks;
+mod walls;
+mod zones;
+mod zones_seen;

@@ -1,0 +1,16 @@
+//! All integration tests of this crate, as one program: it is linked once.
+
+mod at_distance;
+mod cells;
+mod colors;
+mod doors;
+mod drawn_layouts;
+mod drawn_task;
+mod fewest_changes;
+mod groups;
+mod layouts;
+mod mixtures;
+mod statistics;
+mod statistics_of_places;
+mod variants;
+mod worlds;

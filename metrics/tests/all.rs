@@ -1,0 +1,26 @@
+//! All integration tests of this crate, as one program: it is linked once.
+
+mod agreement;
+mod broken_logs;
+mod documentation;
+mod drift;
+mod error_messages;
+mod generators;
+mod l2logger_aggregate;
+mod like_for_like;
+mod log_round_trip;
+mod lost_log;
+mod metrics_of_ones_own;
+mod null_bands;
+mod power;
+mod properties;
+mod reference;
+mod reference_lifetimes;
+mod reference_ragged;
+mod repeats_coverage;
+mod repeats_laws;
+mod repeats_rliable;
+mod repeats_whole_runs;
+mod tiny_lifetime;
+mod torn_log;
+mod validation;

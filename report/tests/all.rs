@@ -1,0 +1,6 @@
+//! All integration tests of this crate, as one program: it is linked once.
+
+mod browser;
+mod lifetimes;
+mod page;
+mod reference;

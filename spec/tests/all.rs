@@ -1,0 +1,15 @@
+//! All integration tests of this crate, as one program: it is linked once.
+
+mod advice;
+mod all_at_once;
+mod any_text;
+mod codes;
+mod distributions;
+mod documents;
+mod json_parameters;
+mod l2explorer;
+mod layouts;
+mod names;
+mod requirements;
+mod schemas;
+mod tasks;

@@ -1,0 +1,10 @@
+//! All integration tests of this crate, as one program: it is linked once.
+
+mod conversation;
+mod error_messages;
+mod executable;
+mod hostile;
+mod recorded;
+mod recordings;
+mod wire;
+mod worlds;
