@@ -61,6 +61,9 @@ mod subject;
 mod table;
 pub mod tasks;
 mod throughput;
+#[cfg(test)]
+#[path = "../tests/tier.rs"]
+mod tier;
 mod top_level;
 mod trials;
 mod value_words;

@@ -114,7 +114,7 @@ mod tests {
     use crate::views::agent_camera;
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(40))]
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 40)))]
 
         /// A cube is seen where its middle lies within the margins, and not where all of it lies in one of them.
         #[test]

@@ -551,7 +551,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(40))]
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 40)))]
 
         /// No word of a scale of distances stands on another or outside, at any size, and the scale's end is always said.
         #[test]

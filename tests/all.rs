@@ -14,3 +14,4 @@ mod pages;
 mod paired_chance;
 mod recordings;
 mod task_docs;
+mod tier;

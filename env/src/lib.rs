@@ -21,6 +21,9 @@ mod recording;
 mod render;
 mod scene;
 mod sim;
+#[cfg(test)]
+#[path = "../../tests/tier.rs"]
+mod tier;
 mod vector;
 mod wall_tops;
 

@@ -35,6 +35,8 @@ mod state;
 mod tagged;
 mod things;
 mod things_laws;
+#[path = "../../tests/tier.rs"]
+mod tier;
 mod walks;
 mod walls;
 mod zones;

@@ -61,7 +61,7 @@ fn drawn_alone(batch: &Batch, env: usize) -> [Vec<f64>; 5] {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(32))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 32)))]
 
     #[test]
     fn each_environment_has_what_its_world_asks_for(

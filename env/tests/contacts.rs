@@ -64,7 +64,7 @@ const PACES: [(f64, f64); 7] = [
 ];
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 200)))]
 
     #[test]
     fn one_pass_is_one_contact_at_any_pace(
@@ -225,7 +225,7 @@ fn meeting(mut object: Object, agent: ([f64; 2], f64, f64), seconds: f64, total:
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 200)))]
 
     #[test]
     fn two_that_go_past_each_other_meet_as_their_ways_do(

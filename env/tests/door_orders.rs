@@ -73,7 +73,7 @@ fn action() -> impl Strategy<Value = Action> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 200)))]
 
     #[test]
     fn the_last_order_counts(

@@ -39,7 +39,7 @@ fn thing(at: [f64; 2]) -> Object {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 64)))]
 
     /// It falls by what the seconds and the metres take, however time is cut, and ends the episode at the same time.
     #[test]

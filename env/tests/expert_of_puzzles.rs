@@ -217,7 +217,7 @@ fn carried_past_lava([ford, key_x, thickness]: [f64; 3], fails: bool, is_discret
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, max_global_rejects: 4000, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 48), max_global_rejects: 4000, ..ProptestConfig::default() })]
 
     /// Whatever the order of the list of objects is.
     #[test]

@@ -67,7 +67,7 @@ fn lived(world: World) -> (Option<EndedBy>, bool, f64) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 60)))]
 
     #[test]
     fn what_cannot_be_got_to_keeps_it_from_nothing(
@@ -114,7 +114,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 60)))]
 
     /// What bars no way stays where it lies, wherever that is on open ground, and however many lie there.
     #[test]

@@ -37,7 +37,7 @@ fn lava(corners: [[f64; 2]; 2]) -> Zone {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(100))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 100)))]
 
     /// A stream of lava with a ford somewhere, a pool on either side, and the goal beyond.
     #[test]

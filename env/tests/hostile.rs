@@ -541,7 +541,7 @@ fn options_that_make_no_sense_are_refused() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(512))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 512)))]
 
     /// Any bytes of a sound file may be anything.
     #[test]

@@ -184,7 +184,7 @@ fn expert_arrives(world: World) -> bool {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(30))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 30)))]
 
     #[test]
     fn the_expert_finds_the_goal(layout in layouts(), start in 0_usize..99, goal in 0_usize..99) {

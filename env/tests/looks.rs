@@ -292,7 +292,7 @@ fn comes_into([a, b]: [[f32; 2]; 2], polygon: &[[f32; 2]]) -> bool {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(96))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 96)))]
 
     /// Ground is in a wall's shadow where the way towards the sun, up to the wall's height, comes into the wall.
     #[test]

@@ -65,7 +65,7 @@ fn middle(polygon: &[[f64; 2]]) -> [f64; 2] {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(32))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 32)))]
 
     /// The middle of each wall is red, that of each free cell is not: a maze can be read.
     #[test]

@@ -117,7 +117,7 @@ fn what_cannot_be_pushed_says_so() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(32))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 32)))]
 
     #[test]
     fn nothing_is_pushed_out_of_the_arena(

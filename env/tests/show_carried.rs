@@ -61,7 +61,7 @@ fn changed(one: &Frame, other: &Frame) -> Vec<[u32; 2]> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(40))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 40)))]
 
     /// Only colours change, only in the lowest fifth (or eight rows), only while something is carried; and nothing else
     /// does.

@@ -343,7 +343,7 @@ fn ten_thousand_objects_start_and_step() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(128))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 128)))]
 
     #[test]
     fn no_wall_is_ever_passed(

@@ -165,7 +165,7 @@ fn model() -> impl Strategy<Value = ActionModel> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 48)))]
 
     #[test]
     fn a_world_goes_on_from_its_state_and_from_a_snapshot(

@@ -56,7 +56,7 @@ fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 1000)))]
 
     #[test]
     fn along_a_wall_the_agent_keeps_what_leads_along_it(
@@ -304,7 +304,7 @@ fn a_pushed_body_slides_along_a_wall() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 300)))]
 
     #[test]
     fn a_mover_with_corners_comes_round_a_wall(

@@ -61,7 +61,7 @@ fn zone() -> impl Strategy<Value = Zone> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 64)))]
 
     /// Who stands in zones gets what their seconds pay, however time is cut, and what entering pays once: at the first step.
     #[test]

@@ -12,5 +12,7 @@ mod layouts;
 mod mixtures;
 mod statistics;
 mod statistics_of_places;
+#[path = "../../tests/tier.rs"]
+mod tier;
 mod variants;
 mod worlds;

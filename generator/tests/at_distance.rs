@@ -104,7 +104,7 @@ fn case() -> impl Strategy<Value = Case> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(120))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 120)))]
 
     #[test]
     fn every_distance_that_a_grid_of_what_is_allowed_has_is_found(case in case(), which in any::<prop::sample::Index>()) {

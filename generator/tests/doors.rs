@@ -79,7 +79,7 @@ fn reached(world: &World) -> BTreeSet<usize> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(96))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 96)))]
 
     #[test]
     fn all_rooms_can_be_reached_and_each_doorway_has_its_door(

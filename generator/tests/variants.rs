@@ -186,7 +186,7 @@ fn a_distance_that_cannot_be_had_says_how_near_one_comes() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 64), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn every_distance_within_reach_is_met(target in 0.0..0.7_f64) {

@@ -231,7 +231,7 @@ fn ten_thousand_objects_find_their_places() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 48), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn every_world_is_one_that_the_strict_reader_accepts(seed in any::<u64>(), index in 0..u64::MAX) {

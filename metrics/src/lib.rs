@@ -39,6 +39,9 @@ mod repeats;
 mod results;
 mod score;
 mod statistics;
+#[cfg(test)]
+#[path = "../../tests/tier.rs"]
+mod tier;
 
 pub use error::MetricsError;
 pub use lifetime::{Drift, Lifetime, MAX_REGIMES, Regime, SteLog, experts_serving, read_ste_log};

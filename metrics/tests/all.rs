@@ -21,6 +21,8 @@ mod repeats_coverage;
 mod repeats_laws;
 mod repeats_rliable;
 mod repeats_whole_runs;
+#[path = "../../tests/tier.rs"]
+mod tier;
 mod tiny_lifetime;
 mod torn_log;
 mod validation;

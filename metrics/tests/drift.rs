@@ -294,7 +294,7 @@ fn with_experts(life: &[Stretch], expert: f64) -> LifetimeMetrics {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 60)))]
 
     #[test]
     fn curves_are_what_they_are_defined_as(life in lifetimes(), expert in -20.0..120.0_f64) {

@@ -129,7 +129,7 @@ fn what_differs_is_told() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(40))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 40)))]
 
     /// Against sets of pairs made from the blocks themselves.
     #[test]

@@ -138,7 +138,7 @@ fn write(mut writer: LogWriter, rows: std::ops::Range<u64>, workers: usize) -> R
 
 proptest! {
     // Each log asks the disk to have it, many times.
-    #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 48), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn every_mishap_is_an_error_and_nothing_is_made_anew(

@@ -136,7 +136,7 @@ fn shown(record: &Record) -> String {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(40))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 40)))]
 
     #[test]
     fn what_is_written_is_read(records in any_log()) {

@@ -33,6 +33,9 @@ mod figure;
 pub mod film;
 mod page;
 pub mod picture;
+#[cfg(test)]
+#[path = "../../tests/tier.rs"]
+mod tier;
 mod words;
 
 pub use error::ReportError;

@@ -23,6 +23,9 @@ mod reward;
 pub mod scalar;
 mod shares;
 mod split_mix;
+#[cfg(test)]
+#[path = "../../tests/tier.rs"]
+mod tier;
 mod transport;
 mod world_measures;
 

@@ -10,4 +10,6 @@ mod occupancy;
 mod ospa;
 mod picture;
 mod reward;
+#[path = "../../tests/tier.rs"]
+mod tier;
 mod transport;

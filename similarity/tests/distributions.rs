@@ -212,7 +212,7 @@ fn is_a_metric(measure: Measure, [a, b, c]: [&Distribution; 3], most: f64) -> Re
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(40))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 40)))]
 
     #[test]
     fn distances_of_probabilities_are_metrics(a in numbers(), b in numbers(), c in numbers()) {

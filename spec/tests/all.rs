@@ -13,3 +13,5 @@ mod names;
 mod requirements;
 mod schemas;
 mod tasks;
+#[path = "../../tests/tier.rs"]
+mod tier;

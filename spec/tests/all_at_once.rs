@@ -72,7 +72,7 @@ fn each_mistake_alone_is_named_where_it_stands() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(150))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 150)))]
 
     #[test]
     fn mistakes_together_are_what_they_are_alone(chosen in prop::sample::subsequence((0..mistakes().len()).collect::<Vec<_>>(), 1..7)) {

@@ -66,7 +66,7 @@ fn replace_nth(json: &mut Value, n: &mut usize, with: &Value) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(192))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 192)))]
 
     #[test]
     fn any_text_at_all(text in "\\PC{0,200}") {

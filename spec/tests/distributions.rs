@@ -128,7 +128,7 @@ fn any_numbers() -> impl Strategy<Value = Distribution> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 512, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 512), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn quantile_and_cumulative_function_are_each_others_inverse(law in any_numbers(), p in 0.001..0.999_f64, q in 0.001..0.999_f64) {
@@ -152,7 +152,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 64), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn mean_and_variance_are_those_of_the_quantiles(law in any_family()) {

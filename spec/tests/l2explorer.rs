@@ -252,7 +252,7 @@ fn sound(world: WorldDraft) -> Result<World, TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(192))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 192)))]
 
     #[test]
     fn a_world_that_the_original_can_describe_is_read_with_no_other_warning(world in sayable()) {
@@ -373,7 +373,7 @@ fn put(document: &mut serde_json::Value, pointer: &str, value: Option<serde_json
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1024))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 1024)))]
 
     /// Whatever becomes of entries of the original's keys, the document loads, unless a number is out of range; what was not
     /// touched is read as before, and each assumption is told once at its place.

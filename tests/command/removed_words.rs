@@ -2,7 +2,7 @@
 
 use driftworld_text::{WordKind, removed_words};
 
-use crate::terminal::fail;
+use super::terminal::fail;
 
 #[test]
 fn every_removed_word_names_what_to_use_instead() {

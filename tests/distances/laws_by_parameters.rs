@@ -74,7 +74,7 @@ fn pairs(all: &[Variant]) -> impl Iterator<Item = (&Variant, &Variant)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 128, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 128), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn the_number_is_the_sum_that_the_document_gives(spec in specs()) {
@@ -203,7 +203,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 64), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn what_is_equal_on_both_sides_dilutes_nothing(spec in specs(), affects in prop::sample::subsequence(vec!["S", "A", "T", "R", "O"], 1..=5)) {

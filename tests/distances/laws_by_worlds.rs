@@ -53,7 +53,7 @@ fn is_paid(object: &Object) -> bool {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 128, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 128), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn the_order_of_objects_and_names_change_no_number((a, b) in any_two(), keys in prop::collection::vec(any::<u32>(), 60)) {

@@ -155,7 +155,7 @@ fn by_hand(a: &World, b: &World) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 256), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn the_number_is_that_of_the_cheapest_of_all_matches(a in worlds(), b in worlds()) {

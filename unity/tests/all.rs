@@ -6,5 +6,7 @@ mod executable;
 mod hostile;
 mod recorded;
 mod recordings;
+#[path = "../../tests/tier.rs"]
+mod tier;
 mod wire;
 mod worlds;

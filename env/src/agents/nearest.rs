@@ -324,7 +324,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(96))]
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 96)))]
 
         /// One instance goes from world to world, as an agent does, and leaves some objects out of what it leads
         /// around.

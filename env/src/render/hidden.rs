@@ -166,7 +166,7 @@ mod tests {
     use crate::scene::Scene;
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(64))]
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 64)))]
 
         /// To the bit, but for a pixel on a seam of what is in front.
         #[test]

@@ -286,7 +286,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(2000))]
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 2000)))]
 
         #[test]
         fn the_allowed_way_is_that_of_the_rule_to_the_last_bit(

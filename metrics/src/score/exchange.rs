@@ -220,7 +220,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(60))]
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 60)))]
 
         #[test]
         fn permuting_keeps_what_was_earned_in_each_world(blocks in blocks(), seed in any::<u64>()) {

@@ -195,7 +195,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
+        #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 48), ..ProptestConfig::default() })]
         /// As many pictures as there were, each shown so long that no sum of times is off by more than half a unit.
         #[test]
         fn films_show_what_was_put_into_them(pictures in film()) {

@@ -323,7 +323,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(64))]
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 64)))]
 
         #[test]
         fn shares_are_shares_and_the_order_of_pairs_is_nothing((at, pairs) in cases(), spearman in any::<bool>()) {

@@ -118,7 +118,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(32))]
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 32)))]
 
         #[test]
         fn points_of_a_plane_keep_their_distances(points in prop::collection::vec(prop::array::uniform2(-9.0..9.0_f64), 1..30)) {

@@ -55,7 +55,7 @@ fn least(matrix: &DistanceMatrix, options: &OrderOptions, value: &impl Fn(&Order
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 48)))]
 
     #[test]
     fn exact_methods_are_as_good_as_trying_everything(points in points(7), fixed in any::<[bool; 2]>()) {

@@ -94,7 +94,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(32))]
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 32)))]
 
         #[test]
         fn each_measure_keeps_its_laws(bytes in prop::collection::vec(any::<u8>(), 6 * 11 * 11 * 3)) {

@@ -111,7 +111,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(64))]
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 64)))]
 
         #[test]
         fn it_keeps_the_laws_of_a_metric_whatever_the_order(a in drawn(), b in drawn(), c in drawn()) {

@@ -1,0 +1,11 @@
+//! How much the tests do: enough for every change, or all of it with `DRIFTWORLD_FULL=1`, as `cargo xtask test --all` sets it.
+//! Each crate includes this file as its module `tier`.
+
+/// The first in the quick tier, the second with `DRIFTWORLD_FULL=1`.
+pub(crate) fn quick_or_full<T>(quick: T, full: T) -> T {
+    if std::env::var_os("DRIFTWORLD_FULL").is_some() {
+        full
+    } else {
+        quick
+    }
+}
