@@ -4,6 +4,7 @@
 
 use serde_json::{Map, Value as Json, json};
 
+use super::Part;
 use super::read::Reader;
 use crate::color::Color;
 use crate::describe::describe;
@@ -64,44 +65,46 @@ impl Entry {
 }
 
 impl Reader {
-    /// Mends the entries of a part of the file, whose `defaults` are known by key.
-    pub(super) fn mend(
+    /// Mends the entries of a part of the file.
+    pub(super) fn mend(&mut self, at: &str, map: &mut Map<String, Json>, part: &Part) {
+        for (key, entry) in &part.entries {
+            self.mend_entry(at, map, (*key, entry), part.defaults.get(*key));
+        }
+    }
+
+    /// Mends one entry, whose default is known if it has one.
+    pub(super) fn mend_entry(
         &mut self,
         at: &str,
         map: &mut Map<String, Json>,
-        entries: &[(&'static str, Entry)],
-        defaults: &Map<String, Json>,
+        (key, entry): (&str, &Entry),
+        default: Option<&Json>,
     ) {
-        for (key, entry) in entries {
-            let Some(value) = map.get_mut(*key) else { continue };
-            let is_optional = matches!(*key, "color" | "unique_name");
-            if value.is_null() && is_optional {
-                continue;
+        let Some(value) = map.get_mut(key) else { return };
+        if value.is_null() && matches!(key, "color" | "unique_name") {
+            return;
+        }
+        let found = describe(value);
+        let assumed = match entry.mended(value, default) {
+            Some(mended) if is_same(&mended, value) => return,
+            Some(mended) => {
+                *value = mended;
+                format!("{} is assumed", plain(value))
             }
-            let place = format!("{at}/{key}");
-            let default = defaults.get(*key);
-            let Some(said) = entry.mend(value, default) else {
-                continue;
-            };
-            if said.is_left_out {
-                map.shift_remove(*key);
-                let assumed = match (*key, default) {
+            None => {
+                map.shift_remove(key);
+                match (key, default) {
                     ("color", _) => "the asset's own colours are assumed".to_owned(),
                     (_, Some(default)) => format!("the default {} is assumed", plain(default)),
                     (_, None) => "it is left out".to_owned(),
-                };
-                self.warn(
-                    place,
-                    format!("found {}, expected {}; {assumed}", said.found, entry.expected()),
-                );
-            } else {
-                let now = map.get(*key).map_or_else(String::new, plain);
-                self.warn(
-                    place,
-                    format!("found {}, expected {}; {now} is assumed", said.found, entry.expected()),
-                );
+                }
             }
-        }
+        };
+        let expected = entry.expected();
+        self.warn(
+            format!("{at}/{key}"),
+            format!("found {found}, expected {expected}; {assumed}"),
+        );
     }
 
     /// A part of the file, if it is one; whatever else stands there is left out with a warning.
@@ -122,13 +125,6 @@ impl Reader {
     }
 }
 
-/// What was wrong with an entry.
-struct Mended {
-    found: String,
-    /// Whether nothing can be made of it; else it has been set to what is assumed.
-    is_left_out: bool,
-}
-
 impl Entry {
     fn expected(&self) -> String {
         match self {
@@ -142,10 +138,9 @@ impl Entry {
         }
     }
 
-    /// Sets a value to what is assumed, and says what was wrong with it; `None` for what is right.
-    fn mend(&self, value: &mut Json, default: Option<&Json>) -> Option<Mended> {
-        let found = describe(value);
-        let mended = match self {
+    /// What is assumed for a value, the same where it is right; `None` where nothing can be made of it.
+    fn mended(&self, value: &Json, default: Option<&Json>) -> Option<Json> {
+        match self {
             Self::Number(..) => value.is_number().then(|| value.clone()),
             Self::Whole(..) => whole(value),
             Self::Pair(..) => pair(value, default),
@@ -157,20 +152,6 @@ impl Entry {
             Self::Text => text(value),
             Self::Model if value.is_u64() => Some(value.clone()),
             Self::Model => value.as_str().and_then(|_| text(value)),
-        };
-        match mended {
-            Some(mended) if is_same(&mended, value) => None,
-            Some(mended) => {
-                *value = mended;
-                Some(Mended {
-                    found,
-                    is_left_out: false,
-                })
-            }
-            None => Some(Mended {
-                found,
-                is_left_out: true,
-            }),
         }
     }
 }

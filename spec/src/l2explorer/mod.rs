@@ -17,17 +17,13 @@ use std::sync::LazyLock;
 use serde::Serialize;
 use serde_json::{Map, Value as Json};
 
-use crate::world::{AgentParams, EnvironmentParams, Fields, ImageParams, Object, Rules, World, WorldDraft};
+use crate::world::{AgentParams, EnvironmentParams, Field, Fields, ImageParams, Object, Rules, World, WorldDraft};
 use mend::Entry;
 
 /// What the table of fields says of one part of a reset file.
 struct Part {
-    /// The keys of the original, in the order of the table.
-    original: Vec<&'static str>,
-    /// Those that only our worlds have.
-    ours: Vec<&'static str>,
-    /// Those of early files, which the reader turns into others.
-    old: &'static [&'static str],
+    /// The original's keys, then those that only our worlds have, then those of early files, which the reader turns into others.
+    keys: Vec<&'static str>,
     /// What the values of the original's keys must be; lists and parts are read by themselves.
     entries: Vec<(&'static str, Entry)>,
     /// What entries are where nothing is said, by key.
@@ -35,31 +31,22 @@ struct Part {
 }
 
 impl Part {
-    /// The part that is made as a `T`, and whose schema this is.
-    fn of<T: Fields + Serialize>(default: &T, schema: &Json, old: &'static [&'static str]) -> Self {
-        let fields = || {
-            T::ROWS
-                .iter()
-                .map(|row| row.field)
-                .filter(|field| field.key != "$schema")
-        };
-        let original: Vec<&str> = fields()
-            .filter(|field| field.is_original)
-            .map(|field| field.key)
-            .collect();
-        let ours = fields().filter(|field| !field.is_original).map(|field| field.key);
-        let entry = |key: &&'static str| Some((*key, Entry::of(&schema["properties"][*key])?));
+    /// The part that is made as a `T`, and whose schema this is; `old` are its keys of early files.
+    fn of<T: Fields + Serialize>(default: &T, schema: &Json, old: &[&'static str]) -> Self {
+        let fields = T::ROWS.iter().map(|row| row.field);
+        let (original, ours): (Vec<Field>, Vec<Field>) = fields
+            .filter(|field| field.key != "$schema")
+            .partition(|field| field.is_original);
+        let entry = |field: &Field| Some((field.key, Entry::of(&schema["properties"][field.key])?));
+        let keys = original.iter().chain(&ours).map(|field| field.key);
         Self {
+            keys: keys.chain(old.iter().copied()).collect(),
             entries: original.iter().filter_map(entry).collect(),
-            original,
-            ours: ours.collect(),
-            old,
-            defaults: map_of(default),
+            defaults: match serde_json::to_value(default) {
+                Ok(Json::Object(map)) => map,
+                other => unreachable!("the parts of a world serialise as objects with string keys, not as {other:?}"),
+            },
         }
-    }
-
-    fn keys(&self) -> impl Iterator<Item = &'static str> {
-        self.original.iter().chain(&self.ours).chain(self.old).copied()
     }
 }
 
@@ -87,13 +74,6 @@ static PARTS: LazyLock<Parts> = LazyLock::new(|| {
         object: Part::of(&Object::new("", [0.0, 0.0]), of("Object"), old_of_objects),
     }
 });
-
-fn map_of(value: &impl Serialize) -> Map<String, Json> {
-    match serde_json::to_value(value) {
-        Ok(Json::Object(map)) => map,
-        other => unreachable!("the parts of a world serialise as objects with string keys, not as {other:?}"),
-    }
-}
 
 /// How fast an object of the original moves, in metres per second: its documents do not say. It is what the balls of the
 /// built-in `moving_object` do, a fifth of what the agent can.

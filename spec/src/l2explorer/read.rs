@@ -140,9 +140,8 @@ impl Reader {
         let Json::Object(map) = json else {
             return json;
         };
-        let mut world = self.keys("", map, &PARTS.world);
-        self.entries("", &mut world, &PARTS.world);
-        self.mend("", &mut world, &PARTS.world.entries, &PARTS.world.defaults);
+        let mut world = self.entries("", map, &PARTS.world);
+        self.mend("", &mut world, &PARTS.world);
         if let Some(map) = self.part(&mut world, "environment_params") {
             world.insert("environment_params".into(), Json::Object(self.environment(map)));
         }
@@ -151,9 +150,8 @@ impl Reader {
         }
         if let Some(map) = self.part(&mut world, "image_params") {
             let at = "/image_params";
-            let mut image = self.keys(at, map, &PARTS.image);
-            self.entries(at, &mut image, &PARTS.image);
-            self.mend(at, &mut image, &PARTS.image.entries, &PARTS.image.defaults);
+            let mut image = self.entries(at, map, &PARTS.image);
+            self.mend(at, &mut image, &PARTS.image);
             world.insert("image_params".into(), Json::Object(image));
         }
         if let Some(Json::Object(map)) = world.get("rules").cloned() {
@@ -181,7 +179,7 @@ impl Reader {
     }
 
     /// The entries with their keys as we write them; keys that are not known are left out with a warning.
-    pub(super) fn keys(&mut self, pointer: &str, map: Map<String, Json>, known: &Part) -> Map<String, Json> {
+    fn keys(&mut self, pointer: &str, map: Map<String, Json>, known: &Part) -> Map<String, Json> {
         let plain = |key: &str| key.replace('_', "").to_lowercase();
         let mut renamed = Map::new();
         let mut seen = BTreeSet::new();
@@ -192,7 +190,7 @@ impl Reader {
                 _ => None,
             };
             let place = format!("{pointer}/{}", escape(&key));
-            let Some(name) = old.or_else(|| known.keys().find(|name| plain(name) == plain(&key))) else {
+            let Some(name) = old.or_else(|| known.keys.iter().copied().find(|name| plain(name) == plain(&key))) else {
                 self.warn(place, format!("the key {key:?} has no meaning here and is left out"));
                 continue;
             };
@@ -211,38 +209,33 @@ impl Reader {
         renamed
     }
 
-    /// Values of the original's keys in any of the forms that they may have.
-    pub(super) fn entries(&mut self, at: &str, map: &mut Map<String, Json>, part: &Part) {
+    /// The entries of a part; values of the original's keys are read in any of the forms that they may have.
+    pub(super) fn entries(&mut self, at: &str, map: Map<String, Json>, part: &Part) -> Map<String, Json> {
+        let mut map = self.keys(at, map, part);
         for (key, entry) in &part.entries {
             match entry {
-                Entry::Number(..) | Entry::Pair(..) => self.number(at, map, key),
-                Entry::Whole(..) => self.whole(at, map, key),
-                Entry::Word(_) => word(map, key),
-                Entry::Color => self.color(at, map, key),
-                Entry::Model => drop_decimal_point(map, key),
+                Entry::Number(..) | Entry::Pair(..) => self.number(at, &mut map, key),
+                Entry::Whole(..) => self.whole(at, &mut map, key),
+                Entry::Word(_) => word(&mut map, key),
+                Entry::Color => self.color(at, &mut map, key),
+                Entry::Model => drop_decimal_point(&mut map, key),
                 Entry::Text => {}
             }
         }
+        map
     }
 
     fn environment(&mut self, map: Map<String, Json>) -> Map<String, Json> {
         let at = "/environment_params";
-        let mut environment = self.keys(at, map, &PARTS.environment);
-        self.entries(at, &mut environment, &PARTS.environment);
+        let mut environment = self.entries(at, map, &PARTS.environment);
         self.number(at, &mut environment, "wall_height");
-        self.mend(
-            at,
-            &mut environment,
-            &PARTS.environment.entries,
-            &PARTS.environment.defaults,
-        );
+        self.mend(at, &mut environment, &PARTS.environment);
         environment
     }
 
     fn agent(&mut self, map: Map<String, Json>) -> Map<String, Json> {
         let at = "/agent_params";
-        let mut agent = self.keys(at, map, &PARTS.agent);
-        self.entries(at, &mut agent, &PARTS.agent);
+        let mut agent = self.entries(at, map, &PARTS.agent);
         for key in ["modalities", "actions"] {
             word(&mut agent, key);
         }
@@ -253,7 +246,7 @@ impl Reader {
             );
         }
         self.heading(at, &mut agent);
-        self.mend(at, &mut agent, &PARTS.agent.entries, &PARTS.agent.defaults);
+        self.mend(at, &mut agent, &PARTS.agent);
         agent
     }
 }

@@ -53,8 +53,7 @@ impl Reader {
     }
 
     pub(super) fn object(&mut self, at: &str, map: Map<String, Json>) -> Map<String, Json> {
-        let mut object = self.keys(at, map, &PARTS.object);
-        self.entries(at, &mut object, &PARTS.object);
+        let mut object = self.entries(at, map, &PARTS.object);
         word(&mut object, "class");
         if object
             .get("motion_model")
@@ -75,7 +74,7 @@ impl Reader {
             self.spelled.insert(format!("{at}/coordinates"), at.to_owned());
             object.insert("coordinates".into(), json!([0.0, 0.0]));
         }
-        self.mend(at, &mut object, &PARTS.object.entries, &PARTS.object.defaults);
+        self.mend(at, &mut object, &PARTS.object);
         object.entry("coordinates").or_insert_with(|| json!([0.0, 0.0]));
         self.own_speed(at, &mut object);
         let class = object.get("class").and_then(Json::as_str).unwrap_or_default();
@@ -104,8 +103,8 @@ impl Reader {
 
     /// The keys of early files: `collectible`, `reward_on`, `interaction_distance`.
     fn old_reward(&mut self, at: &str, object: &mut Map<String, Json>) {
-        let distance = [("interaction_distance", Entry::Number(0.0, 1000.0))];
-        self.mend(at, object, &distance, &Map::new());
+        let distance = Entry::Number(0.0, 1000.0);
+        self.mend_entry(at, object, ("interaction_distance", &distance), None);
         if let Some(range) = object.shift_remove("interaction_distance")
             && !object.contains_key("range_stimulus_distance")
         {
