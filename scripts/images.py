@@ -43,7 +43,7 @@ IMAGES: dict[str, list[str]] = {
     "models.png": ["assets show -o {}"],
     "demo.png": [f"sheet {of('find_objects', 'blue red green dusk huddle penalty')} --seed 7 --size 200 -o {{}}"],
     "distances.png": ["demo -o {tmp}/demo"],
-    "order.png": [f"order {of('find_objects', ORDERED)} --method two-opt --start find_objects#blue --plot {{}}"],
+    "order.png": [f"order {of('find_objects', ORDERED)} --order two-opt --start find_objects#blue --plot {{}}"],
     "distances-apart.png": [
         "vary find_objects#red --element S --distance 0.05 --name at_0.05 -o {tmp}/apart.json",
         "vary {tmp}/apart.json#red --parameters light --distance 0.2 --name at_0.2 -o {tmp}/apart.json --force",

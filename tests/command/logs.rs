@@ -161,7 +161,7 @@ fn several_logs_make_one_table_that_names_them() {
     let text = fs::read_to_string(base.path().join("all.tsv")).expect("it was written");
     let first: Vec<&str> = text.lines().filter_map(|line| line.split('\t').next()).collect();
     assert_eq!(first, ["run_id", "one", "one", "two", "two"]);
-    // As `driftworld run … --logs` leaves them: in folders of their own, all of one name.
+    // As `driftworld run -o` leaves them: in folders of their own, all of one name.
     write_log(&base.path().join("runs/x/log"));
     write_log(&base.path().join("runs/y/log"));
     let (out, _) = run(
