@@ -239,7 +239,9 @@ fn original(world: &World) -> String {
     for (at, keys) in KEYS {
         if at == "/objects/*" {
             let objects = json["objects"].as_array_mut().expect("objects are a list");
-            objects.iter_mut().for_each(|object| keep(object, keys));
+            for object in objects {
+                keep(object, keys);
+            }
         } else {
             keep(json.pointer_mut(at).expect("every part is written"), keys);
         }

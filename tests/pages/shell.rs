@@ -35,9 +35,8 @@ pub(crate) fn run(page: &str) {
     for block in blocks(&text.clone()) {
         if let Some(name) = block.file() {
             std::fs::write(folder.join(name), &block.text).unwrap();
-        } else if let Some(module) = missing_module(&block, folder) {
-            println!("{page}:{}: skipped: Python cannot import {module}", block.line);
-            printed = LEFT_OUT.to_owned();
+        } else if is_skipped(page, &block, folder) {
+            LEFT_OUT.clone_into(&mut printed);
         } else if block.language == "sh" && !block.has("by-hand") {
             printed = run_block(page, &block, folder);
             if is_recorded {
@@ -100,11 +99,18 @@ fn compare(page: &str, block: &Block, printed: &str, recorded: &mut Vec<Recorded
     );
 }
 
-/// The module of Python that a block needs and this machine lacks.
-fn missing_module<'a>(block: &'a Block, folder: &Path) -> Option<&'a str> {
-    let module = block.marks.iter().find_map(|mark| mark.strip_prefix("needs="))?;
+/// Whether a block needs a module that Python cannot import here.
+#[expect(clippy::print_stdout, reason = "a skip must be seen")]
+fn is_skipped(page: &str, block: &Block, folder: &Path) -> bool {
+    let Some(module) = block.marks.iter().find_map(|mark| mark.strip_prefix("needs=")) else {
+        return false;
+    };
     let tried = command(&["python3", "-c", &format!("import {module}")], folder).output();
-    (!tried.is_ok_and(|done| done.status.success())).then_some(module)
+    let is_missing = !tried.is_ok_and(|done| done.status.success());
+    if is_missing {
+        println!("{page}:{}: skipped: Python cannot import {module}", block.line);
+    }
+    is_missing
 }
 
 fn updates() -> bool {
