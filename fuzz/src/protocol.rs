@@ -3,8 +3,9 @@
 
 use arbitrary::Unstructured;
 use driftworld_spec::World;
-use driftworld_unity::protocol::unity_rl_input_proto::ListAgentActionProto;
-use driftworld_unity::protocol::{AgentActionProto, CommandProto, UnityMessageProto, UnityRlInputProto};
+use driftworld_unity::protocol::{
+    AgentActionProto, CommandProto, ListAgentActionProto, UnityMessageProto, UnityRlInputProto,
+};
 use driftworld_unity::{BEHAVIOR, Screenshots, Session, Setup, Turn};
 use prost::Message;
 use serde_json::json;

@@ -6,8 +6,9 @@ use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use driftworld_spec::{Object, World, WorldDraft};
-use driftworld_unity::protocol::unity_rl_input_proto::ListAgentActionProto;
-use driftworld_unity::protocol::{AgentActionProto, CommandProto, UnityRlInitializationInputProto, UnityRlInputProto};
+use driftworld_unity::protocol::{
+    AgentActionProto, CommandProto, ListAgentActionProto, UnityRlInitializationInputProto, UnityRlInputProto,
+};
 use driftworld_unity::{BEHAVIOR, PictureForm, Screenshots, Session, Setup};
 
 /// Twenty objects in a ring, around which the agent drives in a circle.

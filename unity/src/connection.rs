@@ -3,12 +3,14 @@
 use std::time::Duration;
 
 use tokio::time::{Instant, sleep, timeout, timeout_at};
+use tonic::client::Grpc;
+use tonic::codegen::http::uri::PathAndQuery;
 use tonic::transport::{Channel, Endpoint};
-use tonic::{Code, Status};
+use tonic::{Code, Request, Response, Status};
+use tonic_prost::ProstCodec;
 
 use crate::error::UnityError;
 use crate::protocol::UnityMessageProto;
-use crate::protocol::unity_to_external_proto_client::UnityToExternalProtoClient;
 
 /// The longest message that is read, in bytes: far more than the texts of the channels may hold in values.
 pub const MAX_INCOMING_BYTES: usize = 48 << 20;
@@ -19,9 +21,13 @@ const KEEPALIVE: Duration = Duration::from_secs(30);
 /// How long to wait before looking again for a client that is not there yet.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
 
+/// The protocol's one call: Python is the server, the world is the client. Each call carries what the world has to say, and is
+/// answered by what it is to do next.
+const CALL: &str = "/communicator_objects.UnityToExternalProto/Exchange";
+
 /// A client, found.
 pub(crate) struct Connection {
-    client: UnityToExternalProtoClient<Channel>,
+    client: Grpc<Channel>,
     address: String,
 }
 
@@ -54,7 +60,7 @@ impl Connection {
         loop {
             match timeout_at(deadline, endpoint.connect()).await {
                 Ok(Ok(channel)) => {
-                    let client = UnityToExternalProtoClient::new(channel).max_decoding_message_size(MAX_INCOMING_BYTES);
+                    let client = Grpc::new(channel).max_decoding_message_size(MAX_INCOMING_BYTES);
                     return Ok(Self { client, address });
                 }
                 Ok(Err(_)) if Instant::now() + BETWEEN_LOOKS < deadline => sleep(BETWEEN_LOOKS).await,
@@ -74,7 +80,7 @@ impl Connection {
     /// The first call, by which a stranger is known: whoever listens there has as long again to answer as a client does.
     pub(crate) async fn greet(&mut self, greeting: UnityMessageProto, wait: Duration) -> Result<Reply, UnityError> {
         let address = self.address.clone();
-        match timeout(wait, self.client.exchange(greeting)).await {
+        match timeout(wait, self.call(greeting)).await {
             Err(_) => {
                 let reason = format!("silence for {} s", wait.as_secs_f64());
                 Err(UnityError::NotAClient { address, reason })
@@ -83,13 +89,21 @@ impl Connection {
                 let reason = reason(&status);
                 Err(UnityError::NotAClient { address, reason })
             }
-            Ok(answer) => reply(answer.map(tonic::Response::into_inner)),
+            Ok(answer) => reply(answer),
         }
     }
 
     /// Says something, and waits for the answer: as long as the client likes.
     pub(crate) async fn exchange(&mut self, message: UnityMessageProto) -> Result<Reply, UnityError> {
-        reply(self.client.exchange(message).await.map(tonic::Response::into_inner))
+        reply(self.call(message).await)
+    }
+
+    async fn call(&mut self, message: UnityMessageProto) -> Result<UnityMessageProto, Status> {
+        let ready = self.client.ready().await;
+        ready.map_err(|error| Status::unknown(format!("Service was not ready: {error}")))?;
+        let (path, codec) = (PathAndQuery::from_static(CALL), ProstCodec::default());
+        let answer = self.client.unary(Request::new(message), path, codec).await;
+        answer.map(Response::into_inner)
     }
 }
 

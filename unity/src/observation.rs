@@ -5,8 +5,7 @@ use driftworld_env::{Frame, category_color, depth_to_gray};
 
 use crate::client::Client;
 use crate::error::UnityError;
-use crate::protocol::observation_proto::{FloatData, ObservationData};
-use crate::protocol::{CompressionTypeProto, ObservationProto};
+use crate::protocol::{CompressionTypeProto, FloatData, ObservationData, ObservationProto};
 
 /// How pictures travel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -94,9 +93,7 @@ fn visual(name: &str, frame: &Frame, data: ObservationData, client: Client) -> O
     ObservationProto {
         shape: shape.to_vec(),
         compression_type: compression_type.into(),
-        compressed_channel_mapping: Vec::new(),
         dimension_properties: dimension_properties.to_vec(),
-        observation_type: 0,
         name: name.to_owned(),
         observation_data: Some(data),
     }
@@ -106,9 +103,7 @@ fn vector(state: Vec<f32>) -> ObservationProto {
     ObservationProto {
         shape: vec![state.len() as i32],
         compression_type: CompressionTypeProto::None.into(),
-        compressed_channel_mapping: Vec::new(),
         dimension_properties: vec![NO_NEIGHBOURS],
-        observation_type: 0,
         name: "state".to_owned(),
         observation_data: Some(ObservationData::FloatData(FloatData { data: state })),
     }

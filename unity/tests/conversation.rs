@@ -6,7 +6,7 @@
 
 use std::fmt::Write;
 
-use driftworld_unity::protocol::observation_proto::ObservationData;
+use driftworld_unity::protocol::ObservationData;
 use driftworld_unity::protocol::{
     AgentInfoProto, BrainParametersProto, CommandProto, ObservationProto, UnityInputProto, UnityMessageProto,
     UnityOutputProto, UnityRlInputProto,

@@ -2,9 +2,8 @@
 //! long a message may be on its way is in `executable`.
 
 use driftworld_spec::World;
-use driftworld_unity::protocol::unity_rl_input_proto::ListAgentActionProto;
 use driftworld_unity::protocol::{
-    AgentActionProto, CommandProto, UnityMessageProto, UnityOutputProto, UnityRlInputProto,
+    AgentActionProto, CommandProto, ListAgentActionProto, UnityMessageProto, UnityOutputProto, UnityRlInputProto,
 };
 use driftworld_unity::{BEHAVIOR, Screenshots, Session, Setup, Turn, UnityError};
 use proptest::prelude::*;

@@ -5,7 +5,7 @@ use std::io::BufReader;
 
 use driftworld_env::{Catalogue, Recording, RecordingReader, Replay};
 use driftworld_spec::{Object, Stimulus, World, WorldDraft};
-use driftworld_unity::protocol::unity_rl_input_proto::ListAgentActionProto;
+use driftworld_unity::protocol::ListAgentActionProto;
 use driftworld_unity::protocol::{AgentActionProto, CommandProto, UnityRlInitializationInputProto, UnityRlInputProto};
 use driftworld_unity::{BEHAVIOR, RecordingFile, Screenshots, Session, Setup, Turn};
 use proptest::prelude::*;

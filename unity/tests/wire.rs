@@ -2,14 +2,11 @@
 //! clients have them. What is said in the fields is in `conversation.rs`.
 
 use driftworld_unity::Session;
-use driftworld_unity::protocol::observation_proto::{FloatData, ObservationData};
-use driftworld_unity::protocol::unity_rl_input_proto::ListAgentActionProto;
-use driftworld_unity::protocol::unity_rl_output_proto::ListAgentInfoProto;
 use driftworld_unity::protocol::{
     ActionSpecProto, AgentActionProto, AgentInfoProto, BrainParametersProto, CommandProto, CompressionTypeProto,
-    HeaderProto, ObservationProto, SpaceTypeProto, UnityInputProto, UnityMessageProto, UnityOutputProto,
-    UnityRlCapabilitiesProto, UnityRlInitializationInputProto, UnityRlInitializationOutputProto, UnityRlInputProto,
-    UnityRlOutputProto,
+    FloatData, HeaderProto, ListAgentActionProto, ListAgentInfoProto, ObservationData, ObservationProto,
+    SpaceTypeProto, UnityInputProto, UnityMessageProto, UnityOutputProto, UnityRlCapabilitiesProto,
+    UnityRlInitializationInputProto, UnityRlInitializationOutputProto, UnityRlInputProto, UnityRlOutputProto,
 };
 use prost::Message;
 
@@ -141,9 +138,7 @@ fn observations_have_their_numbers() {
     let picture = ObservationProto {
         shape: vec![4, 5, 3],
         compression_type: CompressionTypeProto::Png.into(),
-        compressed_channel_mapping: vec![0, 1],
         dimension_properties: vec![2, 2, 1],
-        observation_type: 1,
         name: "rgb".to_owned(),
         observation_data: Some(ObservationData::CompressedData(vec![1, 2])),
     };
@@ -151,9 +146,7 @@ fn observations_have_their_numbers() {
         block(1, [4, 5, 3]),
         number(2, 1),
         block(3, [1, 2]),
-        block(5, [0, 1]),
         block(6, [2, 2, 1]),
-        number(7, 1),
         block(8, "rgb"),
     ];
     check(&picture, &parts);

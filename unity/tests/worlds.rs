@@ -7,8 +7,8 @@ use driftworld_env::{
     Action, Catalogue, ColliderKind, Environment, ImportOptions, ImportSize, Library, LibraryModel, Studio,
 };
 use driftworld_spec::{ActionSpace, GameMode, ImageParams, Object, WorldDraft};
-use driftworld_unity::protocol::observation_proto::ObservationData;
-use driftworld_unity::protocol::unity_rl_input_proto::ListAgentActionProto;
+use driftworld_unity::protocol::ListAgentActionProto;
+use driftworld_unity::protocol::ObservationData;
 use driftworld_unity::protocol::{
     AgentActionProto, AgentInfoProto, CommandProto, SpaceTypeProto, UnityOutputProto, UnityRlCapabilitiesProto,
     UnityRlInitializationInputProto, UnityRlInputProto,

@@ -8,7 +8,6 @@
 mod examples;
 mod fences;
 mod process;
-mod protocol;
 mod python;
 mod rebuilds;
 mod rooms;
@@ -34,9 +33,8 @@ Usage:
   cargo xtask test --all            all stages, with all features and tests at full size: CI runs this
   cargo xtask test --only STAGE     one stage (may be given several times, and with --all)
   cargo xtask test --list           the stages and what each checks
-  cargo xtask STAGE                 the same as `test --only STAGE`, except for the three below
+  cargo xtask STAGE                 the same as `test --only STAGE`, except for the two below
   cargo xtask schemas               write schemas/*.json and docs/reference/*.md anew from the Rust types
-  cargo xtask protocol              write unity/src/protocol.rs anew from unity/proto/*.proto
   cargo xtask size                  write the counts of lines of code in SIZE.md anew
 
 CONTRIBUTING.md has the commands for benches, fuzzing, sanitizers, pictures and releases.";
@@ -54,7 +52,6 @@ fn main() -> ExitCode {
             Ok(())
         }
         ["schemas"] => workspace(false).and_then(|workspace| schemas::rewrite(&workspace)),
-        ["protocol"] => workspace(false).and_then(|workspace| protocol::rewrite(&workspace)),
         ["size"] => workspace(false).and_then(|workspace| size::rewrite(&workspace)),
         _ => match parse(&words) {
             Ok((stages, is_full)) => workspace(is_full).and_then(|workspace| stage::run_all(&workspace, &stages)),

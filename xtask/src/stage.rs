@@ -5,7 +5,7 @@ use std::process::Command;
 use std::time::Instant;
 
 use crate::process::{Result, Workspace, run, works};
-use crate::{examples, fences, protocol, python, rebuilds, runner, schemas, size, unity};
+use crate::{examples, fences, python, rebuilds, runner, schemas, size, unity};
 
 /// How a stage that did not fail ended.
 pub(crate) enum Outcome {
@@ -48,7 +48,7 @@ const fn slow(name: &'static str, about: &'static str, run: fn(&Workspace) -> Re
 
 /// In the order in which they run. With `--all`, everything is built with the feature `full`, so `tests` also compares the
 /// renderers.
-pub(crate) const STAGES: [Stage; 18] = [
+pub(crate) const STAGES: [Stage; 17] = [
     quick("fmt", "every file is formatted by rustfmt", fmt),
     quick("clippy", "no compiler or clippy warning in any target", clippy),
     quick(
@@ -92,11 +92,6 @@ pub(crate) const STAGES: [Stage; 18] = [
         "documents",
         "a second validator, in Python, judges tests/documents by the schemas as ours does",
         python::documents,
-    ),
-    slow(
-        "protocol",
-        "unity/src/protocol.rs is newer than unity/proto/*.proto",
-        protocol::check,
     ),
     slow(
         "python",

@@ -7,8 +7,7 @@ use driftworld_spec::AgentParams;
 
 use crate::behavior::{ACTION_LENGTH, BEHAVIOR};
 use crate::error::UnityError;
-use crate::protocol::AgentActionProto;
-use crate::protocol::unity_rl_input_proto::ListAgentActionProto;
+use crate::protocol::{AgentActionProto, ListAgentActionProto};
 
 /// The one agent's action; without any, it does nothing.
 pub(super) fn action(

@@ -21,10 +21,9 @@ use crate::error::UnityError;
 use crate::observation::{PictureForm, observations};
 use crate::outbox::{MAX_OUTGOING_BYTES, Outbox};
 use crate::parameters::Parameters;
-use crate::protocol::unity_rl_output_proto::ListAgentInfoProto;
 use crate::protocol::{
-    AgentInfoProto, CommandProto, UnityOutputProto, UnityRlCapabilitiesProto, UnityRlInitializationInputProto,
-    UnityRlInitializationOutputProto, UnityRlInputProto, UnityRlOutputProto,
+    AgentInfoProto, CommandProto, ListAgentInfoProto, UnityOutputProto, UnityRlCapabilitiesProto,
+    UnityRlInitializationInputProto, UnityRlInitializationOutputProto, UnityRlInputProto, UnityRlOutputProto,
 };
 use crate::remarks::{About, Remarks};
 use crate::screenshots::Screenshots;

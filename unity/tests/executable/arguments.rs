@@ -7,7 +7,7 @@ use std::process::Command;
 
 use driftworld_spec::World;
 use driftworld_unity::protocol::CommandProto;
-use driftworld_unity::protocol::observation_proto::ObservationData;
+use driftworld_unity::protocol::ObservationData;
 use driftworld_unity::{BEHAVIOR, HELP, MARK};
 use prost::Message;
 

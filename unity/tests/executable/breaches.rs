@@ -1,7 +1,7 @@
 //! Clients that break the protocol: they are told why before the end, and so is the terminal.
 
 use driftworld_spec::World;
-use driftworld_unity::protocol::unity_rl_input_proto::ListAgentActionProto;
+use driftworld_unity::protocol::ListAgentActionProto;
 use driftworld_unity::protocol::{
     AgentActionProto, CommandProto, HeaderProto, UnityInputProto, UnityMessageProto, UnityRlInputProto,
 };
