@@ -20,7 +20,7 @@ def work():
     red.sample_many(20)
     red.sample_many(20, threads=2)
     driftworld.distance_matrix("find_objects").embed()
-    driftworld.order("find_objects", "spectral")
+    driftworld.order("find_objects", "two-opt")
     assert driftworld.Curriculum.design("find_objects#red", "find_objects#blue", learn=1).num_experiences > 0
 
 

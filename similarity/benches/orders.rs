@@ -1,12 +1,11 @@
-//! How long orders, matrices of embedded items and maps take. Distances of documents are measured elsewhere.
+//! How long orders, and maps take. Distances of documents are measured elsewhere.
 
 #![expect(clippy::disallowed_methods, reason = "only its speed is measured")]
 
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use driftworld_similarity::{DistanceMatrix, Embedding, Method, OrderOptions, SimilarityError, classical_map, order};
-use ndarray::Array2;
+use driftworld_similarity::{DistanceMatrix, Method, OrderOptions, SimilarityError, classical_map, order};
 
 /// Points of a square, the same on every machine.
 fn points(n: usize) -> DistanceMatrix {
@@ -42,21 +41,10 @@ fn orders(c: &mut Criterion) {
 
 fn matrices(c: &mut Criterion) {
     let many = points(1000);
-    let features = Array2::from_shape_fn((1000, 32), |(item, k)| many.get(item, k));
-    let embedding = Embedding::new(many.labels().to_vec(), features).expect("distances are finite");
     let mut group = c.benchmark_group("matrices");
     group.sample_size(10);
-    group.bench_function("distances of 1000 items of 32 numbers", |bench| {
-        bench.iter(|| black_box(embedding.distances()));
-    });
-    group.bench_function("10 neighbours of each of 1000 items of 32 numbers", |bench| {
-        bench.iter(|| black_box(embedding.neighbours(10)));
-    });
     group.bench_function("a map of 1000 items", |bench| {
         bench.iter(|| black_box(classical_map(&many)));
-    });
-    group.bench_function("every triangle of 1000 items", |bench| {
-        bench.iter(|| black_box(many.triangle_violations()));
     });
     group.finish();
 }

@@ -132,62 +132,10 @@ pub enum SimilarityError {
         /// The item.
         label: String,
     },
-    /// A method chooses its ends by itself.
-    #[error(
-        "method {method}: found {label:?} as the {end} item, which this method cannot keep there; leave that end free or use the method two-opt"
-    )]
-    CannotFixEnds {
-        /// The method.
-        method: &'static str,
-        /// "first" or "last".
-        end: &'static str,
-        /// The item.
-        label: String,
-    },
-    /// A method whose promise needs the triangle inequality got distances that break it.
-    #[error(
-        "method {method}: found {a:?} and {b:?} {straight} apart but by way of {by:?} only {detour}, expected a metric; use the method two-opt"
-    )]
-    NotAMetric {
-        /// The method.
-        method: &'static str,
-        /// One item.
-        a: String,
-        /// Another.
-        b: String,
-        /// The one between them.
-        by: String,
-        /// The distance of the two.
-        straight: f64,
-        /// The way by the third.
-        detour: f64,
-    },
-    /// A method whose promise needs a metric got more items than can be checked for it.
-    #[error(
-        "method {method}: found {found} items whose measure is not known to be a metric, expected at most {limit} to check; declare the matrix's nature or use the method two-opt"
-    )]
-    NotCheckedAsMetric {
-        /// The method.
-        method: &'static str,
-        /// How many there are.
-        found: usize,
-        /// How many would be checked.
-        limit: usize,
-    },
     /// What was read, or handed in, is no matrix of distances.
     #[error("matrix, {place}: found {found}, expected {expected}", place = one_line(place), found = one_line(found), expected = one_line(expected))]
     BadMatrix {
         /// Where in the text or the matrix.
-        place: String,
-        /// What is there.
-        found: String,
-        /// What should be.
-        expected: String,
-    },
-    /// Features from which no distance follows.
-    #[error("features, {place}: found {found}, expected {expected}", place = one_line(place), found = one_line(found), expected = one_line(expected))]
-    BadFeatures {
-        /// Whose, and which.
         place: String,
         /// What is there.
         found: String,
@@ -215,7 +163,7 @@ pub enum SimilarityError {
     #[error("order: found no items, expected at least 1")]
     Empty,
     /// A word that names no method.
-    #[error("method: found {found:?}, expected one of {}", crate::Method::names())]
+    #[error("method: found {found:?}, {}", crate::Method::advice_for(found))]
     UnknownMethod {
         /// The word.
         found: String,
@@ -510,33 +458,10 @@ mod tests {
                 most: 2,
             },
             SimilarityError::EqualEnds { label: "one".into() },
-            SimilarityError::CannotFixEnds {
-                method: "spectral",
-                end: "first",
-                label: "one".into(),
-            },
-            SimilarityError::NotAMetric {
-                method: "tree",
-                a: "one".into(),
-                b: "two".into(),
-                by: "three".into(),
-                straight: 4.0,
-                detour: 2.0,
-            },
-            SimilarityError::NotCheckedAsMetric {
-                method: "tree",
-                found: 3000,
-                limit: 2000,
-            },
             SimilarityError::BadMatrix {
                 place: "line 2".into(),
                 found: "\"far\"".into(),
                 expected: "a number".into(),
-            },
-            SimilarityError::BadFeatures {
-                place: "item \"one\", number 2".into(),
-                found: "NaN".into(),
-                expected: "a finite number".into(),
             },
             SimilarityError::BadTargetStep { found: "none".into() },
             SimilarityError::Empty,

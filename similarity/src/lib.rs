@@ -49,7 +49,7 @@ pub use driftworld_spec::Oklab;
 pub use error::SimilarityError;
 pub use layout_shape::LayoutShape;
 pub use matrix::{
-    DistanceMatrix, Embedding, MAX_DISTANCE, MAX_FEATURES, MAX_ITEMS, PlanarMap, Triangles, Violation, classical_map,
+    DistanceMatrix, MAX_DISTANCE, MAX_ITEMS, PlanarMap, classical_map,
 };
 pub use mdp::{
     BestMatch, MAX_MDP_STATES, MAX_PAIRS, MAX_STATE_PAIRS, Mdp, PairedBisimulation, StateDistances, bisimulation,
@@ -62,7 +62,7 @@ pub use occupancy::{
     grid_hausdorff_distance, grid_jaccard_distance, grid_ruzicka_distance, grid_sinkhorn, grid_sliced_wasserstein,
 };
 pub use order::{
-    MAX_EXACT, MAX_LEAVES, Method, NUM_RANDOM_ORDERS, OrderOptions, Ordering, order, share_of_shorter_orders,
+    MAX_EXACT, Method, NUM_RANDOM_ORDERS, OrderOptions, Ordering, order, share_of_shorter_orders,
 };
 pub use reward::{
     Epic, MAX_REWARDS, RewardSamples, RewardTable, SampledReward, pearson_distance, world_rewards_distance,

@@ -9,6 +9,12 @@ pub enum WordKind {
     Option,
     /// The ending of a file's name, or a format by its own name.
     Format,
+    /// What variants and worlds are compared by: `--by`, `compare_by`, `by=`.
+    By,
+    /// How the values of a parameter are compared: `compare.measure` of a task spec.
+    Measure,
+    /// How variants are put into an order: `--order`, `method=`.
+    Order,
 }
 
 const TABLES: &str = ".jsonl for worlds, .tsv or .csv for logs; docs/how-to/interoperate.md makes Parquet of either";
@@ -46,6 +52,17 @@ const REMOVED: &[(WordKind, &str, &str)] = &[
     (WordKind::Option, "run --logs", "--output"),
     (WordKind::Option, "transfer-report --output", "--plot"),
     (WordKind::Option, "transfer-report -o", "--plot"),
+    (WordKind::Order, "bottleneck", "gradual"),
+    (WordKind::Order, "contrast", "abrupt"),
+    (WordKind::Order, "farthest-first", "farthest"),
+    (WordKind::Order, "leaf", "two-opt"),
+    (WordKind::Order, "spectral", "two-opt"),
+    (WordKind::Order, "tree", "two-opt"),
+    (
+        WordKind::Order,
+        "typical-last",
+        "given, with the most typical variant named last",
+    ),
 ];
 
 /// What a message says of a removed word, `removed in 0.3; use …`; `None` for any other word.

@@ -62,9 +62,9 @@ pub fn arrange(matrix: &DistanceMatrix, hypothesis: Hypothesis, first: usize) ->
     let method = match hypothesis {
         Hypothesis::Gradual => Method::Gradual,
         Hypothesis::Outward => Method::Outward,
-        Hypothesis::Abrupt => Method::Contrast,
+        Hypothesis::Abrupt => Method::Abrupt,
         Hypothesis::Path => Method::default_for(matrix.len()),
-        Hypothesis::Farthest => Method::FarthestFirst,
+        Hypothesis::Farthest => Method::Farthest,
     };
     Ok(order(matrix, method, &OrderOptions::default().with_first(first))?.indices)
 }
@@ -86,7 +86,7 @@ pub fn control(
     Ok(match control {
         Control::Reversed => arranged.iter().rev().copied().collect(),
         Control::Random => order(matrix, Method::Random, &options)?.indices,
-        Control::Contrast => order(matrix, Method::Contrast, &options)?.indices,
+        Control::Contrast => order(matrix, Method::Abrupt, &options)?.indices,
     })
 }
 

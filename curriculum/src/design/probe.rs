@@ -135,7 +135,7 @@ pub fn probe_named(
 /// The `wanted` that lie farthest apart, in the order they had.
 fn spread_out(found: Vec<Picked>, element: Element, wanted: usize) -> Result<Vec<Picked>, CurriculumError> {
     let matrix = distances(&found, Some(element))?;
-    let order = order(&matrix, Method::FarthestFirst, &OrderOptions::default().with_first(0))?;
+    let order = order(&matrix, Method::Farthest, &OrderOptions::default().with_first(0))?;
     let kept = &order.indices[..wanted];
     let numbered = found.into_iter().enumerate();
     Ok(numbered

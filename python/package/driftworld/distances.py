@@ -37,9 +37,7 @@ SHOWN = 20
 Weights = Mapping[str, float]
 PathLike = str | os.PathLike[str]
 #: The methods that look for the best path from a first one; ``None`` stands for the method that fits the number of items.
-SEEKING = frozenset(
-    [None, "nearest", "exact", "two-opt", "contrast", "farthest-first", "bottleneck", "target-step", "gradual", "outward"]
-)
+SEEKING = frozenset([None, "nearest", "exact", "two-opt", "abrupt", "farthest", "target-step", "gradual", "outward"])
 Named = str | Variant | TaskSpec
 
 
@@ -510,9 +508,8 @@ def order(
 
     Args:
         items: A matrix, or what :func:`distance_matrix` takes.
-        method: ``nearest``, ``exact`` (up to 15), ``two-opt``, ``spectral``, ``tree``, ``leaf``, ``contrast``, ``typical-last``,
-            ``farthest-first``, ``random``, ``bottleneck``, ``target-step``, ``gradual``, ``outward`` or ``given``; exact where possible if
-            none is given, else two-opt.
+        method: ``nearest``, ``exact`` (up to 15), ``two-opt``, ``abrupt``, ``farthest``, ``random``, ``target-step``,
+            ``gradual``, ``outward`` or ``given``; exact where possible if none is given, else two-opt.
         start: The label that comes first; if none is given, the variant that is named first, for methods that look for a path
             from a first one, and whichever is best of a matrix or a task named whole.
         end: The label that comes last.

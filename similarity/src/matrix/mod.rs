@@ -3,12 +3,9 @@
 
 mod csv;
 pub(crate) mod eigen;
-mod embedding;
-mod features;
 mod json;
 mod mds;
 mod npy;
-mod triangles;
 
 use ndarray::{Array2, Axis};
 use rayon::prelude::*;
@@ -16,9 +13,7 @@ use serde::Serialize;
 
 use crate::{MetricProperties, SimilarityError};
 
-pub use embedding::{Embedding, MAX_FEATURES};
 pub use mds::{PlanarMap, classical_map};
-pub use triangles::{Triangles, Violation};
 
 /// The most items that a matrix holds.
 pub const MAX_ITEMS: usize = 20_000;
@@ -169,8 +164,7 @@ impl DistanceMatrix {
         }
     }
 
-    /// The same matrix, of a measure that is known to keep these laws. Nothing is checked: a matrix that claims to be one of a
-    /// metric is trusted by the methods that need one; [`DistanceMatrix::triangle_violations`] measures it.
+    /// The same matrix, of a measure that is known to keep these laws. Nothing is checked.
     #[must_use]
     pub fn with_properties(self, properties: MetricProperties) -> Self {
         Self { properties, ..self }

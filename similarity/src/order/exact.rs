@@ -6,24 +6,6 @@ use crate::SimilarityError;
 /// The most items for which the best path is searched exactly. It takes 4 MB and some milliseconds; each item more doubles both.
 pub const MAX_EXACT: usize = 15;
 
-/// What makes up the cost of a path.
-#[derive(Clone, Copy)]
-pub(super) enum Total {
-    /// All steps together.
-    Sum,
-    /// The largest step alone.
-    Largest,
-}
-
-impl Total {
-    fn join(self, step: f64, rest: f64) -> f64 {
-        match self {
-            Self::Sum => step + rest,
-            Self::Largest => step.max(rest),
-        }
-    }
-}
-
 pub(super) fn order(items: &Items) -> Result<Vec<usize>, SimilarityError> {
     if items.len() > MAX_EXACT {
         return Err(SimilarityError::TooManyForMethod {
@@ -32,15 +14,15 @@ pub(super) fn order(items: &Items) -> Result<Vec<usize>, SimilarityError> {
             limit: MAX_EXACT,
         });
     }
-    Ok(best_path(items.len(), &|a, b| items.gap(a, b), items.ends, Total::Sum))
+    Ok(best_path(items.len(), &|a, b| items.gap(a, b), items.ends))
 }
 
 /// The path of least total; of equal ones (within rounding) that with the lowest numbers first. Steps of infinite cost are
 /// taken only where no path does without. Time `O(2ⁿ n²)`, memory `2ⁿ n` numbers; `n` is at most [`MAX_EXACT`].
-pub(super) fn best_path(n: usize, cost: &impl Fn(usize, usize) -> f64, ends: Ends, total: Total) -> Vec<usize> {
+pub(super) fn best_path(n: usize, cost: &impl Fn(usize, usize) -> f64, ends: Ends) -> Vec<usize> {
     debug_assert!(n <= MAX_EXACT, "larger sets are refused before");
     let costs: Vec<f64> = (0..n * n).map(|k| cost(k / n, k % n)).collect();
-    let rest = rests(n, &costs, ends.last, total);
+    let rest = rests(n, &costs, ends.last);
     let largest = costs
         .iter()
         .filter(|cost| cost.is_finite())
@@ -66,7 +48,7 @@ pub(super) fn best_path(n: usize, cost: &impl Fn(usize, usize) -> f64, ends: End
         set &= !(1 << here);
         let choices: Vec<(usize, f64)> = (0..n)
             .filter(|item| set >> item & 1 == 1)
-            .map(|item| (item, total.join(costs[here * n + item], rest[set * n + item])))
+            .map(|item| (item, costs[here * n + item] + rest[set * n + item]))
             .collect();
         path.push(lowest(&choices).expect("some item is left"));
     }
@@ -74,7 +56,7 @@ pub(super) fn best_path(n: usize, cost: &impl Fn(usize, usize) -> f64, ends: End
 }
 
 /// For each set and each item of it: the least total of a path that begins there, visits the set, and ends where it has to.
-fn rests(n: usize, costs: &[f64], last: Option<usize>, total: Total) -> Vec<f64> {
+fn rests(n: usize, costs: &[f64], last: Option<usize>) -> Vec<f64> {
     let mut rest = vec![f64::INFINITY; (1 << n) * n];
     for end in (0..n).filter(|end| last.is_none_or(|last| last == *end)) {
         rest[(1 << end) * n + end] = 0.0;
@@ -87,7 +69,7 @@ fn rests(n: usize, costs: &[f64], last: Option<usize>, total: Total) -> Vec<f64>
             let others = set & !(1 << start);
             let mut least = f64::INFINITY;
             for next in (0..n).filter(|next| others >> next & 1 == 1) {
-                least = least.min(total.join(costs[start * n + next], rest[others * n + next]));
+                least = least.min(costs[start * n + next] + rest[others * n + next]);
             }
             rest[set * n + start] = least;
         }

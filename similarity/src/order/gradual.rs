@@ -1,9 +1,10 @@
 //! Paths of small steps: the shortest, and of equally short ones that whose largest step is smallest. The shortest alone is found in
 //! `exact.rs` and `two_opt.rs`.
 
-use super::exact::{MAX_EXACT, Total, best_path};
+use super::exact::{MAX_EXACT, best_path};
 use super::items::Items;
-use super::{bottleneck, two_opt};
+use super::small_steps::{self, largest_step};
+use super::two_opt;
 
 /// Lengths that differ by no more than this share are equal.
 const EQUAL: f64 = 1e-9;
@@ -12,7 +13,8 @@ const EQUAL: f64 = 1e-9;
 /// short ones that with the smaller largest step.
 pub(super) fn order(items: &Items) -> Vec<usize> {
     if items.len() > MAX_EXACT {
-        let (short, even) = (two_opt::order(items), bottleneck::order(items));
+        let short = two_opt::order(items);
+        let even = small_steps::search(&short, items);
         let is_as_short = length(&even, items) <= length(&short, items) * (1.0 + EQUAL);
         let is_better = is_as_short && largest_step(&even, items) < largest_step(&short, items);
         return if is_better { even } else { short };
@@ -24,7 +26,7 @@ pub(super) fn order(items: &Items) -> Vec<usize> {
             let gap = items.gap(a, b);
             if gap <= bound { gap } else { gap + penalty }
         };
-        best_path(items.len(), &cost, items.ends, Total::Sum)
+        best_path(items.len(), &cost, items.ends)
     };
     let mut best = within(f64::INFINITY);
     let longest = length(&best, items) * (1.0 + EQUAL);
@@ -48,12 +50,6 @@ pub(super) fn order(items: &Items) -> Vec<usize> {
 
 fn length(path: &[usize], items: &Items) -> f64 {
     path.windows(2).map(|pair| items.gap(pair[0], pair[1])).sum()
-}
-
-fn largest_step(path: &[usize], items: &Items) -> f64 {
-    path.windows(2)
-        .map(|pair| items.gap(pair[0], pair[1]))
-        .fold(0.0, f64::max)
 }
 
 #[cfg(test)]

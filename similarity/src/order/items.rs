@@ -69,11 +69,6 @@ impl<'a> Items<'a> {
         self.matrix.values().iter().copied().fold(0.0, f64::max)
     }
 
-    /// An item's label, by rank.
-    pub(super) fn label(&self, rank: usize) -> &str {
-        &self.matrix.labels()[self.by_name[rank]]
-    }
-
     /// From ranks to indices in the matrix.
     pub(super) fn indices(&self, ranks: &[usize]) -> Vec<usize> {
         ranks.iter().map(|rank| self.by_name[*rank]).collect()
@@ -93,17 +88,6 @@ impl<'a> Items<'a> {
         let Ends { first, last } = self.ends;
         ranks.retain(|rank| Some(*rank) != first && Some(*rank) != last);
         first.into_iter().chain(ranks).chain(last).collect()
-    }
-
-    /// Refuses fixed ends for a method that chooses its own.
-    pub(super) fn refuse_ends(&self, method: &'static str) -> Result<(), SimilarityError> {
-        for (end, item) in [("first", self.ends.first), ("last", self.ends.last)] {
-            if let Some(rank) = item {
-                let label = self.label(rank).to_owned();
-                return Err(SimilarityError::CannotFixEnds { method, end, label });
-            }
-        }
-        Ok(())
     }
 }
 

@@ -1,5 +1,6 @@
 //! [`Method`]: every ordering method by name, and the default one. Each is implemented in the file of its name.
 
+use driftworld_text::{WordKind, removed};
 use serde::Serialize;
 use strum::VariantArray;
 
@@ -19,22 +20,12 @@ pub enum Method {
     Exact,
     /// The nearest walk, then stretches are turned round (2-opt) and moved (Or-opt), and the path shaken, while that shortens it.
     TwoOpt,
-    /// Along the axis on which similar items lie together (spectral seriation by the Fiedler vector). Chooses its own ends.
-    Spectral,
-    /// A walk round the minimum spanning tree: at most twice the shortest path, for which the distances must be a metric.
-    Tree,
-    /// The leaves of a clustering (average linkage), turned so that neighbours are as near as they can be (optimal leaf ordering).
-    Leaf,
     /// The longest path: neighbours unlike each other. Exact for up to 15 items.
-    Contrast,
-    /// The least typical first, the most typical last: by mean distance to all, falling.
-    TypicalLast,
+    Abrupt,
     /// Each time what is farthest from everything met so far: as new as can be (farthest-first traversal).
-    FarthestFirst,
+    Farthest,
     /// At random, from a seed: a control.
     Random,
-    /// The largest step as small as can be, and then the path as short. Exact for up to 15 items.
-    Bottleneck,
     /// Every step close to a wanted one. Exact for up to 15 items.
     TargetStep,
     /// In small steps: the shortest path, and of equally short ones that whose largest step is smallest. Exact for up to 15 items.
@@ -60,13 +51,12 @@ impl Method {
             Self::Nearest
             | Self::Exact
             | Self::TwoOpt
-            | Self::Contrast
-            | Self::FarthestFirst
-            | Self::Bottleneck
+            | Self::Abrupt
+            | Self::Farthest
             | Self::TargetStep
             | Self::Gradual
             | Self::Outward => true,
-            Self::Spectral | Self::Tree | Self::Leaf | Self::TypicalLast | Self::Random | Self::Given => false,
+            Self::Random | Self::Given => false,
         }
     }
 
@@ -75,13 +65,12 @@ impl Method {
         self.into()
     }
 
-    /// All names, for messages and help.
-    pub fn names() -> String {
-        Self::ALL
-            .iter()
-            .map(|method| method.name())
-            .collect::<Vec<_>>()
-            .join(", ")
+    /// What to use in place of a word that names no method.
+    pub(crate) fn advice_for(word: &str) -> String {
+        removed(WordKind::Order, word).unwrap_or_else(|| {
+            let names: Vec<&str> = Self::ALL.iter().map(|method| method.name()).collect();
+            format!("expected one of {}", names.join(", "))
+        })
     }
 }
 

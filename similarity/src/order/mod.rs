@@ -1,14 +1,11 @@
 //! Orders of items by their distances: paths that are short, even, long on purpose, or random. One method per file;
 //! measuring the distances is not done here.
 
-mod bottleneck;
-mod contrast;
+mod abrupt;
 mod exact;
-mod farthest_first;
+mod farthest;
 mod gradual;
 mod items;
-mod leaf;
-mod linkage;
 mod local_search;
 mod methods;
 mod nearest;
@@ -17,15 +14,12 @@ mod ordering;
 mod outward;
 mod random;
 mod random_orders;
-mod spectral;
+mod small_steps;
 mod target_step;
 mod tour;
-mod tree;
 mod two_opt;
-mod typical_last;
 
 pub use exact::MAX_EXACT;
-pub use leaf::MAX_LEAVES;
 pub use methods::Method;
 pub use options::OrderOptions;
 pub use ordering::Ordering;
@@ -39,8 +33,8 @@ use items::Items;
 ///
 /// # Errors
 /// [`SimilarityError::Empty`] without items; [`SimilarityError::NoSuchEnd`] and [`SimilarityError::EqualEnds`] for ends that
-/// cannot be; [`SimilarityError::CannotFixEnds`] where the method chooses them itself; [`SimilarityError::TooManyForMethod`];
-/// [`SimilarityError::NotAMetric`] from [`Method::Tree`]; [`SimilarityError::BadTargetStep`] from [`Method::TargetStep`].
+/// cannot be; [`SimilarityError::TooManyForMethod`] from [`Method::Exact`]; [`SimilarityError::BadTargetStep`] from
+/// [`Method::TargetStep`].
 ///
 /// # Example
 /// ```
@@ -59,14 +53,9 @@ pub fn order(matrix: &DistanceMatrix, method: Method, options: &OrderOptions) ->
         Method::Nearest => nearest::order(&items),
         Method::Exact => exact::order(&items)?,
         Method::TwoOpt => two_opt::order(&items),
-        Method::Spectral => spectral::order(&items)?,
-        Method::Tree => tree::order(&items)?,
-        Method::Leaf => leaf::order(&items)?,
-        Method::Contrast => contrast::order(&items),
-        Method::TypicalLast => typical_last::order(&items),
-        Method::FarthestFirst => farthest_first::order(&items),
+        Method::Abrupt => abrupt::order(&items),
+        Method::Farthest => farthest::order(&items),
         Method::Random => random::order(&items, options.seed),
-        Method::Bottleneck => bottleneck::order(&items),
         Method::TargetStep => target_step::order(&items, options.target_step)?,
         Method::Gradual => gradual::order(&items),
         Method::Outward => outward::order(&items),

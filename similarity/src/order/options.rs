@@ -22,13 +22,4 @@ impl OrderOptions {
             ..self
         }
     }
-
-    /// With an item that comes last.
-    #[must_use]
-    pub fn with_last(self, last: usize) -> Self {
-        Self {
-            last: Some(last),
-            ..self
-        }
-    }
 }

@@ -1,6 +1,6 @@
-//! Paths whose every step is close to a wanted one. Short paths are in `two_opt.rs`, even ones in `bottleneck.rs`.
+//! Paths whose every step is close to a wanted one. Short paths are in `two_opt.rs`, those of small steps in `gradual.rs`.
 
-use super::exact::{MAX_EXACT, Total, best_path};
+use super::exact::{MAX_EXACT, best_path};
 use super::items::Items;
 use super::two_opt::from_the_lower_end;
 use super::{local_search, nearest};
@@ -19,7 +19,7 @@ pub(super) fn order(items: &Items, wanted: Option<f64>) -> Result<Vec<usize>, Si
     let n = items.len();
     let cost = |a: usize, b: usize| (items.gap(a, b) - step).abs();
     if n <= MAX_EXACT {
-        return Ok(best_path(n, &cost, items.ends, Total::Sum));
+        return Ok(best_path(n, &cost, items.ends));
     }
     let walk = nearest::walk(n, &cost, items.ends);
     let path = local_search::improve(walk, &cost, items.ends, SHAKES_PER_ITEM * n);

@@ -9,6 +9,7 @@ use crate::ordering::OrderRequest;
 use crate::similarity::Method;
 use crate::spec::did_you_mean;
 use crate::tasks;
+use driftworld_text::{WordKind, removed};
 
 /// How an order is found; shared with `curriculum`.
 #[derive(Args)]
@@ -17,8 +18,7 @@ pub(crate) struct OrderArgs {
     ///
     /// What is to be like what: gradual (the shortest path, with the smallest largest step among equals), outward (by growing
     /// distance from the first), abrupt (the longest path), path (the shortest path), farthest (each time what is farthest
-    /// from all before it), named (as given). Or a method: nearest, exact, two-opt, spectral, tree, leaf, contrast,
-    /// typical-last, farthest-first, random, bottleneck, target-step, given.
+    /// from all before it), named (as given). Or a method: nearest, exact, two-opt, random, target-step, given.
     #[arg(long, value_name = "ORDER")]
     order: Option<OrderWord>,
     /// First variant, such as blue [default: the one named first, or whichever is best of one whole task].
@@ -58,9 +58,9 @@ impl OrderWord {
             Self::Method(method) => Some(method),
             Self::Design(DesignOrder::Gradual) => Some(Method::Gradual),
             Self::Design(DesignOrder::Outward) => Some(Method::Outward),
-            Self::Design(DesignOrder::Abrupt) => Some(Method::Contrast),
+            Self::Design(DesignOrder::Abrupt) => Some(Method::Abrupt),
             Self::Design(DesignOrder::Path) => None,
-            Self::Design(DesignOrder::Farthest) => Some(Method::FarthestFirst),
+            Self::Design(DesignOrder::Farthest) => Some(Method::Farthest),
             Self::Design(DesignOrder::Named) => Some(Method::Given),
         }
     }
@@ -74,6 +74,9 @@ impl FromStr for OrderWord {
             return Ok(Self::Design(*design));
         }
         word.parse().map(Self::Method).map_err(|_| {
+            if let Some(advice) = removed(WordKind::Order, word) {
+                return advice;
+            }
             let designs = Self::DESIGNS.map(|(name, _)| name);
             let methods = Method::ALL.iter().map(|method| method.name());
             let methods: Vec<&str> = methods.filter(|name| !designs.contains(name)).collect();

@@ -1,9 +1,8 @@
-//! Paths whose largest step is as small as can be. Paths of least length are in `exact.rs` and `two_opt.rs`.
+//! Searches for paths of small largest step, which `gradual.rs` weighs against the shortest.
 
-use super::exact::{MAX_EXACT, Total, best_path};
 use super::items::Items;
-use super::two_opt::{self, from_the_lower_end};
-use super::{local_search, tree};
+use super::local_search;
+use super::two_opt::from_the_lower_end;
 
 /// How many times the path is shaken in each round of the search, for each item.
 const SHAKES_PER_ITEM: usize = 2;
@@ -12,31 +11,13 @@ const LEAST_SHAKES: usize = 200;
 /// How many bounds are tried.
 const ROUNDS: usize = 12;
 
-/// Exact for few items; beyond, a search that halves the span in which the smallest largest step can lie.
-pub(super) fn order(items: &Items) -> Vec<usize> {
-    if items.len() <= MAX_EXACT {
-        return exact(items);
-    }
-    from_the_lower_end(search(items), items)
-}
-
-fn exact(items: &Items) -> Vec<usize> {
-    let n = items.len();
-    let even = best_path(n, &|a, b| items.gap(a, b), items.ends, Total::Largest);
-    let bound = largest_step(&even, items) * (1.0 + 1e-12);
-    // Of all paths that keep to the smallest largest step, the shortest.
-    let cost = |a: usize, b: usize| {
-        let gap = items.gap(a, b);
-        if gap <= bound { gap } else { f64::INFINITY }
-    };
-    best_path(n, &cost, items.ends, Total::Sum)
-}
-
-fn search(items: &Items) -> Vec<usize> {
-    let mut best = two_opt::order(items);
+/// A path whose largest step is as small as a search finds, from a short path on; it halves the span in which the smallest
+/// largest step can lie.
+pub(super) fn search(short: &[usize], items: &Items) -> Vec<usize> {
+    let mut best = short.to_vec();
     let mut reached = largest_step(&best, items);
     // Whatever connects all items has a step as large as the largest in their minimum spanning tree.
-    let mut impossible = tree::largest_branch(items);
+    let mut impossible = largest_branch(items);
     let largest = items.largest_gap();
     let shakes = LEAST_SHAKES.max(SHAKES_PER_ITEM * items.len());
     for _ in 0..ROUNDS {
@@ -65,10 +46,25 @@ fn search(items: &Items) -> Vec<usize> {
             }
         }
     }
-    best
+    from_the_lower_end(best, items)
 }
 
-fn largest_step(path: &[usize], items: &Items) -> f64 {
+/// The largest distance in the minimum spanning tree, which Prim's algorithm grows; 0 for a single item.
+fn largest_branch(items: &Items) -> f64 {
+    let mut reach: Vec<f64> = (0..items.len()).map(|item| items.gap(0, item)).collect();
+    let mut left: Vec<usize> = (1..items.len()).collect();
+    let mut largest = 0.0_f64;
+    while let Some(best) = (0..left.len()).min_by(|a, b| reach[left[*a]].total_cmp(&reach[left[*b]])) {
+        let here = left.remove(best);
+        largest = largest.max(reach[here]);
+        for item in &left {
+            reach[*item] = reach[*item].min(items.gap(here, *item));
+        }
+    }
+    largest
+}
+
+pub(super) fn largest_step(path: &[usize], items: &Items) -> f64 {
     path.windows(2)
         .map(|pair| items.gap(pair[0], pair[1]))
         .fold(0.0, f64::max)
@@ -76,6 +72,8 @@ fn largest_step(path: &[usize], items: &Items) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::exact::best_path;
+    use super::super::two_opt;
     use super::*;
     use crate::OrderOptions;
     use crate::{DistanceMatrix, SimilarityError};
@@ -92,7 +90,16 @@ mod tests {
             let gap = |a: usize, b: usize| libm::hypot(points[a][0] - points[b][0], points[a][1] - points[b][1]);
             let matrix = DistanceMatrix::measure(labels, |a, b| Ok::<_, SimilarityError>(gap(a, b))).unwrap();
             let items = Items::new(&matrix, &OrderOptions::default()).unwrap();
-            let (least, found) = (largest_step(&exact(&items), &items), largest_step(&search(&items), &items));
+            let mut bounds: Vec<f64> = matrix.values().iter().copied().collect();
+            bounds.sort_by(f64::total_cmp);
+            // The smallest bound that some path keeps to.
+            let keeps = |bound: &f64| {
+                let cost = |a: usize, b: usize| f64::from(items.gap(a, b) > *bound);
+                let path = best_path(points.len(), &cost, items.ends);
+                largest_step(&path, &items) <= *bound
+            };
+            let least = bounds[bounds.partition_point(|bound| !keeps(bound))];
+            let found = largest_step(&search(&two_opt::order(&items), &items), &items);
             prop_assert!(found >= least - 1e-9 && found <= 1.25 * least + 1e-9, "{} for {}", found, least);
         }
     }
