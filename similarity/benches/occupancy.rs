@@ -5,8 +5,7 @@ use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use driftworld_similarity::{
-    BitGrid, Grid, GridShape, SinkhornSettings, earth_movers_distance, grid_earth_movers_distance,
-    grid_jaccard_distance, grid_sinkhorn, grid_sliced_wasserstein,
+    BitGrid, Grid, GridShape, earth_movers_distance, grid_earth_movers_distance, grid_jaccard_distance,
 };
 
 /// Numbers in 0..1 that are the same every time: splitmix64 of Vigna.
@@ -72,16 +71,6 @@ fn masses(c: &mut Criterion) {
     pairs(c, "exact earth mover's, grids of 25 × 25", &grids, |a, b| {
         grid_earth_movers_distance(a, b).expect("the masses are equal")
     });
-    let settings = SinkhornSettings::new(0.5);
-    pairs(c, "Sinkhorn at half a metre, grids of 25 × 25", &grids[..2], |a, b| {
-        grid_sinkhorn(a, b, &settings).expect("the masses are equal").cost
-    });
-    pairs(
-        c,
-        "sliced Wasserstein in 32 directions, grids of 25 × 25",
-        &grids,
-        |a, b| grid_sliced_wasserstein(a, b, 32).expect("the masses are equal"),
-    );
 }
 
 criterion_group!(benches, taken, points, masses);

@@ -1,17 +1,14 @@
 //! Distances of grids against what scipy, scikit-image and POT find, and their laws.
 
 use driftworld_similarity::{
-    BitGrid, Grid, GridShape, SimilarityError, SinkhornSettings, grid_chamfer_distance, grid_dice_distance,
-    grid_earth_movers_distance, grid_earth_movers_hat, grid_hamming_distance, grid_hausdorff_95,
-    grid_hausdorff_distance, grid_jaccard_distance, grid_ruzicka_distance, grid_sinkhorn, grid_sliced_wasserstein,
+    BitGrid, Grid, GridShape, SimilarityError, grid_chamfer_distance, grid_earth_movers_distance,
+    grid_hausdorff_distance, grid_jaccard_distance,
 };
 use proptest::prelude::*;
 use serde::Deserialize;
 
 #[derive(Deserialize)]
 struct Oracle {
-    directions: usize,
-    penalty: f64,
     taken: Vec<Taken>,
     masses: Vec<Masses>,
 }
@@ -23,12 +20,9 @@ struct Taken {
     cell: f64,
     a: Vec<usize>,
     b: Vec<usize>,
-    hamming: usize,
     jaccard: f64,
-    dice: Option<f64>,
     chamfer: Option<f64>,
     hausdorff: Option<f64>,
-    hausdorff_95: Option<f64>,
 }
 
 #[derive(Deserialize)]
@@ -38,10 +32,7 @@ struct Masses {
     cell: f64,
     a: Vec<f64>,
     b: Vec<f64>,
-    ruzicka: f64,
     earth_movers: f64,
-    earth_movers_hat: f64,
-    sliced: f64,
 }
 
 fn oracle() -> Oracle {
@@ -61,9 +52,7 @@ fn taken_cells_are_as_far_apart_as_scipy_and_scikit_image_say() {
         let shape = GridShape::new(case.columns, case.rows, 1, case.cell).expect("the shape is sound");
         let grid = |taken: &[usize]| BitGrid::new(shape, (0..shape.num_cells()).map(|cell| taken.contains(&cell)));
         let (a, b) = (grid(&case.a), grid(&case.b));
-        assert_eq!(grid_hamming_distance(&a, &b).expect("one shape"), case.hamming);
         check("jaccard", grid_jaccard_distance(&a, &b), case.jaccard);
-        check("dice", grid_dice_distance(&a, &b), case.dice.unwrap_or(0.0));
         // Where there is no oracle: no ways where nothing stands, the diameter where one grid is empty.
         let otherwise = if case.a.is_empty() && case.b.is_empty() {
             0.0
@@ -80,7 +69,6 @@ fn taken_cells_are_as_far_apart_as_scipy_and_scikit_image_say() {
             grid_hausdorff_distance(&a, &b),
             case.hausdorff.unwrap_or(otherwise),
         );
-        check("95%", grid_hausdorff_95(&a, &b), case.hausdorff_95.unwrap_or(otherwise));
     }
 }
 
@@ -91,27 +79,8 @@ fn masses_are_as_far_apart_as_scipy_and_pot_say() {
         let shape = GridShape::new(case.columns, case.rows, 1, case.cell).expect("the shape is sound");
         let grid = |masses: Vec<f64>| Grid::new(shape, masses).expect("the masses are sound");
         let (a, b) = (grid(case.a), grid(case.b));
-        check("ruzicka", grid_ruzicka_distance(&a, &b), case.ruzicka);
-        check(
-            "hat",
-            grid_earth_movers_hat(&a, &b, oracle.penalty),
-            case.earth_movers_hat,
-        );
         let (a, b) = (a.normalised(), b.normalised());
         check("earth mover's", grid_earth_movers_distance(&a, &b), case.earth_movers);
-        check(
-            "sliced",
-            grid_sliced_wasserstein(&a, &b, oracle.directions),
-            case.sliced,
-        );
-        // Larger ones take long without optimisation, and bounds that hold for small ones hold.
-        if shape.num_cells() <= 64 {
-            let entropic = grid_sinkhorn(&a, &b, &SinkhornSettings::new(0.1)).expect("the settings are sound");
-            assert!(
-                entropic.lower <= case.earth_movers + 1e-9 && case.earth_movers <= entropic.upper + 1e-9,
-                "{entropic:?}"
-            );
-        }
     }
 }
 
@@ -137,8 +106,6 @@ fn grids_of_different_shapes_and_masses_are_refused() {
         grid_earth_movers_distance(&light.normalised(), &heavy.normalised()),
         Ok(0.0)
     );
-    assert_eq!(grid_earth_movers_hat(&light, &heavy, 1.0), Ok(1.0));
-    assert!(grid_earth_movers_hat(&light, &heavy, 0.4).is_err());
 }
 
 /// Grids of 4 × 3 cells in two planes, often with an empty one.
@@ -187,8 +154,7 @@ proptest! {
     fn metrics_of_taken_cells_keep_the_axioms(a in grid(), b in grid(), c in grid()) {
         let (a, b, c) = (a.taken(), b.taken(), c.taken());
         let diameter = a.shape().diameter();
-        let metrics: [Measure<BitGrid>; 3] = [
-            ("hamming", 24.0, |a, b| grid_hamming_distance(a, b).map(|cells| cells as f64)),
+        let metrics: [Measure<BitGrid>; 2] = [
             ("jaccard", 1.0, grid_jaccard_distance),
             ("hausdorff", diameter, grid_hausdorff_distance),
         ];
@@ -196,31 +162,13 @@ proptest! {
             laws(metric, &a, &b, Some(&c))?;
             prop_assert_eq!(metric.2(&a, &b) == Ok(0.0), a == b, "{}", metric.0);
         }
-        let distances: [Measure<BitGrid>; 3] = [
-            ("dice", 1.0, grid_dice_distance),
-            ("chamfer", diameter, grid_chamfer_distance),
-            ("95%", diameter, grid_hausdorff_95),
-        ];
-        for distance in distances {
-            laws(distance, &a, &b, None)?;
-        }
-        prop_assert!(grid_hausdorff_95(&a, &b)? <= grid_hausdorff_distance(&a, &b)?);
-    }
-
-    #[test]
-    fn metrics_of_masses_keep_the_axioms(a in grid(), b in grid(), c in grid()) {
-        laws(("ruzicka", 1.0, grid_ruzicka_distance), &a, &b, Some(&c))?;
-        let most = 2.0 * a.shape().diameter() * a.total().max(b.total());
-        laws(("hat", most, |a, b| grid_earth_movers_hat(a, b, 0.5)), &a, &b, Some(&c))?;
+        laws(("chamfer", diameter, grid_chamfer_distance), &a, &b, None)?;
+        prop_assert!(grid_chamfer_distance(&a, &b)? <= grid_hausdorff_distance(&a, &b)? + 1e-12);
     }
 
     #[test]
     fn metrics_of_equal_masses_keep_the_axioms(a in full_grid(), b in full_grid(), c in full_grid()) {
         let most = 2.0 * a.shape().diameter();
         laws(("earth mover's", most, grid_earth_movers_distance), &a, &b, Some(&c))?;
-        laws(("sliced", most, |a, b| grid_sliced_wasserstein(a, b, 8)), &a, &b, Some(&c))?;
-        let exact = grid_earth_movers_distance(&a, &b)?;
-        prop_assert!(grid_sliced_wasserstein(&a, &b, 8)? <= exact + 1e-12);
-        prop_assert!((grid_earth_movers_hat(&a, &b, 1.0)? - exact).abs() < 1e-12);
     }
 }

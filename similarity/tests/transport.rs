@@ -1,24 +1,20 @@
 //! Moving masses and points against what POT finds. The laws are tested beside the code.
 
-use driftworld_similarity::{SinkhornSettings, earth_movers_distance, optimal_transport, sinkhorn, sliced_wasserstein};
+use driftworld_similarity::{earth_movers_distance, optimal_transport};
 use serde::Deserialize;
 
 #[derive(Deserialize)]
 struct Oracle {
-    directions: usize,
     plans: Vec<Masses>,
     points: Vec<Points>,
-    sinkhorn: Vec<Masses>,
 }
 
 #[derive(Deserialize)]
 struct Masses {
-    #[serde(default)]
     description: String,
     from: Vec<f64>,
     to: Vec<f64>,
     costs: Vec<f64>,
-    regularisation: Option<f64>,
     cost: f64,
 }
 
@@ -27,7 +23,6 @@ struct Points {
     a: Vec<[f64; 2]>,
     b: Vec<[f64; 2]>,
     earth_movers: f64,
-    sliced: f64,
 }
 
 fn oracle() -> Oracle {
@@ -64,33 +59,8 @@ fn plans_cost_what_pot_says_and_prove_it() {
 
 #[test]
 fn points_are_as_far_apart_as_pot_says() {
-    let oracle = oracle();
-    for case in oracle.points {
+    for case in oracle().points {
         let found = earth_movers_distance(&case.a, &case.b).expect("the points are sound");
         check("earth mover's", found, case.earth_movers, 1e-12);
-        let found = sliced_wasserstein(&case.a, &case.b, oracle.directions).expect("the points are sound");
-        check("sliced", found, case.sliced, 1e-12);
-    }
-}
-
-/// POT stops at a marginal error of 1e-13, we at 1e-12: what is left between them is that times the condition of the problem.
-#[test]
-fn entropic_plans_cost_what_pot_says() {
-    for case in oracle().sinkhorn {
-        let settings = SinkhornSettings {
-            tolerance: 1e-12,
-            max_steps: 200_000,
-            ..SinkhornSettings::new(case.regularisation.expect("each has one"))
-        };
-        let found = sinkhorn(&case.from, &case.to, &case.costs, &settings).expect("the masses are sound");
-        assert!(found.marginal_error <= 2e-12, "{found:?}");
-        check("sinkhorn", found.cost, case.cost, 1e-9);
-        let exact = optimal_transport(&case.from, &case.to, &case.costs)
-            .expect("the masses are sound")
-            .cost;
-        assert!(
-            found.lower <= exact + 1e-12 && exact <= found.upper + 1e-12,
-            "{found:?}, exact {exact}"
-        );
     }
 }

@@ -1,5 +1,4 @@
-//! Earth mover's distance of two grids of the same mass. Of grids of different masses it is in `earth_movers_hat.rs`, of points in
-//! `transport/`.
+//! Earth mover's distance of two grids of the same mass. Of points it is in `transport/`.
 
 use super::grid::{Grid, GridShape};
 use crate::SimilarityError;
@@ -34,8 +33,8 @@ pub fn grid_earth_movers_distance(a: &Grid, b: &Grid) -> Result<f64, SimilarityE
     planes.map(|(a, b)| least_work(shape, Units::of(a, b)?)).sum()
 }
 
-/// The work between the cells of a plane. A unit beyond the last cell is nowhere: it is moved from and to any cell for nothing.
-pub(super) fn least_work(shape: GridShape, mut units: Units) -> Result<f64, SimilarityError> {
+/// The work between the cells of a plane.
+fn least_work(shape: GridShape, mut units: Units) -> Result<f64, SimilarityError> {
     for (a, b) in units.from.iter_mut().zip(&mut units.to) {
         let stays = (*a).min(*b);
         *a -= stays;
@@ -45,7 +44,15 @@ pub(super) fn least_work(shape: GridShape, mut units: Units) -> Result<f64, Simi
     if from.is_empty() {
         return Ok(0.0);
     }
-    let costs = distances(shape, &from, &to);
+    let columns = shape.columns();
+    let apart = |a: usize, b: usize| {
+        let (x, y) = ((a % columns).abs_diff(b % columns), (a / columns).abs_diff(b / columns));
+        ((x * x + y * y) as f64).sqrt() * shape.cell()
+    };
+    let costs: Vec<f64> = from
+        .iter()
+        .flat_map(|&a| to.iter().map(move |&b| apart(a, b)))
+        .collect();
     let pick = |units: &[i64], cells: &[usize]| cells.iter().map(|&cell| units[cell]).collect::<Vec<i64>>();
     let found = solve(&pick(&units.from, &from), &pick(&units.to, &to), &costs);
     let work = found
@@ -53,27 +60,4 @@ pub(super) fn least_work(shape: GridShape, mut units: Units) -> Result<f64, Simi
         .iter()
         .map(|&(source, sink, flow)| flow as f64 * costs[source * to.len() + sink]);
     Ok(work.sum::<f64>() * units.unit)
-}
-
-/// Distances in metres between cells of a plane, `(from, to)`; 0 from and to what is beyond the last.
-pub(super) fn distances(shape: GridShape, from: &[usize], to: &[usize]) -> Vec<f64> {
-    let (columns, rows) = (shape.columns(), shape.rows());
-    let mut table = Vec::with_capacity(columns * rows);
-    for y in 0..rows {
-        table.extend((0..columns).map(|x| ((x * x + y * y) as f64).sqrt() * shape.cell()));
-    }
-    let place = |cell: usize| (cell < columns * rows).then_some((cell % columns, cell / columns));
-    let ends: Vec<Option<(usize, usize)>> = to.iter().map(|&cell| place(cell)).collect();
-    let mut costs = Vec::with_capacity(from.len() * to.len());
-    for &cell in from {
-        let Some((x, y)) = place(cell) else {
-            costs.extend(std::iter::repeat_n(0.0, to.len()));
-            continue;
-        };
-        costs.extend(ends.iter().map(|end| match end {
-            Some((ex, ey)) => table[y.abs_diff(*ey) * columns + x.abs_diff(*ex)],
-            None => 0.0,
-        }));
-    }
-    costs
 }

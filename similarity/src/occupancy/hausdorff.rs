@@ -1,4 +1,4 @@
-//! Hausdorff distance of two grids: how far it is to the nearest at most. Without the last 5% it is in `hausdorff_95.rs`.
+//! Hausdorff distance of two grids: how far it is to the nearest at most. On the mean it is in `chamfer.rs`.
 
 use super::bit_grid::BitGrid;
 use super::chamfer::ways;

@@ -1,4 +1,4 @@
-//! Jaccard distance of two grids: taken or free. That of counts is in `ruzicka.rs`, of sets without an extent in `cells.rs`.
+//! Jaccard distance of two grids: taken or free.
 
 use super::bit_grid::BitGrid;
 use crate::SimilarityError;

@@ -1,4 +1,4 @@
-//! Moving mass as cheaply as possible: exactly, by regularisation, and along lines. Grids of it are compared in `occupancy/`.
+//! Moving mass as cheaply as possible, exactly. Grids of it are compared in `occupancy/`.
 
 mod candidates;
 mod earth_movers;
@@ -7,19 +7,13 @@ mod masses;
 mod network_simplex;
 mod plan;
 mod points;
-mod scaling;
-mod sinkhorn;
-mod sliced;
 mod spanning_tree;
 mod start;
 
 pub use earth_movers::earth_movers_distance;
 pub use exact::{MAX_TRANSPORTED, optimal_transport};
 pub use plan::{Move, TransportPlan};
-pub use sinkhorn::{MAX_SINKHORN_STEPS, Sinkhorn, SinkhornSettings, sinkhorn};
-pub use sliced::{MAX_DIRECTIONS, sliced_wasserstein};
 
 pub(crate) use exact::taken;
 pub(crate) use masses::{Units, sum as sum_of_masses};
 pub(crate) use network_simplex::solve;
-pub(crate) use sliced::directions;

@@ -1,4 +1,4 @@
-//! Checks of point sets that weigh 1 as a whole. What lies between two of them is measured by `earth_movers.rs` and `sliced.rs`.
+//! Checks of point sets that weigh 1 as a whole. What lies between two of them is measured by `earth_movers.rs`.
 
 use crate::SimilarityError;
 

@@ -121,7 +121,7 @@ impl WorldMeasure {
     /// # Errors
     /// [`SimilarityError::TooMany`] for more than [`MAX_ASSIGNED`](crate::MAX_ASSIGNED) objects (`ospa`, colours), or
     /// for more than [`MAX_TRANSPORTED`](crate::MAX_TRANSPORTED) cells of a class that have to give or take (the earth
-    /// mover's distances and `sinkhorn`).
+    /// mover's distance).
     pub fn between(self, a: &World, b: &World) -> Result<f64, SimilarityError> {
         match self {
             Self::Occupancy(own) => own.between(a, b),

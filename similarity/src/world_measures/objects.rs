@@ -7,7 +7,7 @@ use driftworld_spec::World;
 use strum::VariantArray;
 
 use crate::scalar::counts_distance;
-use crate::{MetricProperties, Ospa, SimilarityError};
+use crate::{MetricProperties, SimilarityError, ospa};
 
 /// Metres that a missing object counts: what distances of worlds set against one object, too.
 const CUT_OFF: f64 = 10.0;
@@ -17,7 +17,7 @@ const CUT_OFF: f64 = 10.0;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, strum::EnumString, strum::IntoStaticStr, strum::VariantArray)]
 #[strum(serialize_all = "snake_case")]
 pub enum ObjectsMeasure {
-    /// [`Ospa`] of order 1 with a cut-off of 10 m: the mean way, in metres in `0..=10`, from an object to its
+    /// [`ospa`] with a cut-off of 10 m: the mean way, in metres in `0..=10`, from an object to its
     /// counterpart of the same class. An object without one counts 10 m, as does one that is farther away. Of an empty
     /// world and any other it is 10.
     #[default]
@@ -69,7 +69,7 @@ impl ObjectsMeasure {
                 let (a, b) = (places(a), places(b));
                 // One of both ways, so that it is as far there as back to the last bit.
                 let (a, b) = if a > b { (b, a) } else { (a, b) };
-                Ospa::new(CUT_OFF, 1.0)?.between_objects(&a, &b)
+                ospa(&a, &b, CUT_OFF)
             }
             Self::Counts => Ok(counts_distance(&counts(a), &counts(b))),
         }

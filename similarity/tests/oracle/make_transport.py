@@ -7,9 +7,6 @@ import ot
 import scipy
 
 rng = np.random.default_rng(7)
-directions = 24
-angles = (np.arange(directions) + 0.5) * np.pi / directions
-lines = np.stack([np.cos(angles), np.sin(angles)])
 
 
 def masses(n):
@@ -46,28 +43,11 @@ for n, m in [(1, 1), (1, 5), (4, 4), (7, 3), (20, 20), (20, 30), (50, 50)]:
             "a": a.tolist(),
             "b": b.tolist(),
             "earth_movers": float(ot.emd2([], [], cost, numItermax=10**7)),
-            "sliced": float(ot.sliced_wasserstein_distance(a, b, p=1, projections=lines)),
         })
-
-sinkhorn = []
-for n, m, regularisation in [(5, 5, 0.1), (10, 14, 0.05), (20, 20, 0.02), (20, 20, 0.5), (12, 9, 2.0)]:
-    cost = ot.dist(rng.random((n, 2)), rng.random((m, 2)), metric="euclidean").round(9)
-    a, b = masses(n), masses(m)
-    a, b = (a + 0.01) / (a + 0.01).sum(), (b + 0.01) / (b + 0.01).sum()
-    plan = ot.sinkhorn(a, b, cost, regularisation, method="sinkhorn_log", numItermax=200_000, stopThr=1e-13)
-    sinkhorn.append({
-        "from": a.tolist(),
-        "to": b.tolist(),
-        "costs": cost.ravel().tolist(),
-        "regularisation": regularisation,
-        "cost": float((plan * cost).sum()),
-    })
 
 document = {
     "made_by": {"numpy": np.__version__, "scipy": scipy.__version__, "pot": ot.__version__},
-    "directions": directions,
     "plans": plans,
     "points": points,
-    "sinkhorn": sinkhorn,
 }
 Path(__file__).with_name("transport.json").write_text(json.dumps(document) + "\n")

@@ -1,6 +1,7 @@
 //! [`By`]: the names of what variants and worlds are compared by. The measures are `similarity`'s, what is compared is drawn and run
 //! by the crates above it.
 
+use driftworld_text::{WordKind, removed};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use strum::VariantNames as _;
@@ -40,42 +41,14 @@ pub enum By {
     PicturesStructure,
     /// Where objects are: the least work that moves them, by cells.
     Occupancy,
-    /// Where objects are: least work, and a penalty for what is more in one.
-    #[serde(rename = "occupancy:earth_movers_hat")]
-    #[strum(serialize = "occupancy:earth_movers_hat")]
-    OccupancyEarthMoversHat,
-    /// Where objects are: least work, blurred.
-    #[serde(rename = "occupancy:sinkhorn")]
-    #[strum(serialize = "occupancy:sinkhorn")]
-    OccupancySinkhorn,
-    /// Where objects are: least work along drawn lines.
-    #[serde(rename = "occupancy:sliced_wasserstein")]
-    #[strum(serialize = "occupancy:sliced_wasserstein")]
-    OccupancySlicedWasserstein,
-    /// Which cells are taken: how many differ.
-    #[serde(rename = "occupancy:hamming")]
-    #[strum(serialize = "occupancy:hamming")]
-    OccupancyHamming,
     /// Which cells are taken: the share of them that is taken in one world alone.
     #[serde(rename = "occupancy:jaccard")]
     #[strum(serialize = "occupancy:jaccard")]
     OccupancyJaccard,
-    /// How many objects are in cells: the share of them that is in one world alone.
-    #[serde(rename = "occupancy:ruzicka")]
-    #[strum(serialize = "occupancy:ruzicka")]
-    OccupancyRuzicka,
-    /// Which cells are taken: Dice's dissimilarity.
-    #[serde(rename = "occupancy:dice")]
-    #[strum(serialize = "occupancy:dice")]
-    OccupancyDice,
     /// Which cells are taken: the farthest that one is from the nearest of the other world.
     #[serde(rename = "occupancy:hausdorff")]
     #[strum(serialize = "occupancy:hausdorff")]
     OccupancyHausdorff,
-    /// The same for all but the farthest twentieth.
-    #[serde(rename = "occupancy:hausdorff_95")]
-    #[strum(serialize = "occupancy:hausdorff_95")]
-    OccupancyHausdorff95,
     /// Which cells are taken: how far each is from the nearest of the other world, on average.
     #[serde(rename = "occupancy:chamfer")]
     #[strum(serialize = "occupancy:chamfer")]
@@ -148,6 +121,9 @@ impl By {
     pub fn from_name(name: &str) -> Result<Self, String> {
         let american = name.replacen("behaviour", "behavior", 1);
         american.parse().map_err(|_| {
+            if let Some(advice) = removed(WordKind::By, name) {
+                return format!("found {name:?}, {advice}");
+            }
             let near = did_you_mean(name, Self::names().iter().copied());
             format!("found {name:?}, expected one of {}{near}", Self::names().join(", "))
         })
