@@ -1,39 +1,12 @@
-//! How long distances between distributions take: of samples, by closed form, by quadrature.
+//! How long distances between distributions take: by closed form, by quadrature, by samples.
 
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use driftworld_similarity::distribution::{
-    SortedSamples, energy, hellinger, jensen_shannon, maximum_mean_discrepancy, planar_wasserstein_1, total_variation,
-    wasserstein_1, wasserstein_2,
+    energy, hellinger, jensen_shannon, planar_wasserstein_1, total_variation, wasserstein_1, wasserstein_2,
 };
 use driftworld_spec::Distribution::{self, Annulus, Beta, Box, Normal, Triangular};
-
-/// Numbers without an order, the same in each run.
-fn scattered(count: u32, seed: f64) -> Vec<f64> {
-    let golden = 0.618_033_988_749_894_9;
-    (1..=count)
-        .map(|k| (f64::from(k) * golden * (1.0 + seed)).fract() * 10.0)
-        .collect()
-}
-
-fn samples(c: &mut Criterion) {
-    let (x, y) = (scattered(256, 0.1), scattered(256, 0.2));
-    let (mut a, mut b) = (SortedSamples::default(), SortedSamples::default());
-    c.bench_function("Wasserstein-1 of 256 samples, sorting both", |bench| {
-        bench.iter(|| {
-            a.refill(black_box(&x)).expect("samples are numbers");
-            b.refill(black_box(&y)).expect("samples are numbers");
-            a.wasserstein_1(&b)
-        });
-    });
-    c.bench_function("Wasserstein-1 of 256 samples, sorted before", |bench| {
-        bench.iter(|| black_box(&a).wasserstein_1(black_box(&b)));
-    });
-    c.bench_function("energy distance of 256 samples, sorted before", |bench| {
-        bench.iter(|| black_box(&a).energy(black_box(&b)));
-    });
-}
 
 fn declared(c: &mut Criterion) {
     let normals = (Normal { mean: 0.0, std: 1.0 }, Normal { mean: 1.0, std: 2.0 });
@@ -63,7 +36,6 @@ fn declared(c: &mut Criterion) {
     time("total variation", &|a, b| value(total_variation(a, b)));
     time("Hellinger distance", &|a, b| value(hellinger(a, b)));
     time("Jensen–Shannon distance", &|a, b| value(jensen_shannon(a, b)));
-    time("mean discrepancy", &|a, b| value(maximum_mean_discrepancy(a, b, 1.0)));
 }
 
 fn planar(c: &mut Criterion) {
@@ -81,5 +53,5 @@ fn planar(c: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, samples, declared, planar);
+criterion_group!(benches, declared, planar);
 criterion_main!(benches);

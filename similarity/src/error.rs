@@ -27,20 +27,6 @@ pub enum SimilarityError {
         /// What was found.
         found: f64,
     },
-    /// A measure that has no finite number for two distributions.
-    #[error("{measure} of {a:?} to {b:?}: found {found}, expected a finite number; {instead}")]
-    NotMeasured {
-        /// The measure.
-        measure: &'static str,
-        /// The first variant, and the parameter.
-        a: String,
-        /// The second.
-        b: String,
-        /// What there is instead of a number.
-        found: &'static str,
-        /// What to compare by.
-        instead: &'static str,
-    },
     /// A mass that nothing can have.
     #[error("mass {index} of {side}: found {found}, expected a number from 0 to 1e200")]
     BadMass {
@@ -86,17 +72,6 @@ pub enum SimilarityError {
         found: usize,
         /// How many are possible.
         limit: usize,
-    },
-    /// An object whose class a raster has no plane for.
-    #[error(
-        "class of an object: found {found:?}, expected one of {expected}; make the raster of all worlds, or merge classes",
-        expected = one_line(expected)
-    )]
-    UnknownClass {
-        /// The class.
-        found: String,
-        /// Those that there are.
-        expected: String,
     },
     /// A matrix would not fit.
     #[error("found {found} items, expected at most {limit}; compare fewer at a time")]
@@ -408,13 +383,6 @@ mod tests {
                 b: "two".into(),
                 found: -1.0,
             },
-            SimilarityError::NotMeasured {
-                measure: "jeffreys",
-                a: "t#one (light)".into(),
-                b: "t#two (light)".into(),
-                found: "infinity, for one draws what the other cannot",
-                instead: "compare it by jensen_shannon, which is finite for any two",
-            },
             SimilarityError::BadMass {
                 side: "from",
                 index: 3,
@@ -433,10 +401,6 @@ mod tests {
             SimilarityError::TooFine {
                 found: 2_000_000,
                 limit: 1_048_576,
-            },
-            SimilarityError::UnknownClass {
-                found: "lamp".into(),
-                expected: "rock, tree".into(),
             },
             SimilarityError::TooMany {
                 found: 30_000,

@@ -67,6 +67,8 @@ const REMOVED: &[(WordKind, &str, &str)] = &[
     (WordKind::By, "occupancy:ruzicka", "occupancy:jaccard"),
     (WordKind::By, "occupancy:sinkhorn", "occupancy"),
     (WordKind::By, "occupancy:sliced_wasserstein", "occupancy"),
+    (WordKind::Measure, "jeffreys", "jensen_shannon"),
+    (WordKind::Measure, "maximum_mean_discrepancy", "energy"),
     (WordKind::Order, "bottleneck", "gradual"),
     (WordKind::Order, "contrast", "abrupt"),
     (WordKind::Order, "farthest-first", "farthest"),

@@ -8,11 +8,11 @@ use driftworld_spec::{Distribution, MeasureName, Parameter, ParameterType};
 use crate::combined::value::share;
 use crate::distribution::{
     Measured, Method, bures_wasserstein, circular_wasserstein_1, color_wasserstein_1, color_wasserstein_2,
-    draws_headings, energy, hellinger, jeffreys, jensen_shannon, maximum_mean_discrepancy, placement_wasserstein_1,
-    placement_wasserstein_2, shares_wasserstein_1, total_variation, wasserstein_1, wasserstein_2,
+    draws_headings, energy, hellinger, jensen_shannon, placement_wasserstein_1, placement_wasserstein_2,
+    shares_wasserstein_1, total_variation, wasserstein_1, wasserstein_2,
 };
 use crate::scalar::choice_mismatch;
-use crate::{ColorMeasure, MetricProperties, SimilarityError};
+use crate::{ColorMeasure, MetricProperties};
 
 /// Of so many distributions all pairs are compared to find the widest.
 const ALL_PAIRS: usize = 24;
@@ -25,8 +25,6 @@ pub(super) struct DrawnMeasure {
     /// The widest distance of two distributions that the task's declared values can make of the parameter.
     /// `None` where that is infinite: numbers count as they are.
     widest: Option<f64>,
-    /// The width of the kernel of the maximum mean discrepancy: the widest Wasserstein-1 distance of two such.
-    bandwidth: f64,
     can_differ: bool,
     /// Whether points are drawn by different families, or colours from lists and densities, between which there are only samples.
     mixed: bool,
@@ -52,19 +50,9 @@ impl DrawnMeasure {
             colors: colors.then(|| ways_of(measure)),
             headings: parameter.kind == ParameterType::Heading || all.iter().any(draws_headings),
             widest: Some(1.0),
-            bandwidth: 1.0,
             can_differ: all.len() > 1,
             mixed: families.len() > 1 || (colors && kinds == [true; 2]),
         };
-        if measure == Some(MeasureName::MaximumMeanDiscrepancy) {
-            let by_work = Self {
-                measure: None,
-                ..made.clone()
-            };
-            made.bandwidth = Some(by_work.widest_of(all))
-                .filter(|width| usable(*width))
-                .unwrap_or(1.0);
-        }
         let widest = made.widest_of(all);
         made.widest = (widest != f64::INFINITY).then_some(if usable(widest) { widest } else { 1.0 });
         made
@@ -94,7 +82,6 @@ impl DrawnMeasure {
     pub(super) fn properties(&self) -> MetricProperties {
         match self.measure {
             Some(MeasureName::SameOrNot) => MetricProperties::Metric,
-            Some(MeasureName::Jeffreys) => MetricProperties::Distance,
             Some(MeasureName::BuresWasserstein) => MetricProperties::Pseudometric,
             _ if self.mixed => MetricProperties::Distance,
             _ => self.colors.map_or(MetricProperties::Metric, ColorMeasure::properties),
@@ -104,28 +91,6 @@ impl DrawnMeasure {
     /// Whether its number has a bound that the task declares.
     pub(super) fn is_bounded(&self) -> bool {
         self.widest.is_some()
-    }
-
-    /// The error for a number that is none, where the measure asked for is known to have none for some distributions.
-    pub(super) fn not_measured(&self, a: &str, b: &str, raw: f64) -> Option<SimilarityError> {
-        let (found, instead) = match self.measure? {
-            MeasureName::Jeffreys if raw == f64::INFINITY => (
-                "infinity, for one draws what the other cannot",
-                "compare it by jensen_shannon, which is finite for any two",
-            ),
-            MeasureName::MaximumMeanDiscrepancy if raw.is_nan() => (
-                "more different numbers than it goes through",
-                "compare it by energy, which takes any number of them",
-            ),
-            _ => return None,
-        };
-        Some(SimilarityError::NotMeasured {
-            measure: self.measure?.name(),
-            a: a.to_owned(),
-            b: b.to_owned(),
-            found,
-            instead,
-        })
     }
 
     /// Whether what the task declares can make more than one distribution of the parameter.
@@ -161,20 +126,7 @@ impl DrawnMeasure {
             Some(MeasureName::TotalVariation) => found("total variation / widest", total_variation(a, b)),
             Some(MeasureName::Hellinger) => found("hellinger / widest", hellinger(a, b)),
             Some(MeasureName::JensenShannon) => found("jensen-shannon / widest", jensen_shannon(a, b)),
-            Some(MeasureName::Jeffreys) => {
-                let name = if self.is_bounded() {
-                    "jeffreys / widest"
-                } else {
-                    "jeffreys in nats"
-                };
-                // What is not even of one type has nothing in common.
-                found(name, Some(jeffreys(a, b).unwrap_or(Measured::closed(f64::INFINITY))))
-            }
             Some(MeasureName::Energy) => found("energy / widest", energy(a, b)),
-            Some(MeasureName::MaximumMeanDiscrepancy) => {
-                let apart = maximum_mean_discrepancy(a, b, self.bandwidth).unwrap_or(Measured::closed(f64::NAN));
-                found("maximum mean discrepancy / widest", Some(apart))
-            }
             Some(MeasureName::BuresWasserstein) => found(
                 "bures-wasserstein / widest",
                 bures_wasserstein(a, b).map(Measured::closed),

@@ -117,10 +117,8 @@ impl VariantMeasure {
     /// How far apart two variants of the task are.
     ///
     /// # Errors
-    /// [`SimilarityError::DifferentTasks`] if one is not a variant of this task, [`SimilarityError::NotMeasured`] for
-    /// distributions that the measure asked for has no finite number for (`jeffreys` where one draws what the other cannot,
-    /// `maximum_mean_discrepancy` of thousands of different numbers), [`SimilarityError::NotADistance`] for distributions of
-    /// numbers so large that their distance is not finite.
+    /// [`SimilarityError::DifferentTasks`] if one is not a variant of this task, [`SimilarityError::NotADistance`] for
+    /// distributions of numbers so large that their distance is not finite.
     pub fn between(&self, a: &Variant, b: &Variant) -> Result<Distance, SimilarityError> {
         for variant in [a, b] {
             if !self.takes(variant) {
@@ -147,11 +145,6 @@ impl VariantMeasure {
             };
             if !raw.is_finite() || !normalised.is_finite() {
                 let [a, b] = [&a, &b].map(|variant| format!("{} ({name})", variant.id()));
-                if let By::Drawn(drawn) = &compared.by
-                    && let Some(error) = drawn.not_measured(&a, &b, raw)
-                {
-                    return Err(error);
-                }
                 return Err(SimilarityError::NotADistance { a, b, found: raw });
             }
             parts.extend(compared.affects.iter().map(|element| Part {
@@ -174,8 +167,8 @@ impl VariantMeasure {
     }
 
     /// How far two variants of the task can be apart at most, as far as each parameter goes: the sum over parameters of what
-    /// the whole declared range counts. 0 for a task without parameters that count, infinite where one by `jeffreys` has no
-    /// bound.
+    /// the whole declared range counts. 0 for a task without parameters that count, infinite where the distributions of one
+    /// have no finite distance.
     pub fn diameter(&self) -> f64 {
         let counts = |compared: &Compared| {
             let weights = compared.affects.iter().map(|element| self.weights.of(*element));
@@ -192,7 +185,7 @@ impl VariantMeasure {
             .sum()
     }
 
-    /// Whether the diameter is a number to take shares of: above 0, and not infinite as by the measure `jeffreys`.
+    /// Whether the diameter is a number to take shares of: above 0, and finite.
     pub fn has_diameter(&self) -> bool {
         let diameter = self.diameter();
         diameter > 0.0 && diameter.is_finite()

@@ -1,4 +1,4 @@
-//! Energy distance between distributions of numbers. Its kin with a kernel is in `maximum_mean_discrepancy.rs`.
+//! Energy distance between distributions of numbers. Other areas between cumulative functions are in `wasserstein_1.rs`.
 
 use std::f64::consts::PI;
 

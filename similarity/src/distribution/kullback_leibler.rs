@@ -1,4 +1,4 @@
-//! Kullback–Leibler divergence: what it costs to take one distribution for the other. Both ways added up are in `jeffreys.rs`, its bounded kin is in
+//! Kullback–Leibler divergence: what it costs to take one distribution for the other. Its bounded kin is in
 //! `jensen_shannon.rs`.
 
 use driftworld_spec::Distribution;

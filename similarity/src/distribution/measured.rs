@@ -84,19 +84,6 @@ impl Measured {
         Self { value, method }
     }
 
-    /// The sum of two that were found by a formula, over values or by quadrature, with the errors of both.
-    pub(crate) fn plus(self, other: Self) -> Self {
-        let method = match (self.method, other.method) {
-            (Method::Quadrature { tolerance: a }, Method::Quadrature { tolerance: b }) => {
-                Method::Quadrature { tolerance: a + b }
-            }
-            (rougher @ Method::Quadrature { .. }, _) | (_, rougher) if rougher != Method::Closed => rougher,
-            (rougher, _) => rougher,
-        };
-        let value = self.value + other.value;
-        Self { value, method }
-    }
-
     /// The number and its error times a factor.
     pub(crate) fn times(self, factor: f64) -> Self {
         let method = match self.method {

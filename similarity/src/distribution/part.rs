@@ -60,14 +60,6 @@ impl Part {
         matches!(self.family, Distribution::Uniform { .. })
     }
 
-    /// Mean and standard deviation of a normal.
-    pub(super) fn bell(&self) -> Option<(f64, f64)> {
-        match self.family {
-            Distribution::Normal { mean, std } => Some((mean + self.shift, std)),
-            _ => None,
-        }
-    }
-
     pub(super) fn draws_headings(&self) -> bool {
         matches!(self.family, Distribution::VonMises { .. })
     }

@@ -110,26 +110,6 @@ pub(crate) fn integrate<const N: usize>(
     (value, error)
 }
 
-/// The places and weights of the rule between two ends, with so many steps per unit: up to 64, a power of 2.
-pub(crate) fn rule([low, high]: [f64; 2], steps: usize) -> Vec<(Node, f64)> {
-    let (width, stride) = (high - low, FINEST / steps);
-    let each = nodes()
-        .iter()
-        .enumerate()
-        .step_by(stride)
-        .flat_map(|(k, (share, weight))| {
-            let offset = width * share;
-            let weight = width * weight / steps as f64;
-            let left = Node { base: low, offset };
-            let right = Node {
-                base: high,
-                offset: -offset,
-            };
-            [(k > 0).then_some((left, weight)), Some((right, weight))]
-        });
-    each.flatten().collect()
-}
-
 /// Where a stretch is looked at for a change of sign, as shares of it: closer near the ends.
 const LOOKS: [f64; 13] = [
     1e-7,

@@ -1,6 +1,17 @@
 //! What to do about values that come near to what was meant: names, numbers and truths in the wrong dress. Colours are in `color.rs`.
 
+use driftworld_text::{WordKind, removed};
 use serde_json::Value;
+
+/// The advice for a word that earlier releases took at a place.
+pub(super) fn for_removed(pointer: &str, value: &Value) -> Option<String> {
+    let kind = match pointer.rsplit('/').next()? {
+        "measure" => WordKind::Measure,
+        "compare_by" => WordKind::By,
+        _ => return None,
+    };
+    removed(kind, value.as_str()?)
+}
 
 /// The advice for a value where these types of JSON Schema may stand.
 pub(super) fn for_types(value: &Value, allows: impl Fn(&str) -> bool) -> Option<String> {

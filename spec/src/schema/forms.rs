@@ -330,7 +330,8 @@ fn none_of(own: &str, value: &Value, forms: &[Form]) -> Finding {
         expected
     };
     let problem = Problem::new("spec/value", own, describe(value), expected);
-    let problem = match advice_for(value, forms, &words) {
+    let advice = advice::for_removed(own, value).or_else(|| advice_for(value, forms, &words));
+    let problem = match advice {
         Some(advice) => problem.advise(advice),
         None => problem,
     };

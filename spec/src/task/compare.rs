@@ -83,14 +83,8 @@ pub enum MeasureName {
     Hellinger,
     /// Distributions: the root of Jensen and Shannon's divergence.
     JensenShannon,
-    /// Distributions: Jeffreys' divergence, Kullback and Leibler's both ways added up. Not a metric, and infinite where one
-    /// draws what the other cannot: variants that are so have no distance, and an error says so.
-    Jeffreys,
     /// Distributions of numbers: the energy distance, its root.
     Energy,
-    /// Distributions of numbers: the maximum mean discrepancy with a Gaussian kernel, as wide as the widest Wasserstein-1
-    /// distance that the declared ranges and choices allow.
-    MaximumMeanDiscrepancy,
     /// Distributions of points: least squared work between normal distributions of the same means and spreads, its root.
     BuresWasserstein,
     /// Layouts: what stands of the walls in one alone, as a share of what stands in either. Doors and letters do not count.
@@ -114,12 +108,8 @@ impl MeasureName {
         kind: ParameterType,
     ) -> Option<&'static str> {
         let is_color = self.is_of_colors();
-        let overlaps = matches!(
-            self,
-            Self::TotalVariation | Self::Hellinger | Self::JensenShannon | Self::Jeffreys
-        );
+        let overlaps = matches!(self, Self::TotalVariation | Self::Hellinger | Self::JensenShannon);
         let moves = matches!(self, Self::Wasserstein1 | Self::Wasserstein2);
-        let of_numbers = matches!(self, Self::Energy | Self::MaximumMeanDiscrepancy);
         let (fits, those) = match Draws::of(distribution, kind) {
             _ if self == Self::SameOrNot => return None,
             Draws::Colors => (
@@ -129,8 +119,7 @@ impl MeasureName {
             ),
             Draws::ListedColors => (
                 is_color || moves || overlaps,
-                "wasserstein_1, wasserstein_2, total_variation, hellinger, jensen_shannon, jeffreys, a measure of colours or \
-                 same_or_not",
+                "wasserstein_1, wasserstein_2, total_variation, hellinger, jensen_shannon, a measure of colours or same_or_not",
             ),
             Draws::Points => (
                 moves || self == Self::BuresWasserstein,
@@ -143,17 +132,17 @@ impl MeasureName {
             ),
             Draws::Headings => (
                 self == Self::Wasserstein1 || overlaps,
-                "wasserstein_1, total_variation, hellinger, jensen_shannon, jeffreys or same_or_not, since headings are \
+                "wasserstein_1, total_variation, hellinger, jensen_shannon or same_or_not, since headings are \
                  compared round the circle",
             ),
             Draws::Texts => (
                 overlaps,
-                "total_variation, hellinger, jensen_shannon, jeffreys or same_or_not, since words are no distance apart",
+                "total_variation, hellinger, jensen_shannon or same_or_not, since words are no distance apart",
             ),
             Draws::Numbers => (
-                moves || overlaps || of_numbers,
-                "wasserstein_1, wasserstein_2, total_variation, hellinger, jensen_shannon, jeffreys, energy, \
-                 maximum_mean_discrepancy or same_or_not",
+                moves || overlaps || self == Self::Energy,
+                "wasserstein_1, wasserstein_2, total_variation, hellinger, jensen_shannon, energy or \
+                 same_or_not",
             ),
         };
         (!fits).then_some(those)
@@ -198,9 +187,7 @@ impl MeasureName {
             | Self::TotalVariation
             | Self::Hellinger
             | Self::JensenShannon
-            | Self::Jeffreys
             | Self::Energy
-            | Self::MaximumMeanDiscrepancy
             | Self::BuresWasserstein => (
                 by_distribution,
                 "a randomized parameter, or one of type distribution for it",

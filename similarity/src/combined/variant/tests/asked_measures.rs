@@ -1,5 +1,4 @@
-//! Measures that a parameter asks for by name: what they are by hand, what counts 1, which laws they keep, and where
-//! they have no number.
+//! Measures that a parameter asks for by name: what they are by hand, what counts 1, and which laws they keep.
 
 use super::*;
 use crate::Lab;
@@ -126,23 +125,10 @@ fn relative_differences_are_over_the_most_that_the_domain_allows() {
 #[test]
 fn distributions_are_measured_as_by_hand_over_the_widest_pair() {
     let at = |x: f64| format!(r#"{{ "normal": {{ "mean": {x}, "std": 0 }} }}"#);
-    let normal = |x: f64| format!(r#"{{ "normal": {{ "mean": {x}, "std": 2 }} }}"#);
     let ask = |measure: &str, three: [String; 3]| found("distribution", measure, &three.each_ref().map(String::as_str));
     // Of single numbers √(2 |a − b|).
     let energy = ask("energy", [at(0.0), at(1.0), at(4.0)]);
     assert_found(energy, "energy / widest", 2.0_f64.sqrt(), 0.5);
-    // The kernel is as wide as the two farthest are apart.
-    let apart = |way: f64| (2.0 - 2.0 * libm::exp(-way * way / 32.0)).sqrt();
-    let discrepancy = ask("maximum_mean_discrepancy", [at(0.0), at(1.0), at(4.0)]);
-    assert_found(
-        discrepancy,
-        "maximum mean discrepancy / widest",
-        apart(1.0),
-        apart(1.0) / apart(4.0),
-    );
-    // Of normal ones that are equally wide, the square of the way in deviations.
-    let jeffreys = ask("jeffreys", [normal(0.0), normal(1.0), normal(4.0)]);
-    assert_found(jeffreys, "jeffreys / widest", 0.25, 1.0 / 16.0);
     let round = |x: f64, std: f64| format!(r#"{{ "gaussian": {{ "mean": [{x}, 0], "std": {std} }} }}"#);
     let places = ask("bures_wasserstein", [round(0.0, 1.0), round(3.0, 3.0), round(6.0, 1.0)]);
     // 3 m and 2 m of spread along both axes.
@@ -151,57 +137,6 @@ fn distributions_are_measured_as_by_hand_over_the_widest_pair() {
         "bures-wasserstein / widest",
         17.0_f64.sqrt(),
         17.0_f64.sqrt() / 6.0,
-    );
-}
-
-#[test]
-fn jeffreys_without_a_bound_counts_nats_and_where_it_is_infinite_there_is_no_distance() {
-    let text = r#"{ "name": "t", "parameters": {
-        "odds": { "role": "variant", "type": "number", "affects": ["R"], "range": [0, 1], "default": 0.5 },
-        "p": { "role": "randomized", "type": "boolean", "affects": ["R"], "distribution": { "bernoulli": { "p": { "param": "odds" } } },
-               "compare": { "measure": "jeffreys" } } },
-      "variants": { "even": {}, "rare": { "odds": 0.2 }, "never": { "odds": 0 } } }"#;
-    let task = TaskSpec::from_json("t.json", text).unwrap();
-    let distance = between(&task, "even", "rare").unwrap();
-    let part = distance.parts.iter().find(|part| part.name == "p").unwrap();
-    let nats = 0.3 * libm::log(4.0);
-    assert_found(
-        (part.measure, part.raw, part.normalised),
-        "jeffreys in nats",
-        nats,
-        nats,
-    );
-    let measure = VariantMeasure::new(&task, Weights::default());
-    assert_eq!(measure.diameter(), f64::INFINITY);
-    assert_eq!(VariantMeasure::new(&task, Weights::only(Element::S)).diameter(), 0.0);
-    assert_eq!(between(&task, "never", "never").unwrap().total, 0.0);
-    let error = between(&task, "even", "never").unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "jeffreys of \"t#even (p)\" to \"t#never (p)\": found infinity, for one draws what the other cannot, expected a finite \
-         number; compare it by jensen_shannon, which is finite for any two"
-    );
-}
-
-#[test]
-fn a_discrepancy_of_too_many_numbers_is_refused_and_not_replaced() {
-    let counts = |mean: f64| format!(r#"{{ "poisson": {{ "mean": {mean} }} }}"#);
-    let error = between(
-        &task(
-            "distribution",
-            "maximum_mean_discrepancy",
-            &[counts(9e4), counts(9.1e4)],
-        ),
-        "v0",
-        "v1",
-    );
-    let error = error.unwrap_err();
-    assert_eq!(error.code(), "similarity/not-measured");
-    assert!(
-        error
-            .to_string()
-            .ends_with("compare it by energy, which takes any number of them"),
-        "{error}"
     );
 }
 
@@ -234,11 +169,6 @@ fn each_says_which_laws_it_keeps() {
     );
     assert_eq!(properties("distribution", "energy", laws), MetricProperties::Metric);
     assert_eq!(
-        properties("distribution", "maximum_mean_discrepancy", laws),
-        MetricProperties::Metric
-    );
-    assert_eq!(properties("distribution", "jeffreys", laws), MetricProperties::Distance);
-    assert_eq!(
         properties("distribution", "bures_wasserstein", places),
         MetricProperties::Pseudometric
     );
@@ -259,10 +189,8 @@ fn three(of: impl Strategy<Value = String>) -> impl Strategy<Value = Vec<String>
 
 /// A type, a measure and three choices, for each measure that was drawn.
 fn asked() -> impl Strategy<Value = (&'static str, &'static str, Vec<String>)> {
-    let normal = || {
-        let numbers = (-9.0..9.0_f64, 0.5..4.0_f64);
-        numbers.prop_map(|(mean, std)| format!(r#"{{ "normal": {{ "mean": {mean}, "std": {std} }} }}"#))
-    };
+    let normal = (-9.0..9.0_f64, 0.5..4.0_f64)
+        .prop_map(|(mean, std)| format!(r#"{{ "normal": {{ "mean": {mean}, "std": {std} }} }}"#));
     let flat = (-9.0..0.0_f64, 1.0..4.0_f64)
         .prop_map(|(low, high)| format!(r#"{{ "uniform": {{ "low": {low}, "high": {high} }} }}"#));
     let around = |law: &'static str, middle: &'static str, width: &'static str| {
@@ -272,14 +200,8 @@ fn asked() -> impl Strategy<Value = (&'static str, &'static str, Vec<String>)> {
     let place = prop_oneof![around("gaussian", "mean", "std"), around("disc", "center", "radius")];
     let number = (-9.0..9.0_f64).prop_map(|x| x.to_string());
     let color = prop::array::uniform3(0.0..=1.0_f64).prop_map(|color| format!("{color:?}"));
-    let of_numbers = prop::sample::select(vec!["energy", "maximum_mean_discrepancy"]);
     prop_oneof![
-        (three(prop_oneof![normal(), flat]), of_numbers).prop_map(|(choices, measure)| (
-            "distribution",
-            measure,
-            choices
-        )),
-        three(normal()).prop_map(|choices| ("distribution", "jeffreys", choices)),
+        three(prop_oneof![normal, flat]).prop_map(|choices| ("distribution", "energy", choices)),
         three(place).prop_map(|choices| ("distribution", "bures_wasserstein", choices)),
         three(number).prop_map(|choices| ("number", "relative_difference", choices)),
         three(color).prop_map(|choices| ("color", "hyab", choices)),
