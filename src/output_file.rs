@@ -31,9 +31,8 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 ///
 /// A name that ends like another kind of file is refused: it would lie.
 pub(crate) fn write_picture(path: &Path, picture: &Drawing) -> Result<(), Failure> {
-    const OTHERS: [&str; 15] = [
-        "jpg", "jpeg", "gif", "bmp", "webp", "tif", "tiff", "pdf", "csv", "html", "json", "jsonl", "npy", "parquet",
-        "txt",
+    const OTHERS: [&str; 14] = [
+        "jpg", "jpeg", "gif", "bmp", "webp", "tif", "tiff", "pdf", "csv", "html", "json", "jsonl", "parquet", "txt",
     ];
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     if ending.eq_ignore_ascii_case("svg") {

@@ -1,4 +1,4 @@
-//! Distance matrices as CSV, JSON and numpy's arrays; the first byte says which.
+//! Distance matrices as CSV and JSON; the first byte says which.
 
 use driftworld_similarity::DistanceMatrix;
 
@@ -12,11 +12,10 @@ pub(crate) fn check(bytes: &[u8]) {
     let Some((form, bytes)) = bytes.split_first() else {
         return;
     };
-    let text = || String::from_utf8_lossy(bytes).into_owned();
+    let text = String::from_utf8_lossy(bytes);
     let read = match form {
-        b'c' => DistanceMatrix::from_csv(&text()),
-        b'j' => DistanceMatrix::from_json(&text()),
-        _ => DistanceMatrix::from_npy(bytes, None),
+        b'c' => DistanceMatrix::from_csv(&text),
+        _ => DistanceMatrix::from_json(&text),
     };
     let matrix = match read {
         Ok(matrix) => matrix,
@@ -37,8 +36,4 @@ pub(crate) fn check(bytes: &[u8]) {
     };
     same(DistanceMatrix::from_csv(&matrix.to_csv()));
     same(DistanceMatrix::from_json(&matrix.to_json()));
-    same(DistanceMatrix::from_npy(
-        &matrix.to_npy(),
-        Some(matrix.labels().to_vec()),
-    ));
 }

@@ -10,10 +10,10 @@ use driftworld_similarity::{
     DistanceMatrix, Method, OrderOptions, SimilarityError, Weights, classical_map, order, share_of_shorter_orders,
 };
 use driftworld_spec::{Element, Variant, World};
+use driftworld_text::{WordKind, removed};
 use numpy::{PyArray2, PyReadonlyArray2, ToPyArray};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
 use serde_json::json;
 
 use crate::document::{Whole, json_to_py, to_py};
@@ -162,22 +162,12 @@ impl PyMatrix {
         Ok(Self(Arc::new(DistanceMatrix::from_json(text)?)))
     }
 
-    #[staticmethod]
-    #[pyo3(signature = (bytes, labels=None))]
-    fn from_npy(bytes: &[u8], labels: Option<Vec<String>>) -> Result<Self> {
-        Ok(Self(Arc::new(DistanceMatrix::from_npy(bytes, labels)?)))
-    }
-
     fn to_csv(&self) -> String {
         self.0.to_csv()
     }
 
     fn to_json(&self) -> String {
         self.0.to_json()
-    }
-
-    fn to_npy<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
-        PyBytes::new(py, &self.0.to_npy())
     }
 
     /// The items' names.
@@ -241,6 +231,12 @@ impl PyMatrix {
     fn __len__(&self) -> usize {
         self.0.len()
     }
+}
+
+/// What to say of the ending of a file in a format that was removed.
+#[pyfunction]
+pub(crate) fn removed_format(ending: &str) -> Option<String> {
+    removed(WordKind::Format, ending)
 }
 
 /// The names of the methods of ordering.

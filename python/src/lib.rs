@@ -44,7 +44,7 @@ mod native {
     #[pymodule_export]
     use super::design::design_curriculum;
     #[pymodule_export]
-    use super::distances::{PyMatrix, compared_by, distance, order_methods};
+    use super::distances::{PyMatrix, compared_by, distance, order_methods, removed_format};
     #[pymodule_export]
     use super::document::check;
     #[pymodule_export]

@@ -49,7 +49,7 @@ pub(crate) struct Report {
     /// Without it, the same logs always give the same bytes.
     #[arg(long, value_name = "WORDS")]
     date: Option<String>,
-    /// A distance matrix from `driftworld order --matrix`: .csv, .json or .npy.
+    /// A distance matrix from `driftworld order --matrix`: .csv or .json.
     #[arg(long, value_name = "FILE")]
     distances: Option<PathBuf>,
     /// A task spec to measure distances with. Repeatable.

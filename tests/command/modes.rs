@@ -19,7 +19,7 @@ const COMMANDS: [&str; 22] = [
     "sheet find_objects#red --size 32 -o out/sheet.png",
     "photograph small.json -o out/photographs",
     "order find_objects#red find_objects#blue --matrix out/matrix.csv --plot out/path.png",
-    "order find_objects#red find_objects#blue --matrix out/matrix.npy",
+    "order find_objects#red find_objects#blue --matrix out/matrix.json",
     "order find_objects#red find_objects#blue --matrix out/matrix.json",
     "curriculum find_objects#red find_objects#blue --learn 1 --eval-episodes 1 -o out/scenario.json --plot out/plan.png",
     "run out/scenario.json --agent random -o out/log",

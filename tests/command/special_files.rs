@@ -48,8 +48,6 @@ fn command_lines() -> Vec<Vec<&'static str>> {
         "order SPECIAL",
         "order --from-matrix SPECIAL.csv",
         "order --from-matrix SPECIAL.json",
-        "order --from-matrix SPECIAL.npy",
-        "order --from-matrix labelled.npy",
         "curriculum SPECIAL -o out.json",
         "curriculum find_objects --assets SPECIAL -o out.json",
         "run SPECIAL --agent random -o out",
@@ -152,8 +150,6 @@ fn everywhere(found: &str, make: impl Fn(&Path)) {
         "SPECIAL",
         "SPECIAL.csv",
         "SPECIAL.json",
-        "SPECIAL.npy",
-        "labelled.labels.json",
         "info_log/scenario_info.json",
         "rows_log/w/0-train/data-log.tsv",
         "schemas/world.schema.json",
@@ -199,12 +195,6 @@ fn prepare(folder: &Path) {
     );
     write("sends.txt", "send_message SPECIAL\n");
     write("matrix.csv", ",a,b\na,0,1\nb,1,0\n");
-    fs::copy(folder.join("matrix.csv"), folder.join("labelled.csv")).expect("the folder is ours");
-    succeed_in(
-        folder,
-        &["order", "--from-matrix", "matrix.csv", "--matrix", "labelled.npy"],
-    );
-    fs::remove_file(folder.join("labelled.labels.json")).expect("it was written beside");
     succeed_in(
         folder,
         &["run", "scenario.json", "--agent", "random", "--output", "log"],

@@ -39,6 +39,7 @@ const REMOVED: &[(WordKind, &str, &str)] = &[
     ),
     (WordKind::Format, "arrow", TABLES),
     (WordKind::Format, "feather", TABLES),
+    (WordKind::Format, "npy", ".csv or .json for distances"),
     (WordKind::Format, "parquet", TABLES),
     (WordKind::Option, "console --out", "--output"),
     (WordKind::Option, "convert --from", "examples/python/text_maps.py"),

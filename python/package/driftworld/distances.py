@@ -224,30 +224,14 @@ class DistanceMatrix:
             SimilarityError: If the file holds no distances.
         """
         path = Path(path)
-        match _ending(path):
-            case ".csv":
-                return cls._of(_native.Matrix.from_csv(path.read_text(encoding="utf-8")))
-            case ".json":
-                return cls._of(_native.Matrix.from_json(path.read_text(encoding="utf-8")))
-            case _:
-                beside = path.with_suffix(".labels.json")
-                labels = json.loads(beside.read_text(encoding="utf-8")) if beside.exists() else None
-                return cls._of(_native.Matrix.from_npy(path.read_bytes(), labels))
+        read = _native.Matrix.from_csv if _ending(path) == ".csv" else _native.Matrix.from_json
+        return cls._of(read(path.read_text(encoding="utf-8")))
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the matrix as ``.csv``, ``.json`` or ``.npy``, by the name's ending; labels of ``.npy`` come into a ``.labels.json``
-        beside it."""
+        """Writes the matrix as ``.csv`` or ``.json``, by the name's ending."""
         path = Path(path)
-        match _ending(path):
-            case ".csv":
-                write_whole(path, self._native.to_csv().encode())
-            case ".json":
-                write_whole(path, self._native.to_json().encode())
-            case _:
-                write_whole(path, self._native.to_npy())
-                write_whole(
-                    path.with_suffix(".labels.json"), json.dumps(self.labels, indent=2, ensure_ascii=False).encode()
-                )
+        native = self._native
+        write_whole(path, (native.to_csv() if _ending(path) == ".csv" else native.to_json()).encode())
 
     @property
     def labels(self) -> list[str]:
@@ -386,9 +370,11 @@ def _matrix_again(text: str) -> DistanceMatrix:
 
 
 def _ending(path: Path) -> str:
-    if path.suffix not in (".csv", ".json", ".npy"):
-        raise ValueError(f"path: found {str(path)!r}, expected a name that ends in .csv, .json or .npy")
-    return path.suffix
+    ending = path.suffix
+    if ending not in (".csv", ".json"):
+        advice = _native.removed_format(ending[1:]) or "expected a name that ends in .csv or .json"
+        raise ValueError(f"path: found {str(path)!r}, {advice}")
+    return ending
 
 
 @dataclass(frozen=True)

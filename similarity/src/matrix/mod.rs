@@ -1,11 +1,10 @@
-//! [`DistanceMatrix`]: every distance among some items. What is measured is handed in; files of it are in `csv.rs`, `json.rs`
-//! and `npy.rs`, orders of it in `order/`.
+//! [`DistanceMatrix`]: every distance among some items. What is measured is handed in; files of it are in `csv.rs` and
+//! `json.rs`, orders of it in `order/`.
 
 mod csv;
 pub(crate) mod eigen;
 mod json;
 mod mds;
-mod npy;
 
 use ndarray::{Array2, Axis};
 use rayon::prelude::*;

@@ -1,4 +1,4 @@
-"""Saves a distance matrix as numpy does, and maps some points by classical scaling.
+"""Maps some points by classical scaling.
 
 Run in this folder: python make_matrix.py
 """
@@ -8,12 +8,6 @@ import sys
 
 import numpy as np
 import scipy
-
-k = np.arange(12.0)
-matrix = np.abs(k[:, None] - k[None, :]) + (k[:, None] + k[None, :]) / 8
-np.fill_diagonal(matrix, 0)
-np.save("matrix_f8.npy", matrix)
-np.save("matrix_f4_by_columns.npy", np.asfortranarray(matrix, dtype="<f4"))
 
 
 def classical(distances, axes):

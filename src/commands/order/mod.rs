@@ -31,13 +31,13 @@ use crate::table::{cells, table};
 #[command(after_help = "Examples:
   driftworld order find_objects
   driftworld order find_objects --start find_objects#blue --end find_objects#dusk --plot path.png
-  driftworld order find_objects get_to_goal#plain --by worlds --matrix matrix.npy
-  driftworld order --from-matrix matrix.npy --compare")]
+  driftworld order find_objects get_to_goal#plain --by worlds --matrix matrix.csv
+  driftworld order --from-matrix matrix.csv --compare")]
 pub(crate) struct Order {
     /// Variants, or tasks, which stand for all their variants.
     #[arg(required_unless_present = "from_matrix", value_name = "TASK")]
     tasks: Vec<String>,
-    /// Read distances from this file (.csv, .json or .npy) instead of measuring.
+    /// Read distances from this file (.csv or .json) instead of measuring.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["tasks", "weight"])]
     from_matrix: Option<PathBuf>,
     #[command(flatten)]
@@ -65,7 +65,7 @@ pub(crate) struct Order {
     /// Compare all methods.
     #[arg(long, conflicts_with_all = ["order", "plot"])]
     compare: bool,
-    /// Also write the distance matrix: .csv, .json, or .npy with a .labels.json beside it.
+    /// Also write the distance matrix (.csv or .json).
     #[arg(long, value_name = "FILE")]
     matrix: Option<PathBuf>,
     /// Do not escape CSV labels that a spreadsheet would read as formulas.

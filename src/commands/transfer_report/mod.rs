@@ -35,7 +35,7 @@ pub(crate) struct TransferReport {
     /// Folders of l2logger logs, or folders of such folders.
     #[arg(required = true, value_name = "LOGS")]
     logs: Vec<PathBuf>,
-    /// The distance matrix from `driftworld order --matrix`: .csv, .json or .npy.
+    /// The distance matrix from `driftworld order --matrix`: .csv or .json.
     #[arg(long, value_name = "FILE")]
     distances: PathBuf,
     /// The column to score.
