@@ -30,7 +30,7 @@ pub mod contents;
 pub mod design;
 pub mod distances;
 pub mod documents;
-pub mod dynamics;
+mod dynamics;
 pub mod elements;
 mod episode_frames;
 mod failure;

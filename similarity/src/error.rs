@@ -296,41 +296,13 @@ pub enum SimilarityError {
         /// The reward.
         found: f64,
     },
-    /// Where an action leads is no distribution over states.
-    #[error("successors of state {state}, action {action}: found {found}, expected {expected}")]
-    BadSuccessors {
-        /// The state, from 0.
-        state: usize,
-        /// The action, from 0.
-        action: usize,
-        /// What was found.
-        found: String,
-        /// What would do.
-        expected: String,
-    },
     /// A state that a decision process does not have.
-    #[error("state {found} of the {side} decision process: expected one of 0 to {most}")]
+    #[error("state of a decision process: found {found}, expected one of 0 to {most}")]
     NoSuchState {
-        /// First or second.
-        side: &'static str,
         /// The state.
         found: usize,
         /// The last there is.
         most: usize,
-    },
-    /// An action with several successors, where one is expected.
-    #[error(
-        "successors of state {state}, action {action} of the {side} decision process: found {found}, expected 1; use bisimulation, which takes any number"
-    )]
-    NotDeterministic {
-        /// First or second.
-        side: &'static str,
-        /// The state, from 0.
-        state: usize,
-        /// The action, from 0.
-        action: usize,
-        /// How many successors it has.
-        found: usize,
     },
     /// Pictures that do not lie on each other.
     #[error(
@@ -497,22 +469,9 @@ mod tests {
                 place: "state 3, action 1".into(),
                 found: f64::INFINITY,
             },
-            SimilarityError::BadSuccessors {
-                state: 3,
-                action: 1,
-                found: "probabilities of sum 0.9".into(),
-                expected: "a sum of 1; divide each by the sum".into(),
-            },
             SimilarityError::NoSuchState {
-                side: "second",
                 found: 9,
                 most: 4,
-            },
-            SimilarityError::NotDeterministic {
-                side: "first",
-                state: 3,
-                action: 1,
-                found: 2,
             },
             SimilarityError::PictureSizes {
                 found: "64 × 64".into(),

@@ -2,8 +2,8 @@
 //!
 //! [`variant_distance`] compares two variants of a task by what they declare, [`world_distance`] two concrete worlds by what
 //! is in them; both explain themselves part by part. [`DistanceMatrix`] holds all distances among many, [`order`] puts the
-//! many into a path. The measures that they are made of stand alone, too. [`Epic`] compares rewards by what they ask for,
-//! [`bisimulation`] and [`w1_mdp`] finite decision processes ([`Mdp`]) by what they pay and where they lead. Nothing here
+//! many into a path. The measures that they are made of stand alone, too. [`RewardSamples`] compares rewards by what they
+//! ask for, [`bisimulation`] and [`w1_mdp`] finite decision processes by what they pay and where they lead. Nothing here
 //! draws worlds or pictures.
 
 mod assignment;
@@ -21,8 +21,8 @@ mod order;
 pub mod picture;
 mod reward;
 pub mod scalar;
-mod shares;
 mod split_mix;
+mod sum;
 #[cfg(test)]
 #[path = "../../tests/tier.rs"]
 mod tier;
@@ -47,27 +47,16 @@ pub use correlation::{
 };
 pub use driftworld_spec::Oklab;
 pub use error::SimilarityError;
-use occupancy::Raster;
 pub use layout_shape::LayoutShape;
-pub use matrix::{
-    DistanceMatrix, MAX_DISTANCE, MAX_ITEMS, PlanarMap, classical_map,
-};
-pub use mdp::{
-    BestMatch, MAX_MDP_STATES, MAX_PAIRS, MAX_STATE_PAIRS, Mdp, PairedBisimulation, StateDistances, bisimulation,
-    paired_bisimulation, w1_mdp, w1_mdp_by_state, w1_mdp_pooled,
-};
+pub use matrix::{DistanceMatrix, MAX_DISTANCE, MAX_ITEMS, PlanarMap, classical_map};
+pub use mdp::{Bisimulation, MAX_MDP_STATES, MAX_PAIRS, Mdp, bisimulation, w1_mdp};
 pub use metric_properties::MetricProperties;
+use occupancy::Raster;
 pub use occupancy::{
     BitGrid, Grid, GridShape, MAX_CELLS, grid_chamfer_distance, grid_earth_movers_distance, grid_hausdorff_distance,
     grid_jaccard_distance, ospa,
 };
-pub use order::{
-    MAX_EXACT, Method, NUM_RANDOM_ORDERS, OrderOptions, Ordering, order, share_of_shorter_orders,
-};
-pub use reward::{
-    Epic, MAX_REWARDS, RewardSamples, RewardTable, SampledReward, pearson_distance, world_rewards_distance,
-};
-pub use transport::{
-    MAX_TRANSPORTED, Move, TransportPlan, earth_movers_distance, optimal_transport,
-};
+pub use order::{MAX_EXACT, Method, NUM_RANDOM_ORDERS, OrderOptions, Ordering, order, share_of_shorter_orders};
+pub use reward::{RewardSamples, SampledReward, world_rewards_distance};
+pub use transport::{MAX_TRANSPORTED, Move, TransportPlan, earth_movers_distance, optimal_transport};
 pub use world_measures::{ObjectsMeasure, OccupancyMeasure, Placements, WorldMeasure, world_sets_measure_distance};

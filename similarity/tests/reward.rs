@@ -1,6 +1,6 @@
-//! EPIC against what `NumPy` finds by the definitions of the reference. The laws are tested beside the code.
+//! EPIC on all transitions against what `NumPy` finds by the definitions of the reference. The laws are tested beside the code.
 
-use driftworld_similarity::{Epic, RewardTable};
+use driftworld_similarity::{RewardSamples, SampledReward};
 use serde::Deserialize;
 
 use crate::draws::Rng;
@@ -46,24 +46,47 @@ fn grid_reward(name: &str) -> ([f64; 9], [f64; 9]) {
     }
 }
 
-fn grid_table(name: &str, discount: f64) -> RewardTable {
+/// Transitions of a state, an action and a next state, each as often as it weighs; all draws, each as often as its action and its
+/// state weigh together.
+fn samples(
+    transitions: impl Fn(usize, usize, usize) -> usize,
+    of_states: &[usize],
+    of_actions: &[usize],
+) -> RewardSamples<usize, usize> {
+    let states = of_states.len();
+    let draws = (0..of_actions.len()).flat_map(|action| (0..states).map(move |next| (action, next)));
+    let draws: Vec<(usize, usize)> = draws.collect();
+    let all = (0..states).flat_map(|state| draws.iter().map(move |&(action, next)| (state, action, next)));
+    let all = all.flat_map(|(state, action, next)| vec![(state, action, next); transitions(state, action, next)]);
+    let draws = draws
+        .iter()
+        .flat_map(|&(action, next)| vec![(action, next); of_actions[action] * of_states[next]]);
+    RewardSamples::new(all.collect(), draws.collect()).expect("there are samples")
+}
+
+fn on_the_grid(samples: &RewardSamples<usize, usize>, name: &str, discount: f64) -> SampledReward {
     let (reward, potential) = grid_reward(name);
-    let table = RewardTable::from_fn(9, 5, |state, _, _| reward[state]).expect("the rewards are sound");
-    table.shaped(&potential, discount).expect("the potential is sound")
+    let paid = |&state: &usize, _: &usize, &next: &usize| reward[state] + discount * potential[next] - potential[state];
+    samples.measure(paid).expect("the rewards are sound")
 }
 
 /// 1 for each move on a 3 × 3 grid: left, right, up, down, stay; against the edge is to stay.
-fn walks() -> Vec<f64> {
-    let mut weights = vec![0.0; 9 * 5 * 9];
+fn walks() -> Vec<usize> {
+    let mut weights = vec![0; 9 * 5 * 9];
     for state in 0..9_usize {
         for (action, (down, right)) in [(0, -1), (0, 1), (-1, 0), (1, 0), (0, 0)].into_iter().enumerate() {
             let row = (state / 3).checked_add_signed(down).filter(|row| *row < 3);
             let column = (state % 3).checked_add_signed(right).filter(|column| *column < 3);
             let next = row.zip(column).map_or(state, |(row, column)| 3 * row + column);
-            weights[(state * 5 + action) * 9 + next] = 1.0;
+            weights[(state * 5 + action) * 9 + next] = 1;
         }
     }
     weights
+}
+
+/// Every transition of the grid, possible or not.
+fn every_step() -> RewardSamples<usize, usize> {
+    samples(|_, _, _| 1, &[1; 9], &[1; 5])
 }
 
 /// The oracle's own rounding leaves some 3e-10 of equal rewards; anything else is larger by far.
@@ -79,23 +102,29 @@ fn check(what: &str, found: f64, expected: f64) {
 fn rewards_of_the_grid_are_as_far_apart_as_the_reference_says() {
     let oracle = oracle();
     assert_eq!(oracle.names.len(), 11);
-    let even = Epic::new(oracle.discount).expect("the discount is sound");
-    let tables: Vec<RewardTable> = oracle
-        .names
-        .iter()
-        .map(|name| grid_table(name, oracle.discount))
-        .collect();
-    for (epic, expected) in [
-        (even.clone(), &oracle.by_all),
-        (even.with_coverage(walks()), &oracle.by_walks),
-    ] {
+    let walks = walks();
+    let by_walks = samples(
+        |state, action, next| walks[(state * 5 + action) * 9 + next],
+        &[1; 9],
+        &[1; 5],
+    );
+    for (samples, expected) in [(every_step(), &oracle.by_all), (by_walks, &oracle.by_walks)] {
+        let measured = oracle
+            .names
+            .iter()
+            .map(|name| on_the_grid(&samples, name, oracle.discount));
+        let measured: Vec<SampledReward> = measured.collect();
         for (a, row) in expected.iter().enumerate() {
             for (b, expected) in row.iter().enumerate() {
-                let found = epic.distance(&tables[a], &tables[b]).expect("the tables are sound");
+                let found = measured[a].distance(&measured[b], oracle.discount);
                 let what = format!("{} to {}", oracle.names[a], oracle.names[b]);
                 // The reference divides 0 by 0 for the zero reward; ours lies in the middle.
                 let middle = if a == b { 0.0 } else { 0.5 };
-                check(&what, found, expected.unwrap_or(middle));
+                check(
+                    &what,
+                    found.expect("they are of the same samples"),
+                    expected.unwrap_or(middle),
+                );
             }
         }
     }
@@ -103,25 +132,24 @@ fn rewards_of_the_grid_are_as_far_apart_as_the_reference_says() {
 
 #[test]
 fn equal_goals_are_exactly_0_apart() {
-    let oracle = oracle();
-    let epic = Epic::new(oracle.discount).expect("the discount is sound");
-    let goals: Vec<RewardTable> = oracle.names[..6]
+    let (oracle, samples) = (oracle(), every_step());
+    let goals = oracle.names[..6]
         .iter()
-        .map(|name| grid_table(name, oracle.discount))
-        .collect();
+        .map(|name| on_the_grid(&samples, name, oracle.discount));
+    let goals: Vec<SampledReward> = goals.collect();
     for a in &goals {
         for b in &goals {
-            assert_eq!(epic.distance(a, b), Ok(0.0));
+            assert_eq!(a.distance(b, oracle.discount), Ok(0.0));
         }
     }
 }
 
-/// Draws in the order of `drawn` in `oracle/make_reward.py`: 2 to 6 states, 1 to 4 actions, a discount in hundredths; whether the
-/// second table is near the first (one in four); rewards in thousandths, from −1 to 1, and within 0.005 where near; weights of
-/// states and actions of 1 to 9; whether transitions weigh as states and actions do, or 1 to 5.
+/// Draws in the order of `drawn` in `oracle/make_reward.py`: 2 to 5 states, 1 to 3 actions, a discount in hundredths; whether the
+/// second reward is near the first (one in four); rewards in thousandths, from −1 to 1, and within 0.005 where near; weights of
+/// states and actions of 1 to 3; whether transitions weigh as states and actions do, or 1 to 5.
 fn drawn(seed: u64) -> f64 {
     let mut rng = Rng(seed);
-    let (states, actions) = (2 + rng.below(5) as usize, 1 + rng.below(4) as usize);
+    let (states, actions) = (2 + rng.below(4) as usize, 1 + rng.below(3) as usize);
     let discount = rng.number(101) / 100.0;
     let near = rng.below(4) == 0;
     let size = states * actions * states;
@@ -133,22 +161,28 @@ fn drawn(seed: u64) -> f64 {
             rng.number(2001) - 1000.0
         }
     });
-    let thousandths = |rewards: Vec<f64>| {
-        let values = rewards.into_iter().map(|reward| reward / 1000.0).collect();
-        RewardTable::new(states, actions, values).expect("the rewards are sound")
+    let b: Vec<f64> = b.collect();
+    let mut weights =
+        |count: usize, most: u64| -> Vec<usize> { (0..count).map(|_| 1 + rng.below(most) as usize).collect() };
+    let (of_states, of_actions) = (weights(states, 3), weights(actions, 3));
+    let place = |state: usize, action: usize, next: usize| (state * actions + action) * states + next;
+    let as_drawn = |state: usize, action: usize, next: usize| of_states[state] * of_actions[action] * of_states[next];
+    let samples = if weights(1, 2) == [2] {
+        let coverage = weights(size, 5);
+        samples(
+            |state, action, next| coverage[place(state, action, next)],
+            &of_states,
+            &of_actions,
+        )
+    } else {
+        samples(as_drawn, &of_states, &of_actions)
     };
-    let b = thousandths(b.collect());
-    let a = thousandths(a);
-    let mut weights = |count: usize, most: u64| -> Vec<f64> { (0..count).map(|_| 1.0 + rng.number(most)).collect() };
-    let (of_states, of_actions) = (weights(states, 9), weights(actions, 9));
-    let mut epic = Epic::new(discount)
-        .expect("the discount is sound")
-        .with_states(of_states)
-        .with_actions(of_actions);
-    if rng.below(2) == 1 {
-        epic = epic.with_coverage((0..size).map(|_| 1.0 + rng.number(5)).collect());
-    }
-    epic.distance(&a, &b).expect("the tables are of one size")
+    let measure = |rewards: &[f64]| {
+        let paid = |&state: &usize, &action: &usize, &next: &usize| rewards[place(state, action, next)] / 1000.0;
+        samples.measure(paid).expect("the rewards are sound")
+    };
+    let found = measure(&a).distance(&measure(&b), discount);
+    found.expect("they are of the same samples")
 }
 
 #[test]

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::DistancesError;
 use crate::behavior::{ExpertPair, POINTS};
-use crate::dynamics::{self, DynamicsOptions};
+use crate::dynamics;
 use crate::picture_distance::{PictureDistanceError, PictureOptions, Pose, Views, poses};
 
 /// Numbers of one comparison, as many as [`parts`] of the measure has, or as its remark needs.
@@ -65,7 +65,7 @@ enum Ready {
     /// The poses that are free in each world alone, and the views from there.
     Pictures(PictureOptions, Vec<(Vec<Pose>, Views)>),
     /// Tables over each world's own arena.
-    Dynamics(DynamicsOptions, Vec<WorldAbstraction>),
+    Dynamics(Catalogue, Vec<WorldAbstraction>),
     /// What the expert of each earns in its own world.
     Behavior(Expertise, Vec<ExpertRun>),
 }
@@ -89,13 +89,9 @@ impl<'a> Pairs<'a> {
                 Ready::Pictures(options, seen)
             }
             "dynamics" => {
-                let options = DynamicsOptions {
-                    catalogue,
-                    ..DynamicsOptions::default()
-                };
-                let of = |world: &World| dynamics::tables(world, world.environment_params.arena_size(), &options);
+                let of = |world: &World| dynamics::tables(world, world.environment_params.arena_size(), &catalogue);
                 let tables = worlds.par_iter().map(of).collect::<Result<_, _>>()?;
-                Ready::Dynamics(options, tables)
+                Ready::Dynamics(catalogue, tables)
             }
             "behavior" => {
                 let expertise = Expertise {
@@ -115,7 +111,7 @@ impl<'a> Pairs<'a> {
     pub(super) fn between(&self, a: usize, b: usize) -> Result<Values, DistancesError> {
         let worlds = [&self.worlds[a], &self.worlds[b]];
         Ok(match &self.ready {
-            Ready::Rewards => vec![world_rewards_distance(worlds[0], worlds[1], None)?],
+            Ready::Rewards => vec![world_rewards_distance(worlds[0], worlds[1])?],
             Ready::World(measure) => vec![measure.between(worlds[0], worlds[1])?],
             Ready::Pictures(options, seen) => {
                 let sides = worlds.map(|world| world.environment_params.arena_size());
@@ -138,13 +134,13 @@ impl<'a> Pairs<'a> {
                 }
                 self.looks(a, b)?
             }
-            Ready::Dynamics(options, tables) => {
+            Ready::Dynamics(catalogue, tables) => {
                 let area = dynamics::common_area(worlds[0], worlds[1]);
                 if worlds.iter().all(|world| world.environment_params.arena_size() == area) {
-                    return self.outcomes(&tables[a], &tables[b], options);
+                    return self.outcomes(&tables[a], &tables[b]);
                 }
-                let [a, b] = worlds.map(|world| dynamics::tables(world, area, options));
-                return self.outcomes(&a?, &b?, options);
+                let [a, b] = worlds.map(|world| dynamics::tables(world, area, catalogue));
+                return self.outcomes(&a?, &b?);
             }
             Ready::Behavior(expertise, own) => {
                 let pair = ExpertPair {
@@ -169,17 +165,12 @@ impl<'a> Pairs<'a> {
         })
     }
 
-    fn outcomes(
-        &self,
-        a: &WorldAbstraction,
-        b: &WorldAbstraction,
-        options: &DynamicsOptions,
-    ) -> Result<Values, DistancesError> {
+    fn outcomes(&self, a: &WorldAbstraction, b: &WorldAbstraction) -> Result<Values, DistancesError> {
         if self.by == By::DynamicsBisimulation {
-            let found = dynamics::bisimulation(a, b, options)?;
-            return Ok(vec![found.lower()[0], found.upper()[0]]);
+            let found = dynamics::bisimulation(a, b)?;
+            return Ok(vec![found.lower, found.upper]);
         }
-        let (rewards, motion, _) = dynamics::w1(a, b, options);
+        let (rewards, motion) = dynamics::w1(a, b)?;
         Ok(vec![rewards, motion])
     }
 }

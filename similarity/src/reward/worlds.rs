@@ -1,9 +1,9 @@
 //! How far apart the rewards of two worlds are, by EPIC over states and choices that are drawn. How objects of two worlds are
-//! matched is said in `combined/matching.rs`, EPIC in `epic.rs` and `samples.rs`.
+//! matched is said in `combined/matching.rs`, EPIC in `epic.rs`.
 
 use driftworld_spec::{Object, World};
 
-use super::samples::RewardSamples;
+use super::epic::RewardSamples;
 use crate::SimilarityError;
 use crate::combined::match_objects;
 use crate::split_mix::SplitMix64;
@@ -23,15 +23,14 @@ const DRAWS: usize = 96;
 /// what is in one world only pays nothing in the other. So 0 is the same reward up to a constant, a factor above 0 and
 /// potential shaping; about 0.7 (√½) are rewards that have nothing to do with each other; 1 is the reverse.
 ///
-/// It does not see what a second pays, for that is a constant, nor how hard a reward is to come by. `discount`: the
-/// learner's; by default that of the worlds' shaping, the larger of two, and else 0.99. A pseudometric among worlds whose
+/// It does not see what a second pays, for that is a constant, nor how hard a reward is to come by. The
+/// discount is that of the worlds' shaping, the larger of two, and else 0.99. A pseudometric among worlds whose
 /// objects are matched alike. The same arguments give the same number. Some milliseconds.
 ///
 /// Source: Gleave, Dennis, Legg, Russell and Leike 2021, "Quantifying differences in reward functions".
 ///
 /// # Errors
-/// [`SimilarityError::BadNumber`] for a discount that is not in `0..=1`, [`SimilarityError::BadReward`] for rewards beyond
-/// ±1e100.
+/// [`SimilarityError::BadReward`] for rewards beyond ±1e100.
 ///
 /// # Example
 /// ```
@@ -45,24 +44,20 @@ const DRAWS: usize = 96;
 ///     };
 ///     World::default().edit(|world| world.objects = vec![object(near, 2.0), object(far, 20.0)])
 /// };
-/// let d = |a: &World, b: &World| world_rewards_distance(a, b, None);
+/// let d = |a: &World, b: &World| world_rewards_distance(a, b);
 /// assert_eq!(d(&world(1.0, 5.0)?, &world(10.0, 50.0)?)?, 0.0);
 /// assert_eq!(d(&world(1.0, 5.0)?, &world(-1.0, -5.0)?)?, 1.0);
 /// assert!(d(&world(1.0, 5.0)?, &world(5.0, 1.0)?)? > 0.1);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn world_rewards_distance(a: &World, b: &World, discount: Option<f64>) -> Result<f64, SimilarityError> {
+pub fn world_rewards_distance(a: &World, b: &World) -> Result<f64, SimilarityError> {
     let matches = match_objects(a, b);
     let of_a: Vec<Option<usize>> = matches.iter().map(|(a, _)| *a).collect();
     let of_b: Vec<Option<usize>> = matches.iter().map(|(_, b)| *b).collect();
     let (a, b) = (Rewards::new(a, &of_a), Rewards::new(b, &of_b));
-    let discount = discount.unwrap_or_else(|| {
-        let shaped = [&a, &b].into_iter().filter_map(|own| own.world.rules.shaping.as_ref());
-        shaped
-            .map(|shaping| shaping.discount)
-            .reduce(f64::max)
-            .unwrap_or(DISCOUNT)
-    });
+    let shaped = [&a, &b].into_iter().filter_map(|own| own.world.rules.shaping.as_ref());
+    let discounts = shaped.map(|shaping| shaping.discount);
+    let discount = discounts.reduce(f64::max).unwrap_or(DISCOUNT);
     let samples = draw(matches.len(), [0, 1].map(|axis| a.reach(axis).max(b.reach(axis))))?;
     let measure = |own: &Rewards| samples.measure(|state, action, next| own.pays(state, *action, next));
     measure(&a)?.distance(&measure(&b)?, discount)
@@ -193,7 +188,7 @@ mod tests {
     }
 
     fn distance(a: &World, b: &World) -> f64 {
-        world_rewards_distance(a, b, None).unwrap()
+        world_rewards_distance(a, b).unwrap()
     }
 
     #[test]

@@ -1,6 +1,6 @@
-"""Writes reward.json: EPIC of rewards on a 3 x 3 grid and of 1,000 drawn tables, by NumPy from the definitions of Gleave et al.
+"""Writes reward.json: EPIC of rewards on a 3 x 3 grid and of 1,000 drawn ones, by NumPy from the definitions of Gleave et al.
 (2021) and of `tabular.py` in HumanCompatibleAI/evaluating-rewards. In long doubles: 1 - r of nearly equal rewards would leave half
-the digits otherwise. Only distances are stored; `../reward.rs` draws the same tables. Run: python make_reward.py"""
+the digits otherwise. Only distances are stored; `../reward.rs` draws the same rewards. Run: python make_reward.py"""
 import json
 from pathlib import Path
 
@@ -83,15 +83,15 @@ def on_the_grid(weights):
 def drawn(seed):
     """A distance of two tables. What is drawn, and in which order, stands in `../reward.rs`."""
     rng = SplitMix64(seed)
-    states, actions, discount = 2 + rng.below(5), 1 + rng.below(4), REAL(rng.below(101)) / 100
+    states, actions, discount = 2 + rng.below(4), 1 + rng.below(3), REAL(rng.below(101)) / 100
     near = rng.below(4) == 0
     shape = (states, actions, states)
     size = states * actions * states
     a = [rng.below(2001) - 1000 for _ in range(size)]
     b = [a[k] + rng.below(11) - 5 if near else rng.below(2001) - 1000 for k in range(size)]
     a, b = (np.array(values, dtype=REAL).reshape(shape) / 1000 for values in (a, b))
-    of_states = np.array([1 + rng.below(9) for _ in range(states)], dtype=REAL)
-    of_actions = np.array([1 + rng.below(9) for _ in range(actions)], dtype=REAL)
+    of_states = np.array([1 + rng.below(3) for _ in range(states)], dtype=REAL)
+    of_actions = np.array([1 + rng.below(3) for _ in range(actions)], dtype=REAL)
     if rng.below(2) == 0:
         weights = np.einsum("s,a,t->sat", of_states, of_actions, of_states)
     else:
