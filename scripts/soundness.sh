@@ -24,7 +24,6 @@ for tool in "$@"; do
             export MIRIFLAGS=-Zmiri-disable-isolation RUSTFLAGS="-C target-feature=+avx2" PROPTEST_CASES=2
             tested miri driftworld-env --lib -- render::lanes batch::depth
             tested miri driftworld-env --lib -- agents::grid agents::script:: assets::blocks
-            tested miri driftworld-similarity --lib -- color::rows
             ;;
         address)
             # The C++ of meshopt is watched, too. Two of its tables are private to their files and look as if they stood twice.
@@ -32,7 +31,6 @@ for tool in "$@"; do
             export ASAN_OPTIONS=detect_leaks=0:detect_odr_violation=0
             tested address driftworld-env --features gltf --lib -- assets
             tested address driftworld-env --features gltf --tests -- import hostile pictures
-            tested address driftworld-similarity --lib -- color::rows
             ;;
         threads)
             command+=(-Zbuild-std)

@@ -126,14 +126,6 @@ pub enum SimilarityError {
     /// There are no samples to compare.
     #[error("samples: found none, expected at least 1")]
     NoSamples,
-    /// A sample is not a number.
-    #[error("sample {index}: found {found}, expected a finite number")]
-    NotASample {
-        /// Its place in the list, from 0 on.
-        index: usize,
-        /// What was found.
-        found: f64,
-    },
     /// There is nothing to order.
     #[error("order: found no items, expected at least 1")]
     Empty,
@@ -379,10 +371,6 @@ mod tests {
                 limit: 20_000,
             },
             SimilarityError::NoSamples,
-            SimilarityError::NotASample {
-                index: 3,
-                found: f64::NAN,
-            },
             SimilarityError::TooManyForMethod {
                 method: "exact",
                 found: 16,
@@ -469,10 +457,7 @@ mod tests {
                 place: "state 3, action 1".into(),
                 found: f64::INFINITY,
             },
-            SimilarityError::NoSuchState {
-                found: 9,
-                most: 4,
-            },
+            SimilarityError::NoSuchState { found: 9, most: 4 },
             SimilarityError::PictureSizes {
                 found: "64 × 64".into(),
                 expected: "84 × 84".into(),

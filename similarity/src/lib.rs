@@ -31,11 +31,10 @@ mod world_measures;
 
 pub use assignment::{Assignment, MAX_ASSIGNED};
 pub use color::cie76::cie76;
-pub use color::ciede2000::{ciede2000, ciede2000_to_each};
+pub use color::ciede2000::ciede2000;
 pub use color::hyab::hyab;
-pub use color::lab::{Lab, LabTable};
+pub use color::lab::Lab;
 pub use color::measure::ColorMeasure;
-pub use color::oklab::oklab_distance;
 pub use color::sets::color_sets_distance;
 pub use color::srgb::srgb_distance;
 pub use combined::variant::{VariantMeasure, variant_distance};

@@ -77,7 +77,14 @@ fn exact_shares_are_those_of_an_enumeration() {
 #[test]
 fn drawn_shares_come_near_those_of_scikit_bio() {
     for case in cases(&golden(), "drawn") {
-        let pairs = PairValue::of_matrix(&matrix(&case["b"]));
+        let other = matrix(&case["b"]);
+        let all = (0..other.len()).flat_map(|from| (from + 1..other.len()).map(move |to| (from, to)));
+        let pairs = all.map(|(from, to)| PairValue {
+            from,
+            to,
+            value: other.get(from, to),
+        });
+        let pairs: Vec<PairValue> = pairs.collect();
         let found: MantelTest = mantel(&matrix(&case["a"]), &pairs, method(case), 19_999, 5).expect("sound pairs");
         assert!((found.correlation - number(&case["correlation"])).abs() < 1e-12);
         assert!(!found.exact);

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::DistancesError;
 use crate::behavior::{ExpertPair, POINTS};
 use crate::dynamics;
-use crate::picture_distance::{PictureDistanceError, PictureOptions, Pose, Views, poses};
+use crate::picture_distance::{ACROSS, PictureDistanceError, Pose, Views, poses};
 
 /// Numbers of one comparison, as many as [`parts`] of the measure has, or as its remark needs.
 pub(super) type Values = Vec<f64>;
@@ -63,7 +63,7 @@ enum Ready {
     Rewards,
     World(WorldMeasure),
     /// The poses that are free in each world alone, and the views from there.
-    Pictures(PictureOptions, Vec<(Vec<Pose>, Views)>),
+    Pictures(Catalogue, Vec<(Vec<Pose>, Views)>),
     /// Tables over each world's own arena.
     Dynamics(Catalogue, Vec<WorldAbstraction>),
     /// What the expert of each earns in its own world.
@@ -76,17 +76,13 @@ impl<'a> Pairs<'a> {
         let catalogue = catalogue.clone();
         let ready = match by.subject() {
             "pictures" => {
-                let options = PictureOptions {
-                    catalogue,
-                    ..PictureOptions::default()
-                };
                 let of = |world: &World| {
-                    let poses = poses(&[world], &options)?;
-                    let views = Views::new(world, &poses, &options)?;
+                    let poses = poses(&[world], &catalogue)?;
+                    let views = Views::new(world, &poses, &catalogue)?;
                     Ok::<_, PictureDistanceError>((poses, views))
                 };
                 let seen = worlds.par_iter().map(of).collect::<Result<_, _>>()?;
-                Ready::Pictures(options, seen)
+                Ready::Pictures(catalogue, seen)
             }
             "dynamics" => {
                 let of = |world: &World| dynamics::tables(world, world.environment_params.arena_size(), &catalogue);
@@ -113,11 +109,11 @@ impl<'a> Pairs<'a> {
         Ok(match &self.ready {
             Ready::Rewards => vec![world_rewards_distance(worlds[0], worlds[1])?],
             Ready::World(measure) => vec![measure.between(worlds[0], worlds[1])?],
-            Ready::Pictures(options, seen) => {
+            Ready::Pictures(catalogue, seen) => {
                 let sides = worlds.map(|world| world.environment_params.arena_size());
                 if sides[0] != sides[1] {
-                    let poses = poses(&worlds, options)?;
-                    let [a, b] = worlds.map(|world| Views::new(world, &poses, options));
+                    let poses = poses(&worlds, catalogue)?;
+                    let [a, b] = worlds.map(|world| Views::new(world, &poses, catalogue));
                     return self.looks(&a?, &b?);
                 }
                 let [(of_a, a), (of_b, b)] = [&seen[a], &seen[b]];
@@ -129,7 +125,7 @@ impl<'a> Pairs<'a> {
                 let (fewer_of_a, fewer_of_b) = (fewer(a, of_a, of_b), fewer(b, of_b, of_a));
                 let (a, b) = (fewer_of_a.as_ref().unwrap_or(a), fewer_of_b.as_ref().unwrap_or(b));
                 if a.is_empty() {
-                    let tried = options.across * options.across;
+                    let tried = ACROSS * ACROSS;
                     return Err(PictureDistanceError::NoPlace { tried }.into());
                 }
                 self.looks(a, b)?

@@ -4,68 +4,30 @@
 mod poses;
 
 use driftworld_env::{Camera, Catalogue, CpuRenderer, EnvError, Environment, Target};
+use driftworld_similarity::SimilarityError;
 use driftworld_similarity::picture::{Picture, PictureMeasure, picture_oklab_sums, views_distance};
-use driftworld_similarity::{DistanceMatrix, MetricProperties, SimilarityError};
 use driftworld_spec::World;
 
 pub use poses::{Pose, poses};
 
-/// The most places along each side of the arena.
-pub const MAX_ACROSS: u32 = 32;
+/// Places along each side of the arena.
+pub(crate) const ACROSS: u32 = 4;
 
-/// The most directions at each place.
-pub const MAX_HEADINGS: u32 = 64;
+/// Directions at each place, from north clockwise.
+const HEADINGS: u32 = 4;
 
-/// The longest side of a picture in pixels.
-pub const MAX_PICTURE_SIDE: u32 = 512;
+/// Height and width of the pictures in pixels.
+const SIDE: u32 = 48;
 
-/// The most pixels of all pictures of one world.
-pub const MAX_VIEW_PIXELS: u64 = 1 << 26;
+const PIXELS: usize = (SIDE * SIDE) as usize;
 
 /// Points that each pixel is the mean of, along each side: small pictures of single points flicker.
 const SUPERSAMPLING: u32 = 2;
-
-/// From where worlds are looked at, and how their pictures are compared.
-#[derive(Clone, Debug)]
-pub struct PictureOptions {
-    /// Places along each side of the arena, 1 to 32; default 4, which makes 16 places.
-    pub across: u32,
-    /// Directions at each place, 1 to 64, from north clockwise; default 4.
-    pub headings: u32,
-    /// Height and width of the pictures in pixels, 1 to 512 (11 at least for `Structure`); default 48.
-    pub side: u32,
-    /// How two pictures are compared; default the mean distance of colours in Oklab.
-    pub measure: PictureMeasure,
-    /// Where the worlds take their assets from; default the built-in ones.
-    pub catalogue: Catalogue,
-}
-
-impl Default for PictureOptions {
-    fn default() -> Self {
-        Self {
-            across: 4,
-            headings: 4,
-            side: 48,
-            measure: PictureMeasure::default(),
-            catalogue: Catalogue::default(),
-        }
-    }
-}
 
 /// What can keep worlds from being compared by how they look.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PictureDistanceError {
-    /// An option out of its range.
-    #[error("pictures, {option}: found {found}, expected 1 to {limit}")]
-    Option {
-        /// The option.
-        option: &'static str,
-        /// Its value.
-        found: u64,
-        /// The most it can be.
-        limit: u64,
-    },
     /// There is no place where an agent could stand in every world.
     #[error(
         "pictures: found none of {tried} places free in all worlds, expected at least 1; where walls stand elsewhere, as in mazes \
@@ -87,7 +49,6 @@ impl PictureDistanceError {
     /// The stable name of this kind of error.
     pub fn code(&self) -> &'static str {
         match self {
-            Self::Option { .. } => "pictures/option",
             Self::NoPlace { .. } => "pictures/no-place",
             Self::World(error) => error.code(),
             Self::Compare(error) => error.code(),
@@ -95,87 +56,14 @@ impl PictureDistanceError {
     }
 }
 
-/// How different two worlds look: the mean distance of what an agent would see from the same places in both.
-///
-/// Sees what the observation function shows and nothing else: worlds that differ in what things pay are at 0. In `0..=1`,
-/// symmetric, 0 for worlds that look alike from all [`poses`]. With one set of poses for many worlds ([`picture_matrix`]) and
-/// the measure `Oklab` the triangle inequality holds; poses chosen pair by pair, as here, may break it. Cost: two environments
-/// and `2 · across² · headings` pictures.
-///
-/// # Errors
-/// As [`poses`] and [`Views::new`]; [`PictureDistanceError::Compare`] for `Structure` with pictures smaller than its window.
-///
-/// # Example
-/// ```
-/// use driftworld::picture_distance::{PictureOptions, picture_distance};
-/// use driftworld::spec::World;
-/// let day = World::from_json("day.json", r#"{ "environment_params": { "ground_color": [0.3, 0.5, 0.2] } }"#)?;
-/// let sand = World::from_json("sand.json", r#"{ "environment_params": { "ground_color": [0.8, 0.7, 0.4] } }"#)?;
-/// let options = PictureOptions::default();
-/// assert_eq!(picture_distance(&day, &day, &options)?, 0.0);
-/// assert!(picture_distance(&day, &sand, &options)? > 0.05);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn picture_distance(a: &World, b: &World, options: &PictureOptions) -> Result<f64, PictureDistanceError> {
-    let poses = poses(&[a, b], options)?;
-    let views = [Views::new(a, &poses, options)?, Views::new(b, &poses, options)?];
-    views[0].distance(&views[1], options.measure)
-}
-
-/// [`picture_distance`] among many worlds, each drawn once, from places that are free in all of them.
-///
-/// # Errors
-/// As [`picture_distance`].
-pub fn picture_matrix(
-    labels: Vec<String>,
-    worlds: &[&World],
-    options: &PictureOptions,
-) -> Result<DistanceMatrix, PictureDistanceError> {
-    if labels.len() != worlds.len() {
-        return Err(SimilarityError::Shape {
-            of: "labels of worlds",
-            found: labels.len(),
-            expected: worlds.len(),
-        }
-        .into());
-    }
-    let poses = poses(worlds, options)?;
-    let views = worlds
-        .iter()
-        .map(|world| Views::new(world, &poses, options))
-        .collect::<Result<Vec<_>, _>>()?;
-    let matrix = DistanceMatrix::measure(labels, |a, b| views[a].distance(&views[b], options.measure));
-    Ok::<_, PictureDistanceError>(matrix?.with_properties(Views::properties(options.measure)))
-}
-
-fn check(options: &PictureOptions) -> Result<(), PictureDistanceError> {
-    let (across, headings, side) = (options.across.into(), options.headings.into(), options.side.into());
-    let in_range = |option, found: u64, limit: u64| {
-        if (1..=limit).contains(&found) {
-            Ok(())
-        } else {
-            Err(PictureDistanceError::Option { option, found, limit })
-        }
-    };
-    in_range("across", across, MAX_ACROSS.into())?;
-    in_range("headings", headings, MAX_HEADINGS.into())?;
-    in_range("side", side, MAX_PICTURE_SIDE.into())?;
-    in_range(
-        "pixels of all pictures",
-        across * across * headings * side * side,
-        MAX_VIEW_PIXELS,
-    )
-}
-
 /// What an agent sees of one world from some poses, drawn once, to be compared with other worlds' from the same poses.
 ///
 /// Each picture is taken with the world's own camera: its height and its field of view count as part of what is seen.
 #[derive(Clone, Debug)]
 pub struct Views {
-    side: usize,
-    /// Picture after picture, `(poses, side, side, 3)` bytes.
+    /// Picture after picture, `(poses, SIDE, SIDE, 3)` bytes.
     rgb: Vec<u8>,
-    /// Which pixels show an object, `(poses, side, side)`.
+    /// Which pixels show an object, `(poses, SIDE, SIDE)`.
     objects: Vec<bool>,
 }
 
@@ -192,16 +80,14 @@ impl Views {
     /// Draws them, on the processor: the same bytes on every machine.
     ///
     /// # Errors
-    /// [`PictureDistanceError::Option`]; [`PictureDistanceError::World`] if a picture cannot be drawn.
-    pub fn new(world: &World, poses: &[Pose], options: &PictureOptions) -> Result<Self, PictureDistanceError> {
-        check(options)?;
-        let environment = Environment::with_catalogue(world.clone(), options.catalogue.clone());
+    /// [`PictureDistanceError::World`] if a picture cannot be drawn.
+    pub fn new(world: &World, poses: &[Pose], catalogue: &Catalogue) -> Result<Self, PictureDistanceError> {
+        let environment = Environment::with_catalogue(world.clone(), catalogue.clone());
         let agent = &world.agent_params;
         let mut renderer = CpuRenderer::new();
-        let pixels = options.side as usize * options.side as usize;
-        let mut rgb = vec![0; poses.len() * pixels * 3];
-        let mut instances = vec![0; poses.len() * pixels];
-        let pictures = rgb.chunks_exact_mut(pixels * 3).zip(instances.chunks_exact_mut(pixels));
+        let mut rgb = vec![0; poses.len() * PIXELS * 3];
+        let mut instances = vec![0; poses.len() * PIXELS];
+        let pictures = rgb.chunks_exact_mut(PIXELS * 3).zip(instances.chunks_exact_mut(PIXELS));
         for (pose, (picture, instances)) in poses.iter().zip(pictures) {
             let camera = Camera::first_person(
                 pose.position.map(|metres| metres as f32),
@@ -210,8 +96,8 @@ impl Views {
                 agent.field_of_view as f32,
             );
             let mut target = Target {
-                width: options.side,
-                height: options.side,
+                width: SIDE,
+                height: SIDE,
                 supersampling: SUPERSAMPLING,
                 rgb: Some(picture),
                 instance: Some(instances),
@@ -219,9 +105,8 @@ impl Views {
             };
             renderer.draw(environment.scene(), &camera, &mut target)?;
         }
-        let side = options.side as usize;
         let objects = instances.iter().map(|item| *item > 0).collect();
-        Ok(Self { side, rgb, objects })
+        Ok(Self { rgb, objects })
     }
 
     /// Those from some of the poses, by their places in the list.
@@ -230,13 +115,11 @@ impl Views {
     /// When there is no pose of one of the numbers.
     #[must_use]
     pub fn only(&self, poses: &[usize]) -> Self {
-        let pixels = self.side * self.side;
         let rgb = poses
             .iter()
-            .flat_map(|k| &self.rgb[k * pixels * 3..(k + 1) * pixels * 3]);
-        let objects = poses.iter().flat_map(|k| &self.objects[k * pixels..(k + 1) * pixels]);
+            .flat_map(|k| &self.rgb[k * PIXELS * 3..(k + 1) * PIXELS * 3]);
+        let objects = poses.iter().flat_map(|k| &self.objects[k * PIXELS..(k + 1) * PIXELS]);
         Self {
-            side: self.side,
             rgb: rgb.copied().collect(),
             objects: objects.copied().collect(),
         }
@@ -249,8 +132,8 @@ impl Views {
 
     /// The pictures in the order of their poses.
     pub fn pictures(&self) -> Vec<Picture<'_>> {
-        let each = self.rgb.chunks_exact(self.side * self.side * 3);
-        each.map(|rgb| Picture::new(rgb, self.side, self.side).expect("what was drawn is a picture"))
+        let each = self.rgb.chunks_exact(PIXELS * 3);
+        each.map(|rgb| Picture::new(rgb, SIDE as usize, SIDE as usize).expect("what was drawn is a picture"))
             .collect()
     }
 
@@ -280,7 +163,7 @@ impl Views {
             .map(|(ours, theirs)| *ours || *theirs);
         let marks: Vec<bool> = marks.collect();
         let mut sums = [(0.0, 0_usize); 2];
-        for ((ours, theirs), marks) in ours.iter().zip(&theirs).zip(marks.chunks_exact(self.side * self.side)) {
+        for ((ours, theirs), marks) in ours.iter().zip(&theirs).zip(marks.chunks_exact(PIXELS)) {
             for (sum, (more, count)) in sums.iter_mut().zip(picture_oklab_sums(*ours, *theirs, marks)?) {
                 sum.0 += more;
                 sum.1 += count;
@@ -288,11 +171,6 @@ impl Views {
         }
         let [objects, surroundings] = sums.map(|(sum, count)| sum / count.max(1) as f64);
         Ok(PictureParts { objects, surroundings })
-    }
-
-    /// Which laws [`Views::distance`] keeps among worlds seen from one set of poses, worlds that look alike taken as equal.
-    pub fn properties(measure: PictureMeasure) -> MetricProperties {
-        measure.properties()
     }
 }
 
@@ -311,8 +189,17 @@ mod tests {
         world("", &tree)
     }
 
+    fn views(worlds: &[&World]) -> Vec<Views> {
+        let catalogue = Catalogue::default();
+        let poses = poses(worlds, &catalogue).expect("all have free ground");
+        let views = |world: &&World| Views::new(world, &poses, &catalogue).expect("it is drawn");
+        worlds.iter().map(views).collect()
+    }
+
     fn distance(a: &World, b: &World) -> f64 {
-        picture_distance(a, b, &PictureOptions::default()).expect("both have free ground")
+        let views = views(&[a, b]);
+        let found = views[0].distance(&views[1], PictureMeasure::Oklab);
+        found.expect("they are of one size")
     }
 
     #[test]
@@ -336,12 +223,11 @@ mod tests {
     #[test]
     fn small_things_count_beside_the_ground() {
         let parts = |a: &World, b: &World| {
-            let options = PictureOptions::default();
-            let poses = poses(&[a, b], &options).expect("both have free ground");
-            let [a, b] = [a, b].map(|world| Views::new(world, &poses, &options).expect("it is drawn"));
-            assert_eq!(a.parts(&b).unwrap(), b.parts(&a).unwrap());
-            assert_eq!(a.parts(&a).unwrap(), PictureParts::default());
-            (a.parts(&b).unwrap(), a.distance(&b, PictureMeasure::Oklab).unwrap())
+            let views = views(&[a, b]);
+            let [a, b] = [&views[0], &views[1]];
+            assert_eq!(a.parts(b).unwrap(), b.parts(a).unwrap());
+            assert_eq!(a.parts(a).unwrap(), PictureParts::default());
+            (a.parts(b).unwrap(), a.distance(b, PictureMeasure::Oklab).unwrap())
         };
         let [red, blue] = ["[1.0, 0.0, 0.0]", "[0.0, 0.0, 1.0]"].map(|color| with_tree(1.0, color));
         let (found, whole) = parts(&red, &blue);
@@ -361,73 +247,39 @@ mod tests {
 
     #[test]
     fn nobody_stands_in_what_is_solid() {
-        let options = PictureOptions {
-            across: 1,
-            ..PictureOptions::default()
-        };
+        let catalogue = Catalogue::default();
         let empty = world("", "");
-        assert_eq!(poses(&[&empty], &options).expect("the middle is free").len(), 4);
-        let blocked = world("", r#"{ "class": "tree", "coordinates": [0.0, 0.0], "solid": true }"#);
+        assert_eq!(poses(&[&empty], &catalogue).expect("all is free").len(), 64);
+        // Places are 25 m apart, the first 12.5 m from the middle.
+        let tree = |x: f64, y: f64| format!(r#"{{ "class": "tree", "coordinates": [{x:?}, {y:?}], "solid": true }}"#);
+        let one = world("", &tree(12.5, 12.5));
+        let places = [-37.5, -12.5, 12.5, 37.5];
+        let all: Vec<String> = places.iter().flat_map(|x| places.map(|y| tree(*x, y))).collect();
+        let blocked = world("", &all.join(", "));
+        assert_eq!(poses(&[&empty, &one], &catalogue).expect("15 are free").len(), 60);
         for pair in [[&empty, &blocked], [&blocked, &empty]] {
-            let error = poses(&pair, &options).expect_err("a tree stands in the only place");
-            assert!(error.to_string().contains("none of 1 places free"), "{error}");
+            let error = poses(&pair, &catalogue).expect_err("a tree stands in every place");
+            assert!(error.to_string().contains("none of 16 places free"), "{error}");
         }
     }
 
     #[test]
-    fn a_matrix_of_worlds_keeps_the_laws_of_a_metric() {
+    fn worlds_seen_from_one_set_of_poses_keep_the_laws_of_a_metric() {
         let worlds = [
             world("", ""),
             with_tree(1.0, "[1.0, 0.0, 0.0]"),
             with_tree(1.0, "[0.2, 0.9, 0.1]"),
             world("\"ground_color\": [0.4, 0.4, 0.7]", ""),
         ];
-        let labels = (0..worlds.len()).map(|k| format!("world {k}")).collect();
         let worlds: Vec<&World> = worlds.iter().collect();
-        let matrix = picture_matrix(labels, &worlds, &PictureOptions::default()).expect("all have free ground");
-        assert_eq!(
-            matrix.get(1, 2),
-            distance(worlds[1], worlds[2]),
-            "their poses are the same"
-        );
+        let views = views(&worlds);
+        let apart = |a: usize, b: usize| views[a].distance(&views[b], PictureMeasure::Oklab).unwrap();
+        assert_eq!(apart(1, 2), distance(worlds[1], worlds[2]), "their poses are the same");
         for (a, b) in (0..4).flat_map(|a| (0..4).map(move |b| (a, b))) {
-            assert!(a == b || matrix.get(a, b) > 0.0);
+            assert!(a == b || apart(a, b) > 0.0);
             for c in 0..4 {
-                assert!(matrix.get(a, b) <= matrix.get(a, c) + matrix.get(c, b) + 1e-12);
+                assert!(apart(a, b) <= apart(a, c) + apart(c, b) + 1e-12);
             }
         }
-    }
-
-    #[test]
-    fn options_out_of_range_say_so() {
-        let check = |options: PictureOptions, expected: &str| {
-            let world = World::default();
-            let error = picture_distance(&world, &world, &options).expect_err("it is out of range");
-            assert_eq!(
-                (error.code(), error.to_string().as_str()),
-                ("pictures/option", expected)
-            );
-        };
-        let base = PictureOptions::default;
-        check(
-            PictureOptions { across: 0, ..base() },
-            "pictures, across: found 0, expected 1 to 32",
-        );
-        check(
-            PictureOptions { headings: 65, ..base() },
-            "pictures, headings: found 65, expected 1 to 64",
-        );
-        check(
-            PictureOptions { side: 513, ..base() },
-            "pictures, side: found 513, expected 1 to 512",
-        );
-        check(
-            PictureOptions {
-                side: 512,
-                across: 32,
-                ..base()
-            },
-            "pictures, pixels of all pictures: found 1073741824, expected 1 to 67108864",
-        );
     }
 }

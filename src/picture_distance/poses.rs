@@ -1,9 +1,9 @@
 //! The places and directions from which worlds are compared by pictures. What is compared is in the module above.
 
-use driftworld_env::Environment;
+use driftworld_env::{Catalogue, Environment};
 use driftworld_spec::World;
 
-use super::{PictureDistanceError, PictureOptions, check};
+use super::{ACROSS, HEADINGS, PictureDistanceError};
 
 /// Where an agent stands and looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,26 +16,24 @@ pub struct Pose {
 
 /// The same places and directions for all of these worlds.
 ///
-/// The rectangle around the middle that all arenas have is cut into `across × across` cells; an agent stands in the middle
-/// of each cell and looks in `headings` directions, the first north. Cells whose middle an agent could not stand on in every
+/// The rectangle around the middle that all arenas have is cut into 4 × 4 cells; an agent stands in the middle of each cell
+/// and looks in 4 directions, the first north. Cells whose middle an agent could not stand on in every
 /// world (a wall, a region that cannot be entered, a solid object) are left out. Cell by cell from the south-west, row by row.
 ///
 /// # Errors
-/// [`PictureDistanceError::Option`], [`PictureDistanceError::NoPlace`]; [`PictureDistanceError::World`] for worlds that cannot
-/// be begun.
-pub fn poses(worlds: &[&World], options: &PictureOptions) -> Result<Vec<Pose>, PictureDistanceError> {
-    check(options)?;
+/// [`PictureDistanceError::NoPlace`]; [`PictureDistanceError::World`] for worlds that cannot be begun.
+pub fn poses(worlds: &[&World], catalogue: &Catalogue) -> Result<Vec<Pose>, PictureDistanceError> {
     let sizes = worlds.iter().map(|world| world.environment_params.arena_size());
     let [width, depth] = sizes.fold([f64::INFINITY; 2], |least, size| {
         [least[0].min(size[0]), least[1].min(size[1])]
     });
     let mut environments: Vec<Environment> = worlds
         .iter()
-        .map(|world| Environment::with_catalogue((*world).clone(), options.catalogue.clone()))
+        .map(|world| Environment::with_catalogue((*world).clone(), catalogue.clone()))
         .collect();
-    let middle = |cell: u32, side: f64| side * ((f64::from(cell) + 0.5) / f64::from(options.across) - 0.5);
+    let middle = |cell: u32, side: f64| side * ((f64::from(cell) + 0.5) / f64::from(ACROSS) - 0.5);
     let mut poses = Vec::new();
-    for (row, column) in (0..options.across).flat_map(|row| (0..options.across).map(move |column| (row, column))) {
+    for (row, column) in (0..ACROSS).flat_map(|row| (0..ACROSS).map(move |column| (row, column))) {
         let position = [middle(column, width), middle(row, depth)];
         // Without a world there is no arena either.
         if environments.is_empty()
@@ -45,13 +43,13 @@ pub fn poses(worlds: &[&World], options: &PictureOptions) -> Result<Vec<Pose>, P
         {
             continue;
         }
-        poses.extend((0..options.headings).map(|k| Pose {
+        poses.extend((0..HEADINGS).map(|k| Pose {
             position,
-            heading_deg: 360.0 * f64::from(k) / f64::from(options.headings),
+            heading_deg: 360.0 * f64::from(k) / f64::from(HEADINGS),
         }));
     }
     if poses.is_empty() {
-        let tried = options.across * options.across;
+        let tried = ACROSS * ACROSS;
         return Err(PictureDistanceError::NoPlace { tried });
     }
     Ok(poses)

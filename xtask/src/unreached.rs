@@ -8,7 +8,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::sources::{Sources, end, is_of_name, is_test_file, shipped_lines};
 
 /// Items that no other code names, each with the reason to keep it.
-const KEPT: [(&str, &str); 3] = [
+const KEPT: [(&str, &str); 4] = [
+    ("differs_in", "tests say in which elements worlds differ"),
     ("ShownPath", "a trait whose method `shown` is called"),
     (
         "each_instruction_set",

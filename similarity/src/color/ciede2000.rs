@@ -1,12 +1,6 @@
 //! CIEDE2000, the industry's formula for small differences of colour. How a colour becomes L*a*b* is in `lab.rs`.
-#![expect(
-    clippy::inline_always,
-    reason = "whole vectors are used only where the loop over many colours holds all of the formula"
-)]
 
-use crate::SimilarityError;
-use crate::color::lab::{Lab, LabTable};
-use crate::color::rows::fill;
+use crate::color::lab::Lab;
 
 /// The farthest apart that two sRGB colours are: a dark blue (0, 0, 0.4303) and a yellowish green (0.5589, 1, 0); rounded up.
 pub(crate) const CIEDE2000_DIAMETER: f64 = 119.484_76;
@@ -29,8 +23,7 @@ const TURN_275: [f64; 2] = [0.087_155_742_747_658_18, -0.996_194_698_091_745_5];
 /// half. From 0 to 119.49 within sRGB, no unit. Where the hues of two colours are exactly opposite the formula jumps; the hue of
 /// a grey counts as its partner's.
 ///
-/// Hues enter through their cosines and sines only, so that no trigonometric function is needed and whole vectors can be taken at once:
-/// [`ciede2000_to_each`] takes about a fifth of the time of the formula as it is written.
+/// Hues enter through their cosines and sines only, so that no trigonometric function is needed.
 ///
 /// Source: Sharma, Wu and Dalal 2005, "The CIEDE2000 color-difference formula: implementation notes, supplementary test data,
 /// and mathematical observations"; their 34 pairs within 1e-4, `skimage.color.deltaE_ciede2000` within 1e-9, see
@@ -47,52 +40,6 @@ pub fn ciede2000(a: impl Into<Lab>, b: impl Into<Lab>) -> f64 {
     between(a.0, a.chroma(), b.0, b.chroma())
 }
 
-/// [`ciede2000`] from one colour to each of many, bit for bit the same numbers, several at a time where the processor can.
-///
-/// # Errors
-/// [`SimilarityError::Shape`] when there are not as many places for distances as colours.
-///
-/// # Example
-/// ```
-/// use driftworld_similarity::{Lab, LabTable, ciede2000_to_each};
-/// let table: LabTable = [[50.0, 0.0, 0.0], [60.0, 0.0, 0.0]].map(Lab).into_iter().collect();
-/// let mut distances = [0.0; 2];
-/// ciede2000_to_each(Lab([50.0, 0.0, 0.0]), &table, &mut distances)?;
-/// assert_eq!(distances[0], 0.0);
-/// assert!((distances[1] - 9.4706).abs() < 1e-4);
-/// # Ok::<(), driftworld_similarity::SimilarityError>(())
-/// ```
-pub fn ciede2000_to_each(from: Lab, to: &LabTable, distances: &mut [f64]) -> Result<(), SimilarityError> {
-    let count = to.len();
-    if distances.len() != count {
-        return Err(SimilarityError::Shape {
-            of: "distances",
-            found: distances.len(),
-            expected: count,
-        });
-    }
-    fill(from.0, from.chroma(), to, distances);
-    Ok(())
-}
-
-/// The distances from a colour to each of a table, of which there are as many as places for distances.
-#[inline(always)]
-pub(super) fn row(from: [f64; 3], chroma: f64, to: &LabTable, distances: &mut [f64]) {
-    let count = distances.len();
-    // One length for all, so that the compiler needs no check inside the loop and takes several colours at once.
-    let (lightness, a, b, chromas) = (
-        &to.lightness[..count],
-        &to.a[..count],
-        &to.b[..count],
-        &to.chroma[..count],
-    );
-    for (k, distance) in distances.iter_mut().enumerate() {
-        *distance = between(from, chroma, [lightness[k], a[k], b[k]], chromas[k]);
-    }
-}
-
-/// No branches and no calls: only what whole vectors can do.
-#[inline(always)]
 fn between([l1, a1, b1]: [f64; 3], chroma1: f64, [l2, a2, b2]: [f64; 3], chroma2: f64) -> f64 {
     // Greys are pulled apart in a*.
     let stretch = 1.5 - 0.5 * saturation((chroma1 + chroma2) * 0.5);
@@ -148,20 +95,17 @@ fn between([l1, a1, b1]: [f64; 3], chroma1: f64, [l2, a2, b2]: [f64; 3], chroma2
 }
 
 /// √(C⁷ / (C⁷ + 25⁷)): from 0 for greys to 1 for strong colours.
-#[inline(always)]
 fn saturation(chroma: f64) -> f64 {
     let seventh = seventh_power(chroma);
     (seventh / (seventh + POW_25_7)).sqrt()
 }
 
-#[inline(always)]
 fn seventh_power(x: f64) -> f64 {
     let square = x * x;
     square * square * square * x
 }
 
 /// T of the formula: how much a difference of hue counts around this hue. Multiples of the angle are found from its cosine and sine.
-#[inline(always)]
 fn hue_weight(cos: f64, sin: f64) -> f64 {
     let (cos_2, sin_2) = (2.0 * cos * cos - 1.0, 2.0 * sin * cos);
     let (cos_3, sin_3) = (cos_2 * cos - sin_2 * sin, sin_2 * cos + cos_2 * sin);
@@ -173,7 +117,6 @@ fn hue_weight(cos: f64, sin: f64) -> f64 {
 /// sin(2 Δθ) of the formula: how much chroma and hue turn into each other, a bump 25° wide around the blue at 275°.
 ///
 /// Absolute error below 1e-11.
-#[inline(always)]
 fn blue_rotation(cos: f64, sin: f64) -> f64 {
     // The square of the angle to 275° is a series in 1 − cosine: arccos²(1 − u) = 2 Σ (2u)ⁿ / (n² · (2n choose n)).
     // Far from 275° too few terms make it too small by at most a sixth, where the bump is below 1e-15.
@@ -308,23 +251,6 @@ mod tests {
         check([50.0, 40.0, 8.0], [70.0, 60.0, -12.1]);
     }
 
-    #[test]
-    fn as_many_places_as_colours_are_wanted() {
-        let table: LabTable = [Lab([1.0; 3]), Lab([2.0; 3])].into_iter().collect();
-        let error = ciede2000_to_each(Lab([0.0; 3]), &table, &mut [0.0]).unwrap_err();
-        assert!(
-            matches!(
-                error,
-                SimilarityError::Shape {
-                    found: 1,
-                    expected: 2,
-                    ..
-                }
-            ),
-            "{error}"
-        );
-    }
-
     proptest! {
         #[test]
         fn it_is_the_formula_as_written(a in lab(), b in lab()) {
@@ -336,16 +262,6 @@ mod tests {
             prop_assert_eq!(ciede2000(a, a), 0.0);
             prop_assert!((ciede2000(a, b) - ciede2000(b, a)).abs() < 1e-9);
             prop_assert!(ciede2000(a, b) >= 0.0);
-        }
-
-        #[test]
-        fn many_at_once_are_bit_for_bit_as_one_by_one(from in lab(), to in prop::collection::vec(lab(), 0..20)) {
-            let table: LabTable = to.iter().copied().collect();
-            let mut distances = vec![0.0; to.len()];
-            ciede2000_to_each(from, &table, &mut distances).unwrap();
-            for (found, lab) in distances.iter().zip(to) {
-                prop_assert_eq!(found.to_bits(), ciede2000(from, lab).to_bits());
-            }
         }
     }
 }

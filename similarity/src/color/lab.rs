@@ -54,37 +54,3 @@ fn compressed(share: f64) -> f64 {
         7.787 * share + 16.0 / 116.0
     }
 }
-
-/// Many colours, channel by channel, as whole vectors want them.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct LabTable {
-    pub(crate) lightness: Vec<f64>,
-    pub(crate) a: Vec<f64>,
-    pub(crate) b: Vec<f64>,
-    pub(crate) chroma: Vec<f64>,
-}
-
-impl LabTable {
-    /// How many colours there are.
-    pub fn len(&self) -> usize {
-        self.lightness.len()
-    }
-
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.lightness.is_empty()
-    }
-}
-
-impl FromIterator<Lab> for LabTable {
-    fn from_iter<T: IntoIterator<Item = Lab>>(colors: T) -> Self {
-        let mut table = Self::default();
-        for lab in colors {
-            table.lightness.push(lab.0[0]);
-            table.a.push(lab.0[1]);
-            table.b.push(lab.0[2]);
-            table.chroma.push(lab.chroma());
-        }
-        table
-    }
-}

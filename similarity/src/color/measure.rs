@@ -31,7 +31,7 @@ pub enum ColorMeasure {
     Cie76,
     /// [`ciede2000`]. Not a metric.
     Ciede2000,
-    /// [`oklab_distance`](crate::oklab_distance): the default, a metric that follows the eye.
+    /// [`Color::distance`]: the default, a metric that follows the eye.
     #[default]
     Oklab,
     /// [`hyab`].

@@ -5,8 +5,6 @@ pub(crate) mod ciede2000;
 pub(crate) mod hyab;
 pub(crate) mod lab;
 pub(crate) mod measure;
-pub(crate) mod oklab;
-mod rows;
 pub(crate) mod sets;
 pub(crate) mod srgb;
 

@@ -29,19 +29,6 @@ pub struct PairValue {
     pub value: f64,
 }
 
-impl PairValue {
-    /// Every pair of a matrix once: for the test of two matrices of the same items in the same order.
-    pub fn of_matrix(matrix: &DistanceMatrix) -> Vec<Self> {
-        let all = (0..matrix.len()).flat_map(|from| (from + 1..matrix.len()).map(move |to| (from, to)));
-        all.map(|(from, to)| Self {
-            from,
-            to,
-            value: matrix.get(from, to),
-        })
-        .collect()
-    }
-}
-
 /// What a Mantel test found.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MantelTest {
@@ -95,7 +82,8 @@ pub struct MantelTest {
 /// let at = [0.0_f64, 1.0, 3.0, 7.0];
 /// let names = ["a", "b", "c", "d"].map(String::from).to_vec();
 /// let matrix = DistanceMatrix::measure(names, |a, b| Ok::<_, SimilarityError>((at[a] - at[b]).abs()))?;
-/// let doubled: Vec<_> = PairValue::of_matrix(&matrix).into_iter().map(|pair| PairValue { value: 2.0 * pair.value, ..pair }).collect();
+/// let pairs = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
+/// let doubled = pairs.map(|(from, to)| PairValue { from, to, value: 2.0 * matrix.get(from, to) });
 /// let test = mantel(&matrix, &doubled, Correlation::Spearman, 999, 0)?;
 /// assert!((test.correlation - 1.0).abs() < 1e-12);
 /// assert!(test.exact, "four items have 24 relabellings");
