@@ -104,8 +104,8 @@ pub(crate) fn openness(renderer: &mut Renderer, scene: &Scene, camera: &Camera) 
     Ok(depth.iter().map(|metres| metres.min(OPEN_METRES)).sum::<f32>() / depth.len() as f32)
 }
 
-#[cfg(test)]
 #[expect(clippy::disallowed_methods, reason = "where a cube stands before a camera")]
+#[cfg(test)]
 mod tests {
     use driftworld_spec::{Object, WorldDraft};
     use proptest::prelude::*;

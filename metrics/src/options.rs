@@ -285,40 +285,40 @@ impl Options {
         if let Some(length) = self.window_length
             && !(1..=MAX_WINDOW_LENGTH).contains(&length)
         {
-            return Err(MetricsError::BadOption {
-                option: "window_length",
-                found: length.to_string(),
-                expected: format!("1 to {MAX_WINDOW_LENGTH} experiences"),
-            });
+            return Err(MetricsError::bad_option(
+                "window_length",
+                length.to_string(),
+                format!("1 to {MAX_WINDOW_LENGTH} experiences"),
+            ));
         }
         if let Some(noise) = self.noise {
             let bounded = |value: f64| value.abs() < MAX_PERFORMANCE;
             if !bounded(noise.mean) || !bounded(noise.std) || noise.std < 0.0 {
-                return Err(MetricsError::BadOption {
-                    option: "noise",
-                    found: format!("mean {:e}, standard deviation {:e}", noise.mean, noise.std),
-                    expected: "two numbers below 1e100 in magnitude, the second not negative".to_owned(),
-                });
+                return Err(MetricsError::bad_option(
+                    "noise",
+                    format!("mean {:e}, standard deviation {:e}", noise.mean, noise.std),
+                    "two numbers below 1e100 in magnitude, the second not negative",
+                ));
             }
         }
         for (task, anchors) in self.scales.iter().flatten() {
             let bounded = |value: f64| value.abs() < MAX_PERFORMANCE;
             if !bounded(anchors.floor) || !bounded(anchors.ceiling) {
-                return Err(MetricsError::BadOption {
-                    option: "scales",
-                    found: format!("{:e} to {:e} for task {task}", anchors.floor, anchors.ceiling),
-                    expected: "two numbers below 1e100 in magnitude".to_owned(),
-                });
+                return Err(MetricsError::bad_option(
+                    "scales",
+                    format!("{:e} to {:e} for task {task}", anchors.floor, anchors.ceiling),
+                    "two numbers below 1e100 in magnitude",
+                ));
             }
         }
         for (task, range) in self.data_range.iter().flatten() {
             let bounded = range.min.abs() < MAX_PERFORMANCE && range.max.abs() < MAX_PERFORMANCE;
             if !bounded || range.min > range.max {
-                return Err(MetricsError::BadOption {
-                    option: "data_range",
-                    found: format!("{:e} to {:e} for task {task}", range.min, range.max),
-                    expected: "two numbers below 1e100 in magnitude, the smaller one first".to_owned(),
-                });
+                return Err(MetricsError::bad_option(
+                    "data_range",
+                    format!("{:e} to {:e} for task {task}", range.min, range.max),
+                    "two numbers below 1e100 in magnitude, the smaller one first",
+                ));
             }
         }
         Ok(())

@@ -602,4 +602,23 @@ impl MetricsError {
         let path = path.into();
         move |source| Self::Io { path, doing, source }
     }
+
+    pub(crate) fn too_large(path: impl Into<PathBuf>, what: &'static str, found: u64, limit: u64) -> Self {
+        let path = path.into();
+        Self::TooLarge {
+            path,
+            what,
+            found,
+            limit,
+        }
+    }
+
+    pub(crate) fn bad_option(option: &'static str, found: impl Into<String>, expected: impl Into<String>) -> Self {
+        let (found, expected) = (found.into(), expected.into());
+        Self::BadOption {
+            option,
+            found,
+            expected,
+        }
+    }
 }

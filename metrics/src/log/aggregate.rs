@@ -173,12 +173,12 @@ impl LogTable {
         let cells = rows * (self.own.len() + new) as u64;
         for (what, found, limit) in [("rows", rows, MAX_RECORDS as u64), ("cells", cells, MAX_CELLS)] {
             if found > limit {
-                return Err(MetricsError::TooLarge {
-                    path: format!("table of logs up to {}", log.run_id).into(),
+                return Err(MetricsError::too_large(
+                    format!("table of logs up to {}", log.run_id),
                     what,
                     found,
                     limit,
-                });
+                ));
             }
         }
         Ok(())

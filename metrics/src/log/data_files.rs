@@ -48,12 +48,7 @@ pub(super) fn find(dir: &Path) -> Result<Vec<PathBuf>, MetricsError> {
             seen += 1;
             if seen > MAX_LOG_FILES {
                 let (found, limit) = (seen as u64, MAX_LOG_FILES as u64);
-                return Err(MetricsError::TooLarge {
-                    path: dir.to_owned(),
-                    what: "files or more",
-                    found,
-                    limit,
-                });
+                return Err(MetricsError::too_large(dir, "files or more", found, limit));
             }
             let kind = entry.file_type().map_err(list)?;
             search.take(&current, entry.path(), kind)?;

@@ -31,12 +31,12 @@ pub(super) fn encoded(place: &Path, name: &str) -> Result<String, MetricsError> 
         encoded.push('%');
     }
     if encoded.len() > MAX_BYTES {
-        return Err(MetricsError::TooLarge {
-            path: place.to_owned(),
-            what: "letters in the name of a folder for a task or a run",
-            found: encoded.len() as u64,
-            limit: MAX_BYTES as u64,
-        });
+        return Err(MetricsError::too_large(
+            place,
+            "letters in the name of a folder for a task or a run",
+            encoded.len() as u64,
+            MAX_BYTES as u64,
+        ));
     }
     Ok(encoded)
 }

@@ -194,10 +194,5 @@ fn check_num_columns(path: &Path, num: usize) -> Result<(), MetricsError> {
     if num <= MAX_COLUMNS {
         return Ok(());
     }
-    Err(MetricsError::TooLarge {
-        path: path.to_owned(),
-        what: "columns",
-        found: num as u64,
-        limit: MAX_COLUMNS as u64,
-    })
+    Err(MetricsError::too_large(path, "columns", num as u64, MAX_COLUMNS as u64))
 }

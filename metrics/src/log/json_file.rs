@@ -36,12 +36,12 @@ pub(super) fn read_object(path: &Path, expected: &'static str) -> Result<Map<Str
     };
     let found = json_values::count(&bytes, MAX_JSON_VALUES).map_err(wrong)?;
     if found > MAX_JSON_VALUES {
-        return Err(MetricsError::TooLarge {
-            path: path.to_owned(),
-            what: "values or more of JSON",
+        return Err(MetricsError::too_large(
+            path,
+            "values or more of JSON",
             found,
-            limit: MAX_JSON_VALUES,
-        });
+            MAX_JSON_VALUES,
+        ));
     }
     serde_json::from_slice(&bytes).map_err(wrong)
 }

@@ -39,12 +39,7 @@ fn as_metrics_error(error: FileError) -> MetricsError {
             // The word that all messages about logs have for it.
             found: if found == "a folder" { "a directory" } else { found },
         },
-        FileError::TooLarge { path, found, limit } => MetricsError::TooLarge {
-            path,
-            what: "bytes or more",
-            found,
-            limit,
-        },
+        FileError::TooLarge { path, found, limit } => MetricsError::too_large(path, "bytes or more", found, limit),
         other => MetricsError::Io {
             path: Path::new("").to_owned(),
             doing: "read this file",

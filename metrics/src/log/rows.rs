@@ -6,7 +6,6 @@ use indexmap::IndexMap;
 
 use super::record::{BlockSubtype, BlockType, ExpStatus, Record, TaskParams};
 use super::shared_column::{SharedColumn, reorder};
-use super::text_column::TextColumn;
 use super::timestamp::Timestamp;
 
 /// The rows of a log, of all its workers, by column. Every column has a value for each row.
@@ -41,7 +40,7 @@ pub struct Rows {
     pub(super) exp_statuses: Vec<ExpStatus>,
     pub(super) timestamps: Vec<Timestamp>,
     pub(super) metrics: IndexMap<String, Vec<f64>>,
-    pub(super) texts: IndexMap<String, TextColumn>,
+    pub(super) texts: IndexMap<String, SharedColumn<String>>,
 }
 
 /// The cells of a row that every log has and that are small.
@@ -141,7 +140,7 @@ impl Rows {
     }
 
     /// A column of words; `None` where there is no such column.
-    pub fn text(&self, name: &str) -> Option<&TextColumn> {
+    pub fn text(&self, name: &str) -> Option<&SharedColumn<String>> {
         self.texts.get(name)
     }
 
@@ -291,13 +290,13 @@ impl<'a> Row<'a> {
 
     /// A word of the row, empty where it is missing; `None` where there is no such column.
     pub fn text(self, name: &str) -> Option<&'a str> {
-        self.rows.texts.get(name)?.get(self.index)
+        Some(self.rows.texts.get(name)?.of(self.index))
     }
 
     /// All words of the row with the names of their columns.
     pub fn texts(self) -> impl ExactSizeIterator<Item = (&'a str, &'a str)> {
         let columns = self.rows.texts.iter();
-        columns.map(move |(name, texts)| (name.as_str(), texts.get(self.index).unwrap_or_default()))
+        columns.map(move |(name, texts)| (name.as_str(), texts.of(self.index).as_str()))
     }
 
     /// The row as a record of its own, ready to be written to another log. Columns of words stay behind: records have none.

@@ -19,11 +19,11 @@ pub(super) fn check_outside(data_folder: &Path, log_dir: &Path) -> Result<(), Me
     // The folder may not be there yet, but what it will lie in is.
     let there = place.ancestors().find_map(|ancestor| ancestor.canonicalize().ok());
     if there.is_some_and(|there| there.starts_with(&log)) {
-        return Err(MetricsError::BadOption {
-            option: "STE data folder",
-            found: data_folder.display().to_string(),
-            expected: "a folder outside the log that is stored".to_owned(),
-        });
+        return Err(MetricsError::bad_option(
+            "STE data folder",
+            data_folder.display().to_string(),
+            "a folder outside the log that is stored",
+        ));
     }
     Ok(())
 }

@@ -2,13 +2,13 @@
 //!
 //! Not here: the columns when they are complete, see `rows`.
 
+use std::convert::Infallible;
 use std::path::Path;
 
 use indexmap::IndexMap;
 
 use super::rows::{Cells, Rows};
-use super::shared_column::Seen;
-use super::text_column::TextColumn;
+use super::shared_column::{Seen, SharedColumn};
 use crate::MetricsError;
 
 /// Most records that one log may hold.
@@ -52,7 +52,8 @@ struct Other {
     numbers: Vec<f64>,
     /// Whether no word stood in it so far.
     is_number: bool,
-    texts: TextColumn,
+    texts: SharedColumn<String>,
+    seen: Seen,
 }
 
 impl<'a> Table<'a> {
@@ -94,7 +95,8 @@ impl<'a> Table<'a> {
             let other = entry.or_insert_with(|| Other {
                 numbers: Vec::new(),
                 is_number: true,
-                texts: TextColumn::default(),
+                texts: SharedColumn::default(),
+                seen: Seen::default(),
             });
             let missing = other.missing(self.rows.len(), self.texts);
             numbers.push(number);
@@ -179,12 +181,7 @@ impl<'a> Table<'a> {
         if found <= limit {
             return Ok(());
         }
-        Err(MetricsError::TooLarge {
-            path: self.dir.to_owned(),
-            what,
-            found,
-            limit,
-        })
+        Err(MetricsError::too_large(self.dir, what, found, limit))
     }
 }
 
@@ -193,7 +190,7 @@ impl Other {
     fn missing(&self, num_rows: usize, texts: Texts) -> u64 {
         let here = match texts {
             _ if self.is_number => self.numbers.len(),
-            Texts::Keep => self.texts.len(),
+            Texts::Keep => self.texts.ids().len(),
             Texts::Leave => num_rows,
         };
         (num_rows - here) as u64
@@ -204,7 +201,9 @@ impl Other {
             self.numbers.resize(num_rows, f64::NAN);
         }
         if texts == Texts::Keep {
-            self.texts.pad(num_rows);
+            while self.texts.ids().len() < num_rows {
+                self.push_text("");
+            }
         }
     }
 
@@ -218,7 +217,14 @@ impl Other {
             }
         }
         if texts == Texts::Keep {
-            self.texts.push(text);
+            self.push_text(text);
         }
+    }
+
+    fn push_text(&mut self, text: &str) {
+        let id = self
+            .seen
+            .id(&mut self.texts, text, |text| Ok::<_, Infallible>(text.to_owned()));
+        self.texts.push(id.unwrap_or_else(|never| match never {}));
     }
 }

@@ -2,7 +2,6 @@
 //!
 //! Not here: what does, see `MetricsError`.
 
-use std::fmt;
 use std::path::PathBuf;
 
 use driftworld_text::{ShownPath, one_line};
@@ -11,12 +10,14 @@ use super::cell::shown;
 use super::timestamp::Timestamp;
 
 /// Something about a log that is not as it should be, but does not keep it from being read.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LogWarning {
     /// There is no `scenario_info.json`.
+    #[error("scenario_info.json: found no such file; read without it")]
     NoScenarioInfo,
     /// A field of `scenario_info.json` is none of the words it may be; it was left out.
+    #[error("scenario_info.json, {field}: found {found}, expected one of {expected}; left out", found = one_line(found))]
     ScenarioInfo {
         /// The field.
         field: &'static str,
@@ -26,6 +27,7 @@ pub enum LogWarning {
         expected: String,
     },
     /// The version that `logger_info.json` names and the columns do not go together; the columns count.
+    #[error("{}:1: found {} block_subtype, expected {} in a log of format {}; {}", path.shown(), if *has_subtype { "the column" } else { "no column" }, if *has_subtype { "none" } else { "one" }, one_line(version), if *has_subtype { "it counts" } else { "read as wake" })]
     Version {
         /// The first data file.
         path: PathBuf,
@@ -35,6 +37,7 @@ pub enum LogWarning {
         has_subtype: bool,
     },
     /// A time stamp is earlier than the one in the row above.
+    #[error("{}:{line}, column timestamp: found {found}, expected at least {before} as in the row above; kept", path.shown())]
     TimeRunsBack {
         /// The data file.
         path: PathBuf,
@@ -46,6 +49,7 @@ pub enum LogWarning {
         before: Timestamp,
     },
     /// A row lies in the folder of another worker or block; it is read as it says.
+    #[error("{}:{line}: found a row of another folder, expected it in {}; kept", path.shown(), one_line(expected))]
     OtherFolder {
         /// The data file.
         path: PathBuf,
@@ -55,6 +59,7 @@ pub enum LogWarning {
         expected: String,
     },
     /// A worker's last experience has no complete row: the run was stopped, or goes on.
+    #[error("{}:{line}: found experience {exp_num} without a complete row, the last of its worker; ignored until it has one", path.shown())]
     Unfinished {
         /// The data file.
         path: PathBuf,
@@ -64,6 +69,7 @@ pub enum LogWarning {
         exp_num: u64,
     },
     /// Experiences whose numbers no row has: rows may have been lost.
+    #[error("{}:{line}: found experience {after} after {before}, expected {}; numbers without a row: {missing}", path.shown(), before + 1)]
     Missing {
         /// The data file of the row behind the first gap.
         path: PathBuf,
@@ -77,101 +83,21 @@ pub enum LogWarning {
         missing: u64,
     },
     /// A metrics column without a single number.
+    #[error(
+        "column {}: found no number in any row, expected at least one; it cannot be scored",
+        one_line(column)
+    )]
     NoNumbers {
         /// The column.
         column: String,
     },
     /// A task's name is not `task_variant`; it is used as it is.
+    #[error(
+        "task_name: found {}, expected TASK_VARIANT, with letters and digits on both sides; used as is",
+        shown(found)
+    )]
     TaskName {
         /// The name.
         found: String,
     },
-}
-
-impl fmt::Display for LogWarning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoScenarioInfo => f.write_str("scenario_info.json: found no such file; read without it"),
-            Self::ScenarioInfo { field, found, expected } => {
-                let found = one_line(found);
-                write!(
-                    f,
-                    "scenario_info.json, {field}: found {found}, expected one of {expected}; left out"
-                )
-            }
-            Self::Version {
-                path,
-                version,
-                has_subtype,
-            } => {
-                let version = one_line(version);
-                let path = path.shown();
-                let found = if *has_subtype { "the column" } else { "no column" };
-                let expected = if *has_subtype { "none" } else { "one" };
-                let read = if *has_subtype { "it counts" } else { "read as wake" };
-                write!(
-                    f,
-                    "{path}:1: found {found} block_subtype, expected {expected} in a log of format {version}; {read}"
-                )
-            }
-            Self::TimeRunsBack {
-                path,
-                line,
-                found,
-                before,
-            } => {
-                let path = path.shown();
-                write!(
-                    f,
-                    "{path}:{line}, column timestamp: found {found}, expected at least {before} as in the row above; \
-                     kept"
-                )
-            }
-            Self::OtherFolder { path, line, expected } => {
-                let expected = one_line(expected);
-                let path = path.shown();
-                write!(
-                    f,
-                    "{path}:{line}: found a row of another folder, expected it in {expected}; kept"
-                )
-            }
-            Self::Unfinished { path, line, exp_num } => {
-                let path = path.shown();
-                write!(
-                    f,
-                    "{path}:{line}: found experience {exp_num} without a complete row, the last of its worker; \
-                     ignored until it has one"
-                )
-            }
-            Self::Missing {
-                path,
-                line,
-                before,
-                after,
-                missing,
-            } => {
-                let path = path.shown();
-                write!(
-                    f,
-                    "{path}:{line}: found experience {after} after {before}, expected {}; numbers without a row: \
-                     {missing}",
-                    before + 1
-                )
-            }
-            Self::NoNumbers { column } => {
-                let column = one_line(column);
-                write!(
-                    f,
-                    "column {column}: found no number in any row, expected at least one; it cannot be scored"
-                )
-            }
-            Self::TaskName { found } => {
-                let found = shown(found);
-                write!(
-                    f,
-                    "task_name: found {found}, expected TASK_VARIANT, with letters and digits on both sides; used as is"
-                )
-            }
-        }
-    }
 }

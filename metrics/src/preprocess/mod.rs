@@ -57,12 +57,14 @@ pub(crate) fn given_range(
         .filter(|(name, _)| belongs(name))
         .map(|(_, range)| *range)
         .reduce(hull);
-    found.map(Some).ok_or_else(|| MetricsError::BadOption {
-        option: "data_range",
-        found: format!("no range for task {task}"),
-        expected: match options.variant_mode {
-            VariantMode::Aware => format!("one for each of {}", lifetime.tasks().join(", ")),
-            VariantMode::Agnostic => format!("one for a variant of each of {}", lifetime.tasks().join(", ")),
-        },
+    found.map(Some).ok_or_else(|| {
+        MetricsError::bad_option(
+            "data_range",
+            format!("no range for task {task}"),
+            match options.variant_mode {
+                VariantMode::Aware => format!("one for each of {}", lifetime.tasks().join(", ")),
+                VariantMode::Agnostic => format!("one for a variant of each of {}", lifetime.tasks().join(", ")),
+            },
+        )
     })
 }

@@ -33,13 +33,9 @@ pub enum Aggregate {
 impl Aggregate {
     pub(super) fn check(self) -> Result<(), MetricsError> {
         match self {
-            Self::OptimalityGap { gamma } if gamma.is_nan() || gamma.abs() >= MAX_PERFORMANCE => {
-                Err(MetricsError::BadOption {
-                    option: "gamma",
-                    found: format!("{gamma:e}"),
-                    expected: "a number below 1e100 in magnitude".to_owned(),
-                })
-            }
+            Self::OptimalityGap { gamma } if gamma.is_nan() || gamma.abs() >= MAX_PERFORMANCE => Err(
+                MetricsError::bad_option("gamma", format!("{gamma:e}"), "a number below 1e100 in magnitude"),
+            ),
             _ => Ok(()),
         }
     }

@@ -60,11 +60,7 @@ impl BootstrapOptions {
     /// Checks that the options make sense for tables of so many scores.
     pub(super) fn check(&self, num_scores: usize) -> Result<(), MetricsError> {
         let wrong = |option: &'static str, found: String, expected: String| {
-            Err(MetricsError::BadOption {
-                option,
-                found,
-                expected,
-            })
+            Err(MetricsError::bad_option(option, found, expected))
         };
         if !(self.confidence > 0.0 && self.confidence < 1.0) {
             let expected = "a number between 0 and 1, as 0.95";

@@ -100,11 +100,7 @@ impl<'a> Place<'a> {
     fn new(dir: &'a Path, name: &str) -> Result<Self, MetricsError> {
         if name.is_empty() || name.contains(['/', '\\', '\0']) {
             let expected = "a file name without / and \\".to_owned();
-            return Err(MetricsError::BadOption {
-                option: "output name",
-                found: format!("{name:?}"),
-                expected,
-            });
+            return Err(MetricsError::bad_option("output name", format!("{name:?}"), expected));
         }
         fs::create_dir_all(dir).map_err(MetricsError::io(dir, "make this directory"))?;
         let name = name.replace(' ', "_");

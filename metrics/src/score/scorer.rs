@@ -62,12 +62,11 @@ impl Scorer {
             let name = headline.name.into_owned();
             let is_free = !name.is_empty() && !TAKEN.contains(&name.as_str());
             if !is_free || !self.headlines.insert(name.clone()) {
-                return Err(MetricsError::BadOption {
-                    option: "headline of a metric",
-                    found: format!("{name:?}"),
-                    expected: "a name that is not empty and that no other metric or field of the results has"
-                        .to_owned(),
-                });
+                return Err(MetricsError::bad_option(
+                    "headline of a metric",
+                    format!("{name:?}"),
+                    "a name that is not empty and that no other metric or field of the results has",
+                ));
             }
         }
         self.metrics.push(Box::new(metric));
@@ -250,11 +249,11 @@ const EXTENT: [&str; 4] = ["min", "max", "num_lx", "num_ex"];
 /// Checks that metrics set no value whose name the results use for something else: it would stand there twice.
 fn check_names(values: &Values, whose: &str, is_taken: impl Fn(&str) -> bool) -> Result<(), MetricsError> {
     match values.iter().find(|(name, _)| is_taken(name)) {
-        Some((name, _)) => Err(MetricsError::BadOption {
-            option: "value of a metric",
-            found: format!("{name:?} of {whose}"),
-            expected: "a name that no field or column of the results has".to_owned(),
-        }),
+        Some((name, _)) => Err(MetricsError::bad_option(
+            "value of a metric",
+            format!("{name:?} of {whose}"),
+            "a name that no field or column of the results has",
+        )),
         None => Ok(()),
     }
 }
