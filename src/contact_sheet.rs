@@ -89,7 +89,7 @@ pub(crate) struct Cell {
 pub(crate) fn contact_sheet(shown: &[Shown], look: Look, tick: &dyn Fn()) -> Result<Drawing, Failure> {
     let (cells, said) = cells(shown, look, tick)?;
     let rows: Vec<SheetRow> = cells.into_iter().map(|cell| cell.row).collect();
-    let mut drawing = sheet(&rows, look.columns)?;
+    let mut drawing = sheet(&rows, look.columns);
     for line in said {
         for line in text_lines(&line, 13.0, drawing.width as f32 - 24.0) {
             drawing.height += 18;

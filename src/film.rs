@@ -381,7 +381,7 @@ fn write_sheet(
     let mut replay = Replay::new(recording, catalogue);
     while replay.step()?.is_some() {}
     replay.check()?;
-    let picture = sheet(&rows, 2)?;
+    let picture = sheet(&rows, 2);
     output_file::write_picture(path, &picture)?;
     Ok(FilmSummary {
         frames: rows.len() as u32,

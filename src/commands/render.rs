@@ -141,7 +141,7 @@ impl Render {
             })
         };
         let rows = [row(Style::Plain, "Plain")?, row(Style::Natural, "Natural")?];
-        Ok(sheet(&rows, 1)?)
+        Ok(sheet(&rows, 1))
     }
 
     /// Two frames side by side.
@@ -156,7 +156,7 @@ impl Render {
             renderer: self.renderer,
             ..FilmOptions::default()
         };
-        Ok(sheet(&rows(&recording, catalogue, &options, most)?, 2)?)
+        Ok(sheet(&rows(&recording, catalogue, &options, most)?, 2))
     }
 
     fn sheet(&self, world: &World, views: &Views) -> Result<Drawing, Failure> {
@@ -199,7 +199,7 @@ impl Render {
         if !close_ups.is_empty() {
             rows.push(row("What stands in it", classes.join(", "), close_ups));
         }
-        Ok(sheet(&rows, 1)?)
+        Ok(sheet(&rows, 1))
     }
 }
 

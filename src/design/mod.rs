@@ -47,7 +47,7 @@ impl Designed {
         let Some(scenario) = self.scenarios.first() else {
             return Ok(());
         };
-        output_file::write_picture(path, &picture::blocks(scenario)?)
+        output_file::write_picture(path, &picture::blocks(scenario))
     }
 }
 

@@ -12,27 +12,26 @@ use super::{Drawing, Level, Shape, Side, TextLine};
 /// The plotting library counts a font's size from its lowest to its highest line; writers of pages count less.
 const LIBRARY_SIZE: f64 = 1.24;
 
-/// A backend of the plotting library that writes down what is drawn. A length is multiplied by `scale`.
+/// A backend of the plotting library that writes down what is drawn.
 pub(crate) struct Recorder<'a> {
     drawing: &'a mut Drawing,
-    scale: f32,
 }
 
 type Outcome = Result<(), DrawingErrorKind<Infallible>>;
 
 impl<'a> Recorder<'a> {
-    pub(crate) fn onto(drawing: &'a mut Drawing, scale: f32) -> Self {
-        Self { drawing, scale }
+    pub(crate) fn onto(drawing: &'a mut Drawing) -> Self {
+        Self { drawing }
     }
 
     /// The middle of the library's pixel.
     fn place(&self, (x, y): BackendCoord) -> [f32; 2] {
-        [x, y].map(|pixel| (pixel as f32 + 0.5) * self.scale)
+        [x, y].map(|pixel| pixel as f32 + 0.5)
     }
 
     /// The upper left of the library's pixel: lines of an even width and polygons have sharp sides there.
     fn corner(&self, (x, y): BackendCoord) -> [f32; 2] {
-        [x, y].map(|pixel| pixel as f32 * self.scale)
+        [x, y].map(|pixel| pixel as f32)
     }
 
     fn on_line(&self, place: BackendCoord, style: &impl BackendStyle) -> [f32; 2] {
@@ -48,7 +47,7 @@ impl<'a> Recorder<'a> {
         if alpha > 0.0 {
             self.drawing.shapes.push(Shape::Line {
                 points,
-                width: style.stroke_width() as f32 * self.scale,
+                width: style.stroke_width() as f32,
                 color: [r, g, b],
                 alpha: alpha as f32,
                 dash: None,
@@ -72,8 +71,7 @@ impl DrawingBackend for Recorder<'_> {
     type ErrorType = Infallible;
 
     fn get_size(&self) -> (u32, u32) {
-        let whole = |length: u32| (length as f32 / self.scale) as u32;
-        (whole(self.drawing.width), whole(self.drawing.height))
+        (self.drawing.width, self.drawing.height)
     }
 
     fn ensure_prepared(&mut self) -> Outcome {
@@ -86,7 +84,7 @@ impl DrawingBackend for Recorder<'_> {
 
     fn draw_pixel(&mut self, (x, y): BackendCoord, color: BackendColor) -> Outcome {
         let corners = [(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)];
-        let points = corners.map(|(x, y)| [x as f32 * self.scale, y as f32 * self.scale]);
+        let points = corners.map(|(x, y)| [x as f32, y as f32]);
         self.push_area(points.to_vec(), color);
         Ok(())
     }
@@ -113,7 +111,7 @@ impl DrawingBackend for Recorder<'_> {
                 (right + 1, bottom + 1),
                 (left, bottom + 1),
             ];
-            let points = corners.map(|(x, y)| [x as f32 * self.scale, y as f32 * self.scale]);
+            let points = corners.map(|(x, y)| [x as f32, y as f32]);
             self.push_area(points.to_vec(), style.color());
         } else {
             let corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
@@ -129,7 +127,7 @@ impl DrawingBackend for Recorder<'_> {
     }
 
     fn draw_circle<S: BackendStyle>(&mut self, middle: BackendCoord, radius: u32, style: &S, fill: bool) -> Outcome {
-        let (at, radius) = (self.place(middle), radius as f32 * self.scale);
+        let (at, radius) = (self.place(middle), radius as f32);
         let BackendColor { alpha, rgb: (r, g, b) } = style.color();
         if fill && alpha > 0.0 {
             self.drawing.shapes.push(Shape::Disc {
@@ -156,8 +154,8 @@ impl DrawingBackend for Recorder<'_> {
 
     fn draw_text<S: BackendTextStyle>(&mut self, text: &str, style: &S, (x, y): BackendCoord) -> Outcome {
         let BackendColor { rgb: (r, g, b), .. } = style.color();
-        let size = (style.size() / LIBRARY_SIZE) as f32 * self.scale;
-        let at = [x, y].map(|pixel| pixel as f32 * self.scale);
+        let size = (style.size() / LIBRARY_SIZE) as f32;
+        let at = [x, y].map(|pixel| pixel as f32);
         let side = match style.anchor().h_pos {
             HPos::Left => Side::Left,
             HPos::Center => Side::Middle,

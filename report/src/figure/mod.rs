@@ -22,7 +22,6 @@ use driftworld_metrics::Lifetime;
 use plotters::prelude::*;
 
 pub(crate) use palette::dark_rules;
-pub(crate) use paper::load_font;
 pub(crate) use strip::{strip, thinned_count};
 
 use crate::ReportError;
@@ -270,7 +269,7 @@ fn pixels(
     paper::load_font();
     let mut drawing = Drawing::blank(Paper::dots(width) as u32, Paper::dots(height) as u32);
     {
-        let area = Recorder::onto(&mut drawing, 1.0).into_drawing_area();
+        let area = Recorder::onto(&mut drawing).into_drawing_area();
         draw(&area)
             .and_then(|()| area.present())
             .map_err(|error| failed(figure, error))?;

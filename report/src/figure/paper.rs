@@ -295,7 +295,7 @@ pub(super) fn text_width(text: &str, size: i32) -> i32 {
 }
 
 /// The font is part of the program, so that figures look alike on machines with and without fonts.
-pub(crate) fn load_font() {
+pub(super) fn load_font() {
     static LOADED: Once = Once::new();
     LOADED.call_once(|| {
         let loaded = register_font("sans-serif", FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);

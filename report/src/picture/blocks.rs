@@ -5,30 +5,28 @@
     reason = "ticks and arrows of a figure, rounded to what is drawn"
 )]
 
+use super::{Drawing, FAINT, INK, Level, Rgb, Shape, Side, TextLine, WHITE, corner, letters, middle, text_width};
 use driftworld_spec::{Block, BlockKind, Phase, Regime, Scenario};
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-
-use super::{Drawing, FAINT, INK, text_width};
-use crate::ReportError;
 
 /// Colours of the rows, told apart by most colour-blind eyes too (Okabe and Ito).
-const COLORS: [RGBColor; 7] = [
-    RGBColor(0, 114, 178),
-    RGBColor(230, 159, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(213, 94, 0),
-    RGBColor(86, 180, 233),
-    RGBColor(204, 121, 167),
-    RGBColor(148, 132, 20),
+const COLORS: [Rgb; 7] = [
+    [0, 114, 178],
+    [230, 159, 0],
+    [0, 158, 115],
+    [213, 94, 0],
+    [86, 180, 233],
+    [204, 121, 167],
+    [148, 132, 20],
 ];
 const ROW: i32 = 40;
 const BAR: i32 = 24;
 const TOP: i32 = 84;
 const WIDTH: i32 = 1200;
-/// Size of the rows' names as the plotting library counts it, and how much more that is than the letters' size.
+/// Size of the rows' names, see `letters`.
 const NAME: f32 = 17.5;
-const LIBRARY_SIZE: f32 = 1.24;
+/// How much of what is below it a bar before deployment hides.
+const EARLY: f32 = 0.3;
+const EVALUATION: Rgb = [150, 154, 160];
 /// The most rows that are drawn; the variants beyond share the last.
 const MOST_ROWS: usize = 60;
 
@@ -45,126 +43,95 @@ struct Stretch {
 
 /// The blocks over the experiences: filled where the agent learns, grey where it is frozen, outlined before deployment, slanted
 /// where the variant drifts.
-///
-/// # Errors
-/// [`ReportError::Drawing`].
-pub fn blocks(scenario: &Scenario) -> Result<Drawing, ReportError> {
+pub fn blocks(scenario: &Scenario) -> Drawing {
     let (rows, stretches) = stretches(scenario);
     let total = scenario.num_experiences().max(1) as f64;
-    let longest = rows
-        .iter()
-        .map(|row| text_width(row, NAME / LIBRARY_SIZE))
-        .fold(0.0, f32::max);
+    let longest = rows.iter().map(|row| text_width(row, NAME / 1.24)).fold(0.0, f32::max);
     let left = (32 + longest.ceil() as i32).min(WIDTH / 2);
     let bottom = TOP + ROW * rows.len() as i32;
     let mut picture = Drawing::blank((WIDTH + 28) as u32, (bottom + 56) as u32);
     let x = |experience: f64| left + (f64::from(WIDTH - left) * experience / total).round() as i32;
     let y = |row: f64| TOP + (f64::from(ROW) * (row + 0.5)).round() as i32;
-    picture.draw(1.0, |area| {
-        let write = |text: &str, at: (i32, i32), size: f32, color: &RGBColor, anchor: Pos| {
-            let style = ("sans-serif", size).into_font().color(color).pos(anchor);
-            area.draw_text(text, &style, at)
-        };
-        let from_left = Pos::new(HPos::Left, VPos::Top);
-        write(&scenario.name, (16, 12), 26.0, &INK, from_left)?;
-        legend(
-            scenario,
-            left,
-            |text, at| write(text, at, 16.5, &FAINT, from_left),
-            |shape, style| area.draw(&Rectangle::new(shape, style)),
-        )?;
-        for (index, row) in rows.iter().enumerate() {
-            let middle = y(index as f64);
-            area.draw(&PathElement::new(
-                [(left, middle), (WIDTH, middle)],
-                RGBColor(228, 230, 233),
-            ))?;
-            write(
-                row,
-                (left - 12, middle),
-                NAME,
-                &INK,
-                Pos::new(HPos::Right, VPos::Center),
-            )?;
-        }
-        for stretch in &stretches {
-            // A stretch too short to be seen is drawn a pixel wide.
-            let (start, end) = (x(stretch.from), x(stretch.to).max(x(stretch.from) + 1));
-            let color = COLORS[stretch.row % COLORS.len()];
-            let along = |progress: f64| match stretch.drift {
-                Some((to, _)) => y(stretch.row as f64 + (to as f64 - stretch.row as f64) * progress),
-                None => y(stretch.row as f64),
-            };
-            let [first, last] = stretch.drift.map_or([0.0, 0.0], |(_, ends)| ends);
-            let thick = if stretch.kind == BlockKind::Evaluation {
-                BAR / 4
-            } else {
-                BAR / 2
-            };
-            let (a, b) = (along(first), along(last));
-            let shape = vec![
-                (start, a - thick),
-                (end, b - thick),
-                (end, b + thick),
-                (start, a + thick),
-            ];
-            let fill = match (stretch.kind, stretch.phase) {
-                (BlockKind::Evaluation, _) => RGBColor(150, 154, 160).filled(),
-                (BlockKind::Learning, Phase::Deployment) => color.filled(),
-                (BlockKind::Learning, Phase::PreDeployment) => color.mix(0.3).filled(),
-            };
-            area.draw(&Polygon::new(shape, fill))?;
-            if stretch.kind == BlockKind::Learning {
-                let mut rim = vec![
-                    (start, a - thick),
-                    (end, b - thick),
-                    (end, b + thick),
-                    (start, a + thick),
-                ];
-                rim.push(rim[0]);
-                let rim_color = if stretch.phase == Phase::PreDeployment {
-                    color
-                } else {
-                    WHITE
-                };
-                area.draw(&PathElement::new(rim, rim_color))?;
-            }
-        }
-        area.draw(&PathElement::new([(left, bottom), (WIDTH, bottom)], INK))?;
-        for tick in ticks(total) {
-            let at = x(tick);
-            area.draw(&PathElement::new([(at, bottom), (at, bottom + 5)], INK))?;
-            write(
-                &format!("{tick}"),
-                (at, bottom + 8),
-                15.5,
-                &FAINT,
-                Pos::new(HPos::Center, VPos::Top),
-            )?;
-        }
-        write("experiences", (left, bottom + 28), 16.5, &FAINT, from_left)?;
-        Ok(())
-    })?;
-    Ok(picture)
-}
-
-/// A sample of each kind of bar with its name, under the title.
-fn legend<E>(
-    scenario: &Scenario,
-    left: i32,
-    write: impl Fn(&str, (i32, i32)) -> Result<(), E>,
-    draw: impl Fn([(i32, i32); 2], ShapeStyle) -> Result<(), E>,
-) -> Result<(), E> {
-    for (index, (name, style, height)) in kinds(scenario).into_iter().enumerate() {
+    let write = |picture: &mut Drawing, text: &str, at: (i32, i32), size: f64, color: Rgb, side: Side, level: Level| {
+        picture.write(TextLine::new(text, corner(at), letters(size), color).anchored(side, level));
+    };
+    write(
+        &mut picture,
+        &scenario.name,
+        (16, 12),
+        26.0,
+        INK,
+        Side::Left,
+        Level::Top,
+    );
+    for (index, (name, color, alpha, height)) in kinds(scenario).into_iter().enumerate() {
         let x = left + index as i32 * 190;
-        draw([(x, 56 - height / 2), (x + 30, 56 + height / 2)], style)?;
-        write(name, (x + 38, 48))?;
+        let [(x0, y0), (x1, y1)] = [(x, 56 - height / 2), (x + 31, 57 + height / 2)];
+        fill(&mut picture, &[(x0, y0), (x1, y0), (x1, y1), (x0, y1)], color, alpha);
+        write(&mut picture, name, (x + 38, 48), 16.5, FAINT, Side::Left, Level::Top);
     }
-    Ok(())
+    for (index, row) in rows.iter().enumerate() {
+        let across = y(index as f64);
+        picture.line([middle((left, across)), middle((WIDTH, across))], 1.0, [228, 230, 233]);
+        let at = (left - 12, across);
+        write(&mut picture, row, at, f64::from(NAME), INK, Side::Right, Level::Middle);
+    }
+    for stretch in &stretches {
+        // A stretch too short to be seen is drawn a pixel wide.
+        let (start, end) = (x(stretch.from), x(stretch.to).max(x(stretch.from) + 1));
+        let color = COLORS[stretch.row % COLORS.len()];
+        let along = |progress: f64| match stretch.drift {
+            Some((to, _)) => y(stretch.row as f64 + (to as f64 - stretch.row as f64) * progress),
+            None => y(stretch.row as f64),
+        };
+        let [first, last] = stretch.drift.map_or([0.0, 0.0], |(_, ends)| ends);
+        let is_evaluation = stretch.kind == BlockKind::Evaluation;
+        let thick = if is_evaluation { BAR / 4 } else { BAR / 2 };
+        let (a, b) = (along(first), along(last));
+        let shape = [
+            (start, a - thick),
+            (end, b - thick),
+            (end, b + thick),
+            (start, a + thick),
+        ];
+        let (filled, alpha, rim) = match (stretch.kind, stretch.phase) {
+            (BlockKind::Evaluation, _) => (EVALUATION, 1.0, None),
+            (BlockKind::Learning, Phase::Deployment) => (color, 1.0, Some(WHITE)),
+            (BlockKind::Learning, Phase::PreDeployment) => (color, EARLY, Some(color)),
+        };
+        fill(&mut picture, &shape, filled, alpha);
+        if let Some(rim) = rim {
+            let around = shape.iter().chain(&shape[..1]).map(|place| middle(*place));
+            picture.line(around.collect::<Vec<_>>(), 1.0, rim);
+        }
+    }
+    picture.line([middle((left, bottom)), middle((WIDTH, bottom))], 1.0, INK);
+    for tick in ticks(total) {
+        let at = x(tick);
+        picture.line([middle((at, bottom)), middle((at, bottom + 5))], 1.0, INK);
+        let words = tick.to_string();
+        write(
+            &mut picture,
+            &words,
+            (at, bottom + 8),
+            15.5,
+            FAINT,
+            Side::Middle,
+            Level::Top,
+        );
+    }
+    let below = (left, bottom + 28);
+    write(&mut picture, "experiences", below, 16.5, FAINT, Side::Left, Level::Top);
+    picture
 }
 
-/// The kinds of bars that a scenario has: name, colour, height.
-fn kinds(scenario: &Scenario) -> Vec<(&'static str, ShapeStyle, i32)> {
+fn fill(picture: &mut Drawing, corners: &[(i32, i32)], color: Rgb, alpha: f32) {
+    let points = corners.iter().map(|place| corner(*place)).collect();
+    picture.shapes.push(Shape::Area { points, color, alpha });
+}
+
+/// The kinds of bars that a scenario has: name, colour, alpha, height. A sample of each stands under the title.
+fn kinds(scenario: &Scenario) -> Vec<(&'static str, Rgb, f32, i32)> {
     let has = |kind: BlockKind, phase: Option<Phase>| {
         let is = |block: &Block| block.kind == kind && phase.is_none_or(|phase| block.phase == phase);
         scenario.blocks.iter().any(is)
@@ -173,15 +140,15 @@ fn kinds(scenario: &Scenario) -> Vec<(&'static str, ShapeStyle, i32)> {
     let all = [
         (
             has(BlockKind::Learning, Some(Phase::Deployment)),
-            ("learning", COLORS[0].filled(), BAR / 2),
+            ("learning", COLORS[0], 1.0, BAR / 2),
         ),
         (
             has(BlockKind::Learning, early),
-            ("before deployment", COLORS[0].mix(0.3).filled(), BAR / 2),
+            ("before deployment", COLORS[0], EARLY, BAR / 2),
         ),
         (
             has(BlockKind::Evaluation, None),
-            ("evaluation, frozen", RGBColor(150, 154, 160).filled(), BAR / 4),
+            ("evaluation, frozen", EVALUATION, 1.0, BAR / 4),
         ),
     ];
     all.into_iter()

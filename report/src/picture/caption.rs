@@ -57,7 +57,7 @@ impl Picture {
         let lines = caption_lines(facts, self.width).into_iter().take(num_lines);
         for (number, line) in (0u32..).zip(lines) {
             let top = (number * line_height + ABOVE) as f32;
-            words.write(TextLine::new(line, [MARGIN, top], size, [INK.0, INK.1, INK.2]));
+            words.write(TextLine::new(line, [MARGIN, top], size, INK));
         }
         let mut captioned = Self::blank(self.width, self.height + height);
         captioned.paste(&words.to_picture(), 0, 0);

@@ -11,9 +11,6 @@ mod path_map;
 mod scatter;
 mod sheet;
 
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-
 pub use blocks::blocks;
 pub use caption::{MAX_CAPTION_LINES, caption_lines};
 pub use heat_map::heat_map;
@@ -24,62 +21,21 @@ pub use sheet::{SheetRow, sheet};
 
 pub use crate::drawing::{Drawing, Gray, Level, Picture, Rgb, Shape, Side, TextLine, ring, text_width};
 
-use crate::ReportError;
-use crate::drawing::Recorder;
-use crate::figure::load_font;
+const INK: Rgb = [38, 42, 48];
+const FAINT: Rgb = [110, 116, 124];
+const WHITE: Rgb = [255; 3];
 
-const INK: RGBColor = RGBColor(38, 42, 48);
-const FAINT: RGBColor = RGBColor(110, 116, 124);
-
-/// A text in a picture: where its anchor is, how large in pixels, in which colour.
-struct Label<'a> {
-    text: &'a str,
-    at: (i32, i32),
-    size: u32,
-    color: RGBColor,
-    anchor: Pos,
+/// The middle of a pixel.
+fn middle((x, y): (i32, i32)) -> [f32; 2] {
+    [x, y].map(|pixel| pixel as f32 + 0.5)
 }
 
-impl Label<'_> {
-    fn words(&self) -> TextLine {
-        let side = match self.anchor.h_pos {
-            HPos::Left => Side::Left,
-            HPos::Center => Side::Middle,
-            HPos::Right => Side::Right,
-        };
-        let level = match self.anchor.v_pos {
-            VPos::Top => Level::Top,
-            VPos::Center => Level::Middle,
-            VPos::Bottom => Level::Bottom,
-        };
-        let at = [self.at.0 as f32, self.at.1 as f32];
-        let RGBColor(r, g, b) = self.color;
-        TextLine::new(self.text, at, self.size as f32, [r, g, b]).anchored(side, level)
-    }
+/// The upper left of a pixel.
+fn corner((x, y): (i32, i32)) -> [f32; 2] {
+    [x, y].map(|pixel| pixel as f32)
 }
 
-impl Drawing {
-    /// Writes texts.
-    fn label(&mut self, labels: &[Label]) {
-        for label in labels {
-            self.write(label.words());
-        }
-    }
-
-    /// Draws with the plotting library onto this drawing, whose lengths are multiplied by `scale`.
-    fn draw(
-        &mut self,
-        scale: f32,
-        job: impl FnOnce(&DrawingArea<Recorder<'_>, plotters::coord::Shift>) -> Result<(), Box<dyn std::error::Error>>,
-    ) -> Result<(), ReportError> {
-        load_font();
-        let area = Recorder::onto(self, scale).into_drawing_area();
-        job(&area)
-            .and_then(|()| Ok(area.present()?))
-            .map_err(|error| ReportError::Drawing {
-                figure: "picture",
-                // What the plotting library says cannot be sent between threads.
-                source: error.to_string().into(),
-            })
-    }
+/// The size of letters whose font is so high from its lowest to its highest line.
+fn letters(height: f64) -> f32 {
+    (height / 1.24) as f32
 }

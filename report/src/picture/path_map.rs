@@ -6,12 +6,10 @@
 )]
 
 use driftworld_similarity::{DistanceMatrix, Method, Ordering, classical_map};
-use plotters::prelude::*;
 
-use super::{Drawing, FAINT, INK, Level, Side, TextLine, text_width};
-use crate::ReportError;
+use super::{Drawing, FAINT, INK, Level, Rgb, Side, TextLine, WHITE, text_width};
 
-/// Twice the size of the picture: the plotting library knows whole numbers only.
+/// Twice the size of the picture: places are rounded to half a pixel.
 const SIZE: (i32, i32) = (2000, 1600);
 /// Free of items at the left and right, above, and below.
 const MARGINS: [i32; 3] = [220, 240, 120];
@@ -22,10 +20,7 @@ const TITLES: f32 = 66.0;
 const MAX_NAMED: usize = 60;
 
 /// Draws an order of items as a path over a map of their distances, by classical scaling.
-///
-/// # Errors
-/// [`ReportError::Drawing`].
-pub fn path_map(matrix: &DistanceMatrix, method: Method, ordering: &Ordering) -> Result<Drawing, ReportError> {
+pub fn path_map(matrix: &DistanceMatrix, method: Method, ordering: &Ordering) -> Drawing {
     let map = classical_map(matrix);
     let places = on_paper(&map.points);
     let path: Vec<(i32, i32)> = ordering.indices.iter().map(|index| places[*index]).collect();
@@ -33,20 +28,17 @@ pub fn path_map(matrix: &DistanceMatrix, method: Method, ordering: &Ordering) ->
     let last = path.len().saturating_sub(1);
     let many = path.len() > MAX_NAMED;
     let (width, radius) = if many { (3, 7) } else { (5, 13) };
-    picture.draw(0.5, |area| {
-        for (step, pair) in path.windows(2).enumerate() {
-            let color = along(step, last.saturating_sub(1));
-            area.draw(&PathElement::new(pair.to_vec(), color.stroke_width(width)))?;
-            if let Some(head) = arrow(pair[0], pair[1], 3 * width as i32 + 4) {
-                area.draw(&Polygon::new(head.to_vec(), color.filled()))?;
-            }
+    for (step, pair) in path.windows(2).enumerate() {
+        let color = along(step, last.saturating_sub(1));
+        picture.line([middle(pair[0]), middle(pair[1])], width as f32 / 2.0, color);
+        if let Some(head) = arrow(pair[0], pair[1], 3 * width + 4) {
+            picture.area(head.map(halved), color);
         }
-        for (place, at) in path.iter().enumerate() {
-            area.draw(&Circle::new(*at, radius, WHITE.filled()))?;
-            area.draw(&Circle::new(*at, radius - 3, along(place, last).filled()))?;
-        }
-        Ok(())
-    })?;
+    }
+    for (place, at) in path.iter().enumerate() {
+        picture.disc(middle(*at), radius as f32 / 2.0, WHITE);
+        picture.disc(middle(*at), (radius - 3) as f32 / 2.0, along(place, last));
+    }
     let of_task = match common_task(matrix.labels()) {
         "" => String::new(),
         task => format!("{}, ", task.trim_end_matches('#')),
@@ -65,19 +57,23 @@ pub fn path_map(matrix: &DistanceMatrix, method: Method, ordering: &Ordering) ->
             (100.0 * map.explained).floor()
         ),
     ];
-    let rgb_of = |color: RGBColor| [color.0, color.1, color.2];
-    picture.write(TextLine::new(&titles[0], [20.0, 18.0], 19.0, rgb_of(INK)));
-    picture.write(TextLine::new(&titles[1], [20.0, 47.0], 13.0, rgb_of(FAINT)));
+    picture.write(TextLine::new(&titles[0], [20.0, 18.0], 19.0, INK));
+    picture.write(TextLine::new(&titles[1], [20.0, 47.0], 13.0, FAINT));
     let path: Vec<[f32; 2]> = path.into_iter().map(halved).collect();
     for name in names(matrix, ordering, &path, many) {
         if let Some(leader) = name.leader {
-            picture.line(leader, 1.0, rgb_of(FAINT));
+            picture.line(leader, 1.0, FAINT);
         }
         let [left, top, _, bottom] = name.place;
-        let words = TextLine::new(name.text, [left + 2.0, f32::midpoint(top, bottom)], TEXT, rgb_of(INK));
+        let words = TextLine::new(name.text, [left + 2.0, f32::midpoint(top, bottom)], TEXT, INK);
         picture.write(words.anchored(Side::Left, Level::Middle));
     }
-    Ok(picture)
+    picture
+}
+
+/// The middle of a pixel of the doubled paper in pixels of the picture.
+fn middle((x, y): (i32, i32)) -> [f32; 2] {
+    [x, y].map(|pixel| (pixel as f32 + 0.5) * 0.5)
 }
 
 /// A place on the doubled paper in pixels of the picture.
@@ -126,10 +122,10 @@ fn on_paper(points: &[[f64; 2]]) -> Vec<(i32, i32)> {
 }
 
 /// From orange at the first to blue at the last.
-fn along(place: usize, last: usize) -> RGBColor {
+fn along(place: usize, last: usize) -> Rgb {
     let share = if last == 0 { 0.0 } else { place as f64 / last as f64 };
     let mix = |from: f64, to: f64| (from + (to - from) * share) as u8;
-    RGBColor(mix(236.0, 22.0), mix(140.0, 82.0), mix(44.0, 170.0))
+    [mix(236.0, 22.0), mix(140.0, 82.0), mix(44.0, 170.0)]
 }
 
 /// A triangle in the middle of a step that points along it; none where it would be longer than the step.

@@ -5,12 +5,7 @@
     reason = "ticks and arrows of a figure, rounded to what is drawn"
 )]
 
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-
-use super::{Drawing, FAINT, INK};
-use crate::ReportError;
-use crate::drawing::Recorder;
+use super::{Drawing, FAINT, INK, Level, Rgb, Side, TextLine, corner, letters, middle, text_width};
 
 /// A point with a name.
 #[derive(Clone, Debug)]
@@ -44,24 +39,18 @@ const WIDTH: u32 = 720;
 const HEIGHT: u32 = 580;
 /// Room around the axes: left, right, above, below.
 const ROOM: [i32; 4] = [84, 24, 104, 58];
-const LABEL_PX: u32 = 16;
-const DOT: RGBColor = RGBColor(22, 72, 130);
-const RIM: RGBColor = RGBColor(205, 209, 214);
+const LABEL: f64 = 16.0;
+const DOT: Rgb = [22, 72, 130];
+const RIM: Rgb = [205, 209, 214];
 
 /// Panels side by side, each with its points. Names that find no free place are left out, and their number is written.
-///
-/// # Errors
-/// [`ReportError::Drawing`].
-pub fn scatter(panels: &[Panel]) -> Result<Drawing, ReportError> {
+pub fn scatter(panels: &[Panel]) -> Drawing {
     let mut picture = Drawing::blank(WIDTH * panels.len().max(1) as u32, HEIGHT);
     for (index, panel) in panels.iter().enumerate() {
-        picture.draw(1.0, |area| panel.draw(area, index as i32 * WIDTH as i32))?;
+        panel.draw(&mut picture, index as i32 * WIDTH as i32);
     }
-    Ok(picture)
+    picture
 }
-
-type Area<'a> = DrawingArea<Recorder<'a>, plotters::coord::Shift>;
-type Outcome = Result<(), Box<dyn std::error::Error>>;
 
 /// A rectangle in pixels: left, top, right, bottom.
 type Box4 = [i32; 4];
@@ -113,7 +102,7 @@ impl Axis {
 }
 
 impl Panel {
-    fn draw(&self, area: &Area<'_>, left: i32) -> Outcome {
+    fn draw(&self, picture: &mut Drawing, left: i32) {
         let x_axis = Axis::around(self.points.iter().map(|point| point.x).chain([0.0]));
         let y_axis = Axis::around(self.points.iter().map(|point| point.y).chain([self.neutral]));
         let [room_left, room_right, room_above, room_below] = ROOM;
@@ -121,65 +110,50 @@ impl Panel {
         let (y0, y1) = (room_above, HEIGHT as i32 - room_below);
         let x = |value: f64| x0 + (x_axis.share(value) * f64::from(x1 - x0)).round() as i32;
         let y = |value: f64| y1 - (y_axis.share(value) * f64::from(y1 - y0)).round() as i32;
-        write(area, &self.title, (left + 16, 14), 24, INK, HPos::Left)?;
-        write(area, &self.words, (left + 16, 44), 17, FAINT, HPos::Left)?;
+        write(picture, &self.title, (left + 16, 14), 24.0, INK, Side::Left);
+        write(picture, &self.words, (left + 16, 44), 17.0, FAINT, Side::Left);
         for (value, word) in x_axis.marks() {
-            area.draw(&PathElement::new([(x(value), y0), (x(value), y1)], RIM))?;
-            write(area, &word, (x(value), y1 + 8), 17, FAINT, HPos::Center)?;
+            picture.line([middle((x(value), y0)), middle((x(value), y1))], 1.0, RIM);
+            write(picture, &word, (x(value), y1 + 8), 17.0, FAINT, Side::Middle);
         }
         for (value, word) in y_axis.marks() {
-            area.draw(&PathElement::new([(x0, y(value)), (x1, y(value))], RIM))?;
-            write(area, &word, (x0 - 8, y(value) - 8), 17, FAINT, HPos::Right)?;
+            picture.line([middle((x0, y(value))), middle((x1, y(value)))], 1.0, RIM);
+            write(picture, &word, (x0 - 8, y(value) - 8), 17.0, FAINT, Side::Right);
         }
-        area.draw(&PathElement::new(
-            [(x0, y(self.neutral)), (x1, y(self.neutral))],
-            FAINT.stroke_width(2),
-        ))?;
-        write(
-            area,
-            &self.across,
-            (i32::midpoint(x0, x1), y1 + 30),
-            18,
-            INK,
-            HPos::Center,
-        )?;
-        write(area, &self.up, (x0, y0 - 24), 18, INK, HPos::Left)?;
+        let neutral = y(self.neutral);
+        picture.line([corner((x0, neutral)), corner((x1, neutral))], 2.0, FAINT);
+        let below = (i32::midpoint(x0, x1), y1 + 30);
+        write(picture, &self.across, below, 18.0, INK, Side::Middle);
+        write(picture, &self.up, (x0, y0 - 24), 18.0, INK, Side::Left);
         let dots: Vec<(i32, i32)> = self.points.iter().map(|point| (x(point.x), y(point.y))).collect();
         for dot in &dots {
-            area.draw(&Circle::new(*dot, 4, DOT.filled()))?;
+            picture.disc(middle(*dot), 4.0, DOT);
         }
-        let line = [x0, y(self.neutral) - 2, x1, y(self.neutral) + 2];
-        let unnamed = self.name(area, &dots, line, [x0, y0, x1, y1])?;
+        let line = [x0, neutral - 2, x1, neutral + 2];
+        let unnamed = self.name(picture, &dots, line, [x0, y0, x1, y1]);
         if unnamed > 0 {
             let label = format!("{unnamed} of {} without room for a name", dots.len());
-            write(area, &label, (x1, y0 - 22), 16, FAINT, HPos::Right)?;
+            write(picture, &label, (x1, y0 - 22), 16.0, FAINT, Side::Right);
         }
-        Ok(())
     }
 
     /// Writes each name at the first free place around its dot, off the line; returns how many found none.
-    fn name(
-        &self,
-        area: &Area<'_>,
-        dots: &[(i32, i32)],
-        line: Box4,
-        rim: Box4,
-    ) -> Result<usize, Box<dyn std::error::Error>> {
+    fn name(&self, picture: &mut Drawing, dots: &[(i32, i32)], line: Box4, rim: Box4) -> usize {
         let boxes = dots.iter().map(|(x, y)| [x - 5, y - 5, x + 5, y + 5]);
         let mut taken: Vec<Box4> = boxes.chain([line]).collect();
         let mut unnamed = 0;
         for (point, dot) in self.points.iter().zip(dots) {
-            let style = ("sans-serif", LABEL_PX).into_font().color(&INK);
-            let (wide, high) = area.estimate_text_size(&point.label, &style)?;
-            match free_place(*dot, [wide as i32 + 2, high as i32], &taken, rim) {
+            let size = letters(LABEL);
+            let wide = text_width(&point.label, size).ceil() as i32;
+            match free_place(*dot, [wide + 2, size as i32], &taken, rim) {
                 Some(place) => {
-                    write(area, &point.label, (place[0], place[1]), LABEL_PX, INK, HPos::Left)?;
+                    write(picture, &point.label, (place[0], place[1]), LABEL, INK, Side::Left);
                     taken.push(place);
                 }
                 None => unnamed += 1,
             }
         }
-        Ok(unnamed)
+        unnamed
     }
 }
 
@@ -206,13 +180,9 @@ fn free_place((x, y): (i32, i32), [wide, high]: [i32; 2], taken: &[Box4], rim: B
 }
 
 /// Writes a text below its anchor.
-fn write(area: &Area<'_>, text: &str, at: (i32, i32), size: u32, color: RGBColor, side: HPos) -> Outcome {
-    let style = ("sans-serif", size)
-        .into_font()
-        .color(&color)
-        .pos(Pos::new(side, VPos::Top));
-    area.draw_text(text, &style, at)?;
-    Ok(())
+fn write(picture: &mut Drawing, text: &str, at: (i32, i32), size: f64, color: Rgb, side: Side) {
+    let words = TextLine::new(text, corner(at), letters(size), color);
+    picture.write(words.anchored(side, Level::Top));
 }
 
 #[cfg(test)]

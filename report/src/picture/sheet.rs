@@ -2,7 +2,6 @@
 
 use super::lines::cut;
 use super::{Drawing, FAINT, INK, Rgb, TextLine, text_lines, text_width};
-use crate::ReportError;
 
 /// One row of a [`sheet`].
 #[derive(Clone, Debug)]
@@ -26,11 +25,7 @@ const MOST_LINES: usize = 5;
 const RIM: Rgb = [150, 154, 160];
 
 /// Rows of pictures, each under its title. `columns` rows stand side by side.
-///
-/// # Errors
-/// None yet.
-#[expect(clippy::unnecessary_wraps, reason = "as with the other pictures")]
-pub fn sheet(rows: &[SheetRow], columns: usize) -> Result<Drawing, ReportError> {
+pub fn sheet(rows: &[SheetRow], columns: usize) -> Drawing {
     let width_of = |row: &SheetRow| row.pictures.iter().map(|picture| picture.width + GAP).sum::<u32>();
     let cell_width = rows.iter().map(width_of).max().unwrap_or(0);
     let columns = columns.clamp(1, rows.len().max(1));
@@ -48,7 +43,7 @@ pub fn sheet(rows: &[SheetRow], columns: usize) -> Result<Drawing, ReportError> 
         }
         top += head + bodies(line) + GAP;
     }
-    Ok(sheet)
+    sheet
 }
 
 /// A row with its words in lines.
@@ -89,12 +84,11 @@ impl<'a> Cell<'a> {
 
     /// Puts it down with its top left corner at `(left, top)`, its pictures `head` lower.
     fn put(&self, sheet: &mut Drawing, [left, top]: [u32; 2], head: u32) {
-        let rgb_of = |color: plotters::style::RGBColor| [color.0, color.1, color.2];
         let at = |line: u32| [left as f32, (top + line) as f32];
-        sheet.write(TextLine::new(&self.title, at(2), TITLE.0, rgb_of(INK)));
+        sheet.write(TextLine::new(&self.title, at(2), TITLE.0, INK));
         for (number, line) in self.lines.iter().enumerate() {
             let below = TITLE.1 + number as u32 * WORDS.1;
-            sheet.write(TextLine::new(line, at(below), WORDS.0, rgb_of(FAINT)));
+            sheet.write(TextLine::new(line, at(below), WORDS.0, FAINT));
         }
         let mut x = left;
         for picture in self.pictures {
@@ -171,7 +165,7 @@ mod tests {
         };
         let rows = [row("one", 220), row(&"many words ".repeat(30), 120), row("", 90)];
         for columns in 1..4 {
-            let sheet = sheet(&rows, columns).expect("it can be drawn");
+            let sheet = sheet(&rows, columns);
             for shape in &sheet.shapes {
                 match shape {
                     crate::picture::Shape::Inner { at, drawing } => {

@@ -60,9 +60,9 @@ impl Show {
     pub(crate) fn run(self) -> Result<(), Failure> {
         if let Some(class) = &self.class {
             let rows = self.of_class(&class.to_lowercase())?;
-            output::write_picture_and_tell(&self.output, &sheet(&rows, 1)?)?;
+            output::write_picture_and_tell(&self.output, &sheet(&rows, 1))?;
         } else {
-            output::write_picture_and_tell(&self.output, &sheet(&self.all(), ALBUM_COLUMNS)?)?;
+            output::write_picture_and_tell(&self.output, &sheet(&self.all(), ALBUM_COLUMNS))?;
         }
         if self.json {
             output::json_of_what_was_written()

@@ -82,7 +82,7 @@ impl Demo {
         let short: Vec<String> = variants.iter().map(|(_, variant)| variant.name().to_owned()).collect();
         let picture = heat_map("Distances between the variants of find_objects", &short, |a, b| {
             matrix.get(a, b)
-        })?;
+        });
         output::write_picture(&folder.join("distances.png"), &picture)?;
         output::line(path_table(&matrix, &ordering))?;
 

@@ -99,7 +99,7 @@ impl Order {
         }
         let (method, ordering) = self.ordering.request().order_from(&matrix, self.seed, &self.firsts())?;
         if let Some(path) = &self.plot {
-            output::write_picture_and_tell(path, &path_map(&matrix, method, &ordering)?)?;
+            output::write_picture_and_tell(path, &path_map(&matrix, method, &ordering))?;
         }
         if self.json {
             let mut found = json_of(&matrix, method, &ordering, self.seed);

@@ -115,7 +115,7 @@ impl TransferReport {
             output::line(words::report(&report))?;
         }
         let Some(path) = self.plot else { return Ok(()) };
-        let picture = scatter(&words::panels(&report))?;
+        let picture = scatter(&words::panels(&report));
         output::write_picture_and_tell(&path, &picture)
     }
 }
