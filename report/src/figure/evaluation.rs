@@ -69,15 +69,9 @@ fn entries(scene: &Scene, clusters: &[Cluster]) -> Vec<Entry> {
         .map(|task| task_entry((*task, &scene.names[*task])))
         .take(super::scene::MOST_TASKS)
         .collect();
-    entries.push(Entry {
-        name: "while it was learnt".to_owned(),
-        sample: Sample::Tint(FAINT.light),
-    });
+    entries.push(Entry::new("while it was learnt", Sample::Tint(FAINT.light)));
     if clusters.len() > MOST_PANELS {
-        entries.push(Entry {
-            name: format!("and {} tasks more, not drawn", clusters.len() - MOST_PANELS),
-            sample: Sample::Nothing,
-        });
+        entries.push(Entry::rest(format!("{} tasks", clusters.len() - MOST_PANELS)));
     }
     entries
 }

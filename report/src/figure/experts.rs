@@ -56,24 +56,18 @@ fn panels(scene: &Scene) -> Vec<Panel> {
 
 fn entries(panels: &[Panel]) -> Vec<Entry> {
     let mut entries = vec![
-        Entry {
-            name: "this agent, in the task's colour".to_owned(),
-            sample: Sample::Line(
+        Entry::new(
+            "this agent, in the task's colour",
+            Sample::Line(
                 panels
                     .first()
                     .map_or(TASKS[0].light, |panel| Look::of(panel.task).color),
             ),
-        },
-        Entry {
-            name: "an expert's run".to_owned(),
-            sample: Sample::Line(FAINT.light),
-        },
+        ),
+        Entry::new("an expert's run", Sample::Line(FAINT.light)),
     ];
     if panels.len() > MOST_PANELS {
-        entries.push(Entry {
-            name: format!("and {} tasks more, not drawn", panels.len() - MOST_PANELS),
-            sample: Sample::Nothing,
-        });
+        entries.push(Entry::rest(format!("{} tasks", panels.len() - MOST_PANELS)));
     }
     entries
 }

@@ -21,6 +21,17 @@ pub(super) fn height(scene: &Scene, paper: &Paper) -> i32 {
     paper.head_height(&scene.entries_and_evaluation()) + if paper.is_narrow() { 260 } else { 340 }
 }
 
+/// Axes over the whole lifetime.
+pub(super) fn axes<'a>(scene: &Scene, paper: &Paper, y: Range<f64>, name: &'a str) -> Axes<'a> {
+    Axes {
+        x: scene.span.clone(),
+        y,
+        x_name: scene.x_name(),
+        y_name: (name, FAINT.light),
+        labels: if paper.is_narrow() { [4, 5] } else { [9, 6] },
+    }
+}
+
 /// Greys the parts of the lifetime in which the agent is evaluated.
 pub(super) fn shade<DB: DrawingBackend>(
     scene: &Scene,
@@ -43,13 +54,8 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
         .iter()
         .flat_map(|stretch| stretch.regime.performance.iter().copied());
     let name = scene.performance_name();
-    let axes = Axes {
-        x: scene.span.clone(),
-        y: roomy(values.chain(evaluated.iter().map(|stretch| stretch.mean()))),
-        x_name: scene.x_name(),
-        y_name: (&name, FAINT.light),
-        labels: if paper.is_narrow() { [4, 5] } else { [9, 6] },
-    };
+    let y = roomy(values.chain(evaluated.iter().map(|stretch| stretch.mean())));
+    let axes = axes(scene, paper, y, &name);
     let mut chart = chart(&below, &axes)?;
     shade(scene, &mut chart, &axes.y, columns)?;
     if scene.options.show_eval_lines {
@@ -61,7 +67,7 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
     }
     let column = scene.column(columns);
     for stretch in &learnt {
-        let line = thinning::line(&stretch.performances(), &column);
+        let line = thinning::line(&stretch.points(&stretch.regime.performance), &column);
         curve(&mut chart, line, Look::of(stretch.task).color)?;
     }
     let marked = |stretch: &&&Stretch| !stretch.learns() || scene.names.len() > super::palette::TASKS.len();

@@ -21,7 +21,7 @@ use std::str::FromStr;
 use driftworld_metrics::Lifetime;
 use plotters::prelude::*;
 
-pub(crate) use palette::dark_rules;
+pub(crate) use palette::{dark_rules, task_color};
 pub(crate) use strip::{strip, thinned_count};
 
 use crate::ReportError;

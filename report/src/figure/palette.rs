@@ -6,6 +6,8 @@ use std::fmt::Write;
 
 use plotters::style::RGBColor;
 
+use crate::drawing::Rgb;
+
 /// A colour of figures: as drawn, and as a page shows it where its reader prefers dark.
 pub(super) struct Tone {
     pub(super) light: RGBColor,
@@ -52,6 +54,12 @@ pub(crate) fn dark_rules() -> String {
         }
     }
     rules
+}
+
+/// The colour of a task with this place in a list.
+pub(crate) fn task_color(task: usize) -> Rgb {
+    let RGBColor(r, g, b) = TASKS[task % TASKS.len()].light;
+    [r, g, b]
 }
 
 /// The form of a task's marks: colours return after seven tasks, forms after five times seven.

@@ -39,8 +39,20 @@ pub(super) struct Paper {
 
 /// A name in the line on top, with its mark.
 pub(super) struct Entry {
-    pub(super) name: String,
-    pub(super) sample: Sample,
+    name: String,
+    sample: Sample,
+}
+
+impl Entry {
+    pub(super) fn new(name: impl Into<String>, sample: Sample) -> Self {
+        let name = name.into();
+        Self { name, sample }
+    }
+
+    /// For so many that are not drawn.
+    pub(super) fn rest(more: impl std::fmt::Display) -> Self {
+        Self::new(format!("and {more} more, not drawn"), Sample::Nothing)
+    }
 }
 
 /// What is drawn before a name.
@@ -127,27 +139,22 @@ impl Paper {
 /// The sample before a name; returns how many dots it takes.
 fn sample<DB: DrawingBackend>(area: &Area<DB>, sample: Sample, (x, y): (i32, i32)) -> Drawn<DB, i32> {
     let d = Paper::dots;
-    match sample {
-        Sample::Task(look) => {
-            area.draw(&Rectangle::new(
-                [(x, y - d(1)), (x + d(16), y + d(1))],
-                look.color.filled(),
-            ))?;
-            draw_mark(area, look, (x + d(8), y), d(4))?;
-        }
-        Sample::Line(color) => {
-            area.draw(&Rectangle::new([(x, y - d(1)), (x + d(16), y + d(1))], color.filled()))?;
-        }
-        Sample::Area(color) => {
-            area.draw(&Rectangle::new([(x, y - d(6)), (x + d(16), y + d(6))], color.filled()))?;
-        }
-        Sample::Tint(color) => {
-            let style = color.mix(0.25).filled();
-            area.draw(&Rectangle::new([(x, y - d(6)), (x + d(16), y + d(6))], style))?;
-        }
+    let (half, style) = match sample {
+        Sample::Task(Look { color, .. }) | Sample::Line(color) => (d(1), color.filled()),
+        Sample::Area(color) => (d(6), color.filled()),
+        Sample::Tint(color) => (d(6), color.mix(0.25).filled()),
         Sample::Nothing => return Ok(0),
+    };
+    area.draw(&Rectangle::new([(x, y - half), (x + d(16), y + half)], style))?;
+    if let Sample::Task(look) = sample {
+        draw_mark(area, look, (x + d(8), y), d(4))?;
     }
     Ok(d(22))
+}
+
+/// A straight line in pixels of the area.
+pub(super) fn line<DB: DrawingBackend>(area: &Area<DB>, ends: [(i32, i32); 2], style: ShapeStyle) -> Drawn<DB> {
+    area.draw(&PathElement::new(ends, style))
 }
 
 /// A task's mark in pixels of the area.

@@ -4,9 +4,9 @@
 use driftworld_metrics::Lifetime;
 use plotters::prelude::*;
 
-use super::learning::{COLUMNS, shade};
-use super::palette::{FAINT, Look};
-use super::paper::{Area, Axes, Drawn, Paper, chart, curve};
+use super::learning::{COLUMNS, axes, shade};
+use super::palette::Look;
+use super::paper::{Area, Drawn, Paper, chart, curve};
 use super::scene::{Scene, Stretch, roomy};
 use super::thinning;
 use crate::words::shown;
@@ -26,13 +26,7 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
         .flat_map(|stretch| stretch.regime.raw.iter().copied());
     let name = shown(scene.column);
     let columns = COLUMNS[usize::from(paper.is_narrow())];
-    let axes = Axes {
-        x: scene.span.clone(),
-        y: roomy(values),
-        x_name: scene.x_name(),
-        y_name: (&name, FAINT.light),
-        labels: if paper.is_narrow() { [4, 5] } else { [9, 6] },
-    };
+    let axes = axes(scene, paper, roomy(values), &name);
     let mut chart = chart(&below, &axes)?;
     shade(scene, &mut chart, &axes.y, columns)?;
     let num_points: usize = scene.stretches.iter().map(|stretch| stretch.regime.len()).sum();
@@ -46,12 +40,7 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
     for learning in [false, true] {
         for stretch in scene.drawn(learning, columns) {
             let color = Look::of(stretch.task).color;
-            let raw: Vec<(f64, f64)> = stretch
-                .xs
-                .iter()
-                .copied()
-                .zip(stretch.regime.raw.iter().copied())
-                .collect();
+            let raw = stretch.points(&stretch.regime.raw);
             if as_points {
                 let size = if paper.is_narrow() { 2 } else { 3 };
                 chart.draw_series(raw.iter().map(|at| Circle::new(*at, size, color.mix(0.35).filled())))?;
@@ -62,17 +51,9 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
         }
     }
     for stretch in scene.drawn(true, columns) {
-        let points: Vec<(f64, f64)> = stretch
-            .xs
-            .iter()
-            .copied()
-            .zip(smoothed(scene.lifetime, stretch))
-            .collect();
-        curve(
-            &mut chart,
-            thinning::line(&points, &column),
-            Look::of(stretch.task).color,
-        )?;
+        let points = stretch.points(&smoothed(scene.lifetime, stretch));
+        let line = thinning::line(&points, &column);
+        curve(&mut chart, line, Look::of(stretch.task).color)?;
     }
     Ok(())
 }

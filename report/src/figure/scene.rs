@@ -57,13 +57,9 @@ impl Stretch<'_> {
         self.regime.performance.iter().sum::<f64>() / self.regime.len().max(1) as f64
     }
 
-    /// Points of the curve through its performances.
-    pub(super) fn performances(&self) -> Vec<(f64, f64)> {
-        self.xs
-            .iter()
-            .copied()
-            .zip(self.regime.performance.iter().copied())
-            .collect()
+    /// Points of the curve through values of its rows.
+    pub(super) fn points(&self, values: &[f64]) -> Vec<(f64, f64)> {
+        self.xs.iter().copied().zip(values.iter().copied()).collect()
     }
 }
 
@@ -131,10 +127,7 @@ impl<'a> Scene<'a> {
     pub(super) fn entries_and_evaluation(&self) -> Vec<Entry> {
         let mut entries = self.entries();
         if self.stretches.iter().any(|stretch| !stretch.learns()) {
-            entries.push(Entry {
-                name: "evaluation".to_owned(),
-                sample: Sample::Area(SHADE.light),
-            });
+            entries.push(Entry::new("evaluation", Sample::Area(SHADE.light)));
         }
         entries
     }
@@ -143,10 +136,7 @@ impl<'a> Scene<'a> {
     pub(super) fn entries(&self) -> Vec<Entry> {
         let mut entries: Vec<Entry> = self.names.iter().take(MOST_TASKS).enumerate().map(task_entry).collect();
         if self.names.len() > MOST_TASKS {
-            entries.push(Entry {
-                name: format!("and {} more, not drawn", self.names.len() - MOST_TASKS),
-                sample: Sample::Nothing,
-            });
+            entries.push(Entry::rest(self.names.len() - MOST_TASKS));
         }
         entries
     }
@@ -193,10 +183,7 @@ impl<'a> Scene<'a> {
 
 /// A task's name with its look.
 pub(super) fn task_entry((task, name): (usize, &String)) -> Entry {
-    Entry {
-        name: name.clone(),
-        sample: Sample::Task(Look::of(task)),
-    }
+    Entry::new(name, Sample::Task(Look::of(task)))
 }
 
 /// The ranges of stretches in order, those joined that lie within the gap.

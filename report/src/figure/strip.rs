@@ -5,7 +5,7 @@
 use plotters::prelude::*;
 
 use super::palette::{FAINT, INK, Look, RIM};
-use super::paper::{Paper, draw_mark};
+use super::paper::{Paper, draw_mark, line};
 use super::vectors;
 use crate::ReportError;
 
@@ -36,17 +36,15 @@ pub(crate) fn strip(tasks: &[(usize, f64)], value: Option<f64>, neutral: Option<
     };
     vectors("strip", SIZE, |area| {
         let (middle, bottom) = (d(SIZE.1 / 2), d(SIZE.1 - 2));
-        area.draw(&PathElement::new(
+        line(
+            area,
             [(d(4), middle), (d(SIZE.0 - 4), middle)],
             RIM.light.stroke_width(2),
-        ))?;
+        )?;
         if let Some(neutral) = neutral {
             let at = x(neutral);
             for y in (d(2)..bottom).step_by(d(5) as usize) {
-                area.draw(&PathElement::new(
-                    [(at, y), (at, y + d(3))],
-                    FAINT.light.stroke_width(2),
-                ))?;
+                line(area, [(at, y), (at, y + d(3))], FAINT.light.stroke_width(2))?;
             }
         }
         let mut placed: Vec<(i32, i32)> = Vec::new();
@@ -67,10 +65,7 @@ pub(crate) fn strip(tasks: &[(usize, f64)], value: Option<f64>, neutral: Option<
         }
         if let Some(value) = value {
             let at = x(value);
-            area.draw(&PathElement::new(
-                [(at, d(4)), (at, bottom - d(2))],
-                Paper::stroke(INK.light, 2.0),
-            ))?;
+            line(area, [(at, d(4)), (at, bottom - d(2))], Paper::stroke(INK.light, 2.0))?;
         }
         Ok(())
     })

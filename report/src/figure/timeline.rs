@@ -6,7 +6,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
 use super::palette::{FAINT, FROZEN, INK, Look, RIM, TASKS};
-use super::paper::{Area, Drawn, Entry, Paper, Sample, draw_mark, number, text_width};
+use super::paper::{Area, Drawn, Entry, Paper, Sample, draw_mark, line, number, text_width};
 use super::scene::{Scene, Stretch};
 
 /// Rows beyond these are left out.
@@ -61,20 +61,11 @@ impl Plan {
 
 fn entries(scene: &Scene) -> Vec<Entry> {
     let mut entries = vec![
-        Entry {
-            name: "learning, in the task's colour".to_owned(),
-            sample: Sample::Area(TASKS[0].light),
-        },
-        Entry {
-            name: "evaluation, frozen".to_owned(),
-            sample: Sample::Line(FROZEN.light),
-        },
+        Entry::new("learning, in the task's colour", Sample::Area(TASKS[0].light)),
+        Entry::new("evaluation, frozen", Sample::Line(FROZEN.light)),
     ];
     if scene.names.len() > MOST_ROWS {
-        entries.push(Entry {
-            name: format!("and {} tasks more, not drawn", scene.names.len() - MOST_ROWS),
-            sample: Sample::Nothing,
-        });
+        entries.push(Entry::rest(format!("{} tasks", scene.names.len() - MOST_ROWS)));
     }
     entries
 }
@@ -91,10 +82,11 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
     let x = |value: f64| d(plan.left) + ((value - scene.span.start) * per_x).round() as i32;
     for (row, name) in scene.names.iter().take(plan.rows).enumerate() {
         let y = d(plan.middle(row, paper));
-        below.draw(&PathElement::new(
+        line(
+            &below,
             [(d(plan.left), y), (d(plan.right), y)],
             RIM.light.stroke_width(1),
-        ))?;
+        )?;
         name_row(&below, &plan, paper, row, name)?;
     }
     let columns = plan.right - plan.left;
@@ -148,18 +140,16 @@ fn axis<DB: DrawingBackend>(
 ) -> Drawn<DB> {
     let d = Paper::dots;
     let y = d(plan.bottom());
-    area.draw(&PathElement::new(
+    line(
+        area,
         [(d(plan.left), y), (d(plan.right), y)],
         FAINT.light.stroke_width(2),
-    ))?;
+    )?;
     let marks = plotters::coord::types::RangedCoordf64::from(scene.span.clone());
     let most = if paper.is_narrow() { 5 } else { 10 };
     for value in plotters::coord::ranged1d::Ranged::key_points(&marks, most) {
         let at = x(value);
-        area.draw(&PathElement::new(
-            [(at, y), (at, y + d(4))],
-            FAINT.light.stroke_width(2),
-        ))?;
+        line(area, [(at, y), (at, y + d(4))], FAINT.light.stroke_width(2))?;
         let style = Paper::words(11, FAINT.light, HPos::Center, VPos::Top);
         area.draw_text(&number(value), &style, (at, y + d(6)))?;
     }
@@ -185,10 +175,11 @@ fn draw_distances<DB: DrawingBackend>(
     let (base, tallest) = (d(STRIP - 14), d(STRIP - 46));
     let style = Paper::words(12, FAINT.light, HPos::Left, VPos::Center);
     area.draw_text("distance between neighbours", &style, (d(8), d(8)))?;
-    area.draw(&PathElement::new(
+    line(
+        area,
         [(d(plan.left), base), (d(plan.right), base)],
         RIM.light.stroke_width(1),
-    ))?;
+    )?;
     let largest = distances.iter().flatten().copied().fold(0.0, f64::max);
     let learnt: Vec<&Stretch> = scene
         .stretches
@@ -206,10 +197,7 @@ fn draw_distances<DB: DrawingBackend>(
         let top = base - (f64::from(tallest) * share).round() as i32;
         let label = distance.map_or("?".to_owned(), |distance| format!("{distance:.2}"));
         if distance.is_some() {
-            area.draw(&PathElement::new(
-                [(at, base), (at, top)],
-                INK.light.stroke_width(d(1) as u32),
-            ))?;
+            line(area, [(at, base), (at, top)], INK.light.stroke_width(d(1) as u32))?;
             area.draw(&Circle::new((at, top), d(3), INK.light.filled()))?;
         }
         let half = d(text_width(&label, 11)) / 2;

@@ -6,18 +6,9 @@
 )]
 
 use super::{Drawing, FAINT, INK, Level, Rgb, Shape, Side, TextLine, WHITE, corner, letters, middle, text_width};
+use crate::figure::task_color;
 use driftworld_spec::{Block, BlockKind, Phase, Regime, Scenario};
 
-/// Colours of the rows, told apart by most colour-blind eyes too (Okabe and Ito).
-const COLORS: [Rgb; 7] = [
-    [0, 114, 178],
-    [230, 159, 0],
-    [0, 158, 115],
-    [213, 94, 0],
-    [86, 180, 233],
-    [204, 121, 167],
-    [148, 132, 20],
-];
 const ROW: i32 = 40;
 const BAR: i32 = 24;
 const TOP: i32 = 84;
@@ -79,7 +70,7 @@ pub fn blocks(scenario: &Scenario) -> Drawing {
     for stretch in &stretches {
         // A stretch too short to be seen is drawn a pixel wide.
         let (start, end) = (x(stretch.from), x(stretch.to).max(x(stretch.from) + 1));
-        let color = COLORS[stretch.row % COLORS.len()];
+        let color = task_color(stretch.row);
         let along = |progress: f64| match stretch.drift {
             Some((to, _)) => y(stretch.row as f64 + (to as f64 - stretch.row as f64) * progress),
             None => y(stretch.row as f64),
@@ -140,11 +131,11 @@ fn kinds(scenario: &Scenario) -> Vec<(&'static str, Rgb, f32, i32)> {
     let all = [
         (
             has(BlockKind::Learning, Some(Phase::Deployment)),
-            ("learning", COLORS[0], 1.0, BAR / 2),
+            ("learning", task_color(0), 1.0, BAR / 2),
         ),
         (
             has(BlockKind::Learning, early),
-            ("before deployment", COLORS[0], EARLY, BAR / 2),
+            ("before deployment", task_color(0), EARLY, BAR / 2),
         ),
         (
             has(BlockKind::Evaluation, None),
