@@ -1,5 +1,7 @@
 //! Words that earlier releases took, and what to use instead.
 
+use WordKind::{By, Command, Format, Measure, Option as Flag, Order};
+
 /// What a word that a user types stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WordKind {
@@ -21,66 +23,46 @@ const TABLES: &str = ".jsonl for worlds, .tsv or .csv for logs; docs/how-to/inte
 
 /// Every removed word: its kind, the word, what to use instead.
 const REMOVED: &[(WordKind, &str, &str)] = &[
+    (Command, "bench generator", "cargo bench -p driftworld-generator"),
+    (Command, "bench metrics", "cargo bench -p driftworld-metrics"),
+    (Command, "bench similarity", "cargo bench -p driftworld-similarity"),
     (
-        WordKind::Command,
-        "bench generator",
-        "cargo bench -p driftworld-generator",
-    ),
-    (WordKind::Command, "bench metrics", "cargo bench -p driftworld-metrics"),
-    (
-        WordKind::Command,
-        "bench similarity",
-        "cargo bench -p driftworld-similarity",
-    ),
-    (
-        WordKind::Command,
+        Command,
         "unity",
         "cp target/release/driftworld-unity DIR/l2explorer.x86_64, as docs/l2explorer.md shows",
     ),
-    (WordKind::Format, "arrow", TABLES),
-    (WordKind::Format, "feather", TABLES),
-    (WordKind::Format, "npy", ".csv or .json for distances"),
-    (WordKind::Format, "parquet", TABLES),
-    (WordKind::Option, "console --out", "--output"),
-    (WordKind::Option, "convert --from", "examples/python/text_maps.py"),
+    (Format, "arrow", TABLES),
+    (Format, "feather", TABLES),
+    (Format, "npy", ".csv or .json for distances"),
+    (Format, "parquet", TABLES),
+    (Flag, "console --out", "--output"),
+    (Flag, "convert --from", "examples/python/text_maps.py"),
     (
-        WordKind::Option,
+        Flag,
         "convert --to",
         "no --to: worlds and scenarios are written in Driftworld's form",
     ),
-    (WordKind::Option, "curriculum --method", "--order"),
-    (WordKind::Option, "order --method", "--order"),
-    (WordKind::Option, "run --logs", "--output"),
-    (WordKind::Option, "transfer-report --output", "--plot"),
-    (WordKind::Option, "transfer-report -o", "--plot"),
-    (WordKind::By, "occupancy:dice", "occupancy:jaccard"),
-    (
-        WordKind::By,
-        "occupancy:earth_movers_hat",
-        "occupancy, or objects, which counts what is missing",
-    ),
-    (WordKind::By, "occupancy:hamming", "occupancy:jaccard"),
-    (
-        WordKind::By,
-        "occupancy:hausdorff_95",
-        "occupancy:hausdorff or occupancy:chamfer",
-    ),
-    (WordKind::By, "occupancy:ruzicka", "occupancy:jaccard"),
-    (WordKind::By, "occupancy:sinkhorn", "occupancy"),
-    (WordKind::By, "occupancy:sliced_wasserstein", "occupancy"),
-    (WordKind::Measure, "jeffreys", "jensen_shannon"),
-    (WordKind::Measure, "maximum_mean_discrepancy", "energy"),
-    (WordKind::Order, "bottleneck", "gradual"),
-    (WordKind::Order, "contrast", "abrupt"),
-    (WordKind::Order, "farthest-first", "farthest"),
-    (WordKind::Order, "leaf", "two-opt"),
-    (WordKind::Order, "spectral", "two-opt"),
-    (WordKind::Order, "tree", "two-opt"),
-    (
-        WordKind::Order,
-        "typical-last",
-        "given, with the most typical variant named last",
-    ),
+    (Flag, "curriculum --method", "--order"),
+    (Flag, "order --method", "--order"),
+    (Flag, "run --logs", "--output"),
+    (Flag, "transfer-report --output", "--plot"),
+    (Flag, "transfer-report -o", "--plot"),
+    (By, "occupancy:dice", "occupancy:jaccard"),
+    (By, "occupancy:earth_movers_hat", "occupancy or objects"),
+    (By, "occupancy:hamming", "occupancy:jaccard"),
+    (By, "occupancy:hausdorff_95", "occupancy:hausdorff or occupancy:chamfer"),
+    (By, "occupancy:ruzicka", "occupancy:jaccard"),
+    (By, "occupancy:sinkhorn", "occupancy"),
+    (By, "occupancy:sliced_wasserstein", "occupancy"),
+    (Measure, "jeffreys", "jensen_shannon"),
+    (Measure, "maximum_mean_discrepancy", "energy"),
+    (Order, "bottleneck", "gradual"),
+    (Order, "contrast", "abrupt"),
+    (Order, "farthest-first", "farthest"),
+    (Order, "leaf", "two-opt"),
+    (Order, "spectral", "two-opt"),
+    (Order, "tree", "two-opt"),
+    (Order, "typical-last", "given, with the most typical variant named last"),
 ];
 
 /// What a message says of a removed word, `removed in 0.3; use …`; `None` for any other word.
