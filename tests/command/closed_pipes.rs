@@ -2,7 +2,7 @@
 
 use std::process::Stdio;
 
-use super::terminal::{driftworld_in, root, scratch, succeed, succeed_in};
+use super::terminal::{driftworld_in, root, scratch, subcommands, succeed_in};
 
 /// Every subcommand, as it prints something: results, messages, or both.
 const COMMANDS: [&str; 41] = [
@@ -60,17 +60,8 @@ fn closed() -> Stdio {
 fn every_command_ends_quietly_where_nobody_reads() {
     let folder = scratch();
     let path = folder.path();
-    let curriculum = [
-        "curriculum",
-        "find_objects#red",
-        "find_objects#blue",
-        "-o",
-        "scenario.json",
-    ];
-    succeed_in(
-        path,
-        &[&curriculum[..], &["--learn", "1", "--eval-episodes", "1"]].concat(),
-    );
+    let design = "curriculum find_objects#red find_objects#blue -o scenario.json --learn 1 --eval-episodes 1";
+    succeed_in(path, design);
     succeed_in(path, &["run", "scenario.json", "--agent", "random", "--output", "log"]);
     succeed_in(path, &["order", "find_objects", "--matrix", "matrix.json"]);
     // A world of one object, so that its photographs are soon taken.
@@ -106,12 +97,10 @@ fn every_command_ends_quietly_where_nobody_reads() {
 
 #[test]
 fn no_subcommand_is_left_out() {
-    let help = succeed(&["--help"]);
-    let listed = help.lines().take_while(|line| *line != "Options:");
-    let listed = listed.filter(|line| line.starts_with("  "));
-    let names = listed.filter_map(|line| line.split_whitespace().next());
-    for name in names.filter(|name| *name != "help") {
-        let is_tried = COMMANDS.iter().any(|command| command.split(' ').next() == Some(name));
+    for name in subcommands() {
+        let is_tried = COMMANDS
+            .iter()
+            .any(|command| command.split(' ').next() == Some(name.as_str()));
         assert!(
             is_tried,
             "{name}: add a line that prints something; see {}",

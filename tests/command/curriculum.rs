@@ -1,63 +1,36 @@
 //! `driftworld curriculum` as its users meet it: probes with their proof, forms, drifts, even steps, controls, pictures, errors.
 
-use std::io::Write;
 use std::path::Path;
-use std::process::{Command, Output};
-use std::sync::LazyLock;
 
 use driftworld::design::{DEFAULT_STEPS, DEFAULT_TOLERANCE};
 use serde_json::Value;
 
-use super::terminal::{driftworld, fail, output, scratch, text};
+use super::refused::PARK;
+use super::run_files::write;
+use super::terminal::{driftworld_in, fail_in, output, read, scratch, succeed, succeed_in};
+use crate::tier::quick_or_full;
 
-/// A task that stays as it is when the built-in ones grow.
-static PARK: LazyLock<String> = LazyLock::new(|| {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
-    let path = folder.join("park.json");
-    let task = r#"{ "version": 2, "name": "park", "parameters": {
-        "color": { "role": "variant", "type": "color", "affects": ["O"], "choices": ["blue", "red", "green"], "default": "blue" },
-        "reward": { "role": "variant", "type": "number", "affects": ["R"], "range": [-100, 100], "default": 100 },
-        "light": { "role": "variant", "type": "number", "affects": ["O"], "range": [0.2, 4], "default": 2.3 },
-        "spread": { "role": "variant", "type": "number", "affects": ["S"], "range": [2, 40], "default": 20 } },
-      "variants": { "blue": {}, "red": { "color": "red" }, "green": { "color": "green" }, "dusk": { "extends": "red", "light": 0.6 },
-        "huddle": { "spread": 6 }, "penalty": { "extends": "red", "reward": -100 } } }"#;
-    // Tests run in processes of their own: one must not read what another is writing.
-    let mut file = tempfile::NamedTempFile::new_in(folder).expect("cargo has made the folder");
-    file.write_all(task.as_bytes()).expect("there is room for a task");
-    file.persist(&path).expect("a file can be put in place of another");
-    text(&path).to_owned()
-});
-
-/// The park, or one of its variants: `#red`.
-fn park(variant: &str) -> &'static str {
-    format!("{}{variant}", *PARK).leak()
+/// A folder with `park.json`.
+fn with_park() -> tempfile::TempDir {
+    let folder = scratch();
+    write(&folder.path().join("park.json"), PARK);
+    folder
 }
 
-/// `driftworld curriculum` with these arguments, to its end.
-fn curriculum(arguments: &[&str]) -> Output {
-    output(driftworld(&["curriculum"]).args(arguments))
-}
-
-/// What it says when it ends with this exit code.
+/// The scenario that `driftworld curriculum` prints, and what is said beside it.
 #[track_caller]
-fn refused(code: i32, arguments: &[&str]) -> String {
-    fail(code, &[&["curriculum"], arguments].concat())
-}
-
-/// The scenario on standard output, and what is said beside it.
-#[track_caller]
-fn designed(arguments: &[&str]) -> (Value, String) {
-    let output = curriculum(arguments);
+fn designed(arguments: &str) -> (Value, String) {
+    let folder = with_park();
+    let output = output(&mut driftworld_in(folder.path(), &format!("curriculum {arguments}")));
     let beside = String::from_utf8(output.stderr).expect("the command prints UTF-8");
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {beside}");
+    assert_eq!(output.status.code(), Some(0), "{arguments}: {beside}");
     let scenario =
         serde_json::from_slice(&output.stdout).expect("a scenario is JSON, and nothing else is printed with it");
     (scenario, beside)
 }
 
-fn read(path: &Path) -> Value {
-    let text = std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    serde_json::from_str(&text).expect("a scenario is JSON")
+fn scenario(path: &Path) -> Value {
+    serde_json::from_str(&read(path)).expect("a scenario is JSON")
 }
 
 fn list(value: &Value) -> &Vec<Value> {
@@ -105,7 +78,7 @@ fn rows(beside: &str, heading: &str) -> Vec<Vec<String>> {
 #[test]
 fn a_probe_of_each_element_proves_that_nothing_else_differs() {
     for (element, column) in [("state", 2), ("reward", 5), ("observation", 6)] {
-        let (scenario, beside) = designed(&[park(""), "--probe", element]);
+        let (scenario, beside) = designed(&format!("park.json --probe {element}"));
         let rows = rows(&beside, "variant");
         assert!(rows.len() >= 4, "{beside}");
         assert!(
@@ -136,29 +109,31 @@ fn a_probe_of_each_element_proves_that_nothing_else_differs() {
 
 #[test]
 fn every_element_of_the_five_tasks_can_be_probed() {
-    for task in [
+    let tasks = [
         "find_objects",
         "get_to_goal",
         "select_object",
         "moving_object",
         "scavenger_hunt",
-    ] {
-        for (place, element) in ["state", "action", "transition", "reward", "observation"]
-            .iter()
-            .enumerate()
-        {
-            let (_, beside) = designed(&[task, "--probe", element, "--variants", "5"]);
+    ];
+    let elements = ["state", "action", "transition", "reward", "observation"];
+    for (number, task) in tasks.into_iter().enumerate() {
+        for (place, element) in elements.into_iter().enumerate() {
+            // In the quick tier each task and each element once.
+            if quick_or_full(place != number, false) {
+                continue;
+            }
+            let (_, beside) = designed(&format!("{task} --probe {element} --variants 5"));
             let rows = rows(&beside, "variant");
             assert_eq!(rows.len(), 5, "{beside}");
             for row in &rows[1..] {
-                let others = (2..7).filter(|column| *column != place + 2);
-                assert!(
-                    others
-                        .into_iter()
-                        .all(|column| row[column] == "0" || row[column] == "-"),
-                    "{beside}"
-                );
-                assert!(row[place + 2].parse::<f64>().is_ok_and(|apart| apart > 0.0), "{beside}");
+                for column in 2..7 {
+                    if column == place + 2 {
+                        assert!(row[column].parse::<f64>().is_ok_and(|apart| apart > 0.0), "{beside}");
+                    } else {
+                        assert!(row[column] == "0" || row[column] == "-", "{beside}");
+                    }
+                }
             }
         }
     }
@@ -166,12 +141,12 @@ fn every_element_of_the_five_tasks_can_be_probed() {
 
 #[test]
 fn what_a_probe_makes_is_in_the_scenario_and_as_far_as_the_table_says() {
-    let folder = scratch();
-    let path = folder.path().join("reward.json");
-    let said = curriculum(&[park(""), "--probe", "reward", "--variants", "5", "-o", text(&path)]);
-    assert_eq!(said.status.code(), Some(0));
-    let table = String::from_utf8(said.stdout).expect("the command prints UTF-8");
-    let scenario = read(&path);
+    let folder = with_park();
+    let table = succeed_in(
+        folder.path(),
+        "curriculum park.json --probe reward --variants 5 -o reward.json",
+    );
+    let scenario = scenario(&folder.path().join("reward.json"));
     let first = &regimes(&scenario, "learning")[0];
     assert_eq!((name(first).as_str(), first.get("values")), ("blue", None));
     for (row, regime) in rows(&table, "variant").iter().zip(regimes(&scenario, "learning")) {
@@ -184,31 +159,20 @@ fn what_a_probe_makes_is_in_the_scenario_and_as_far_as_the_table_says() {
 
 #[test]
 fn orders_differ_and_controls_are_matched_in_everything_else() {
-    let folder = scratch();
+    let folder = with_park();
     let design = |order: &str| {
-        let (scenario, _) = designed(&[park(""), "--probe", "reward", "--order", order, "--seed", "4"]);
+        let (scenario, _) = designed(&format!("park.json --probe reward --order {order} --seed 4"));
         learned(&scenario)
     };
     let orders = ["outward", "abrupt", "path", "farthest"].map(design);
     assert!(orders.iter().all(|order| order[0] == "blue"));
     assert_ne!(orders[0], orders[1]);
     assert_ne!(orders[0], orders[3]);
-    let at = |name: &str| folder.path().join(name);
-    let controls = at("controls");
-    let main = at("main.json");
-    let status = curriculum(&[
-        park(""),
-        "--probe",
-        "reward",
-        "--name",
-        "pay",
-        "--controls",
-        text(&controls),
-        "-o",
-        text(&main),
-    ]);
-    assert_eq!(status.status.code(), Some(0));
-    let main = read(&main);
+    succeed_in(
+        folder.path(),
+        "curriculum park.json --probe reward --name pay --controls controls -o main.json",
+    );
+    let main = scenario(&folder.path().join("main.json"));
     let worlds = |scenario: &Value| {
         let of = |regime: &&Value| {
             format!(
@@ -224,7 +188,7 @@ fn orders_differ_and_controls_are_matched_in_everything_else() {
         worlds
     };
     for kind in ["reversed", "random", "contrast"] {
-        let control = read(&controls.join(format!("pay-{kind}.json")));
+        let control = scenario(&folder.path().join(format!("controls/pay-{kind}.json")));
         assert_eq!(control["name"], format!("pay-{kind}"));
         assert_eq!(worlds(&control), worlds(&main), "{kind}");
         assert_eq!(kinds(&control), kinds(&main));
@@ -238,32 +202,17 @@ fn orders_differ_and_controls_are_matched_in_everything_else() {
 
 #[test]
 fn controls_learn_as_often_and_before_deployment_the_same() {
-    let folder = scratch();
-    let main = folder.path().join("main.json");
-    let controls = folder.path().join("controls");
-    let said = curriculum(&[
-        park("#blue"),
-        park("#red"),
-        park("#dusk"),
-        "--blocks",
-        "5",
-        "--pre-deployment",
-        "4",
-        "--controls",
-        text(&controls),
-        "-o",
-        text(&main),
-    ]);
-    assert_eq!(said.status.code(), Some(0));
-    let table = String::from_utf8(said.stdout).expect("the command prints UTF-8");
-    let main = read(&main);
+    let folder = with_park();
+    let design = "curriculum park.json#blue red dusk --blocks 5 --pre-deployment 4 --controls controls -o main.json";
+    let table = succeed_in(folder.path(), design);
+    let main = scenario(&folder.path().join("main.json"));
     let worlds = |scenario: &Value| {
         let mut worlds: Vec<String> = regimes(scenario, "learning").iter().map(ToString::to_string).collect();
         worlds.sort();
         worlds
     };
     for kind in ["reversed", "random", "contrast"] {
-        let control = read(&controls.join(format!("curriculum-{kind}.json")));
+        let control = scenario(&folder.path().join(format!("controls/curriculum-{kind}.json")));
         assert_eq!(worlds(&control), worlds(&main), "{kind}");
         assert_eq!(control["blocks"][0], main["blocks"][0]);
         let written = learned(&control)[1..].join(", ");
@@ -272,52 +221,33 @@ fn controls_learn_as_often_and_before_deployment_the_same() {
             "{table}"
         );
     }
-    let permuted = refused(2, &[park(""), "--form", "permuted", "--controls", text(&controls)]);
-    assert!(permuted.contains("leave one of them out"), "{permuted}");
 }
 
 #[test]
 fn experts_of_two_tasks_are_written_side_by_side() {
     let folder = scratch();
-    let output = curriculum(&[
-        "find_objects#dusk",
-        "get_to_goal#dusk",
-        "--form",
-        "expert",
-        "-o",
-        text(folder.path()),
-    ]);
-    assert_eq!(
-        output.status.code(),
-        Some(0),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
+    succeed_in(
+        folder.path(),
+        "curriculum find_objects#dusk get_to_goal#dusk --form expert -o .",
     );
     for task in ["find_objects", "get_to_goal"] {
-        let expert = read(&folder.path().join(format!("curriculum-{task}-dusk.json")));
+        let expert = scenario(&folder.path().join(format!("curriculum-{task}-dusk.json")));
         assert!(regimes(&expert, "learning").iter().all(|regime| regime["task"] == task));
     }
 }
 
 #[test]
 fn a_probe_ends_where_it_is_asked_to() {
-    let (scenario, _) = designed(&[park(""), "--probe", "observation", "--end", park("#blue")]);
+    let (scenario, _) = designed("park.json --probe observation --end park.json#blue");
     assert_eq!(learned(&scenario).last().map(String::as_str), Some("blue"));
-    let error = refused(1, &[park(""), "--probe", "observation", "--end", park("#bleu")]);
-    assert!(error.contains("--end: found"), "{error}");
-    for wanted in ["0", "1", "201"] {
-        let error = refused(1, &[park(""), "--probe", "reward", "--variants", wanted]);
-        assert!(error.contains("variants wanted, expected 2 to 200"), "{error}");
-    }
 }
 
 #[test]
 fn evaluation_never_draws_what_is_learned_and_stands_where_it_is_wanted() {
-    let three = [park("#blue"), park("#red"), park("#green"), "--order", "given"];
-    let with = |more: &[&str]| designed(&[&three[..], more].concat()).0;
-    assert_eq!(kinds(&with(&[])), "ELELELE");
-    assert_eq!(kinds(&with(&["--evaluate", "ends", "--pre-deployment", "7"])), "PELLLE");
-    let places = with(&["--evaluate-after", "0,2", "--eval-episodes", "3", "--seed", "6"]);
+    let with = |more: &str| designed(&format!("park.json#blue red green --order given {more}")).0;
+    assert_eq!(kinds(&with("")), "ELELELE");
+    assert_eq!(kinds(&with("--evaluate ends --pre-deployment 7")), "PELLLE");
+    let places = with("--evaluate-after 0,2 --eval-episodes 3 --seed 6");
     assert_eq!(kinds(&places), "ELLEL");
     let seeds = |kind: &str| {
         regimes(&places, kind)
@@ -328,30 +258,19 @@ fn evaluation_never_draws_what_is_learned_and_stands_where_it_is_wanted() {
     assert_eq!((seeds("learning").len(), seeds("evaluation").len()), (1, 1));
     assert!(seeds("learning").is_disjoint(&seeds("evaluation")));
     assert!(regimes(&places, "evaluation").iter().all(|regime| regime["count"] == 3));
-    assert!(
-        refused(1, &[&three[..], &["--evaluate-after", "4"]].concat())
-            .contains("after learning block 4, expected 0 to 3")
-    );
 }
 
 #[test]
 fn the_forms_arrange_the_blocks_and_say_so() {
-    let two = [park("#blue"), park("#red"), "--order", "given", "--form"];
-    let with = |form: &str, more: &[&str]| designed(&[&two[..], &[form], more].concat()).0;
-    let condensed = with("condensed", &[]);
+    let with = |form: &str| designed(&format!("park.json#blue red --order given --form {form}")).0;
+    let condensed = with("condensed");
     assert_eq!(
         (learned(&condensed).join(" "), &condensed["form"]),
         ("blue red".into(), &Value::from("condensed"))
     );
-    assert_eq!(learned(&with("dispersed", &[])).join(" "), "blue red blue red blue red");
-    assert_eq!(
-        learned(&with("alternating", &["--blocks", "3"])).join(" "),
-        "blue red blue"
-    );
-    assert_eq!(
-        learned(&with("custom", &["--blocks", "5"])).join(" "),
-        "blue red blue red blue"
-    );
+    assert_eq!(learned(&with("dispersed")).join(" "), "blue red blue red blue red");
+    assert_eq!(learned(&with("alternating --blocks 3")).join(" "), "blue red blue");
+    assert_eq!(learned(&with("custom --blocks 5")).join(" "), "blue red blue red blue");
     let indices = |scenario: &Value| -> Vec<String> {
         regimes(scenario, "learning")
             .iter()
@@ -359,63 +278,44 @@ fn the_forms_arrange_the_blocks_and_say_so() {
             .collect()
     };
     assert_eq!(
-        indices(&with("dispersed", &["--learn", "10"])),
+        indices(&with("dispersed --learn 10")),
         ["0", "100000000000", "10", "100000000010", "20", "100000000020"]
     );
     assert_eq!(
-        indices(&with("dispersed", &["--learn", "10", "--paired-learning"])),
+        indices(&with("dispersed --learn 10 --paired-learning")),
         ["0", "0", "10", "10", "20", "20"]
     );
-    assert_eq!(with("condensed", &["--task-label", "info"])["task_label"], "info");
+    assert_eq!(with("condensed --task-label info")["task_label"], "info");
 
-    let folder = scratch();
-    let several = |arguments: &[&str], file: &str| {
-        let output = folder.path().join("several");
-        let output = curriculum(&[&[park(""), "--force", "-o", text(&output)], arguments].concat());
-        assert_eq!(
-            output.status.code(),
-            Some(0),
-            "{}",
-            String::from_utf8_lossy(&output.stderr)
+    let folder = with_park();
+    let several = |arguments: &str, file: &str| {
+        succeed_in(
+            folder.path(),
+            &format!("curriculum park.json --force -o several {arguments}"),
         );
-        read(&folder.path().join("several").join(file))
+        scenario(&folder.path().join("several").join(file))
     };
-    let expert = several(&["--form", "expert", "--name", "alone"], "alone-dusk.json");
+    let expert = several("--form expert --name alone", "alone-dusk.json");
     assert_eq!(
         (learned(&expert).join(" "), &expert["form"]),
         ("dusk".into(), &Value::from("expert"))
     );
-    let lifetimes = ["--form", "permuted", "--lifetimes", "3"];
-    let orders =
-        ["curriculum-1.json", "curriculum-2.json", "curriculum-3.json"].map(|file| learned(&several(&lifetimes, file)));
+    let lifetimes = |number: u32| {
+        let file = format!("curriculum-{number}.json");
+        learned(&several("--form permuted --lifetimes 3", &file))
+    };
+    let orders = [1, 2, 3].map(lifetimes);
     assert!(orders[0] != orders[1] || orders[1] != orders[2], "{orders:?}");
 }
 
 #[test]
 fn lifetimes_have_their_own_worlds_and_experts_what_their_lifetime_has() {
-    let folder = scratch();
-    let into = |name: &str| folder.path().join(name);
-    let (lifetimes, experts) = (into("lifetimes"), into("experts"));
-    let arguments = [
-        "--hold-out",
-        park("#dusk"),
-        "--learn",
-        "4",
-        "--form",
-        "dispersed",
-        "--lifetimes",
-        "2",
-    ];
-    let folders = ["--experts", text(&experts), "-o", text(&lifetimes)];
-    let two = [park("#blue"), park("#red"), park("#dusk")];
-    let output = curriculum(&[&two[..], &arguments, &folders].concat());
-    assert_eq!(
-        output.status.code(),
-        Some(0),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    let lives = ["curriculum-1", "curriculum-2"].map(|name| read(&lifetimes.join(format!("{name}.json"))));
+    let folder = with_park();
+    let design = "curriculum park.json#blue red dusk --hold-out dusk --learn 4 --form dispersed --lifetimes 2 \
+                  --experts experts -o lifetimes";
+    succeed_in(folder.path(), design);
+    let (lifetimes, experts) = (folder.path().join("lifetimes"), folder.path().join("experts"));
+    let lives = ["curriculum-1", "curriculum-2"].map(|name| scenario(&lifetimes.join(format!("{name}.json"))));
     let worlds = |scenario: &Value, kind: &str| -> std::collections::BTreeSet<String> {
         let world = |regime: &&Value| format!("{} {} {}", name(regime), regime["seed"], regime["first_index"]);
         regimes(scenario, kind).iter().map(world).collect()
@@ -429,7 +329,7 @@ fn lifetimes_have_their_own_worlds_and_experts_what_their_lifetime_has() {
             .iter()
             .any(|regime| name(regime) == "dusk")
     );
-    let red = read(&experts.join("curriculum-2-red.json"));
+    let red = scenario(&experts.join("curriculum-2-red.json"));
     assert_eq!(learned(&red), ["red"; 3]);
     assert!(worlds(&lives[1], "learning").is_superset(&worlds(&red, "learning")));
     assert!(worlds(&lives[1], "evaluation").is_superset(&worlds(&red, "evaluation")));
@@ -441,9 +341,8 @@ fn lifetimes_have_their_own_worlds_and_experts_what_their_lifetime_has() {
 
 #[test]
 fn drifts_lead_from_variant_to_variant_across_blocks() {
-    let drift = |more: &[&str]| {
-        let two = [park("#blue"), park("#dusk"), "--order", "given", "--drift", "cosine"];
-        let (scenario, _) = designed(&[&two[..], more].concat());
+    let drift = |more: &str| {
+        let (scenario, _) = designed(&format!("park.json#blue dusk --order given --drift cosine {more}"));
         let said = |regime: &&Value| {
             let drift = &regime["drift"];
             let or = |key: &str, default: f64| drift[key].as_f64().unwrap_or(default);
@@ -457,24 +356,14 @@ fn drifts_lead_from_variant_to_variant_across_blocks() {
         };
         regimes(&scenario, "learning").iter().map(said).collect::<Vec<_>>()
     };
-    assert_eq!(drift(&[]), ["blue>dusk 0-1"]);
-    assert_eq!(drift(&["--blocks", "2"]), ["blue>dusk 0-0.5", "blue>dusk 0.5-1"]);
-    let error = refused(1, &[park("#blue"), "get_to_goal#plain", "--drift", "linear"]);
-    assert!(error.contains("expected two variants of one task"), "{error}");
+    assert_eq!(drift(""), ["blue>dusk 0-1"]);
+    assert_eq!(drift("--blocks 2"), ["blue>dusk 0-0.5", "blue>dusk 0.5-1"]);
 }
 
 #[test]
 fn even_steps_are_made_and_proven_or_it_is_said_how_far_they_reach() {
-    let steps = [
-        park("#blue"),
-        "--probe",
-        "reward",
-        "--step-distance",
-        "0.2",
-        "--tolerance",
-        "0.01",
-    ];
-    let (scenario, beside) = designed(&[&steps[..], &["--steps", "5"]].concat());
+    let steps = "park.json#blue --probe reward --step-distance 0.2 --tolerance 0.01 --steps";
+    let (scenario, beside) = designed(&format!("{steps} 5"));
     let rows = rows(&beside, "variant");
     assert_eq!(rows.len(), 6, "{beside}");
     for row in &rows[1..] {
@@ -488,29 +377,23 @@ fn even_steps_are_made_and_proven_or_it_is_said_how_far_they_reach() {
         );
     }
     assert_eq!(learned(&scenario).len(), 6);
-    let error = refused(1, &[&steps[..], &["--steps", "6"]].concat());
+    let error = fail_in(with_park().path(), 1, &format!("curriculum {steps} 6"));
     assert!(
         error.contains("found at most 5 of 0.2 ± 0.01, expected 6; the farthest variant is 1.0000 away"),
         "{error}"
     );
-    let whole = [
-        park(""),
-        "--step-distance",
-        "0.05",
-        "--tolerance",
-        "0.005",
-        "--steps",
-        "6",
-    ];
-    assert_eq!(learned(&designed(&whole).0).len(), 7);
+    let (whole, _) = designed("park.json --step-distance 0.05 --tolerance 0.005 --steps 6");
+    assert_eq!(learned(&whole).len(), 7);
 }
 
 #[test]
 fn a_scenario_is_drawn_as_bars_over_its_experiences() {
-    let folder = scratch();
-    let picture = folder.path().join("timeline.png");
-    designed(&[park(""), "--probe", "reward", "--plot", text(&picture)]);
-    let bytes = std::fs::read(&picture).expect("the picture was written");
+    let folder = with_park();
+    succeed_in(
+        folder.path(),
+        "curriculum park.json --probe reward --plot timeline.png -o s.json",
+    );
+    let bytes = std::fs::read(folder.path().join("timeline.png")).expect("the picture was written");
     assert!(
         bytes.starts_with(b"\x89PNG") && bytes.len() > 4000,
         "{} bytes",
@@ -521,15 +404,10 @@ fn a_scenario_is_drawn_as_bars_over_its_experiences() {
 #[test]
 fn a_scenario_is_validated_against_the_tasks_it_names() {
     let folder = scratch();
-    let path = folder.path().join("scenario.json");
     let validate = |regime: &str| {
         let text = format!(r#"{{ "name": "s", "blocks": [{{ "type": "learning", "regimes": [{regime}] }}] }}"#);
-        std::fs::write(&path, text).expect("the folder can be written to");
-        let output = Command::new(env!("CARGO_BIN_EXE_driftworld"))
-            .arg("validate")
-            .arg(&path)
-            .output();
-        let output = output.expect("the command was built by cargo and starts");
+        write(&folder.path().join("scenario.json"), &text);
+        let output = output(&mut driftworld_in(folder.path(), "validate scenario.json"));
         (
             output.status.code(),
             String::from_utf8_lossy(&output.stderr).into_owned(),
@@ -551,47 +429,8 @@ fn a_scenario_is_validated_against_the_tasks_it_names() {
 }
 
 #[test]
-fn what_is_asked_for_wrongly_is_answered_with_what_is_possible() {
-    let none = refused(1, &[park(""), "--probe", "transition"]);
-    assert!(
-        none.contains("park#blue: found no parameters that affect T alone"),
-        "{none}"
-    );
-    let few = refused(1, &[park(""), "--probe", "reward", "--start", park("#bleu")]);
-    assert!(few.contains(&format!("expected one of {}", park("#blue"))), "{few}");
-    let mixed = refused(1, &[park(""), "get_to_goal", "--probe", "reward"]);
-    assert!(mixed.contains("measure within a task"), "{mixed}");
-    let word = refused(2, &[park(""), "--probe", "colour"]);
-    assert!(
-        word.contains("expected state, action, transition, reward or observation"),
-        "{word}"
-    );
-    let form = refused(1, &[park(""), "--form", "alternating"]);
-    assert!(
-        form.contains("the form alternating: found 6 variants, expected 2 variants"),
-        "{form}"
-    );
-    assert!(refused(2, &[park(""), "--form", "expert"]).contains("--output"));
-    for option in ["--lifetimes", "--experts"] {
-        let both = refused(2, &[park(""), "--form", "expert", option, "2"]);
-        assert!(both.contains(&format!("{option}: found with --form expert")), "{both}");
-    }
-    assert!(refused(1, &[park(""), "--hold-out", park("")]).contains("found every variant held out"));
-    assert!(refused(2, &[park(""), "--steps", "3"]).contains("--step-distance"));
-    let both = refused(2, &[park(""), "--order", "path", "--order", "exact"]);
-    assert!(both.contains("cannot be used multiple times"), "{both}");
-    let long = refused(2, &[park(""), "--lifetimes", "0", "--form", "permuted"]);
-    assert!(
-        long.contains("--lifetimes: found 0, expected a whole number in 1..=10000"),
-        "{long}"
-    );
-    assert!(refused(1, &[park(""), "--blocks", "0"]).contains("expected 1 to 10000"));
-    assert!(refused(1, &[park(""), "--step-distance", "2"]).contains("a distance above 0 and at most 1"));
-}
-
-#[test]
 fn help_states_the_defaults_of_the_library() {
-    let help = String::from_utf8(curriculum(&["--help"]).stdout).expect("help is text");
+    let help = succeed("curriculum --help");
     for default in [DEFAULT_TOLERANCE.to_string(), DEFAULT_STEPS.to_string()] {
         assert!(
             help.contains(&format!("distance [default: {default}]"))

@@ -60,6 +60,7 @@ fn a_variant_at_a_distance_is_not_made_of_what_nothing_reads() {
         let said = succeed(&["vary", variant, "--element", element, "--distance", "0.5", "--json"]);
         let found: Value = serde_json::from_str(&said).expect("it is JSON");
         let values = found["variant"]["found"].as_object().expect("it names values");
+        assert!(found["held"].as_object().is_some_and(|held| !held.is_empty()), "{said}");
         assert!(
             values.len() == 2 && values.contains_key("extends") && !values.contains_key(idle),
             "{said}"

@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use super::terminal::{driftworld, fail, output, scratch, succeed, text};
+use super::terminal::{driftworld_in, fail_in, json, output, scratch, succeed, succeed_in, text};
 
 /// A task whose light is said to change what its parameter says, and which sets a reach that nothing reads.
 fn task(affects: &str) -> String {
@@ -36,18 +36,9 @@ fn what_is_declared_stands_beside_what_is_measured() {
 #[test]
 fn two_variants_are_compared_for_the_images_of_a_learner() {
     let measured = |modalities: &str| {
-        let said = succeed(&[
-            "elements",
-            "find_objects",
-            "red",
-            "penalty",
-            "--modalities",
-            modalities,
-            "--worlds",
-            "2",
-            "--json",
-        ]);
-        let found: Value = serde_json::from_str(&said).expect("JSON");
+        let found = json(&format!(
+            "elements find_objects red penalty --modalities {modalities} --worlds 2 --json"
+        ));
         assert_eq!(
             (&found["base"], &found["variants"][0]["variant"]),
             (&"red".into(), &"penalty".into())
@@ -59,28 +50,15 @@ fn two_variants_are_compared_for_the_images_of_a_learner() {
             .collect::<Vec<_>>()
     };
     assert_eq!(measured("rgb,depth"), ["R"]);
-    fail(
-        1,
-        &[
-            "elements",
-            "find_objects",
-            "red",
-            "penalty",
-            "--modalities",
-            "segmentation",
-            "--worlds",
-            "2",
-        ],
-    );
 }
 
 #[test]
 fn a_contradiction_is_told_by_its_first_case() {
     let folder = scratch();
-    let path = folder.path().join("lamp.json");
-    fs::write(&path, task("R")).expect("the folder can be written to");
-    for arguments in [&["elements", text(&path)][..], &["validate", "--elements", text(&path)]] {
-        let said = fail(1, arguments);
+    let lamp = |affects: &str| fs::write(folder.path().join("lamp.json"), task(affects)).expect("the folder is ours");
+    lamp("R");
+    for arguments in ["elements lamp.json", "validate --elements lamp.json"] {
+        let said = fail_in(folder.path(), 1, arguments);
         assert!(
             said.contains(
                 "lamp#dusk: found that phi (emission) differs from day: in world 0, step 0 (still), the rgb image"
@@ -96,25 +74,20 @@ fn a_contradiction_is_told_by_its_first_case() {
             "{said}"
         );
     }
-    let report = output(&mut driftworld(&["validate", "--elements", "--json", text(&path)]));
+    let report = output(&mut driftworld_in(
+        folder.path(),
+        "validate --elements --json lamp.json",
+    ));
     let report: Value = serde_json::from_slice(&report.stdout).expect("JSON");
     assert_eq!(
         (&report[0]["valid"], &report[0]["problems"][0]["code"]),
         (&false.into(), &"task/elements".into())
     );
     // The advice is taken.
-    fs::write(&path, task("phi")).expect("the folder can be written to");
-    let said = succeed(&["validate", "--elements", text(&path)]);
+    lamp("phi");
+    let said = succeed_in(folder.path(), "validate --elements lamp.json");
     assert!(said.contains("a valid task"), "{said}");
-    succeed(&["elements", text(&path)]);
-}
-
-#[test]
-fn arguments_that_make_no_experiment_are_refused() {
-    fail(2, &["elements", "find_objects", "red"]);
-    fail(2, &["elements", "find_objects", "--worlds", "0"]);
-    fail(2, &["elements", "find_objects", "--modalities", "sound"]);
-    assert!(fail(1, &["elements", "find_objects", "red", "blu"]).contains("did you mean \"blue\""));
+    succeed_in(folder.path(), "elements lamp.json");
 }
 
 #[test]
@@ -122,12 +95,10 @@ fn a_scenario_is_refused_for_what_its_tasks_claim() {
     let folder = scratch();
     let scenario = r#"{ "version": 1, "name": "s", "blocks": [
         { "type": "learning", "regimes": [{ "task": "./lamp.json", "variant": "dusk", "count": 1, "seed": 1, "max_steps": 5 }] }] }"#;
-    let path = folder.path().join("s.json");
-    fs::write(&path, scenario).unwrap();
+    fs::write(folder.path().join("s.json"), scenario).unwrap();
     for (affects, is_sound) in [("phi", true), ("R", false)] {
         fs::write(folder.path().join("lamp.json"), task(affects)).unwrap();
-        let arguments = ["validate", text(&path), "--elements", "--json"];
-        let said = output(&mut driftworld(&arguments));
+        let said = output(&mut driftworld_in(folder.path(), "validate s.json --elements --json"));
         assert_eq!(said.status.success(), is_sound, "{affects}");
         let verdicts: Value = serde_json::from_slice(&said.stdout).expect("JSON");
         assert_eq!(verdicts[0]["valid"], is_sound);
@@ -143,25 +114,19 @@ fn more_steps_see_what_differs_later() {
         "period": { "role": "variant", "type": "number", "affects": ["T"], "range": [2, 400], "default": 400 } },
       "world": { "objects": [{ "class": "door", "coordinates": [9, 9], "door": { "opens_on": [], "period": { "param": "period" } } }] },
       "variants": { "never": {}, "later": { "period": 120 } } }"#;
-    let path = folder.path().join("late.json");
-    fs::write(&path, late).unwrap();
-    let warned = |steps: &str| {
-        let said = output(&mut driftworld(&[
-            "validate",
-            text(&path),
-            "--elements",
-            "--steps",
-            steps,
-        ]));
+    fs::write(folder.path().join("late.json"), late).unwrap();
+    let warned = |steps: u32| {
+        let line = format!("validate late.json --elements --steps {steps}");
+        let said = output(&mut driftworld_in(folder.path(), &line));
         assert!(said.status.success());
         String::from_utf8(said.stderr).unwrap()
     };
-    let soon = warned("50");
+    let soon = warned(50);
     assert!(
         soon.contains("period made no difference") && soon.contains("--steps takes more than 50"),
         "{soon}"
     );
-    assert_eq!(warned("700"), "");
+    assert_eq!(warned(700), "");
 }
 
 #[test]
@@ -193,13 +158,15 @@ fn what_is_odd_about_worlds_is_told_of_the_task_that_draws_them() {
     let odd = r#"{ "name": "odd", "world": { "environment_params": { "map_size": [20, 20], "zones": [{ "disc": { "center": [90, 0], "radius": 1 }, "name": "far" }] },
         "objects": [{ "class": "switch", "coordinates": [2, 2], "switch": { "target": "nothing" } }] },
       "variants": { "a": {}, "b": {} } }"#;
-    let path = folder.path().join("odd.json");
-    fs::write(&path, odd).unwrap();
+    fs::write(folder.path().join("odd.json"), odd).unwrap();
     for (arguments, of) in [
-        (vec![], "in 2 of 2 worlds, of 2 variants"),
-        (vec!["--worlds", "7"], "in 14 of 14 worlds, of 2 variants"),
+        ("", "in 2 of 2 worlds, of 2 variants"),
+        ("--worlds 7", "in 14 of 14 worlds, of 2 variants"),
     ] {
-        let said = output(driftworld(&["validate", text(&path)]).args(arguments));
+        let said = output(&mut driftworld_in(
+            folder.path(),
+            &format!("validate odd.json {arguments}"),
+        ));
         assert!(said.status.success());
         let warnings = String::from_utf8(said.stderr)
             .unwrap()

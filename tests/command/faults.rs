@@ -12,8 +12,8 @@ use std::process::{Command, Output, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::run_files::{is_table, write};
-use super::terminal::{driftworld_in, output, root, scratch, signals, succeed_in, text};
+use super::run_files::{bytes_below, is_table, write};
+use super::terminal::{driftworld_in, output, root, scratch, signals, succeed_in};
 
 /// Most faults in one lifetime: then it is left alone.
 const MOST: u64 = 12;
@@ -39,23 +39,6 @@ fn setting(name: &str, default: u64) -> u64 {
         text.parse()
             .unwrap_or_else(|_| panic!("{name}: found `{text}`, expected a number"))
     })
-}
-
-/// All files below a folder; none where there is no folder.
-fn bytes_below(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(next) = folders.pop() {
-        for entry in fs::read_dir(next).into_iter().flatten().flatten() {
-            let path = entry.path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if let Ok(bytes) = fs::read(&path) {
-                found.insert(path.display().to_string().replace(text(folder), ""), bytes);
-            }
-        }
-    }
-    found
 }
 
 /// The command with files of so many half kilobytes at most. More is an error, as on a full disk, not a signal.
@@ -148,17 +131,10 @@ fn disturbed_runs_continue_to_the_same_bytes() {
         let agent = ["random", "onrails"][rng.below(2) as usize];
         let jobs = ["1", "2", "4"][rng.below(3) as usize];
         let run = |log: &'static str| {
-            [
-                "run",
-                "scenario.json",
-                "--agent",
-                agent,
-                "--resume",
-                "--jobs",
-                jobs,
-                "--output",
-                log,
-            ]
+            let line = "run scenario.json --resume --agent";
+            line.split(' ')
+                .chain([agent, "--jobs", jobs, "--output", log])
+                .collect::<Vec<_>>()
         };
         let (expected, took) = undisturbed.entry(agent).or_insert_with(|| {
             let start = Instant::now();

@@ -66,34 +66,12 @@ fn what_a_killed_sample_leaves_is_removed_by_the_next_but_not_while_it_is_writte
     let path = folder.path();
     let mut child = begun(path);
     // Another that writes the same file meanwhile takes nothing away.
-    succeed_in(
-        path,
-        &[
-            "sample",
-            "find_objects",
-            "--count",
-            "3",
-            "--jsonl",
-            "-o",
-            "worlds.jsonl",
-        ],
-    );
+    succeed_in(path, "sample find_objects --count 3 --jsonl -o worlds.jsonl");
     assert_eq!(names(path).len(), 2, "{:?}", names(path));
     signal(&child, "-KILL");
     child.wait().expect("it ends");
     assert_eq!(names(path).len(), 2, "{:?}", names(path));
-    succeed_in(
-        path,
-        &[
-            "sample",
-            "find_objects",
-            "--count",
-            "3",
-            "--jsonl",
-            "-o",
-            "worlds.jsonl",
-        ],
-    );
+    succeed_in(path, "sample find_objects --count 3 --jsonl -o worlds.jsonl");
     assert_eq!(names(path), ["worlds.jsonl"]);
 }
 

@@ -12,7 +12,7 @@ const HEADER: &str = "block_num\texp_num\tworker_id\tblock_type\tblock_subtype\t
 
 /// What is printed, and what is said beside it.
 #[track_caller]
-fn run(folder: &Path, code: i32, arguments: &[&str]) -> (String, String) {
+fn run(folder: &Path, code: i32, arguments: &str) -> (String, String) {
     let output = output(&mut driftworld_in(folder, arguments));
     let [out, error] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).expect("UTF-8"));
     assert_eq!(output.status.code(), Some(code), "{arguments:?}: {out}{error}");
@@ -39,7 +39,7 @@ fn write_log(dir: &Path) {
 fn a_sound_log_is_called_valid_with_what_it_holds() {
     let base = scratch();
     write_log(&base.path().join("run"));
-    let (out, error) = run(base.path(), 0, &["logs", "validate", "run"]);
+    let (out, error) = run(base.path(), 0, "logs validate run");
     let expected =
         "run: valid; 3 rows (1 incomplete) in 2 files, 1 worker, 2 blocks, 2 tasks; metrics reward; format 1.1\n";
     assert_eq!((out.as_str(), error.as_str()), (expected, ""));
@@ -61,7 +61,7 @@ fn every_problem_of_every_log_is_named_with_its_place() {
         r#"{"metrics_columns": ["reward"], "log_format_version": "2.0"}"#,
     );
 
-    let (out, error) = run(base.path(), 1, &["logs", "validate", "--recursive", "logs"]);
+    let (out, error) = run(base.path(), 1, "logs validate --recursive logs");
     let lines: Vec<&str> = error.lines().collect();
     let file = "logs/bad/w/0-train/data-log.tsv";
     assert_eq!(lines.len(), 5, "{error}");
@@ -87,7 +87,7 @@ fn every_problem_of_every_log_is_named_with_its_place() {
         "{out}"
     );
 
-    let (out, _) = run(base.path(), 1, &["logs", "validate", "-R", "logs", "--json"]);
+    let (out, _) = run(base.path(), 1, "logs validate -R logs --json");
     let found: serde_json::Value = serde_json::from_str(&out).expect("JSON");
     let valid: Vec<_> = found
         .as_array()
@@ -100,39 +100,13 @@ fn every_problem_of_every_log_is_named_with_its_place() {
     assert_eq!(found[1]["rows"], 3);
 }
 
-#[test]
-fn what_is_no_log_is_refused_with_what_was_looked_for() {
-    let base = scratch();
-    write_log(&base.path().join("logs/run"));
-    fs::create_dir(base.path().join("empty")).expect("temporary folders can be made");
-    for what in [&["logs", "validate"][..], &["logs", "aggregate", "-o", "table.csv"]] {
-        let with = |folder| [what, &[folder]].concat();
-        assert!(
-            run(base.path(), 1, &with("empty"))
-                .1
-                .contains("found no log, expected a folder with logger_info.json")
-        );
-        assert!(
-            run(base.path(), 1, &with("absent"))
-                .1
-                .contains("absent: found nothing, expected the folder of a log")
-        );
-        let (_, error) = run(base.path(), 1, &with("logs"));
-        assert!(
-            error.contains("such as logs/run") && error.contains("--recursive"),
-            "{error}"
-        );
-    }
-    assert!(!base.path().join("table.csv").exists());
-}
-
 const COLUMNS: &str = "block_num,regime_num,exp_num,worker_id,block_type,block_subtype,task_name,task_params,exp_status,timestamp,debug,reward";
 
 #[test]
 fn rows_are_written_as_text_under_l2loggers_columns() {
     let base = scratch();
     write_log(&base.path().join("run"));
-    let (out, _) = run(base.path(), 0, &["logs", "aggregate", "run", "-o", "table.csv"]);
+    let (out, _) = run(base.path(), 0, "logs aggregate run -o table.csv");
     assert_eq!(out, "wrote table.csv (2 rows of 1 log)\n");
     let text = fs::read_to_string(base.path().join("table.csv")).expect("it was written");
     let expected = format!(
@@ -140,11 +114,7 @@ fn rows_are_written_as_text_under_l2loggers_columns() {
          1,1,1,w,test,wake,a_b,{{}},complete,20200101T000002.000000,,\n"
     );
     assert_eq!(text, expected);
-    let (out, _) = run(
-        base.path(),
-        0,
-        &["logs", "aggregate", "run", "--incomplete", "--format", "tsv", "-o", "-"],
-    );
+    let (out, _) = run(base.path(), 0, "logs aggregate run --incomplete --format tsv -o -");
     assert_eq!(out.lines().count(), 4);
     assert_eq!(
         out.lines().next().map(|header| header.replace('\t', ",")).as_deref(),
@@ -157,57 +127,14 @@ fn several_logs_make_one_table_that_names_them() {
     let base = scratch();
     write_log(&base.path().join("logs/one"));
     write_log(&base.path().join("logs/two"));
-    run(base.path(), 0, &["logs", "aggregate", "-R", "logs", "-o", "all.tsv"]);
+    run(base.path(), 0, "logs aggregate -R logs -o all.tsv");
     let text = fs::read_to_string(base.path().join("all.tsv")).expect("it was written");
     let first: Vec<&str> = text.lines().filter_map(|line| line.split('\t').next()).collect();
     assert_eq!(first, ["run_id", "one", "one", "two", "two"]);
     // As `driftworld run -o` leaves them: in folders of their own, all of one name.
     write_log(&base.path().join("runs/x/log"));
     write_log(&base.path().join("runs/y/log"));
-    let (out, _) = run(
-        base.path(),
-        0,
-        &["logs", "aggregate", "-R", "runs", "--format", "tsv", "-o", "-"],
-    );
+    let (out, _) = run(base.path(), 0, "logs aggregate -R runs --format tsv -o -");
     let first: Vec<&str> = out.lines().filter_map(|line| line.split('\t').next()).collect();
     assert_eq!(first, ["run_id", "x/log", "x/log", "y/log", "y/log"]);
-}
-
-#[test]
-fn a_log_is_never_written_over() {
-    let base = scratch();
-    write_log(&base.path().join("run"));
-    let before = fs::read(base.path().join("run/w/0-train/data-log.tsv")).expect("it was written");
-    for name in [
-        "run/w/0-train/data-log.tsv",
-        "run/logger_info.json",
-        "run/./w/data-log.tsv",
-    ] {
-        let arguments = ["logs", "aggregate", "run", "-o", name, "--format", "tsv"];
-        assert!(
-            run(base.path(), 1, &arguments)
-                .1
-                .contains("the log would be overwritten"),
-            "{name}"
-        );
-    }
-    assert_eq!(
-        fs::read(base.path().join("run/w/0-train/data-log.tsv")).expect("it is there"),
-        before
-    );
-    assert!(!base.path().join("run/w/data-log.tsv").exists());
-}
-
-#[test]
-fn formats_are_known_by_name() {
-    let base = scratch();
-    write_log(&base.path().join("run"));
-    let (_, error) = run(base.path(), 2, &["logs", "aggregate", "run", "-o", "table.xlsx"]);
-    assert!(error.contains("expected a name ending in .tsv or .csv"), "{error}");
-    let contradiction = ["logs", "aggregate", "run", "-o", "table.csv", "--format", "tsv"];
-    let (_, error) = run(base.path(), 2, &contradiction);
-    assert!(
-        error.contains("found a format that differs from the ending of \"table.csv\""),
-        "{error}"
-    );
 }

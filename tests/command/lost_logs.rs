@@ -148,16 +148,10 @@ fn with_a_clock_that_stands_still_two_logs_are_equal_to_the_byte() {
     write(Path::new(&scenario), &text_of.replace("2000", "20"));
     let bytes = |name: &str, jobs: &str| {
         let log = folder.path().join(name);
-        let mut run = driftworld(&[
-            "run",
-            &scenario,
-            "--agent",
-            "random",
-            "--jobs",
-            jobs,
-            "--output",
-            text(&log),
-        ]);
+        let mut run = driftworld(&format!(
+            "run {scenario} --agent random --jobs {jobs} --output {}",
+            log.display()
+        ));
         let run = run.env("DRIFTWORLD_CLOCK", "2026-01-31T12:00:00Z").output();
         assert!(run.is_ok_and(|run| run.status.success()));
         let table = fs::read_to_string(log.join("worker-default/0-train/data-log.tsv")).expect("it was written");

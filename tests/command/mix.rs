@@ -1,41 +1,24 @@
 //! `--mix=task`: drifts whose experiences are of one variant or the other, between two tasks.
 
-use std::fs;
-
 use serde_json::Value;
 
-use super::terminal::{fail, scratch, succeed, text};
+use super::terminal::{fail, read, scratch, succeed, succeed_in};
 
 /// A design that drifts through variants of three tasks.
-fn design<'a>(more: &[&'a str]) -> Vec<&'a str> {
-    let variants = [
-        "find_objects#blue",
-        "get_to_goal#plain",
-        "moving_object#blue",
-        "--by",
-        "worlds",
-    ];
-    let counts = [
-        "--drift",
-        "linear",
-        "--learn",
-        "12",
-        "--eval-episodes",
-        "1",
-        "--blocks",
-        "3",
-    ];
-    [&["curriculum"], &variants[..], &counts, more].concat()
+fn design(more: &str) -> String {
+    format!(
+        "curriculum find_objects#blue get_to_goal#plain moving_object#blue --by worlds --drift linear --learn 12 \
+         --eval-episodes 1 --blocks 3 {more}"
+    )
 }
 
 #[test]
 fn a_mixture_of_two_tasks_is_designed_run_and_logged() {
     let folder = scratch();
-    let (scenario, logs) = (folder.path().join("mix.json"), folder.path().join("log"));
-    let refused = fail(1, &design(&["-o", text(&scenario)]));
+    let refused = fail(1, &design(""));
     assert!(refused.contains("expected two variants of one task"), "{refused}");
-    succeed(&design(&["--mix=task", "-o", text(&scenario)]));
-    let designed: Value = serde_json::from_str(&fs::read_to_string(&scenario).expect("it is written")).expect("JSON");
+    succeed_in(folder.path(), &design("--mix=task -o mix.json"));
+    let designed: Value = serde_json::from_str(&read(folder.path().join("mix.json"))).expect("JSON");
     let blocks = designed["blocks"].as_array().expect("blocks");
     let learning = blocks.iter().filter(|block| block["type"] == "learning");
     let regimes: Vec<&Value> = learning
@@ -53,8 +36,8 @@ fn a_mixture_of_two_tasks_is_designed_run_and_logged() {
     worlds.sort_unstable();
     worlds.dedup();
     assert_eq!((worlds.len(), all), (36, 36), "no layout comes twice");
-    succeed(&["run", text(&scenario), "--agent", "still", "--output", text(&logs)]);
-    let info = fs::read_to_string(logs.join("scenario_info.json")).expect("a log has its scenario");
+    succeed_in(folder.path(), "run mix.json --agent still --output log");
+    let info = read(folder.path().join("log/scenario_info.json"));
     assert!(
         info.contains("get_to_goal#plain") && info.contains("moving_object#blue"),
         "{info}"
@@ -63,18 +46,12 @@ fn a_mixture_of_two_tasks_is_designed_run_and_logged() {
 
 #[test]
 fn worlds_of_a_mixture_are_worlds_of_its_ends() {
-    let worlds = |arguments: &[&str]| {
-        let fixed = ["--seed", "4", "--count", "40", "--jsonl"];
-        let said = succeed(&[&["sample"], arguments, &fixed[..]].concat());
+    let worlds = |what: &str| {
+        let said = succeed(&format!("sample {what} --seed 4 --count 40 --jsonl"));
         said.lines().map(str::to_owned).collect::<Vec<_>>()
     };
-    let (a, b) = (worlds(&["find_objects#interact"]), worlds(&["get_to_goal#sphere"]));
-    let mixed = worlds(&[
-        "find_objects#interact",
-        "--drift-to",
-        "get_to_goal#sphere",
-        "--mix=task",
-    ]);
+    let (a, b) = (worlds("find_objects#interact"), worlds("get_to_goal#sphere"));
+    let mixed = worlds("find_objects#interact --drift-to get_to_goal#sphere --mix=task");
     let of_second = mixed.iter().zip(&b).filter(|(mixed, own)| mixed == own).count();
     let of_first = mixed.iter().zip(&a).filter(|(mixed, own)| mixed == own).count();
     assert_eq!(of_first + of_second, 40);

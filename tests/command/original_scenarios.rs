@@ -47,13 +47,11 @@ fn the_originals_scenario_is_lived_as_it_stands() {
     // As it stands beside us: one map lies beside the scenario, the other is nowhere.
     let error = fail(
         1,
-        &[
-            "run",
-            text(&original),
-            "--no-stand-in",
-            "--output",
-            text(&folder.path().join("none")),
-        ],
+        &format!(
+            "run {} --no-stand-in --output {}",
+            original.display(),
+            folder.path().join("none").display()
+        ),
     );
     assert!(
         error.contains("found no file \"../map_findobjects_1.json\", looked for"),

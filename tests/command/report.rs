@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use super::run_files::write;
-use super::terminal::{driftworld_in, fail_in, output, read, root, scratch, succeed_in};
+use super::terminal::{driftworld_in, fail_in, json_in, output, read, root, scratch, succeed_in};
 
 /// A lifetime of ours in `log`: three learning blocks of two variants with an evaluation before each.
 fn live(folder: &Path) {
@@ -20,20 +20,14 @@ fn live(folder: &Path) {
     });
     let scenario = format!(r#"{{ "name": "in_turns", "blocks": [{}] }}"#, blocks.join(", "));
     write(&folder.join("scenario.json"), &scenario);
-    succeed_in(
-        folder,
-        &["run", "scenario.json", "--agent", "random", "--output", "log"],
-    );
+    succeed_in(folder, "run scenario.json --agent random --output log");
 }
 
 #[test]
 fn a_lifetime_becomes_a_page_and_figures_with_the_distances_of_its_scenario() {
     let folder = scratch();
     live(folder.path());
-    let said = succeed_in(
-        folder.path(),
-        &["report", "log", "-o", "out/page.html", "--plots", "figures"],
-    );
+    let said = succeed_in(folder.path(), "report log -o out/page.html --plots figures");
     assert!(said.starts_with("wrote out/page.html (1 lifetime, "), "{said}");
     assert!(said.contains("wrote figures (8 figures, "), "{said}");
     let page = read(folder.path().join("out/page.html"));
@@ -41,11 +35,7 @@ fn a_lifetime_becomes_a_page_and_figures_with_the_distances_of_its_scenario() {
         page.contains("as measured by parameters from the scenario in the log"),
         "where the distances come from"
     );
-    let apart = succeed_in(
-        folder.path(),
-        &["distance", "find_objects#blue", "find_objects#red", "--json"],
-    );
-    let apart: serde_json::Value = serde_json::from_str(&apart).expect("it prints JSON");
+    let apart = json_in(folder.path(), "distance find_objects#blue find_objects#red --json");
     let told = format!("{:.2}\n</text>", apart["total"].as_f64().expect("a total"));
     assert_eq!(
         page.matches(&told).count(),
@@ -62,7 +52,7 @@ fn a_lifetime_becomes_a_page_and_figures_with_the_distances_of_its_scenario() {
         !folder.path().join("figures/log_ste.svg").exists(),
         "there is no expert"
     );
-    succeed_in(folder.path(), &["report", "log", "-o", "again.html"]);
+    succeed_in(folder.path(), "report log -o again.html");
     assert_eq!(
         read(folder.path().join("again.html")),
         page,
@@ -78,11 +68,11 @@ fn distances_of_a_matrix_win_and_those_of_other_variants_are_said_to_be() {
         &folder.path().join("far.csv"),
         ",find_objects#blue,find_objects#red\nfind_objects#blue,0,0.77\nfind_objects#red,0.77,0\n",
     );
-    succeed_in(folder.path(), &["report", "log", "--distances", "far.csv"]);
+    succeed_in(folder.path(), "report log --distances far.csv");
     let page = read(folder.path().join("report.html"));
     assert!(page.contains("0.77\n</text>") && page.contains("from far.csv"));
     write(&folder.path().join("other.csv"), ",a#b,c#d\na#b,0,1\nc#d,1,0\n");
-    succeed_in(folder.path(), &["report", "log", "--distances", "other.csv"]);
+    succeed_in(folder.path(), "report log --distances other.csv");
     let page = read(folder.path().join("report.html"));
     assert!(page.contains("other.csv has none of the log's variants"));
 }
@@ -91,7 +81,7 @@ fn distances_of_a_matrix_win_and_those_of_other_variants_are_said_to_be() {
 fn tasks_without_their_variants_have_no_distances() {
     let folder = scratch();
     live(folder.path());
-    succeed_in(folder.path(), &["report", "log", "-r", "agnostic"]);
+    succeed_in(folder.path(), "report log -r agnostic");
     let page = read(folder.path().join("report.html"));
     assert!(page.contains("scored by whole tasks (variant mode agnostic), and distances are between variants"));
     assert!(!page.contains("0.00\n</text>"), "no distance is made up");
@@ -111,17 +101,10 @@ fn a_drift_is_measured_where_it_begins_and_where_it_ends() {
     ];
     let scenario = format!(r#"{{ "name": "drifting", "blocks": [{}] }}"#, blocks.join(", "));
     write(&folder.path().join("scenario.json"), &scenario);
-    succeed_in(
-        folder.path(),
-        &["run", "scenario.json", "--agent", "random", "--output", "log"],
-    );
-    succeed_in(folder.path(), &["report", "log"]);
+    succeed_in(folder.path(), "run scenario.json --agent random --output log");
+    succeed_in(folder.path(), "report log");
     let page = read(folder.path().join("report.html"));
-    let apart = succeed_in(
-        folder.path(),
-        &["distance", "find_objects#red", "find_objects#blue", "--json"],
-    );
-    let apart: serde_json::Value = serde_json::from_str(&apart).expect("it prints JSON");
+    let apart = json_in(folder.path(), "distance find_objects#red find_objects#blue --json");
     let told = format!("{:.2}\n</text>", apart["total"].as_f64().expect("a total"));
     assert_eq!(
         page.matches("0.00\n</text>").count(),
@@ -140,29 +123,15 @@ fn a_drift_is_measured_where_it_begins_and_where_it_ends() {
 fn several_lifetimes_have_intervals_and_steps_are_counted_where_asked_for() {
     let folder = scratch();
     live(folder.path());
-    succeed_in(
+    succeed_in(folder.path(), "run scenario.json --agent random --output more/second");
+    let said = succeed_in(
         folder.path(),
-        &["run", "scenario.json", "--agent", "random", "--output", "more/second"],
+        "report log more -u steps --against more --title All -T lb timeline",
     );
-    let arguments = [
-        "report",
-        "log",
-        "more",
-        "-u",
-        "steps",
-        "--against",
-        "more",
-        "--title",
-        "All of it",
-        "-T",
-        "lb",
-        "timeline",
-    ];
-    let said = succeed_in(folder.path(), &arguments);
     assert!(said.starts_with("wrote report.html (2 lifetimes, "), "{said}");
     let page = read(folder.path().join("report.html"));
     for part in [
-        "<h1>All of it</h1>",
+        "<h1>All</h1>",
         "Over all lifetimes",
         "against more",
         "step\n</text>",
@@ -174,27 +143,11 @@ fn several_lifetimes_have_intervals_and_steps_are_counted_where_asked_for() {
 }
 
 #[test]
-fn wrong_words_are_contradictions_and_missing_logs_are_not_found() {
-    let folder = scratch();
-    live(folder.path());
-    let error = fail_in(folder.path(), 2, &["report", "log", "-T", "pie"]);
-    assert_eq!(
-        error,
-        "error: plot type: found \"pie\", expected one of all, raw, lb, eb, ste, timeline\n"
-    );
-    let error = fail_in(folder.path(), 2, &["report", "log", "-u", "hours"]);
-    assert_eq!(error, "error: unit: found \"hours\", expected exp_num or steps\n");
-    let error = fail_in(folder.path(), 1, &["report", "nowhere"]);
-    assert!(error.contains("nowhere"), "{error}");
-    assert!(!folder.path().join("report.html").exists(), "nothing was written");
-}
-
-#[test]
 fn warnings_of_the_log_are_told_and_stand_on_the_page() {
     let folder = scratch();
     live(folder.path());
     fs::remove_file(folder.path().join("log/scenario_info.json")).expect("it is there");
-    let done = output(&mut driftworld_in(folder.path(), &["report", "log"]));
+    let done = output(&mut driftworld_in(folder.path(), "report log"));
     assert!(String::from_utf8_lossy(&done.stderr).contains("warning: log: "));
     let page = read(folder.path().join("report.html"));
     assert!(page.contains("⚠ Warning: ") && page.contains("the log does not say which scenario was run"));
@@ -208,7 +161,7 @@ fn every_log_that_cannot_be_shown_is_named_and_the_page_may_go_to_standard_outpu
         write(&folder.path().join(name).join("logger_info.json"), "{");
         write(&folder.path().join(name).join("w/0-train/data-log.tsv"), "");
     }
-    let error = fail_in(folder.path(), 1, &["report", "bad", "log", "worse"]);
+    let error = fail_in(folder.path(), 1, "report bad log worse");
     let lines: Vec<&str> = error.lines().collect();
     assert_eq!(lines.len(), 2, "{error}");
     assert!(lines[0].contains("bad/logger_info.json:1:") && lines[1].contains("worse/logger_info.json:1:"));
@@ -232,17 +185,17 @@ fn files_that_a_log_names_are_not_opened() {
     let scenario = format!(r#"{{ "name": "s", "blocks": [{}] }}"#, blocks.join(", "));
     write(&path.join("scenario.json"), &scenario);
     std::fs::copy(root().join("examples/tasks/find_objects.json"), path.join("mine.json")).expect("the folder is ours");
-    succeed_in(path, &["run", "scenario.json", "--agent", "random", "--output", "log"]);
+    succeed_in(path, "run scenario.json --agent random --output log");
     // Not even one that would be the right one.
-    succeed_in(path, &["report", "log"]);
+    succeed_in(path, "report log");
     let page = read(path.join("report.html"));
     assert!(page.contains("give it with --task FILE") && !page.contains("as measured from"));
-    succeed_in(path, &["report", "log", "--task", "mine.json"]);
+    succeed_in(path, "report log --task mine.json");
     assert!(read(path.join("report.html")).contains("as measured by parameters from the scenario in the log"));
     // From another folder the file's name says which is meant.
     std::fs::create_dir(path.join("tasks")).expect("the folder is ours");
     std::fs::rename(path.join("mine.json"), path.join("tasks/mine.json")).expect("the folder is ours");
-    succeed_in(path, &["report", "log", "--task", "tasks/mine.json"]);
+    succeed_in(path, "report log --task tasks/mine.json");
     assert!(read(path.join("report.html")).contains("as measured by parameters from the scenario in the log"));
     let info = path.join("log/scenario_info.json");
     let made = std::process::Command::new("mkfifo").arg(path.join("pipe")).status();
@@ -258,7 +211,7 @@ fn files_that_a_log_names_are_not_opened() {
             .arg(path.join("other/"))
             .status();
         assert!(copied.expect("every unix has cp").success());
-        succeed_in(path, &["report", "other"]);
+        succeed_in(path, "report other");
         assert!(
             read(path.join("report.html")).contains("files that a log names are not opened"),
             "{named}"

@@ -57,3 +57,23 @@ pub(crate) fn num_rows(log: &Path) -> usize {
     let tables = files(log).into_iter().filter(|(name, _)| is_table(name));
     tables.map(|(_, text)| text.lines().count() - 1).sum()
 }
+
+/// All files below a folder; none where there is no folder.
+pub(crate) fn bytes_below(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next).into_iter().flatten().flatten() {
+            let path = entry.path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if let Ok(bytes) = fs::read(&path) {
+                found.insert(
+                    path.display().to_string().replace(&folder.display().to_string(), ""),
+                    bytes,
+                );
+            }
+        }
+    }
+    found
+}

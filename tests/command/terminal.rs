@@ -3,21 +3,61 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use serde_json::Value;
+
 /// The project's folder.
 pub(crate) fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
+/// Arguments of a command: one text, parted at its spaces, or a list.
+pub(crate) trait Arguments {
+    fn words(&self) -> Vec<&str>;
+}
+
+impl Arguments for str {
+    fn words(&self) -> Vec<&str> {
+        self.split_whitespace().collect()
+    }
+}
+
+impl Arguments for String {
+    fn words(&self) -> Vec<&str> {
+        self.as_str().words()
+    }
+}
+
+impl Arguments for [&str] {
+    fn words(&self) -> Vec<&str> {
+        self.to_vec()
+    }
+}
+
+impl<const N: usize> Arguments for [&str; N] {
+    fn words(&self) -> Vec<&str> {
+        self.to_vec()
+    }
+}
+
+impl Arguments for Vec<&str> {
+    fn words(&self) -> Vec<&str> {
+        self.clone()
+    }
+}
+
 /// The command with these arguments, to be run in the project's folder.
-pub(crate) fn driftworld(arguments: &[&str]) -> Command {
+pub(crate) fn driftworld(arguments: &(impl Arguments + ?Sized)) -> Command {
     driftworld_in(root(), arguments)
 }
 
 /// The same in another folder.
-pub(crate) fn driftworld_in(folder: &Path, arguments: &[&str]) -> Command {
+pub(crate) fn driftworld_in(folder: &Path, arguments: &(impl Arguments + ?Sized)) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_driftworld"));
     // Whoever runs the tests may have a narrow terminal, or want colours.
-    command.args(arguments).current_dir(folder).env_remove("COLUMNS");
+    command
+        .args(arguments.words())
+        .current_dir(folder)
+        .env_remove("COLUMNS");
     command
 }
 
@@ -28,31 +68,51 @@ pub(crate) fn output(command: &mut Command) -> Output {
 
 /// What it prints; it must end well.
 #[track_caller]
-pub(crate) fn succeed(arguments: &[&str]) -> String {
+pub(crate) fn succeed(arguments: &(impl Arguments + ?Sized)) -> String {
     succeed_in(root(), arguments)
 }
 
 /// The same in another folder.
 #[track_caller]
-pub(crate) fn succeed_in(folder: &Path, arguments: &[&str]) -> String {
+pub(crate) fn succeed_in(folder: &Path, arguments: &(impl Arguments + ?Sized)) -> String {
     let output = output(&mut driftworld_in(folder, arguments));
     let error = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {error}");
+    assert_eq!(output.status.code(), Some(0), "{:?}: {error}", arguments.words());
     String::from_utf8(output.stdout).expect("the command prints UTF-8")
+}
+
+/// The JSON that it prints; it must end well.
+#[track_caller]
+pub(crate) fn json(arguments: &(impl Arguments + ?Sized)) -> Value {
+    json_in(root(), arguments)
+}
+
+/// The same in another folder.
+#[track_caller]
+pub(crate) fn json_in(folder: &Path, arguments: &(impl Arguments + ?Sized)) -> Value {
+    serde_json::from_str(&succeed_in(folder, arguments)).expect("--json prints JSON")
+}
+
+/// The subcommands that `driftworld --help` lists.
+pub(crate) fn subcommands() -> Vec<String> {
+    let help = succeed("--help");
+    let listed = help.lines().take_while(|line| *line != "Options:");
+    let names = listed.filter_map(|line| line.strip_prefix("  ")?.split(' ').next());
+    names.filter(|name| *name != "help").map(str::to_owned).collect()
 }
 
 /// What it says on standard error; it must end with this exit code.
 #[track_caller]
-pub(crate) fn fail(code: i32, arguments: &[&str]) -> String {
+pub(crate) fn fail(code: i32, arguments: &(impl Arguments + ?Sized)) -> String {
     fail_in(root(), code, arguments)
 }
 
 /// The same in another folder.
 #[track_caller]
-pub(crate) fn fail_in(folder: &Path, code: i32, arguments: &[&str]) -> String {
+pub(crate) fn fail_in(folder: &Path, code: i32, arguments: &(impl Arguments + ?Sized)) -> String {
     let output = output(&mut driftworld_in(folder, arguments));
     let error = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {error}");
+    assert_eq!(output.status.code(), Some(code), "{:?}: {error}", arguments.words());
     assert!(!error.contains("panicked"), "{error}");
     error
 }

@@ -126,15 +126,11 @@ fn a_damaged_recording_is_told_by_its_place_and_hides_no_other() {
     let folder = scratch();
     let scenario = scenario_with(folder.path(), "find_objects");
     let log = folder.path().join("log");
-    succeed(&[
-        "run",
-        text(&scenario),
-        "--agent",
-        "random",
-        "--logs",
-        text(&log),
-        "--record",
-    ]);
+    succeed(&format!(
+        "run {} --agent random --logs {} --record",
+        scenario.display(),
+        log.display()
+    ));
     let path = recordings(&log, "0-test");
     let whole = fs::read_to_string(&path).unwrap();
     // The line of the first episode: behind the header and its world.
@@ -185,15 +181,11 @@ fn an_episode_becomes_a_film_or_a_sheet() {
     let folder = scratch();
     let scenario = scenario_with(folder.path(), "find_objects");
     let log = folder.path().join("log");
-    succeed(&[
-        "run",
-        text(&scenario),
-        "--agent",
-        "random",
-        "--logs",
-        text(&log),
-        "--record",
-    ]);
+    succeed(&format!(
+        "run {} --agent random --logs {} --record",
+        scenario.display(),
+        log.display()
+    ));
     let at = |name: &str| folder.path().join(name);
     let first_bytes = |path: &Path| fs::read(path).unwrap()[..4].to_vec();
     let replay_in = |size: &str, name: &str, more: &[&str]| {
@@ -307,34 +299,18 @@ fn an_agent_is_filmed_and_kept() {
     let folder = scratch();
     let at = |name: &str| folder.path().join(name);
     let (film, kept) = (at("a.gif"), at("a.jsonl"));
-    let said = succeed(&[
-        "film",
-        "examples/worlds/key_corridor.json#red",
-        "--agent",
-        "onrails",
-        "--size",
-        "32",
-        "--every",
-        "20",
-        "-o",
-        text(&film),
-        "--record",
-        text(&kept),
-    ]);
+    let said = succeed(&format!(
+        "film examples/worlds/key_corridor.json#red --agent onrails --size 32 --every 20 -o {} --record {}",
+        film.display(),
+        kept.display()
+    ));
     assert!(said.contains("wrote ") && said.contains("a.jsonl"), "{said}");
     let replayed = at("b.gif");
-    succeed(&[
-        "replay",
-        text(&kept),
-        "--episode",
-        "0",
-        "--size",
-        "32",
-        "--every",
-        "20",
-        "-o",
-        text(&replayed),
-    ]);
+    succeed(&format!(
+        "replay {} --episode 0 --size 32 --every 20 -o {}",
+        kept.display(),
+        replayed.display()
+    ));
     assert!(
         fs::read(&film).unwrap() == fs::read(&replayed).unwrap(),
         "the same film"
