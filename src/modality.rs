@@ -2,8 +2,6 @@
 
 use crate::env::{Frame, Target, category_color};
 use crate::spec::Modality;
-use clap::ValueEnum;
-use serde::Serialize;
 
 use crate::report::ReportError;
 use crate::report::picture::{Gray, Picture};
@@ -11,88 +9,54 @@ use crate::report::picture::{Gray, Picture};
 /// The greatest number of a 16-bit image.
 const FULL: f32 = 65_535.0;
 
-/// One kind of image.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum Kind {
-    Rgb,
-    Depth,
-    Segmentation,
-    Class,
-    Instance,
+/// All kinds of images, in the order of their numbers.
+pub(crate) const ALL: [Modality; 5] = [
+    Modality::Rgb,
+    Modality::Depth,
+    Modality::Segmentation,
+    Modality::Class,
+    Modality::Instance,
+];
+
+/// Their names in arguments, documents and file names.
+pub(crate) const NAMES: [&str; 5] = ["rgb", "depth", "segmentation", "class", "instance"];
+
+/// A kind's name.
+pub(crate) fn name(kind: Modality) -> &'static str {
+    NAMES[kind as usize]
 }
 
-impl From<Modality> for Kind {
-    fn from(modality: Modality) -> Self {
-        match modality {
-            Modality::Rgb => Self::Rgb,
-            Modality::Depth => Self::Depth,
-            Modality::Segmentation => Self::Segmentation,
-            Modality::Class => Self::Class,
-            Modality::Instance => Self::Instance,
+/// A PNG file's bytes: colours and reward categories as RGB; depths (in levels of so many metres, at most 65535 of them),
+/// classes and instances as 16-bit numbers. Numbers beyond are cut.
+pub(crate) fn to_png(kind: Modality, frame: &Frame, metres_per_level: f32) -> Result<Vec<u8>, ReportError> {
+    let (width, height) = (frame.width, frame.height);
+    let picture = |rgb: Vec<u8>| Picture { width, height, rgb }.to_png();
+    let gray = |levels: Vec<u16>| Gray { width, height, levels }.to_png();
+    let cut = |number: &u32| u16::try_from(*number).unwrap_or(u16::MAX);
+    match kind {
+        Modality::Rgb => picture(frame.rgb.clone()),
+        Modality::Segmentation => picture(frame.category.iter().flat_map(|it| category_color(*it)).collect()),
+        Modality::Depth => {
+            let level = |metres: &f32| (metres / metres_per_level + 0.5).min(FULL) as u16;
+            gray(frame.depth.iter().map(level).collect())
         }
-    }
-}
-
-impl From<Kind> for Modality {
-    fn from(kind: Kind) -> Self {
-        match kind {
-            Kind::Rgb => Self::Rgb,
-            Kind::Depth => Self::Depth,
-            Kind::Segmentation => Self::Segmentation,
-            Kind::Class => Self::Class,
-            Kind::Instance => Self::Instance,
-        }
-    }
-}
-
-impl Kind {
-    /// All of them.
-    pub(crate) const ALL: [Self; 5] = [Self::Rgb, Self::Depth, Self::Segmentation, Self::Class, Self::Instance];
-
-    /// Its name in arguments, documents and file names.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Rgb => "rgb",
-            Self::Depth => "depth",
-            Self::Segmentation => "segmentation",
-            Self::Class => "class",
-            Self::Instance => "instance",
-        }
-    }
-
-    /// A PNG file's bytes: colours and reward categories as RGB; depths (in levels of so many metres, at most 65535 of them),
-    /// classes and instances as 16-bit numbers. Numbers beyond are cut.
-    pub(crate) fn to_png(self, frame: &Frame, metres_per_level: f32) -> Result<Vec<u8>, ReportError> {
-        let (width, height) = (frame.width, frame.height);
-        let picture = |rgb: Vec<u8>| Picture { width, height, rgb }.to_png();
-        let gray = |levels: Vec<u16>| Gray { width, height, levels }.to_png();
-        let cut = |number: &u32| u16::try_from(*number).unwrap_or(u16::MAX);
-        match self {
-            Self::Rgb => picture(frame.rgb.clone()),
-            Self::Segmentation => picture(frame.category.iter().flat_map(|it| category_color(*it)).collect()),
-            Self::Depth => {
-                let level = |metres: &f32| (metres / metres_per_level + 0.5).min(FULL) as u16;
-                gray(frame.depth.iter().map(level).collect())
-            }
-            Self::Class => gray(frame.class.clone()),
-            Self::Instance => gray(frame.instance.iter().map(cut).collect()),
-        }
+        Modality::Class => gray(frame.class.clone()),
+        Modality::Instance => gray(frame.instance.iter().map(cut).collect()),
     }
 }
 
 /// The images of a frame that are wanted.
-pub(crate) fn target<'a>(frame: &'a mut Frame, kinds: &[Kind], supersampling: u32) -> Target<'a> {
+pub(crate) fn target<'a>(frame: &'a mut Frame, kinds: &[Modality], supersampling: u32) -> Target<'a> {
     let mut target = Target {
         supersampling,
         ..frame.target()
     };
-    let wanted = |kind: Kind| kinds.contains(&kind);
-    target.rgb = target.rgb.filter(|_| wanted(Kind::Rgb));
-    target.depth = target.depth.filter(|_| wanted(Kind::Depth));
-    target.category = target.category.filter(|_| wanted(Kind::Segmentation));
-    target.class = target.class.filter(|_| wanted(Kind::Class));
-    target.instance = target.instance.filter(|_| wanted(Kind::Instance));
+    let wanted = |kind: Modality| kinds.contains(&kind);
+    target.rgb = target.rgb.filter(|_| wanted(Modality::Rgb));
+    target.depth = target.depth.filter(|_| wanted(Modality::Depth));
+    target.category = target.category.filter(|_| wanted(Modality::Segmentation));
+    target.class = target.class.filter(|_| wanted(Modality::Class));
+    target.instance = target.instance.filter(|_| wanted(Modality::Instance));
     target
 }
 

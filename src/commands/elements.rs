@@ -3,11 +3,12 @@
 use clap::Args;
 
 use crate::elements::{ElementsOutcome, ElementsRequest, VariantElements, elements};
-use crate::modality::Kind;
+use crate::modality;
 use crate::spec::{Element, Modality};
 use crate::table::table;
 
 use super::assets::LibraryChoice;
+use super::numbers::documented;
 use super::{Failure, output};
 
 /// Test what variants change: state, action, reward and so on.
@@ -37,8 +38,8 @@ pub(crate) struct Elements {
     /// The variant that is compared with it.
     b: Option<String>,
     /// Which images the learner has; those that the task's worlds ask for if not said.
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "KIND,…")]
-    modalities: Option<Vec<Kind>>,
+    #[arg(long, value_parser = documented::<Modality>(&modality::NAMES), value_delimiter = ',', value_name = "KIND,…")]
+    modalities: Option<Vec<Modality>>,
     /// How many pairs of worlds are tried.
     #[arg(long, default_value_t = 32, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000))]
     worlds: u64,
@@ -59,9 +60,7 @@ impl Elements {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let found = elements(&ElementsRequest {
             between: self.a.zip(self.b).map(|(a, b)| [a, b]),
-            modalities: self
-                .modalities
-                .map(|kinds| kinds.into_iter().map(Modality::from).collect()),
+            modalities: self.modalities,
             worlds: self.worlds,
             seed: self.seed,
             steps: self.steps,

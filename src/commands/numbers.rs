@@ -1,7 +1,22 @@
-//! Numbers of the command line that several commands take. What they mean stands with each.
+//! Numbers and words of the command line that several commands take. What they mean stands with each.
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use serde::de::DeserializeOwned;
 
 /// A seed.
 pub(super) fn seed(text: &str) -> Result<u64, String> {
     text.parse()
         .map_err(|_| format!("expected a whole number from 0 to {}", u64::MAX))
+}
+
+/// Words that stand for the same in documents, each with what help says of it behind a colon, if anything.
+pub(super) fn documented<T>(words: &'static [&'static str]) -> impl TypedValueParser<Value = T>
+where
+    T: DeserializeOwned + Clone + Send + Sync + 'static,
+{
+    let possible = words.iter().map(|word| match word.split_once(": ") {
+        Some((word, help)) => PossibleValue::new(word).help(help),
+        None => PossibleValue::new(*word),
+    });
+    PossibleValuesParser::new(possible).try_map(|word| serde_json::from_value(word.into()))
 }

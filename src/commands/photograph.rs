@@ -8,13 +8,14 @@ use crate::env::{
     CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE, CATEGORY_SKY, Catalogue,
     Environment, Frame, Photograph as View, Studio, Warning, category_color,
 };
-use crate::spec::{Object, World};
+use crate::spec::{Modality, Object, World};
 use clap::Args;
 use serde::Serialize;
 
+use super::numbers::documented;
 use super::world_choice::WorldChoice;
 use super::{Failure, output};
-use crate::modality::{Kind, metres_per_level, target};
+use crate::modality::{self, metres_per_level, target};
 
 /// The longest part of a file name that comes from the document.
 const LONGEST_NAME: usize = 40;
@@ -36,8 +37,8 @@ pub(crate) struct Photograph {
     #[command(flatten)]
     choice: WorldChoice,
     /// Modalities to write [default: those of the world].
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
-    modalities: Vec<Kind>,
+    #[arg(long, value_parser = documented::<Modality>(&modality::NAMES), value_delimiter = ',', value_name = "LIST")]
+    modalities: Vec<Modality>,
     /// Folder for the pictures and manifest.json. Replaces pictures of the same name.
     #[arg(short, long, default_value = "photographs", value_name = "DIR")]
     output: PathBuf,
@@ -66,7 +67,7 @@ struct Manifest<'a> {
 #[derive(Serialize)]
 struct Entry<'a> {
     file: String,
-    modality: Kind,
+    modality: Modality,
     object: usize,
     class: &'a str,
     model: &'a str,
@@ -121,12 +122,12 @@ impl Photograph {
         if self.json { output::json(&manifest) } else { Ok(()) }
     }
 
-    fn kinds(&self, world: &World) -> Result<Vec<Kind>, Failure> {
+    fn kinds(&self, world: &World) -> Result<Vec<Modality>, Failure> {
         let mut kinds = self.modalities.clone();
         if kinds.is_empty() {
-            kinds.extend(world.agent_params.modalities.iter().copied().map(Kind::from));
+            kinds.extend(&world.agent_params.modalities);
         }
-        kinds.sort_unstable();
+        kinds.sort_unstable_by_key(|kind| *kind as usize);
         kinds.dedup();
         if kinds.is_empty() {
             return Err(Failure::usage(
@@ -137,11 +138,11 @@ impl Photograph {
     }
 
     /// Writes one image of a view.
-    fn keep<'a>(&self, world: &'a World, view: &View, kind: Kind, frame: &Frame) -> Result<Entry<'a>, Failure> {
+    fn keep<'a>(&self, world: &'a World, view: &View, kind: Modality, frame: &Frame) -> Result<Entry<'a>, Failure> {
         let object = &world.objects[view.object];
         let file = file_name(view, object, kind, world.objects.len());
-        let metres_per_level = (kind == Kind::Depth).then(|| metres_per_level(view.distance));
-        let bytes = kind.to_png(frame, metres_per_level.unwrap_or(1.0))?;
+        let metres_per_level = (kind == Modality::Depth).then(|| metres_per_level(view.distance));
+        let bytes = modality::to_png(kind, frame, metres_per_level.unwrap_or(1.0))?;
         output::write(&self.output.join(&file), &bytes)?;
         Ok(Entry {
             file,
@@ -192,9 +193,9 @@ fn classes(world: &World) -> BTreeMap<&str, u16> {
 }
 
 /// Folder and name of a picture, such as `000_barrel_2/yaw_090_up_30_rgb.png`.
-fn file_name(view: &View, object: &Object, kind: Kind, objects: usize) -> String {
+fn file_name(view: &View, object: &Object, kind: Modality, objects: usize) -> String {
     let digits = objects.saturating_sub(1).to_string().len().max(3);
-    let kind = kind.name();
+    let kind = modality::name(kind);
     format!(
         "{:0digits$}_{}_{}/yaw_{}_up_{}_{kind}.png",
         view.object,
@@ -243,7 +244,7 @@ mod tests {
                 elevation_deg: 30.0,
                 distance: 1.0,
             };
-            let found = file_name(&view, &Object::new(class, [0.0, 0.0]), Kind::Rgb, 12);
+            let found = file_name(&view, &Object::new(class, [0.0, 0.0]), Modality::Rgb, 12);
             assert_eq!(found, format!("007_{expected}_1/yaw_090_up_30_rgb.png"));
         };
         check("barrel", "barrel");
@@ -271,7 +272,7 @@ mod tests {
             .photographs();
         let names: std::collections::BTreeSet<String> = views
             .iter()
-            .map(|view| file_name(view, &world.objects[view.object], Kind::Depth, 2))
+            .map(|view| file_name(view, &world.objects[view.object], Modality::Depth, 2))
             .collect();
         assert_eq!(names.len(), 2 * 7 * 360);
         assert!(

@@ -1,7 +1,8 @@
 //! The arguments of a line of the console: words, numbers, actions, pictures, objects. Which commands there are is in `line.rs`.
 
 use crate::env::{Action, Category};
-use crate::modality::Kind;
+use crate::modality;
+use crate::spec::Modality;
 use crate::spec::did_you_mean;
 use serde_json::{Map, Value, json};
 
@@ -53,7 +54,7 @@ pub(super) fn category(word: &str) -> Result<Category, String> {
     Category::from_name(word).ok_or_else(|| {
         format!(
             "found category {word:?}, expected one of {}{}",
-            names.join(", "),
+            modality::NAMES.join(", "),
             near()
         )
     })
@@ -111,13 +112,12 @@ fn picture(word: &str) -> Result<Picture, String> {
     if word == "map" {
         return Ok(Picture::Map);
     }
-    let kind = Kind::ALL.into_iter().find(|kind| kind.name() == word);
-    let names = Kind::ALL.map(Kind::name);
-    let near = || did_you_mean(word, names.iter().copied());
+    let kind = modality::ALL.into_iter().find(|kind| modality::name(*kind) == word);
+    let near = || did_you_mean(word, modality::NAMES);
     kind.map(Picture::Seen).ok_or_else(|| {
         format!(
             "found modality {word:?}, expected one of {}{}",
-            names.join(", "),
+            modality::NAMES.join(", "),
             near()
         )
     })
@@ -130,13 +130,13 @@ pub(super) fn show(words: &[&str]) -> Result<Line, String> {
         words => (words.first().copied(), words.get(1).copied()),
     };
     Ok(Line::Show {
-        picture: kind.map_or(Ok(Picture::Seen(Kind::Rgb)), picture)?,
+        picture: kind.map_or(Ok(Picture::Seen(Modality::Rgb)), picture)?,
         columns: width.map(columns).transpose()?,
     })
 }
 
 pub(super) fn screenshot(file: &str, words: &[&str]) -> Result<Line, String> {
-    let (mut kind, mut size) = (Picture::Seen(Kind::Rgb), None);
+    let (mut kind, mut size) = (Picture::Seen(Modality::Rgb), None);
     for word in words {
         if word.starts_with(|letter: char| letter.is_ascii_digit()) {
             let sides = word

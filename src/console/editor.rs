@@ -12,7 +12,7 @@ use rustyline::{Config, Context, Helper};
 use super::line::COMMANDS;
 use super::names::Names;
 use crate::Failure;
-use crate::modality::Kind;
+use crate::modality;
 
 /// Reads lines from a terminal.
 pub(crate) struct Editor(rustyline::Editor<Completions, MemHistory>);
@@ -47,7 +47,7 @@ impl Completions {
     /// The words that may stand behind those that are there already.
     fn after(&self, before: &[&str]) -> Vec<String> {
         let owned = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
-        let modalities = || Kind::ALL.map(|kind| kind.name().to_owned());
+        let modalities = || modality::NAMES.map(str::to_owned);
         match before {
             [] | ["help"] => COMMANDS.map(|(name, _, _)| name.to_owned()).into(),
             ["show"] => modalities().into(),

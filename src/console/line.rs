@@ -3,7 +3,7 @@
 use crate::env::{Action, Category};
 use crate::spec::did_you_mean;
 
-use crate::modality::Kind;
+use crate::spec::Modality;
 
 use super::arguments::{self, action, columns, number, object, screenshot, show, step, words};
 
@@ -65,7 +65,7 @@ pub(super) const COMMANDS: [(&str, &str, &str); 19] = [
 /// A picture for the terminal or for a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Picture {
-    Seen(Kind),
+    Seen(Modality),
     Map,
 }
 
@@ -228,14 +228,14 @@ mod tests {
             "screenshot 'my view.png' depth 320x240",
             &Line::Screenshot {
                 file: "my view.png".to_owned(),
-                picture: Picture::Seen(Kind::Depth),
+                picture: Picture::Seen(Modality::Depth),
                 size: Some([320, 240]),
             },
         );
         check(
             "show 40",
             &Line::Show {
-                picture: Picture::Seen(Kind::Rgb),
+                picture: Picture::Seen(Modality::Rgb),
                 columns: Some(40),
             },
         );

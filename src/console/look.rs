@@ -9,15 +9,16 @@ use super::map;
 use super::screen::{colors, half_blocks, letters};
 use super::session::{Session, plain};
 use crate::map_drawing::{self, Moves};
-use crate::modality::{Kind, target};
+use crate::modality::{self, target};
 use crate::report::picture;
+use crate::spec::Modality;
 
 /// How many metres a level of a depth image stands for.
 const METRES_PER_LEVEL: f32 = 0.01;
 
 impl Session<'_> {
     /// What the agent sees, with colours smooth as the world asks for.
-    fn seen(&mut self, kind: Kind, [width, height]: [u32; 2]) -> Result<Frame, String> {
+    fn seen(&mut self, kind: Modality, [width, height]: [u32; 2]) -> Result<Frame, String> {
         if !(1..=4096).contains(&width) || !(1..=4096).contains(&height) {
             return Err(format!("found {width} × {height} pixels, expected 1 to 4096 each way"));
         }
@@ -69,7 +70,7 @@ impl Session<'_> {
             Picture::Seen(_) => own,
         });
         let bytes = match picture {
-            Picture::Seen(kind) => kind.to_png(&self.seen(kind, size)?, METRES_PER_LEVEL).map_err(plain)?,
+            Picture::Seen(kind) => modality::to_png(kind, &self.seen(kind, size)?, METRES_PER_LEVEL).map_err(plain)?,
             // A square one with scale, north, triggers and signs.
             Picture::Map if size[0] == size[1] && (1..=4096).contains(&size[0]) => {
                 let agent = self.environment.agent();
@@ -93,7 +94,7 @@ impl Session<'_> {
         };
         let path = self.folder.write(file, "png", &bytes)?;
         let unit = match picture {
-            Picture::Seen(Kind::Depth) => ", 1 cm a level",
+            Picture::Seen(Modality::Depth) => ", 1 cm a level",
             _ => "",
         };
         Ok(format!("{}: {} × {} pixels{unit}", path.shown(), size[0], size[1]))

@@ -10,7 +10,7 @@ use serde_json::Value;
 use super::line::Picture;
 use super::session::{Session, plain};
 use crate::documents;
-use crate::modality::Kind;
+use crate::spec::Modality;
 
 /// The longest message that is shown whole, in characters.
 const LONGEST: usize = 600;
@@ -34,7 +34,7 @@ impl Session<'_> {
             let mut answers = received.messages;
             if let Some(picture) = received.screenshot {
                 let size = Some([picture.width, picture.height]);
-                let written = self.screenshot(&picture.filename, Picture::Seen(Kind::Rgb), size);
+                let written = self.screenshot(&picture.filename, Picture::Seen(Modality::Rgb), size);
                 lines.extend(written.iter().cloned());
                 answers.push(self.channels.answer_screenshot(&picture, written.map(drop), &time));
             }

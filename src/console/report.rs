@@ -7,7 +7,7 @@ use driftworld_text::amount;
 
 use super::line::COMMANDS;
 use super::session::{MOST_LINES, Session};
-use crate::modality::Kind;
+use crate::modality;
 use crate::table::table;
 
 impl Session<'_> {
@@ -45,7 +45,7 @@ impl Session<'_> {
                 names.join(", ")
             }
         };
-        let modalities = agent.modalities.iter().map(|it| Kind::from(*it).name().to_owned());
+        let modalities = agent.modalities.iter().map(|it| modality::name(*it).to_owned());
         let limit = match world.step_limit() {
             None => "no limit".to_owned(),
             Some(steps) => format!("at most {steps}"),

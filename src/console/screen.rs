@@ -8,7 +8,7 @@ use crate::env::{
     depth_to_gray,
 };
 
-use crate::modality::Kind;
+use crate::spec::Modality;
 
 /// Width where nobody knows the terminal's.
 const USUAL_COLUMNS: u32 = 80;
@@ -84,16 +84,16 @@ pub(super) fn half_blocks(width: u32, rgb: &[u8]) -> String {
 }
 
 /// A frame as colours of one modality.
-pub(super) fn colors(frame: &Frame, kind: Kind) -> Vec<u8> {
+pub(super) fn colors(frame: &Frame, kind: Modality) -> Vec<u8> {
     match kind {
-        Kind::Rgb => frame.rgb.clone(),
-        Kind::Depth => depth_to_gray(&frame.depth)
+        Modality::Rgb => frame.rgb.clone(),
+        Modality::Depth => depth_to_gray(&frame.depth)
             .into_iter()
             .flat_map(|gray| [gray; 3])
             .collect(),
-        Kind::Segmentation => frame.category.iter().flat_map(|it| category_color(*it)).collect(),
-        Kind::Class => frame.class.iter().flat_map(|id| color_of(u32::from(*id))).collect(),
-        Kind::Instance => frame.instance.iter().flat_map(|id| color_of(*id)).collect(),
+        Modality::Segmentation => frame.category.iter().flat_map(|it| category_color(*it)).collect(),
+        Modality::Class => frame.class.iter().flat_map(|id| color_of(u32::from(*id))).collect(),
+        Modality::Instance => frame.instance.iter().flat_map(|id| color_of(*id)).collect(),
     }
 }
 
@@ -112,11 +112,13 @@ fn color_of(id: u32) -> [u8; 3] {
 
 /// A frame in letters. Colours and depth are shades; categories are ` .B+o-` for sky, map, building and what pays, is worth
 /// nothing, costs; classes and instances are their numbers' last digit.
-pub(super) fn letters(frame: &Frame, kind: Kind) -> String {
+pub(super) fn letters(frame: &Frame, kind: Modality) -> String {
     let width = frame.width as usize;
     let letter = |at: usize| match kind {
-        Kind::Rgb | Kind::Depth => shade(brightness(frame, kind, at).midpoint(brightness(frame, kind, at + width))),
-        Kind::Segmentation => match frame.category[at] {
+        Modality::Rgb | Modality::Depth => {
+            shade(brightness(frame, kind, at).midpoint(brightness(frame, kind, at + width)))
+        }
+        Modality::Segmentation => match frame.category[at] {
             CATEGORY_MAP => '.',
             CATEGORY_BUILDING => 'B',
             CATEGORY_POSITIVE => '+',
@@ -124,8 +126,8 @@ pub(super) fn letters(frame: &Frame, kind: Kind) -> String {
             CATEGORY_NEGATIVE => '-',
             _ => ' ',
         },
-        Kind::Class => digit(u32::from(frame.class[at])),
-        Kind::Instance => digit(frame.instance[at]),
+        Modality::Class => digit(u32::from(frame.class[at])),
+        Modality::Instance => digit(frame.instance[at]),
     };
     let mut text = String::new();
     for row in (0..frame.height as usize / 2 * 2).step_by(2) {
@@ -144,8 +146,8 @@ fn digit(id: u32) -> char {
 }
 
 /// 0 to 255.
-fn brightness(frame: &Frame, kind: Kind, at: usize) -> u32 {
-    if kind == Kind::Depth {
+fn brightness(frame: &Frame, kind: Modality, at: usize) -> u32 {
+    if kind == Modality::Depth {
         return (frame.depth[at] * 2.55).min(255.0) as u32;
     }
     let [r, g, b] = [0, 1, 2].map(|channel| u32::from(frame.rgb[3 * at + channel]));
@@ -172,9 +174,9 @@ mod tests {
         frame.rgb = vec![
             0, 0, 0, 128, 128, 128, 255, 255, 255, 0, 0, 0, 128, 128, 128, 255, 255, 255,
         ];
-        assert_eq!(letters(&frame, Kind::Rgb), " +@\n");
+        assert_eq!(letters(&frame, Modality::Rgb), " +@\n");
         frame.category = vec![0, 1, 3, 0, 0, 0];
-        assert_eq!(letters(&frame, Kind::Segmentation), " .+\n");
+        assert_eq!(letters(&frame, Modality::Segmentation), " .+\n");
     }
 
     #[test]

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use crate::curriculum::{Design, Drifting, Evaluate, LEARN, Split};
 use crate::design::{self, DesignRequest, Designed};
 use crate::distances::By;
-use crate::modality::Kind;
+use crate::modality;
 use crate::spec::{
     DriftSchedule, DriftSwitch, Element, Modality, Scenario, ScenarioComplexity, ScenarioDifficulty, ScenarioForm,
     TaskLabel, sound_name,
@@ -19,6 +19,7 @@ use serde_json::json;
 
 use super::assets::LibraryChoice;
 use super::mix::Mix;
+use super::numbers::documented;
 use super::order::OrderArgs;
 use super::{Failure, output, overwrite};
 use folders::write_into;
@@ -57,8 +58,8 @@ pub(crate) struct Curriculum {
     #[arg(long, value_parser = design::element, value_name = "ELEMENT")]
     probe: Option<Element>,
     /// Images of the learner that the probe is for [default: those of the task's worlds].
-    #[arg(long, requires = "probe", value_enum, value_delimiter = ',', value_name = "KIND,…")]
-    modalities: Option<Vec<Kind>>,
+    #[arg(long, requires = "probe", value_parser = documented::<Modality>(&modality::NAMES), value_delimiter = ',', value_name = "KIND,…")]
+    modalities: Option<Vec<Modality>>,
     /// Number of variants in the probe [default: all declared, and at least 4].
     #[arg(long, value_name = "N")]
     variants: Option<usize>,
@@ -82,8 +83,8 @@ pub(crate) struct Curriculum {
     /// Arrangement of the learning blocks [default: one variant after the other].
     ///
     /// If there are more blocks than variants, the sequence starts over.
-    #[arg(long, value_enum)]
-    form: Option<Form>,
+    #[arg(long, value_parser = documented::<ScenarioForm>(&FORMS))]
+    form: Option<ScenarioForm>,
     /// Number of learning blocks [default: set by the form].
     #[arg(long, value_name = "N")]
     blocks: Option<u32>,
@@ -131,14 +132,14 @@ pub(crate) struct Curriculum {
     #[arg(long, value_delimiter = ',', value_name = "N,…", conflicts_with = "evaluate")]
     evaluate_after: Option<Vec<u32>>,
     /// Whether the learner gets a task label.
-    #[arg(long, value_enum, default_value_t = Label::None)]
-    task_label: Label,
+    #[arg(long, value_parser = documented::<TaskLabel>(&LABELS), default_value = "none")]
+    task_label: TaskLabel,
     /// Complexity of the scenario, as l2logger's logs state it.
-    #[arg(long, value_enum)]
-    complexity: Option<Complexity>,
+    #[arg(long, value_parser = documented::<ScenarioComplexity>(&COMPLEXITIES))]
+    complexity: Option<ScenarioComplexity>,
     /// Difficulty of its tasks, as l2logger's logs state it.
-    #[arg(long, value_enum)]
-    difficulty: Option<Difficulty>,
+    #[arg(long, value_parser = documented::<ScenarioDifficulty>(&DIFFICULTIES))]
+    difficulty: Option<ScenarioDifficulty>,
     /// Seed of all worlds, at most 2^52. Learning and evaluation never share a world.
     #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = crate::commands::numbers::seed)]
     seed: u64,
@@ -210,23 +211,26 @@ enum EvaluationSchedule {
 }
 
 /// How learning blocks are arranged.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Form {
-    /// Each variant once, in one long block.
-    Condensed,
-    /// Each variant repeatedly, in short blocks (3, or as many as --blocks allows).
-    Dispersed,
-    /// Each variant once, in random order. Each of --lifetimes has another order.
-    Permuted,
-    /// Two variants in turn, 3 times each unless --blocks is given.
-    Alternating,
-    /// Single-task experts: one scenario per variant, which learns it alone.
-    Expert,
-    /// All variants in one block, shuffled: joint training, an upper bound for lifelong learners.
-    Joint,
-    /// One variant after the other, starting over if there are more blocks.
-    Custom,
-}
+const FORMS: [&str; 7] = [
+    "condensed: Each variant once, in one long block",
+    "dispersed: Each variant repeatedly, in short blocks (3, or as many as --blocks allows)",
+    "permuted: Each variant once, in random order. Each of --lifetimes has another order",
+    "alternating: Two variants in turn, 3 times each unless --blocks is given",
+    "expert: Single-task experts: one scenario per variant, which learns it alone",
+    "joint: All variants in one block, shuffled: joint training, an upper bound for lifelong learners",
+    "custom: One variant after the other, starting over if there are more blocks",
+];
+
+/// Whether the learner gets a task label.
+const LABELS: [&str; 3] = [
+    "none: No label",
+    "info: Beside the observation, as info",
+    "observation: As part of the observation",
+];
+
+/// How complex a scenario is and how difficult its tasks are, in l2logger's words.
+const COMPLEXITIES: [&str; 3] = ["1-low", "2-intermediate", "3-high"];
+const DIFFICULTIES: [&str; 3] = ["1-easy", "2-medium", "3-hard"];
 
 /// What the worlds of evaluation are for.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -235,39 +239,6 @@ enum WorldSplit {
     Validation,
     /// For what you report.
     Test,
-}
-
-/// Complexity of a scenario, in l2logger's words.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Complexity {
-    #[value(name = "1-low")]
-    Low,
-    #[value(name = "2-intermediate")]
-    Intermediate,
-    #[value(name = "3-high")]
-    High,
-}
-
-/// Difficulty of its tasks, in l2logger's words.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Difficulty {
-    #[value(name = "1-easy")]
-    Easy,
-    #[value(name = "2-medium")]
-    Medium,
-    #[value(name = "3-hard")]
-    Hard,
-}
-
-/// Whether the learner gets a task label.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Label {
-    /// No label.
-    None,
-    /// Beside the observation, as info.
-    Info,
-    /// As part of the observation.
-    Observation,
 }
 
 impl Curriculum {
@@ -368,10 +339,7 @@ impl Curriculum {
             by: self.by,
             order: self.ordering.design_order(),
             probe: self.probe,
-            modalities: self
-                .modalities
-                .clone()
-                .map(|kinds| kinds.into_iter().map(Modality::from).collect()),
+            modalities: self.modalities.clone(),
             variants: self.variants,
             step_distance: self.step_distance,
             tolerance: self.tolerance,
@@ -396,15 +364,7 @@ impl Curriculum {
                 (None, EvaluationSchedule::Every) => Evaluate::Every,
                 (None, EvaluationSchedule::Ends) => Evaluate::Ends,
             },
-            form: self.form.map(|form| match form {
-                Form::Condensed => ScenarioForm::Condensed,
-                Form::Dispersed => ScenarioForm::Dispersed,
-                Form::Permuted => ScenarioForm::Permuted,
-                Form::Alternating => ScenarioForm::Alternating,
-                Form::Expert => ScenarioForm::Expert,
-                Form::Joint => ScenarioForm::Joint,
-                Form::Custom => ScenarioForm::Custom,
-            }),
+            form: self.form,
             blocks: self.blocks,
             lifetime: 0,
             fixed_evaluation: self.fixed_evaluation,
@@ -424,21 +384,9 @@ impl Curriculum {
                 },
             }),
             pre_deployment: self.pre_deployment,
-            task_label: match self.task_label {
-                Label::None => TaskLabel::None,
-                Label::Info => TaskLabel::Info,
-                Label::Observation => TaskLabel::Observation,
-            },
-            complexity: self.complexity.map(|complexity| match complexity {
-                Complexity::Low => ScenarioComplexity::Low,
-                Complexity::Intermediate => ScenarioComplexity::Intermediate,
-                Complexity::High => ScenarioComplexity::High,
-            }),
-            difficulty: self.difficulty.map(|difficulty| match difficulty {
-                Difficulty::Easy => ScenarioDifficulty::Easy,
-                Difficulty::Medium => ScenarioDifficulty::Medium,
-                Difficulty::Hard => ScenarioDifficulty::Hard,
-            }),
+            task_label: self.task_label,
+            complexity: self.complexity,
+            difficulty: self.difficulty,
             seed: self.seed,
         }
     }

@@ -8,8 +8,9 @@ use std::path::PathBuf;
 use crate::curriculum::{TransferOptions, transfer_report};
 use crate::metrics::{NormalizationMethod, Options, SmoothingMethod, TransferMethod};
 use crate::similarity::MAX_RELABELLINGS;
-use clap::{Args, ValueEnum};
+use clap::Args;
 
+use super::numbers::documented;
 use super::{Failure, log_folders, matrix_file, output, overwrite};
 use crate::report::picture::scatter;
 use crate::scoring::{Experts, score_logs};
@@ -42,8 +43,8 @@ pub(crate) struct TransferReport {
     #[arg(long, default_value = "reward", value_name = "COLUMN")]
     perf_measure: String,
     /// How to compare performance before and after.
-    #[arg(long, value_enum, default_value_t = Measure::Contrast, value_name = "MEASURE")]
-    transfer_method: Measure,
+    #[arg(long, value_parser = documented::<TransferMethod>(&MEASURES), default_value = "contrast", value_name = "MEASURE")]
+    transfer_method: TransferMethod,
     /// How to normalise performance: task, run or none.
     #[arg(long, default_value = "task", value_name = "METHOD")]
     normalization_method: NormalizationMethod,
@@ -65,23 +66,11 @@ pub(crate) struct TransferReport {
     json: bool,
 }
 
-/// A measure of transfer.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Measure {
-    /// Difference over sum: −1 to 1, with 0 for no change.
-    Contrast,
-    /// After over before: 1 for no change.
-    Ratio,
-}
-
-impl From<Measure> for TransferMethod {
-    fn from(measure: Measure) -> Self {
-        match measure {
-            Measure::Contrast => Self::Contrast,
-            Measure::Ratio => Self::Ratio,
-        }
-    }
-}
+/// Measures of transfer.
+const MEASURES: [&str; 2] = [
+    "contrast: Difference over sum: −1 to 1, with 0 for no change",
+    "ratio: After over before: 1 for no change",
+];
 
 impl TransferReport {
     pub(crate) fn run(self) -> Result<(), Failure> {
@@ -89,7 +78,7 @@ impl TransferReport {
             overwrite::refuse_inputs(target, self.distances.to_str())?;
         }
         let distances = matrix_file::read("distances", &self.distances)?;
-        let measure = self.transfer_method.into();
+        let measure = self.transfer_method;
         let options = Options {
             perf_measure: self.perf_measure,
             transfer_method: measure,
