@@ -33,10 +33,7 @@ pub(crate) struct Convert {
 impl Convert {
     pub(crate) fn run(self) -> Result<(), Failure> {
         self.convert()?;
-        if self.json && !output::is_stdout(&self.output) {
-            return output::json_of_what_was_written();
-        }
-        Ok(())
+        output::json_of_what_was_written(self.json && !output::is_stdout(&self.output))
     }
 
     fn convert(&self) -> Result<(), Failure> {

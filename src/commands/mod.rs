@@ -182,79 +182,33 @@ struct Driftworld {
     color: ColorChoice,
 }
 
-#[derive(Subcommand)]
-enum Command {
-    Demo(demo::Demo),
-    Tasks(tasks::Tasks),
-    New(new::New),
-    Export(new::Export),
-    Validate(validate::Validate),
-    Sample(sample::Sample),
-    Vary(vary::Vary),
-    Convert(convert::Convert),
-    Render(render::Render),
-    Film(film::Film),
-    Play(play::Play),
-    Sheet(sheet::Sheet),
-    Assets(assets::Assets),
-    Console(console::Console),
-    Photograph(photograph::Photograph),
-    Elements(elements::Elements),
-    Distance(distance::Distance),
-    Order(order::Order),
-    Curriculum(curriculum::Curriculum),
-    Run(run::Run),
-    Replay(replay::Replay),
-    Audit(audit::Audit),
-    Scales(scales::Scales),
-    // No words here: they would take the place of the long ones that stand with the command.
-    Logs(logs::Logs),
-    Metrics(metrics::Metrics),
-    Report(report::Report),
-    TransferReport(transfer_report::TransferReport),
-    Schema(schema::Schema),
-    Bench(bench::Bench),
-    Completions(completions::Completions),
-    Doctor(doctor::Doctor),
+/// The subcommands: an enum of them, and a function that runs the one that was chosen.
+macro_rules! subcommands {
+    ($($module:ident::$command:ident),+ $(,)?) => {
+        // No words for each: they would take the place of the long ones that stand with the command.
+        #[derive(Subcommand)]
+        enum Command {
+            $($command($module::$command),)+
+        }
+
+        impl Command {
+            fn run(self) -> Result<(), Failure> {
+                match self {
+                    $(Self::$command(command) => command.run(),)+
+                }
+            }
+        }
+    };
 }
 
-impl Command {
-    /// Runs the subcommand.
-    fn run(self) -> Result<(), Failure> {
-        match self {
-            Self::Demo(command) => command.run(),
-            Self::Tasks(command) => command.run(),
-            Self::New(command) => command.run(),
-            Self::Export(command) => command.run(),
-            Self::Validate(command) => command.run(),
-            Self::Sample(command) => command.run(),
-            Self::Vary(command) => command.run(),
-            Self::Convert(command) => command.run(),
-            Self::Render(command) => command.run(),
-            Self::Film(command) => command.run(),
-            Self::Play(command) => command.run(),
-            Self::Sheet(command) => command.run(),
-            Self::Assets(command) => command.run(),
-            Self::Console(command) => command.run(),
-            Self::Photograph(command) => command.run(),
-            Self::Elements(command) => command.run(),
-            Self::Distance(command) => command.run(),
-            Self::Order(command) => command.run(),
-            Self::Curriculum(command) => command.run(),
-            Self::Run(command) => command.run(),
-            Self::Replay(command) => command.run(),
-            Self::Audit(command) => command.run(),
-            Self::Scales(command) => command.run(),
-            Self::Logs(command) => command.run(),
-            Self::Metrics(command) => command.run(),
-            Self::Report(command) => command.run(),
-            Self::TransferReport(command) => command.run(),
-            Self::Schema(command) => command.run(),
-            Self::Bench(command) => command.run(),
-            Self::Completions(command) => command.run(),
-            Self::Doctor(command) => command.run(),
-        }
-    }
+subcommands! {
+    demo::Demo, tasks::Tasks, new::New, new::Export, validate::Validate,
+    sample::Sample, vary::Vary, convert::Convert,
+    render::Render, film::Film, play::Play, sheet::Sheet, assets::Assets, console::Console, photograph::Photograph,
+    elements::Elements, distance::Distance, order::Order, curriculum::Curriculum,
+    run::Run, replay::Replay, audit::Audit, scales::Scales,
+    logs::Logs, metrics::Metrics, report::Report, transfer_report::TransferReport,
+    schema::Schema, bench::Bench, completions::Completions, doctor::Doctor,
 }
 
 /// Says on standard error why the command failed; hands back the exit code.

@@ -52,8 +52,11 @@ pub(crate) fn tell_what_was_written() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Prints what was written as JSON, for commands that have no other result.
-pub(crate) fn json_of_what_was_written() -> Result<(), Failure> {
+/// Prints what was written as JSON where that is asked for, for commands that have no other result.
+pub(crate) fn json_of_what_was_written(is_asked_for: bool) -> Result<(), Failure> {
+    if !is_asked_for {
+        return Ok(());
+    }
     let listed: Vec<_> = std::mem::take(&mut *written())
         .into_iter()
         .map(|(path, what)| json!({ "path": path, "what": what }))

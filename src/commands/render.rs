@@ -92,11 +92,7 @@ impl Render {
         let catalogue = self.libraries.catalogue()?;
         warn(&world, &catalogue);
         output::write_picture_and_tell(&self.output, &self.picture(&world, &catalogue)?)?;
-        if self.json {
-            output::json_of_what_was_written()
-        } else {
-            Ok(())
-        }
+        output::json_of_what_was_written(self.json)
     }
 
     fn picture(&self, world: &World, catalogue: &Catalogue) -> Result<Drawing, Failure> {

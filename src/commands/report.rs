@@ -108,10 +108,6 @@ impl Report {
             let what = figures.strip_prefix(&format!("{}: ", folder.shown()));
             output::wrote(folder, what.unwrap_or_default());
         }
-        if self.json {
-            output::json_of_what_was_written()
-        } else {
-            Ok(())
-        }
+        output::json_of_what_was_written(self.json)
     }
 }

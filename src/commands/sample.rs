@@ -178,10 +178,7 @@ impl Source {
 impl Sample {
     pub(crate) fn run(self) -> Result<(), Failure> {
         self.draw()?;
-        if self.json && !output::is_stdout(&self.output) {
-            return output::json_of_what_was_written();
-        }
-        Ok(())
+        output::json_of_what_was_written(self.json && !output::is_stdout(&self.output))
     }
 
     fn draw(&self) -> Result<(), Failure> {

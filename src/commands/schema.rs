@@ -60,11 +60,7 @@ impl Schema {
             output::write(&path, text.as_bytes())?;
             output::wrote(&path, "");
         }
-        if self.json {
-            output::json_of_what_was_written()
-        } else {
-            Ok(())
-        }
+        output::json_of_what_was_written(self.json)
     }
 
     fn texts(&self) -> Vec<(&'static str, String)> {

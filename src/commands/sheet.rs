@@ -89,11 +89,7 @@ impl Sheet {
         let drawing = contact_sheet(&variants, look, &|| bar.inc(1))?;
         bar.finish_and_clear();
         output::write_picture_and_tell(&self.output, &drawing)?;
-        if self.json {
-            output::json_of_what_was_written()
-        } else {
-            Ok(())
-        }
+        output::json_of_what_was_written(self.json)
     }
 }
 

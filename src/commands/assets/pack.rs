@@ -98,7 +98,7 @@ impl Pack {
             format!("{} models, {} bytes", library.models().len(), bytes.len()),
         );
         if self.json {
-            return output::json_of_what_was_written();
+            return output::json_of_what_was_written(true);
         }
         output::line(list::models(&library.models()[first..]))
     }

@@ -64,11 +64,7 @@ impl Show {
         } else {
             output::write_picture_and_tell(&self.output, &sheet(&self.all(), ALBUM_COLUMNS))?;
         }
-        if self.json {
-            output::json_of_what_was_written()
-        } else {
-            Ok(())
-        }
+        output::json_of_what_was_written(self.json)
     }
 
     /// Some models of every built-in class.

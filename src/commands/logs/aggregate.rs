@@ -93,10 +93,7 @@ impl Aggregate {
         let (rows, logs) = (table.len() as u64, logs.len() as u64);
         let what = format!("{} of {}", count(rows, "row", "rows"), count(logs, "log", "logs"));
         output::wrote(&self.output, what);
-        if self.json {
-            return output::json_of_what_was_written();
-        }
-        Ok(())
+        output::json_of_what_was_written(self.json)
     }
 
     fn format(&self) -> Result<Format, Failure> {

@@ -118,10 +118,7 @@ fn write(file: &Path, text: &str, force: bool, json: bool) -> Result<(), Failure
         )));
     }
     output::write_or_print(file, text)?;
-    if json && !output::is_stdout(file) {
-        return output::json_of_what_was_written();
-    }
-    Ok(())
+    output::json_of_what_was_written(json && !output::is_stdout(file))
 }
 
 #[cfg(test)]
