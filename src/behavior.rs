@@ -8,7 +8,7 @@ use driftworld_generator::Sampler;
 use driftworld_spec::{Variant, World};
 use rayon::prelude::*;
 
-use crate::{Failure, argument, libraries, tasks};
+use crate::{Failure, libraries, tasks, within};
 
 /// How many pairs of worlds experts live in where nobody says.
 pub const DEFAULT_BEHAVIOR_WORLDS: u64 = 16;
@@ -50,17 +50,8 @@ impl BehaviorRequest {
     }
 
     fn check(&self) -> Result<(), Failure> {
-        let within = |name: &str, found: u64, last: u64| {
-            if (1..=last).contains(&found) {
-                return Ok(());
-            }
-            let name = argument(name);
-            Err(Failure::usage(format!(
-                "{name}: found {found}, expected a whole number in 1..={last}"
-            )))
-        };
-        within("worlds", self.worlds, MAX_BEHAVIOR_WORLDS)?;
-        within("steps", self.steps.into(), MAX_EXPERT_STEPS.into())
+        within("worlds", self.worlds, 1..=MAX_BEHAVIOR_WORLDS)?;
+        within("steps", self.steps.into(), 1..=MAX_EXPERT_STEPS.into())
     }
 }
 

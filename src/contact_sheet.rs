@@ -148,11 +148,11 @@ pub(crate) fn cells(shown: &[Shown], look: Look, tick: &dyn Fn()) -> Result<(Vec
         }
         words.retain(|part| !part.is_empty());
         cells.push(Cell {
-            row: SheetRow {
-                title: shown_here.variant.id(),
-                words: words.join(" "),
-                pictures: vec![seen.clone(), map.clone()],
-            },
+            row: SheetRow::new(
+                shown_here.variant.id(),
+                words.join(" "),
+                vec![seen.clone(), map.clone()],
+            ),
             is_seen,
         });
         drawn.push((choice, seen, map));

@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use crate::log_folders::has_info;
 use crate::top_level::TopLevel;
 use driftworld_text::ShownPath;
 
@@ -77,12 +78,8 @@ impl Contents {
 
     /// What a folder is; `None` for anything else.
     pub fn of_folder(path: &Path) -> Option<Self> {
-        let has_info = || {
-            ["logger_info.json", "scenario_info.json"]
-                .iter()
-                .any(|name| path.join(name).is_file())
-        };
-        path.is_dir().then(|| if has_info() { Self::Log } else { Self::Folder })
+        path.is_dir()
+            .then(|| if has_info(path) { Self::Log } else { Self::Folder })
     }
 
     /// What messages call it.

@@ -83,11 +83,11 @@ pub(crate) fn rows(
         let pictures = options.pictures(environment, &way, &mut |environment| {
             seen.take().map_or_else(|| seen_by(environment, options), Ok)
         })?;
-        rows.push(SheetRow {
+        rows.push(SheetRow::new(
             title,
             words,
-            pictures: pictures.into_iter().map(Into::into).collect(),
-        });
+            pictures.into_iter().map(Into::into).collect(),
+        ));
         way.drain(..way.len() - 1);
     }
     Ok(rows)
@@ -273,11 +273,7 @@ pub(crate) fn seen_by(environment: &mut Environment, options: &FilmOptions) -> R
             .flat_map(|gray| [gray; 3])
             .collect(),
     };
-    Ok(Picture {
-        width: size,
-        height: size,
-        rgb,
-    })
+    Ok(Picture::new(size, size, rgb))
 }
 
 /// The map with the agent, and a way to it.

@@ -2,6 +2,7 @@
 
 use std::error::Error;
 use std::fmt;
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 /// The error behind a failure, for programs that ask it more than its text.
@@ -17,6 +18,17 @@ const MARK: char = '\u{1}';
 /// Python `window_length`.
 pub(crate) fn argument(name: &str) -> String {
     format!("{MARK}{name}{MARK}")
+}
+
+/// Refuses a number of an argument that is out of its range.
+pub(crate) fn within(name: &str, found: u64, range: RangeInclusive<u64>) -> Result<(), Failure> {
+    if range.contains(&found) {
+        return Ok(());
+    }
+    let (name, first, last) = (argument(name), range.start(), range.end());
+    Err(Failure::usage(format!(
+        "{name}: found {found}, expected a whole number in {first}..={last}"
+    )))
 }
 
 /// Why an operation has no result.

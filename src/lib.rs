@@ -72,8 +72,8 @@ mod views;
 mod worlds;
 mod wrap;
 
-pub(crate) use failure::argument;
 pub use failure::{Cause, Failure, FailureText, Warn};
+pub(crate) use failure::{argument, within};
 
 /// The Rust of the page is compiled with the documentation's tests.
 #[cfg(doctest)]

@@ -208,7 +208,8 @@ fn too_many(path: &Path, logs: usize) -> Result<(), Failure> {
     )))
 }
 
-fn has_info(folder: &Path) -> bool {
+/// Whether a folder has one of the files that say what is in a log.
+pub(crate) fn has_info(folder: &Path) -> bool {
     ["logger_info.json", "scenario_info.json"]
         .iter()
         .any(|name| folder.join(name).is_file())

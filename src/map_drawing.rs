@@ -83,11 +83,7 @@ pub(crate) fn map_size(scene: &Scene, height: u32) -> [u32; 2] {
 pub(crate) fn ground(scene: &Scene, [width, height]: [u32; 2]) -> Picture {
     let twice = if width.max(height) <= 2048 { 2 } else { 1 };
     let image = top_down(&scene.clone().in_neutral_light(), width * twice, height * twice, None);
-    let picture = Picture {
-        width: image.width,
-        height: image.height,
-        rgb: image.rgb,
-    };
+    let picture = Picture::new(image.width, image.height, image.rgb);
     if twice == 2 { picture.halved() } else { picture }
 }
 

@@ -37,6 +37,13 @@ struct Entry {
     name: String,
 }
 
+impl Entry {
+    fn new(mark: Mark, name: impl Into<String>) -> Self {
+        let name = name.into();
+        Self { mark, name }
+    }
+}
+
 #[derive(Clone, Debug, PartialEq)]
 enum Mark {
     /// One to three.
@@ -70,10 +77,7 @@ fn entries(world: &World, scene: &Scene, moves: &Moves, ground: &Picture) -> Vec
         let color = zone.ground_color().to_f32().map(|c| (c * 255.0) as u8);
         let mut words = vec![zone.name.clone().unwrap_or_else(|| format!("zone {number}"))];
         words.extend(effects(zone));
-        let entry = Entry {
-            mark: Mark::Zone(color),
-            name: words.join(", "),
-        };
+        let entry = Entry::new(Mark::Zone(color), words.join(", "));
         if !entries.iter().any(|other| other.name == entry.name) {
             entries.push(entry);
         }
@@ -94,26 +98,17 @@ fn entries(world: &World, scene: &Scene, moves: &Moves, ground: &Picture) -> Vec
         });
     }
     if !moves.trails.is_empty() {
-        entries.push(Entry {
-            mark: Mark::Trail,
-            name: format!("moves in {} s", moves.seconds.round()),
-        });
+        entries.push(Entry::new(Mark::Trail, format!("moves in {} s", moves.seconds.round())));
     }
     if world
         .objects
         .iter()
         .any(|object| object.motion_model == MotionModel::Patrol)
     {
-        entries.push(Entry {
-            mark: Mark::Trail,
-            name: "waypoints (dashed)".to_owned(),
-        });
+        entries.push(Entry::new(Mark::Trail, "waypoints (dashed)"));
     }
     if moves.way.len() > 1 {
-        entries.push(Entry {
-            mark: Mark::Way,
-            name: "the agent's way".to_owned(),
-        });
+        entries.push(Entry::new(Mark::Way, "the agent's way"));
     }
     entries
 }
@@ -150,10 +145,7 @@ fn object_entries(world: &World, scene: &Scene, ground: &Picture, places: &Place
         } else {
             format!(", {}", signed(pay))
         };
-        Entry {
-            mark: Mark::Colors(seen),
-            name: format!("{name}{count}{pay}"),
-        }
+        Entry::new(Mark::Colors(seen), format!("{name}{count}{pay}"))
     };
     groups.into_iter().map(entry).collect()
 }

@@ -48,11 +48,7 @@ impl Seen {
         let stretched: Vec<f32> = (self.distances.iter())
             .map(|metres| metres * DEPTH_METRES / white)
             .collect();
-        let picture = Picture {
-            width,
-            height,
-            rgb: gray_rgb(&stretched),
-        };
+        let picture = Picture::new(width, height, gray_rgb(&stretched));
         let letters = letters(width);
         let bar = (letters * 0.9).round();
         let mut drawing = Drawing::blank(width, height + (letters * 1.4 + bar + 12.0) as u32);
@@ -327,11 +323,7 @@ impl<'a> Views<'a> {
     pub(crate) fn first_person(&self) -> Result<Seen, Failure> {
         let camera = self.agent_camera(self.turn);
         let frame = self.frame(&self.scene, &camera, self.size, self.size)?;
-        let picture = |rgb| Picture {
-            width: self.size,
-            height: self.size,
-            rgb,
-        };
+        let picture = |rgb| Picture::new(self.size, self.size, rgb);
         Ok(Seen {
             rgb: self.smooth(&self.scene, &camera, self.size)?,
             depth: picture(gray_rgb(&frame.depth)),
@@ -369,32 +361,20 @@ impl<'a> Views<'a> {
             Modality::Class => frame.class.iter().flat_map(|it| number_color(u32::from(*it))).collect(),
             Modality::Instance => frame.instance.iter().flat_map(|it| number_color(*it)).collect(),
         };
-        Ok(Picture {
-            width: self.size,
-            height: self.size,
-            rgb,
-        })
+        Ok(Picture::new(self.size, self.size, rgb))
     }
 
     /// What the agent sees at the start in colour, pixel by pixel as a learner gets it.
     pub(crate) fn as_learners_see(&self, side: u32) -> Result<Picture, Failure> {
         let frame = self.frame(&self.scene, &self.agent_camera(self.turn), side, side)?;
-        Ok(Picture {
-            width: side,
-            height: side,
-            rgb: frame.rgb,
-        })
+        Ok(Picture::new(side, side, frame.rgb))
     }
 
     /// What the agent sees at the start in colour, with smooth edges.
     pub(crate) fn smoothly(&self, [width, height]: [u32; 2]) -> Result<Picture, Failure> {
         let camera = self.agent_camera(self.turn);
         let frame = self.frame(&self.scene, &camera, 2 * width, 2 * height)?;
-        let picture = Picture {
-            width: frame.width,
-            height: frame.height,
-            rgb: frame.rgb,
-        };
+        let picture = Picture::new(frame.width, frame.height, frame.rgb);
         Ok(picture.halved())
     }
 
@@ -493,11 +473,7 @@ impl<'a> Views<'a> {
     fn smooth(&self, scene: &Scene, camera: &Camera, width: u32) -> Result<Picture, Failure> {
         let twice = if self.size.max(width) <= 2048 { 2 } else { 1 };
         let frame = self.frame(scene, camera, width * twice, self.size * twice)?;
-        let picture = Picture {
-            width: frame.width,
-            height: frame.height,
-            rgb: frame.rgb,
-        };
+        let picture = Picture::new(frame.width, frame.height, frame.rgb);
         Ok(if twice == 2 { picture.halved() } else { picture })
     }
 

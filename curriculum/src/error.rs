@@ -440,6 +440,25 @@ fn on_its_way(progress: f64) -> String {
 }
 
 impl CurriculumError {
+    pub(crate) fn bad_form(
+        form: &'static str,
+        variants: usize,
+        blocks: Option<u32>,
+        expected: impl Into<String>,
+    ) -> Self {
+        let expected = expected.into();
+        Self::BadForm {
+            form,
+            variants,
+            blocks,
+            expected,
+        }
+    }
+
+    pub(crate) fn several_tasks(a: String, b: String) -> Self {
+        Self::SeveralTasks { a, b }
+    }
+
     /// The stable name of this kind of error.
     pub fn code(&self) -> &'static str {
         self.into()

@@ -181,6 +181,13 @@ pub struct DataRange {
     pub max: f64,
 }
 
+impl DataRange {
+    /// The range from one performance to another.
+    pub const fn new(min: f64, max: f64) -> Self {
+        Self { min, max }
+    }
+}
+
 /// Ranges by task, lower-case names.
 pub type DataRanges = IndexMap<String, DataRange>;
 

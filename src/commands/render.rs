@@ -130,11 +130,11 @@ impl Render {
                 top += side + 12;
             }
             let pictures: Vec<Drawing> = vec![large.into(), small];
-            Ok(SheetRow {
-                title: title.to_owned(),
-                words: "640 × 360 pixels with smooth edges; 160 × 160 and 84 × 84 as learners see it".to_owned(),
+            Ok(SheetRow::new(
+                title.to_owned(),
+                "640 × 360 pixels with smooth edges; 160 × 160 and 84 × 84 as learners see it".to_owned(),
                 pictures,
-            })
+            ))
         };
         let rows = [row(Style::Plain, "Plain")?, row(Style::Natural, "Natural")?];
         Ok(sheet(&rows, 1))
@@ -158,11 +158,7 @@ impl Render {
     fn sheet(&self, world: &World, views: &Views) -> Result<Drawing, Failure> {
         let small = views.of_size((self.size * 2 / 3).max(1));
         let seen = views.first_person()?;
-        let row = |title: &str, words: String, pictures: Vec<Drawing>| SheetRow {
-            title: title.into(),
-            words,
-            pictures,
-        };
+        let row = |title: &str, words: String, pictures: Vec<Drawing>| SheetRow::new(title, words, pictures);
         let close_ups = small.close_ups(5)?;
         let (classes, close_ups): (Vec<String>, Vec<Drawing>) = close_ups
             .into_iter()

@@ -7,7 +7,7 @@ use driftworld_env::Catalogue;
 use driftworld_spec::{By, Element, Modality, ScenarioForm};
 
 use crate::ordering::OrderRequest;
-use crate::{Failure, argument, libraries};
+use crate::{Failure, argument, libraries, within};
 
 /// The most lifetimes of one design.
 pub const MAX_LIFETIMES: u64 = 10_000;
@@ -171,17 +171,6 @@ impl DesignRequest {
                 )));
             }
         }
-        let within = |name: &str, found: u64, range: std::ops::RangeInclusive<u64>| {
-            if range.contains(&found) {
-                return Ok(());
-            }
-            let (first, last) = range.into_inner();
-            let text = format!(
-                "{}: found {found}, expected a whole number in {first}..={last}",
-                argument(name)
-            );
-            Err(Failure::usage(text))
-        };
         within("lifetimes", self.lifetimes.unwrap_or(1), 1..=MAX_LIFETIMES)?;
         within("worlds", self.worlds.into(), 0..=MAX_TRIED.into())?;
         let [lifetimes, form, controls, drift, experts] =

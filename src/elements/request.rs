@@ -6,7 +6,7 @@ use std::sync::Arc;
 use driftworld_env::MAX_EXPERIMENT_STEPS;
 use driftworld_spec::{Modality, TaskSpec, Variant};
 
-use crate::{Failure, argument, tasks};
+use crate::{Failure, tasks, within};
 
 /// How many pairs of worlds are tried where nobody says.
 pub const DEFAULT_ELEMENTS_WORLDS: u64 = 32;
@@ -57,15 +57,8 @@ impl ElementsRequest {
 
     /// Refuses what is out of its range.
     pub(super) fn check(&self) -> Result<(), Failure> {
-        let within = |name: &str, found: u64, last: u64| {
-            if (1..=last).contains(&found) {
-                return Ok(());
-            }
-            let expected = format!("expected a whole number in 1..={last}");
-            Err(Failure::usage(format!("{}: found {found}, {expected}", argument(name))))
-        };
-        within("worlds", self.worlds, MAX_ELEMENTS_WORLDS)?;
-        within("steps", self.steps.into(), MAX_EXPERIMENT_STEPS.into())?;
+        within("worlds", self.worlds, 1..=MAX_ELEMENTS_WORLDS)?;
+        within("steps", self.steps.into(), 1..=MAX_EXPERIMENT_STEPS.into())?;
         if self.between.is_some() && tasks::split(&self.task).1.is_some() {
             return Err(Failure::usage(format!(
                 "task: found {:?} beside two variants, expected the task alone",

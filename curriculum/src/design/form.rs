@@ -19,12 +19,7 @@ pub(super) fn sequence(
     (seed, lifetime): (u64, u64),
 ) -> Result<Vec<usize>, CurriculumError> {
     let all = u32::try_from(count).unwrap_or(u32::MAX);
-    let wrong = |form, expected: String| CurriculumError::BadForm {
-        form,
-        variants: count,
-        blocks,
-        expected,
-    };
+    let wrong = |form, expected: String| CurriculumError::bad_form(form, count, blocks, expected);
     let once = |form| {
         if blocks.is_none_or(|blocks| blocks == all) {
             Ok(all)
@@ -63,12 +58,7 @@ pub(super) fn sequence(
         Some(ScenarioForm::Joint) => {
             if let Some(blocks) = blocks {
                 let expected = "no number of blocks: there is one with all variants".to_owned();
-                return Err(CurriculumError::BadForm {
-                    form: "joint",
-                    variants: count,
-                    blocks: Some(blocks),
-                    expected,
-                });
+                return Err(CurriculumError::bad_form("joint", count, Some(blocks), expected));
             }
             all
         }
@@ -103,12 +93,7 @@ pub(super) fn reordered(
     order: &[usize],
     count: usize,
 ) -> Result<Vec<usize>, CurriculumError> {
-    let wrong = |form, expected: &str| CurriculumError::BadForm {
-        form,
-        variants: count,
-        blocks: None,
-        expected: expected.to_owned(),
-    };
+    let wrong = |form, expected: &str| CurriculumError::bad_form(form, count, None, expected);
     if form == Some(ScenarioForm::Permuted) {
         let expected = "a form whose order is not drawn at random; its lifetimes are each other's controls";
         return Err(wrong("permuted", expected));

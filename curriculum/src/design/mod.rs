@@ -204,12 +204,12 @@ fn check(variants: &[Choice], options: &Design) -> Result<(), CurriculumError> {
         return Err(CurriculumError::NoVariants);
     }
     if options.form == Some(ScenarioForm::Joint) && options.drifting.is_some() {
-        return Err(CurriculumError::BadForm {
-            form: "joint",
-            variants: variants.len(),
-            blocks: options.blocks,
-            expected: "no drift: all variants are learned at once".to_owned(),
-        });
+        return Err(CurriculumError::bad_form(
+            "joint",
+            variants.len(),
+            options.blocks,
+            "no drift: all variants are learned at once",
+        ));
     }
     if let Some(both) = options.held_out.iter().find(|choice| variants.contains(choice)) {
         return Err(CurriculumError::HeldOut { variant: both.id() });

@@ -52,10 +52,7 @@ pub fn probe(
     };
     for variant in pool {
         if variant.task().name() != anchor.task().name() {
-            return Err(CurriculumError::SeveralTasks {
-                a: anchor.id(),
-                b: variant.id(),
-            });
+            return Err(CurriculumError::several_tasks(anchor.id(), variant.id()));
         }
         if search.is_new(variant)? {
             search.found.push(Picked::declared(task, variant.clone()));
@@ -101,10 +98,7 @@ pub fn probe_named(
     let mut met = vec![anchor];
     for variant in named.iter().filter(|variant| variant.name() != anchor.name()) {
         if variant.task().name() != anchor.task().name() {
-            return Err(CurriculumError::SeveralTasks {
-                a: anchor.id(),
-                b: variant.id(),
-            });
+            return Err(CurriculumError::several_tasks(anchor.id(), variant.id()));
         }
         for before in &met {
             let apart = measure.between(before, variant)?;

@@ -47,10 +47,7 @@ pub fn steps(task: &str, pool: &[Variant], anchor: &Variant, wanted: &Steps) -> 
         });
     }
     if let Some(other) = pool.iter().find(|other| other.task().name() != anchor.task().name()) {
-        return Err(CurriculumError::SeveralTasks {
-            a: anchor.id(),
-            b: other.id(),
-        });
+        return Err(CurriculumError::several_tasks(anchor.id(), other.id()));
     }
     let mut walk = Walk::new(task, pool, anchor, wanted);
     if walk.go_on()? {

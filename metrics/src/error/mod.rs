@@ -603,6 +603,15 @@ impl MetricsError {
         move |source| Self::Io { path, doing, source }
     }
 
+    pub(crate) fn logger_info(field: &'static str, found: String, expected: &'static str) -> Self {
+        Self::LoggerInfo { field, found, expected }
+    }
+
+    pub(crate) fn missing_file(path: impl Into<PathBuf>, expected: &'static str) -> Self {
+        let path = path.into();
+        Self::MissingFile { path, expected }
+    }
+
     pub(crate) fn too_large(path: impl Into<PathBuf>, what: &'static str, found: u64, limit: u64) -> Self {
         let path = path.into();
         Self::TooLarge {

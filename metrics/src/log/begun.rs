@@ -32,10 +32,10 @@ pub fn begun_log(dir: impl AsRef<Path>) -> Result<Option<(LoggerInfo, ScenarioIn
     let mut warnings = Vec::new();
     let scenario_info = ScenarioInfo::read(dir, &mut warnings)?;
     if warnings.contains(&LogWarning::NoScenarioInfo) {
-        return Err(MetricsError::MissingFile {
-            path: dir.join(scenario_info::FILE_NAME),
-            expected: "a JSON object",
-        });
+        return Err(MetricsError::missing_file(
+            dir.join(scenario_info::FILE_NAME),
+            "a JSON object",
+        ));
     }
     Ok(Some((logger_info, scenario_info)))
 }

@@ -23,10 +23,7 @@ pub const MAX_JSON_VALUES: u64 = 1_000_000;
 /// [`MetricsError::MissingFile`], [`MetricsError::NotAFile`], [`MetricsError::TooLarge`] over 16 MiB and over a million
 /// values, [`MetricsError::Json`] with line and column.
 pub(super) fn read_object(path: &Path, expected: &'static str) -> Result<Map<String, Value>, MetricsError> {
-    let bytes = regular_file::read(path, MAX_JSON_BYTES)?.ok_or_else(|| MetricsError::MissingFile {
-        path: path.to_owned(),
-        expected,
-    })?;
+    let bytes = regular_file::read(path, MAX_JSON_BYTES)?.ok_or_else(|| MetricsError::missing_file(path, expected))?;
     let wrong = |error: serde_json::Error| MetricsError::Json {
         path: path.to_owned(),
         line: error.line(),

@@ -99,10 +99,10 @@ impl LogFolder {
                     });
                 }
                 None => {
-                    return Err(MetricsError::MissingFile {
-                        path: path(),
-                        expected: "the info file that this log was begun with; put it back",
-                    });
+                    return Err(MetricsError::missing_file(
+                        path(),
+                        "the info file that this log was begun with; put it back",
+                    ));
                 }
             }
         }

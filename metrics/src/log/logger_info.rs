@@ -56,12 +56,14 @@ impl LoggerInfo {
         let object = json_file::read_object(&dir.join(FILE_NAME), EXPECTED_FILE)?;
         let names = |list: &Vec<Value>| list.iter().map(|name| name.as_str().map(str::to_owned)).collect();
         let columns: Option<Vec<String>> = object.get("metrics_columns").and_then(Value::as_array).and_then(names);
-        let metrics_columns = columns.ok_or_else(|| MetricsError::LoggerInfo {
-            field: "metrics_columns",
-            found: object
-                .get("metrics_columns")
-                .map_or_else(|| "nothing".to_owned(), |found| cut(&found.to_string())),
-            expected: EXPECTED_COLUMNS,
+        let metrics_columns = columns.ok_or_else(|| {
+            MetricsError::logger_info(
+                "metrics_columns",
+                object
+                    .get("metrics_columns")
+                    .map_or_else(|| "nothing".to_owned(), |found| cut(&found.to_string())),
+                EXPECTED_COLUMNS,
+            )
         })?;
         check_columns(&metrics_columns)?;
         let log_format_version = match object.get("log_format_version") {
@@ -69,11 +71,7 @@ impl LoggerInfo {
             Some(Value::String(version)) if ["1.0", LOG_FORMAT_VERSION].contains(&version.as_str()) => version.clone(),
             Some(other) => {
                 let (field, expected) = ("log_format_version", "\"1.0\" or \"1.1\"");
-                return Err(MetricsError::LoggerInfo {
-                    field,
-                    found: cut(&other.to_string()),
-                    expected,
-                });
+                return Err(MetricsError::logger_info(field, cut(&other.to_string()), expected));
             }
         };
         Ok(Self {
@@ -86,11 +84,11 @@ impl LoggerInfo {
 fn check_columns(columns: &[String]) -> Result<(), MetricsError> {
     // Before they are held against each other.
     if columns.len() > MAX_COLUMNS {
-        return Err(MetricsError::LoggerInfo {
-            field: "metrics_columns",
-            found: format!("{} names", columns.len()),
-            expected: "at most 1000 names",
-        });
+        return Err(MetricsError::logger_info(
+            "metrics_columns",
+            format!("{} names", columns.len()),
+            "at most 1000 names",
+        ));
     }
     let repeated = columns
         .iter()
@@ -101,11 +99,7 @@ fn check_columns(columns: &[String]) -> Result<(), MetricsError> {
         .any(|name| name.is_empty() || STANDARD.contains(&name.as_str()));
     if columns.is_empty() || repeated || unusable {
         let found = cut(&format!("{columns:?}"));
-        return Err(MetricsError::LoggerInfo {
-            field: "metrics_columns",
-            found,
-            expected: EXPECTED_COLUMNS,
-        });
+        return Err(MetricsError::logger_info("metrics_columns", found, EXPECTED_COLUMNS));
     }
     Ok(())
 }

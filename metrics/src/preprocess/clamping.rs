@@ -32,8 +32,8 @@ pub(crate) fn clamp(lifetime: &mut Lifetime, options: &Options) -> Result<(), Me
 }
 
 fn usual_range(performances: &[f64]) -> DataRange {
-    DataRange {
-        min: quantile(performances, USUAL.0).unwrap_or(f64::MIN),
-        max: quantile(performances, USUAL.1).unwrap_or(f64::MAX),
-    }
+    DataRange::new(
+        quantile(performances, USUAL.0).unwrap_or(f64::MIN),
+        quantile(performances, USUAL.1).unwrap_or(f64::MAX),
+    )
 }

@@ -41,17 +41,11 @@ pub(crate) fn given_range(
     options: &Options,
 ) -> Result<Option<DataRange>, MetricsError> {
     let Some(ranges) = &options.data_range else {
-        let range = |anchors: Anchors| DataRange {
-            min: anchors.floor,
-            max: anchors.ceiling,
-        };
+        let range = |anchors: Anchors| DataRange::new(anchors.floor, anchors.ceiling);
         return Ok(anchors(task, options).map(range));
     };
     let belongs = |name: &str| options.variant_mode.scored_name(name) == task;
-    let hull = |a: DataRange, b: DataRange| DataRange {
-        min: a.min.min(b.min),
-        max: a.max.max(b.max),
-    };
+    let hull = |a: DataRange, b: DataRange| DataRange::new(a.min.min(b.min), a.max.max(b.max));
     let found = ranges
         .iter()
         .filter(|(name, _)| belongs(name))

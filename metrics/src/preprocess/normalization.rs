@@ -48,16 +48,9 @@ pub(crate) fn normalize(
 }
 
 fn hull(values: impl Iterator<Item = f64>) -> DataRange {
-    values.fold(
-        DataRange {
-            min: f64::INFINITY,
-            max: f64::NEG_INFINITY,
-        },
-        |range, value| DataRange {
-            min: range.min.min(value),
-            max: range.max.max(value),
-        },
-    )
+    values.fold(DataRange::new(f64::INFINITY, f64::NEG_INFINITY), |range, value| {
+        DataRange::new(range.min.min(value), range.max.max(value))
+    })
 }
 
 /// Part of the largest performance below which differences are rounding: a mean of a hundred equal numbers is off by less.

@@ -53,6 +53,11 @@ fn png_of(size: [u32; 2], color: png::ColorType, depth: png::BitDepth, data: &[u
 }
 
 impl Picture {
+    /// A picture of these pixels.
+    pub fn new(width: u32, height: u32, rgb: Vec<u8>) -> Self {
+        Self { width, height, rgb }
+    }
+
     /// A white picture.
     pub fn blank(width: u32, height: u32) -> Self {
         Self {

@@ -14,6 +14,14 @@ pub struct SheetRow {
     pub pictures: Vec<Drawing>,
 }
 
+impl SheetRow {
+    /// A row.
+    pub fn new(title: impl Into<String>, words: impl Into<String>, pictures: Vec<Drawing>) -> Self {
+        let (title, words) = (title.into(), words.into());
+        Self { title, words, pictures }
+    }
+}
+
 /// Between pictures, in pixels.
 const GAP: u32 = 12;
 /// Sizes of the letters, and heights of the lines that they stand in.

@@ -122,11 +122,11 @@ impl Show {
                 .collect();
             let counts: Vec<String> = assets.iter().map(|asset| triangles(asset).to_string()).collect();
             let heights: Vec<String> = assets.iter().map(|asset| format!("{:.1}", asset.height)).collect();
-            SheetRow {
-                title: format!("{class} {}", names.join(", ")),
-                words: format!("{} triangles; {} m high", counts.join(", "), heights.join(", ")),
-                pictures: assets.iter().map(|asset| self.picture(asset, 210.0).into()).collect(),
-            }
+            SheetRow::new(
+                format!("{class} {}", names.join(", ")),
+                format!("{} triangles; {} m high", counts.join(", "), heights.join(", ")),
+                assets.iter().map(|asset| self.picture(asset, 210.0).into()).collect(),
+            )
         });
         Ok(rows.collect())
     }
@@ -198,11 +198,7 @@ impl Show {
         let size = self.size.unwrap_or(SIZE);
         let mut frame = Frame::new(2 * size, 2 * size);
         CpuRenderer::new().render(&scene, &camera, &mut frame);
-        let drawn = Picture {
-            width: frame.width,
-            height: frame.height,
-            rgb: frame.rgb,
-        };
+        let drawn = Picture::new(frame.width, frame.height, frame.rgb);
         drawn.halved()
     }
 }
@@ -248,11 +244,7 @@ fn cut_out(class: &str, name: &str, size: u32) -> Picture {
             pixel.fill(255);
         }
     }
-    let large = Picture {
-        width: side,
-        height: side,
-        rgb,
-    };
+    let large = Picture::new(side, side, rgb);
     large.halved().halved()
 }
 
