@@ -4,8 +4,8 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::generator::{Drift, GeneratorError, Sampler, Schedule, Sequence, Switch};
-use crate::spec::{Variant, World, maps::MapLibrary};
+use crate::generator::{Drift, GeneratorError, Sampler, Sequence, Switch};
+use crate::spec::{DriftSchedule, Variant, World, maps::MapLibrary};
 use crate::tasks;
 use clap::{Args, ValueEnum};
 use driftworld_atomic_files::AtomicFile;
@@ -61,8 +61,8 @@ pub(crate) struct Sample {
     #[arg(long, value_name = "VARIANT", requires = "count")]
     drift_to: Option<String>,
     /// Shape of the drift: linear, cosine, step:N or sawtooth:N.
-    #[arg(long, value_parser = schedule, default_value = "linear", requires = "drift_to")]
-    schedule: Schedule,
+    #[arg(long, value_parser = crate::design::schedule, default_value = "linear", requires = "drift_to")]
+    schedule: DriftSchedule,
     /// Switch at random, not at a fixed point: each value that cannot be interpolated, or the whole variant with `task`.
     ///
     /// The switch becomes more likely as the drift proceeds. With `task` each world is of one of the two variants, which may be
@@ -121,19 +121,6 @@ impl Shard {
     fn of(self, first: u64, count: u64) -> std::ops::Range<u64> {
         let start = |part: u64| first + (u128::from(count) * u128::from(part) / u128::from(self.parts)) as u64;
         start(self.part - 1)..start(self.part)
-    }
-}
-
-fn schedule(text: &str) -> Result<Schedule, String> {
-    let (name, number) = text
-        .split_once(':')
-        .map_or((text, None), |(name, number)| (name, number.parse().ok()));
-    match (name, number) {
-        ("linear", None) if text == "linear" => Ok(Schedule::Linear),
-        ("cosine", None) if text == "cosine" => Ok(Schedule::Cosine),
-        ("step", Some(steps)) if steps > 0 => Ok(Schedule::Step { steps }),
-        ("sawtooth", Some(periods)) if periods > 0 => Ok(Schedule::Sawtooth { periods }),
-        _ => Err("expected linear, cosine, step:N or sawtooth:N, such as step:4".to_owned()),
     }
 }
 
@@ -238,7 +225,7 @@ impl Sample {
             Some(Mix::Parameter) => Drift::new(variant.clone(), to)?.with_switch(Switch::Mixture { seed: self.seed }),
             Some(Mix::Task) => Drift::mixing(variant.clone(), to, self.seed),
         };
-        let drift = Box::new(drift.with_schedule(self.schedule));
+        let drift = Box::new(drift.with_schedule(self.schedule.into()));
         Ok(Source::Drift {
             drift,
             first: self.index,
