@@ -40,11 +40,6 @@ impl Weights {
         Ok(self)
     }
 
-    /// Weight 1 for one element and 0 for all others: the distance in that element alone. A fine element counts as its coarse one.
-    pub fn only(element: Element) -> Self {
-        Self(Element::ALL.map(|other| f64::from(u8::from(other == element.coarse()))))
-    }
-
     /// What an element weighs.
     pub fn of(&self, element: Element) -> f64 {
         self.0[position(element)]
@@ -194,6 +189,11 @@ mod tests {
         }
     }
 
+    /// Weight 1 for one element and 0 for all others.
+    fn only(element: Element) -> Weights {
+        Weights(Element::ALL.map(|other| f64::from(u8::from(other == element))))
+    }
+
     #[test]
     fn parts_add_up_to_elements_and_to_the_whole() {
         let mut parts = vec![
@@ -219,13 +219,13 @@ mod tests {
         let parts = vec![part(Element::S, 0.5, 1.0), part(Element::O, 0.5, 1.0)];
         let distance = Distance::new(parts.clone(), &Weights::default());
         assert_eq!((distance.total, distance.element(Element::S)), (0.5, Some(0.5)));
-        assert_eq!(Distance::new(parts, &Weights::only(Element::O)).total, 0.5);
+        assert_eq!(Distance::new(parts, &only(Element::O)).total, 0.5);
     }
 
     #[test]
     fn one_element_can_be_taken_alone() {
         let parts = vec![part(Element::R, 1.0, 1.0), part(Element::O, 0.5, 1.0)];
-        assert_eq!(Distance::new(parts.clone(), &Weights::only(Element::S)).total, 0.0);
+        assert_eq!(Distance::new(parts.clone(), &only(Element::S)).total, 0.0);
         assert!(Weights::default().with(Element::R, f64::NAN).is_err());
         assert!(Weights::default().with(Element::R, -1.0).is_err());
     }
