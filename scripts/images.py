@@ -18,8 +18,19 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 
 #: The sheet of a curriculum, a world or a task has the name of its document.
-CURRICULA = "reward state transition observation action blue_red_green".split()
-WORLDS = "maze four_rooms t_maze key_corridor locked_rooms switches put_next lava_crossing foraging hunt".split()
+CURRICULA = ["reward", "state", "transition", "observation", "action", "blue_red_green"]
+WORLDS = [
+    "maze",
+    "four_rooms",
+    "t_maze",
+    "key_corridor",
+    "locked_rooms",
+    "switches",
+    "put_next",
+    "lava_crossing",
+    "foraging",
+    "hunt",
+]
 TASKS = {
     "find_objects": "blue spheres dusk huddle penalty near rooms village",
     "get_to_goal": "plain landmarks hazards bags sphere wandering craters maze",
@@ -27,9 +38,7 @@ TASKS = {
     "moving_object": "wandering still fast shy curious turned",
     "scavenger_hunt": "plain landmarks alike huddle woods village",
 }
-ORDERED = (
-    "blue slim held long_held half modest poor penalty dusk red green slow wide stiff spheres waypoints huddle clearing interact near"
-)
+ORDERED = "blue slim held long_held half modest poor penalty dusk red green slow wide stiff spheres waypoints huddle clearing interact near"
 
 
 def of(task: str, variants: str) -> str:
@@ -48,23 +57,34 @@ IMAGES: dict[str, list[str]] = {
         "vary find_objects#red --element S --distance 0.05 --name at_0.05 -o {tmp}/apart.json",
         "vary {tmp}/apart.json#red --parameters light --distance 0.2 --name at_0.2 -o {tmp}/apart.json --force",
         "vary {tmp}/apart.json#red --parameters target_color --distance 1 --name at_1 -o {tmp}/apart.json --force",
-        "vary {tmp}/apart.json#red --parameters target_color,target_model,light,agent_width --distance 3 --name at_3"
-        " -o {tmp}/apart.json --force",
+        (
+            "vary {tmp}/apart.json#red --parameters target_color,target_model,light,agent_width --distance 3 --name at_3"
+            " -o {tmp}/apart.json --force"
+        ),
         "vary {tmp}/apart.json#red --element R --distance 1 --name unseen_1 -o {tmp}/apart.json --force",
         f"sheet {of('{tmp}/apart.json', 'red at_0.05 at_0.2 at_1 at_3 unseen_1')} --seed 3 --size 150 -o {{}}",
     ],
     "curriculum-timeline.png": [
-        f"curriculum {of('find_objects', 'blue huddle wide clearing')} --probe state --start find_objects#blue --order outward"
-        " --learn 100 --eval-episodes 10 --name timeline -o {tmp}/timeline.json --plot {}"
+        (
+            f"curriculum {of('find_objects', 'blue huddle wide clearing')} --probe state --start find_objects#blue --order outward"
+            " --learn 100 --eval-episodes 10 --name timeline -o {tmp}/timeline.json --plot {}"
+        )
     ],
     "curriculum-map.png": ["sheet --scenario examples/curricula/map.json --size 150 -o {}"],
     "task-blue_red_green.png": ["sheet blue_red_green --size 150 -o {}"],
     "looks.png": [
-        f"sheet {of('find_objects', 'huddle dusk')} examples/worlds/four_rooms.json#nine examples/worlds/key_corridor.json#closed"
-        " --size 160 -o {}"
+        (
+            f"sheet {of('find_objects', 'huddle dusk')} examples/worlds/four_rooms.json#nine examples/worlds/key_corridor.json#closed"
+            " --size 160 -o {}"
+        )
     ],
-    "solved-key_corridor.png": ["render examples/worlds/key_corridor.json#closed --seed 5 --view episode --size 200 -o {}"],
-    **{f"curriculum-{name}.png": [f"sheet --scenario examples/curricula/{name}.json --size 120 -o {{}}"] for name in CURRICULA},
+    "solved-key_corridor.png": [
+        "render examples/worlds/key_corridor.json#closed --seed 5 --view episode --size 200 -o {}"
+    ],
+    **{
+        f"curriculum-{name}.png": [f"sheet --scenario examples/curricula/{name}.json --size 120 -o {{}}"]
+        for name in CURRICULA
+    },
     **{f"world-{name}.png": [f"sheet examples/worlds/{name}.json --size 150 -o {{}}"] for name in WORLDS},
     **{f"task-{name}.png": [f"sheet {of(name, variants)} --size 150 -o {{}}"] for name, variants in TASKS.items()},
 }
