@@ -221,8 +221,9 @@ fn columns<'py>(py: Python<'py>, rows: &Rows) -> Result<Bound<'py, PyDict>> {
         columns.set_item(name, rows.metric(name).unwrap_or_default().to_pyarray(py))?;
     }
     for name in rows.text_names() {
-        let text = (0..rows.len()).map(|row| rows.text(name).and_then(|column| column.get(row)));
-        columns.set_item(name, PyList::new(py, text.collect::<Vec<_>>())?)?;
+        let texts = rows.text(name).into_iter();
+        let texts = texts.flat_map(|column| column.ids().iter().map(|id| &column.values()[*id as usize]));
+        columns.set_item(name, PyList::new(py, texts.collect::<Vec<_>>())?)?;
     }
     Ok(columns)
 }
