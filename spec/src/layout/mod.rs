@@ -24,6 +24,7 @@ pub use text::Legend;
 pub use walls::{Circle, LayoutWall};
 
 use crate::maps;
+use crate::world::Region;
 use crate::world::fields::{Place, fields};
 use text::TextMap;
 
@@ -171,13 +172,13 @@ impl Layout {
     }
 
     /// The regions of a predefined map as walls of the arena that it is fitted to; of a share the first ones stand.
-    fn map_plan(&self, regions: &[impl AsRef<[[f64; 2]]>]) -> Plan {
+    fn map_plan(&self, regions: &[Region]) -> Plan {
         let size = self.size.unwrap_or([MAP_SIDE; 2]);
         let factor = size.map(|side| side / MAP_SIDE);
         let mut plan = Plan::of_cells(size, [0, 0], 0, |_, _| None);
         let standing = &regions[..draws::share_of(self.standing, regions.len())];
         plan.walls.extend(standing.iter().map(|corners| {
-            let corners = corners.as_ref().iter();
+            let corners = corners.0.iter();
             PlanWall {
                 polygon: corners.map(|[x, y]| [x * factor[0], y * factor[1]]).collect(),
                 height: None,
@@ -212,7 +213,7 @@ impl Layout {
     }
 
     /// As [`Layout::plan`], with these regions as those of its predefined map.
-    pub(crate) fn plan_with(&self, seed: u64, regions: &[impl AsRef<[[f64; 2]]>]) -> Plan {
+    pub(crate) fn plan_with(&self, seed: u64, regions: &[Region]) -> Plan {
         let seed = self.seed().unwrap_or(seed);
         match self.kind() {
             Some(Kind::Maze(maze)) => maze.plan(self.standing, seed),

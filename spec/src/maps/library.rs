@@ -35,7 +35,7 @@ pub(crate) struct MapsDocument {
     axes: Option<String>,
     /// The layouts.
     #[schemars(length(min = 1, max = 100))]
-    maps: Vec<MapLayout>,
+    pub(super) maps: Vec<MapLayout>,
 }
 
 impl MapsDocument {

@@ -99,12 +99,13 @@ impl EnvironmentParams {
     /// The regions of the map that cannot be entered: those of a maps file, else of the built-in map. `walls` come on top,
     /// and the walls of the layout, which the plan of a checked [`World`](crate::World) has.
     pub fn regions(&self) -> Vec<&[[f64; 2]]> {
-        match &self.map_regions {
+        let regions = match &self.map_regions {
             // A layout that is a map has them in its plan.
-            _ if self.layout.as_ref().is_some_and(|layout| layout.predefined.is_some()) => Vec::new(),
-            Some(regions) => regions.iter().map(|region| region.0.as_slice()).collect(),
-            None => maps::excluded_regions(self.predefined_map).to_vec(),
-        }
+            _ if self.layout.as_ref().is_some_and(|layout| layout.predefined.is_some()) => &[],
+            Some(regions) => regions.as_slice(),
+            None => maps::excluded_regions(self.predefined_map),
+        };
+        regions.iter().map(|region| region.0.as_slice()).collect()
     }
 
     /// Whether a point lies within the outer walls.
@@ -208,12 +209,6 @@ impl fmt::Display for Enclosure {
 pub struct Region(
     #[schemars(length(min = 3, max = 1000), inner(inner(range(min = -1e4, max = 1e4))))] pub Vec<[f64; 2]>,
 );
-
-impl AsRef<[[f64; 2]]> for Region {
-    fn as_ref(&self) -> &[[f64; 2]] {
-        &self.0
-    }
-}
 
 impl Place for Region {
     fn find_inside(words: &[&str], steps: &mut Vec<usize>) -> Option<ParameterType> {
