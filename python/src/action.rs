@@ -19,12 +19,17 @@ pub(crate) fn row_action(row: i64) -> Action {
     Action::Discrete(usize::try_from(row).unwrap_or(NO_ROW))
 }
 
-/// The error of an action that is no row's number, with the number that was found.
-pub(crate) fn no_row(error: &EnvError, row: Option<&i64>) -> Option<Error> {
-    let (EnvError::NoSuchAction { found: NO_ROW, last }, Some(row)) = (error, row) else {
-        return None;
+/// An error, as that of an action that is no row's number with the number that was found, where it is one.
+pub(crate) fn no_row(error: Error, row: impl Fn(usize) -> Option<i64>) -> Error {
+    let (inner, env) = match &error {
+        Error::Env(EnvError::BatchAction { env, error }) => (&**error, *env),
+        Error::Env(inner) => (inner, 0),
+        _ => return error,
+    };
+    let (EnvError::NoSuchAction { found: NO_ROW, last }, Some(row)) = (inner, row(env)) else {
+        return error;
     };
     let message =
         format!("action: found row {row}, expected 0 to {last} of the world's action table; nothing was changed");
-    Some(PyValueError::new_err(message).into())
+    PyValueError::new_err(message).into()
 }

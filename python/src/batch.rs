@@ -7,8 +7,7 @@ use std::str::FromStr;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 
 use driftworld_env::{
-    Action, Batch, BatchOptions, Catalogue, Effect, EndedBy, EnvError, Event, GoOn, Library, RendererKind, WorldSource,
-    top_down,
+    Action, Batch, BatchOptions, Effect, EndedBy, EnvError, Event, GoOn, RendererKind, WorldSource, top_down,
 };
 use driftworld_spec::{Modality, World};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
@@ -17,6 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 use crate::action::{no_row, number_action, row_action};
+use crate::classes::catalogue;
 use crate::errors::{Error, Result};
 use crate::interruptible::run_between_envs;
 use crate::recordings::PyRecording;
@@ -84,13 +84,9 @@ impl PyBatch {
             max_episode_steps,
         };
         let make = |go_on: GoOn<'_>| {
-            let mut catalogue = Catalogue::default();
-            for bytes in &libraries {
-                catalogue = catalogue.with_library(&Library::from_bytes(bytes)?);
-            }
             let worlds = supplies.clone();
             let source: WorldSource = Arc::new(move |episode| worlds[episode.env].world());
-            Batch::with_catalogue_while(supplies.len(), source, options, &catalogue, go_on)
+            Batch::with_catalogue_while(supplies.len(), source, options, &catalogue(&libraries)?, go_on)
         };
         let batch = run_between_envs(py, supplies.len(), make)?;
         let actions = Vec::with_capacity(supplies.len());
@@ -190,11 +186,7 @@ impl PyBatch {
         stepping.actions.clear();
         stepping.actions.extend(rows.iter().copied().map(row_action));
         let done = self.go(py, &mut stepping);
-        done.map_err(|error| match &error {
-            Error::Env(EnvError::BatchAction { env, error: inner }) => no_row(inner, rows.get(*env)).unwrap_or(error),
-            Error::Env(inner) => no_row(inner, rows.first()).unwrap_or(error),
-            _ => error,
-        })?;
+        done.map_err(|error| no_row(error, |env| rows.get(env).copied()))?;
         Ok(stepping.stepped(py))
     }
 
@@ -206,10 +198,7 @@ impl PyBatch {
     /// The same by a row of the table.
     fn step_one_by_row(&self, py: Python<'_>, row: i64) -> Result<(f64, bool, bool, bool, bool)> {
         let done = self.step_one(py, row_action(row));
-        done.map_err(|error| match &error {
-            Error::Env(inner) => no_row(inner, Some(&row)).unwrap_or(error),
-            _ => error,
-        })
+        done.map_err(|error| no_row(error, |_| Some(row)))
     }
 
     /// Why the last step of an environment ended its episode, in a word; `None` if it did not.

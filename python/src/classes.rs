@@ -1,6 +1,6 @@
 //! The numbers of classes in class segmentation. Which number a class has is said in `env`.
 
-use driftworld_env::{Catalogue, Library};
+use driftworld_env::{Catalogue, EnvError, Library};
 use pyo3::prelude::*;
 
 use crate::errors::Result;
@@ -9,10 +9,15 @@ use crate::errors::Result;
 /// libraries, given as their bytes.
 #[pyfunction]
 pub(crate) fn class_numbers(libraries: Vec<Vec<u8>>) -> Result<Vec<(String, u16)>> {
-    let mut catalogue = Catalogue::default();
-    for bytes in &libraries {
-        catalogue = catalogue.with_library(&Library::from_bytes(bytes)?);
-    }
+    let catalogue = catalogue(&libraries)?;
     let numbers = catalogue.class_numbers();
     Ok(numbers.map(|(class, number)| (class.to_owned(), number)).collect())
+}
+
+/// The built-in models with those of libraries in front, given as their bytes.
+pub(crate) fn catalogue(libraries: &[Vec<u8>]) -> std::result::Result<Catalogue, EnvError> {
+    let built_in = Catalogue::default();
+    libraries.iter().try_fold(built_in, |catalogue, bytes| {
+        Ok(catalogue.with_library(&Library::from_bytes(bytes)?))
+    })
 }

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 use driftworld::distances::{By, Sample, Scale, Side, between, variant_matrix_while};
-use driftworld_env::{Catalogue, Library};
 use driftworld_similarity::{
     DistanceMatrix, Method, OrderOptions, SimilarityError, Weights, classical_map, order, share_of_shorter_orders,
 };
@@ -16,6 +15,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde_json::json;
 
+use crate::classes::catalogue;
 use crate::document::{Whole, json_to_py, to_py};
 use crate::errors::Result;
 use crate::interruptible::{run_cancellable, run_detached};
@@ -78,10 +78,7 @@ fn sample(by: Option<&str>, worlds: Option<Whole>, most: u64, scale: &str, libra
             PyValueError::new_err(format!("worlds: found {worlds}, expected a number from 1 to {most}")).into(),
         );
     }
-    let mut catalogue = Catalogue::default();
-    for bytes in libraries {
-        catalogue = catalogue.with_library(&Library::from_bytes(bytes)?);
-    }
+    let catalogue = catalogue(libraries)?;
     Ok(Sample {
         by: named(by)?,
         scale: Scale::from_name(scale).map_err(|said| PyValueError::new_err(format!("scale: {said}")))?,

@@ -4,12 +4,12 @@ use std::path::Path;
 
 use driftworld::documents::{self, Kind};
 use driftworld::{scenarios, tasks};
-use driftworld_env::{Catalogue, Library};
 use pyo3::exceptions::{PyOverflowError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString};
 use serde_json::Value;
 
+use crate::classes::catalogue;
 use crate::errors::{Result, described};
 
 /// A JSON value as Python has it.
@@ -91,11 +91,7 @@ pub(crate) fn check<'py>(
         Some(word) => word.parse::<Kind>().map_err(PyValueError::new_err)?,
         None => Kind::of(text),
     };
-    let mut catalogue = Catalogue::default();
-    for bytes in &libraries {
-        catalogue = catalogue.with_library(&Library::from_bytes(bytes)?);
-    }
-    let classes = tasks::classes(&catalogue);
+    let classes = tasks::classes(&catalogue(&libraries)?);
     let path = Path::new(name);
     let checked = py.detach(|| {
         let mut task = |called: &str| {

@@ -1,7 +1,7 @@
 //! [`PyDrift`]: the variants between two variants, as Python holds them. The way itself is `generator`'s.
 
-use driftworld_generator::{Drift, Schedule, Switch};
-use driftworld_spec::{DriftSchedule, DriftSwitch};
+use driftworld_generator::Drift;
+use driftworld_spec::{DriftSchedule, RegimeDrift};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -56,17 +56,16 @@ impl PyDrift {
             }
         };
         let (from, end) = (from_.get().0.clone(), to.get().0.clone());
-        let drift = match serde_json::from_value(switch.into()) {
-            Ok(DriftSwitch::AtPoint) => Drift::new(from, end)?,
-            Ok(DriftSwitch::Mixture) => Drift::new(from, end)?.with_switch(Switch::Mixture { seed: seed.0 }),
-            Ok(DriftSwitch::Task) => Drift::mixing(from, end, seed.0),
-            Err(_) => {
+        let declared = RegimeDrift {
+            schedule,
+            switch: serde_json::from_value(switch.into()).map_err(|_| {
                 let expected = "\"at_point\", \"mixture\" or \"task\"";
-                return Err(wrong("switch", &format!("{switch:?}"), expected).into());
-            }
+                wrong("switch", &format!("{switch:?}"), expected)
+            })?,
+            ..RegimeDrift::to("")
         };
         Ok(Self {
-            drift: drift.with_schedule(Schedule::from(schedule)),
+            drift: Drift::declared(&declared, from, end, seed.0)?,
             made: (
                 from_.get().clone(),
                 to.get().clone(),

@@ -124,80 +124,71 @@ impl From<Error> for PyErr {
 impl Error {
     /// The exception for this error.
     fn raise(self, py: Python<'_>) -> PyResult<PyErr> {
-        let (class, text) = match &self {
-            // A name that stands for nothing, and no document that is wrong.
-            Self::Spec(source @ SpecError::UnknownVariant { .. }) => ("TaskError", source.to_string()),
-            Self::Spec(source) => ("SpecError", source.to_string()),
-            Self::Task(source) => ("TaskError", source.to_string()),
-            Self::Generator(source) => ("GeneratorError", source.to_string()),
-            Self::Similarity(source) => ("SimilarityError", source.to_string()),
-            Self::Env(source) => ("EnvError", source.to_string()),
-            Self::Metrics(source) => ("MetricsError", source.to_string()),
-            Self::Curriculum(source) | Self::InScenario(source, _) => ("CurriculumError", source.to_string()),
-            Self::Refused { class, text, .. } => (*class, text.clone()),
-            Self::Python(source) => return Ok(source.clone_ref(py)),
-        };
-        let class = py.import("driftworld.errors")?.getattr(class)?;
-        let details = self.details(py)?;
-        // Python prints it as it is.
-        let text = printable_lines(&text);
-        Ok(PyErr::from_value(class.call((text,), Some(&details))?))
-    }
-
-    /// What the exception knows beside its text.
-    fn details<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        if let Self::Refused { cause: Some(cause), .. } = self {
-            return cause_details(py, &**cause);
-        }
         let details = PyDict::new(py);
-        match self {
-            Self::Spec(source) => of_spec(&details, source)?,
-            // What is wrong with the variant on the way is what is wrong.
+        let (class, source): (_, &(dyn std::error::Error + 'static)) = match &self {
+            // A name that stands for nothing, and no document that is wrong.
+            Self::Spec(source @ SpecError::UnknownVariant { .. }) => ("TaskError", source),
+            Self::Spec(source) => ("SpecError", source),
+            Self::Task(source) => ("TaskError", source),
             Self::Generator(source) => {
+                // What is wrong with the variant on the way is what is wrong.
                 if let GeneratorError::Between(source) = source {
                     of_spec(&details, source)?;
                 }
-                details.set_item("code", source.code())?;
+                ("GeneratorError", source)
             }
-            Self::Task(source) => details.set_item("code", of_task(source))?,
-            Self::Similarity(source) => details.set_item("code", source.code())?,
+            Self::Similarity(source) => ("SimilarityError", source),
             Self::Env(source) => {
                 if let EnvError::BadScript { line, .. } = source {
                     details.set_item("line", line)?;
                 }
-                details.set_item("code", source.code())?;
+                ("EnvError", source)
             }
-            Self::Metrics(source) => of_metrics(&details, source)?,
-            Self::Curriculum(source) => details.set_item("code", source.code())?,
+            Self::Metrics(source) => ("MetricsError", source),
+            Self::Curriculum(source) => ("CurriculumError", source),
             Self::InScenario(source, because) => {
                 of_spec(&details, because)?;
-                details.set_item("code", source.code())?;
+                ("CurriculumError", source)
             }
-            Self::Refused { .. } | Self::Python(_) => {}
-        }
-        Ok(details)
+            Self::Refused { class, text, cause } => {
+                if let Some(cause) = cause {
+                    describe(&details, &**cause)?;
+                }
+                return exception(class, text, &details);
+            }
+            Self::Python(source) => return Ok(source.clone_ref(py)),
+        };
+        describe(&details, source)?;
+        exception(class, &source.to_string(), &details)
     }
 }
 
-/// What an error that a command failed with knows beside its text.
-fn cause_details<'py>(py: Python<'py>, cause: &(dyn std::error::Error + 'static)) -> PyResult<Bound<'py, PyDict>> {
-    let details = PyDict::new(py);
+/// An exception of one of the package's classes.
+fn exception(class: &str, text: &str, details: &Bound<'_, PyDict>) -> PyResult<PyErr> {
+    let class = details.py().import("driftworld.errors")?.getattr(class)?;
+    // Python prints it as it is.
+    let text = printable_lines(text);
+    Ok(PyErr::from_value(class.call((text,), Some(details))?))
+}
+
+/// Adds what an error of one of the crates knows beside its text.
+fn describe(details: &Bound<'_, PyDict>, cause: &(dyn std::error::Error + 'static)) -> PyResult<()> {
     let code = if let Some(source) = cause.downcast_ref::<SpecError>() {
-        return of_spec(&details, source).map(|()| details);
+        return of_spec(details, source);
     } else if let Some(source) = cause.downcast_ref::<MetricsError>() {
-        return of_metrics(&details, source).map(|()| details);
+        return of_metrics(details, source);
     } else if let Some(source) = cause.downcast_ref::<TaskError>() {
         if let TaskError::Spec(source) = source {
-            return cause_details(py, source);
+            return describe(details, source);
         }
         of_task(source)
     } else if let Some(source) = cause.downcast_ref::<CurriculumError>() {
         if let CurriculumError::Log(source) = source {
-            return cause_details(py, source);
+            return describe(details, source);
         }
         source.code()
     } else if let Some(DocumentError::Spec(source)) = cause.downcast_ref::<DocumentError>() {
-        return cause_details(py, source);
+        return describe(details, source);
     } else if let Some(source) = cause.downcast_ref::<GeneratorError>() {
         source.code()
     } else if let Some(source) = cause.downcast_ref::<SimilarityError>() {
@@ -205,10 +196,9 @@ fn cause_details<'py>(py: Python<'py>, cause: &(dyn std::error::Error + 'static)
     } else if let Some(source) = cause.downcast_ref::<EnvError>() {
         source.code()
     } else {
-        return Ok(details);
+        return Ok(());
     };
-    details.set_item("code", code)?;
-    Ok(details)
+    details.set_item("code", code)
 }
 
 fn of_task(source: &TaskError) -> &'static str {

@@ -34,37 +34,24 @@ mod native {
     use pyo3::prelude::*;
 
     #[pymodule_export]
-    use super::batch::PyBatch;
-    #[pymodule_export]
-    use super::classes::class_numbers;
-    #[pymodule_export]
-    use super::command::main;
-    #[pymodule_export]
-    use super::curriculum::{PyJournal, PyPlan};
-    #[pymodule_export]
-    use super::design::design_curriculum;
-    #[pymodule_export]
-    use super::distances::{PyMatrix, compared_by, distance, order_methods, removed_format};
-    #[pymodule_export]
-    use super::document::check;
-    #[pymodule_export]
-    use super::drift::PyDrift;
-    #[pymodule_export]
-    use super::elements::elements;
-    #[pymodule_export]
-    use super::files::write_file;
-    #[pymodule_export]
-    use super::logs::{PyLogFile, read_log, validate_log};
-    #[pymodule_export]
-    use super::recordings::{PyRecording, png, read_recording};
-    #[pymodule_export]
-    use super::scores::{PyScores, report};
-    #[pymodule_export]
-    use super::supply::PyStream;
-    #[pymodule_export]
-    use super::task::{PyTask, built_in_names};
-    #[pymodule_export]
-    use super::variant::{PyVariant, load_variant, load_variants, variant_again};
+    use super::{
+        batch::PyBatch,
+        classes::class_numbers,
+        command::main,
+        curriculum::{PyJournal, PyPlan},
+        design::design_curriculum,
+        distances::{PyMatrix, compared_by, distance, order_methods, removed_format},
+        document::check,
+        drift::PyDrift,
+        elements::elements,
+        files::write_file,
+        logs::{PyLogFile, read_log, validate_log},
+        recordings::{PyRecording, png, read_recording},
+        scores::{PyScores, report},
+        supply::PyStream,
+        task::{PyTask, built_in_names},
+        variant::{PyVariant, load_variant, load_variants, variant_again},
+    };
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

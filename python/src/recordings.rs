@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use driftworld::film::{FilmOptions, film, write_film};
 use driftworld::recordings::RecordedEpisodes;
-use driftworld_env::{Action, Catalogue, EndedBy, EpisodeOrigin, Library, Recording};
+use driftworld_env::{Action, Catalogue, EndedBy, EpisodeOrigin, Recording};
 use driftworld_metrics::Record;
 use driftworld_report::picture::Picture;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray3};
@@ -15,6 +15,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
 use serde_json::json;
 
+use crate::classes::catalogue;
 use crate::document::{Whole, json_to_py};
 use crate::errors::{Error, Result};
 
@@ -64,10 +65,7 @@ pub(crate) struct Shown {
 
 impl Shown {
     fn options(&self) -> Result<(FilmOptions, Catalogue)> {
-        let mut catalogue = Catalogue::default();
-        for bytes in &self.libraries {
-            catalogue = catalogue.with_library(&Library::from_bytes(bytes)?);
-        }
+        let catalogue = catalogue(&self.libraries)?;
         let options = FilmOptions {
             view: word("view", &self.view)?,
             modality: word("modality", &self.modality)?,

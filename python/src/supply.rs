@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use driftworld_generator::{Drift, GeneratorError, Sampler, Schedule, Switch};
+use driftworld_generator::{Drift, GeneratorError, Sampler};
 use driftworld_spec::{DriftSchedule, DriftSwitch, ObjectProgress, Progress, RegimeDrift, Variant, World};
 use numpy::PyReadonlyArray1;
 use pyo3::exceptions::PyValueError;
@@ -103,13 +103,13 @@ impl PyStream {
             return Err(wrong("episodes", "0", "at least 1").into());
         }
         let (from, to) = (from_.get().0.clone(), to.get().0.clone());
-        let drift = match switch {
-            DriftSwitch::AtPoint => Drift::new(from, to)?,
-            // Under one seed, so that every environment meets a new value in the same episode.
-            DriftSwitch::Mixture => Drift::new(from, to)?.with_switch(Switch::Mixture { seed: 0 }),
-            DriftSwitch::Task => Drift::mixing(from, to, 0),
+        let declared = RegimeDrift {
+            schedule,
+            switch,
+            ..RegimeDrift::to("")
         };
-        let drift = Arc::new(drift.with_schedule(Schedule::from(schedule)));
+        // Under one seed, so that every environment meets a new value in the same episode.
+        let drift = Arc::new(Drift::declared(&declared, from, to, 0)?);
         Ok(Self(Stream::Drift { drift, episodes }))
     }
 

@@ -151,18 +151,8 @@ impl PyVariant {
         start: Whole,
         threads: Whole,
     ) -> Result<Bound<'py, PyList>> {
-        let drawn = PyList::empty(py);
         let value = |world: World| serde_json::to_value(&world).unwrap_or_default();
-        draw(
-            py,
-            &self.0,
-            seed.0,
-            numbers(start.0, count.0)?,
-            threads.0,
-            value,
-            |value| drawn.append(json_to_py(py, &value)?),
-        )?;
-        Ok(drawn)
+        self.many(py, [seed, start, count, threads], value, |value| json_to_py(py, &value))
     }
 
     /// The same, each world as one line of JSON.
@@ -178,18 +168,10 @@ impl PyVariant {
         start: Whole,
         threads: Whole,
     ) -> Result<Bound<'py, PyList>> {
-        let drawn = PyList::empty(py);
         let text = |world: World| world.to_json();
-        draw(
-            py,
-            &self.0,
-            seed.0,
-            numbers(start.0, count.0)?,
-            threads.0,
-            text,
-            |text| drawn.append(text),
-        )?;
-        Ok(drawn)
+        self.many(py, [seed, start, count, threads], text, |text| {
+            Ok(text.into_pyobject(py)?.into_any())
+        })
     }
 
     /// Draws the first ``count`` worlds under a seed, and says how often that fails, and why.
@@ -220,6 +202,23 @@ impl PyVariant {
         let again = py.import("driftworld.specs")?.getattr("_variant_again")?;
         let values = serde_json::to_string(self.0.values()).map_err(wrong)?;
         Ok((again, (self.task(), self.0.name().to_owned(), values)))
+    }
+}
+
+impl PyVariant {
+    /// A list of worlds, each as `make` makes it of the world and `hand_over` for Python.
+    fn many<'py, T: Send>(
+        &self,
+        py: Python<'py>,
+        [seed, start, count, threads]: [Whole; 4],
+        make: impl Fn(World) -> T + Sync,
+        hand_over: impl Fn(T) -> PyResult<Bound<'py, PyAny>>,
+    ) -> Result<Bound<'py, PyList>> {
+        let (drawn, numbers) = (PyList::empty(py), numbers(start.0, count.0)?);
+        draw(py, &self.0, seed.0, numbers, threads.0, make, |made| {
+            drawn.append(hand_over(made)?)
+        })?;
+        Ok(drawn)
     }
 }
 
