@@ -82,9 +82,7 @@ impl Session {
 
     fn take_engine_setting(&mut self, payload: &[u8]) {
         match engine_setting(payload) {
-            Ok(setting) => self
-                .remarks
-                .make_once(About::Settings, setting.name(), &setting.remark()),
+            Ok((name, remark)) => self.remarks.make_once(About::Settings, name, &remark),
             Err(reason) => {
                 let remark = format!("engine configuration: {reason}; it is ignored");
                 self.remarks.make(About::Settings, &remark);

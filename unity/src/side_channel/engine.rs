@@ -3,62 +3,38 @@
 
 use super::Payload;
 
-/// What a client wants of the engine.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum EngineSetting {
-    /// The window's width and height in pixels.
-    ScreenResolution(i32, i32),
-    /// A level of quality.
-    QualityLevel(i32),
-    /// How much faster than the clock simulated time goes.
-    TimeScale(f32),
-    /// Pictures a second.
-    TargetFrameRate(i32),
-    /// Pictures a simulated second.
-    CaptureFrameRate(i32),
-}
-
-impl EngineSetting {
-    /// Which one it is.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::ScreenResolution(..) => "screen resolution",
-            Self::QualityLevel(_) => "quality level",
-            Self::TimeScale(_) => "time scale",
-            Self::TargetFrameRate(_) => "target frame rate",
-            Self::CaptureFrameRate(_) => "capture frame rate",
-        }
-    }
-
-    /// What becomes of it, in words.
-    pub(crate) fn remark(self) -> String {
-        match self {
-            Self::ScreenResolution(width, height) => {
-                format!(
-                    "window of {width} × {height} pixels: ignored, there is no window; observation_size sets the size of observations"
-                )
-            }
-            Self::QualityLevel(level) => format!("quality level {level}: ignored, there is one; see supersampling"),
-            Self::TimeScale(scale) => format!("time scale {scale}: ignored, steps are never held back"),
-            Self::TargetFrameRate(rate) => format!("target frame rate {rate}: ignored, steps are never held back"),
-            Self::CaptureFrameRate(rate) => {
-                format!("capture frame rate {rate}: ignored; see the environment parameter time_step")
-            }
-        }
-    }
-}
-
-/// Reads a message.
-pub(crate) fn engine_setting(bytes: &[u8]) -> Result<EngineSetting, String> {
+/// What a setting of Unity's is called, and what is said of it: none of them means anything here.
+pub(crate) fn engine_setting(bytes: &[u8]) -> Result<(&'static str, String), String> {
     let mut payload = Payload::new(bytes);
-    match payload.int()? {
-        0 => Ok(EngineSetting::ScreenResolution(payload.int()?, payload.int()?)),
-        1 => payload.int().map(EngineSetting::QualityLevel),
-        2 => payload.float().map(EngineSetting::TimeScale),
-        3 => payload.int().map(EngineSetting::TargetFrameRate),
-        4 => payload.int().map(EngineSetting::CaptureFrameRate),
-        other => Err(format!("found setting {other}, expected 0 to 4")),
-    }
+    let (name, remark) = match payload.int()? {
+        0 => {
+            let window = format!("window of {} × {} pixels", payload.int()?, payload.int()?);
+            let remark = "there is no window; observation_size sets the size of observations";
+            ("screen resolution", format!("{window}: ignored, {remark}"))
+        }
+        1 => {
+            let level = payload.int()?;
+            let remark = format!("quality level {level}: ignored, there is one; see supersampling");
+            ("quality level", remark)
+        }
+        2 => {
+            let scale = payload.float()?;
+            let remark = format!("time scale {scale}: ignored, steps are never held back");
+            ("time scale", remark)
+        }
+        3 => {
+            let rate = payload.int()?;
+            let remark = format!("target frame rate {rate}: ignored, steps are never held back");
+            ("target frame rate", remark)
+        }
+        4 => {
+            let rate = payload.int()?;
+            let remark = format!("capture frame rate {rate}: ignored; see the environment parameter time_step");
+            ("capture frame rate", remark)
+        }
+        other => return Err(format!("found setting {other}, expected 0 to 4")),
+    };
+    Ok((name, remark))
 }
 
 #[cfg(test)]
@@ -68,12 +44,17 @@ mod tests {
     #[test]
     fn settings_are_read_as_clients_write_them() {
         let words = |words: &[i32]| words.iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<u8>>();
-        let check = |bytes: &[i32], expected: EngineSetting| assert_eq!(engine_setting(&words(bytes)), Ok(expected));
-        check(&[0, 80, 60], EngineSetting::ScreenResolution(80, 60));
-        check(&[1, 5], EngineSetting::QualityLevel(5));
-        check(&[2, 20.0_f32.to_bits() as i32], EngineSetting::TimeScale(20.0));
-        check(&[3, -1], EngineSetting::TargetFrameRate(-1));
-        check(&[4, 60], EngineSetting::CaptureFrameRate(60));
+        let check = |bytes: &[i32], name: &str, begins: &str| {
+            let (found, remark) = engine_setting(&words(bytes)).expect("the setting is one");
+            assert_eq!(found, name);
+            assert!(remark.starts_with(&format!("{begins}: ignored")), "{remark}");
+        };
+        check(&[0, 80, 60], "screen resolution", "window of 80 × 60 pixels");
+        check(&[1, 5], "quality level", "quality level 5");
+        let scale = 20.5_f32.to_bits() as i32;
+        check(&[2, scale], "time scale", "time scale 20.5");
+        check(&[3, -1], "target frame rate", "target frame rate -1");
+        check(&[4, 60], "capture frame rate", "capture frame rate 60");
         assert!(engine_setting(&words(&[5, 0])).is_err());
         assert!(engine_setting(&words(&[0, 80])).is_err());
         assert!(engine_setting(&[]).is_err());
