@@ -67,17 +67,7 @@ pub(super) fn toward(sim: SimRef, index: u32) -> Wish<'static> {
     let pays = |stimulus: Stimulus| {
         object.reward_stimulus.contains(&stimulus) || object.reward_once_stimulus.contains(&stimulus)
     };
-    let opens = object.door.as_ref().filter(|_| !own.open).map(|door| &door.opens_on);
-    let lists = [
-        opens,
-        object.switch.as_ref().map(|switch| &switch.on),
-        object.portable.as_ref().map(|portable| &portable.on),
-    ];
-    if lists
-        .into_iter()
-        .flatten()
-        .any(|list| list.iter().any(|stimulus| pays(*stimulus)))
-    {
+    if moving(object, own.open).any(|list| list.iter().any(|stimulus| pays(*stimulus))) {
         return Wish::Move(index);
     }
     let by_hand = pays(Stimulus::AgentInteract) && can_interact(sim.world);
@@ -153,14 +143,16 @@ fn before_their_turn<'a>(sim: SimRef<'a>, found: Vec<Wish<'a>>) -> Vec<Wish<'a>>
 /// The stimulus by which a door opens, a switch is set off or a thing is picked up, if the agent can bring it about.
 pub(super) fn moving_stimulus(sim: SimRef, index: u32) -> Option<Stimulus> {
     let (object, own) = (&sim.world.objects[index as usize], &sim.objects()[index as usize]);
-    let opens = object.door.as_ref().filter(|_| !own.open).map(|door| &door.opens_on);
+    moving(object, own.open).find_map(|list| usable(sim.world, index, list))
+}
+
+/// The lists of stimuli by which an object opens, is set off and is picked up.
+fn moving(object: &Object, is_open: bool) -> impl Iterator<Item = &Vec<Stimulus>> {
+    let opens = object.door.as_ref().filter(|_| !is_open).map(|door| &door.opens_on);
     let lists = [
         opens,
         object.switch.as_ref().map(|switch| &switch.on),
         object.portable.as_ref().map(|portable| &portable.on),
     ];
-    lists
-        .into_iter()
-        .flatten()
-        .find_map(|list| usable(sim.world, index, list))
+    lists.into_iter().flatten()
 }

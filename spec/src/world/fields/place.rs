@@ -160,6 +160,26 @@ impl<T: Place> Place for Option<T> {
     }
 }
 
+/// The places in a list of a fixed length: its numbers.
+macro_rules! number_by_number {
+    ($number:ty) => {
+        fn find_inside(words: &[&str], steps: &mut Vec<usize>) -> Option<ParameterType> {
+            let [index] = words else { return None };
+            steps.push(index.parse().ok()?);
+            Some(<$number as Place>::KIND)
+        }
+
+        fn set_inside(&mut self, steps: &[usize], value: &Value) -> Option<()> {
+            let (index, rest) = steps.split_first()?;
+            self.get_mut(*index)?.set(rest, value)
+        }
+
+        fn list_inside(pointer: &str, field: &Field, found: &mut Vec<FieldPlace>) {
+            <$number as Place>::list(format!("{pointer}/*"), field, false, found);
+        }
+    };
+}
+
 /// Points and directions: whole, or number by number.
 macro_rules! numbers {
     ($length:literal, $kind:ident, $is_sound:expr) => {
@@ -174,20 +194,7 @@ macro_rules! numbers {
                 Self::deserialize(json).ok().filter($is_sound)
             }
 
-            fn find_inside(words: &[&str], steps: &mut Vec<usize>) -> Option<ParameterType> {
-                let [index] = words else { return None };
-                steps.push(index.parse().ok()?);
-                Some(ParameterType::Number)
-            }
-
-            fn set_inside(&mut self, steps: &[usize], value: &Value) -> Option<()> {
-                let (index, rest) = steps.split_first()?;
-                self.get_mut(*index)?.set(rest, value)
-            }
-
-            fn list_inside(pointer: &str, field: &Field, found: &mut Vec<FieldPlace>) {
-                f64::list(format!("{pointer}/*"), field, false, found);
-            }
+            number_by_number!(f64);
         }
     };
 }
@@ -206,20 +213,7 @@ impl Place for [u32; 2] {
         (is_count(x) && is_count(y)).then(|| [x.round() as u32, y.round() as u32])
     }
 
-    fn find_inside(words: &[&str], steps: &mut Vec<usize>) -> Option<ParameterType> {
-        let [index] = words else { return None };
-        steps.push(index.parse().ok()?);
-        Some(ParameterType::Integer)
-    }
-
-    fn set_inside(&mut self, steps: &[usize], value: &Value) -> Option<()> {
-        let (index, rest) = steps.split_first()?;
-        self.get_mut(*index)?.set(rest, value)
-    }
-
-    fn list_inside(pointer: &str, field: &Field, found: &mut Vec<FieldPlace>) {
-        u32::list(format!("{pointer}/*"), field, false, found);
-    }
+    number_by_number!(u32);
 }
 
 /// A type that is a value as a whole, and how it is read.
