@@ -308,6 +308,16 @@ impl Drawing {
     }
 }
 
+/// The middle of a pixel.
+pub(crate) fn middle((x, y): (i32, i32)) -> [f32; 2] {
+    [x, y].map(|pixel| pixel as f32 + 0.5)
+}
+
+/// The upper left of a pixel.
+pub(crate) fn corner((x, y): (i32, i32)) -> [f32; 2] {
+    [x, y].map(|pixel| pixel as f32)
+}
+
 /// A closed line around a middle, for rings.
 pub fn ring(middle: [f32; 2], radius: f32) -> Vec<[f32; 2]> {
     let mut points = fill::circle(middle, radius);

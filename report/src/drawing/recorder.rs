@@ -7,7 +7,7 @@ use plotters_backend::{
     BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingBackend, DrawingErrorKind, FontTransform,
 };
 
-use super::{Drawing, Level, Shape, Side, TextLine};
+use super::{Drawing, Level, Shape, Side, TextLine, corner, middle};
 
 /// The plotting library counts a font's size from its lowest to its highest line; writers of pages count less.
 const LIBRARY_SIZE: f64 = 1.24;
@@ -22,24 +22,6 @@ type Outcome = Result<(), DrawingErrorKind<Infallible>>;
 impl<'a> Recorder<'a> {
     pub(crate) fn onto(drawing: &'a mut Drawing) -> Self {
         Self { drawing }
-    }
-
-    /// The middle of the library's pixel.
-    fn place(&self, (x, y): BackendCoord) -> [f32; 2] {
-        [x, y].map(|pixel| pixel as f32 + 0.5)
-    }
-
-    /// The upper left of the library's pixel: lines of an even width and polygons have sharp sides there.
-    fn corner(&self, (x, y): BackendCoord) -> [f32; 2] {
-        [x, y].map(|pixel| pixel as f32)
-    }
-
-    fn on_line(&self, place: BackendCoord, style: &impl BackendStyle) -> [f32; 2] {
-        if style.stroke_width().is_multiple_of(2) {
-            self.corner(place)
-        } else {
-            self.place(place)
-        }
     }
 
     fn push_line(&mut self, points: Vec<[f32; 2]>, style: &impl BackendStyle) {
@@ -67,6 +49,15 @@ impl<'a> Recorder<'a> {
     }
 }
 
+/// Lines of an even width and polygons have sharp sides between pixels, other lines within them.
+fn on_line(place: BackendCoord, style: &impl BackendStyle) -> [f32; 2] {
+    if style.stroke_width().is_multiple_of(2) {
+        corner(place)
+    } else {
+        middle(place)
+    }
+}
+
 impl DrawingBackend for Recorder<'_> {
     type ErrorType = Infallible;
 
@@ -84,13 +75,13 @@ impl DrawingBackend for Recorder<'_> {
 
     fn draw_pixel(&mut self, (x, y): BackendCoord, color: BackendColor) -> Outcome {
         let corners = [(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)];
-        let points = corners.map(|(x, y)| [x as f32, y as f32]);
+        let points = corners.map(corner);
         self.push_area(points.to_vec(), color);
         Ok(())
     }
 
     fn draw_line<S: BackendStyle>(&mut self, from: BackendCoord, to: BackendCoord, style: &S) -> Outcome {
-        self.push_line(vec![self.on_line(from, style), self.on_line(to, style)], style);
+        self.push_line(vec![on_line(from, style), on_line(to, style)], style);
         Ok(())
     }
 
@@ -111,23 +102,23 @@ impl DrawingBackend for Recorder<'_> {
                 (right + 1, bottom + 1),
                 (left, bottom + 1),
             ];
-            let points = corners.map(|(x, y)| [x as f32, y as f32]);
+            let points = corners.map(corner);
             self.push_area(points.to_vec(), style.color());
         } else {
             let corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
-            self.push_line(corners.map(|corner| self.on_line(corner, style)).to_vec(), style);
+            self.push_line(corners.map(|corner| on_line(corner, style)).to_vec(), style);
         }
         Ok(())
     }
 
     fn draw_path<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(&mut self, path: I, style: &S) -> Outcome {
-        let points = path.into_iter().map(|place| self.on_line(place, style)).collect();
+        let points = path.into_iter().map(|place| on_line(place, style)).collect();
         self.push_line(points, style);
         Ok(())
     }
 
-    fn draw_circle<S: BackendStyle>(&mut self, middle: BackendCoord, radius: u32, style: &S, fill: bool) -> Outcome {
-        let (at, radius) = (self.place(middle), radius as f32);
+    fn draw_circle<S: BackendStyle>(&mut self, at: BackendCoord, radius: u32, style: &S, fill: bool) -> Outcome {
+        let (at, radius) = (middle(at), radius as f32);
         let BackendColor { alpha, rgb: (r, g, b) } = style.color();
         if fill && alpha > 0.0 {
             self.drawing.shapes.push(Shape::Disc {
@@ -147,7 +138,7 @@ impl DrawingBackend for Recorder<'_> {
         corners: I,
         style: &S,
     ) -> Outcome {
-        let points = corners.into_iter().map(|place| self.corner(place)).collect();
+        let points = corners.into_iter().map(corner).collect();
         self.push_area(points, style.color());
         Ok(())
     }
@@ -155,7 +146,7 @@ impl DrawingBackend for Recorder<'_> {
     fn draw_text<S: BackendTextStyle>(&mut self, text: &str, style: &S, (x, y): BackendCoord) -> Outcome {
         let BackendColor { rgb: (r, g, b), .. } = style.color();
         let size = (style.size() / LIBRARY_SIZE) as f32;
-        let at = [x, y].map(|pixel| pixel as f32);
+        let at = corner((x, y));
         let side = match style.anchor().h_pos {
             HPos::Left => Side::Left,
             HPos::Center => Side::Middle,

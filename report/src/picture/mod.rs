@@ -21,19 +21,11 @@ pub use sheet::{SheetRow, sheet};
 
 pub use crate::drawing::{Drawing, Gray, Level, Picture, Rgb, Shape, Side, TextLine, ring, text_width};
 
+use crate::drawing::{corner, middle};
+
 const INK: Rgb = [38, 42, 48];
 const FAINT: Rgb = [110, 116, 124];
 const WHITE: Rgb = [255; 3];
-
-/// The middle of a pixel.
-fn middle((x, y): (i32, i32)) -> [f32; 2] {
-    [x, y].map(|pixel| pixel as f32 + 0.5)
-}
-
-/// The upper left of a pixel.
-fn corner((x, y): (i32, i32)) -> [f32; 2] {
-    [x, y].map(|pixel| pixel as f32)
-}
 
 /// The size of letters whose font is so high from its lowest to its highest line.
 fn letters(height: f64) -> f32 {
