@@ -2,7 +2,7 @@
 
     python examples/python/play.py --task scavenger_hunt --variant landmarks
 
-Needs `pip install "driftworld[human]"`.
+Needs `pip install "./python[human]"`.
 """
 
 from __future__ import annotations

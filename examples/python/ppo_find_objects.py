@@ -10,7 +10,7 @@ which knows the map and walks from cube to cube, both in the same environment.
 Seeds are independent: their environments share no world. All agents are evaluated in the same worlds, by
 `Curriculum.run_vector`, once with actions sampled from the policy and once greedily.
 
-Needs `pip install "driftworld[sb3]"`.
+Needs `pip install "./python[sb3]"`.
 """
 
 from __future__ import annotations

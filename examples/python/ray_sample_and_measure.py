@@ -7,7 +7,7 @@ are brought together in their own order: the numbers and the digest are the same
     python examples/python/ray_sample_and_measure.py --variants 1000000 --address auto    # on the cluster that this machine is in
     python examples/python/ray_sample_and_measure.py --quick                       # does it run?
 
-Needs `pip install "driftworld[ray]"`, on every machine of the cluster. A cluster that asks for a token (Ray's documentation says
+Needs `pip install "./python[ray]"`, on every machine of the cluster. A cluster that asks for a token (Ray's documentation says
 how it is handed out) asks for it here, too.
 """
 

@@ -2,7 +2,7 @@
 
     python examples/python/record_minari.py --episodes 20
 
-Needs `pip install "driftworld[minari]"`. Minari keeps data sets in ~/.minari, or in the folder that MINARI_DATASETS_PATH names.
+Needs `pip install "./python[minari]"`. Minari keeps data sets in ~/.minari, or in the folder that MINARI_DATASETS_PATH names.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@
     python examples/python/rllib_ppo.py --quick            # does it run?
 
 Unlike sampling and measuring (`ray_sample_and_measure.py`), learning is not the same on another number of runners: what is
-learned from then comes from other worlds, in another order. Needs `pip install "driftworld[ray]" torch`.
+learned from then comes from other worlds, in another order. Needs `pip install "./python[ray]" torch`.
 """
 
 from __future__ import annotations

@@ -18,7 +18,7 @@
 # lifelong learning say of it? It shows the mechanics: with one lifetime each, 12 experiences a block and 6 evaluations, a
 # difference between the two numbers of a row is not told from luck.
 #
-# Needs `pip install "driftworld[pandas]" matplotlib`, and runs in seconds: these learners look for coloured pixels and have no
+# Needs `pip install "./python[pandas]" matplotlib`, and runs in seconds: these learners look for coloured pixels and have no
 # network. `../experts_and_sequential_ppo.py` does the same with one.
 
 # %%

@@ -225,5 +225,5 @@ def _pandas() -> Any:
     try:
         import pandas
     except ImportError as error:
-        raise ImportError('found no pandas, expected it for data frames; pip install "driftworld[pandas]"') from error
+        raise ImportError('found no pandas, expected it for data frames; pip install "./python[pandas]"') from error
     return pandas

@@ -24,7 +24,7 @@ try:
     from minari.data_collector import EpisodeBuffer
 except ImportError as error:
     raise ImportError(
-        'driftworld.adapters.minari: found no minari, expected version 0.5 or later; pip install "driftworld[minari]"'
+        'driftworld.adapters.minari: found no minari, expected version 0.5 or later; pip install "./python[minari]"'
     ) from error
 
 __all__ = ["collect"]

@@ -72,7 +72,7 @@ def _opens_a_window(case: Case) -> None:
     try:
         import pygame
     except ImportError:
-        raise NotHere('pygame is not installed: pip install "driftworld[human]"') from None
+        raise NotHere('pygame is not installed: pip install "./python[human]"') from None
     try:
         pygame.display.init()
     except pygame.error as error:
@@ -88,7 +88,7 @@ def _passes_sb3s_check(case: Case) -> None:
     try:
         from stable_baselines3.common.env_checker import check_env
     except ImportError:
-        raise NotHere('Stable-Baselines3 is not installed: pip install "driftworld[sb3]"') from None
+        raise NotHere('Stable-Baselines3 is not installed: pip install "./python[sb3]"') from None
     with closing(case.bare(render_mode="rgb_array")) as env:
         check_env(env)
 
