@@ -74,6 +74,8 @@ mod wrap;
 
 pub use failure::{Cause, Failure, FailureText, Warn};
 pub(crate) use failure::{argument, within};
+pub use libraries::MAX_LIBRARY_BYTES;
+pub use matrix_file::MAX_MATRIX_BYTES;
 
 /// The Rust of the page is compiled with the documentation's tests.
 #[cfg(doctest)]

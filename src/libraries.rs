@@ -8,7 +8,7 @@ use driftworld_text::ShownPath;
 use crate::Failure;
 
 /// The largest library in bytes.
-pub(crate) const MAX_LIBRARY_BYTES: u64 = 1 << 30;
+pub const MAX_LIBRARY_BYTES: u64 = 1 << 30;
 
 /// The built-in assets, and these libraries in front of them, the last one first.
 pub(crate) fn catalogue(paths: &[PathBuf]) -> Result<Catalogue, Failure> {

@@ -9,7 +9,7 @@ use driftworld_text::{Cells, ShownPath, WordKind, removed};
 use crate::{Failure, argument, documents, output_file};
 
 /// The largest file of a matrix that is read, in bytes. It and the matrix are in memory together.
-pub(crate) const MAX_MATRIX_BYTES: u64 = 400 << 20;
+pub const MAX_MATRIX_BYTES: u64 = 400 << 20;
 
 /// What a file's name says it holds.
 enum Format {

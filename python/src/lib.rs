@@ -44,7 +44,7 @@ mod native {
         document::check,
         drift::PyDrift,
         elements::elements,
-        files::write_file,
+        files::{read_file, write_file},
         logs::{PyLogFile, read_log, validate_log},
         recordings::{PyRecording, png, read_recording},
         scores::{PyScores, report},

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import gymnasium
 
 from driftworld import _native
-from driftworld._files import write_whole
+from driftworld._files import read_text, write_whole
 from driftworld._html import table
 from driftworld._literals import (
     BlockKind,
@@ -176,7 +176,7 @@ class Curriculum(Sequence[Block]):
             FileNotFoundError: If there is no such file.
             SpecError, CurriculumError: As the class.
         """
-        return cls(Path(path).read_text(encoding="utf-8"), path, stand_in=stand_in)
+        return cls(read_text(path), path, stand_in=stand_in)
 
     @classmethod
     def from_dict(cls, scenario: Mapping[str, Any], *, folder: PathLike = ".") -> Curriculum:

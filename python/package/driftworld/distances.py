@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from driftworld import _native
-from driftworld._files import write_whole
+from driftworld._files import read_text, write_whole
 from driftworld._html import note, number, table
 from driftworld._literals import ComparedBy, OrderMethod, Scale
 from driftworld.envs.options import library_bytes
@@ -185,7 +185,7 @@ def _side(side: Any) -> Variant | tuple[str, str]:
 
 def _is_world_file(name: str) -> bool:
     try:
-        document = json.loads(Path(name).read_text(encoding="utf-8"))
+        document = json.loads(read_text(name))
     except (OSError, ValueError):
         return False
     return isinstance(document, dict) and not any(key in document for key in ("name", "parameters", "groups"))
@@ -225,7 +225,7 @@ class DistanceMatrix:
         """
         path = Path(path)
         read = _native.Matrix.from_csv if _ending(path) == ".csv" else _native.Matrix.from_json
-        return cls._of(read(path.read_text(encoding="utf-8")))
+        return cls._of(read(read_text(path, "matrix")))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the matrix as ``.csv`` or ``.json``, by the name's ending."""

@@ -10,10 +10,10 @@ import json
 import os
 import warnings
 from collections.abc import Iterable, Mapping
-from pathlib import Path
 from typing import Any
 
 from driftworld import _native
+from driftworld._files import read_bytes, read_text
 from driftworld._html import note, table
 from driftworld._literals import DocumentKind
 from driftworld._native import Drift, TaskSpec, Variant
@@ -140,7 +140,7 @@ def validate(
     """
     name, text = document_text(document)
     paths = [assets] if isinstance(assets, (str, os.PathLike)) else list(assets)
-    libraries = [Path(path).read_bytes() for path in paths]
+    libraries = [read_bytes(path, "library") for path in paths]
     _, problems, notes, error = _native.check(name, text, kind, libraries)
     for said in notes:
         warnings.warn(said, stacklevel=2)
@@ -166,7 +166,7 @@ def document_text(document: str | os.PathLike[str] | Mapping[str, Any]) -> tuple
     if name in built_in_tasks():
         return f"{name}.json", TaskSpec.load(name).to_json()
     try:
-        return name, Path(name).read_text(encoding="utf-8")
+        return name, read_text(name)
     except FileNotFoundError as error:
         expected = f"the path of a document, JSON text, a dictionary, or one of {', '.join(built_in_tasks())}"
         raise FileNotFoundError(f"document: found no file {name!r}, expected {expected}") from error

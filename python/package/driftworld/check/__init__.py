@@ -15,6 +15,7 @@ import gymnasium
 import numpy as np
 
 import driftworld
+from driftworld._files import read_text
 from driftworld.check.case import Case
 from driftworld.check.report import Finding, Report
 from driftworld.check.rules import RULES, equal_in_processes
@@ -67,7 +68,7 @@ def _environment_of(task: str) -> tuple[str, dict[str, Any]]:
     path = Path(task)
     if path.suffix == ".json" and path.is_file():
         try:
-            document = json.loads(path.read_text(encoding="utf-8"))
+            document = json.loads(read_text(path))
         except ValueError:
             document = {}
         # A task spec declares parameters around a template; whatever is wrong with it, its own reader says.

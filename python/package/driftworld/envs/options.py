@@ -10,12 +10,12 @@ import numbers
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
-from pathlib import Path
 from typing import Annotated, Any, TypedDict, TypeVar, get_args, get_type_hints
 
 import numpy as np
 
 from driftworld import _native
+from driftworld._files import read_bytes
 from driftworld._literals import ActionsName, DepthForm, InfoFor, LabelPlace, Modality, RendererName
 from driftworld.errors import SpecError
 
@@ -334,4 +334,4 @@ def _actions(actions: Any) -> Any:
 
 def library_bytes(assets: Any) -> tuple[bytes, ...]:
     paths = [assets] if isinstance(assets, (str, PathLike)) else list(assets or ())
-    return tuple(Path(path).read_bytes() for path in paths)
+    return tuple(read_bytes(path, "library") for path in paths)

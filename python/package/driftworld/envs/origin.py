@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from driftworld import _native
+from driftworld._files import read_text
 
 #: The largest seed: what fits into the arrays of vector environments' infos.
 MAX_SEED = 2**63 - 1
@@ -244,7 +245,7 @@ def world_text(world: Any) -> tuple[str, str]:
     if isinstance(world, (str, os.PathLike)):
         path = Path(world)
         try:
-            return str(path), path.read_text(encoding="utf-8")
+            return str(path), read_text(path)
         except FileNotFoundError as error:
             raise FileNotFoundError(
                 f"world: found no file {str(path)!r}, expected the path of a world, its JSON, or a dictionary"
