@@ -46,19 +46,19 @@ def test_a_reset_that_fails_changes_nothing() -> None:
     env = env_of(variant="blue", info="full")
     env.reset(seed=5)
     for wrong in (
-        {"seed": 2**63, "options": {"variant": "red"}},
+        {"seed": -1, "options": {"variant": "red"}},
         {"options": {"variant": "rde"}},
         {"options": {"variant": "red", "index": -1}},
         {"options": {"variant": "red", "world": {"objects": 3}}},
     ):
-        with pytest.raises(ValueError):
+        with pytest.raises((ValueError, gym.error.Error)):
             env.reset(**wrong)
     _, info = env.reset()
     assert (info["variant_id"], info["seed"], info["index"]) == ("find_objects#blue", 5, 1)
     envs = vector()
     envs.reset(seed=5)
     with pytest.raises(ValueError):
-        envs.reset(seed=[50, 2**63])
+        envs.reset(seed=[50, -1])
     _, infos = envs.reset()
     assert infos["seed"].tolist() == driftworld.spread_seeds(5, 2) and infos["index"].tolist() == [1, 1]
 

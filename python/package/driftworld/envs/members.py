@@ -14,8 +14,20 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from driftworld import _native
-from driftworld.envs.options import Options, expect_same_spaces, images_among, widest_action
-from driftworld.envs.origin import DrawnWorld, Home, OneVariant, OneWorld, Queue, Source, seed_in_range, world_text
+from driftworld.envs.options import Options, coverings, expect_same_spaces, images_among, widest_action
+from driftworld.envs.origin import (
+    DrawnWorld,
+    Drifting,
+    Home,
+    OneVariant,
+    OneWorld,
+    OwnQueue,
+    Queue,
+    Source,
+    folded_seed,
+    index_in_range,
+    world_text,
+)
 from driftworld.envs.spaces import action_space, label, observation_space
 
 #: Rewards, terminated, truncated, success, and the environments in which something happened.
@@ -162,7 +174,7 @@ class Members:
             self._sources[env] = prepared.sources[env]
         index = None if prepared.indices is None else prepared.indices[env]
         if seed is not None:
-            self.batch.seed(env, seed, index or 0)
+            self.batch.seed(env, folded_seed(seed), index or 0)
             self.has_seed[env] = True
         elif index is not None:
             self.batch.index(env, index)
@@ -187,8 +199,8 @@ class Members:
         if isinstance(index, (Sequence, np.ndarray)) and not isinstance(index, str):
             if len(index) != self.num_envs:
                 raise ValueError(f"index: found {len(index)}, expected {self.num_envs}, one for each environment")
-            return [seed_in_range(one, "index") for one in index]
-        return [seed_in_range(index, "index")] * self.num_envs
+            return [index_in_range(one) for one in index]
+        return [index_in_range(index)] * self.num_envs
 
     def recording(self, env: int) -> _native.RecordingHandle:
         """What was done in an environment's episode.

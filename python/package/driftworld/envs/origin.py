@@ -5,6 +5,7 @@ Which options stand over the worlds is in ``options.py``.
 
 from __future__ import annotations
 
+import hashlib
 import json
 import numbers
 import os
@@ -88,6 +89,15 @@ class Queue:
     def streams(self, num_envs: int) -> list[_native.Stream]:
         """Each environment's share. All have the order together: a long one is held once."""
         return _native.Stream.dealt(self.variants, self.order, num_envs)
+
+
+@dataclass(frozen=True, eq=False)
+class OwnQueue(Queue):
+    """A queue that each environment has for itself: it begins with the first variant."""
+
+    def streams(self, num_envs: int) -> list[_native.Stream]:
+        """The whole queue, for each environment."""
+        return _native.Stream.dealt(self.variants, self.order, 1) * num_envs
 
 
 #: Where an environment's worlds come from, as values: what a user said is in none of them.
@@ -256,26 +266,51 @@ def world_text(world: Any) -> tuple[str, str]:
 def spread_seeds(seed: int, num_envs: int) -> list[int]:
     """The seeds of environments that step together: the seed itself for the first, and for each other one drawn from it.
 
-    They are not added up: environments under seeds s and s + 1 share no world. The first ones are the same however many there are.
+    A seed of 2⁶³ or more is folded first, as ``reset`` does it. They are not added up: environments under seeds s and s + 1 share no world. The first ones are the same however many there are.
 
     Args:
-        seed: What all of them follow from, 0 to 2⁶³ − 1.
+        seed: What all of them follow from, a whole number from 0.
         num_envs: How many environments, from 1.
 
     Returns:
         One seed for each environment, each 0 to 2⁶³ − 1.
     """
-    first = seed_in_range(seed)
+    first = folded_seed(seed)
     drawn = np.random.SeedSequence(first).generate_state(num_envs, np.uint64) >> np.uint64(1)
     return [first, *drawn[1:].tolist()]
 
 
-def seed_in_range(seed: Any, option: str = "seed") -> int:
-    """A seed or index as a whole number that worlds can be drawn under."""
+def whole_number(found: Any, option: str = "seed") -> int:
+    """A whole number from 0.
+
+    Raises:
+        TypeError, ValueError: For anything else.
+    """
     try:
-        number = int(seed.__index__())
+        number = int(found.__index__())
     except AttributeError:
-        raise TypeError(f"{option}: found {seed!r}, expected a whole number") from None
-    if not 0 <= number <= MAX_SEED:
+        raise TypeError(f"{option}: found {found!r}, expected a whole number") from None
+    if number < 0:
+        raise ValueError(f"{option}: found {number}, expected a whole number from 0")
+    return number
+
+
+def folded_seed(seed: Any) -> int:
+    """The seed that worlds are drawn under for a seed of Gymnasium's, which may be any whole number from 0.
+
+    One below 2⁶³ is itself. A larger one becomes the first 8 bytes of the SHA-256 of its hexadecimal digits (ASCII, lower case), read as a big-endian number,
+    without the highest bit.
+    """
+    number = whole_number(seed)
+    if number <= MAX_SEED:
+        return number
+    print = hashlib.sha256(f"{number:x}".encode()).digest()
+    return int.from_bytes(print[:8], "big") & MAX_SEED
+
+
+def index_in_range(index: Any, option: str = "index") -> int:
+    """The number of a world that can be drawn."""
+    number = whole_number(index, option)
+    if number > MAX_SEED:
         raise ValueError(f"{option}: found {number}, expected a whole number in 0..{MAX_SEED}")
     return number

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
-import numbers
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import gymnasium
@@ -17,7 +17,7 @@ from driftworld._literals import CameraName, RenderMode
 from driftworld.envs.conversion import teach_conversions
 from driftworld.envs.members import Members
 from driftworld.envs.options import EnvOptions, Options, refuse_unknown, shows_options
-from driftworld.envs.origin import MAX_SEED, Home
+from driftworld.envs.origin import Home
 from driftworld.envs.picture import Camera
 from driftworld.envs.window import Window
 from driftworld.recordings import Recording
@@ -102,7 +102,8 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         """Begins an episode.
 
         Args:
-            seed: World 0 under this seed; without one the next world under the seed there was. An environment that never had a
+            seed: World 0 under this seed, a whole number from 0; one of 2⁶³ or more is folded by a hash, which ``info["seed"]`` then
+                says (docs/python.md); without one the next world under the seed there was. An environment that never had a
                 seed draws one from ``np_random``.
             options: ``"variant"``, a name; ``"queue"``, a list of variants, one in each episode in turn, over and over; both hold
                 until another is given. ``"index"``, the number of the world. ``"world"``, a world (path, JSON, dictionary) for
@@ -116,8 +117,6 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         teach_conversions()
         members = self._members
         prepared = members.checked(options or {}, many=False)
-        if isinstance(seed, numbers.Integral) and seed > MAX_SEED:
-            raise ValueError(f"seed: found {seed}, expected a whole number in 0..{MAX_SEED}")
         super().reset(seed=seed)
         if seed is None and not members.has_seed[0]:
             seed = int(self.np_random.integers(2**32))

@@ -19,7 +19,7 @@ from driftworld.envs.autoreset import AutoresetMode, autoreset_mode_of
 from driftworld.envs.conversion import teach_conversions
 from driftworld.envs.members import Members
 from driftworld.envs.options import EnvOptions, Options, refuse_unknown, shows_options, whole
-from driftworld.envs.origin import Home, seed_in_range, spread_seeds
+from driftworld.envs.origin import Home, spread_seeds, whole_number
 from driftworld.envs.picture import Camera
 from driftworld.errors import EnvError
 from driftworld.recordings import Recording
@@ -218,13 +218,13 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         if seed is None:
             return [None] * self.num_envs
         if isinstance(seed, (int, np.integer)):
-            return list(spread_seeds(int(seed), self.num_envs))
+            return [int(seed), *spread_seeds(int(seed), self.num_envs)[1:]]
         if isinstance(seed, str) or not isinstance(seed, Iterable):
             raise ValueError(f"seed: found {seed!r}, expected a whole number, or a list of them")
         seeds = list(seed)
         if len(seeds) != self.num_envs:
             raise ValueError(f"seed: found {len(seeds)} seeds, expected {self.num_envs}, one for each environment")
-        return [None if one is None else seed_in_range(one) for one in seeds]
+        return [None if one is None else whole_number(one) for one in seeds]
 
     def step(
         self, actions: Any
