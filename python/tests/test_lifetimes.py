@@ -68,7 +68,8 @@ def test_a_random_agents_log_has_the_form_of_the_commands(tmp_path: Path) -> Non
         def act(self, observation: Any, info: dict[str, Any]) -> Any:
             return space.sample()
 
-    curriculum.run(Random(), tmp_path / "mine", **SMALL)
+    # Its space is seeded by nobody.
+    curriculum.run(Random(), tmp_path / "mine", check_frozen=False, **SMALL)
     assert rows(tmp_path / "mine", OF_THE_PLAN) == rows(tmp_path / "theirs", OF_THE_PLAN)
 
 
@@ -101,7 +102,7 @@ class Memoriser(Circler):
 def test_an_agent_that_evaluations_change_is_refused(tmp_path: Path) -> None:
     regimes = [{"task": "get_to_goal", "variant": "soft", "count": 6, "seed": 1, "max_steps": 30}]
     curriculum = Curriculum.from_dict({"name": "frozen", "blocks": [{"type": "evaluation", "regimes": regimes}]})
-    with pytest.raises(CurriculumError, match="block 0: found reward .* in evaluation experience 0 .get_to_goal#soft."):
+    with pytest.raises(CurriculumError, match="block 0: found another action in step 1 of experience 0 .get_to_goal#soft."):
         curriculum.run(Memoriser(), tmp_path / "log", **SMALL)
     assert curriculum.run(Memoriser(), check_frozen=False, **SMALL).finished
     # What is the same twice leaves the same log, checked or not.

@@ -399,7 +399,7 @@ class Curriculum(Sequence[Block]):
             skip_undrawable: Leave out experiences whose worlds cannot be drawn: each has a row without numbers in the log, and is
                 counted in the summary. If not, the run stops there; the same call with this goes on.
             check_frozen: Run the first 4 evaluations of each block once more at its end, unlogged, and refuse an agent that does not
-                earn the same in them: evaluations change it, or its random numbers are not drawn from the seed of the experience.
+                do the same in them: evaluations change it, or its random numbers are not drawn from the seed of the experience.
             seed: What the agent begins experiences with follows from it, too: another seed is a repeat in the same worlds. 0 is the
                 run that the curriculum has of itself.
             paired_chance: Give ``begin`` the same number in every evaluation of a world, so that an agent that has not changed

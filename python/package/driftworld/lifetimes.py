@@ -36,6 +36,9 @@ if TYPE_CHECKING:
     from driftworld.curricula import Experience
 
 
+#: How many evaluations of each block are run once more; the native loop says which.
+REPEATED_EVALUATIONS = 4
+
 #: The file among an agent's saves that says which lifetime they are of.
 WHOSE = "lifetime.json"
 
@@ -90,8 +93,8 @@ class Agent(Protocol):
     def freeze(self, frozen: bool) -> None:
         """Called before the first block, and before each block where it changes whether the agent may learn.
 
-        A frozen agent earns the same in the same world, drawn by the same seed: the first evaluations of each block are run once more
-        at its end, and a lifetime in which they pay something else is refused. Running statistics, memories and random numbers of
+        A frozen agent does the same in the same world, drawn by the same seed: the first evaluations of each block are run once more
+        at its end, and a lifetime in which it does something else is refused. Running statistics, memories and random numbers of
         evaluations are kept apart from those of learning; the latter are drawn from the seed that ``begin`` gets.
         """
 
@@ -157,7 +160,7 @@ class Lifetime:
         agent: Who lives it.
         log: The folder to log into; without one the log is forgotten.
         resume: Go on with the log in the folder if there is one.
-        check_frozen: Run the first evaluations of each block once more, and refuse an agent that earns something else in them.
+        check_frozen: Run the first evaluations of each block once more, and refuse an agent that does something else in them.
         record: Keep what is done in each experience, beside its row.
     """
 
@@ -256,6 +259,77 @@ class Lifetime:
         return 0
 
 
+class Trace:
+    """What an agent saw and did in one evaluation: a hash for each step."""
+
+    def __init__(self) -> None:
+        self.steps: list[bytes] = []
+        self._seen = b""
+
+    def see(self, observation: Any) -> None:
+        """What is seen before a step; taken before the agent may write into it."""
+        self._seen = _print_of(observation)
+
+    def do(self, action: Any) -> None:
+        """What is done then."""
+        self.steps.append(self._seen + _print_of(action))
+
+
+class Frozenness:
+    """Looks whether an agent does the same when the first evaluations of a block are run once more."""
+
+    def __init__(self) -> None:
+        self._first: dict[int, Trace] = {}
+        self._begun = 0
+
+    def begin_block(self) -> None:
+        """Forgets the block before."""
+        self._first.clear()
+        self._begun = 0
+
+    def trace(self, number: int, learning: bool) -> Trace | None:
+        """What an experience is to be written down in; ``None`` for one that is never run twice."""
+        if learning:
+            return None
+        if number not in self._first:
+            self._begun += 1
+        return Trace() if number in self._first or self._begun <= REPEATED_EVALUATIONS else None
+
+    def expect_same(self, now: Experience, trace: Trace | None) -> None:
+        """Compares an experience with its first run, if this is the second.
+
+        Raises:
+            CurriculumError: If the agent did something else, with the first step in which it did.
+        """
+        if trace is None:
+            return
+        first = self._first.setdefault(now.number, trace)
+        if first.steps == trace.steps:
+            return
+        pairs = enumerate(zip(first.steps, trace.steps, strict=False), start=1)
+        step = next((number for number, (one, other) in pairs if one != other), min(len(first.steps), len(trace.steps)) + 1)
+        raise CurriculumError(
+            f"block {now.block}: found another action in step {step} of experience {now.number} ({now.variant}) when this evaluation was "
+            "run once more, expected the same: evaluations change the agent, or its random numbers are not drawn from the seed that "
+            "begin() gets. Keep running statistics, memories and counters apart while frozen, and use generators of your own in place "
+            "of NumPy's, torch's or Python's global ones; check_frozen=False runs without this check",
+            code="curriculum/not-frozen",
+        )
+
+
+def _print_of(value: Any) -> bytes:
+    """A hash of an observation or an action."""
+    print = hashlib.blake2b(digest_size=8)
+    if isinstance(value, Mapping):
+        for name in sorted(value):
+            print.update(str(name).encode() + _print_of(value[name]))
+    else:
+        array = np.ascontiguousarray(value)
+        print.update(f"{array.dtype.str} {array.shape}".encode())
+        print.update(array.tobytes() if array.dtype != object else repr(value).encode())
+    return print.digest()
+
+
 class Rollout:
     """An agent in its environment, which the native loop asks for one experience after the other.
 
@@ -282,6 +356,7 @@ class Rollout:
         self._agent, self._env, self._experience, self._options = agent, env, experience, options
         self._paired_chance, self._watch, self.end_learning = paired_chance, watch, save
         self._frozen: bool | None = None
+        self._frozenness = Frozenness()
 
     def close(self) -> None:
         """Closes the environment."""
@@ -306,6 +381,7 @@ class Rollout:
 
     def begin_block(self, learning: bool) -> None:
         """Before the first experience of a block. An agent without labels is not to see the border between two blocks of learning."""
+        self._frozenness.begin_block()
         if self._frozen is not (not learning):
             self._frozen = not learning
             self._agent.freeze(self._frozen)
@@ -323,8 +399,13 @@ class Rollout:
             begin(*self._beginning(now))
         observation, info = self._env.reset(options={"world": world, "label": now.label, "origin": origin(now)})
         earned, steps, terminated, truncated = 0.0, 0, False, False
+        trace = self._frozenness.trace(now.number, now.learning)
         while not (terminated or truncated):
+            if trace is not None:
+                trace.see(observation)
             action = self._agent.act(observation, info)
+            if trace is not None:
+                trace.do(action)
             following, reward, terminated, truncated, info = self._env.step(action)
             earned += float(reward)
             steps += 1
@@ -333,6 +414,7 @@ class Rollout:
                     Transition(observation, action, float(reward), terminated, truncated, following, info)
                 )
             observation = following
+        self._frozenness.expect_same(now, trace)
         cut_off = truncated and not terminated
         ended_by = info.get("ended_by") or ("steps" if cut_off else None)
         return earned, bool(info["is_success"]), steps, self._seconds(steps, time), cut_off, ended_by

@@ -12,7 +12,15 @@ from numpy.typing import NDArray
 from driftworld import _native
 from driftworld.envs import DriftworldVectorEnv
 from driftworld.errors import CurriculumError
-from driftworld.lifetimes import Rollout, first_world, one_hot, origin, refuse_options, with_label
+from driftworld.lifetimes import (
+    Rollout,
+    Trace,
+    first_world,
+    one_hot,
+    origin,
+    refuse_options,
+    with_label,
+)
 
 if TYPE_CHECKING:
     from driftworld.curricula import Experience
@@ -123,6 +131,7 @@ class VectorRollout(Rollout):
         self._next, self._block = 0, -1
         self._running: list[int | None] = [None] * self._num_envs
         self._over: dict[int, tuple[float, bool, int, bool, str | None]] = {}
+        self._traces: dict[int, Trace | None] = {}
         self._recordings: dict[int, _native.RecordingHandle] = {}
         self._earned = np.zeros(self._num_envs)
         self._steps = np.zeros(self._num_envs, dtype=np.int64)
@@ -148,6 +157,7 @@ class VectorRollout(Rollout):
         while number not in self._over:
             self._step()
         reward, success, steps, truncated, ended_by = self._over.pop(number)
+        self._frozenness.expect_same(self._experience(number), self._traces.pop(number, None))
         return reward, success, steps, self._seconds(steps, time), truncated, ended_by
 
     def _step(self) -> None:
@@ -157,7 +167,13 @@ class VectorRollout(Rollout):
             self._observations = self._copied()
         active = np.array([number is not None for number in self._running])
         observations = self._observations
+        traces = [(env, self._traces.get(number)) for env, number in enumerate(self._running) if number is not None]
+        checked = [(env, trace) for env, trace in traces if trace is not None]
+        for env, trace in checked:
+            trace.see(_row(observations, env))
         actions = self._agent.act(observations, self._permitted(active))
+        for env, trace in checked:
+            trace.do(np.asarray(actions)[env])
         self._seen, rewards, terminated, truncated, infos = self._env.step(actions)
         rewards, terminated, truncated = rewards * active, terminated & active, truncated & active
         self._success, self._events = infos["is_success"] & active, infos["events"]
@@ -207,6 +223,7 @@ class VectorRollout(Rollout):
                 self._names[env] = {**origin(now), "world_hash": infos["world_hash"][env]}
             self._labels[env] = now.label
             self._running[env], self._earned[env], self._steps[env] = now.number, 0.0, 0
+            self._traces[now.number] = self._frozenness.trace(now.number, now.learning)
             return True
         return False
 
@@ -232,3 +249,10 @@ class VectorRollout(Rollout):
                 for name in ("task_id", "variant_id", "seed", "index", "world_hash")
             }
         return infos
+
+
+def _row(observations: Any, env: int) -> Any:
+    """What one environment shows."""
+    if isinstance(observations, Mapping):
+        return {kind: array[env] for kind, array in observations.items()}
+    return observations[env]
