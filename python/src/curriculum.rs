@@ -19,6 +19,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde_json::json;
 
+use crate::covered::covered_in;
 use crate::document::{Whole, from_python, json_to_py, to_py};
 use crate::errors::{Error, Result};
 use crate::recordings::PyRecording;
@@ -170,6 +171,11 @@ impl PyPlan {
             }
             Ok(ends.into_values().flatten().collect())
         })
+    }
+
+    /// What options of environments take away from its variants: see `covered.rs`.
+    fn covered(&self, py: Python<'_>, overrides: &str, shown: Option<&str>) -> Result<String> {
+        py.detach(|| covered_in(&self.plan, overrides, shown))
     }
 
     /// The world of experience `number`; one without any limit has one of steps here.

@@ -7,6 +7,7 @@ mod action;
 mod batch;
 mod classes;
 mod command;
+mod covered;
 mod curriculum;
 mod design;
 mod distances;
@@ -38,6 +39,7 @@ mod native {
         batch::PyBatch,
         classes::class_numbers,
         command::main,
+        covered::covered,
         curriculum::{PyJournal, PyPlan},
         design::design_curriculum,
         distances::{PyMatrix, compared_by, distance, order_methods, removed_format},

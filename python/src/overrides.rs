@@ -45,6 +45,24 @@ impl WorldOverrides {
         }
     }
 
+    /// The names of the options that stand in place of what every world says.
+    pub(crate) fn given(&self) -> Vec<&'static str> {
+        let given = [
+            ("modalities", self.modalities.is_some()),
+            ("size", self.size.is_some()),
+            ("actions", self.actions.is_some()),
+            ("interact", self.interact.is_some()),
+            ("frame_skip", self.frame_skip.is_some()),
+            ("supersampling", self.supersampling.is_some()),
+            ("max_steps", self.max_steps.is_some()),
+        ];
+        given
+            .into_iter()
+            .filter(|(_, is_given)| *is_given)
+            .map(|(name, _)| name)
+            .collect()
+    }
+
     /// Whether there are none.
     pub(crate) fn is_empty(&self) -> bool {
         *self == Self::default()

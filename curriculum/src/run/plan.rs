@@ -219,6 +219,36 @@ impl Plan {
         self.undrawable
     }
 
+    /// Every variant that it draws worlds of, both ends of drifts among them, each once with the limit of steps that its first regime
+    /// lays over its worlds.
+    pub fn variants(&self) -> Vec<(&Variant, Option<u32>)> {
+        let mut found: BTreeMap<String, (&Variant, Option<u32>)> = BTreeMap::new();
+        for planned in &self.regimes {
+            let variants = match &planned.source {
+                Source::Variant(variant) => vec![variant],
+                Source::Drift { from, to, .. } => vec![from, to],
+                Source::World { .. } => Vec::new(),
+            };
+            for variant in variants {
+                found.entry(variant.id()).or_insert((variant, planned.max_steps));
+            }
+        }
+        found.into_values().collect()
+    }
+
+    /// Every world that it takes from a file, once, by what the world is called, with a limit of steps as in [`Plan::variants`].
+    pub fn world_files(&self) -> Vec<(&str, &World, Option<u32>)> {
+        let mut found: BTreeMap<&str, (&str, &World, Option<u32>)> = BTreeMap::new();
+        for planned in &self.regimes {
+            if let Source::World { world, .. } = &planned.source {
+                found
+                    .entry(&planned.id)
+                    .or_insert((&planned.id, world, planned.max_steps));
+            }
+        }
+        found.into_values().collect()
+    }
+
     /// Every task that it draws worlds of, by the name that the scenario calls it by.
     pub fn tasks(&self) -> &BTreeMap<String, Arc<TaskSpec>> {
         &self.tasks

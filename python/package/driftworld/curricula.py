@@ -413,8 +413,8 @@ class Curriculum(Sequence[Block]):
                 unless ``info="full"`` asks for them.
 
         Raises:
-            CurriculumError: If evaluations change the agent, the log is of another curriculum, agent or environment, or a world cannot be
-                drawn.
+            CurriculumError: If evaluations change the agent, an option stands over what variants differ in, the log is of another
+                curriculum, agent or environment, or a world cannot be drawn.
             MetricsError: If the log cannot be read or written, or the folder holds something else.
             EnvError: If an action is none.
             TypeError: If the agent lacks a method.

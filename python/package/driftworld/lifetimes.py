@@ -29,7 +29,7 @@ from driftworld._files import write_whole
 from driftworld._html import table
 from driftworld._plain import plain
 from driftworld.envs import DriftworldEnv
-from driftworld.envs.options import EnvOptions, Options, widest_action
+from driftworld.envs.options import EnvOptions, Options, coverings, widest_action
 from driftworld.errors import CurriculumError
 
 if TYPE_CHECKING:
@@ -436,6 +436,7 @@ class Rollout:
 def environment(plan: _native.Plan, options: Mapping[str, Any]) -> gymnasium.Env[Any, Any]:
     """The environment that a plan is lived in, at its first world."""
     refuse_options(options)
+    refuse_covering(plan, options)
     world, options = first_world(plan, options)
     env = DriftworldEnv(world=world, **options)
     return Permitted(env, plan.experience_spec(0)["label"], options.get("info") == "full")
@@ -446,6 +447,18 @@ def refuse_options(options: Mapping[str, Any]) -> None:
     refused = [name for name in ("task", "world", "variant", "drift", "task_label") if name in options]
     if refused:
         raise TypeError(f"{refused[0]}: found it among the options, expected none: the curriculum says what is lived")
+
+
+def refuse_covering(plan: _native.Plan, options: Mapping[str, Any]) -> None:
+    """Refuses options that take away what variants of a plan differ in: a lifetime would compare what is one.
+
+    Raises:
+        CurriculumError: That names the options, the keys of worlds, and the variants.
+    """
+    read = Options.read(cast(EnvOptions, dict(options)))
+    told = coverings(plan.covered(read.overrides, read.images))
+    if told:
+        raise CurriculumError("\n".join(told.values()), code="curriculum/covered")
 
 
 def first_world(plan: _native.Plan, options: Mapping[str, Any]) -> tuple[_native.Stream, dict[str, Any]]:

@@ -18,6 +18,7 @@ from driftworld.lifetimes import (
     first_world,
     one_hot,
     origin,
+    refuse_covering,
     refuse_options,
     with_label,
 )
@@ -101,6 +102,7 @@ class VectorRollout(Rollout):
         save: Callable[[int], None],
     ) -> None:
         refuse_options(options)
+        refuse_covering(plan, options)
         # Views: what an agent gets is copied once, when all environments that end have begun anew.
         world, options = first_world(plan, options)
         envs = DriftworldVectorEnv(

@@ -6,6 +6,7 @@ Single and vector environments are both made of it; what Gymnasium wants of each
 from __future__ import annotations
 
 import json
+import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -75,6 +76,7 @@ class Members:
         self.layout = {**home_layout, "action": widest_action([home_layout, *layouts])}
         self._modalities: tuple[str, ...] = options.modalities or ()
         self._checked: set[str] = set()
+        self._covering: set[str] = set()
         streams = self._streams(self._sources)
         self._labels = home.labels()
         self.label_in_info = options.task_label == "info"
@@ -143,6 +145,18 @@ class Members:
             for layout in self._options.layouts(unseen):
                 expect_same_spaces(self.layout, layout, self._modalities)
         self._checked.update(new)
+        self._warn_of_covered(list(new.values()) or list(_ends(source)))
+
+    def _warn_of_covered(self, variants: Sequence[_native.Variant]) -> None:
+        """Warns of options that take away what these variants differ in, once of each option."""
+        if not variants:
+            return
+        first = [] if self._home.first is None else [self._home.first]
+        found = _native.covered([*first, *variants], self._options.overrides, self._options.images)
+        for option, told in coverings(found).items():
+            if option not in self._covering:
+                self._covering.add(option)
+                warnings.warn(told, stacklevel=2)
 
     def checked(self, options: Mapping[str, Any], *, many: bool) -> Prepared:
         """What the options of a reset ask for, looked through before anything is changed.
@@ -336,6 +350,10 @@ class Members:
 
 def _variants(source: OneVariant | Queue) -> Sequence[_native.Variant]:
     return source.variants if isinstance(source, Queue) else (source.variant,)
+
+
+def _ends(source: Source) -> Sequence[_native.Variant]:
+    return (source.from_, source.to) if isinstance(source, Drifting) else ()
 
 
 #: Rows that a native batch can be handed.

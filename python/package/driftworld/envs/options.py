@@ -165,6 +165,11 @@ class Options:
         except SpecError as error:
             raise _as_options(error) from None
 
+    @property
+    def images(self) -> str | None:
+        """The images that observations hold, as JSON, where the options say it."""
+        return None if self.modalities is None else json.dumps(images_among(self.modalities))
+
     def shown(self, layouts: Iterable[dict[str, Any]]) -> Options:
         """The same with the modalities that worlds of these layouts ask for, where none are said.
 
@@ -177,6 +182,29 @@ class Options:
         if not asked:
             raise ValueError(f"modalities: found worlds that show nothing, expected some of {', '.join(MODALITIES)}")
         return replace(self, modalities=tuple(kind for kind in MODALITIES if kind in asked))
+
+
+#: What to do in place of taking away by these options what variants differ in.
+_INSTEAD = {
+    "modalities": "; with blank=True and all their modalities each shows its own images",
+    "actions": "; actions=None is what each variant says",
+}
+
+
+def coverings(found: str) -> dict[str, str]:
+    """What the native module found that options take away from variants, in words, by option."""
+    told = {}
+    for each in json.loads(found):
+        option, said = each["option"], [(name, json.dumps(value)) for name, value in each["said"]]
+        if len(said) == 1:
+            found_over = f"{said[0][0]} draws anew in each world"
+        else:
+            found_over = "differs between " + " and ".join(f"{name} ({value})" for name, value in said)
+        told[option] = (
+            f"{option}: found it over {each['key']}, which {found_over}, expected no such option, or variants that agree there: "
+            f"under it they are one{_INSTEAD.get(option, '')}"
+        )
+    return told
 
 
 def images_among(kinds: Iterable[str]) -> list[str]:

@@ -1,0 +1,211 @@
+//! Options that lay something over a key in which variants differ. With such an option the variants would be one.
+
+use std::collections::BTreeMap;
+
+use driftworld_curriculum::Plan;
+use driftworld_spec::{DEFAULT_VARIANT, Modality, Resolved, Variant, World, WorldDraft};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use serde_json::{Value as Json, json};
+
+use crate::errors::Result;
+use crate::supply::overrides_of;
+use crate::variant::PyVariant;
+
+/// An option: its name, the keys of a world that it stands in place of, and what a world says in them.
+struct EnvOption {
+    name: &'static str,
+    keys: &'static [&'static str],
+    /// Whether it may make worlds of different tasks alike, so that one learner can run through them.
+    joins_tasks: bool,
+    read: fn(&WorldDraft) -> Json,
+}
+
+const OPTIONS: [EnvOption; 7] = [
+    EnvOption {
+        name: "modalities",
+        keys: &["/agent_params/modalities"],
+        joins_tasks: false,
+        read: |world| json!(world.agent_params.modalities),
+    },
+    EnvOption {
+        name: "size",
+        keys: &["/agent_params/observation_size", "/agent_params/observation_width"],
+        joins_tasks: true,
+        read: |world| {
+            let agent = &world.agent_params;
+            let height = agent.observation_size;
+            json!([height, agent.observation_width.unwrap_or(height)])
+        },
+    },
+    EnvOption {
+        name: "actions",
+        keys: &["/agent_params/actions"],
+        joins_tasks: false,
+        read: |world| json!(world.agent_params.actions),
+    },
+    EnvOption {
+        name: "interact",
+        keys: &["/agent_params/interact"],
+        joins_tasks: false,
+        read: |world| json!(world.agent_params.interact),
+    },
+    EnvOption {
+        name: "frame_skip",
+        keys: &["/agent_params/frame_skip"],
+        joins_tasks: false,
+        read: |world| json!(world.agent_params.frame_skip.max(1)),
+    },
+    EnvOption {
+        name: "supersampling",
+        keys: &["/agent_params/supersampling"],
+        joins_tasks: false,
+        read: |world| json!(world.agent_params.supersampling),
+    },
+    EnvOption {
+        name: "max_steps",
+        keys: &["/max_steps", "/max_seconds"],
+        joins_tasks: true,
+        read: |world| json!({ "max_steps": world.max_steps, "max_seconds": world.max_seconds }),
+    },
+];
+
+/// What the worlds of a variant say in the keys of all options, and in which of them worlds of the one variant differ.
+struct Said {
+    name: String,
+    task: String,
+    values: WorldDraft,
+    drawn: Vec<String>,
+    /// The same of the task's own defaults.
+    usual: Option<WorldDraft>,
+}
+
+impl Said {
+    fn of_variant(variant: &Variant, max_steps: Option<u32>) -> Self {
+        let (values, drawn) = said(variant, max_steps);
+        let usual = variant.task().variant(DEFAULT_VARIANT).ok();
+        Self {
+            name: variant.id(),
+            task: variant.task().name().to_owned(),
+            values,
+            drawn,
+            usual: usual.map(|usual| said(&usual, max_steps).0),
+        }
+    }
+
+    fn of_world(name: &str, world: &World, max_steps: Option<u32>) -> Self {
+        let mut values = world.clone().into_draft();
+        if let Some(max_steps) = max_steps {
+            values.limit_steps(max_steps);
+        }
+        Self {
+            name: name.to_owned(),
+            task: name.to_owned(),
+            values,
+            drawn: Vec::new(),
+            usual: None,
+        }
+    }
+}
+
+/// A variant's template with the values of the variant in the keys of all options, and the pointers of what is drawn there.
+fn said(variant: &Variant, max_steps: Option<u32>) -> (WorldDraft, Vec<String>) {
+    let template = variant.task().world();
+    let (mut values, mut drawn) = (template.base.clone(), Vec::new());
+    for hole in &template.holes {
+        if !OPTIONS.iter().any(|option| option.covers(&hole.pointer)) {
+            continue;
+        }
+        match variant.resolve(&hole.source) {
+            // A value that cannot stand there is refused where the world is made.
+            Resolved::Value(value) => drop(hole.fill(&mut values, &value)),
+            Resolved::Draw(_) | Resolved::Randomized(_) => drawn.push(hole.pointer.clone()),
+        }
+    }
+    if let Some(max_steps) = max_steps {
+        values.limit_steps(max_steps);
+        drawn.retain(|pointer| !pointer.starts_with("/max_"));
+    }
+    (values, drawn)
+}
+
+impl EnvOption {
+    fn covers(&self, pointer: &str) -> bool {
+        self.keys.iter().any(|key| pointer.starts_with(key))
+    }
+
+    /// What it takes away, if anything: its key, and who says what there without it. `laid` lays all options over a world.
+    fn taken(&self, all: &[Said], is_given: bool, laid: &dyn Fn(&WorldDraft) -> WorldDraft) -> Option<Json> {
+        let keys: Vec<String> = self.keys.iter().map(|key| key[1..].replace('/', ".")).collect();
+        let told = |said: Vec<(&str, Json)>| json!({ "option": self.name, "key": keys.join(", "), "said": said });
+        // By what worlds say with the options: who said it first, and what that one says without.
+        let mut first: BTreeMap<(String, &str), (&str, Json)> = BTreeMap::new();
+        for said in all {
+            if is_given && said.drawn.iter().any(|pointer| self.covers(pointer)) {
+                return Some(told(vec![(&said.name, json!("drawn anew in each world"))]));
+            }
+            let (before, after) = ((self.read)(&said.values), (self.read)(&laid(&said.values)));
+            let task = if self.joins_tasks { said.task.as_str() } else { "" };
+            let (other, theirs) = first
+                .entry((after.to_string(), task))
+                .or_insert_with(|| (&said.name, before.clone()));
+            if *theirs != before {
+                return Some(told(vec![(*other, theirs.clone()), (&said.name, before)]));
+            }
+            if let Some(usual) = &said.usual {
+                let (theirs, same) = ((self.read)(usual), (self.read)(&laid(usual)));
+                if after != before && theirs != before && same == after {
+                    let defaults = format!("{}#{DEFAULT_VARIANT}", said.task);
+                    return Some(told(vec![(&said.name, before), (&defaults, theirs)]));
+                }
+            }
+        }
+        None
+    }
+}
+
+/// What options take away from these, as a JSON list: for each option the first that shows it.
+fn taken(all: &[Said], overrides: &str, shown: Option<&str>) -> Result<String> {
+    let overrides = overrides_of(overrides)?;
+    let shown: Option<Vec<Modality>> = shown
+        .map(serde_json::from_str)
+        .transpose()
+        .map_err(|error| PyValueError::new_err(format!("modalities: {error}")))?;
+    let laid = |world: &WorldDraft| {
+        let mut world = world.clone();
+        overrides.apply(&mut world);
+        if let Some(shown) = &shown {
+            world
+                .agent_params
+                .modalities
+                .retain(|modality| shown.contains(modality));
+        }
+        world
+    };
+    let given = overrides.given();
+    let found = OPTIONS
+        .iter()
+        .filter_map(|option| option.taken(all, given.contains(&option.name), &laid));
+    Ok(found.collect::<Json>().to_string())
+}
+
+/// What options take away from variants: a JSON list. `shown` are the images that observations hold, as a JSON list.
+#[pyfunction]
+pub(crate) fn covered(variants: Vec<Bound<'_, PyVariant>>, overrides: &str, shown: Option<&str>) -> Result<String> {
+    let all: Vec<Said> = variants
+        .iter()
+        .map(|variant| Said::of_variant(&variant.get().0, None))
+        .collect();
+    taken(&all, overrides, shown)
+}
+
+/// The same of all variants and worlds of a plan.
+pub(crate) fn covered_in(plan: &Plan, overrides: &str, shown: Option<&str>) -> Result<String> {
+    let variants = plan.variants().into_iter();
+    let worlds = plan.world_files().into_iter();
+    let all: Vec<Said> = variants
+        .map(|(variant, limit)| Said::of_variant(variant, limit))
+        .chain(worlds.map(|(name, world, limit)| Said::of_world(name, world, limit)))
+        .collect();
+    taken(&all, overrides, shown)
+}
