@@ -249,9 +249,14 @@ impl PyBatch {
         Ok(PyTuple::new(py, events?)?)
     }
 
-    /// Takes down what is done from now on, or no longer.
-    fn record(&self, records: bool) -> Result<()> {
-        self.lock()?.batch.set_recording(records);
+    /// Takes down what is done from now on, or no longer, in one environment or in all.
+    #[pyo3(signature = (records, env=None))]
+    fn record(&self, records: bool, env: Option<usize>) -> Result<()> {
+        let batch = &mut self.lock()?.batch;
+        match env {
+            Some(env) => batch.set_recording_of(env, records),
+            None => batch.set_recording(records),
+        }
         Ok(())
     }
 

@@ -96,14 +96,9 @@ def test_sb3s_options_are_for_all_or_for_each() -> None:
     envs.reset()
     assert [info["variant_id"].partition("#")[2] for info in envs.reset_infos] == ["near"] * 3
     assert [each["version"] for each in envs.env_method("state", indices=[0, 2])] == [1, 1]
-    assert envs.get_attr("num_envs", indices=1) == [3]
     assert envs.env_is_wrapped(gym.Wrapper) == [False] * 3
     assert [image.shape for image in envs.get_images()] == [(24, 32, 3)] * 3
     assert envs.render().shape == (48, 64, 3)
-    with pytest.raises(ValueError, match="expected all"):
-        envs.set_attr("anything", 1, indices=[0])
-    envs.set_attr("anything", 1)
-    assert envs.get_attr("anything") == [1] * 3
     with pytest.raises(AttributeError):
         envs.get_attr("nothing")
     with pytest.raises(RuntimeError, match="step_async before"):
@@ -112,6 +107,120 @@ def test_sb3s_options_are_for_all_or_for_each() -> None:
         DriftworldVecEnv(FIND, 2, autoreset_mode="disabled")
     envs.close()
     envs.close()
+
+
+def both(num_envs: int = 3, **options: Any) -> tuple[Any, Any]:
+    """The adapter, and Stable-Baselines3's loop over single environments, after three steps of equal seeds and actions."""
+    from driftworld.adapters.sb3 import DriftworldVecEnv
+
+    options = {**SMALL, "info": "full", "render_mode": "rgb_array", "render_size": (24, 32), "max_steps": 9, **options}
+    ours, theirs = DriftworldVecEnv(FIND, num_envs, **options), in_a_loop(4, num_envs, **options)
+    ours.seed(4)
+    for envs in (ours, theirs):
+        envs.reset()
+        for _ in range(3):
+            envs.step(np.arange(num_envs))
+    return ours, theirs
+
+
+#: Methods of single environments with their arguments, one after the other.
+CALLS: list[tuple[str, tuple[Any, ...], dict[str, Any]]] = [
+    ("state", (), {}),
+    ("origin", (), {}),
+    ("warnings", (), {}),
+    ("render", (), {}),
+    ("record", (), {}),
+    ("recording", (), {}),
+    ("get_wrapper_attr", ("action_space",), {}),
+    ("has_wrapper_attr", ("spec",), {}),
+    ("has_wrapper_attr", ("nothing",), {}),
+    ("reset", (), {"options": {"variant": "blue"}}),
+    ("reset", (), {"seed": 2**63 + 5}),
+    ("reset", (), {"options": {"queue": ["red", "dusk"]}}),
+    ("reset", (), {"options": {"index": 4}}),
+    ("reset", (), {"seed": 3, "options": {"variant": "red"}}),
+    ("reset", (), {}),
+    ("record", (False,), {}),
+    ("state", (), {}),
+]
+#: Attributes of single environments.
+ATTRIBUTES = ["action_space", "observation_space", "metadata", "render_mode", "np_random_seed"]
+
+
+def answers(envs: Any, method: str, *args: Any, **kwargs: Any) -> Any:
+    """What a method returns; of errors their kind."""
+    try:
+        return envs.env_method(method, *args, **kwargs)
+    except (AttributeError, RuntimeError, TypeError, ValueError, gym.error.Error) as error:
+        return type(error)
+
+
+@pytest.mark.learners
+@pytest.mark.parametrize("indices", [None, 1, -1, [0], [2, 0], [], range(3), [1, 1]], ids=str)
+def test_sb3s_contract_is_answered_as_over_single_environments(indices: Any) -> None:
+    pytest.importorskip("stable_baselines3", reason="the adapter is for it")
+    ours, theirs = both()
+    for name, args, kwargs in CALLS:
+        found = [answers(envs, name, *args, indices=indices, **kwargs) for envs in (ours, theirs)]
+        assert first_difference(*found, f"{name}{args}{kwargs}") is None
+        assert first_difference(*[answers(envs, "state") for envs in (ours, theirs)], f"all after {name}") is None
+        assert first_difference(*[answers(envs, "recording") for envs in (ours, theirs)], f"all after {name}") is None
+        steps = [envs.step(np.arange(3))[:3] for envs in (ours, theirs)]
+        assert first_difference(*steps, f"the step after {name}") is None
+    for name in ATTRIBUTES:
+        assert ours.get_attr(name, indices) == theirs.get_attr(name, indices), name
+        assert ours.has_attr(name) and theirs.has_attr(name)
+    for left, right in zip(ours.get_attr("spec", indices), theirs.get_attr("spec", indices), strict=True):
+        assert (left.id, left.kwargs, left.max_episode_steps) == (right.id, right.kwargs, right.max_episode_steps)
+    assert ours.has_attr("num_envs") == theirs.has_attr("num_envs") is False
+    assert ours.env_is_wrapped(gym.wrappers.FlattenObservation, indices) == theirs.env_is_wrapped(
+        gym.wrappers.FlattenObservation, indices
+    )
+    for envs in (ours, theirs):
+        envs.set_attr("mine", 1)
+        envs.set_attr("mine", [7], indices)
+    assert ours.get_attr("mine") == theirs.get_attr("mine")
+    for left, right in zip(ours.get_attr("unwrapped", indices), theirs.get_attr("unwrapped", indices), strict=True):
+        assert left.state() == right.state()
+    assert first_difference(ours.get_images(), theirs.get_images()) is None
+    assert first_difference(ours.render(), theirs.render()) is None
+    for bad in (3, [0, 3]):
+        for envs in (ours, theirs):
+            with pytest.raises(IndexError):
+                envs.env_method("state", indices=bad)
+
+
+@pytest.mark.learners
+def test_sb3_is_refused_what_would_do_nothing_or_cannot_be_done_for_some() -> None:
+    pytest.importorskip("stable_baselines3", reason="the adapter is for it")
+    ours, _ = both()
+    for option in ("frame_skip", "variant", "max_steps", "modalities", "size", "actions", "task", "render_mode", "drift"):
+        for indices in (None, [0]):
+            with pytest.raises(ValueError, match=rf"set_attr\('{option}'\): .*set_options"):
+                ours.set_attr(option, 4, indices)
+    for name in ("action_space", "observation_space", "spec", "state", "reset", "np_random", "unwrapped", "metadata"):
+        with pytest.raises(ValueError, match="what environments have of themselves"):
+            ours.set_attr(name, None)
+    for method, args in (("step", (1,)), ("close", ())):
+        with pytest.raises(RuntimeError, match="of all at once"):
+            ours.env_method(method, *args, indices=[0])
+    assert ours.env_method("close") == [None] * 3
+
+
+@pytest.mark.learners
+def test_sb3s_monitor_counts_from_a_reset_of_some() -> None:
+    pytest.importorskip("stable_baselines3", reason="the adapter is for it")
+    from driftworld.adapters.sb3 import make_vec_env
+
+    envs = make_vec_env(FIND, num_envs=3, seed=0, max_steps=8, **SMALL)
+    envs.reset()
+    lengths: list[int] = []
+    for number in range(16):
+        if number == 3:
+            envs.env_method("reset", indices=[0], options={"variant": "blue"})
+        infos = envs.step(np.ones(3, dtype=np.int64))[3]
+        lengths += [info["episode"]["l"] for info in infos if "episode" in info]
+    assert lengths == [8] * len(lengths) and len(lengths) == 5
 
 
 @pytest.mark.learners

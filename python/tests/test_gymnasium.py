@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import hashlib
 import json
 import pickle
 import subprocess
@@ -493,3 +494,44 @@ def test_videos_are_recorded(tmp_path: Path) -> None:
         *_, truncated, _ = env.step(env.action_space.sample())
     env.close()
     assert list((tmp_path / "videos").glob("*.mp4"))
+
+
+@pytest.mark.parametrize("seed", [0, 7, 2**63 - 1, 2**63, 2**64, 3**200])
+def test_any_whole_number_from_0_is_a_seed(seed: int) -> None:
+    env, envs = gym.make(FIND, size=8), gym.make_vec(FIND, num_envs=2, size=8)
+    info = env.reset(seed=seed)[1]
+    folded = int.from_bytes(hashlib.sha256(f"{seed:x}".encode()).digest()[:8], "big") % 2**63
+    assert info["seed"] == (seed if seed < 2**63 else folded)
+    assert env.unwrapped.np_random_seed == seed
+    again = env.reset(seed=env.unwrapped.np_random_seed)[1]
+    assert again["world_hash"] == info["world_hash"]
+    for given in (seed, [seed, 0]):
+        told = envs.reset(seed=given)[1]
+        assert told["world_hash"][0] == info["world_hash"] and told["seed"][0] == info["seed"]
+        assert envs.unwrapped.np_random_seed[0] == seed
+    assert driftworld.spread_seeds(seed, 1) == [info["seed"]]
+    unseeded = gym.make(FIND, size=8)
+    unseeded.reset()
+    unseeded.reset(seed=unseeded.unwrapped.np_random_seed)
+
+
+def test_a_spec_says_the_limit_that_options_say() -> None:
+    assert gym.make(FIND, max_steps=9).spec.max_episode_steps == 9
+    assert gym.make(FIND, max_steps=9, max_episode_steps=4).spec.max_episode_steps == 4
+    assert gym.make(FIND).spec.max_episode_steps is None
+    assert gym.make(FIND, max_steps=0).spec.max_episode_steps is None
+    assert gym.make_vec(FIND, num_envs=2, max_steps=9).spec.max_episode_steps == 9
+    again = gym.make(gym.make(FIND, max_steps=3, size=8).spec)
+    again.reset(seed=0)
+    assert [again.step(again.action_space.sample())[3] for _ in range(3)] == [False, False, True]
+
+
+def test_a_vector_answers_for_each_environment() -> None:
+    envs = gym.make_vec(FIND, num_envs=2, size=8, render_mode="rgb_array").unwrapped
+    with pytest.raises(gym.error.ResetNeeded, match="render: found environments that had no reset"):
+        envs.render()
+    infos = envs.reset(seed=3)[1]
+    assert [envs.origin(env)["world_hash"] for env in range(2)] == infos["world_hash"].tolist()
+    assert [each["seed"] for each in envs.call("origin")] == infos["seed"].tolist()
+    with pytest.raises(IndexError, match="origin: found environment 2, expected 0 to 1"):
+        envs.origin(2)

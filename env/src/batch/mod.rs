@@ -203,7 +203,14 @@ impl Batch {
 
     /// Takes down what is done in each environment from now on, or no longer. Steps take memory then.
     pub fn set_recording(&mut self, records: bool) {
-        for slot in &mut self.slots {
+        for env in 0..self.slots.len() {
+            self.set_recording_of(env, records);
+        }
+    }
+
+    /// As [`Batch::set_recording`], of one environment alone. Nothing where there is no such environment.
+    pub fn set_recording_of(&mut self, env: usize, records: bool) {
+        if let Some(slot) = self.slots.get_mut(env) {
             slot.set_recording(records);
         }
     }

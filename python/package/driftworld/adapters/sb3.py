@@ -12,13 +12,14 @@ Observations are copies, for Stable-Baselines3 keeps the last one while the next
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, cast
 
 import gymnasium
 import numpy as np
 import numpy.typing as npt
 
 import driftworld
+from driftworld.envs.part import Part
 
 try:
     from stable_baselines3.common.vec_env import VecEnv, VecMonitor
@@ -54,7 +55,7 @@ def make_vec_env(
     """
     environments = DriftworldVecEnv(env_id, num_envs, **options)
     environments.seed(seed)
-    return VecMonitor(environments, monitor_dir)
+    return _Monitor(environments, monitor_dir)
 
 
 class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where it is not installed.
@@ -63,6 +64,8 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
     An episode's end is followed by the next episode's first observation, as Stable-Baselines3 expects; ``info`` then says
     ``"terminal_observation"`` and ``"TimeLimit.truncated"``, and the rest of it is what the step itself returned. ``set_options`` takes what
     ``reset(options=…)`` of a single environment takes, for all or one by one, such as ``[{"variant": "red"}, {"variant": "blue"}]``.
+    ``get_attr``, ``set_attr`` and ``env_method`` answer for each environment by itself, as ``DummyVecEnv`` does over single ones;
+    what would change nothing is refused.
 
     Args:
         env_id: Such as ``"driftworld/FindObjects-v0"``.
@@ -87,6 +90,7 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
             copy=True,
             **options,
         )
+        self._parts = [Part(cast(Any, self.envs.unwrapped), index) for index in range(num_envs)]
         self._actions: npt.NDArray[Any] | None = None
         super().__init__(num_envs, self.envs.single_observation_space, self.envs.single_action_space)
 
@@ -165,26 +169,24 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
         return list(pictures) if pictures is not None else [None] * self.num_envs
 
     def get_attr(self, attr_name: str, indices: int | Iterable[int] | None = None) -> list[Any]:
-        """An attribute of the environments, which all share it.
+        """An attribute of each of these environments, as ``DummyVecEnv`` has it over single ones.
 
         Raises:
             AttributeError: There is none of that name.
         """
-        value = getattr(self.envs, attr_name)
-        return [value for _ in self._get_indices(indices)]
+        return [part.get_wrapper_attr(attr_name) for part in self._chosen(indices)]
 
     def set_attr(self, attr_name: str, value: Any, indices: int | Iterable[int] | None = None) -> None:
-        """Sets an attribute of all environments at once.
+        """Sets an attribute of your own in each of these environments; :meth:`get_attr` has it again.
 
         Raises:
-            ValueError: ``indices`` names some of them only.
+            ValueError: For an option that environments are made with, and for what they have of themselves: nothing would change.
         """
-        if sorted(self._get_indices(indices)) != list(range(self.num_envs)):
-            raise ValueError(
-                f"set_attr({attr_name!r}): found some of {self.num_envs} environments, expected all, for they share their "
-                "attributes; set_options gives each its own variant or world"
-            )
-        setattr(self.envs, attr_name, value)
+        chosen = self._chosen(indices)
+        for part in chosen:
+            part.refuse_to_set(attr_name, value)
+        for part in chosen:
+            setattr(part, attr_name, value)
 
     def env_method(
         self,
@@ -193,23 +195,46 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
         indices: int | Iterable[int] | None = None,
         **method_kwargs: Any,
     ) -> list[Any]:
-        """A method of the environments: ``"state"``, ``"warnings"`` and ``"render"`` for each of ``indices``, any other once for all.
+        """What a method of each of these environments answers, as ``DummyVecEnv`` has it over single ones.
+
+        ``"reset"`` begins an episode in these alone; the step after it hands out the rest.
 
         Raises:
             AttributeError: There is none of that name.
+            RuntimeError: For ``"step"``, and for ``"close"`` of some: environments step and close together.
         """
-        if method_name in ("state", "warnings"):
-            every = self.envs.unwrapped.call(method_name)
-            return [every[index] for index in self._get_indices(indices)]
-        if method_name == "render":
-            pictures = self.get_images()
-            return [pictures[index] for index in self._get_indices(indices)]
-        value = getattr(self.envs, method_name)(*method_args, **method_kwargs)
-        return [value for _ in self._get_indices(indices)]
+        chosen = self._chosen(indices)
+        if method_name == "close" and {id(part) for part in chosen} == {id(part) for part in self._parts}:
+            self.close()
+            return [None for _ in chosen]
+        return [part.get_wrapper_attr(method_name)(*method_args, **method_kwargs) for part in chosen]
 
     def env_is_wrapped(self, wrapper_class: type[Any], indices: int | Iterable[int] | None = None) -> list[bool]:
         """Never: there is nothing around native environments."""
-        return [False for _ in self._get_indices(indices)]
+        return [False for _ in self._chosen(indices)]
+
+    def _chosen(self, indices: int | Iterable[int] | None) -> list[Part]:
+        """The environments that are asked for; negative numbers count from the last."""
+        return [self._parts[index] for index in self._get_indices(indices)]
+
+
+class _Monitor(VecMonitor):  # type: ignore[misc, unused-ignore] # Any where it is not installed.
+    """Counts an episode from its beginning also where that was asked of some environments alone."""
+
+    def env_method(
+        self,
+        method_name: str,
+        *method_args: Any,
+        indices: int | Iterable[int] | None = None,
+        **method_kwargs: Any,
+    ) -> list[Any]:
+        """As :meth:`DriftworldVecEnv.env_method`."""
+        answers: list[Any] = self.venv.env_method(method_name, *method_args, indices=indices, **method_kwargs)
+        if method_name == "reset":
+            chosen = list(self._get_indices(indices))
+            self.episode_returns[chosen] = 0
+            self.episode_lengths[chosen] = 0
+        return answers
 
 
 def _of_one(told: Mapping[str, Any], index: int) -> dict[str, Any]:

@@ -8,10 +8,12 @@ from __future__ import annotations
 import json
 import warnings
 from collections.abc import Mapping, Sequence
+from copy import copy
 from typing import Any, NamedTuple
 
 import numpy as np
 from gymnasium import spaces
+from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
 
 from driftworld import _native
@@ -102,6 +104,14 @@ class Members:
         self.has_begun = np.zeros(self.num_envs, dtype=np.bool_)
         self._names = [""] * self.num_envs
 
+    def limited(self, spec: EnvSpec | None) -> EnvSpec | None:
+        """A spec of Gymnasium's that says the limit of steps that options lay over all worlds."""
+        if spec is not None and self._options.max_steps:
+            spec = copy(spec)
+            limits = [limit for limit in (spec.max_episode_steps, self._options.max_steps) if limit]
+            spec.max_episode_steps = min(limits)
+        return spec
+
     def _arranged(self, buffers: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
         """The buffers in the order of the options."""
         buffers["state"] = buffers["state"].reshape(self.num_envs, -1)
@@ -172,7 +182,7 @@ class Members:
             raise ValueError(f"options: found {unknown[0]!r}, expected some of {', '.join(known)}{also}")
         if sum(options.get(key) is not None for key in ("variant", "variants", "queue")) > 1:
             raise ValueError("options: found several of variant, variants and queue, expected one of them")
-        sources = self._new_sources(options)
+        sources = self._new_sources(options, many)
         streams = None if sources is None else self._streams(sources)
         world = options.get("world")
         given = None
@@ -195,7 +205,7 @@ class Members:
         if prepared.world is not None:
             self.batch.give(env, prepared.world)
 
-    def _new_sources(self, options: Mapping[str, Any]) -> list[Source] | None:
+    def _new_sources(self, options: Mapping[str, Any], many: bool) -> list[Source] | None:
         if options.get("variant") is not None:
             return [OneVariant(self._home.variant(options["variant"], "variant"))] * self.num_envs
         if options.get("variants") is not None:
@@ -204,7 +214,8 @@ class Members:
                 raise ValueError(f"variants: found {len(variants)}, expected {self.num_envs}, one for each environment")
             return [OneVariant(self._home.variant(variant, "variant")) for variant in variants]
         if options.get("queue") is not None:
-            return [self._home.queue(_listed(options["queue"], "queue"))] * self.num_envs
+            queue = self._home.queue(_listed(options["queue"], "queue"))
+            return [queue if many else OwnQueue(queue.variants, queue.order)] * self.num_envs
         return None
 
     def _indices(self, index: Any) -> list[int] | None:
@@ -277,12 +288,12 @@ class Members:
             return views[self._modalities[0]][env].copy()
         return {kind: view[env].copy() for kind, view in views.items()}
 
-    def observations(self, copy: bool) -> Any:
+    def observations(self, copied: bool) -> Any:
         """All observations: copies, or views on the batch's buffers that nobody can write through."""
         if not self._options.is_dict:
             view = self._views[self._modalities[0]]
-            return view.copy() if copy else view
-        return {kind: view.copy() if copy else view[:] for kind, view in self._views.items()}
+            return view.copy() if copied else view
+        return {kind: view.copy() if copied else view[:] for kind, view in self._views.items()}
 
     def step_one(self, action: Any) -> tuple[float, bool, bool, bool, bool]:
         """A step of the only environment: reward, terminated, truncated, success, whether anything happened."""

@@ -89,6 +89,7 @@ class Options:
         task_label: Where the agent is told which variant it is in.
         names_variant: Whether infos name task and variant.
         libraries: The bytes of asset libraries, the last one first in search.
+        max_steps: The limit of steps laid over each world, if any.
         overrides: What is laid over each world, as JSON.
     """
 
@@ -99,6 +100,7 @@ class Options:
     task_label: str
     names_variant: bool
     libraries: tuple[bytes, ...]
+    max_steps: int | None
     overrides: str
 
     @classmethod
@@ -151,6 +153,7 @@ class Options:
             task_label=task_label,
             names_variant=task_label != "none" or options["info"] == "full",
             libraries=library_bytes(options["assets"]),
+            max_steps=overrides["max_steps"],
             overrides=json.dumps({name: value for name, value in overrides.items() if value is not None}),
         )
 

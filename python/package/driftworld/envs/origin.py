@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from driftworld import _native
 from driftworld._files import read_text
 
-#: The largest seed: what fits into the arrays of vector environments' infos.
+#: The largest seed that worlds are drawn under: what fits into the arrays of vector environments' infos.
 MAX_SEED = 2**63 - 1
 
 

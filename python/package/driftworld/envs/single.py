@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import gymnasium
 import numpy as np
+from gymnasium.envs.registration import EnvSpec
 from gymnasium.error import ResetNeeded
 from numpy.typing import NDArray
 
@@ -86,6 +87,7 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         refuse_unknown(DriftworldEnv, options)
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             raise ValueError(f"render_mode: found {render_mode!r}, expected None, human or rgb_array")
+        self._spec: EnvSpec | None = None
         self.render_mode = render_mode
         self._camera = Camera(camera, render_size)
         home = Home(task, world, variant)
@@ -97,6 +99,15 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         fps = 1.0 / self._members.layout["seconds_per_step"]
         self.metadata = {**type(self).metadata, "render_fps": max(1, round(fps))}
         self._window: Window | None = None
+
+    @property
+    def spec(self) -> EnvSpec | None:  # type: ignore[override]
+        """What ``gymnasium.make`` made it from; its ``max_episode_steps`` is the limit of steps that the options say."""
+        return self._spec
+
+    @spec.setter
+    def spec(self, spec: EnvSpec | None) -> None:
+        self._spec = self._members.limited(spec)
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Begins an episode.
@@ -213,26 +224,7 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         Raises:
             ValueError: Unless actions are ``"normalized"`` or ``"continuous"``: a table has no row for doing nothing.
         """
-        space = self.action_space
-        if not isinstance(space, gymnasium.spaces.Box) or self._members.layout["action_model"] == "bywaypoint":
-            raise ValueError(
-                'get_keys_to_action: found actions that are rows or places, expected speeds: actions="normalized" in a variant '
-                "that goes by velocity"
-            )
-        moves = {"w": (0, 1.0), "s": (0, -0.5), "a": (1, -1.0), "d": (1, 1.0), " ": (2, 1.0)}
-        keys: dict[tuple[str, ...], Any] = {}
-        for along in ((), ("w",), ("s",)):
-            for turn in ((), ("a",), ("d",)):
-                for act in ((), (" ",)):
-                    pressed = along + turn + act
-                    action = np.zeros(space.shape, dtype=np.float32)
-                    for key in pressed:
-                        axis, share = moves[key]
-                        if axis < len(action):
-                            action[axis] = share * space.high[axis]
-                    if pressed:
-                        keys[pressed] = action
-        return keys
+        return keys_to_action(self.action_space, self._members.layout)
 
     def close(self) -> None:
         """Closes the window, if there is one. The environment itself goes when nothing refers to it any more."""
@@ -251,3 +243,26 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         self.__dict__.update(state["kept"])
         self._window = None
         self._members = Members.again(state["members"])
+
+
+def keys_to_action(space: gymnasium.Space[Any], layout: Mapping[str, Any]) -> dict[tuple[str, ...], Any]:
+    """What :meth:`DriftworldEnv.get_keys_to_action` says of actions of this space in worlds of this layout."""
+    if not isinstance(space, gymnasium.spaces.Box) or layout["action_model"] == "bywaypoint":
+        raise ValueError(
+            'get_keys_to_action: found actions that are rows or places, expected speeds: actions="normalized" in a variant '
+            "that goes by velocity"
+        )
+    moves = {"w": (0, 1.0), "s": (0, -0.5), "a": (1, -1.0), "d": (1, 1.0), " ": (2, 1.0)}
+    keys: dict[tuple[str, ...], Any] = {}
+    for along in ((), ("w",), ("s",)):
+        for turn in ((), ("a",), ("d",)):
+            for act in ((), (" ",)):
+                pressed = along + turn + act
+                action = np.zeros(space.shape, dtype=np.float32)
+                for key in pressed:
+                    axis, share = moves[key]
+                    if axis < len(action):
+                        action[axis] = share * space.high[axis]
+                if pressed:
+                    keys[pressed] = action
+    return keys

@@ -8,6 +8,7 @@ from copy import deepcopy
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
+from gymnasium.envs.registration import EnvSpec
 from gymnasium.error import ResetNeeded
 from gymnasium.utils import seeding
 from gymnasium.vector import VectorEnv
@@ -17,10 +18,11 @@ from numpy.typing import NDArray
 from driftworld._literals import AutoresetName, CameraName
 from driftworld.envs.autoreset import AutoresetMode, autoreset_mode_of
 from driftworld.envs.conversion import teach_conversions
-from driftworld.envs.members import Members
+from driftworld.envs.members import Members, Prepared
 from driftworld.envs.options import EnvOptions, Options, refuse_unknown, shows_options, whole
 from driftworld.envs.origin import Home, spread_seeds, whole_number
 from driftworld.envs.picture import Camera
+from driftworld.envs.single import keys_to_action
 from driftworld.errors import EnvError
 from driftworld.recordings import Recording
 
@@ -117,6 +119,7 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         self._copy = copy
         self._camera = Camera(camera, render_size)
         self.num_envs = num_envs
+        self._spec: EnvSpec | None = None
         self.render_mode = render_mode
         fps = 1.0 / self._members.layout["seconds_per_step"]
         self.metadata = {**type(self).metadata, "render_fps": max(1, round(fps)), "autoreset_mode": mode}
@@ -130,6 +133,15 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         self._everyone = np.ones(num_envs, dtype=np.bool_)
         self._nothing = np.empty(num_envs, dtype=object)
         self._nothing.fill(())
+
+    @property
+    def spec(self) -> EnvSpec | None:  # type: ignore[override]
+        """What ``gymnasium.make_vec`` made them from; its ``max_episode_steps`` is the limit of steps that the options say."""
+        return self._spec
+
+    @spec.setter
+    def spec(self, spec: EnvSpec | None) -> None:
+        self._spec = self._members.limited(spec)
 
     @property  # type: ignore[misc]
     def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[override]
@@ -178,6 +190,33 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         members = self._members
         prepared = members.checked(options, many=True)
         chosen = range(self.num_envs) if mask is None else np.flatnonzero(mask).tolist()
+        self._begin(chosen, seeds, prepared, mask)
+        infos: dict[str, Any] = {}
+        for env in chosen:
+            infos = self._add_info(infos, members.reset_info(env), env)
+        return members.observations(self._copy), infos
+
+    def reset_one(
+        self, env: int, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Any, dict[str, Any]]:
+        """Begins an episode in one environment, as :meth:`DriftworldEnv.reset` does; the others go on.
+
+        Returns:
+            Its first observation and its info, as a single environment has them.
+        """
+        self._expect("reset_one", env)
+        teach_conversions()
+        members = self._members
+        prepared = members.checked(options or {}, many=False)
+        own = self._seeds([seed if one == env else None for one in range(self.num_envs)])[env]
+        self._begin([env], [own] * self.num_envs, prepared, np.arange(self.num_envs) == env)
+        return members.observation(env), members.reset_info(env)
+
+    def _begin(
+        self, chosen: Sequence[int], seeds: list[int | None], prepared: Prepared, mask: NDArray[np.bool_] | None
+    ) -> None:
+        """Begins episodes in these environments, which are those of the mask."""
+        members = self._members
         # Until it is done: Ctrl-C may come in between.
         members.has_begun[chosen] = False
         for env in chosen:
@@ -195,10 +234,10 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
             raise
         members.has_begun[chosen] = True
         self._ended[chosen] = False
-        infos: dict[str, Any] = {}
-        for env in chosen:
-            infos = self._add_info(infos, members.reset_info(env), env)
-        return members.observations(self._copy), infos
+
+    def _expect(self, method: str, env: int) -> None:
+        if not 0 <= env < self.num_envs:
+            raise IndexError(f"{method}: found environment {env}, expected 0 to {self.num_envs - 1}")
 
     def _mask(self, mask: Any) -> NDArray[np.bool_] | None:
         if mask is None:
@@ -306,21 +345,52 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         )
 
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:  # type: ignore[override]
-        """A picture of each environment, uint8 (height, width, 3); ``None`` without a render mode."""
+        """A picture of each environment, uint8 (height, width, 3); ``None`` without a render mode.
+
+        Raises:
+            gymnasium.error.ResetNeeded: Before every environment had its first reset.
+        """
         if self.render_mode is None:
             return None
+        if not self._members.has_begun.all():
+            raise ResetNeeded("render: found environments that had no reset, expected reset() before it")
         return tuple(self._camera.picture(self._members.batch, env) for env in range(self.num_envs))
+
+    @property
+    def has_begun(self) -> NDArray[np.bool_]:
+        """Which environments had a reset, bool ``(num_envs,)``."""
+        return self._members.has_begun.copy()
+
+    def picture(self, env: int) -> NDArray[np.uint8]:
+        """The picture of one environment, as :meth:`render` has it."""
+        self._expect("picture", env)
+        return self._camera.picture(self._members.batch, env)
+
+    def keys_to_action(self) -> dict[tuple[str, ...], Any]:
+        """Keys for people, as :meth:`DriftworldEnv.get_keys_to_action` has them."""
+        return keys_to_action(self.single_action_space, self._members.layout)
+
+    def warnings(self, env: int) -> list[str]:
+        """What the world of an environment asks for that is not as its author may think, as :meth:`DriftworldEnv.warnings` says."""
+        self._expect("warnings", env)
+        return self._members.batch.warnings(env)
 
     def state(self, env: int) -> dict[str, Any]:
         """The world of an environment as it is now, as a document."""
-        if not 0 <= env < self.num_envs:
-            raise IndexError(f"state: found environment {env}, expected 0 to {self.num_envs - 1}")
+        self._expect("state", env)
         state: dict[str, Any] = json.loads(self._members.batch.state(env))
         return state
 
-    def record(self, records: bool = True) -> None:
-        """Takes down what is done in all environments from now on, or no longer: :meth:`recording` has it."""
-        self._members.batch.record(records)
+    def origin(self, env: int) -> dict[str, Any]:
+        """Where the world of an environment comes from, as :meth:`DriftworldEnv.origin` says it."""
+        self._expect("origin", env)
+        return self._members.origin(env)
+
+    def record(self, records: bool = True, env: int | None = None) -> None:
+        """Takes down what is done from now on in an environment, or in all, or no longer: :meth:`recording` has it."""
+        if env is not None:
+            self._expect("record", env)
+        self._members.batch.record(records, env)
 
     def recording(self, env: int) -> Recording:
         """What was done in an environment's episode so far; before its first step, so also in the step that ended an episode with the
@@ -330,17 +400,15 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
             IndexError: If there is no such environment.
             RuntimeError: Unless :meth:`record` was called.
         """
-        if not 0 <= env < self.num_envs:
-            raise IndexError(f"recording: found environment {env}, expected 0 to {self.num_envs - 1}")
+        self._expect("recording", env)
         return Recording(self._members.recording(env))
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
-        """What each environment answers: ``state`` and ``warnings`` one by one, anything else is the same for all."""
+        """What each environment answers: ``state``, ``origin``, ``recording`` and ``warnings`` one by one, anything else is the
+        same for all."""
         name = {"observation_space": "single_observation_space", "action_space": "single_action_space"}.get(name, name)
-        if name == "state":
-            return tuple(self.state(env) for env in range(self.num_envs))
-        if name == "warnings":
-            return tuple(self._members.batch.warnings(env) for env in range(self.num_envs))
+        if name in ("state", "origin", "recording", "warnings"):
+            return tuple(getattr(self, name)(env) for env in range(self.num_envs))
         if name == "render":
             return self.render() or (None,) * self.num_envs
         value = getattr(self, name)

@@ -1,0 +1,139 @@
+"""``Part``: one of the environments of a ``DriftworldVectorEnv``, for programs that want to ask each by itself."""
+
+from __future__ import annotations
+
+import copy
+from typing import TYPE_CHECKING, Any
+
+import gymnasium
+import numpy as np
+from gymnasium.envs.registration import EnvSpec
+from gymnasium.error import ResetNeeded
+from numpy.typing import NDArray
+
+from driftworld.envs.options import EnvOptions
+from driftworld.envs.single import DriftworldEnv
+from driftworld.recordings import Recording
+
+if TYPE_CHECKING:
+    from driftworld.envs.vector import DriftworldVectorEnv
+
+#: What environments are made with, and what holds until they are made anew.
+MADE_WITH = (
+    *EnvOptions.__annotations__,
+    *("task", "world", "variant", "variants", "render_mode", "render_size", "camera", "max_episode_steps", "num_threads"),
+)
+#: What only a vector environment is made with.
+_OF_MANY = ("num_envs", "vectorization_mode", "autoreset_mode", "copy", "num_threads", "max_episode_steps")
+
+
+class Part(gymnasium.Env[Any, Any]):
+    """One of the environments that step together. It answers as a :class:`driftworld.DriftworldEnv` does, in all but steps.
+
+    Args:
+        envs: All of them.
+        index: Which of them it is.
+    """
+
+    metadata = DriftworldEnv.metadata
+
+    def __init__(self, envs: DriftworldVectorEnv, index: int) -> None:
+        self._envs, self._index = envs, index
+        self.observation_space = copy.deepcopy(envs.single_observation_space)
+        self.action_space = copy.deepcopy(envs.single_action_space)
+        self.render_mode = envs.render_mode
+        self.metadata = {**type(self).metadata, "render_fps": envs.metadata["render_fps"]}
+
+    @property  # type: ignore[misc]
+    def spec(self) -> EnvSpec | None:  # type: ignore[override]
+        """What ``gymnasium.make`` makes one such environment from."""
+        spec = copy.deepcopy(self._envs.spec)
+        if spec is not None:
+            limit = spec.kwargs.get("max_episode_steps")
+            spec.max_episode_steps = spec.max_episode_steps if limit in (None, -1) else limit
+            spec.kwargs = {name: value for name, value in spec.kwargs.items() if name not in _OF_MANY}
+        return spec
+
+    @property  # type: ignore[misc]
+    def np_random(self) -> np.random.Generator:  # type: ignore[override]
+        """Its random generator."""
+        return self._envs.np_random[self._index]
+
+    @property
+    def np_random_seed(self) -> int:  # type: ignore[override]
+        """The seed of its random generator."""
+        return self._envs.np_random_seed[self._index]
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        """Begins an episode here; the other environments go on."""
+        return self._envs.reset_one(self._index, seed=seed, options=options)
+
+    def step(self, action: Any) -> Any:
+        """Refused: they step together.
+
+        Raises:
+            RuntimeError: Always.
+        """
+        raise RuntimeError(f"step: found one of {self._envs.num_envs} environments, expected step(actions) of all at once")
+
+    def close(self) -> None:
+        """Refused: they are closed together.
+
+        Raises:
+            RuntimeError: Always.
+        """
+        raise RuntimeError(f"close: found one of {self._envs.num_envs} environments, expected close() of all at once")
+
+    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
+        """Its picture, uint8 (height, width, 3).
+
+        Raises:
+            gymnasium.error.ResetNeeded: Before its first reset.
+        """
+        if self.render_mode is None:
+            gymnasium.logger.warn('render: found no render_mode, expected render_mode="rgb_array" when they are made')
+            return None
+        if not self._envs.has_begun[self._index]:
+            raise ResetNeeded("render: found an environment that had no reset, expected reset() before it")
+        return self._envs.picture(self._index)
+
+    def state(self) -> dict[str, Any]:
+        """Its world as it is now."""
+        return self._envs.state(self._index)
+
+    def origin(self) -> dict[str, Any]:
+        """Where its world comes from."""
+        return self._envs.origin(self._index)
+
+    def warnings(self) -> list[str]:
+        """What is odd about its world."""
+        return self._envs.warnings(self._index)
+
+    def record(self, records: bool = True) -> None:
+        """Takes down what is done here from now on, or no longer."""
+        self._envs.record(records, self._index)
+
+    def recording(self) -> Recording:
+        """What was done in its episode so far."""
+        return self._envs.recording(self._index)
+
+    def get_keys_to_action(self) -> dict[tuple[str, ...], Any]:
+        """Keys for people, as :meth:`DriftworldEnv.get_keys_to_action` has them."""
+        return self._envs.keys_to_action()
+
+    def refuse_to_set(self, name: str, value: Any) -> None:
+        """Refuses what would be set and change nothing.
+
+        Raises:
+            ValueError: For an option that environments are made with, and for what they have of themselves.
+        """
+        if name in MADE_WITH:
+            raise ValueError(
+                f"set_attr({name!r}): found an option that environments are made with, expected {name}={value!r} where they are "
+                'made; set_options gives each a variant or a world of its own, as in set_options({"variant": "red"})'
+            )
+        if hasattr(self, name) and name not in vars(self) or name in ("observation_space", "action_space", "metadata"):
+            raise ValueError(
+                f"set_attr({name!r}): found what environments have of themselves, expected a name of your own; set_options gives "
+                "each a variant or a world of its own"
+            )
