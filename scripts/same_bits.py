@@ -25,9 +25,24 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 REFERENCE = pathlib.Path(os.environ.get("DRIFTWORLD_REFERENCE", ROOT.parent / "shared/reference"))
 BUILT_IN = ["find_objects", "get_to_goal", "select_object", "moving_object", "scavenger_hunt", "blue_red_green"]
 WORLDS = sorted(path.stem for path in (ROOT / "examples/worlds").glob("*.json"))
-QUICK_MEASURES = """parameters worlds occupancy occupancy:jaccard occupancy:ospa occupancy:hausdorff occupancy:chamfer
-    placements objects objects:counts colors colors:srgb colors:cie76 colors:ciede2000 colors:hyab rewards""".split()
-SLOW_MEASURES = "pictures pictures:whole pictures:structure dynamics dynamics:bisimulation behavior".split()
+QUICK_MEASURES = [
+    "parameters",
+    "worlds",
+    "occupancy",
+    "occupancy:jaccard",
+    "occupancy:hausdorff",
+    "occupancy:chamfer",
+    "placements",
+    "objects",
+    "objects:counts",
+    "colors",
+    "colors:srgb",
+    "colors:cie76",
+    "colors:ciede2000",
+    "colors:hyab",
+    "rewards",
+]
+SLOW_MEASURES = ["pictures", "pictures:whole", "pictures:structure", "dynamics", "dynamics:bisimulation", "behavior"]
 MODALITIES = ["rgb", "depth", "segmentation"]
 
 
@@ -35,7 +50,9 @@ def variants(binary: str) -> list[str]:
     """The first 20 variants of each built-in task and all of the example worlds."""
     found = []
     for task in [*BUILT_IN, *(str(ROOT / "examples/worlds" / f"{name}.json") for name in WORLDS)]:
-        shown = json.loads(subprocess.run([binary, "tasks", "show", task, "--json"], capture_output=True, check=True).stdout)
+        shown = json.loads(
+            subprocess.run([binary, "tasks", "show", task, "--json"], capture_output=True, check=True).stdout
+        )
         names = list(shown["variants"])[:20]
         found += [f"{task}#{name}" for name in names]
     return found
@@ -55,36 +72,72 @@ def commands(binary: str, full: bool) -> list[tuple[str, str, list[list[str]]]]:
         add("worlds", variant, ["sample", variant, "--count", "20", "--seed", "7", "--jsonl"])
         for by in SLOW_MEASURES if variant != first else []:
             worlds = "20" if full else "2"
-            add("distances", f"{variant} --by {by}", ["distance", first, variant, "--by", by, "--worlds", worlds, "--json"])
+            add(
+                "distances",
+                f"{variant} --by {by}",
+                ["distance", first, variant, "--by", by, "--worlds", worlds, "--json"],
+            )
         if variant != first:
             add("distances", f"{variant} --explain", ["distance", first, variant, "--explain", "--json"])
         for modality in MODALITIES:
             film = ["film", variant, "--agent", "random", "--view", "agent", "--size", "84", "--no-captions"]
-            add("frames", f"{variant} {modality}", [*film, "--modality", modality, "--max-steps", "24", "-o", "film.apng"])
-        add("frames", f"{variant} sheet", ["render", variant, "--agent", "onrails", "--view", "episode", "--size", "96", "-o", "episode.png"])
-    for task in first_of:
+            add(
+                "frames",
+                f"{variant} {modality}",
+                [*film, "--modality", modality, "--max-steps", "24", "-o", "film.apng"],
+            )
+        add(
+            "frames",
+            f"{variant} sheet",
+            ["render", variant, "--agent", "onrails", "--view", "episode", "--size", "96", "-o", "episode.png"],
+        )
+    for task, first in first_of.items():
         for by in QUICK_MEASURES:
             worlds = [] if by == "parameters" else ["--worlds", "20"]
-            add("distances", f"{task} --by {by}, all pairs", ["order", task, "--by", by, *worlds, "--order", "given", "--matrix", "m.json", "--json"])
+            add(
+                "distances",
+                f"{task} --by {by}, all pairs",
+                ["order", task, "--by", by, *worlds, "--order", "given", "--matrix", "m.json", "--json"],
+            )
         for order in ["gradual", "outward", "nearest", "two-opt", "random", "target-step", "abrupt"]:
             step = ["--target-step", "0.5"] if order == "target-step" else []
-            add("distances", f"{task} ordered {order}", ["order", task, "--order", order, *step, "--seed", "3", "--json"])
-        add("worlds", f"{task} lhs", ["sample", first_of[task], "--count", "16", "--sequence", "lhs", "--jsonl"])
-        add("worlds", f"{task} sobol", ["sample", first_of[task], "--count", "16", "--sequence", "sobol", "--jsonl"])
+            add(
+                "distances",
+                f"{task} ordered {order}",
+                ["order", task, "--order", order, *step, "--seed", "3", "--json"],
+            )
+        add("worlds", f"{task} lhs", ["sample", first, "--count", "16", "--sequence", "lhs", "--jsonl"])
+        add("worlds", f"{task} sobol", ["sample", first, "--count", "16", "--sequence", "sobol", "--jsonl"])
         add("tools", f"{task} elements", ["elements", task, "--worlds", "2", "--steps", "20", "--json"])
         for agent in ["random", "onrails", "sarsa"]:
             design = ["curriculum", task, "--learn", "2", "--eval-episodes", "1", "-o", "scenario.json"]
             run = ["run", "scenario.json", "--agent", agent, "-o", "log", "--record"]
             add("logs", f"{task} {agent}", design, run, ["metrics", "log", "--json"], ["replay", "log", "--json"])
     for curriculum in sorted((ROOT / "examples/curricula").glob("*.json")):
-        add("logs", curriculum.name, ["run", str(curriculum), "--agent", "random", "-o", "log"], ["metrics", "log", "--save", "saved", "--json"])
+        add(
+            "logs",
+            curriculum.name,
+            ["run", str(curriculum), "--agent", "random", "-o", "log"],
+            ["metrics", "log", "--save", "saved", "--json"],
+        )
     drift = ["sample", "find_objects#blue", "--drift-to", "red", "--count", "50", "--jsonl"]
     add("worlds", "drift", drift)
     add("worlds", "drift mixed", [*drift, "--mix"])
-    add("worlds", "original scenarios' maps", ["render", str(REFERENCE / "l2explorer/map_simple.json"), "--l2explorer", "-o", "map.png"])
+    add(
+        "worlds",
+        "original scenarios' maps",
+        ["render", str(REFERENCE / "l2explorer/map_simple.json"), "--l2explorer", "-o", "map.png"],
+    )
     for variant in ["find_objects#village", "examples/worlds/hunt.json#meadow", "get_to_goal#landmarks"]:
         path = variant if "/" not in variant else str(ROOT / variant)
-        add("frames", f"{variant} views", *[["render", path, "--view", view, "-o", f"{view}.png"] for view in ["sheet", "overview", "top-down", "looks"]])
+        add(
+            "frames",
+            f"{variant} views",
+            *[
+                ["render", path, "--view", view, "-o", f"{view}.png"]
+                for view in ["sheet", "overview", "top-down", "looks"]
+            ],
+        )
         add("frames", f"{variant} photographs", ["photograph", path, "-o", "photographs"])
     add("frames", "models", ["assets", "show", "-o", "models.png"])
     add("tools", "scales", ["scales", "blue_red_green", "--worlds", "2", "--json"])
@@ -92,7 +145,26 @@ def commands(binary: str, full: bool) -> list[tuple[str, str, list[list[str]]]]:
     add("tools", "audit", ["audit", str(ROOT / "examples/curricula/blue_red_green.json"), "--repeats", "2", "--json"])
     for logs in [REFERENCE / "l2metrics/ll_logs/multi_task", *sorted((REFERENCE / "l2metrics/ste_logs").glob("*"))]:
         add("scores", logs.name, ["metrics", str(logs), "-p", "performance", "--json"], ["logs", "validate", str(logs)])
-        add("scores", f"{logs.name} otherwise", ["metrics", str(logs), "-p", "performance", "--json", "-m", "both", "-t", "both", "-n", "run", "-g", "hanning", "-x"])
+        add(
+            "scores",
+            f"{logs.name} otherwise",
+            [
+                "metrics",
+                str(logs),
+                "-p",
+                "performance",
+                "--json",
+                "-m",
+                "both",
+                "-t",
+                "both",
+                "-n",
+                "run",
+                "-g",
+                "hanning",
+                "-x",
+            ],
+        )
     return jobs
 
 
@@ -127,7 +199,9 @@ def main() -> int:
         results = pool.map(lambda job: digests(binary, job[2]), jobs)
         found = {f"{group}: {name}": result for (group, name, _), result in zip(jobs, results)}
     counts = {group: sum(job[0] == group for job in jobs) for group in dict.fromkeys(job[0] for job in jobs)}
-    failed = [name for name, result in found.items() if any(k.startswith("exit") and v not in "0" for k, v in result.items())]
+    failed = [
+        name for name, result in found.items() if any(k.startswith("exit") and v not in "0" for k, v in result.items())
+    ]
     if given.action == "record":
         given.file.write_text(json.dumps(found, indent=1) + "\n")
         print(f"recorded {counts}; commands that ended with an error: {len(failed)}", *failed, sep="\n  ")

@@ -157,7 +157,7 @@ pub(crate) fn package(workspace: &Workspace) -> Result<Outcome> {
         Ok(tests) => tests,
         Err(reason) => return missing("PYTHON", reason),
     };
-    let linted = [".", "../examples/python", "../unity/tests/clients"];
+    let linted = [".", "../examples/python", "../scripts", "../unity/tests/clients"];
     for (arguments, folders) in [(&["-m", "ruff", "check"][..], &linted[..]), (&["-m", "mypy"], &[])] {
         let mut check = tests.python(workspace, arguments);
         check.args(folders).current_dir(workspace.root.join("python"));
