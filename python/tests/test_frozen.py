@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,10 @@ from driftworld import Curriculum, CurriculumError
 
 #: Every built-in task and example world, by name or path.
 TASKS = [*driftworld.built_in_tasks(), *map(str, sorted((ROOT / "examples" / "worlds").glob("*.json")))]
+
+
+#: One lifetime in each, four with DRIFTWORLD_FULL=1.
+LIFETIMES = len(TASKS) * (4 if os.environ.get("DRIFTWORLD_FULL") == "1" else 1)
 
 
 class Uniform:
@@ -103,7 +108,7 @@ def test_an_agent_that_is_not_frozen_is_refused_in_every_lifetime(kind: type[Uni
     if kind is FromTorch:
         pytest.importorskip("torch", reason="the generator is its")
     np.random.seed(3)
-    for lifetime in range(64):
+    for lifetime in range(LIFETIMES):
         name = TASKS[lifetime % len(TASKS)]
         with pytest.raises(CurriculumError, match=r"block 0: found another action in step \d+ of experience \d") as refused:
             run(kind, name, lifetime, num_envs)
