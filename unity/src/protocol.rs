@@ -29,6 +29,10 @@ pub struct HeaderProto {
 }
 
 /// What a side understands beyond the first version of the protocol: one flag for each thing.
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "the protocol has a flag for each capability"
+)]
 #[derive(Clone, Copy, PartialEq, Eq, Hash, prost::Message)]
 pub struct UnityRlCapabilitiesProto {
     /// What every version can.
@@ -105,6 +109,7 @@ pub struct ListAgentActionProto {
 }
 
 /// What one agent does.
+#[expect(clippy::struct_field_names, reason = "the names are the protocol's")]
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct AgentActionProto {
     /// Continuous and discrete numbers alike; all that clients before 1.3 of the protocol send.

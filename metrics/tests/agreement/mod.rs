@@ -1,6 +1,6 @@
 //! Whether values agree with those of the reference. Not here: where either come from.
 
-use serde_json::Value;
+use serde_json::{Number, Value};
 
 /// The reference adds in another order; its values for lifetimes have ten decimals.
 const TOLERANCE: f64 = 1e-9;
@@ -9,7 +9,8 @@ const TOLERANCE: f64 = 1e-9;
 pub(crate) fn compare(place: &str, found: &Value, expected: &Value) -> usize {
     match (found, expected) {
         (Value::Number(found), Value::Number(expected)) => {
-            let (found, expected) = (found.as_f64().unwrap(), expected.as_f64().unwrap());
+            let number = |number: &Number| number.as_f64().expect("every number of a file is an f64");
+            let (found, expected) = (number(found), number(expected));
             // Differences of numbers around 100 lose what they have in common.
             let near = (found - expected).abs() <= TOLERANCE * expected.abs().max(1.0);
             assert!(near, "{place}: found {found}, the reference has {expected}");
