@@ -54,7 +54,7 @@ pub(super) fn category(word: &str) -> Result<Category, String> {
     Category::from_name(word).ok_or_else(|| {
         format!(
             "found category {word:?}, expected one of {}{}",
-            modality::NAMES.join(", "),
+            names.join(", "),
             near()
         )
     })
