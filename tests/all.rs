@@ -15,3 +15,8 @@ mod paired_chance;
 mod recordings;
 mod task_docs;
 mod tier;
+
+/// Whether a case is tried: in the quick tier one of so many, in the full tier all.
+fn is_turn(number: usize, of: usize) -> bool {
+    tier::quick_or_full(number.is_multiple_of(of), true)
+}

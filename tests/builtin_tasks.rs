@@ -8,6 +8,8 @@ use driftworld::similarity::{Weights, variant_distance};
 use driftworld::spec::{Element, Variant};
 use driftworld::tasks;
 
+use crate::tier::quick_or_full;
+
 /// Worlds of each variant that are lived.
 const WORLDS: u64 = 3;
 
@@ -91,7 +93,7 @@ fn blue_red_green_is_solved_in_every_variant() {
 fn each_built_in_task_claims_no_less_than_its_variants_change() {
     for (task, _) in tasks::BUILT_IN {
         let request = ElementsRequest {
-            worlds: 4,
+            worlds: quick_or_full(1, 4),
             ..ElementsRequest::of(task)
         };
         let found = elements(&request).unwrap_or_else(|error| panic!("{task}: {error}"));
@@ -118,11 +120,16 @@ fn each_task_of_the_paper_has_variants_that_differ_from_its_first_in_one_element
         "scavenger_hunt",
     ] {
         let variants = tasks::variants(task).unwrap_or_else(|error| panic!("{error}"));
+        let alone: Vec<_> = variants[1..]
+            .iter()
+            .map(|variant| only_element(&variants[0], variant))
+            .collect();
         for element in Element::ALL {
-            let alone = variants[1..]
+            let of_element = variants[1..]
                 .iter()
-                .filter(|variant| only_element(&variants[0], variant) == Some(element));
-            let names: Vec<&str> = alone.map(Variant::name).collect();
+                .zip(&alone)
+                .filter(|(_, alone)| **alone == Some(element));
+            let names: Vec<&str> = of_element.map(|(variant, _)| variant.name()).collect();
             assert!(names.len() >= 3, "{task}: in {} alone differ {names:?}", element.name());
         }
     }
@@ -162,7 +169,7 @@ fn each_task_has_rewards_that_turn_what_is_best_and_show_it_within_an_episode() 
             own.unwrap_or_else(|| panic!("{task} has {name}"))
         };
         let request = ElementsRequest {
-            worlds: 6,
+            worlds: quick_or_full(3, 6),
             ..ElementsRequest::between(task, a, b)
         };
         let found = elements(&request).unwrap_or_else(|error| panic!("{error}"));

@@ -9,6 +9,8 @@ use driftworld::spec::{BlockKind, Element, Regime, Scenario, Variant};
 use driftworld::tasks;
 use serde_json::Value;
 
+use crate::is_turn;
+
 fn path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("examples/curricula/{name}.json"))
 }
@@ -175,7 +177,7 @@ fn live(name: &str, agent: &str) {
 
 #[test]
 fn the_agent_that_knows_the_map_lives_and_solves_every_curriculum() {
-    for name in [
+    let names = [
         "reward",
         "state",
         "transition",
@@ -187,7 +189,8 @@ fn the_agent_that_knows_the_map_lives_and_solves_every_curriculum() {
         "interaction",
         "drift",
         "across_tasks",
-    ] {
+    ];
+    for (_, name) in names.into_iter().enumerate().filter(|(number, _)| is_turn(*number, 3)) {
         live(name, "onrails");
     }
 }

@@ -5,6 +5,7 @@ use driftworld_spec::TaskSpec;
 
 use super::*;
 use crate::tasks;
+use crate::tier::quick_or_full;
 
 fn matrix(names: &[&str]) -> DistanceMatrix {
     let variants: Vec<(String, Variant)> = names
@@ -155,33 +156,28 @@ fn each_measure_obeys_the_laws_of_a_number_for_a_pair() {
                 found.description
             );
             assert!(found.description.contains("2 worlds of each"), "{}", found.description);
-            found.distance.total
+            found.distance
         };
         let matrix = variant_matrix(variants, &few(by), Ok).expect("all can be compared");
-        for (a, b) in [(0, 1), (0, 2)] {
+        for (a, b) in [(0, 2), (0, 1)].into_iter().take(quick_or_full(1, 2)) {
             let found = apart(a, b);
-            assert!(found.is_finite() && found >= 0.0, "{} {found}", by.name());
+            let (total, name) = (found.total, by.name());
+            assert!(total.is_finite() && total >= 0.0, "{name} {total}");
             assert!(
-                (found - apart(b, a)).abs() < 1e-12,
-                "{}: {a} and {b}, there and back",
-                by.name()
+                (total - apart(b, a).total).abs() < 1e-12,
+                "{name}: {a} and {b}, there and back"
             );
             assert!(
-                (found - matrix.get(a, b)).abs() < 1e-12,
-                "{}: {a} and {b}, alone and in a list",
-                by.name()
+                (total - matrix.get(a, b)).abs() < 1e-12,
+                "{name}: {a} and {b}, alone and in a list"
+            );
+            let parts: f64 = found.parts.iter().map(|part| part.normalised * part.weight).sum();
+            assert!(
+                found.parts.is_empty() || (parts - total).abs() < 1e-9,
+                "{name}: parts add up"
             );
         }
-        assert!(apart(0, 0).abs() < 1e-12, "{}: a variant and itself", by.name());
-        let sum = between(&side(0), &side(2), &few(by), Ok)
-            .expect("both can be compared")
-            .distance;
-        let parts: f64 = sum.parts.iter().map(|part| part.normalised * part.weight).sum();
-        assert!(
-            sum.parts.is_empty() || (parts - sum.total).abs() < 1e-9,
-            "{}: parts add up",
-            by.name()
-        );
+        assert!(apart(0, 0).total.abs() < 1e-12, "{}: a variant and itself", by.name());
     }
 }
 

@@ -5,6 +5,7 @@ use std::fs;
 use serde_json::Value;
 
 use super::terminal::{driftworld_in, fail_in, json, output, scratch, succeed, succeed_in, text};
+use crate::tier::quick_or_full;
 
 /// A task whose light is said to change what its parameter says, and which sets a reach that nothing reads.
 fn task(affects: &str) -> String {
@@ -140,7 +141,7 @@ fn what_the_examples_claim_holds() {
     for path in files.filter(|path| path.extension().is_some_and(|extension| extension == "json")) {
         let task = driftworld::spec::TaskSpec::from_json(text(&path), &fs::read_to_string(&path).unwrap()).unwrap();
         let request = driftworld::elements::ElementsRequest {
-            worlds: 2,
+            worlds: quick_or_full(1, 2),
             ..driftworld::elements::ElementsRequest::of(task.name())
         };
         let found = driftworld::elements::elements_of(&task, &request)

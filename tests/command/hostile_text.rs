@@ -13,6 +13,7 @@ use serde_json::{Value, json};
 
 use super::run_files::write;
 use super::terminal::{driftworld_in, output, scratch, subcommands, text};
+use crate::is_turn;
 
 /// What a hostile text says, without what no file name can have.
 const HOSTILE: &str =
@@ -248,7 +249,7 @@ fn documents(stage: &mut Stage) {
     stage.succeed(&["order", &task]);
     stage.succeed(&["curriculum", &task]);
 
-    for (name, bad) in [
+    let documents = [
         ("key.json", json!({ "name": "t", hostile.as_str(): 1 })),
         (
             "variant.json",
@@ -275,12 +276,14 @@ fn documents(stage: &mut Stage) {
             "original.json",
             json!({ "logging_base_dir": hostile, "scenario": [{ "type": hostile, "regimes": [{ "task": hostile }] }] }),
         ),
-    ] {
+    ];
+    for (number, (name, bad)) in documents.into_iter().enumerate() {
         let name = stage.document(name, &bad);
         stage.run(&["validate", &name]);
         let json = stage.run(&["validate", &name, "--json"]);
         serde_json::from_slice::<Value>(&json.stdout).expect("--json prints JSON");
-        for command in [
+        // In the quick tier two of them.
+        let commands = [
             "sample",
             "render",
             "console",
@@ -289,7 +292,9 @@ fn documents(stage: &mut Stage) {
             "order",
             "curriculum",
             "convert",
-        ] {
+        ];
+        let tried = commands.iter().enumerate();
+        for (_, command) in tried.filter(|(turn, _)| is_turn(turn + number, 4)) {
             stage.run(&[command, &name]);
         }
     }
@@ -468,8 +473,8 @@ fn names_of_files(stage: &mut Stage) {
     let scenario_text = scenario("task.json", "a", None).to_string();
     write(&stage.path().join(inside("s.json")), &scenario_text);
     let names = ["task.json", "bad.json", "w.json", "s.json", "log", "none"].map(|name| text(&inside(name)).to_owned());
-    for name in &names {
-        for command in [
+    for (number, name) in names.iter().enumerate() {
+        let commands = [
             &["validate"][..],
             &["validate", "--json"],
             &["sample"],
@@ -497,8 +502,10 @@ fn names_of_files(stage: &mut Stage) {
             &["logs", "aggregate", "log1", "-o"],
             &["distance", "find_objects#red"],
             &["vary", "--element", "R", "--distance", "0.5"],
-        ] {
-            stage.run(&[command, &[name.as_str()]].concat());
+        ];
+        let tried = commands.iter().enumerate();
+        for (_, command) in tried.filter(|(turn, _)| is_turn(turn + number, 3)) {
+            stage.run(&[*command, &[name.as_str()]].concat());
         }
     }
     stage.run(&["metrics", "-R", HOSTILE]);

@@ -182,7 +182,7 @@ fn classes_of_a_named_library_are_known() {
 fn a_curriculum_begins_with_what_is_named_first() {
     let folder = scratch();
     let first = |names: &str| {
-        let scenario = json_in(folder.path(), &format!("curriculum {names}"));
+        let scenario = json_in(folder.path(), &format!("curriculum {names} --worlds 0"));
         let blocks = scenario["blocks"].as_array().expect("there are blocks").clone();
         let learned = blocks.into_iter().filter(|block| block["type"] == "learning");
         learned

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use super::run_files::{files, write};
-use super::terminal::{driftworld, fail, output, read, root, scratch, succeed, succeed_in, text};
+use super::terminal::{driftworld_in, fail, fail_in, output, read, root, scratch, succeed, succeed_in, text};
 
 /// A lifetime of 3 blocks and 14 experiences in two tasks, the last block shuffled.
 fn scenario(folder: &Path) -> std::path::PathBuf {
@@ -44,7 +44,15 @@ fn a_recorded_run_is_the_same_run_and_each_episode_comes_out_once_more() {
         let run = |log: &Path, more: &[&str]| {
             succeed(
                 &[
-                    &["run", text(&scenario), "--agent", agent, "--json", "--logs", text(log)],
+                    &[
+                        "run",
+                        text(&scenario),
+                        "--agent",
+                        agent,
+                        "--json",
+                        "--output",
+                        text(log),
+                    ],
                     more,
                 ]
                 .concat(),
@@ -70,13 +78,13 @@ fn a_recorded_run_that_is_killed_goes_on_and_keeps_every_byte() {
     let scenario = scenario_with(folder.path(), "find_objects");
     let whole = folder.path().join("whole");
     let all = ["run", text(&scenario), "--agent", "random"];
-    succeed(&[&all[..], &["--record", "--logs", text(&whole)]].concat());
+    succeed(&[&all[..], &["--record", "--output", text(&whole)]].concat());
     let expected = files(&whole);
     // As a killed run leaves it: the recording of the next experience is there, whole or in part, and its row is not.
     let table = |log: &Path, block: &str| log.join("worker-default").join(block).join("data-log.tsv");
     for (rows, cut) in [(0, 3), (2, 700), (5, 0)] {
         let log = folder.path().join(format!("killed-{rows}-{cut}"));
-        succeed(&[&all[..], &["--record", "--logs", text(&log)]].concat());
+        succeed(&[&all[..], &["--record", "--output", text(&log)]].concat());
         for block in ["1-train", "2-test"] {
             fs::remove_dir_all(log.join("worker-default").join(block)).unwrap();
         }
@@ -86,16 +94,16 @@ fn a_recorded_run_that_is_killed_goes_on_and_keeps_every_byte() {
         let done = fs::read(recordings(&log, "0-test")).unwrap();
         fs::write(recordings(&log, "0-test"), &done[..done.len() - cut]).unwrap();
         // Not told once more to record: a log that was recorded goes on so.
-        succeed(&[&all[..], &["--resume", "--logs", text(&log)]].concat());
+        succeed(&[&all[..], &["--resume", "--output", text(&log)]].concat());
         assert_eq!(files(&log), expected, "{rows} rows, {cut} bytes less");
     }
     // The next block was just begun.
     let log = folder.path().join("begun");
-    succeed(&[&all[..], &["--record", "--logs", text(&log)]].concat());
+    succeed(&[&all[..], &["--record", "--output", text(&log)]].concat());
     fs::remove_dir_all(log.join("worker-default/2-test")).unwrap();
     fs::remove_file(table(&log, "1-train")).unwrap();
     fs::write(recordings(&log, "1-train"), "{\"recording_fo").unwrap();
-    succeed(&[&all[..], &["--resume", "--logs", text(&log)]].concat());
+    succeed(&[&all[..], &["--resume", "--output", text(&log)]].concat());
     assert_eq!(files(&log), expected);
 }
 
@@ -104,7 +112,7 @@ fn a_log_that_was_begun_without_recordings_gets_them_from_then_on() {
     let folder = scratch();
     let scenario = scenario_with(folder.path(), "find_objects");
     let log = folder.path().join("log");
-    let all = ["run", text(&scenario), "--agent", "random", "--logs", text(&log)];
+    let all = ["run", text(&scenario), "--agent", "random", "--output", text(&log)];
     succeed(&all);
     for block in ["1-train", "2-test"] {
         fs::remove_dir_all(log.join("worker-default").join(block)).unwrap();
@@ -127,7 +135,7 @@ fn a_damaged_recording_is_told_by_its_place_and_hides_no_other() {
     let scenario = scenario_with(folder.path(), "find_objects");
     let log = folder.path().join("log");
     succeed(&format!(
-        "run {} --agent random --logs {} --record",
+        "run {} --agent random --output {} --record",
         scenario.display(),
         log.display()
     ));
@@ -179,70 +187,52 @@ fn a_damaged_recording_is_told_by_its_place_and_hides_no_other() {
 #[test]
 fn an_episode_becomes_a_film_or_a_sheet() {
     let folder = scratch();
-    let scenario = scenario_with(folder.path(), "find_objects");
-    let log = folder.path().join("log");
-    succeed(&format!(
-        "run {} --agent random --logs {} --record",
-        scenario.display(),
-        log.display()
-    ));
+    scenario_with(folder.path(), "find_objects");
+    succeed_in(folder.path(), "run scenario.json --agent random --output log --record");
     let at = |name: &str| folder.path().join(name);
-    let first_bytes = |path: &Path| fs::read(path).unwrap()[..4].to_vec();
-    let replay_in = |size: &str, name: &str, more: &[&str]| {
-        let path = at(name);
-        let begin = ["replay", text(&log), "--episode", "1", "--size", size, "-o"];
-        succeed(&[&begin[..], &[text(&path)], more].concat())
+    let first_bytes = |name: &str| fs::read(at(name)).unwrap()[..4].to_vec();
+    let replay = |name: &str, more: &str| {
+        let line = format!("replay log --episode 1 -o {name} {more}");
+        succeed_in(folder.path(), &line)
     };
-    let replay = |name: &str, more: &[&str]| replay_in("48", name, more);
-    let said = replay("e.gif", &[]);
+    let said = replay("e.gif", "--size 48");
     assert!(
         said.contains("episode 1: find_objects#red, world 1 under seed 5: 30 steps"),
         "{said}"
     );
     assert!(said.contains(": 31 frames of 96 × 48 pixels, 4.0 s"), "{said}");
-    let said = replay_in("50", "wide.gif", &["--every", "30"]);
+    let said = replay("wide.gif", "--size 50 --every 30");
     assert!(said.contains(": 2 frames of 100 × 83 pixels"), "{said}");
-    assert_eq!(first_bytes(&at("e.gif")), b"GIF8");
+    assert_eq!(first_bytes("e.gif"), b"GIF8");
     let said = replay(
         "e.apng",
-        &[
-            "--view",
-            "agent",
-            "--no-captions",
-            "--every",
-            "7",
-            "--fps",
-            "4",
-            "--modality",
-            "depth",
-        ],
+        "--size 48 --view agent --no-captions --every 7 --fps 4 --modality depth",
     );
     assert!(said.contains(": 6 frames of 48 × 48 pixels, 2.2 s"), "{said}");
-    assert_eq!(&first_bytes(&at("e.apng"))[1..], b"PNG");
-    let said = replay("e.png", &["--json"]);
+    assert_eq!(&first_bytes("e.apng")[1..], b"PNG");
+    let said = replay("e.png", "--size 48 --json");
     assert!(
         said.contains("\"frames\": 12") && said.contains("\"width\": 96"),
         "{said}"
     );
-    let said = replay("e.png", &["--view", "above"]);
+    let said = replay("e.png", "--size 48 --view above");
     assert!(said.contains(": 12 frames of 48 × 48 pixels, on a sheet of "), "{said}");
-    assert_eq!(&first_bytes(&at("e.png"))[1..], b"PNG");
+    assert_eq!(&first_bytes("e.png")[1..], b"PNG");
     // The same bytes when it is drawn once more.
     let before = fs::read(at("e.gif")).unwrap();
-    replay("e.gif", &[]);
+    replay("e.gif", "--size 48");
     assert!(fs::read(at("e.gif")).unwrap() == before);
-    let said = fail(2, &["replay", text(&log), "--episode", "1", "-o", text(&at("e.mp4"))]);
+    let said = fail_in(folder.path(), 2, "replay log --episode 1 -o e.mp4");
     assert!(
         said.contains("expected .gif or .apng") && said.contains("ffmpeg -i"),
         "{said}"
     );
     assert!(!at("e.mp4").exists());
-    let said = fail(1, &["replay", text(&log), "--episode", "99"]);
+    let said = fail_in(folder.path(), 1, "replay log --episode 99");
     assert!(
         said.contains("found no episode 99, expected one of episodes 0 to 13"),
         "{said}"
     );
-    assert!(fail(1, &["replay", "nowhere"]).contains("nowhere"));
 }
 
 /// What is drawn of an episode is what was asked for, whatever the file's ending: other options, other pictures; the same, the same.
@@ -297,28 +287,17 @@ fn each_view_and_modality_is_a_picture_of_its_own() {
 #[test]
 fn an_agent_is_filmed_and_kept() {
     let folder = scratch();
-    let at = |name: &str| folder.path().join(name);
-    let (film, kept) = (at("a.gif"), at("a.jsonl"));
-    let said = succeed(&format!(
-        "film examples/worlds/key_corridor.json#red --agent onrails --size 32 --every 20 -o {} --record {}",
-        film.display(),
-        kept.display()
-    ));
-    assert!(said.contains("wrote ") && said.contains("a.jsonl"), "{said}");
-    let replayed = at("b.gif");
-    succeed(&format!(
-        "replay {} --episode 0 --size 32 --every 20 -o {}",
-        kept.display(),
-        replayed.display()
-    ));
-    assert!(
-        fs::read(&film).unwrap() == fs::read(&replayed).unwrap(),
-        "the same film"
+    let world = root().join("examples/worlds/key_corridor.json");
+    let film = "--size 32 --every 20 -o";
+    let line = format!(
+        "film {}#red --agent onrails {film} a.gif --record a.jsonl",
+        world.display()
     );
-    // What a log is made of is not written over, nor is anything left where a name is wrong.
-    let output = output(&mut driftworld(&["film", "find_objects", "-o", text(&at("x.jpg"))]));
-    assert_eq!(output.status.code(), Some(2));
-    assert!(!at("x.jpg").exists());
+    let said = succeed_in(folder.path(), &line);
+    assert!(said.contains("wrote ") && said.contains("a.jsonl"), "{said}");
+    succeed_in(folder.path(), &format!("replay a.jsonl --episode 0 {film} b.gif"));
+    let [film, replayed] = ["a.gif", "b.gif"].map(|name| fs::read(folder.path().join(name)).unwrap());
+    assert!(film == replayed, "the same film");
 }
 
 /// Which world it was is said of every episode, whether its variant was named or not, and of a world of a file.
@@ -368,46 +347,25 @@ fn the_commands_of_the_page_do_what_it_says() {
 }
 
 #[test]
-fn playing_needs_a_terminal_and_says_so() {
-    let said = fail(1, &["play", "find_objects"]);
-    assert!(
-        said.contains("standard output: found no terminal") && said.contains("driftworld film"),
-        "{said}"
-    );
-}
-
-#[test]
 fn a_film_of_a_world_without_a_limit_ends() {
     let folder = scratch();
-    let world = folder.path().join("endless.json");
-    std::fs::write(&world, r#"{ "agent_params": { "observation_size": 8 } }"#).expect("the folder is there");
-    let sheet = folder.path().join("sheet.png");
-    let film = |more: &[&str]| {
-        let mut arguments = vec![
-            "film",
-            text(&world),
-            "--agent",
-            "still",
-            "--size",
-            "32",
-            "--json",
-            "-o",
-            text(&sheet),
-        ];
-        arguments.extend(more);
-        let done = output(&mut driftworld(&arguments));
+    write(
+        &folder.path().join("endless.json"),
+        r#"{ "agent_params": { "observation_size": 8 } }"#,
+    );
+    let film = |more: &str| {
+        let line = format!("film endless.json --agent still --size 32 --json -o sheet.png {more}");
+        let done = output(&mut driftworld_in(folder.path(), &line));
         assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
         let said: serde_json::Value = serde_json::from_slice(&done.stdout).expect("JSON");
-        (
-            said["steps"].as_u64(),
-            String::from_utf8_lossy(&done.stderr).into_owned(),
-        )
+        let beside = String::from_utf8_lossy(&done.stderr).into_owned();
+        (said["steps"].as_u64(), beside)
     };
-    let (steps, said) = film(&[]);
+    let (steps, said) = film("");
     assert_eq!(steps, Some(3000));
     assert!(
         said.contains("no limit of steps") && said.contains("--max-steps"),
         "{said}"
     );
-    assert_eq!(film(&["--max-steps", "7"]), (Some(7), String::new()));
+    assert_eq!(film("--max-steps 7"), (Some(7), String::new()));
 }

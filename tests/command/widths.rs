@@ -1,6 +1,7 @@
 //! Tables at 80 and at 120 columns: every line fits and no word is broken. The pictures of the tables are snapshots.
 
 use super::terminal::{driftworld_in, output, scratch, succeed_in};
+use crate::tier::quick_or_full;
 
 /// What a command prints for people, at a width.
 fn at(columns: usize, folder: &std::path::Path, arguments: &str) -> String {
@@ -76,7 +77,7 @@ fn tables_fit_80_and_120_columns_and_break_no_word() {
 fn values_of_tasks_are_whole() {
     let folder = scratch();
     for task in ["find_objects", "moving_object", "select_object"] {
-        for columns in [80, 100, 120, 160, 10_000] {
+        for columns in [80, 100, 120, 160, 10_000].into_iter().step_by(quick_or_full(2, 1)) {
             let shown = at(columns, folder.path(), &format!("tasks show {task}"));
             assert!(!shown.contains(['…', '\u{a0}', '{']), "{task} at {columns}: {shown}");
             for line in shown.lines() {

@@ -8,6 +8,7 @@ use driftworld::tasks;
 use serde_json::{Map, Value as Json, json};
 
 use super::laws_by_parameters::{are_close, measure, numbers};
+use crate::tier::quick_or_full;
 
 /// The built-in tasks, each with its document.
 fn built_in() -> Vec<(Arc<TaskSpec>, Json)> {
@@ -99,7 +100,8 @@ fn the_distance_of_a_pair_is_its_own() {
         let other = load(&other);
         let (first, second) = (measure(&task), measure(&other));
         let named = |task: &Arc<TaskSpec>, name: &str| task.variant(name).unwrap_or_else(|error| panic!("{error}"));
-        for a in &all {
+        // In the quick tier of every third variant.
+        for a in all.iter().step_by(quick_or_full(3, 1)) {
             for b in &all {
                 let retold = |variant: &Variant| named(&other, &format!("other_{}", variant.name()));
                 let [here, there] = [first.between(a, b), second.between(&retold(a), &retold(b))];
@@ -113,7 +115,7 @@ fn the_distance_of_a_pair_is_its_own() {
             }
         }
         // And with no variant but the two.
-        for pair in all.windows(2) {
+        for pair in all.windows(2).step_by(quick_or_full(5, 1)) {
             let mut alone = document.clone();
             alone["variants"] = json!({ "b": set_by(&pair[1]), "a": set_by(&pair[0]) });
             let alone = load(&alone);
@@ -149,9 +151,10 @@ fn what_is_equal_on_both_sides_dilutes_nothing() {
         document["groups"].as_array_mut().expect("it is a list").push(group);
         let other = load(&document);
         let (first, second) = (measure(&task), measure(&other));
-        for (a, other_a) in task.all_variants().iter().zip(other.all_variants()) {
-            for (b, other_b) in task.all_variants().iter().zip(other.all_variants()) {
-                let here = first.between(a, b).expect("of one task");
+        let pairs = || task.all_variants().into_iter().zip(other.all_variants());
+        for (a, other_a) in pairs().step_by(quick_or_full(3, 1)) {
+            for (b, other_b) in pairs() {
+                let here = first.between(&a, &b).expect("of one task");
                 let there = second.between(&other_a, &other_b).expect("of one task");
                 assert_eq!(numbers(&here), numbers(&there), "{} and {}", a.id(), b.id());
             }

@@ -14,11 +14,16 @@ use std::process::{Command, ExitStatus, Stdio};
 use super::blocks::{Block, blocks};
 use super::recording::{self, Recorded};
 use super::{read, root};
+use crate::tier::quick_or_full;
 
 /// It stands for whatever was printed there, be it lines or the rest of one.
 const LEFT_OUT: &str = "…";
 
+/// In the quick tier only where the page is to be written anew.
 pub(crate) fn run(page: &str) {
+    if !quick_or_full(updates(), true) {
+        return;
+    }
     let scratch = tempfile::tempdir().unwrap();
     let folder = scratch.path();
     for shared in ["examples", "schemas"] {
