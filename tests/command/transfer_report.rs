@@ -163,7 +163,7 @@ fn a_learner_whose_transfer_falls_with_distance_is_told_from_one_whose_transfer_
 #[test]
 fn the_report_explains_itself_and_draws_a_picture() {
     let folder = lived(&every_order(), by_distance, true);
-    let said = reported(folder.path(), &["-o", "transfer.png"]);
+    let said = reported(folder.path(), &["--plot", "transfer.png"]);
     for words in [
         "6 lifetimes",
         "line#v0",
