@@ -151,7 +151,7 @@ def build(book: Path) -> None:
 
 
 def main() -> None:
-    """Checks, and builds if it is told where."""
+    """Checks the pages; with a folder, also builds the book there."""
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     findings = of_repository(ROOT)
