@@ -36,7 +36,7 @@ def test_only_numpy_and_gymnasium_are_needed() -> None:
 
 def test_the_extras_are_those_of_the_guide() -> None:
     guide = (Path(__file__).parents[2] / "docs" / "python.md").read_text(encoding="utf-8")
-    told = set(re.findall(r"^\| `driftworld\[(\w+)\]`", guide, re.MULTILINE))
+    told = set(re.findall(r"^\| `\./python\[(\w+)\]`", guide, re.MULTILINE))
     assert told == set(distribution().metadata.get_all("Provides-Extra") or [])
 
 
