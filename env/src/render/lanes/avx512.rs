@@ -18,8 +18,7 @@ use std::arch::x86_64::{
     _mm512_xor_si512,
 };
 
-use super::Lanes;
-use super::intrinsics::lanes_by_intrinsics;
+use super::{Lanes, first, first_mut, operations};
 
 /// Proof that the processor has AVX-512 F and BW.
 #[derive(Clone, Copy, Debug)]
@@ -33,77 +32,54 @@ impl Avx512 {
     }
 }
 
-lanes_by_intrinsics! {
-    Avx512: 16 lanes of __m512, __m512i, __mmask16;
-    memory: _mm512_loadu_ps, _mm512_storeu_ps, _mm512_loadu_si512, _mm512_storeu_si512, _mm512_set1_epi32;
-    calls: {
-        splat(value: f32) -> __m512 = _mm512_set1_ps(value);
-        root(a: __m512) -> __m512 = _mm512_sqrt_ps(a);
-        truncate(value: __m512) -> __m512i = _mm512_cvttps_epi32(value);
-        float(value: __m512i) -> __m512 = _mm512_cvtepi32_ps(value);
-        add(a: __m512, b: __m512) -> __m512 = _mm512_add_ps(a, b);
-        sub(a: __m512, b: __m512) -> __m512 = _mm512_sub_ps(a, b);
-        mul(a: __m512, b: __m512) -> __m512 = _mm512_mul_ps(a, b);
-        div(a: __m512, b: __m512) -> __m512 = _mm512_div_ps(a, b);
-        min(a: __m512, b: __m512) -> __m512 = _mm512_min_ps(a, b);
-        max(a: __m512, b: __m512) -> __m512 = _mm512_max_ps(a, b);
-        or(a: __m512i, b: __m512i) -> __m512i = _mm512_or_si512(a, b);
-        xor(a: __m512i, b: __m512i) -> __m512i = _mm512_xor_si512(a, b);
-        and(a: __m512i, b: __m512i) -> __m512i = _mm512_and_si512(a, b);
-        shift_byte(value: __m512i) -> __m512i = _mm512_slli_epi32::<8>(value);
-        at_least(a: __m512, b: __m512) -> __mmask16 = _mm512_cmp_ps_mask::<_CMP_GE_OQ>(a, b);
-        above(a: __m512, b: __m512) -> __mmask16 = _mm512_cmp_ps_mask::<_CMP_GT_OQ>(a, b);
-        same(a: __m512, b: __m512) -> __mmask16 = _mm512_cmp_ps_mask::<_CMP_EQ_OQ>(a, b);
-        select(mask: __mmask16, a: __m512, b: __m512) -> __m512 = _mm512_mask_blend_ps(mask, b, a);
-        select_words(mask: __mmask16, a: __m512i, b: __m512i) -> __m512i = _mm512_mask_blend_epi32(mask, b, a);
-    }
+const N: usize = 16;
+type Float = __m512;
+type Word = __m512i;
+type Mask = __mmask16;
 
-    #[inline(always)]
-    fn count_up(self) -> __m512 {
-        // SAFETY: as in the macro.
-        unsafe {
-            _mm512_setr_ps(
-                0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0,
-            )
-        }
+impl Lanes for Avx512 {
+    const N: usize = N;
+    type Float = Float;
+    type Word = Word;
+    type Mask = Mask;
+
+    operations! { plain:
+        both(a: Mask, b: Mask) -> Mask = a & b;
+        bits(mask: Mask) -> u32 = u32::from(mask);
     }
-    #[inline(always)]
-    fn both(self, a: __mmask16, b: __mmask16) -> __mmask16 {
-        a & b
-    }
-    #[inline(always)]
-    fn bits(self, mask: __mmask16) -> u32 {
-        u32::from(mask)
-    }
-    #[inline(always)]
-    fn has_bit(self, value: __m512i, bit: u32) -> __mmask16 {
-        // SAFETY: as in the macro.
-        unsafe { _mm512_test_epi32_mask(value, _mm512_set1_epi32(1 << bit)) }
-    }
-    #[inline(always)]
-    fn equal(self, a: __m512i, b: __m512i) -> __mmask16 {
-        // SAFETY: as in the macro.
-        unsafe { _mm512_cmpeq_epi32_mask(a, b) }
-    }
-    #[inline(always)]
-    fn shift_left(self, value: __m512i, bits: u32) -> __m512i {
-        // SAFETY: as in the macro.
-        unsafe { _mm512_sll_epi32(value, _mm_cvtsi32_si128(bits as i32)) }
-    }
-    #[inline(always)]
-    fn shift_right(self, value: __m512i, bits: u32) -> __m512i {
-        // SAFETY: as in the macro.
-        unsafe { _mm512_srl_epi32(value, _mm_cvtsi32_si128(bits as i32)) }
-    }
-    #[inline(always)]
-    fn has_any(self, value: __m512i, bits: u32) -> __mmask16 {
-        // SAFETY: as in the macro.
-        unsafe { _mm512_test_epi32_mask(value, _mm512_set1_epi32(bits as i32)) }
-    }
-    #[inline(always)]
-    fn modulate(self, a: __m512i, b: __m512i) -> __m512i {
-        // SAFETY: as in the macro.
-        unsafe {
+    operations! { intrinsics:
+        splat(value: f32) -> Float = _mm512_set1_ps(value);
+        count_up() -> Float =
+            _mm512_setr_ps(0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0);
+        load(from: &[f32]) -> Float = _mm512_loadu_ps(first::<_, N>(from).as_ptr());
+        store(value: Float, to: &mut [f32]) -> () = _mm512_storeu_ps(first_mut::<_, N>(to).as_mut_ptr(), value);
+        add(a: Float, b: Float) -> Float = _mm512_add_ps(a, b);
+        sub(a: Float, b: Float) -> Float = _mm512_sub_ps(a, b);
+        mul(a: Float, b: Float) -> Float = _mm512_mul_ps(a, b);
+        div(a: Float, b: Float) -> Float = _mm512_div_ps(a, b);
+        min(a: Float, b: Float) -> Float = _mm512_min_ps(a, b);
+        max(a: Float, b: Float) -> Float = _mm512_max_ps(a, b);
+        at_least(a: Float, b: Float) -> Mask = _mm512_cmp_ps_mask::<_CMP_GE_OQ>(a, b);
+        above(a: Float, b: Float) -> Mask = _mm512_cmp_ps_mask::<_CMP_GT_OQ>(a, b);
+        same(a: Float, b: Float) -> Mask = _mm512_cmp_ps_mask::<_CMP_EQ_OQ>(a, b);
+        root(a: Float) -> Float = _mm512_sqrt_ps(a);
+        select(mask: Mask, a: Float, b: Float) -> Float = _mm512_mask_blend_ps(mask, b, a);
+
+        splat_word(value: u32) -> Word = _mm512_set1_epi32(value as i32);
+        load_words(from: &[u32]) -> Word = _mm512_loadu_si512(first::<_, N>(from).as_ptr().cast());
+        store_words(value: Word, to: &mut [u32]) -> () =
+            _mm512_storeu_si512(first_mut::<_, N>(to).as_mut_ptr().cast(), value);
+        select_words(mask: Mask, a: Word, b: Word) -> Word = _mm512_mask_blend_epi32(mask, b, a);
+        or(a: Word, b: Word) -> Word = _mm512_or_si512(a, b);
+        xor(a: Word, b: Word) -> Word = _mm512_xor_si512(a, b);
+        and(a: Word, b: Word) -> Word = _mm512_and_si512(a, b);
+        equal(a: Word, b: Word) -> Mask = _mm512_cmpeq_epi32_mask(a, b);
+        shift_left(value: Word, bits: u32) -> Word = _mm512_sll_epi32(value, _mm_cvtsi32_si128(bits as i32));
+        shift_right(value: Word, bits: u32) -> Word = _mm512_srl_epi32(value, _mm_cvtsi32_si128(bits as i32));
+        shift_byte(value: Word) -> Word = _mm512_slli_epi32::<8>(value);
+        has_bit(value: Word, bit: u32) -> Mask = _mm512_test_epi32_mask(value, _mm512_set1_epi32(1 << bit));
+        has_any(value: Word, bits: u32) -> Mask = _mm512_test_epi32_mask(value, _mm512_set1_epi32(bits as i32));
+        modulate(a: Word, b: Word) -> Word = {
             let (zero, half) = (_mm512_setzero_si512(), _mm512_set1_epi16(64));
             let low = _mm512_mullo_epi16(_mm512_unpacklo_epi8(a, zero), _mm512_unpacklo_epi8(b, zero));
             let high = _mm512_mullo_epi16(_mm512_unpackhi_epi8(a, zero), _mm512_unpackhi_epi8(b, zero));
@@ -111,12 +87,8 @@ lanes_by_intrinsics! {
                 _mm512_srli_epi16::<7>(_mm512_add_epi16(low, half)),
                 _mm512_srli_epi16::<7>(_mm512_add_epi16(high, half)),
             )
-        }
-    }
-    #[inline(always)]
-    fn mix(self, a: __m512i, b: __m512i, share: __m512i) -> __m512i {
-        // SAFETY: as in the macro.
-        unsafe {
+        };
+        mix(a: Word, b: Word, share: Word) -> Word = {
             let (zero, most) = (_mm512_setzero_si512(), _mm512_set1_epi16(255));
             let rest = _mm512_xor_si512(share, _mm512_set1_epi8(-1));
             let low = _mm512_add_epi16(
@@ -131,31 +103,22 @@ lanes_by_intrinsics! {
                 _mm512_srli_epi16::<8>(_mm512_add_epi16(low, most)),
                 _mm512_srli_epi16::<8>(_mm512_add_epi16(high, most)),
             )
-        }
-    }
-    #[inline(always)]
-    fn gather(self, table: &[u32], at: __m512i) -> __m512i {
-        assert!(!table.is_empty(), "a table has words");
-        let last = self.splat_word((table.len() - 1).min(i32::MAX as usize) as u32);
-        // SAFETY: as in the macro; no place is beyond the last word of the table.
-        unsafe {
-            let at = _mm512_min_epu32(at, last);
-            _mm512_i32gather_epi32::<4>(at, table.as_ptr().cast())
-        }
-    }
-    #[inline(always)]
-    fn power_of_two(self, value: __m512) -> __m512 {
-        // SAFETY: as in the macro.
-        unsafe {
+        };
+        gather(table: &[u32], at: Word) -> Word = {
+            assert!(!table.is_empty(), "a table has words");
+            let last = _mm512_set1_epi32((table.len() - 1).min(i32::MAX as usize) as i32);
+            // No place is beyond the last word of the table.
+            _mm512_i32gather_epi32::<4>(_mm512_min_epu32(at, last), table.as_ptr().cast())
+        };
+        power_of_two(value: Float) -> Float = {
             let exponent = _mm512_set1_epi32(0x7F80_0000);
             _mm512_castsi512_ps(_mm512_and_si512(_mm512_castps_si512(value), exponent))
-        }
-    }
-    #[inline(always)]
-    fn store_rgb(self, value: __m512i, to: &mut [u8]) {
-        let to: &mut [u8; 3 * N] = to.first_chunk_mut().expect("callers hand in three bytes a lane");
-        // SAFETY: as in the macro; the mask lets 12 words, 48 bytes, through.
-        unsafe {
+        };
+        truncate(value: Float) -> Word = _mm512_cvttps_epi32(value);
+        float(value: Word) -> Float = _mm512_cvtepi32_ps(value);
+
+        store_rgb(value: Word, to: &mut [u8]) -> () = {
+            let to: &mut [u8; 3 * N] = to.first_chunk_mut().expect("callers hand in three bytes a lane");
             // Within each quarter the fourth bytes go out; then the quarters close up.
             let quarter = _mm_setr_epi8(0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, -1, -1, -1, -1);
             let packed = _mm512_permutexvar_epi32(
@@ -163,26 +126,14 @@ lanes_by_intrinsics! {
                 _mm512_shuffle_epi8(value, _mm512_broadcast_i32x4(quarter)),
             );
             _mm512_mask_storeu_epi32(to.as_mut_ptr().cast(), 0x0fff, packed);
-        }
-    }
-    #[inline(always)]
-    fn store_bytes(self, value: __m512i, to: &mut [u8]) {
-        // SAFETY: as in the macro.
-        unsafe { _mm_storeu_si128(first_mut(to).as_mut_ptr().cast(), _mm512_cvtepi32_epi8(value)) }
-    }
-    #[inline(always)]
-    fn store_halves(self, value: __m512i, to: &mut [u16]) {
-        // SAFETY: as in the macro.
-        unsafe { _mm256_storeu_si256(first_mut(to).as_mut_ptr().cast(), _mm512_cvtepi32_epi16(value)) }
-    }
-    #[inline(always)]
-    fn store_where(self, mask: __mmask16, value: __m512, to: &mut [f32]) {
-        // SAFETY: as in the macro.
-        unsafe { _mm512_mask_storeu_ps(first_mut(to).as_mut_ptr(), mask, value) }
-    }
-    #[inline(always)]
-    fn store_words_where(self, mask: __mmask16, value: __m512i, to: &mut [u32]) {
-        // SAFETY: as in the macro.
-        unsafe { _mm512_mask_storeu_epi32(first_mut(to).as_mut_ptr().cast(), mask, value) }
+        };
+        store_bytes(value: Word, to: &mut [u8]) -> () =
+            _mm_storeu_si128(first_mut::<_, N>(to).as_mut_ptr().cast(), _mm512_cvtepi32_epi8(value));
+        store_halves(value: Word, to: &mut [u16]) -> () =
+            _mm256_storeu_si256(first_mut::<_, N>(to).as_mut_ptr().cast(), _mm512_cvtepi32_epi16(value));
+        store_where(mask: Mask, value: Float, to: &mut [f32]) -> () =
+            _mm512_mask_storeu_ps(first_mut::<_, N>(to).as_mut_ptr(), mask, value);
+        store_words_where(mask: Mask, value: Word, to: &mut [u32]) -> () =
+            _mm512_mask_storeu_epi32(first_mut::<_, N>(to).as_mut_ptr().cast(), mask, value);
     }
 }

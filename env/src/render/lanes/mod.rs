@@ -11,18 +11,32 @@
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
-#[cfg(target_arch = "x86_64")]
-mod intrinsics;
+mod operations;
 mod portable;
 
 #[cfg(target_arch = "x86_64")]
 pub(super) use avx2::Avx2;
 #[cfg(target_arch = "x86_64")]
 pub(super) use avx512::Avx512;
+use operations::operations;
 pub(super) use portable::Portable;
 
 /// The most lanes that any set has: buffers are padded to it.
 pub(super) const MOST_LANES: usize = crate::assets::BLOCK;
+
+/// The first `N` elements of a slice, for reading.
+#[inline(always)]
+fn first<T, const N: usize>(from: &[T]) -> &[T; N] {
+    from.first_chunk().expect(TOO_SHORT)
+}
+
+/// The first `N` elements of a slice, for writing.
+#[inline(always)]
+fn first_mut<T, const N: usize>(to: &mut [T]) -> &mut [T; N] {
+    to.first_chunk_mut().expect(TOO_SHORT)
+}
+
+const TOO_SHORT: &str = "callers hand in at least as much as a vector holds";
 
 /// Vectors of `N` numbers and what can be done with them.
 ///
