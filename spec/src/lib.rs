@@ -29,8 +29,8 @@ mod world;
 pub use classes::Classes;
 pub use color::Color;
 pub use distribution::{
-    CellKind, CellRoom, Channel, ChannelChance, ChannelSpread, Channels, ColorMoments, Distribution, Number, Order,
-    ParamRef, PlanarMoments, Spread, Turns,
+    CellKind, CellRoom, Channel, ChannelChance, ChannelSpread, Channels, Distribution, Moments, Number, Order,
+    ParamRef, Spread, Turns,
 };
 pub use element::Element;
 pub use error::{MAX_PROBLEMS, Problem, SpecError, did_you_mean, nearest};

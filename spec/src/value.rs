@@ -132,6 +132,14 @@ impl Value {
         }
     }
 
+    /// The colour, if the value is one or names one.
+    pub fn as_color(&self) -> Option<Color> {
+        match self.cast(ParameterType::Color)? {
+            Self::Color(color) => Some(color),
+            _ => None,
+        }
+    }
+
     /// The whole number, if the value is one.
     pub fn as_integer(&self) -> Option<i64> {
         if let Self::Integer(whole) = self {

@@ -1,6 +1,6 @@
 //! Wasserstein distances between distributions of colours. Distances between single colours are in `color/`.
 
-use driftworld_spec::{Color, Distribution, ParameterType, Value};
+use driftworld_spec::{Color, Distribution, Moments};
 
 use super::measured::{Measured, Method};
 use super::scatter::chosen;
@@ -90,11 +90,11 @@ fn listed(distribution: &Distribution) -> Option<(Vec<Color>, Vec<f64>)> {
     if found.len() > STAND_INS {
         return None;
     }
-    let each = found.into_iter().map(|(value, mass)| Some((color_of(&value)?, mass)));
+    let each = found.into_iter().map(|(value, mass)| Some((value.as_color()?, mass)));
     Some(each.collect::<Option<Vec<_>>>()?.into_iter().unzip())
 }
 
-fn is_a_point(moments: driftworld_spec::ColorMoments) -> bool {
+fn is_a_point(moments: Moments<3>) -> bool {
     (0..3).all(|k| moments.covariance[k][k] == 0.0)
 }
 
@@ -124,19 +124,12 @@ fn reversed(mut number: u32, base: u32) -> f64 {
 /// The colour that three random numbers decide.
 fn color(distribution: &Distribution, [u, v, w]: [f64; 3]) -> Option<Color> {
     match distribution {
-        Distribution::Choice { values, weights } => color_of(&values[chosen(values.len(), weights.as_deref(), u).0]),
+        Distribution::Choice { values, weights } => values[chosen(values.len(), weights.as_deref(), u).0].as_color(),
         Distribution::Mixture { parts, weights } => {
             let (index, within) = chosen(parts.len(), weights.as_deref(), u);
             color(&parts[index], [within, v, w])
         }
         other => other.color_at([u, v, w]),
-    }
-}
-
-fn color_of(value: &Value) -> Option<Color> {
-    match value.cast(ParameterType::Color)? {
-        Value::Color(color) => Some(color),
-        _ => None,
     }
 }
 

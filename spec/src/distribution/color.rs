@@ -3,7 +3,7 @@
 
 use super::{ChannelChance, Distribution};
 use crate::Color;
-use crate::value::{ParameterType, Value};
+use crate::value::Value;
 
 impl<N> Distribution<N> {
     /// Whether it, or a part of it, draws colours out of a continuum: `color_uniform`, `color_normal`, `color_perturb` or
@@ -28,10 +28,7 @@ impl Distribution<f64> {
     /// what they take, and for distributions of anything else.
     pub fn color_at(&self, units: [f64; 3]) -> Option<Color> {
         let (inside, limits) = match self {
-            Self::Constant { value } => match value.cast(ParameterType::Color)? {
-                Value::Color(color) => return Some(color),
-                _ => return None,
-            },
+            Self::Constant { value } => return value.as_color(),
             Self::ColorUniform { from, to, channels } => {
                 let colour = match channels {
                     // From the lesser to the greater end, whichever is named first.
@@ -89,9 +86,9 @@ impl Distribution<f64> {
             value: Value::Number(number),
         };
         Some(match self {
-            Self::Constant { value } => color_of(value)?.0.map(number),
+            Self::Constant { value } => value.as_color()?.0.map(number),
             Self::Choice { values, weights } => {
-                let colors = values.iter().map(color_of).collect::<Option<Vec<_>>>()?;
+                let colors = values.iter().map(Value::as_color).collect::<Option<Vec<_>>>()?;
                 [0, 1, 2].map(|k| Self::Choice {
                     values: colors.iter().map(|color| Value::Number(color.0[k])).collect(),
                     weights: weights.clone(),
@@ -152,7 +149,7 @@ impl Distribution<f64> {
                 *channels == ChannelChance::Apart
             }
             Self::ColorNormal { .. } => true,
-            Self::Constant { value } => color_of(value).is_some(),
+            Self::Constant { value } => value.as_color().is_some(),
             _ => false,
         }
     }
@@ -195,14 +192,6 @@ impl Distribution<f64> {
             _ => return None,
         };
         Some(ends.map(Color))
-    }
-}
-
-/// The colour that a value is, or names.
-pub(super) fn color_of(value: &Value) -> Option<Color> {
-    match value.cast(ParameterType::Color)? {
-        Value::Color(color) => Some(color),
-        _ => None,
     }
 }
 

@@ -1,79 +1,31 @@
-//! [`ColorMoments`]: means and covariances of the distributions that draw colours. Which colour they draw is in `color.rs`, moments of
+//! [`Moments`]: means and covariances of the distributions that draw colours. Which colour they draw is in `color.rs`, moments of
 //! numbers are in `moments.rs`.
 
-use super::Distribution;
-use super::color::{color_of, dip};
+use super::color::dip;
+use super::{Distribution, Moments};
 use crate::value::Value;
-
-/// Mean and covariance of a distribution of colours.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ColorMoments {
-    /// The mean of red, green and blue.
-    pub mean: [f64; 3],
-    /// The covariance matrix of red, green and blue.
-    pub covariance: [[f64; 3]; 3],
-}
-
-impl ColorMoments {
-    /// Of channels whose means, and means of products of two, are known.
-    fn of(mean: [f64; 3], product: impl Fn(usize, usize) -> f64) -> Self {
-        let entry = |i: usize, j: usize| product(i, j) - mean[i] * mean[j];
-        Self {
-            mean,
-            covariance: [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j))),
-        }
-    }
-
-    /// Of a mixture of parts, each with its weight.
-    fn mixed(parts: &[(Self, f64)]) -> Self {
-        let total: f64 = parts.iter().map(|part| part.1).sum();
-        let average =
-            |of: &dyn Fn(&Self) -> f64| parts.iter().map(|(part, weight)| weight * of(part)).sum::<f64>() / total;
-        let mean = [0, 1, 2].map(|k| average(&|part| part.mean[k]));
-        let entry = |i: usize, j: usize| {
-            average(&|part| part.covariance[i][j] + (part.mean[i] - mean[i]) * (part.mean[j] - mean[j]))
-        };
-        Self {
-            mean,
-            covariance: [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j))),
-        }
-    }
-}
 
 impl Distribution<f64> {
     /// Mean and covariance of red, green and blue, exact but for rounding; `None` if it draws anything but colours.
-    pub fn color_moments(&self) -> Option<ColorMoments> {
+    pub fn color_moments(&self) -> Option<Moments<3>> {
         if self.has_independent_channels() {
             let laws = self.color_channels()?;
-            let mut moments = ColorMoments {
-                mean: [0.0; 3],
-                covariance: [[0.0; 3]; 3],
-            };
+            let mut moments = Moments::point([0.0; 3]);
             for (k, law) in laws.iter().enumerate() {
                 moments.mean[k] = law.mean()?;
                 moments.covariance[k][k] = law.variance()?;
             }
             return Some(moments);
         }
-        let weigh = |parts: Vec<ColorMoments>, weights: Option<&Vec<f64>>| {
-            let weight = |k: usize| weights.map_or(1.0, |weights| weights[k]);
-            let parts = parts.into_iter().enumerate().map(|(k, part)| (part, weight(k)));
-            ColorMoments::mixed(&parts.collect::<Vec<_>>())
-        };
         match self {
             Self::Choice { values, weights } => {
-                let point = |value: &Value| {
-                    Some(ColorMoments {
-                        mean: color_of(value)?.0,
-                        covariance: [[0.0; 3]; 3],
-                    })
-                };
+                let point = |value: &Value| value.as_color().map(|color| Moments::point(color.0));
                 let parts = values.iter().map(point).collect::<Option<Vec<_>>>()?;
-                Some(weigh(parts, weights.as_ref()))
+                Some(Moments::mixed(&parts, weights.as_deref()))
             }
             Self::Mixture { parts, weights } => {
                 let parts = parts.iter().map(Self::color_moments).collect::<Option<Vec<_>>>()?;
-                Some(weigh(parts, weights.as_ref()))
+                Some(Moments::mixed(&parts, weights.as_deref()))
             }
             Self::ColorHsv { .. } => self.hsv_moments(),
             // One number of chance moves all channels, each along straight lines between its knots.
@@ -81,7 +33,9 @@ impl Distribution<f64> {
                 let knots = self.knots()?;
                 let at = |u: f64| self.color_at([u; 3]).map_or([0.0; 3], |color| color.0);
                 let mean = [0, 1, 2].map(|k| integral(&knots, |u| at(u)[k]));
-                Some(ColorMoments::of(mean, |i, j| integral(&knots, |u| at(u)[i] * at(u)[j])))
+                Some(Moments::of(mean, |i, j| {
+                    integral(&knots, |u| at(u)[i] * at(u)[j]) - mean[i] * mean[j]
+                }))
             }
         }
     }
@@ -113,7 +67,7 @@ impl Distribution<f64> {
     }
 
     /// A channel is `v − v s d` for a dip `d` that the hue decides; hue, saturation and value do not depend on each other.
-    fn hsv_moments(&self) -> Option<ColorMoments> {
+    fn hsv_moments(&self) -> Option<Moments<3>> {
         let [hue, saturation, value] = self.hsv_ends()?;
         let mean_of = |[low, high]: [f64; 2]| f64::midpoint(low, high);
         let square_of = |[low, high]: [f64; 2]| (low * low + low * high + high * high) / 3.0;
@@ -132,9 +86,10 @@ impl Distribution<f64> {
         };
         let dips = [0, 1, 2].map(|k| over_hues(&|hue| dip(k, hue)));
         let mean = dips.map(|dip| mean_of(value) * (1.0 - mean_of(saturation) * dip));
-        Some(ColorMoments::of(mean, |i, j| {
+        Some(Moments::of(mean, |i, j| {
             let both = over_hues(&|hue| dip(i, hue) * dip(j, hue));
-            square_of(value) * (1.0 - mean_of(saturation) * (dips[i] + dips[j]) + square_of(saturation) * both)
+            let product = 1.0 - mean_of(saturation) * (dips[i] + dips[j]) + square_of(saturation) * both;
+            square_of(value) * product - mean[i] * mean[j]
         }))
     }
 }

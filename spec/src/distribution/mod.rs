@@ -24,8 +24,8 @@ use serde::{Deserialize, Serialize};
 
 pub use cells::{CellKind, CellRoom};
 pub use channels::{Channel, ChannelChance, ChannelSpread, Channels};
-pub use color_moments::ColorMoments;
-pub use planar::{Order, PlanarMoments, Spread};
+pub use moments::Moments;
+pub use planar::{Order, Spread};
 pub use reference::{Number, ParamRef};
 pub use turn::Turns;
 

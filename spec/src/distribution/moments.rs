@@ -1,8 +1,46 @@
-//! Mean and variance of the distributions that draw numbers. Those of points are in `planar.rs`.
+//! Mean and variance of the distributions that draw numbers; [`Moments`] of those that draw several at once. Which those are for
+//! points is in `planar.rs`, for colours in `color_moments.rs`.
+
+use std::array;
 
 use super::Distribution;
 use super::special::{normal_cdf, normal_density};
 use crate::value::Value;
+
+/// Mean and covariance of points in metres, or of red, green and blue.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moments<const N: usize> {
+    /// The mean.
+    pub mean: [f64; N],
+    /// The covariance matrix.
+    pub covariance: [[f64; N]; N],
+}
+
+impl<const N: usize> Moments<N> {
+    /// Of a single place.
+    pub(super) fn point(mean: [f64; N]) -> Self {
+        Self::of(mean, |_, _| 0.0)
+    }
+
+    pub(super) fn of(mean: [f64; N], covariance: impl Fn(usize, usize) -> f64) -> Self {
+        let covariance = array::from_fn(|i| array::from_fn(|j| covariance(i, j)));
+        Self { mean, covariance }
+    }
+
+    /// Of a mixture of parts, which weigh the same where no weights are given.
+    pub(super) fn mixed(parts: &[Self], weights: Option<&[f64]>) -> Self {
+        let weight = |k: usize| weights.map_or(1.0, |weights| weights[k]);
+        let total: f64 = (0..parts.len()).map(weight).sum();
+        let average = |of: &dyn Fn(&Self) -> f64| {
+            let each = parts.iter().enumerate().map(|(k, part)| weight(k) * of(part));
+            each.sum::<f64>() / total
+        };
+        let mean = array::from_fn(|k| average(&|part| part.mean[k]));
+        Self::of(mean, |i, j| {
+            average(&|part| part.covariance[i][j] + (part.mean[i] - mean[i]) * (part.mean[j] - mean[j]))
+        })
+    }
+}
 
 impl Distribution<f64> {
     /// The mean of what it draws; of a Bernoulli its `p`, of headings the mean direction in degrees.

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Distribution;
+use super::{Distribution, Moments};
 use crate::value::Value;
 
 /// The standard deviation of a normal distribution of the plane.
@@ -36,16 +36,7 @@ pub(super) fn is_default(order: &Order) -> bool {
     *order == Order::default()
 }
 
-/// Mean and covariance of a distribution of the plane.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlanarMoments {
-    /// The mean in metres.
-    pub mean: [f64; 2],
-    /// The covariance matrix in square metres.
-    pub covariance: [[f64; 2]; 2],
-}
-
-impl PlanarMoments {
+impl Moments<2> {
     fn round(mean: [f64; 2], variance: f64) -> Self {
         Self {
             mean,
@@ -58,22 +49,6 @@ impl PlanarMoments {
         Self {
             mean: [0, 1].map(|axis| f64::midpoint(low[axis], high[axis])),
             covariance: [[x, 0.0], [0.0, y]],
-        }
-    }
-
-    /// Of a mixture of parts, each with its weight.
-    fn mixed(parts: &[(Self, f64)]) -> Self {
-        let total: f64 = parts.iter().map(|part| part.1).sum();
-        let mean = [0, 1].map(|axis| parts.iter().map(|(part, weight)| weight * part.mean[axis]).sum::<f64>() / total);
-        let entry = |i: usize, j: usize| {
-            let each = parts.iter().map(|(part, weight)| {
-                weight * (part.covariance[i][j] + (part.mean[i] - mean[i]) * (part.mean[j] - mean[j]))
-            });
-            each.sum::<f64>() / total
-        };
-        Self {
-            mean,
-            covariance: [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]],
         }
     }
 }
@@ -109,20 +84,15 @@ impl Distribution<f64> {
 
     /// Mean and covariance, exact; of places taken in turn those of one round, of `poisson_disc` those without its distance.
     /// `None` if it draws no points.
-    pub fn planar_moments(&self) -> Option<PlanarMoments> {
+    pub fn planar_moments(&self) -> Option<Moments<2>> {
         let points = |points: &[[f64; 2]], weights: Option<&[f64]>| {
-            let parts = points.iter().enumerate().map(|(k, point)| {
-                (
-                    PlanarMoments::round(*point, 0.0),
-                    weights.map_or(1.0, |weights| weights[k]),
-                )
-            });
-            PlanarMoments::mixed(&parts.collect::<Vec<_>>())
+            let parts = points.iter().map(|point| Moments::point(*point));
+            Moments::mixed(&parts.collect::<Vec<_>>(), weights)
         };
         Some(match self {
             Self::Constant {
                 value: Value::Point(point),
-            } => PlanarMoments::round(*point, 0.0),
+            } => Moments::point(*point),
             Self::Choice { values, weights } => {
                 let at = |value: &Value| {
                     if let Value::Point(point) = value {
@@ -134,12 +104,10 @@ impl Distribution<f64> {
                 let values = values.iter().map(at).collect::<Option<Vec<_>>>()?;
                 points(&values, weights.as_deref())
             }
-            Self::Box { low, high } | Self::PoissonDisc { low, high, .. } => PlanarMoments::rectangle(*low, *high),
-            Self::Disc { center, radius } => PlanarMoments::round(*center, radius * radius / 4.0),
-            Self::Annulus { center, inner, outer } => {
-                PlanarMoments::round(*center, (inner * inner + outer * outer) / 4.0)
-            }
-            Self::Gaussian { mean, .. } => PlanarMoments {
+            Self::Box { low, high } | Self::PoissonDisc { low, high, .. } => Moments::rectangle(*low, *high),
+            Self::Disc { center, radius } => Moments::round(*center, radius * radius / 4.0),
+            Self::Annulus { center, inner, outer } => Moments::round(*center, (inner * inner + outer * outer) / 4.0),
+            Self::Gaussian { mean, .. } => Moments {
                 mean: *mean,
                 covariance: self.gaussian_covariance()?,
             },
@@ -152,24 +120,19 @@ impl Distribution<f64> {
                 jitter,
                 ..
             } => {
-                let moments = PlanarMoments::rectangle(*low, *high);
+                let moments = Moments::rectangle(*low, *high);
                 // Cell centres have (n² − 1)/n² of the rectangle's variance; jitter gives some of the rest back.
                 let jitter = jitter.unwrap_or(0.0);
                 let axis = |variance: f64, n: f64| variance * (1.0 - (1.0 - jitter * jitter) / (n * n));
                 let [[x, _], [_, y]] = moments.covariance;
-                PlanarMoments {
+                Moments {
                     covariance: [[axis(x, *columns), 0.0], [0.0, axis(y, *rows)]],
                     ..moments
                 }
             }
             Self::Mixture { parts, weights } => {
-                let parts = parts.iter().enumerate().map(|(k, part)| {
-                    Some((
-                        part.planar_moments()?,
-                        weights.as_ref().map_or(1.0, |weights| weights[k]),
-                    ))
-                });
-                PlanarMoments::mixed(&parts.collect::<Option<Vec<_>>>()?)
+                let parts = parts.iter().map(Self::planar_moments);
+                Moments::mixed(&parts.collect::<Option<Vec<_>>>()?, weights.as_deref())
             }
             _ => return None,
         })

@@ -249,7 +249,7 @@ leaf!(u8, Integer, whole);
 leaf!(u32, Integer, whole);
 leaf!(u64, Integer, whole);
 leaf!(bool, Boolean, truth);
-leaf!(Color, Color, color);
+leaf!(Color, Color, Value::as_color);
 leaf!(String, String, text);
 
 fn whole<T: TryFrom<i64>>(value: &Value) -> Option<T> {
@@ -259,13 +259,6 @@ fn whole<T: TryFrom<i64>>(value: &Value) -> Option<T> {
 fn truth(value: &Value) -> Option<bool> {
     match value {
         Value::Boolean(truth) => Some(*truth),
-        _ => None,
-    }
-}
-
-fn color(value: &Value) -> Option<Color> {
-    match value.cast(ParameterType::Color)? {
-        Value::Color(color) => Some(color),
         _ => None,
     }
 }
