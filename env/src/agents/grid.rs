@@ -105,6 +105,21 @@ impl Grid {
         (low[1]..=high[1]).flat_map(move |row| (low[0]..=high[0]).map(move |column| self.cell([column, row])))
     }
 
+    /// The cells of the arena whose middles may lie within a square around a place, `reach` to each side.
+    pub(super) fn near(self, at: [f32; 2], reach: f32) -> impl Iterator<Item = usize> {
+        self.within(at.map(|metres| metres - reach), at.map(|metres| metres + reach))
+    }
+
+    /// The cells of the arena whose middles may lie in a polygon, or nearer to it than a margin.
+    pub(super) fn near_polygon(self, corners: &[[f64; 2]], margin: f32) -> impl Iterator<Item = usize> {
+        let bound = |axis: usize, sign: f32| {
+            let along = corners.iter().map(|corner| corner[axis] as f32 * sign);
+            (along.fold(f32::NEG_INFINITY, f32::max) + margin) * sign
+        };
+        let [low, high] = [-1.0, 1.0].map(|sign| [bound(0, sign), bound(1, sign)]);
+        self.within(low, high)
+    }
+
     /// The eight cells around a cell of the arena as steps in the list of cells, and whether they are slanting.
     pub(super) fn around(&self) -> [(isize, bool); 8] {
         let row = self.stride() as isize;

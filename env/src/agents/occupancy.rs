@@ -62,8 +62,8 @@ pub(super) struct Disc {
 impl Disc {
     /// The cells whose middles it covers.
     pub(super) fn cells(self, grid: Grid) -> impl Iterator<Item = usize> {
-        let [low, high] = [-self.radius, self.radius].map(|by| self.centre.map(|metres| metres + by));
-        grid.within(low, high).filter(move |cell| self.covers(*cell, grid))
+        let near = grid.near(self.centre, self.radius);
+        near.filter(move |cell| self.covers(*cell, grid))
     }
 
     /// About how many cells it covers, and no fewer.
@@ -236,16 +236,9 @@ impl OccupancyGrid {
             self.sealed.resize(grid.num_cells(), false);
         }
         for corners in world.obstacles() {
-            let bound = |axis: usize, sign: f32| {
-                let reach = corners
-                    .iter()
-                    .map(|corner| corner[axis] as f32 * sign)
-                    .fold(f32::NEG_INFINITY, f32::max);
-                (reach + margin) * sign
-            };
-            let [low, high] = [-1.0, 1.0].map(|sign| [bound(0, sign), bound(1, sign)]);
+            let near = grid.near_polygon(corners, margin);
             let corners = corners.iter().map(|corner| corner.map(|metres| metres as f32));
-            for cell in grid.within(low, high) {
+            for cell in near {
                 if self.taken[cell] == 0 && is_near_or_inside(corners.clone(), grid.centre(cell), margin) {
                     self.taken[cell] = 1;
                 }

@@ -105,10 +105,7 @@ impl Floor {
             let margin = self.body + away;
             let at = leaf.at;
             let reach = leaf.reach() + margin;
-            let cells = self
-                .grid
-                .within(at.map(|metres| metres - reach), at.map(|metres| metres + reach));
-            for cell in cells {
+            for cell in self.grid.near(at, reach) {
                 if leaf.distance(self.grid.centre(cell)) < margin && self.weight[cell] > 0 {
                     self.weight[cell] = match weight {
                         NOWHERE => NOWHERE,
@@ -151,16 +148,9 @@ impl Floor {
             self.bare[cell] = by_room(room - body);
         }
         for corners in regions() {
-            let bound = |axis: usize, sign: f32| {
-                let reach = corners
-                    .iter()
-                    .map(|corner| corner[axis] as f32 * sign)
-                    .fold(f32::NEG_INFINITY, f32::max);
-                (reach + body + LIKED) * sign
-            };
-            let [low, high] = [-1.0, 1.0].map(|sign| [bound(0, sign), bound(1, sign)]);
+            let near = self.grid.near_polygon(corners, body + LIKED);
             let corners = corners.iter().map(|corner| corner.map(|metres| metres as f32));
-            for cell in self.grid.within(low, high) {
+            for cell in near {
                 let at = self.grid.centre(cell);
                 if self.bare[cell] > 0 && is_near_or_inside(corners.clone(), at, body + LEAST) {
                     self.bare[cell] = 0;
@@ -216,10 +206,7 @@ impl Floor {
     /// The cell where the agent is: the nearest on which it can be.
     pub(super) fn cell_near(&self, at: [f32; 2]) -> Option<usize> {
         let reach = self.body + 2.0 * self.grid.side();
-        let cells = self
-            .grid
-            .within(at.map(|metres| metres - reach), at.map(|metres| metres + reach));
-        let of_all = cells.filter(|cell| self.weight[*cell] > 0);
+        let of_all = self.grid.near(at, reach).filter(|cell| self.weight[*cell] > 0);
         let squared = |cell: usize| squared(self.grid.centre(cell), at);
         of_all
             .map(|cell| (cell, squared(cell)))
@@ -254,10 +241,7 @@ impl Floor {
     /// The room of the nearest cell beside a body, on one side of it if that is asked for.
     fn room_beside(&self, leaf: &Leaf, side: Option<f32>) -> Option<Room> {
         let reach = leaf.reach() + self.body + 0.6;
-        let cells = self.grid.within(
-            leaf.at.map(|metres| metres - reach),
-            leaf.at.map(|metres| metres + reach),
-        );
+        let cells = self.grid.near(leaf.at, reach);
         let counts = |cell: &usize| {
             let [along, across] = leaf.own_axes(self.grid.centre(*cell));
             self.weight[*cell] > 0
@@ -276,10 +260,7 @@ impl Floor {
     pub(super) fn cells_beside(&self, sim: SimRef, object: u32, room: Room) -> Vec<u32> {
         let leaf = Leaf::of(sim, object as usize);
         let reach = leaf.reach() + self.body + 0.6;
-        let cells = self.grid.within(
-            leaf.at.map(|metres| metres - reach),
-            leaf.at.map(|metres| metres + reach),
-        );
+        let cells = self.grid.near(leaf.at, reach);
         let in_room: Vec<(usize, f32)> = cells
             .filter(|cell| self.weight[*cell] > 0 && self.room[*cell] == room)
             .filter(|cell| {

@@ -85,9 +85,7 @@ impl Floor {
             };
             has_room && others.iter().all(is_out_of_reach)
         };
-        let around = self
-            .grid
-            .within(at.map(|metres| metres - most), at.map(|metres| metres + most));
+        let around = self.grid.near(at, most);
         around
             .filter(|cell| self.room[*cell] == room && is_free(cell))
             .map(|cell| cell as u32)
