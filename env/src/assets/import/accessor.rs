@@ -6,7 +6,7 @@ use gltf_json::validation::Checked;
 use gltf_json::{Index, Root};
 
 use super::buffers::Buffers;
-use super::refusal::{one_of, refuse};
+use super::refusal::{named, one_of, refuse};
 use crate::EnvError;
 use crate::assets::library::{MAX_MODEL_TRIANGLES, MAX_MODEL_VERTICES};
 
@@ -92,10 +92,7 @@ pub(super) fn indices(
 }
 
 fn sound<'a>(root: &'a Root, index: Index<Accessor>, for_use: Use, from: &str) -> Result<Sound<'a>, EnvError> {
-    let Some(accessor) = root.accessors.get(index.value()) else {
-        let found = format!("accessor {}", index.value());
-        return Err(refuse(from, found, one_of(root.accessors.len())));
-    };
+    let accessor = named(&root.accessors, index.value(), "accessor", from)?;
     let place = format!("/accessors/{}", index.value());
     if accessor.sparse.is_some() {
         let found = "a sparse accessor";

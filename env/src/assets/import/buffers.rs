@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use gltf_json::{Index, Root, buffer};
 
-use super::refusal::{one_of, refuse};
+use super::refusal::{at_most, named, refuse};
 use super::uri::{self, ReadBeside};
 use crate::EnvError;
 
@@ -26,10 +26,7 @@ pub(super) struct View<'a> {
 
 impl<'a> Buffers<'a> {
     pub(super) fn load(root: &'a Root, binary: Option<&'a [u8]>, read: &mut ReadBeside) -> Result<Self, EnvError> {
-        if root.buffers.len() > MAX_BUFFERS {
-            let found = format!("{} buffers", root.buffers.len());
-            return Err(refuse("/buffers", found, format!("at most {MAX_BUFFERS}")));
-        }
+        at_most(MAX_BUFFERS, root.buffers.len(), "buffers", "/buffers")?;
         let mut data: Vec<Cow<[u8]>> = Vec::new();
         let mut total = 0;
         for (index, buffer) in root.buffers.iter().enumerate() {
@@ -50,13 +47,7 @@ impl<'a> Buffers<'a> {
                 ));
             }
             total += bytes.len();
-            if total > MAX_BYTES {
-                return Err(refuse(
-                    "/buffers",
-                    format!("{total} bytes"),
-                    format!("at most {MAX_BYTES}"),
-                ));
-            }
+            at_most(MAX_BYTES, total, "bytes", "/buffers")?;
             data.push(bytes);
         }
         Ok(Self { root, data })
@@ -64,21 +55,11 @@ impl<'a> Buffers<'a> {
 
     /// The bytes of a view, which whoever is at `place` refers to.
     pub(super) fn view(&self, index: Index<buffer::View>, place: &str) -> Result<View<'_>, EnvError> {
-        let views = &self.root.buffer_views;
-        let Some(view) = views.get(index.value()) else {
-            let found = format!("view {}", index.value());
-            return Err(refuse(format!("{place}/bufferView"), found, one_of(views.len())));
-        };
+        let place = format!("{place}/bufferView");
+        let view = named(&self.root.buffer_views, index.value(), "view", &place)?;
         let place = format!("/bufferViews/{}", index.value());
-        let Some((buffer, data)) = self
-            .root
-            .buffers
-            .get(view.buffer.value())
-            .zip(self.data.get(view.buffer.value()))
-        else {
-            let found = format!("buffer {}", view.buffer.value());
-            return Err(refuse(format!("{place}/buffer"), found, one_of(self.data.len())));
-        };
+        let index = view.buffer.value();
+        let buffer = named(&self.root.buffers, index, "buffer", &format!("{place}/buffer"))?;
         let (offset, length) = (view.byte_offset.map_or(0, |offset| offset.0), view.byte_length.0);
         let whole = buffer.byte_length.0;
         let end = offset.checked_add(length).filter(|end| *end <= whole);
@@ -92,7 +73,7 @@ impl<'a> Buffers<'a> {
             return Err(refuse(place, stride.to_string(), "a multiple of 4 in 4..252"));
         }
         // The end is within the buffer, which is within the data.
-        let bytes = data.get(offset as usize..end as usize).unwrap_or_default();
+        let bytes = self.data[index].get(offset as usize..end as usize).unwrap_or_default();
         Ok(View { bytes, stride })
     }
 }

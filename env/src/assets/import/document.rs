@@ -8,7 +8,7 @@ use serde::Deserialize;
 use serde::de::{Deserializer, IgnoredAny, MapAccess, Visitor};
 
 use super::limits::{MAX_IMPORT_DEPTH, MAX_IMPORT_NODES};
-use super::refusal::{refuse, shortened, shortened_to};
+use super::refusal::{at_most, refuse, shortened, shortened_to};
 use crate::EnvError;
 
 /// The most objects and lists: each may cost some hundred bytes of memory for two of text.
@@ -65,10 +65,7 @@ pub(super) fn parse(json: &str) -> Result<Root, EnvError> {
             return Err(refuse(place, format!("{:?}", shortened(name)), expected));
         }
     }
-    if root.nodes.len() > MAX_IMPORT_NODES {
-        let found = format!("{} nodes", root.nodes.len());
-        return Err(refuse("/nodes", found, format!("at most {MAX_IMPORT_NODES}")));
-    }
+    at_most(MAX_IMPORT_NODES, root.nodes.len(), "nodes", "/nodes")?;
     Ok(root)
 }
 

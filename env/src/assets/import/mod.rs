@@ -30,7 +30,7 @@ pub use uri::ReadBeside;
 pub use warning::ImportWarning;
 
 use self::palette::Group;
-use self::refusal::refuse;
+use self::refusal::{at_most, refuse};
 use super::library::{Detail, LibraryModel};
 use crate::EnvError;
 
@@ -55,10 +55,7 @@ impl LibraryModel {
     /// [`MAX_IMPORT_NODES`], [`MAX_IMPORT_DEPTH`], [`MAX_MODEL_VERTICES`](crate::MAX_MODEL_VERTICES),
     /// [`MAX_MODEL_TRIANGLES`](crate::MAX_MODEL_TRIANGLES), [`MAX_TEXTURE_SIDE`].
     pub fn from_gltf(bytes: &[u8], options: &ImportOptions, read: &mut ReadBeside) -> Result<Imported, EnvError> {
-        if bytes.len() > MAX_IMPORT_BYTES {
-            let found = format!("{} bytes", bytes.len());
-            return Err(refuse("file", found, format!("at most {MAX_IMPORT_BYTES}")));
-        }
+        at_most(MAX_IMPORT_BYTES, bytes.len(), "bytes", "file")?;
         let container = container::open(bytes)?;
         let root = document::parse(container.json)?;
         let mut warnings = warning::Warnings::default();

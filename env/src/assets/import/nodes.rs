@@ -3,7 +3,7 @@
 use gltf_json::{Index, Mesh, Node, Root};
 
 use super::limits::MAX_IMPORT_DEPTH;
-use super::refusal::{one_of, refuse};
+use super::refusal::{named, one_of, refuse};
 use crate::EnvError;
 
 /// Where a mesh stands: three rows of a 3 × 4 matrix that takes its points into the scene.
@@ -52,12 +52,10 @@ struct Walk<'a, 'b> {
 
 impl Walk<'_, '_> {
     fn node(&mut self, index: Index<Node>, parent: &Pose, depth: usize, from: &str) -> Result<(), EnvError> {
-        let (index, count) = (index.value(), self.root.nodes.len());
-        let Some((node, seen)) = self.root.nodes.get(index).zip(self.seen.get_mut(index)) else {
-            return Err(refuse(from, format!("node {index}"), one_of(count)));
-        };
+        let index = index.value();
+        let node = named(&self.root.nodes, index, "node", from)?;
         let place = format!("/nodes/{index}");
-        if std::mem::replace(seen, true) {
+        if std::mem::replace(&mut self.seen[index], true) {
             return Err(refuse(place, "a second parent, or itself below it", "a tree of nodes"));
         }
         if depth > MAX_IMPORT_DEPTH {

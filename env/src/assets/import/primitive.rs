@@ -9,7 +9,7 @@ use gltf_json::{Root, material, texture};
 use super::accessor::{self, Use};
 use super::buffers::Buffers;
 use super::coloring::Coloring;
-use super::refusal::{one_of, refuse};
+use super::refusal::{named, refuse};
 use super::texture::Textures;
 use super::warning::{ImportWarning, Warnings};
 use crate::EnvError;
@@ -175,10 +175,8 @@ fn material_of<'a>(
     let Some(index) = primitive.material else {
         return Ok(None);
     };
-    let Some(material) = root.materials.get(index.value()) else {
-        let found = format!("material {}", index.value());
-        return Err(refuse(format!("{place}/material"), found, one_of(root.materials.len())));
-    };
+    let place = format!("{place}/material");
+    let material = named(&root.materials, index.value(), "material", &place)?;
     let factor = material.pbr_metallic_roughness.base_color_factor.0;
     if !factor.iter().all(|channel| (0.0..=1.0).contains(channel)) {
         let place = format!("/materials/{}/pbrMetallicRoughness/baseColorFactor", index.value());

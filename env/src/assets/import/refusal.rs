@@ -11,6 +11,20 @@ pub(super) fn refuse(place: impl Into<String>, found: impl Into<String>, expecte
     }
 }
 
+/// What an index of the file names in a list of it.
+pub(super) fn named<'a, T>(list: &'a [T], index: usize, what: &str, place: &str) -> Result<&'a T, EnvError> {
+    let named = list.get(index);
+    named.ok_or_else(|| refuse(place, format!("{what} {index}"), one_of(list.len())))
+}
+
+/// Refuses more of something than there may be.
+pub(super) fn at_most(most: usize, found: usize, what: &str, place: &str) -> Result<(), EnvError> {
+    if found <= most {
+        return Ok(());
+    }
+    Err(refuse(place, format!("{found} {what}"), format!("at most {most}")))
+}
+
 /// The numbers that a list of this length has.
 pub(super) fn one_of(length: usize) -> String {
     match length {

@@ -5,7 +5,7 @@ use gltf_json::{Index, Mesh};
 
 use super::nodes::Pose;
 use super::primitive::{ReadPrimitive, Reading};
-use super::refusal::{one_of, refuse};
+use super::refusal::{named, refuse};
 use super::size::ImportSize;
 use crate::EnvError;
 use crate::assets::library::MAX_MODEL_REACH;
@@ -41,14 +41,8 @@ impl Surface {
         pose: &Pose,
         node: &str,
     ) -> Result<(), EnvError> {
-        let (index, meshes) = (mesh.value(), &reading.root.meshes);
-        let Some(mesh) = meshes.get(index) else {
-            return Err(refuse(
-                format!("{node}/mesh"),
-                format!("mesh {index}"),
-                one_of(meshes.len()),
-            ));
-        };
+        let index = mesh.value();
+        let mesh = named(&reading.root.meshes, index, "mesh", &format!("{node}/mesh"))?;
         for (k, primitive) in mesh.primitives.iter().enumerate() {
             self.primitives += 1;
             if self.primitives > MAX_PRIMITIVES {

@@ -11,7 +11,7 @@ use gltf_json::{Index, Root};
 use super::buffers::Buffers;
 use super::color::linear;
 use super::limits::MAX_TEXTURE_SIDE;
-use super::refusal::{one_of, refuse};
+use super::refusal::{named, refuse};
 use super::uri::{self, ReadBeside};
 use super::warning::{ImportWarning, Warnings};
 use crate::EnvError;
@@ -68,11 +68,8 @@ impl<'a, 'b> Textures<'a, 'b> {
         place: &str,
         warnings: &mut Warnings,
     ) -> Result<Option<Texture<'_>>, EnvError> {
-        let (index, textures) = (texture.value(), &self.root.textures);
-        let Some(texture) = textures.get(index) else {
-            let found = format!("texture {index}");
-            return Err(refuse(place, found, one_of(textures.len())));
-        };
+        let index = texture.value();
+        let texture = named(&self.root.textures, index, "texture", place)?;
         let place = format!("/textures/{index}");
         let wrap = self.wrap(texture.sampler, &format!("{place}/sampler"))?;
         let image = texture.source.value();
@@ -93,10 +90,7 @@ impl<'a, 'b> Textures<'a, 'b> {
         let Some(index) = sampler.map(|sampler| sampler.value()) else {
             return Ok([WrappingMode::Repeat; 2]);
         };
-        let samplers = &self.root.samplers;
-        let Some(sampler) = samplers.get(index) else {
-            return Err(refuse(place, format!("sampler {index}"), one_of(samplers.len())));
-        };
+        let sampler = named(&self.root.samplers, index, "sampler", place)?;
         let [Checked::Valid(across), Checked::Valid(down)] = [sampler.wrap_s, sampler.wrap_t] else {
             let place = format!("/samplers/{index}");
             return Err(refuse(place, "an unknown wrapS or wrapT", "10497, 33071 or 33648"));
@@ -105,10 +99,7 @@ impl<'a, 'b> Textures<'a, 'b> {
     }
 
     fn load(&mut self, index: usize, from: &str, warnings: &mut Warnings) -> Result<Option<Pixels>, EnvError> {
-        let Some(image) = self.root.images.get(index) else {
-            let found = format!("image {index}");
-            return Err(refuse(from, found, one_of(self.root.images.len())));
-        };
+        let image = named(&self.root.images, index, "image", from)?;
         if self.images.len() >= MAX_IMAGES {
             let found = format!("more than {MAX_IMAGES} images in use");
             return Err(refuse("/images", found, "at most that"));

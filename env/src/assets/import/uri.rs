@@ -4,7 +4,7 @@
 use base64::Engine;
 
 use super::limits::MAX_IMPORT_BYTES;
-use super::refusal::{refuse, shortened};
+use super::refusal::{at_most, refuse, shortened};
 use crate::EnvError;
 
 /// Hands over a file that lies beside the glTF file, or says why it cannot. It is asked for relative paths that lead
@@ -22,10 +22,7 @@ pub(super) fn bytes(uri: &str, place: &str, read: &mut ReadBeside) -> Result<Vec
             refuse(place, found, "a file beside this one")
         })?
     };
-    if bytes.len() > MAX_IMPORT_BYTES {
-        let found = format!("{} bytes", bytes.len());
-        return Err(refuse(place, found, format!("at most {MAX_IMPORT_BYTES}")));
-    }
+    at_most(MAX_IMPORT_BYTES, bytes.len(), "bytes", place)?;
     Ok(bytes)
 }
 
