@@ -198,7 +198,7 @@ impl<T> std::ops::DerefMut for Aligned<T> {
 
 /// `c + a·x + b·y` in one row.
 #[inline(always)]
-fn at_top<L: Lanes>(lanes: L, [c, a, b]: [f32; 3], x: L::Float, y: f32) -> L::Float {
+pub(super) fn at_top<L: Lanes>(lanes: L, [c, a, b]: [f32; 3], x: L::Float, y: f32) -> L::Float {
     lanes.mul_add(lanes.splat(a), x, lanes.splat(c + b * y))
 }
 

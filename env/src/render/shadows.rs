@@ -1,7 +1,7 @@
 //! Shadows on the ground: what casts them is flattened along the light onto the ground, and drawn where ground is seen. How
 //! much darker it is there is `daylight.rs`'s to say. Nothing else gets shadows.
 
-use super::canvas::{Canvas, Triangle};
+use super::canvas::{Canvas, Triangle, at_top};
 use super::daylight::Daylight;
 use super::hidden::Hidden;
 use super::lanes::Lanes;
@@ -232,10 +232,4 @@ fn shade<L: Lanes, const ITEMS: bool>(l: L, canvas: &mut Canvas, triangle: &Tria
         }
         start = start.min(last_start);
     }
-}
-
-/// `c + a·x + b·y` in one row.
-#[inline(always)]
-fn at_top<L: Lanes>(l: L, [c, a, b]: [f32; 3], x: L::Float, y: f32) -> L::Float {
-    l.mul_add(l.splat(a), x, l.splat(c + b * y))
 }
