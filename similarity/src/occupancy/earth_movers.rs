@@ -54,9 +54,8 @@ fn least_work(shape: GridShape, mut units: Units) -> Result<f64, SimilarityError
         .flat_map(|&a| to.iter().map(move |&b| apart(a, b)))
         .collect();
     let pick = |units: &[i64], cells: &[usize]| cells.iter().map(|&cell| units[cell]).collect::<Vec<i64>>();
-    let found = solve(&pick(&units.from, &from), &pick(&units.to, &to), &costs);
-    let work = found
-        .moves
+    let moves = solve(&pick(&units.from, &from), &pick(&units.to, &to), &costs);
+    let work = moves
         .iter()
         .map(|&(source, sink, flow)| flow as f64 * costs[source * to.len() + sink]);
     Ok(work.sum::<f64>() * units.unit)

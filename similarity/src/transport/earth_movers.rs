@@ -44,7 +44,7 @@ pub fn earth_movers_distance(a: &[[f64; 2]], b: &[[f64; 2]]) -> Result<f64, Simi
     if a.len() == b.len() {
         return Ok(Assignment::new().solve(&costs, a.len(), b.len())? / a.len() as f64);
     }
-    let moves = solve(&from, &to, &costs).moves;
+    let moves = solve(&from, &to, &costs);
     let total: f64 = moves
         .iter()
         .map(|&(p, q, units)| units as f64 * costs[p * b.len() + q])

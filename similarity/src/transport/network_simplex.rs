@@ -8,22 +8,22 @@ use super::start::greedy;
 /// the search from ending. Problems of random masses need 2 to 4.
 const ROUND: usize = 64;
 
-/// A cheapest way to move the mass, in units.
-pub(crate) struct Solution {
-    /// Source, sink, units: only what moves something.
-    pub(crate) moves: Vec<(usize, usize, i64)>,
-    /// The price at each sink. That at a source is the least of what a cost exceeds them by.
-    pub(crate) sink_prices: Vec<f64>,
-}
-
-/// Moves units from sources to sinks at the least cost.
+/// Moves units from sources to sinks at the least cost: source, sink and units of all that moves something, in order.
 ///
 /// All units are above 0 and both sides have as many; `costs`: `(sources, sinks)`, finite, row after row.
 ///
 /// Network simplex over a short list of arcs: block search (as LEMON has it, Király and Kovács 2012) finds those that enter. When
 /// none of the list would, all arcs are priced, and those that would lower the cost join the list, until there is none: the
 /// prices then prove that the plan is best.
-pub(crate) fn solve(sources: &[i64], sinks: &[i64], costs: &[f64]) -> Solution {
+pub(crate) fn solve(sources: &[i64], sinks: &[i64], costs: &[f64]) -> Vec<(usize, usize, i64)> {
+    let mut moves: Vec<_> = cheapest_tree(sources, sinks, costs).arcs().collect();
+    moves.retain(|(.., units)| *units > 0);
+    moves.sort_unstable();
+    moves
+}
+
+/// The tree of arcs that the cheapest moves go along, with the prices that prove them the cheapest.
+fn cheapest_tree(sources: &[i64], sinks: &[i64], costs: &[f64]) -> SpanningTree {
     let mut arcs = nearest(costs, sinks.len());
     let mut tree = greedy(sources, sinks, costs, &arcs);
     let largest = costs.iter().fold(0.0, |largest: f64, cost| largest.max(cost.abs()));
@@ -47,7 +47,7 @@ pub(crate) fn solve(sources: &[i64], sinks: &[i64], costs: &[f64]) -> Solution {
         let before = arcs.len();
         price_all(&mut arcs, &tree, sources.len(), sinks.len(), costs, search.tolerance);
         if arcs.len() == before {
-            return finished(&tree, sources.len(), sinks.len());
+            return tree;
         }
         search.next = before;
     }
@@ -126,15 +126,6 @@ fn cheapest(row: &[f64], prices: &[f64]) -> f64 {
     least.into_iter().fold(rest, f64::min)
 }
 
-fn finished(tree: &SpanningTree, sources: usize, sinks: usize) -> Solution {
-    let mut moves: Vec<(usize, usize, i64)> = tree.arcs().filter(|arc| arc.2 > 0).collect();
-    moves.sort_unstable();
-    Solution {
-        moves,
-        sink_prices: (0..sinks).map(|sink| tree.price(sources + sink)).collect(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -143,19 +134,20 @@ mod tests {
     /// Marginals to the unit, and prices as high as costs allow that are equal to the cost wherever something moves: that proves the
     /// optimum.
     fn check(sources: &[i64], sinks: &[i64], costs: &[f64]) -> f64 {
-        let found = solve(sources, sinks, costs);
+        let tree = cheapest_tree(sources, sinks, costs);
+        let sink_prices: Vec<f64> = (0..sinks.len()).map(|sink| tree.price(sources.len() + sink)).collect();
         let (mut given, mut taken) = (vec![0; sources.len()], vec![0; sinks.len()]);
         let scale = costs.iter().fold(1e-300, |largest: f64, cost| largest.max(cost.abs()));
         let rows = costs.chunks(sinks.len());
-        let source_prices: Vec<f64> = rows.map(|row| cheapest(row, &found.sink_prices)).collect();
+        let source_prices: Vec<f64> = rows.map(|row| cheapest(row, &sink_prices)).collect();
         let mut total = 0.0;
-        for &(source, sink, units) in &found.moves {
+        for (source, sink, units) in solve(sources, sinks, costs) {
             assert!(units > 0);
             given[source] += units;
             taken[sink] += units;
             let cost = costs[source * sinks.len() + sink];
             total += units as f64 * cost;
-            let slack = cost - source_prices[source] - found.sink_prices[sink];
+            let slack = cost - source_prices[source] - sink_prices[sink];
             assert!(
                 slack.abs() <= 1e-11 * scale,
                 "an arc that carries flow has slack {slack}"

@@ -1,4 +1,4 @@
-//! [`TransportPlan`]: what moves where, what that costs, and the prices that prove it. Finding it is up to `exact.rs`.
+//! [`TransportPlan`]: what moves where, and what that costs. Finding it is up to `exact.rs`.
 
 use serde::Serialize;
 
@@ -9,13 +9,6 @@ pub struct TransportPlan {
     pub cost: f64,
     /// What moves, by origin, then by destination: at most `from + to − 1` moves.
     pub moves: Vec<Move>,
-    /// The price at each origin. No price at an origin and price at a destination add up to more than the cost between the two.
-    pub from_prices: Vec<f64>,
-    /// The price at each destination.
-    pub to_prices: Vec<f64>,
-    /// How much cheaper than `cost` a plan can be at most: cost less the masses at their prices (weak duality). Rounding leaves
-    /// something like 1e-15 of the cost, of either sign.
-    pub gap: f64,
 }
 
 /// Some mass, from one place to another.
