@@ -6,12 +6,10 @@
 //! columns, and takes new memory for every matrix.
 
 use crate::SimilarityError;
+use crate::transport::check_costs;
 
 /// Most rows, and most columns, of an assignment.
 pub const MAX_ASSIGNED: usize = 4096;
-
-/// Largest size of a cost: sums of that many of them stay finite.
-const MAX_COST: f64 = 1e200;
 
 /// Stands for "paired with none" in the buffers.
 const NONE: usize = usize::MAX;
@@ -65,7 +63,8 @@ impl Assignment {
     /// [`SimilarityError::Shape`] when the number of costs is not `rows · columns`, [`SimilarityError::TooMany`] above
     /// [`MAX_ASSIGNED`], [`SimilarityError::BadCost`] for a cost that is not finite or not within ±1e200.
     pub fn solve(&mut self, costs: &[f64], rows: usize, columns: usize) -> Result<f64, SimilarityError> {
-        check(costs, rows, columns)?;
+        SimilarityError::check_count(rows.max(columns), MAX_ASSIGNED)?;
+        check_costs(rows, columns, costs)?;
         self.partners.clear();
         self.partners.resize(rows, None);
         if rows <= columns {
@@ -213,31 +212,6 @@ fn two_least(line: &[f64], price: &[f64]) -> [(f64, usize); 2] {
         }
     }
     least
-}
-
-fn check(costs: &[f64], rows: usize, columns: usize) -> Result<(), SimilarityError> {
-    let longest = rows.max(columns);
-    if longest > MAX_ASSIGNED {
-        return Err(SimilarityError::TooMany {
-            found: longest,
-            limit: MAX_ASSIGNED,
-        });
-    }
-    if costs.len() != rows * columns {
-        return Err(SimilarityError::Shape {
-            of: "costs",
-            found: costs.len(),
-            expected: rows * columns,
-        });
-    }
-    let bad = |cost: &f64| cost.is_nan() || cost.abs() > MAX_COST;
-    costs.iter().position(bad).map_or(Ok(()), |index| {
-        Err(SimilarityError::BadCost {
-            row: index / columns,
-            column: index % columns,
-            found: costs[index],
-        })
-    })
 }
 
 #[cfg(test)]

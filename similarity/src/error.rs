@@ -326,6 +326,22 @@ impl SimilarityError {
     pub fn code(&self) -> &'static str {
         self.into()
     }
+
+    /// Refuses more items than can be compared at a time.
+    pub(crate) fn check_count(found: usize, limit: usize) -> Result<(), Self> {
+        if found > limit {
+            return Err(Self::TooMany { found, limit });
+        }
+        Ok(())
+    }
+
+    /// Refuses a list of another length than its shape has.
+    pub(crate) fn check_length(of: &'static str, found: usize, expected: usize) -> Result<(), Self> {
+        if found != expected {
+            return Err(Self::Shape { of, found, expected });
+        }
+        Ok(())
+    }
 }
 
 #[cfg(test)]

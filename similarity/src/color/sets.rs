@@ -32,12 +32,7 @@ use crate::color::measure::ColorMeasure;
 pub fn color_sets_distance(a: &[Color], b: &[Color], measure: ColorMeasure) -> Result<f64, SimilarityError> {
     let (longer, shorter) = (a.len().max(b.len()), a.len().min(b.len()));
     // Before a table of costs is made.
-    if longer > crate::MAX_ASSIGNED {
-        return Err(SimilarityError::TooMany {
-            found: longer,
-            limit: crate::MAX_ASSIGNED,
-        });
-    }
+    SimilarityError::check_count(longer, crate::MAX_ASSIGNED)?;
     if longer == 0 {
         return Ok(0.0);
     }

@@ -120,11 +120,7 @@ impl DistanceMatrix {
     }
 
     fn bounded(found: usize) -> Result<usize, SimilarityError> {
-        let limit = MAX_ITEMS;
-        if found > limit {
-            return Err(SimilarityError::TooMany { found, limit });
-        }
-        Ok(found)
+        SimilarityError::check_count(found, MAX_ITEMS).map(|()| found)
     }
 
     fn distinct(labels: &[String]) -> Result<(), SimilarityError> {

@@ -119,13 +119,7 @@ fn check(
             return Err(no_such_state(found, states));
         }
     }
-    if max_pairs > MAX_PAIRS {
-        return Err(SimilarityError::TooMany {
-            found: max_pairs,
-            limit: MAX_PAIRS,
-        });
-    }
-    Ok(())
+    SimilarityError::check_count(max_pairs, MAX_PAIRS)
 }
 
 /// No reward of one process differs from one of the other by more.

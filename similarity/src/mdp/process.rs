@@ -42,21 +42,10 @@ impl Mdp {
         successors: Vec<u32>,
         rewards: Vec<f64>,
     ) -> Result<Self, SimilarityError> {
-        if states > MAX_MDP_STATES {
-            return Err(SimilarityError::TooMany {
-                found: states,
-                limit: MAX_MDP_STATES,
-            });
-        }
+        SimilarityError::check_count(states, MAX_MDP_STATES)?;
         let expected = states.saturating_mul(actions).max(1);
-        for (of, found) in [
-            ("successors of states × actions", successors.len()),
-            ("rewards of states × actions", rewards.len()),
-        ] {
-            if found != expected {
-                return Err(SimilarityError::Shape { of, found, expected });
-            }
-        }
+        SimilarityError::check_length("successors of states × actions", successors.len(), expected)?;
+        SimilarityError::check_length("rewards of states × actions", rewards.len(), expected)?;
         if let Some(found) = successors.iter().find(|successor| **successor as usize >= states) {
             return Err(no_such_state(*found as usize, states));
         }

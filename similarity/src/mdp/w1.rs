@@ -46,10 +46,7 @@ pub fn w1_mdp(
     let actions = a.len() / counted.len().max(1);
     for found in [a.len(), b.len()] {
         let expected = (actions * counted.len()).max(1);
-        if found != expected {
-            let of = "rewards of states × actions";
-            return Err(SimilarityError::Shape { of, found, expected });
-        }
+        SimilarityError::check_length("rewards of states × actions", found, expected)?;
     }
     let (mut paid, mut led, mut rows) = (0.0, 0.0, 0_usize);
     for (state, _) in counted.iter().enumerate().filter(|(_, counts)| **counts) {

@@ -116,13 +116,7 @@ impl Grid {
     /// [`SimilarityError::Shape`] when they are not as many as the cells, [`SimilarityError::BadMass`] for one that is negative or
     /// not finite (1e200 at most).
     pub fn new(shape: GridShape, masses: Vec<f64>) -> Result<Self, SimilarityError> {
-        if masses.len() != shape.num_cells() {
-            return Err(SimilarityError::Shape {
-                of: "cells",
-                found: masses.len(),
-                expected: shape.num_cells(),
-            });
-        }
+        SimilarityError::check_length("cells", masses.len(), shape.num_cells())?;
         crate::transport::sum_of_masses("cells", &masses)?;
         Ok(Self { shape, masses })
     }

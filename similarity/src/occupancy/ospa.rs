@@ -62,12 +62,7 @@ fn by_class<C: Ord + Clone>(objects: &[(C, [f64; 2])]) -> BTreeMap<C, Vec<[f64; 
 /// How many there are.
 fn check<C>(objects: &[(C, [f64; 2])]) -> Result<usize, SimilarityError> {
     let found = objects.len();
-    if found > MAX_ASSIGNED {
-        return Err(SimilarityError::TooMany {
-            found,
-            limit: MAX_ASSIGNED,
-        });
-    }
+    SimilarityError::check_count(found, MAX_ASSIGNED)?;
     let mut metres = objects.iter().flat_map(|(_, place)| place);
     match metres.find(|metres| !metres.is_finite()) {
         Some(&found) => Err(SimilarityError::BadNumber {

@@ -64,14 +64,8 @@ pub fn optimal_transport(from: &[f64], to: &[f64], costs: &[f64]) -> Result<Tran
 }
 
 /// Refuses a table of the wrong size, and costs that cannot be added up.
-pub(super) fn check_costs(rows: usize, columns: usize, costs: &[f64]) -> Result<(), SimilarityError> {
-    if costs.len() != rows * columns {
-        return Err(SimilarityError::Shape {
-            of: "costs",
-            found: costs.len(),
-            expected: rows * columns,
-        });
-    }
+pub(crate) fn check_costs(rows: usize, columns: usize, costs: &[f64]) -> Result<(), SimilarityError> {
+    SimilarityError::check_length("costs", costs.len(), rows * columns)?;
     match costs.iter().position(|cost| !(-1e200..=1e200).contains(cost)) {
         Some(index) => Err(SimilarityError::BadCost {
             row: index / columns,
@@ -85,12 +79,7 @@ pub(super) fn check_costs(rows: usize, columns: usize, costs: &[f64]) -> Result<
 /// Where something is, if that is not at too many places.
 pub(crate) fn taken(units: &[i64]) -> Result<Vec<usize>, SimilarityError> {
     let places: Vec<usize> = (0..units.len()).filter(|&place| units[place] > 0).collect();
-    if places.len() > MAX_TRANSPORTED {
-        return Err(SimilarityError::TooMany {
-            found: places.len(),
-            limit: MAX_TRANSPORTED,
-        });
-    }
+    SimilarityError::check_count(places.len(), MAX_TRANSPORTED)?;
     Ok(places)
 }
 

@@ -14,6 +14,6 @@ pub use earth_movers::earth_movers_distance;
 pub use exact::{MAX_TRANSPORTED, optimal_transport};
 pub use plan::{Move, TransportPlan};
 
-pub(crate) use exact::taken;
+pub(crate) use exact::{check_costs, taken};
 pub(crate) use masses::{Units, sum as sum_of_masses};
 pub(crate) use network_simplex::solve;
