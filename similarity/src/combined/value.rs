@@ -124,43 +124,27 @@ impl ValueMeasure {
 
     /// The measure's own number, and the one that counts; the second may be above 1.
     pub(super) fn between(&self, a: &Value, b: &Value) -> (f64, f64) {
-        let same_or_not = || {
-            let raw = choice_mismatch(a, b);
-            (raw, raw)
-        };
-        match self {
-            Self::Difference { width, .. } => numbers(a).zip(numbers(b)).map_or_else(same_or_not, |(a, b)| {
-                let raw = a.iter().zip(&b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt();
-                (raw, share(raw, *width))
-            }),
-            Self::LogRatio { width } => a.as_number().zip(b.as_number()).map_or_else(same_or_not, |(a, b)| {
-                let raw = (libm::log(a) - libm::log(b)).abs();
-                (raw, share(raw, *width))
-            }),
-            Self::Relative { widest } => a.as_number().zip(b.as_number()).map_or_else(same_or_not, |(a, b)| {
-                let raw = relative_difference(a, b);
-                (raw, share(raw, *widest))
-            }),
-            Self::Turn { widest } => a.as_number().zip(b.as_number()).map_or_else(same_or_not, |(a, b)| {
-                let raw = circular_difference(a, b);
-                (raw, share(raw, *widest))
-            }),
+        let both = || a.as_number().zip(b.as_number());
+        let found = match self {
+            Self::Difference { width, .. } => numbers(a).zip(numbers(b)).map(|(a, b)| (euclidean(&a, &b), *width)),
+            Self::LogRatio { width } => both().map(|(a, b)| ((libm::log(a) - libm::log(b)).abs(), *width)),
+            Self::Relative { widest } => both().map(|(a, b)| (relative_difference(a, b), *widest)),
+            Self::Turn { widest } => both().map(|(a, b)| (circular_difference(a, b), *widest)),
             Self::Color { of, widest, .. } => match (a, b) {
-                (Value::Color(a), Value::Color(b)) => {
-                    let raw = of.between(*a, *b);
-                    (raw, share(raw, *widest))
-                }
-                _ => same_or_not(),
+                (Value::Color(a), Value::Color(b)) => Some((of.between(*a, *b), *widest)),
+                _ => None,
             },
-            Self::Layout { of, arena, widest } => {
-                let raw = of.between(a, b, *arena);
-                (raw, share(raw, *widest))
-            }
+            Self::Layout { of, arena, widest } => Some((of.between(a, b, *arena), *widest)),
             // What lies between the choices, as on the way of a drift, is the same or not.
-            Self::Costs(table) => table
-                .between(&a.to_string(), &b.to_string())
-                .map_or_else(|_| same_or_not(), |cost| (cost, share(cost, table.largest()))),
-            Self::SameOrNot => same_or_not(),
+            Self::Costs(table) => {
+                let cost = table.between(&a.to_string(), &b.to_string());
+                cost.ok().map(|cost| (cost, table.largest()))
+            }
+            Self::SameOrNot => None,
+        };
+        match found {
+            Some((raw, whole)) => (raw, share(raw, whole)),
+            None => (choice_mismatch(a, b), choice_mismatch(a, b)),
         }
     }
 }
@@ -292,9 +276,11 @@ fn widest_pair<T>(parameter: &Parameter, read: impl Fn(&Value) -> Option<T>, apa
 }
 
 fn widest_choice(parameter: &Parameter) -> f64 {
-    widest_pair(parameter, numbers, |a, b| {
-        a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
-    })
+    widest_pair(parameter, numbers, |a, b| euclidean(a, b))
+}
+
+fn euclidean(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
 
 fn widest_turn(parameter: &Parameter) -> f64 {
