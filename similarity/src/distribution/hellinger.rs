@@ -35,14 +35,7 @@ pub fn hellinger(a: &Distribution, b: &Distribution) -> Option<Measured> {
         let gap = libm::exp(p / 2.0) - libm::exp(q / 2.0);
         gap * gap / 2.0
     };
-    let sum = overlap::sum(a, b, half_square)?;
-    Some(
-        Measured {
-            value: sum.value.clamp(0.0, 1.0),
-            ..sum
-        }
-        .root(),
-    )
+    Some(overlap::sum(a, b, half_square)?.clamped(0.0, 1.0).root())
 }
 
 /// Logarithm of Σ √(p q), where there is a formula.

@@ -36,11 +36,7 @@ pub fn jensen_shannon_divergence(a: &Distribution, b: &Distribution) -> Option<M
     if a == b {
         return overlap::sum(a, b, |_, _| 0.0).map(|_| Measured::closed(0.0));
     }
-    let sum = overlap::sum(a, b, term)?.times(1.0 / LN_2);
-    Some(Measured {
-        value: sum.value.clamp(0.0, 1.0),
-        ..sum
-    })
+    Some(overlap::sum(a, b, term)?.times(1.0 / LN_2).clamped(0.0, 1.0))
 }
 
 /// ½ p ln(p / m) + ½ q ln(q / m) with m = (p + q) / 2, written in d with p = m (1 + d) so that nothing cancels.

@@ -45,17 +45,13 @@ pub enum Method {
 
 impl Measured {
     pub(crate) fn closed(value: f64) -> Self {
-        Self {
-            value,
-            method: Method::Closed,
-        }
+        let method = Method::Closed;
+        Self { value, method }
     }
 
     pub(crate) fn atoms(value: f64) -> Self {
-        Self {
-            value,
-            method: Method::Atoms,
-        }
+        let method = Method::Atoms;
+        Self { value, method }
     }
 
     pub(crate) fn quadrature(value: f64, tolerance: f64) -> Self {
@@ -66,6 +62,12 @@ impl Measured {
     pub(crate) fn samples(value: f64, count: usize) -> Self {
         let method = Method::Samples { count };
         Self { value, method }
+    }
+
+    /// The same with the value between these ends.
+    pub(crate) fn clamped(self, low: f64, high: f64) -> Self {
+        let value = self.value.clamp(low, high);
+        Self { value, ..self }
     }
 
     /// The root, with the error that is left of the square's.

@@ -31,10 +31,7 @@ pub fn total_variation(a: &Distribution, b: &Distribution) -> Option<Measured> {
         return Some(Measured::closed(closed));
     }
     let sum = overlap::sum(a, b, |p, q| (libm::exp(p) - libm::exp(q)).abs() / 2.0)?;
-    Some(Measured {
-        value: sum.value.clamp(0.0, 1.0),
-        ..sum
-    })
+    Some(sum.clamped(0.0, 1.0))
 }
 
 fn closed(a: &Distribution, b: &Distribution) -> Option<f64> {
