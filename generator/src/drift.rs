@@ -6,54 +6,6 @@ use crate::GeneratorError;
 use crate::interpolation::interpolate;
 use crate::stream::Stream;
 
-/// How far a drift has come, as a function of the progress of what it happens in.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Schedule {
-    /// Evenly.
-    #[default]
-    Linear,
-    /// Slowly at first and at last: (1 − cos π·progress) / 2.
-    Cosine,
-    /// In so many equal steps, from 1 on: the first is taken at `1 / (steps + 1)` of the way, the last at `steps / (steps + 1)`.
-    Step {
-        /// How many steps.
-        steps: u32,
-    },
-    /// Up to the end and back at once to the beginning, so many times, from 1 on.
-    Sawtooth {
-        /// How many times.
-        periods: u32,
-    },
-}
-
-impl Schedule {
-    /// How far the drift has come, 0..=1, when its surroundings have come `progress`, 0..=1.
-    pub fn at(self, progress: f64) -> f64 {
-        let progress = progress.clamp(0.0, 1.0);
-        match self {
-            Self::Linear => progress,
-            Self::Cosine => (1.0 - libm::cos(std::f64::consts::PI * progress)) / 2.0,
-            Self::Step { steps } => {
-                let steps = f64::from(steps.max(1));
-                ((progress * (steps + 1.0)).floor() / steps).min(1.0)
-            }
-            Self::Sawtooth { .. } if progress == 1.0 => 1.0,
-            Self::Sawtooth { periods } => (progress * f64::from(periods.max(1))).fract(),
-        }
-    }
-}
-
-impl From<DriftSchedule> for Schedule {
-    fn from(schedule: DriftSchedule) -> Self {
-        match schedule {
-            DriftSchedule::Linear => Self::Linear,
-            DriftSchedule::Cosine => Self::Cosine,
-            DriftSchedule::Steps(steps) => Self::Step { steps },
-            DriftSchedule::Sawtooth(periods) => Self::Sawtooth { periods },
-        }
-    }
-}
-
 /// How values that have nothing between them change: texts, true and false, numbers out of a list.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Switch {
@@ -94,7 +46,7 @@ pub enum Switch {
 pub struct Drift {
     from: Variant,
     to: Variant,
-    schedule: Schedule,
+    schedule: DriftSchedule,
     switch: Switch,
 }
 
@@ -116,7 +68,7 @@ impl Drift {
             Ok(Self {
                 from,
                 to,
-                schedule: Schedule::default(),
+                schedule: DriftSchedule::default(),
                 switch: Switch::default(),
             })
         } else {
@@ -145,7 +97,7 @@ impl Drift {
         Self {
             from,
             to,
-            schedule: Schedule::default(),
+            schedule: DriftSchedule::default(),
             switch: Switch::Task { seed },
         }
     }
@@ -159,16 +111,14 @@ impl Drift {
         let switch = match drift.switch {
             DriftSwitch::AtPoint => Switch::AtPoint,
             DriftSwitch::Mixture => Switch::Mixture { seed },
-            DriftSwitch::Task => return Ok(Self::mixing(from, to, seed).with_schedule(drift.schedule.into())),
+            DriftSwitch::Task => return Ok(Self::mixing(from, to, seed).with_schedule(drift.schedule)),
         };
-        Ok(Self::new(from, to)?
-            .with_schedule(drift.schedule.into())
-            .with_switch(switch))
+        Ok(Self::new(from, to)?.with_schedule(drift.schedule).with_switch(switch))
     }
 
     /// Goes by another schedule.
     #[must_use]
-    pub fn with_schedule(mut self, schedule: Schedule) -> Self {
+    pub fn with_schedule(mut self, schedule: DriftSchedule) -> Self {
         self.schedule = schedule;
         self
     }
@@ -225,33 +175,5 @@ impl Drift {
             };
             if t >= threshold { to.clone() } else { from.clone() }
         })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn schedules_begin_at_0_and_end_at_1() {
-        for schedule in [
-            Schedule::Linear,
-            Schedule::Cosine,
-            Schedule::Step { steps: 1 },
-            Schedule::Step { steps: 4 },
-            Schedule::Sawtooth { periods: 3 },
-        ] {
-            assert_eq!(schedule.at(0.0), 0.0, "{schedule:?}");
-            assert_eq!(schedule.at(1.0), 1.0, "{schedule:?}");
-        }
-        assert!((Schedule::Cosine.at(0.5) - 0.5).abs() < 1e-15 && Schedule::Cosine.at(0.1) < 0.05);
-        assert_eq!(
-            [0.3, 0.4, 0.7].map(|x| Schedule::Step { steps: 2 }.at(x)),
-            [0.0, 0.5, 1.0]
-        );
-        assert_eq!(
-            [0.125, 0.375, 0.5, 0.625].map(|x| Schedule::Sawtooth { periods: 2 }.at(x)),
-            [0.25, 0.75, 0.0, 0.25]
-        );
     }
 }

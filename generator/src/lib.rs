@@ -17,7 +17,7 @@ mod stream;
 use driftworld_spec::{Variant, World};
 
 pub use at_distance::{Found, Subject, at_distance};
-pub use drift::{Drift, Schedule, Switch, drift};
+pub use drift::{Drift, Switch, drift};
 pub use error::GeneratorError;
 pub use sampler::Sampler;
 pub use sequence::Sequence;

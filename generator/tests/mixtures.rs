@@ -3,8 +3,8 @@
 
 use std::sync::Arc;
 
-use driftworld_generator::{Drift, GeneratorError, Sampler, Schedule};
-use driftworld_spec::{DriftSwitch, RegimeDrift, TaskSpec, Variant};
+use driftworld_generator::{Drift, GeneratorError, Sampler};
+use driftworld_spec::{DriftSchedule, DriftSwitch, RegimeDrift, TaskSpec, Variant};
 use proptest::prelude::*;
 
 const TASKS: [&str; 3] = ["find_objects", "get_to_goal", "moving_object"];
@@ -67,7 +67,7 @@ proptest! {
 #[test]
 fn the_coin_of_a_world_falls_for_good_as_the_drift_goes_on() {
     let all = variants();
-    let drift = Drift::mixing(all[0].clone(), all[1].clone(), 5).with_schedule(Schedule::Linear);
+    let drift = Drift::mixing(all[0].clone(), all[1].clone(), 5).with_schedule(DriftSchedule::Linear);
     let is_second = |progress: f64, index: u64| {
         let drawn = drift.at(progress, index).expect("one of the two");
         drawn.id() == all[1].id()

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use driftworld_generator::{Drift, GeneratorError, Schedule, Subject, Switch, at_distance, drift, sample};
-use driftworld_spec::{Color, Distribution, Element, TaskSpec, Value, Variant};
+use driftworld_generator::{Drift, GeneratorError, Subject, Switch, at_distance, drift, sample};
+use driftworld_spec::{Color, Distribution, DriftSchedule, Element, TaskSpec, Value, Variant};
 use proptest::prelude::*;
 
 const TASK: &str = r#"{
@@ -119,10 +119,10 @@ fn distributions_of_two_families_are_mixed_and_gaussians_meet_in_their_covarianc
 #[test]
 fn a_drift_begins_and_ends_with_the_variants_it_was_given() {
     for schedule in [
-        Schedule::Linear,
-        Schedule::Cosine,
-        Schedule::Step { steps: 3 },
-        Schedule::Sawtooth { periods: 2 },
+        DriftSchedule::Linear,
+        DriftSchedule::Cosine,
+        DriftSchedule::Steps(3),
+        DriftSchedule::Sawtooth(2),
     ] {
         let drift = Drift::new(variant("a"), variant("b"))
             .expect("one task")

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use driftworld_env::Label;
-use driftworld_generator::{Drift, GeneratorError, Sampler, Schedule};
+use driftworld_generator::{Drift, GeneratorError, Sampler};
 use driftworld_metrics::TaskParams;
 use driftworld_spec::{BlockKind, DriftSwitch, Phase, RegimeDrift, Variant, World};
 use serde_json::{Map, Value, json};
@@ -96,7 +96,10 @@ impl Planned {
         {
             return !self.is_end(&variant);
         }
-        Schedule::from(drift.schedule).at(drift.progress(self.offset(number) as u32, self.count)) < 0.5
+        drift
+            .schedule
+            .at(drift.progress(self.offset(number) as u32, self.count))
+            < 0.5
     }
 
     /// Whether a variant is the one that it drifts to.

@@ -69,6 +69,24 @@ pub enum DriftSchedule {
     Sawtooth(#[schemars(range(min = 1, max = 1_000_000))] u32),
 }
 
+impl DriftSchedule {
+    /// How far the drift has come, 0..=1, when its surroundings have come `progress`, 0..=1. Cosine: (1 − cos π·progress) / 2.
+    /// Of steps, the first is taken at `1 / (steps + 1)` of the way, the last at `steps / (steps + 1)`.
+    pub fn at(self, progress: f64) -> f64 {
+        let progress = progress.clamp(0.0, 1.0);
+        match self {
+            Self::Linear => progress,
+            Self::Cosine => (1.0 - libm::cos(std::f64::consts::PI * progress)) / 2.0,
+            Self::Steps(steps) => {
+                let steps = f64::from(steps.max(1));
+                ((progress * (steps + 1.0)).floor() / steps).min(1.0)
+            }
+            Self::Sawtooth(_) if progress == 1.0 => 1.0,
+            Self::Sawtooth(periods) => (progress * f64::from(periods.max(1))).fract(),
+        }
+    }
+}
+
 /// How values that have nothing between them change in a drift: texts, true and false, numbers out of a list.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -161,5 +179,25 @@ mod tests {
         assert_eq!(json(&RegimeDrift::to("dusk")), r#"{"to":"dusk"}"#);
         let all = r#"{"to":"dusk","values":{"light":0.5},"name":"dim","schedule":{"steps":4},"switch":"mixture","from":0.25,"until":0.75}"#;
         assert_eq!(json(&serde_json::from_str(all).unwrap()), all);
+    }
+
+    #[test]
+    fn schedules_begin_at_0_and_end_at_1() {
+        for schedule in [
+            DriftSchedule::Linear,
+            DriftSchedule::Cosine,
+            DriftSchedule::Steps(1),
+            DriftSchedule::Steps(4),
+            DriftSchedule::Sawtooth(3),
+        ] {
+            assert_eq!(schedule.at(0.0), 0.0, "{schedule:?}");
+            assert_eq!(schedule.at(1.0), 1.0, "{schedule:?}");
+        }
+        assert!((DriftSchedule::Cosine.at(0.5) - 0.5).abs() < 1e-15 && DriftSchedule::Cosine.at(0.1) < 0.05);
+        assert_eq!([0.3, 0.4, 0.7].map(|x| DriftSchedule::Steps(2).at(x)), [0.0, 0.5, 1.0]);
+        assert_eq!(
+            [0.125, 0.375, 0.5, 0.625].map(|x| DriftSchedule::Sawtooth(2).at(x)),
+            [0.25, 0.75, 0.0, 0.25]
+        );
     }
 }
