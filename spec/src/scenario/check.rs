@@ -6,7 +6,7 @@ use std::sync::Arc;
 use indexmap::IndexMap;
 
 use super::{DriftSwitch, Phase, Regime, Scenario};
-use crate::error::{MAX_PROBLEMS, Problem, SpecError, first_of, nearest};
+use crate::error::{MAX_PROBLEMS, Problem, SpecError, first_of};
 use crate::names;
 use crate::task::TaskSpec;
 use crate::value::Value;
@@ -207,10 +207,7 @@ fn placed(error: SpecError, pointer: &str, key: &str) -> Vec<Problem> {
                 format!("{found:?}"),
                 expected,
             );
-            vec![match nearest(&found, &known) {
-                Some(near) => problem.advise(format!("did you mean {near:?}?")),
-                None => problem,
-            }]
+            vec![problem.suggest(&found, &known)]
         }
         SpecError::Values { problems, .. } => problems
             .into_iter()

@@ -141,10 +141,7 @@ impl Explainer<'_> {
         };
         Finding {
             forms: usize::from(matches!(error.kind(), ValidationErrorKind::Type { .. })),
-            problem: match advice {
-                Some(advice) => problem.advise(advice),
-                None => problem,
-            },
+            problem: Problem { advice, ..problem },
         }
     }
 
@@ -163,10 +160,8 @@ impl Explainer<'_> {
         let name = error.instance().as_str().unwrap_or_default();
         let place = format!("{pointer}/{}", escape(name));
         let problem = Problem::new("spec/name", place, format!("the name {name:?}"), self.expected(error));
-        match renamed(error.instance()) {
-            Some(advice) => problem.advise(advice),
-            None => problem,
-        }
+        let advice = renamed(error.instance());
+        Problem { advice, ..problem }
     }
 
     /// The keys that the object at fault may have.

@@ -331,12 +331,10 @@ fn none_of(own: &str, value: &Value, forms: &[Form]) -> Finding {
     };
     let problem = Problem::new("spec/value", own, describe(value), expected);
     let advice = advice::for_removed(own, value).or_else(|| advice_for(value, forms, &words));
-    let problem = match advice {
-        Some(advice) => problem.advise(advice),
-        None => problem,
-    };
-    let forms = labels.len().max(1);
-    Finding { problem, forms }
+    Finding {
+        problem: Problem { advice, ..problem },
+        forms: labels.len().max(1),
+    }
 }
 
 /// What to do about a value that has none of these forms, where it shows what was meant.

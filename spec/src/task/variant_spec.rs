@@ -218,10 +218,9 @@ fn problem_of(parameters: &IndexMap<String, Parameter>, pointer: &str, name: &st
         let expected = format!("a variant parameter, one of {}", first_of(&known));
         let found = format!("the unknown parameter {name:?}");
         let near = nearest(name, &known).or_else(|| nearest(name, RESERVED));
-        let problem = Problem::new("spec/unknown-key", pointer, found, expected);
-        return Some(match near {
-            Some(near) => problem.advise(format!("did you mean {near:?}?")),
-            None => problem,
+        return Some(Problem {
+            advice: near.map(|near| format!("did you mean {near:?}?")),
+            ..Problem::new("spec/unknown-key", pointer, found, expected)
         });
     };
     if parameter.role != Role::Variant {

@@ -10,7 +10,7 @@ use super::Check;
 use crate::MAX_OBJECTS;
 use crate::describe::{describe, escape, plain_number};
 use crate::distribution::{Distribution, Number};
-use crate::error::{Problem, first_of, nearest};
+use crate::error::{Problem, first_of};
 use crate::value::{ParameterType, Value};
 
 /// The most placements of a group that are looked at for room: families have thousands of variants.
@@ -206,10 +206,7 @@ impl Check<'_> {
                 format!("a group before this one: {}", first_of(&names))
             };
             let problem = Problem::new("spec/unknown-group", pointer, format!("the group {name:?}"), expected);
-            self.report(match nearest(name, names) {
-                Some(near) => problem.advise(format!("did you mean {near:?}?")),
-                None => problem,
-            });
+            self.report(problem.suggest(name, names));
         }
         found
     }

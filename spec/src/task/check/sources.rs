@@ -6,7 +6,7 @@ use super::super::variant;
 use super::Check;
 use crate::describe::plain_number;
 use crate::distribution::{Distribution, Number, ParamRef};
-use crate::error::{Problem, first_of, nearest};
+use crate::error::{Problem, first_of};
 use crate::value::{ParameterType, Value};
 
 impl Check<'_> {
@@ -135,10 +135,7 @@ impl Check<'_> {
             format!("the unknown parameter {name:?}"),
             expected,
         );
-        self.report(match nearest(name, known) {
-            Some(near) => problem.advise(format!("did you mean {near:?}?")),
-            None => problem,
-        });
+        self.report(problem.suggest(name, known));
     }
 
     /// Whether a source is known and yields the type that its place wants.
