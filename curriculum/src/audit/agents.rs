@@ -1,10 +1,9 @@
-//! Agents of which the scores are known beforehand. A reward is 100 times the skill, plus luck.
+//! Agents of which the scores are known beforehand: each says what it earns when it meets a world. A reward is 100 times the skill, plus luck.
 
 use std::collections::BTreeMap;
 
 use sha2::{Digest, Sha256};
 
-use super::simulation::Simulated;
 use crate::run::Meeting;
 
 /// The skill of an agent that does not learn.
@@ -36,30 +35,18 @@ fn normal(what: &str, keys: &[u64]) -> f64 {
 }
 
 /// Earns the same for ever, but for luck that is drawn afresh in every experience.
-pub(super) struct NeverLearns(u64);
-
-impl NeverLearns {
-    pub(super) fn new(run: u32) -> Self {
-        Self(run.into())
-    }
-}
-
-impl Simulated for NeverLearns {
-    fn earn(&mut self, meeting: &Meeting) -> f64 {
-        reward(START, meeting, &[self.0, meeting.number])
-    }
+pub(super) fn never_learns(run: u32) -> impl FnMut(&Meeting) -> f64 {
+    move |meeting| reward(START, meeting, &[run.into(), meeting.number])
 }
 
 /// Gets better in a world each time that it is evaluated there.
-#[derive(Default)]
-pub(super) struct LearnsWhileFrozen(BTreeMap<(String, [u64; 2]), u32>);
-
-impl Simulated for LearnsWhileFrozen {
-    fn earn(&mut self, meeting: &Meeting) -> f64 {
+pub(super) fn learns_while_frozen() -> impl FnMut(&Meeting) -> f64 {
+    let mut visits: BTreeMap<(String, [u64; 2]), u32> = BTreeMap::new();
+    move |meeting| {
         if meeting.learning {
             return reward(START, meeting, &[]);
         }
-        let visits = self.0.entry((meeting.variant.clone(), meeting.layout)).or_default();
+        let visits = visits.entry((meeting.variant.clone(), meeting.layout)).or_default();
         *visits += 1;
         reward(START, meeting, &[]) + 10.0 * f64::from(*visits)
     }
@@ -67,93 +54,47 @@ impl Simulated for LearnsWhileFrozen {
 
 /// Knows nothing but the number of the experience in its block, and the sequence of actions that paid best at that number. It
 /// repeats one that paid more than most, and tries another in place of one that did not.
-pub(super) struct ByNumber {
-    run: u64,
-    whose: u64,
-    best: BTreeMap<u64, (f64, u64)>,
-}
-
-impl ByNumber {
-    pub(super) fn new(run: u32, whose: u32) -> Self {
-        Self {
-            run: run.into(),
-            whose: whose.into(),
-            best: BTreeMap::new(),
-        }
-    }
-}
-
-impl Simulated for ByNumber {
-    fn earn(&mut self, meeting: &Meeting) -> f64 {
-        let known = self.best.get(&meeting.place).copied();
+pub(super) fn by_number(run: u32, whose: u32) -> impl FnMut(&Meeting) -> f64 {
+    let mut best: BTreeMap<u64, (f64, u64)> = BTreeMap::new();
+    move |meeting| {
+        let known = best.get(&meeting.place).copied();
         let sequence = match known {
             Some((best, sequence)) if best > 100.0 * START => sequence,
-            _ => self.run << 40 | self.whose << 32 | meeting.number,
+            _ => u64::from(run) << 40 | u64::from(whose) << 32 | meeting.number,
         };
         // What a sequence of actions comes to is decided by the layout, not by the variant.
         let [seed, index] = meeting.layout;
         let paid = 100.0 * START + SEQUENCE_LUCK * normal("sequence", &[seed, index, sequence]);
         if meeting.learning && known.is_none_or(|(best, own)| own == sequence || paid > best) {
-            self.best.insert(meeting.place, (paid, sequence));
+            best.insert(meeting.place, (paid, sequence));
         }
         paid
     }
 }
 
 /// Learns every variant as if there were no other.
-pub(super) struct OwnExpert {
-    run: u64,
-    whose: u64,
-    pace: f64,
-    learned: BTreeMap<String, u32>,
-}
-
-impl OwnExpert {
-    pub(super) fn new(run: u32, whose: u32, pace: f64) -> Self {
-        Self {
-            run: run.into(),
-            whose: whose.into(),
-            pace,
-            learned: BTreeMap::new(),
-        }
-    }
-}
-
-impl Simulated for OwnExpert {
-    fn earn(&mut self, meeting: &Meeting) -> f64 {
-        let learned = self.learned.entry(meeting.variant.clone()).or_default();
-        let skill = 1.0 - (1.0 - START) * libm::exp(-f64::from(*learned) / self.pace);
+pub(super) fn own_expert(run: u32, whose: u32, pace: f64) -> impl FnMut(&Meeting) -> f64 {
+    let mut learned: BTreeMap<String, u32> = BTreeMap::new();
+    move |meeting| {
+        let learned = learned.entry(meeting.variant.clone()).or_default();
+        let skill = 1.0 - (1.0 - START) * libm::exp(-f64::from(*learned) / pace);
         *learned += u32::from(meeting.learning);
-        reward(skill, meeting, &[self.run, self.whose, meeting.number])
+        reward(skill, meeting, &[run.into(), whose.into(), meeting.number])
     }
 }
 
 /// Learns a variant at the expense of all others.
-pub(super) struct Forgets {
-    run: u64,
-    /// The part of what is missing that it learns in an experience, and of what it knows of others that it forgets.
-    rate: f64,
-    skills: BTreeMap<String, f64>,
-}
-
-impl Forgets {
-    pub(super) fn new(run: u32, pace: f64) -> Self {
-        Self {
-            run: run.into(),
-            rate: (1.0 / pace).min(1.0),
-            skills: BTreeMap::new(),
-        }
-    }
-}
-
-impl Simulated for Forgets {
-    fn earn(&mut self, meeting: &Meeting) -> f64 {
-        let skill = self.skills.get(&meeting.variant).copied().unwrap_or(0.0);
-        let paid = reward(skill, meeting, &[self.run, meeting.number]);
+pub(super) fn forgets(run: u32, pace: f64) -> impl FnMut(&Meeting) -> f64 {
+    // The part of what is missing that it learns in an experience, and of what it knows of others that it forgets.
+    let rate = (1.0 / pace).min(1.0);
+    let mut skills: BTreeMap<String, f64> = BTreeMap::new();
+    move |meeting| {
+        let skill = skills.get(&meeting.variant).copied().unwrap_or(0.0);
+        let paid = reward(skill, meeting, &[run.into(), meeting.number]);
         if meeting.learning {
-            self.skills.entry(meeting.variant.clone()).or_insert(0.0);
-            for (variant, skill) in &mut self.skills {
-                *skill += self.rate * (f64::from(u8::from(*variant == meeting.variant)) - *skill);
+            skills.entry(meeting.variant.clone()).or_insert(0.0);
+            for (variant, skill) in &mut skills {
+                *skill += rate * (f64::from(u8::from(*variant == meeting.variant)) - *skill);
             }
         }
         paid

@@ -12,7 +12,7 @@ use driftworld_metrics::{LifetimeMetrics, Log, MaintenanceMethod, Options, Readi
 use driftworld_spec::Scenario;
 use serde::Serialize;
 
-use agents::{ByNumber, Forgets, LearnsWhileFrozen, NeverLearns, OwnExpert};
+use agents::{by_number, forgets, learns_while_frozen, never_learns, own_expert};
 use simulation::{Simulated, simulate};
 
 use crate::{CurriculumError, Plan, experts_of};
@@ -107,7 +107,7 @@ impl Room<'_> {
     fn never_learns(&self, lifetimes: u32) -> Result<AuditRow, CurriculumError> {
         let mut good: Vec<(String, u32)> = Vec::new();
         for run in 0..lifetimes {
-            let scores = scored(&self.log(self.lifetime, &mut NeverLearns::new(run), "still", run)?, &[])?;
+            let scores = scored(&self.log(self.lifetime, &mut never_learns(run), "still", run)?, &[])?;
             for (name, reading) in readings(&scores) {
                 let is_good = u32::from(reading == Reading::Good);
                 match good.iter_mut().find(|(known, _)| *known == name) {
@@ -132,7 +132,7 @@ impl Room<'_> {
 
     fn learns_while_frozen(&self) -> Result<AuditRow, CurriculumError> {
         let folder = self.folder.join("frozen");
-        let (found, passed) = match simulation::run(self.lifetime, &mut LearnsWhileFrozen::default(), &folder) {
+        let (found, passed) = match simulation::run(self.lifetime, &mut learns_while_frozen(), &folder) {
             Err(CurriculumError::NotFrozen { experience, .. }) => {
                 (format!("refused at experience {experience}"), Some(true))
             }
@@ -150,7 +150,7 @@ impl Room<'_> {
     }
 
     fn by_number(&self) -> Result<AuditRow, CurriculumError> {
-        let ratios = self.beside_experts("ste_rel_perf", |run, number| Box::new(ByNumber::new(run, number)))?;
+        let ratios = self.beside_experts("ste_rel_perf", |run, number| Box::new(by_number(run, number)))?;
         let (found, passed) = match mean_and_error(&ratios) {
             Some((mean, error)) => {
                 let text = format!("{mean:.3} ± {error:.3} (standard error, {} lifetimes)", ratios.len());
@@ -171,7 +171,7 @@ impl Room<'_> {
         let mut found = Vec::new();
         let mut passed = None;
         for metric in ["ste_rel_perf", "sample_efficiency"] {
-            let ratios = self.beside_experts(metric, |run, number| Box::new(OwnExpert::new(run, number, pace)))?;
+            let ratios = self.beside_experts(metric, |run, number| Box::new(own_expert(run, number, pace)))?;
             let Some((mean, error)) = mean_and_error(&ratios) else {
                 continue;
             };
@@ -205,10 +205,7 @@ impl Room<'_> {
         let pace = pace(self.lifetime);
         let (mut bad, mut good, mut maintained, mut transferred) = (0, 0, 0, 0);
         for run in 0..self.repeats {
-            let scores = scored(
-                &self.log(self.lifetime, &mut Forgets::new(run, pace), "forgets", run)?,
-                &[],
-            )?;
+            let scores = scored(&self.log(self.lifetime, &mut forgets(run, pace), "forgets", run)?, &[])?;
             for (name, reading) in readings(&scores) {
                 match name.as_str() {
                     "perf_maintenance_mrlep" => {
@@ -241,7 +238,7 @@ impl Room<'_> {
     fn beside_experts(
         &self,
         metric: &str,
-        agent: impl Fn(u32, u32) -> Box<dyn Simulated>,
+        agent: impl Fn(u32, u32) -> Box<Simulated<'static>>,
     ) -> Result<Vec<f64>, CurriculumError> {
         let mut values = Vec::new();
         for run in 0..self.repeats {
@@ -256,7 +253,7 @@ impl Room<'_> {
         Ok(values)
     }
 
-    fn log(&self, plan: &Plan, agent: &mut dyn Simulated, name: &str, run: u32) -> Result<Log, CurriculumError> {
+    fn log(&self, plan: &Plan, agent: &mut Simulated<'_>, name: &str, run: u32) -> Result<Log, CurriculumError> {
         let folder = self.folder.join(format!("{name}-{run}"));
         let log = simulate(plan, agent, &folder)?;
         remove(&folder);

@@ -11,18 +11,15 @@ use crate::{
     COLUMNS, CurriculumError, Experience, Journal, Plan, Progress, REPEATED_EVALUATIONS, Rollout, run_rollout,
 };
 
-/// An agent of which only the rewards are simulated.
-pub(super) trait Simulated {
-    /// What it earns in its next experience.
-    fn earn(&mut self, meeting: &Meeting) -> f64;
-}
+/// An agent of which only the rewards are simulated: what it earns in its next experience.
+pub(super) type Simulated<'a> = dyn FnMut(&Meeting) -> f64 + 'a;
 
 /// The log of an agent's run; it stays in the folder.
-pub(super) fn simulate(plan: &Plan, agent: &mut dyn Simulated, folder: &Path) -> Result<Log, CurriculumError> {
+pub(super) fn simulate(plan: &Plan, agent: &mut Simulated<'_>, folder: &Path) -> Result<Log, CurriculumError> {
     let columns = LoggerInfo::new(COLUMNS)?;
     let mut writer = LogWriter::create(folder, &columns, &plan.scenario_info("simulated"))?;
     for number in 0..plan.num_experiences() {
-        let reward = agent.earn(&plan.meeting(number));
+        let reward = agent(&plan.meeting(number));
         let now = Timestamp::from_unix_micros(number.cast_signed())?;
         writer.write(&plan.simulated_record(number, reward, now))?;
     }
@@ -31,7 +28,7 @@ pub(super) fn simulate(plan: &Plan, agent: &mut dyn Simulated, folder: &Path) ->
 }
 
 /// Runs an agent as any other is run, with the check that it is frozen in evaluations. Says how many these were.
-pub(super) fn run(plan: &Plan, agent: &mut dyn Simulated, folder: &Path) -> Result<u64, CurriculumError> {
+pub(super) fn run(plan: &Plan, agent: &mut Simulated<'_>, folder: &Path) -> Result<u64, CurriculumError> {
     let mut journal = Journal::create(folder, plan, "simulated")?;
     let mut simulation = Simulation {
         plan,
@@ -45,7 +42,7 @@ pub(super) fn run(plan: &Plan, agent: &mut dyn Simulated, folder: &Path) -> Resu
 
 struct Simulation<'a> {
     plan: &'a Plan,
-    agent: &'a mut dyn Simulated,
+    agent: &'a mut Simulated<'a>,
     num_evaluated: u64,
 }
 
@@ -60,7 +57,7 @@ impl Rollout for Simulation<'_> {
         let meeting = self.plan.meeting(number);
         self.num_evaluated += u64::from(!meeting.learning);
         Ok(Some(Experience {
-            reward: self.agent.earn(&meeting),
+            reward: (self.agent)(&meeting),
             steps: 1,
             ..Experience::default()
         }))
