@@ -13,9 +13,8 @@ mod transfer;
 
 pub use audit::{AuditOptions, AuditRow, audit};
 pub use design::{
-    Choice, Control, Design, Drifting, Evaluate, Hypothesis, LEARN, MAX_BLOCKS, MAX_PROBED, MAX_SEED, MAX_STEPS,
-    Picked, Split, Steps, arrange, control, design, design_control, distances, experts, experts_of, probe, probe_named,
-    steps,
+    Choice, Control, Design, Drifting, Evaluate, LEARN, MAX_BLOCKS, MAX_PROBED, MAX_SEED, MAX_STEPS, Picked, Split,
+    Steps, arrange, control, design, design_control, distances, experts, experts_of, probe, probe_named, steps,
 };
 pub use error::CurriculumError;
 pub use run::{

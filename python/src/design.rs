@@ -56,17 +56,7 @@ fn request(tasks: Vec<String>, options: &Options<'_>) -> Result<DesignRequest> {
             end: options.text("end")?,
             target_step: options.number("target_step")?,
         },
-        order: options.choice(
-            "order",
-            &[
-                ("gradual", DesignOrder::Gradual),
-                ("outward", DesignOrder::Outward),
-                ("abrupt", DesignOrder::Abrupt),
-                ("path", DesignOrder::Path),
-                ("farthest", DesignOrder::Farthest),
-                ("named", DesignOrder::Named),
-            ],
-        )?,
+        order: options.choice("order", &DesignOrder::WORDS)?,
         by: options.read("by", By::from_name)?,
         probe: options.read("probe", design::element)?,
         modalities: options

@@ -1,6 +1,6 @@
 //! The variants of a curriculum and their order: all that are named, those of a probe, or a sequence of steps.
 
-use driftworld_curriculum::{Choice, Design, Hypothesis, Picked, Steps, arrange, distances, probe, probe_named, steps};
+use driftworld_curriculum::{Choice, Design, Picked, Steps, arrange, distances, probe, probe_named, steps};
 use driftworld_similarity::{DistanceMatrix, Method};
 use driftworld_spec::{By, DEFAULT_VARIANT, Element, Variant, did_you_mean};
 
@@ -99,7 +99,7 @@ impl DesignRequest {
             } else {
                 match self.order {
                     Some(DesignOrder::Named) => (0..picked.len()).collect(),
-                    order => arrange(&matrix, order.map_or(Hypothesis::Outward, DesignOrder::hypothesis), 0)?,
+                    order => arrange(&matrix, order.map_or(Some(Method::Outward), DesignOrder::method), 0)?,
                 }
             };
             return chosen(
@@ -128,7 +128,7 @@ impl DesignRequest {
             }
             Some(order) => {
                 let first = self.ordering.options(&matrix, self.design.seed)?.first.unwrap_or(0);
-                arrange(&matrix, order.hypothesis(), first)?
+                arrange(&matrix, order.method(), first)?
             }
             None => {
                 self.ordering

@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
-use driftworld_curriculum::{Design, Hypothesis};
+use driftworld_curriculum::Design;
 use driftworld_env::Catalogue;
+use driftworld_similarity::Method;
 use driftworld_spec::{By, Element, Modality, ScenarioForm};
 
 use crate::ordering::OrderRequest;
@@ -33,14 +34,25 @@ pub enum DesignOrder {
 }
 
 impl DesignOrder {
-    /// The order by distances that is meant.
-    pub(super) fn hypothesis(self) -> Hypothesis {
+    /// The words for them.
+    pub const WORDS: [(&'static str, Self); 6] = [
+        ("gradual", Self::Gradual),
+        ("outward", Self::Outward),
+        ("abrupt", Self::Abrupt),
+        ("path", Self::Path),
+        ("farthest", Self::Farthest),
+        ("named", Self::Named),
+    ];
+
+    /// The method that finds it; nothing for the shortest path, which each number of items has its own method for.
+    pub(crate) fn method(self) -> Option<Method> {
         match self {
-            Self::Gradual => Hypothesis::Gradual,
-            Self::Outward | Self::Named => Hypothesis::Outward,
-            Self::Abrupt => Hypothesis::Abrupt,
-            Self::Path => Hypothesis::Path,
-            Self::Farthest => Hypothesis::Farthest,
+            Self::Gradual => Some(Method::Gradual),
+            Self::Outward => Some(Method::Outward),
+            Self::Abrupt => Some(Method::Abrupt),
+            Self::Path => None,
+            Self::Farthest => Some(Method::Farthest),
+            Self::Named => Some(Method::Given),
         }
     }
 }

@@ -5,21 +5,6 @@ use strum::VariantArray;
 
 use crate::CurriculumError;
 
-/// The order in which variants are met.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Hypothesis {
-    /// In small steps: the shortest path from the first through all, and of equally short ones that whose largest step is smallest.
-    Gradual,
-    /// By growing distance from the first: what is most like it comes next, what is least like it comes last.
-    Outward,
-    /// The longest path from the first: neighbours as unlike as can be.
-    Abrupt,
-    /// The shortest path from the first through all: neighbours as alike as can be.
-    Path,
-    /// Each time what is farthest from everything met so far: as new as can be.
-    Farthest,
-}
-
 /// An order of the same variants that a hypothesis is compared with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, strum::IntoStaticStr, strum::VariantArray)]
 #[strum(serialize_all = "lowercase")]
@@ -42,30 +27,25 @@ impl Control {
     }
 }
 
-/// The items of a matrix in the order of a hypothesis, beginning with `first`; ties go by name.
+/// The items of a matrix in the order that a hypothesis is about, beginning with `first`; ties go by name. Without a method it is
+/// the shortest path.
 ///
 /// # Errors
 /// [`CurriculumError::Similarity`] without items, or if there is no such first.
 ///
 /// # Example
 /// ```
-/// use driftworld_curriculum::{CurriculumError, Hypothesis, arrange};
-/// use driftworld_similarity::DistanceMatrix;
+/// use driftworld_curriculum::{CurriculumError, arrange};
+/// use driftworld_similarity::{DistanceMatrix, Method};
 /// let light = [0.0_f64, 4.0, 1.0, 3.0];
 /// let names = ["night", "noon", "dusk", "day"].map(String::from).to_vec();
 /// let matrix = DistanceMatrix::measure(names, |a, b| Ok::<_, CurriculumError>((light[a] - light[b]).abs()))?;
-/// assert_eq!(arrange(&matrix, Hypothesis::Outward, 0)?, [0, 2, 3, 1]);
-/// assert_eq!(arrange(&matrix, Hypothesis::Abrupt, 0)?, [0, 1, 2, 3]);
+/// assert_eq!(arrange(&matrix, Some(Method::Outward), 0)?, [0, 2, 3, 1]);
+/// assert_eq!(arrange(&matrix, Some(Method::Abrupt), 0)?, [0, 1, 2, 3]);
 /// # Ok::<(), CurriculumError>(())
 /// ```
-pub fn arrange(matrix: &DistanceMatrix, hypothesis: Hypothesis, first: usize) -> Result<Vec<usize>, CurriculumError> {
-    let method = match hypothesis {
-        Hypothesis::Gradual => Method::Gradual,
-        Hypothesis::Outward => Method::Outward,
-        Hypothesis::Abrupt => Method::Abrupt,
-        Hypothesis::Path => Method::default_for(matrix.len()),
-        Hypothesis::Farthest => Method::Farthest,
-    };
+pub fn arrange(matrix: &DistanceMatrix, method: Option<Method>, first: usize) -> Result<Vec<usize>, CurriculumError> {
+    let method = method.unwrap_or_else(|| Method::default_for(matrix.len()));
     Ok(order(matrix, method, &OrderOptions::default().with_first(first))?.indices)
 }
 
@@ -104,19 +84,19 @@ mod tests {
         // The first stands in the middle: growing distance jumps from side to side, the shortest path does not. Of two
         // equally short ones (10), gradual takes that with steps up to 3, not 5.
         let matrix = line(&[0.0, 1.0, -2.0, 3.0, -4.0]);
-        assert_eq!(arrange(&matrix, Hypothesis::Outward, 0).unwrap(), [0, 1, 2, 3, 4]);
-        assert_eq!(arrange(&matrix, Hypothesis::Path, 0).unwrap(), [0, 1, 3, 2, 4]);
-        assert_eq!(arrange(&matrix, Hypothesis::Gradual, 0).unwrap(), [0, 3, 1, 2, 4]);
-        assert_eq!(arrange(&matrix, Hypothesis::Farthest, 0).unwrap()[..3], [0, 4, 3]);
+        assert_eq!(arrange(&matrix, Some(Method::Outward), 0).unwrap(), [0, 1, 2, 3, 4]);
+        assert_eq!(arrange(&matrix, None, 0).unwrap(), [0, 1, 3, 2, 4]);
+        assert_eq!(arrange(&matrix, Some(Method::Gradual), 0).unwrap(), [0, 3, 1, 2, 4]);
+        assert_eq!(arrange(&matrix, Some(Method::Farthest), 0).unwrap()[..3], [0, 4, 3]);
         let length = |order: &[usize]| order.windows(2).map(|pair| matrix.get(pair[0], pair[1])).sum::<f64>();
-        let abrupt = arrange(&matrix, Hypothesis::Abrupt, 0).unwrap();
+        let abrupt = arrange(&matrix, Some(Method::Abrupt), 0).unwrap();
         assert_eq!((abrupt[0], length(&abrupt)), (0, 4.0 + 7.0 + 5.0 + 3.0));
     }
 
     #[test]
     fn controls_are_the_same_items() {
         let matrix = line(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
-        let arranged = arrange(&matrix, Hypothesis::Path, 0).unwrap();
+        let arranged = arrange(&matrix, None, 0).unwrap();
         assert_eq!(
             control(&matrix, &arranged, Control::Reversed, 0).unwrap(),
             [5, 4, 3, 2, 1, 0]

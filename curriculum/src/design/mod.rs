@@ -25,7 +25,7 @@ pub use drifting::Drifting;
 pub use evaluation::Evaluate;
 pub use experts::{experts, experts_of};
 pub use form::MAX_BLOCKS;
-pub use hypothesis::{Control, Hypothesis, arrange, control};
+pub use hypothesis::{Control, arrange, control};
 pub use picked::{Picked, distances};
 pub use probe::{MAX_PROBED, probe, probe_named};
 pub use steps::{MAX_STEPS, Steps, steps};

@@ -42,26 +42,11 @@ pub(crate) enum OrderWord {
 }
 
 impl OrderWord {
-    /// The orders by what they are to show.
-    const DESIGNS: [(&'static str, DesignOrder); 6] = [
-        ("gradual", DesignOrder::Gradual),
-        ("outward", DesignOrder::Outward),
-        ("abrupt", DesignOrder::Abrupt),
-        ("path", DesignOrder::Path),
-        ("farthest", DesignOrder::Farthest),
-        ("named", DesignOrder::Named),
-    ];
-
-    /// The method that finds it; nothing for the shortest path, which each number of items has its own method for.
+    /// The method that finds it; nothing for the shortest path.
     fn method(self) -> Option<Method> {
         match self {
             Self::Method(method) => Some(method),
-            Self::Design(DesignOrder::Gradual) => Some(Method::Gradual),
-            Self::Design(DesignOrder::Outward) => Some(Method::Outward),
-            Self::Design(DesignOrder::Abrupt) => Some(Method::Abrupt),
-            Self::Design(DesignOrder::Path) => None,
-            Self::Design(DesignOrder::Farthest) => Some(Method::Farthest),
-            Self::Design(DesignOrder::Named) => Some(Method::Given),
+            Self::Design(order) => order.method(),
         }
     }
 }
@@ -70,14 +55,14 @@ impl FromStr for OrderWord {
     type Err = String;
 
     fn from_str(word: &str) -> Result<Self, String> {
-        if let Some((_, design)) = Self::DESIGNS.iter().find(|(name, _)| *name == word) {
+        if let Some((_, design)) = DesignOrder::WORDS.iter().find(|(name, _)| *name == word) {
             return Ok(Self::Design(*design));
         }
         word.parse().map(Self::Method).map_err(|_| {
             if let Some(advice) = removed(WordKind::Order, word) {
                 return advice;
             }
-            let designs = Self::DESIGNS.map(|(name, _)| name);
+            let designs = DesignOrder::WORDS.map(|(name, _)| name);
             let methods = Method::ALL.iter().map(|method| method.name());
             let methods: Vec<&str> = methods.filter(|name| !designs.contains(name)).collect();
             let near = did_you_mean(word, designs.iter().chain(&methods).copied());
