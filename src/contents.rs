@@ -29,18 +29,6 @@ pub enum Contents {
 }
 
 impl Contents {
-    /// Every kind.
-    pub const ALL: [Self; 8] = [
-        Self::Task,
-        Self::World,
-        Self::Scenario,
-        Self::Maps,
-        Self::Settings,
-        Self::Matrix,
-        Self::Log,
-        Self::Folder,
-    ];
-
     /// What a JSON text shows itself to be; `None` for one that shows nothing, or is no JSON.
     pub fn of_text(text: &str) -> Option<Self> {
         // A text that is too long is refused by whoever reads it.

@@ -11,6 +11,7 @@ use driftworld_similarity::{
 };
 pub use driftworld_spec::By;
 use driftworld_spec::{Element, Variant, World};
+use driftworld_text::counted;
 use strum::VariantNames as _;
 
 use crate::behavior::MAX_BEHAVIOR_WORLDS;
@@ -282,14 +283,14 @@ pub fn between(
     let (a, b) = (sample.of(a, count)?, sample.of(b, count)?);
     let mut description = format!("by {}", by.name());
     if !are_worlds {
-        let plural = if count == 1 { "" } else { "s" };
         let mean = if by == By::Placements {
             "all places in"
         } else {
             "mean of"
         };
         description = format!(
-            "{description}, {mean} {count} world{plural} of each drawn under seed {}",
+            "{description}, {mean} {} of each drawn under seed {}",
+            counted(count as usize, "world"),
             sample.seed
         );
     }

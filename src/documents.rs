@@ -125,14 +125,14 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Every kind.
-    pub const ALL: [Self; 6] = [
-        Self::Task,
-        Self::World,
-        Self::Scenario,
-        Self::Maps,
-        Self::L2ExplorerWorld,
-        Self::L2ExplorerScenario,
+    /// Every kind, with the word by which programs ask for it and with what messages call it.
+    const WORDS: [(Self, &'static str, &'static str); 6] = [
+        (Self::Task, "task", "task spec"),
+        (Self::World, "world", "world"),
+        (Self::Scenario, "scenario", "scenario"),
+        (Self::Maps, "maps", "maps file"),
+        (Self::L2ExplorerWorld, "l2explorer-world", "L2Explorer world"),
+        (Self::L2ExplorerScenario, "l2explorer-scenario", "L2Explorer scenario"),
     ];
 
     /// What a text is, seen from its keys: `blocks` make a scenario, `scenario` one of L2Explorer's, `maps` a maps file, `name`,
@@ -154,26 +154,12 @@ impl Kind {
 
     /// What messages call it.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Task => "task spec",
-            Self::World => "world",
-            Self::Scenario => "scenario",
-            Self::Maps => "maps file",
-            Self::L2ExplorerWorld => "L2Explorer world",
-            Self::L2ExplorerScenario => "L2Explorer scenario",
-        }
+        Self::WORDS[self as usize].2
     }
 
     /// The word by which programs ask for it.
     pub fn word(self) -> &'static str {
-        match self {
-            Self::Task => "task",
-            Self::World => "world",
-            Self::Scenario => "scenario",
-            Self::Maps => "maps",
-            Self::L2ExplorerWorld => "l2explorer-world",
-            Self::L2ExplorerScenario => "l2explorer-scenario",
-        }
+        Self::WORDS[self as usize].1
     }
 }
 
@@ -181,8 +167,9 @@ impl FromStr for Kind {
     type Err = String;
 
     fn from_str(word: &str) -> Result<Self, String> {
-        let words = Self::ALL.map(Self::word);
-        Self::ALL.into_iter().find(|kind| kind.word() == word).ok_or_else(|| {
+        let known = Self::WORDS.into_iter().find(|(_, known, _)| *known == word);
+        known.map(|(kind, ..)| kind).ok_or_else(|| {
+            let words = Self::WORDS.map(|(_, word, _)| word);
             let near = did_you_mean(word, words);
             format!("kind: found {word:?}, expected one of {}{near}", words.join(", "))
         })
@@ -311,8 +298,8 @@ mod tests {
 
     #[test]
     fn every_kind_is_asked_for_by_its_word() {
-        for kind in Kind::ALL {
-            assert_eq!(kind.word().parse(), Ok(kind));
+        for (kind, word, _) in Kind::WORDS {
+            assert_eq!((kind.word(), word.parse()), (word, Ok(kind)));
         }
         let refused = "scenrio".parse::<Kind>().unwrap_err();
         assert!(refused.ends_with("did you mean \"scenario\"?"), "{refused}");

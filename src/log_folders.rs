@@ -30,6 +30,15 @@ struct Search {
     read: usize,
 }
 
+/// The logs that were named, or with `is_recursive` all in and below the folders.
+pub(crate) fn found(arguments: &[PathBuf], is_recursive: bool) -> Result<Vec<PathBuf>, Failure> {
+    if is_recursive {
+        below(arguments)
+    } else {
+        named(arguments)
+    }
+}
+
 /// Every log that the arguments name, in order, those below a folder by name; each once.
 pub(crate) fn below(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut found = Vec::new();

@@ -2,8 +2,12 @@
 
 use driftworld_similarity::{DistanceMatrix, Method, OrderOptions, Ordering, SimilarityError, order};
 use driftworld_spec::did_you_mean;
+use driftworld_text::first_of;
 
 use crate::{Failure, argument, tasks};
+
+/// As many labels as a message can hold.
+const MOST_LISTED: usize = 20;
 
 /// How an order is found.
 #[derive(Clone, Debug, Default)]
@@ -67,7 +71,7 @@ impl OrderRequest {
                 Failure::input(format!(
                     "{}: found {name:?}{found}, expected one of {}{near}",
                     argument(option),
-                    some(matrix)
+                    first_of(matrix.labels(), MOST_LISTED)
                 ))
             })
         };
@@ -107,17 +111,4 @@ pub(crate) fn position_of<S: AsRef<str>>(labels: &[S], name: &str) -> Result<usi
 /// The name of a variant without its task.
 pub(crate) fn bare(label: &str) -> &str {
     label.rsplit_once('#').map_or(label, |(_, variant)| variant)
-}
-
-/// The labels, or as many as a message can hold.
-fn some(matrix: &DistanceMatrix) -> String {
-    const MOST: usize = 20;
-    let shown = &matrix.labels()[..matrix.len().min(MOST)];
-    let rest = matrix.len() - shown.len();
-    let more = if rest > 0 {
-        format!(" and {rest} more")
-    } else {
-        String::new()
-    };
-    shown.join(", ") + &more
 }

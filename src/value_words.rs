@@ -1,6 +1,7 @@
 //! Values in a few words, as captions have room for them. Values that are written whole are `spec`'s.
 
 use driftworld_spec::{Layout, RoomDoors, Value};
+use driftworld_text::counted;
 
 /// The most letters of a value whose parts are not known here.
 const LONGEST: usize = 40;
@@ -97,8 +98,7 @@ fn layout_words(layout: &Layout) -> String {
     } else {
         match layout.walls.as_ref().map_or(0, Vec::len) {
             0 => words.push("no walls".to_owned()),
-            1 => words.push("1 wall".to_owned()),
-            number => words.push(format!("{number} walls")),
+            number => words.push(counted(number, "wall")),
         }
     }
     if layout.standing < 1.0 {

@@ -1,7 +1,5 @@
 //! How wide lines may be, and texts broken between words so that they fit. Tables are `table.rs`'s, colours `style.rs`'s.
 
-use std::io::IsTerminal;
-
 use driftworld_text::{NO_BREAK, with_blanks};
 use unicode_width::UnicodeWidthStr;
 
@@ -12,24 +10,12 @@ const NARROWEST: usize = 40;
 
 /// The columns of standard output: what `COLUMNS` says, else those of the terminal; nothing where lines may be of any length.
 pub(crate) fn columns_of_stdout() -> Option<usize> {
-    asked_for().or_else(|| {
-        let stdout = std::io::stdout();
-        stdout
-            .is_terminal()
-            .then(|| terminal_size::terminal_size_of(stdout))?
-            .map(columns)
-    })
+    asked_for().or_else(|| terminal_size::terminal_size_of(std::io::stdout()).map(columns))
 }
 
 /// The same of standard error.
 pub(crate) fn columns_of_stderr() -> Option<usize> {
-    asked_for().or_else(|| {
-        let stderr = std::io::stderr();
-        stderr
-            .is_terminal()
-            .then(|| terminal_size::terminal_size_of(stderr))?
-            .map(columns)
-    })
+    asked_for().or_else(|| terminal_size::terminal_size_of(std::io::stderr()).map(columns))
 }
 
 fn columns((width, _): (terminal_size::Width, terminal_size::Height)) -> usize {

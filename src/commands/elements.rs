@@ -1,6 +1,7 @@
 //! `driftworld elements`: which elements of the decision process variants change, tried out, beside what the task claims.
 
 use clap::Args;
+use driftworld_text::joined_or;
 
 use crate::elements::{ElementsOutcome, ElementsRequest, VariantElements, elements};
 use crate::modality;
@@ -91,11 +92,7 @@ fn optimum(variant: &VariantElements) -> String {
 pub(crate) fn shown(found: &ElementsOutcome) -> String {
     let letters = |elements: &[Element]| {
         let letters: Vec<&str> = elements.iter().map(|element| element.letter()).collect();
-        if letters.is_empty() {
-            "-".to_owned()
-        } else {
-            letters.join(" ")
-        }
+        joined_or(&letters, " ", "-")
     };
     let row = |variant: &VariantElements| {
         let proof = &variant.proof;

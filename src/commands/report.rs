@@ -6,7 +6,7 @@ use crate::Failure;
 use crate::lifetime_report::{ReportRequest, write_report};
 use crate::scoring::ScoringRequest;
 use clap::Args;
-use driftworld_text::ShownPath;
+use driftworld_text::{ShownPath, counted};
 
 use super::figures::FigureChoice;
 use super::output;
@@ -96,13 +96,11 @@ impl Report {
             return output::print(&page.html);
         }
         output::write(&self.output, page.html.as_bytes())?;
-        let many = if page.num_lifetimes == 1 {
-            "lifetime"
-        } else {
-            "lifetimes"
-        };
         let kilobytes = page.html.len().div_ceil(1000);
-        output::wrote(&self.output, format!("{} {many}, {kilobytes} kB", page.num_lifetimes));
+        output::wrote(
+            &self.output,
+            format!("{}, {kilobytes} kB", counted(page.num_lifetimes, "lifetime")),
+        );
         if let (Some(folder), Some(figures)) = (&request.plots, page.figures) {
             // It says the folder first.
             let what = figures.strip_prefix(&format!("{}: ", folder.shown()));

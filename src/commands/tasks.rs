@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::spec::{Domain, Parameter, ParameterType, Role, TaskSpec, Value, Variant};
 use crate::tasks;
 use clap::{Args, Subcommand};
-use driftworld_text::{NO_BREAK, one_line, printable, whole};
+use driftworld_text::{NO_BREAK, first_of, one_line, printable, whole};
 use serde_json::json;
 
 use super::{Failure, output};
@@ -67,11 +67,11 @@ fn list(as_json: bool) -> Result<(), Failure> {
     }
     let rows = tasks.iter().map(|task| {
         let names = task.variant_names();
-        let variants = match names.get(LISTED..) {
-            Some(more) if !more.is_empty() => format!("{} and {} more", names[..LISTED].join(", "), more.len()),
-            _ => names.join(", "),
-        };
-        [task.name().to_owned(), task.description().to_owned(), variants]
+        [
+            task.name().to_owned(),
+            task.description().to_owned(),
+            first_of(&names, LISTED),
+        ]
     });
     output::line(table(["task", "what it is", "variants"], rows.collect(), &[]))?;
     output::line("\n`driftworld tasks show TASK` says what varies in one, and what each of its variants changes.")

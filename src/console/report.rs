@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::spec::{EnvironmentParams, Layout, did_you_mean};
-use driftworld_text::amount;
+use driftworld_text::{amount, joined_or};
 
 use super::line::COMMANDS;
 use super::session::{MOST_LINES, Session};
@@ -38,13 +38,7 @@ impl Session<'_> {
             .filter(|object| object.present)
             .count();
         let [width, height] = agent.picture_size();
-        let list = |names: Vec<String>| {
-            if names.is_empty() {
-                "none".to_owned()
-            } else {
-                names.join(", ")
-            }
-        };
+        let list = |names: Vec<String>| joined_or(&names, ", ", "none");
         let modalities = agent.modalities.iter().map(|it| modality::name(*it).to_owned());
         let limit = match world.step_limit() {
             None => "no limit".to_owned(),

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::env::{Action, Category, Channels, CpuRenderer, Environment, Event, Level, Snapshot, Step};
 use crate::spec::{Object, World, did_you_mean};
-use driftworld_text::{ShownPath, amount};
+use driftworld_text::{ShownPath, amount, counted, joined_or};
 
 use super::line::Line;
 use super::messages::shown;
@@ -161,9 +161,11 @@ impl<'a> Session<'a> {
             (true, false, true) => ": failure",
             (true, false, false) => ": its last step",
         };
-        let plural = if steps == 1 { "" } else { "s" };
         let (reward, agent) = (amount(reward), self.agent());
-        lines.push(format!("{steps} step{plural}, reward {reward}; {agent}{outcome}"));
+        lines.push(format!(
+            "{}, reward {reward}; {agent}{outcome}",
+            counted(steps as usize, "step")
+        ));
         Ok(lines.join("\n"))
     }
 
@@ -233,11 +235,7 @@ impl<'a> Session<'a> {
     fn snapshot(&mut self, name: Option<String>) -> Result<String, String> {
         let Some(name) = name else {
             let names: Vec<&str> = self.snapshots.keys().map(String::as_str).collect();
-            return Ok(if names.is_empty() {
-                "no moments yet".to_owned()
-            } else {
-                names.join(", ")
-            });
+            return Ok(joined_or(&names, ", ", "no moments yet"));
         };
         if self.snapshots.len() >= MOST_SNAPSHOTS && !self.snapshots.contains_key(&name) {
             return Err(format!(

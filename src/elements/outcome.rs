@@ -2,6 +2,7 @@
 
 use driftworld_env::{Findings, Policy, Proof, Witness};
 use driftworld_spec::{Element, Modality, Variant};
+use driftworld_text::joined_or;
 use serde::{Deserialize, Serialize};
 
 use super::{ElementsRequest, Optimum};
@@ -189,19 +190,10 @@ fn message_of(
 ) -> String {
     let claim = |(name, affects): &(String, Vec<Element>)| {
         let letters: Vec<&str> = affects.iter().map(|element| element.letter()).collect();
-        let letters = if letters.is_empty() {
-            "nothing".to_owned()
-        } else {
-            letters.join(" ")
-        };
-        format!("{name} ({letters})")
+        format!("{name} ({})", joined_or(&letters, " ", "nothing"))
     };
     let claims: Vec<String> = changed.iter().map(claim).collect();
-    let claims = if claims.is_empty() {
-        "no parameter".to_owned()
-    } else {
-        claims.join(", ")
-    };
+    let claims = joined_or(&claims, ", ", "no parameter");
     let (a, b) = (base.name(), other.name());
     format!(
         "{}: found that {} ({}) differs from {a}: {}{} is {} in {a} and {} in {b}; expected no more than {claims} affects; \

@@ -3,6 +3,7 @@
 
 use driftworld_metrics::{Log, Options, Scales};
 use driftworld_spec::did_you_mean;
+use driftworld_text::first_of;
 
 use super::experts::{scored_name, tasks};
 
@@ -26,7 +27,7 @@ pub(super) fn unfit_scales(log: &Log, options: &Options) -> Vec<String> {
         found.push(format!(
             "scales: found no floor and ceiling of a task of this log, expected {}{hint}; every task is scaled by \
              its own range",
-            listed(&tasks)
+            first_of(&tasks, MOST_NAMES)
         ));
     } else {
         for task in missing.iter().filter(is_alone) {
@@ -60,17 +61,4 @@ fn alike_with_others(scales: &Scales, tasks: &[String]) -> Option<String> {
             alone.join(", ")
         )
     })
-}
-
-fn listed(names: &[String]) -> String {
-    let shown = names
-        .iter()
-        .take(MOST_NAMES)
-        .map(String::as_str)
-        .collect::<Vec<_>>()
-        .join(", ");
-    match names.len().saturating_sub(MOST_NAMES) {
-        0 => shown,
-        more => format!("{shown} and {more} more"),
-    }
 }

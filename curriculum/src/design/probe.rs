@@ -111,11 +111,7 @@ pub fn probe_named(
                     a: before.id(),
                     b: variant.id(),
                     element: element.name(),
-                    differs: if differs.is_empty() {
-                        "nothing".to_owned()
-                    } else {
-                        differs.join(", ")
-                    },
+                    differs: driftworld_text::joined_or(&differs, ", ", "nothing"),
                 });
             }
         }

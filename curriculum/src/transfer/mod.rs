@@ -8,6 +8,7 @@ use std::collections::BTreeSet;
 
 use driftworld_metrics::{LifetimeMetrics, TransferMethod};
 use driftworld_similarity::{Correlation, DistanceMatrix, MantelTest, PairValue, mantel};
+use driftworld_text::first_of;
 use serde::Serialize;
 
 use crate::CurriculumError;
@@ -117,8 +118,8 @@ pub fn transfer_report(
     if known.len() < 2 {
         return Err(CurriculumError::NoCommonNames {
             found: known.len(),
-            logs: shown(logged.iter().copied()),
-            matrix: shown(distances.labels().iter().map(String::as_str)),
+            logs: shown(&Vec::from_iter(logged)),
+            matrix: shown(&distances.labels().iter().map(String::as_str).collect::<Vec<_>>()),
         });
     }
     let direction = |direction| {
@@ -198,14 +199,12 @@ fn learning_orders(lifetimes: &[LifetimeMetrics], names: &Names) -> usize {
 }
 
 /// A few names for a message.
-fn shown<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
+fn shown(names: &[&str]) -> String {
     const MOST: usize = 4;
-    let more = names.len().saturating_sub(MOST);
-    let first = names.take(MOST).collect::<Vec<_>>().join(", ");
-    match (first.is_empty(), more) {
-        (true, _) => "none".to_owned(),
-        (false, 0) => first,
-        (false, more) => format!("{first} and {more} more"),
+    if names.is_empty() {
+        "none".to_owned()
+    } else {
+        first_of(names, MOST)
     }
 }
 

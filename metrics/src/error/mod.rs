@@ -8,7 +8,7 @@ mod code;
 use std::io;
 use std::path::PathBuf;
 
-use driftworld_text::{ShownPath, one_line};
+use driftworld_text::{ShownPath, counted, one_line};
 
 /// Everything that can stop a log from being written or read, or metrics from being computed.
 ///
@@ -54,7 +54,7 @@ pub enum MetricsError {
     #[error(
         "{}: found {found}, expected the directory of this log: it was removed, renamed or replaced during the run, \
          and with it {} in {bytes} bytes; put it back and continue the log, or start a new \
-         one", path.shown(), counted(*rows)
+         one", path.shown(), counted(*rows as usize, "row")
     )]
     FolderLost {
         /// The directory.
@@ -72,7 +72,7 @@ pub enum MetricsError {
         "{}: found {found}, expected the {} in {bytes} bytes that were written: it was truncated, removed or replaced \
          during the run; put it back and continue the log, or start a new one; a log that lacks only its last rows \
          can be continued as it is",
-        path.shown(), counted(*rows)
+        path.shown(), counted(*rows as usize, "row")
     )]
     FileLost {
         /// The data file.
@@ -590,10 +590,6 @@ pub enum MetricsError {
         /// What is allowed.
         expected: String,
     },
-}
-
-fn counted(rows: u64) -> String {
-    format!("{rows} {}", if rows == 1 { "row" } else { "rows" })
 }
 
 impl MetricsError {

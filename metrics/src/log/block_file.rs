@@ -84,8 +84,7 @@ fn counted(path: &Path, bytes: u64) -> String {
         .from_path(path)
         .map(|file| file.into_byte_records().take_while(Result::is_ok).count());
     match rows {
-        Ok(1) => format!("1 row in {bytes} bytes"),
-        Ok(rows) => format!("{rows} rows in {bytes} bytes"),
+        Ok(rows) => format!("{} in {bytes} bytes", driftworld_text::counted(rows, "row")),
         Err(_) => format!("{bytes} bytes"),
     }
 }

@@ -124,11 +124,8 @@ pub(super) fn cut(text: &str) -> String {
 
 /// Names as a message lists them: the first of them, and how many more there are.
 pub(super) fn listed(names: &[String]) -> String {
-    let first: Vec<String> = names.iter().take(LISTED).map(|name| cut(name)).collect();
-    match names.len() - first.len() {
-        0 => first.join(", "),
-        more => format!("{} and {more} more", first.join(", ")),
-    }
+    let names: Vec<String> = names.iter().map(|name| cut(name)).collect();
+    driftworld_text::first_of(&names, LISTED)
 }
 
 #[cfg(test)]

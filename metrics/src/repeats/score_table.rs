@@ -146,15 +146,9 @@ impl ScoreTable {
         if resampling == Resampling::Runs || single.is_empty() {
             return None;
         }
-        let more = single.len().saturating_sub(NAMES_SHOWN);
-        let named = single[..single.len() - more].join(", ");
-        let rest = if more > 0 {
-            format!(" and {more} more")
-        } else {
-            String::new()
-        };
+        let named = driftworld_text::first_of(&single, NAMES_SHOWN);
         Some(format!(
-            "the interval is too narrow: only one run scored {named}{rest}, so its variance is unknown"
+            "the interval is too narrow: only one run scored {named}, so its variance is unknown"
         ))
     }
 

@@ -10,6 +10,7 @@ use crate::env::{
 };
 use crate::spec::{Model, Object, Style, WorldDraft};
 use clap::Args;
+use driftworld_text::counted;
 
 use super::super::{Failure, output};
 use super::LibraryChoice;
@@ -81,8 +82,7 @@ impl Show {
                 title: class.to_owned(),
                 words: match models {
                     _ if is_named => names.join(", "),
-                    1 => "1 model".to_owned(),
-                    models => format!("{models} models"),
+                    models => counted(models as usize, "model"),
                 },
                 pictures: names[..shown]
                     .iter()

@@ -69,11 +69,7 @@ impl Format {
 impl Aggregate {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let format = self.format()?;
-        let logs = if self.recursive {
-            log_folders::below(&self.logs)?
-        } else {
-            log_folders::named(&self.logs)?
-        };
+        let logs = log_folders::found(&self.logs, self.recursive)?;
         overwrite::refuse_log_files(&self.output)?;
         let mut table = LogTable::new(if self.incomplete {
             KeptRows::All

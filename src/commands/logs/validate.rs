@@ -42,11 +42,7 @@ struct Verdict {
 
 impl Validate {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let logs = if self.recursive {
-            log_folders::below(&self.logs)?
-        } else {
-            log_folders::named(&self.logs)?
-        };
+        let logs = log_folders::found(&self.logs, self.recursive)?;
         let (mut wrong, total) = (0, logs.len());
         let mut listed = Vec::new();
         for log in logs {

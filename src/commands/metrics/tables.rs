@@ -7,7 +7,7 @@ use crate::metrics::{
     NULL_PERMUTATIONS, NullBand, RepeatedMetric, ScaledBy,
 };
 
-use driftworld_text::{one_line, printable, whole};
+use driftworld_text::{counted, one_line, printable, whole};
 
 use super::reached_table::{curves, reached, reached_by_several};
 use crate::scoring::{Comparison, Scores, Varied, own_scale};
@@ -301,14 +301,6 @@ fn repeats(metrics: &[RepeatedMetric], share: &str) -> String {
 const FEW: &str = "below ten lifetimes, bootstrap intervals contain the true value less often than they claim (82 \
      instead of 95 times in 100 with five lifetimes); use Student's (t), which assumes that lifetimes are normally \
      distributed";
-
-fn counted(number: usize, what: &str) -> String {
-    if number == 1 {
-        format!("1 {what}")
-    } else {
-        format!("{number} {what}s")
-    }
-}
 
 fn interval(found: Option<Interval>) -> String {
     found.map_or_else(String::new, |found| from_to(found.low, found.high))

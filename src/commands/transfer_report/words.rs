@@ -3,6 +3,7 @@
 use crate::curriculum::{DirectionReport, TransferReport};
 use crate::metrics::TransferMethod;
 use crate::similarity::MantelTest;
+use driftworld_text::counted;
 
 use crate::report::picture::{Panel, Point};
 use crate::table::table;
@@ -26,7 +27,7 @@ pub(super) fn report(report: &TransferReport) -> String {
 fn head(report: &TransferReport) -> String {
     format!(
         "Does similarity predict transfer? {}; transfer as {}\n\n",
-        count(report.lifetimes, "lifetime"),
+        counted(report.lifetimes, "lifetime"),
         match report.measure {
             TransferMethod::Ratio => "ratio: above 1 learning helped the other variant, below 1 it harmed",
             _ => "contrast, −1 to 1: above 0 learning helped the other variant, below 0 it harmed",
@@ -170,10 +171,6 @@ fn share(p: f64, test: &MantelTest) -> String {
     format!("{p:.4}")
 }
 
-fn count(number: usize, what: &str) -> String {
-    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
-}
-
 /// The picture's panels: one for each direction that has pairs.
 pub(super) fn panels(report: &TransferReport) -> Vec<Panel> {
     let directions = [
@@ -208,7 +205,7 @@ fn summary(direction: &DirectionReport) -> String {
             test.pairs,
             test.items
         ),
-        None => format!("{}: not tested, see the text", count(direction.pairs.len(), "pair")),
+        None => format!("{}: not tested, see the text", counted(direction.pairs.len(), "pair")),
     }
 }
 

@@ -1,0 +1,35 @@
+//! Phrases of which messages and tables are made: so many of a thing, and lists that stay short.
+
+/// So many of a thing.
+///
+/// ```
+/// # use driftworld_text::counted;
+/// assert_eq!((counted(1, "row"), counted(2, "row")), ("1 row".to_owned(), "2 rows".to_owned()));
+/// ```
+pub fn counted(number: usize, what: &str) -> String {
+    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
+}
+
+/// The parts with `separator` between them, or what stands for no parts.
+pub fn joined_or<S: AsRef<str>>(parts: &[S], separator: &str, none: &str) -> String {
+    let parts: Vec<&str> = parts.iter().map(AsRef::as_ref).collect();
+    if parts.is_empty() {
+        none.to_owned()
+    } else {
+        parts.join(separator)
+    }
+}
+
+/// The first `most` names, and how many more there are.
+///
+/// ```
+/// # use driftworld_text::first_of;
+/// assert_eq!(first_of(&["a", "b", "c"], 2), "a, b and 1 more");
+/// ```
+pub fn first_of<S: AsRef<str>>(names: &[S], most: usize) -> String {
+    let shown = joined_or(&names[..names.len().min(most)], ", ", "");
+    match names.len().saturating_sub(most) {
+        0 => shown,
+        more => format!("{shown} and {more} more"),
+    }
+}
