@@ -2,9 +2,8 @@
 //! once more `env`'s; what a frame shows is decided here.
 
 use std::path::Path;
-use std::str::FromStr;
 
-use clap::ValueEnum;
+use clap::{ArgAction, Args, ValueEnum};
 use driftworld_env::{Catalogue, Environment, Recording, Renderer, RendererKind, Replay};
 use driftworld_report::film::{Film, FilmKind};
 use driftworld_report::picture::{Picture, caption_lines, sheet};
@@ -24,10 +23,9 @@ const LEAST_CAPTIONED: u32 = 100;
 const SHEET_ROWS: usize = 12;
 
 /// From where an episode is looked at.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum FilmView {
     /// What the agent sees.
-    #[default]
     Agent,
     /// The map, with the way so far.
     Above,
@@ -36,10 +34,9 @@ pub enum FilmView {
 }
 
 /// What of the agent's view is shown.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum FilmModality {
     /// Colours.
-    #[default]
     Rgb,
     /// Distance, white at 100 m.
     Depth,
@@ -48,7 +45,7 @@ pub enum FilmModality {
 }
 
 /// What a word stands for, or which words there are.
-fn of_word<T: ValueEnum>(word: &str) -> Result<T, String> {
+pub fn named<T: ValueEnum>(word: &str) -> Result<T, String> {
     T::from_str(word, false).map_err(|_| {
         let words = T::value_variants().iter().filter_map(ValueEnum::to_possible_value);
         let words: Vec<String> = words.map(|word| word.get_name().to_owned()).collect();
@@ -56,52 +53,42 @@ fn of_word<T: ValueEnum>(word: &str) -> Result<T, String> {
     })
 }
 
-impl FromStr for FilmView {
-    type Err = String;
-
-    fn from_str(word: &str) -> Result<Self, String> {
-        of_word(word)
-    }
-}
-
-impl FromStr for FilmModality {
-    type Err = String;
-
-    fn from_str(word: &str) -> Result<Self, String> {
-        of_word(word)
-    }
-}
-
-/// How an episode is shown.
-#[derive(Clone, Debug)]
+/// How an episode is filmed.
+#[derive(Clone, Debug, Args)]
 pub struct FilmOptions {
-    /// From where.
+    /// What is shown: what the agent sees, the map from above, or both side by side.
+    #[arg(long, value_enum, default_value_t = FilmView::Both)]
     pub view: FilmView,
-    /// What of the agent's view.
-    pub modality: FilmModality,
-    /// Pixels along each side of the agent's view, and from north to south of the map, which is as oblong as its arena: 1 to
-    /// [`MAX_FILM_SIZE`].
+    /// Height of the pictures in pixels.
+    // 1 to MAX_FILM_SIZE. The map is as oblong as its arena.
+    #[arg(long, default_value_t = 240, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_FILM_SIZE)))]
     pub size: u32,
-    /// One frame for so many steps, at least 1. The start and the end are always shown.
+    /// What the agent's view shows; the map has no modalities.
+    #[arg(long, value_enum, default_value_t = FilmModality::Rgb)]
+    pub modality: FilmModality,
+    /// Frames per second [default: the world's own time].
+    ///
+    /// At most 50 in a GIF, 100 in an APNG: viewers show no more.
+    #[arg(long, value_name = "RATE", value_parser = rate)]
+    pub fps: Option<f64>,
+    /// One frame for so many steps.
+    // At least 1. The start and the end are always shown.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub every: u32,
-    /// Whether words above each frame say time, return and what happened; without them a sheet says the step. Frames of a film that
-    /// are less than 100 pixels wide have none.
+    /// Leave out the line above the pictures: time, return, what is carried, what happened.
+    // Without captions a sheet says the step. Frames of a film that are less than 100 pixels wide have none.
+    #[arg(long = "no-captions", action = ArgAction::SetFalse)]
     pub captions: bool,
-    /// What draws.
+    /// Where to render: cpu, gpu, or auto (gpu if there is one).
+    ///
+    /// Natural looks are always drawn on the CPU.
+    #[arg(long, default_value_t, value_name = "RENDERER")]
     pub renderer: RendererKind,
 }
 
-impl Default for FilmOptions {
-    fn default() -> Self {
-        Self {
-            view: FilmView::default(),
-            modality: FilmModality::default(),
-            size: 240,
-            every: 1,
-            captions: false,
-            renderer: RendererKind::default(),
-        }
-    }
+fn rate(text: &str) -> Result<f64, String> {
+    let rate = text.parse().ok().filter(|rate: &f64| (0.01..=1000.0).contains(rate));
+    rate.ok_or_else(|| format!("found {text:?}, expected 0.01 to 1000 frames per second"))
 }
 
 /// What a film came to.
@@ -318,7 +305,7 @@ pub fn expect_film(path: &Path) -> Result<(), Failure> {
     ending(path).map(drop)
 }
 
-/// Writes an episode as a film (`.gif`, `.apng`), or as one picture of the frames that matter (`.png`). Without `frames_per_second`
+/// Writes an episode as a film (`.gif`, `.apng`), or as one picture of the frames that matter (`.png`). Without `fps`
 /// it goes by in the world's own time, but no faster than viewers show. `watch` is told the frames that are done.
 ///
 /// # Errors
@@ -328,7 +315,6 @@ pub fn write_film(
     recording: &Recording,
     catalogue: &Catalogue,
     options: &FilmOptions,
-    frames_per_second: Option<f64>,
     watch: &mut dyn FnMut(u64),
 ) -> Result<FilmSummary, Failure> {
     options.check()?;
@@ -338,7 +324,7 @@ pub fn write_film(
     };
     let num_frames = options.num_frames(recording.actions.len()) as u32;
     let own = recording.seconds_per_step() * f64::from(options.every);
-    let seconds = frames_per_second.map_or(own, |rate| 1.0 / rate).max(kind.shortest());
+    let seconds = options.fps.map_or(own, |rate| 1.0 / rate).max(kind.shortest());
     let mut file = output_file::create(path)?;
     let mut writer = None;
     let mut summary = FilmSummary {

@@ -5,13 +5,16 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::commands::numbers::seed;
 use crate::contents::{Contents, OtherContents};
 use crate::documents;
 use crate::tasks;
 use crate::top_level::TopLevel;
+use clap::Args;
+use driftworld_env::EpisodeOrigin;
 use driftworld_generator::Sampler;
 use driftworld_spec::maps::MapLibrary;
-use driftworld_spec::{Warning, World};
+use driftworld_spec::{DEFAULT_VARIANT, Warning, World};
 use driftworld_text::ShownPath;
 
 use crate::{Failure, Warn, argument};
@@ -97,21 +100,40 @@ pub(crate) fn json_files(path: &Path) -> Result<Vec<PathBuf>, Failure> {
 }
 
 /// Which world is meant: one of a file, or one drawn from a variant.
-#[derive(Clone, Debug)]
+#[derive(Args, Clone, Debug)]
 pub(crate) struct WorldRequest {
-    /// A world file, or a task's variant.
+    /// A world file, or a variant: PATH, PATH#variant, or a built-in such as `find_objects#red`.
     pub(crate) world: String,
-    /// The seed, where the world is drawn from a variant.
+    /// Seed for drawing the world from a variant.
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = seed)]
     pub(crate) seed: u64,
-    /// The number of the world, where it is drawn from a variant.
+    /// Index of the world under the seed.
+    #[arg(long, default_value_t = 0)]
     pub(crate) index: u64,
-    /// Whether a file is read as L2Explorer wrote it.
+    /// Read the world in L2Explorer's format, with warnings.
+    #[arg(long)]
     pub(crate) l2explorer: bool,
-    /// Layouts in place of the built-in maps: a maps file, or a folder of them.
+    /// Use the layouts in this maps file, or folder of them, instead of the built-in maps.
+    #[arg(long, value_name = "PATH")]
     pub(crate) maps: Option<PathBuf>,
 }
 
 impl WorldRequest {
+    /// What names an episode in this world.
+    pub(crate) fn origin(&self) -> EpisodeOrigin {
+        let (task, variant) = tasks::split(&self.world);
+        let is_drawn = !self.is_file();
+        // Without a name it is the variant in which every parameter has its default.
+        let variant = variant.or(is_drawn.then_some(DEFAULT_VARIANT));
+        EpisodeOrigin {
+            task: Some(task.to_owned()),
+            variant: variant.map(str::to_owned),
+            seed: is_drawn.then_some(self.seed),
+            index: is_drawn.then_some(self.index),
+            ..EpisodeOrigin::default()
+        }
+    }
+
     /// Reads or draws the world.
     pub(crate) fn world(&self, warn: Warn<'_>) -> Result<World, Failure> {
         expect_world_or_task(&self.world)?;

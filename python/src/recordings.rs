@@ -1,10 +1,9 @@
 //! Recorded episodes in Python's hands: read, run once more, drawn. What a recording holds is `env`'s, what a frame shows the library's.
 
 use std::path::PathBuf;
-use std::str::FromStr;
 use std::sync::Arc;
 
-use driftworld::film::{FilmOptions, film, write_film};
+use driftworld::film::{FilmOptions, film, named, write_film};
 use driftworld::recordings::RecordedEpisodes;
 use driftworld_env::{Action, Catalogue, EndedBy, EpisodeOrigin, Recording};
 use driftworld_metrics::Record;
@@ -67,9 +66,10 @@ impl Shown {
     fn options(&self) -> Result<(FilmOptions, Catalogue)> {
         let catalogue = catalogue(&self.libraries)?;
         let options = FilmOptions {
-            view: word("view", &self.view)?,
-            modality: word("modality", &self.modality)?,
+            view: word("view", named(&self.view))?,
+            modality: word("modality", named(&self.modality))?,
             size: self.size,
+            fps: None,
             every: self.every,
             captions: self.captions,
             renderer: self.renderer.parse()?,
@@ -78,10 +78,8 @@ impl Shown {
     }
 }
 
-fn word<T: FromStr<Err = String>>(option: &str, found: &str) -> PyResult<T> {
-    found
-        .parse()
-        .map_err(|error| PyValueError::new_err(format!("{option}: {error}")))
+fn word<T>(option: &str, read: std::result::Result<T, String>) -> PyResult<T> {
+    read.map_err(|error| PyValueError::new_err(format!("{option}: {error}")))
 }
 
 #[pymethods]
@@ -159,7 +157,8 @@ impl PyRecording {
     /// Writes a film or a sheet; says how many frames, pixels and seconds it has.
     fn write(&self, py: Python<'_>, path: PathBuf, shown: Shown, fps: Option<f64>) -> Result<(u32, u32, u32, f64)> {
         let (options, catalogue) = shown.options()?;
-        let film = py.detach(|| write_film(&path, &self.0, &catalogue, &options, fps, &mut |_| {}))?;
+        let options = FilmOptions { fps, ..options };
+        let film = py.detach(|| write_film(&path, &self.0, &catalogue, &options, &mut |_| {}))?;
         Ok((film.frames, film.height, film.width, film.seconds))
     }
 

@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use driftworld::lifetime_report::{ReportRequest, write_report};
 use driftworld::scales::ScalesFile;
-use driftworld::scoring::{Scores, ScoringRequest, ScoringSettings, score};
+use driftworld::scoring::{Scores, ScoringChoice, ScoringRequest, ScoringSettings, score};
 use driftworld_metrics::{Anchors, BootstrapOptions, DataRanges, Noise, Scales};
 use driftworld_report::{Figure, FigureOptions};
 use pyo3::prelude::*;
@@ -113,20 +113,22 @@ fn scoring(logs: Vec<PathBuf>, options: &Options<'_>) -> Result<ScoringRequest> 
         recursive: options.flag("recursive")?,
         against: options.paths("against")?,
         settings: ScoringSettings {
-            experts: options.paths("ste")?,
-            expert_store: options.path("ste_data")?,
+            choice: ScoringChoice {
+                experts: options.paths("ste")?,
+                expert_store: options.path("ste_data")?,
+                perf_measure: options.text("perf_measure")?,
+                variant_mode: options.word("variant_mode")?,
+                ste_averaging_method: options.word("ste_averaging_method")?,
+                aggregation_method: options.word("aggregation_method")?,
+                maintenance_method: options.word("maintenance_method")?,
+                transfer_method: options.word("transfer_method")?,
+                normalization_method: options.word("normalization_method")?,
+                smoothing_method: options.word("smoothing_method")?,
+                smooth_eval_data: options.flag("smooth_eval_data")?,
+                window_length: options.whole("window_length")?,
+                clamp_outliers: options.flag("clamp_outliers")?,
+            },
             file: options.path("load_settings")?,
-            perf_measure: options.text("perf_measure")?,
-            variant_mode: options.word("variant_mode")?,
-            ste_averaging_method: options.word("ste_averaging_method")?,
-            aggregation_method: options.word("aggregation_method")?,
-            maintenance_method: options.word("maintenance_method")?,
-            transfer_method: options.word("transfer_method")?,
-            normalization_method: options.word("normalization_method")?,
-            smoothing_method: options.word("smoothing_method")?,
-            smooth_eval_data: options.flag("smooth_eval_data")?,
-            window_length: options.whole("window_length")?,
-            clamp_outliers: options.flag("clamp_outliers")?,
             data_range: data_ranges(options)?,
             scales: scales(options)?,
             noise: noise(options)?,

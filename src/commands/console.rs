@@ -8,10 +8,10 @@ use clap::Args;
 use driftworld_text::ShownPath;
 
 use crate::console::{Editor, Reply, Screen, Session};
+use crate::worlds::WorldRequest;
 use crate::{Failure, documents};
 
 use super::output;
-use super::world_choice::WorldChoice;
 
 /// The longest line that is read, in bytes: a message may hold a whole world.
 const LONGEST_LINE: u64 = 64 << 20;
@@ -29,7 +29,7 @@ const LONGEST_LINE: u64 = 64 << 20;
 Type help for the commands.")]
 pub(crate) struct Console {
     #[command(flatten)]
-    choice: WorldChoice,
+    choice: WorldRequest,
     /// Read commands from this file.
     #[arg(long, value_name = "FILE")]
     script: Option<PathBuf>,
@@ -47,7 +47,7 @@ impl Console {
             Some(path) => Some((path, documents::text(path)?)),
             None => None,
         };
-        let choice = self.choice.request();
+        let choice = self.choice.clone();
         let warn = |text| output::warning(text);
         let world = choice.world(&warn)?;
         let mut session = Session::new((choice, &warn), world, &self.output, Screen::of_this_terminal());

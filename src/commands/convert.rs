@@ -7,9 +7,9 @@ use crate::spec::Scenario;
 use clap::Args;
 use driftworld_text::ShownPath;
 
-use super::world_choice::WorldChoice;
 use super::{Failure, output, overwrite};
 use crate::scenarios::ScenarioFile;
+use crate::worlds::WorldRequest;
 
 /// Convert worlds and scenarios of L2Explorer.
 ///
@@ -21,7 +21,7 @@ use crate::scenarios::ScenarioFile;
   driftworld convert find_objects#red --seed 7 -o world.json")]
 pub(crate) struct Convert {
     #[command(flatten)]
-    choice: WorldChoice,
+    choice: WorldRequest,
     /// File to write, or - for standard output.
     #[arg(short, long, default_value = "-", value_name = "FILE")]
     output: PathBuf,
@@ -37,14 +37,17 @@ impl Convert {
     }
 
     fn convert(&self) -> Result<(), Failure> {
-        let path = Path::new(self.choice.name());
-        overwrite::refuse_inputs(&self.output, [self.choice.name()])?;
+        let path = Path::new(&self.choice.world);
+        overwrite::refuse_inputs(&self.output, [self.choice.world.as_str()])?;
         if ScenarioFile::is_one(path) {
             let scenario = ScenarioFile::read(path, &mut output::warning)?.scenario;
             self.warn_of_lost_worlds(&scenario);
             return output::write_or_print(&self.output, &scenario.to_json_pretty());
         }
-        output::write_or_print(&self.output, &self.choice.world()?.to_json_pretty())
+        output::write_or_print(
+            &self.output,
+            &self.choice.world(&|text| output::warning(text))?.to_json_pretty(),
+        )
     }
 
     /// Warns of the world files that the output names by paths that lead nowhere from its own folder.

@@ -4,16 +4,16 @@ use std::path::PathBuf;
 
 use crate::env::MAX_EXPERT_STEPS;
 use crate::episode_frames::recorded;
-use crate::film::expect_film;
+use crate::film::{FilmOptions, expect_film};
+use crate::worlds::WorldRequest;
 use clap::Args;
 use driftworld_text::ShownPath;
 use serde_json::json;
 
 use super::agent::AgentArg;
 use super::assets::LibraryChoice;
-use super::film_choice::{FilmChoice, summary, tell};
+use super::film_choice::{self, summary, tell};
 use super::recording_file::write_recording;
-use super::world_choice::WorldChoice;
 use super::{Failure, output};
 
 /// Steps of a film in a world that has no limit of its own: 5 minutes of 0.1 s.
@@ -27,7 +27,7 @@ const MOST_WITHOUT_LIMIT: u32 = 3000;
   driftworld film moving_object --agent random --agent-seed 7 -o random.apng --record random.jsonl")]
 pub(crate) struct Film {
     #[command(flatten)]
-    choice: WorldChoice,
+    choice: WorldRequest,
     #[arg(long, default_value = "onrails", value_name = "AGENT", help = AgentArg::HELP)]
     agent: AgentArg,
     /// Seed of the agent's random numbers.
@@ -44,7 +44,7 @@ pub(crate) struct Film {
     record: Option<PathBuf>,
     #[command(flatten)]
     #[expect(clippy::struct_field_names, reason = "what a film is like, as replay has it")]
-    film: FilmChoice,
+    film: FilmOptions,
     #[command(flatten)]
     libraries: LibraryChoice,
     /// Print what came of it as JSON.
@@ -56,7 +56,7 @@ impl Film {
     pub(crate) fn run(self) -> Result<(), Failure> {
         expect_film(&self.output)?;
         self.film.check()?;
-        let world = self.choice.world()?;
+        let world = self.choice.world(&|text| output::warning(text))?;
         let catalogue = self.libraries.catalogue()?;
         let mut agent = self.agent.agent()?.agent;
         let has_limit = world.step_limit().is_some_and(|limit| limit > 0);
@@ -73,7 +73,7 @@ impl Film {
                 "the world has no limit of steps: the film ends after {most}; --max-steps takes more"
             ));
         }
-        let film = self.film.write(&self.output, &recording, &catalogue)?;
+        let film = film_choice::write(&self.output, &recording, &catalogue, &self.film)?;
         if let Some(path) = &self.record {
             write_recording(path, &recording)?;
         }

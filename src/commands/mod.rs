@@ -23,7 +23,7 @@ mod logs;
 mod metrics;
 mod mix;
 mod new;
-mod numbers;
+pub(crate) mod numbers;
 mod optional;
 mod order;
 mod output;
@@ -44,7 +44,6 @@ mod transfer_report;
 mod validate;
 mod vary;
 mod weights;
-mod world_choice;
 
 use std::borrow::Cow;
 use std::ffi::OsString;

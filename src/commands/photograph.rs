@@ -13,9 +13,9 @@ use clap::Args;
 use serde::Serialize;
 
 use super::numbers::documented;
-use super::world_choice::WorldChoice;
 use super::{Failure, output};
 use crate::modality::{self, metres_per_level, target};
+use crate::worlds::WorldRequest;
 
 /// The longest part of a file name that comes from the document.
 const LONGEST_NAME: usize = 40;
@@ -35,7 +35,7 @@ Depth images are 16-bit, in units of the manifest's metres_per_level. Class and 
 with 0 where there is no object.")]
 pub(crate) struct Photograph {
     #[command(flatten)]
-    choice: WorldChoice,
+    choice: WorldRequest,
     /// Modalities to write [default: those of the world].
     #[arg(long, value_parser = documented::<Modality>(&modality::NAMES), value_delimiter = ',', value_name = "LIST")]
     modalities: Vec<Modality>,
@@ -86,7 +86,7 @@ struct Entry<'a> {
 
 impl Photograph {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let world = self.choice.world()?;
+        let world = self.choice.world(&|text| output::warning(text))?;
         let kinds = self.kinds(&world)?;
         let mut studio = Studio::new(&world)?;
         for warning in Environment::new(world.clone()).warnings() {

@@ -8,13 +8,13 @@ use clap::{Args, ValueEnum};
 
 use super::agent::AgentArg;
 use super::assets::LibraryChoice;
-use super::world_choice::WorldChoice;
 use super::{Failure, output};
 use crate::contact_sheet::ways;
 use crate::episode_frames::{recorded, rows};
-use crate::film::{FilmOptions, FilmView};
+use crate::film::{FilmModality, FilmOptions, FilmView};
 use crate::report::picture::{Drawing, SheetRow, sheet};
 use crate::views::Views;
+use crate::worlds::WorldRequest;
 
 /// Draw a world: the agent's view, from above, or an episode.
 #[derive(Args)]
@@ -24,7 +24,7 @@ use crate::views::Views;
   driftworld render maze.json#small --view episode --frames 6 -o solved.png")]
 pub(crate) struct Render {
     #[command(flatten)]
-    choice: WorldChoice,
+    choice: WorldRequest,
     #[command(flatten)]
     libraries: LibraryChoice,
     /// The picture to draw.
@@ -88,7 +88,7 @@ impl Render {
                 "--frames and --agent: found another view, expected --view episode",
             ));
         }
-        let world = self.choice.world()?;
+        let world = self.choice.world(&|text| output::warning(text))?;
         let catalogue = self.libraries.catalogue()?;
         warn(&world, &catalogue);
         output::write_picture_and_tell(&self.output, &self.picture(&world, &catalogue)?)?;
@@ -148,9 +148,11 @@ impl Render {
         let options = FilmOptions {
             view: FilmView::Both,
             size: self.size,
+            modality: FilmModality::Rgb,
+            fps: None,
+            every: 1,
             captions: true,
             renderer: self.renderer,
-            ..FilmOptions::default()
         };
         Ok(sheet(&rows(&recording, catalogue, &options, most)?, 2))
     }

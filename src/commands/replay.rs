@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 
 use crate::env::Catalogue;
-use crate::film::expect_film;
+use crate::film::{FilmOptions, expect_film};
 use crate::recordings::RecordedEpisodes;
 use clap::Args;
 use driftworld_text::ShownPath;
 use serde_json::json;
 
 use super::assets::LibraryChoice;
-use super::film_choice::{FilmChoice, summary, tell};
+use super::film_choice::{self, summary, tell};
 use super::{Failure, output};
 
 /// Run recorded episodes once more, check them, and draw them.
@@ -36,7 +36,7 @@ pub(crate) struct Replay {
     #[arg(short, long, value_name = "FILE", requires = "episode")]
     output: Option<PathBuf>,
     #[command(flatten)]
-    film: FilmChoice,
+    film: FilmOptions,
     #[command(flatten)]
     libraries: LibraryChoice,
     /// Print what came of it as JSON.
@@ -64,7 +64,7 @@ impl Replay {
         let recording = recording.ok_or_else(|| episodes.unrecorded(number))?;
         episodes.check(&recording, worker, catalogue)?;
         let written = match &self.output {
-            Some(path) => Some((path, self.film.write(path, &recording, catalogue)?)),
+            Some(path) => Some((path, film_choice::write(path, &recording, catalogue, &self.film)?)),
             None => None,
         };
         if self.json {

@@ -4,59 +4,17 @@
 use std::path::{Path, PathBuf};
 
 use crate::Failure;
-use crate::metrics::{
-    AggregationMethod, BootstrapOptions, MaintenanceMethod, Noise, NormalizationMethod, Resampling, SmoothingMethod,
-    SteAveragingMethod, TransferMethod, VariantMode,
-};
+use crate::metrics::{BootstrapOptions, Noise, Resampling};
 use crate::scales::ScalesFile;
-use crate::scoring::{ScoringSettings, data_ranges};
+use crate::scoring::{ScoringChoice, ScoringSettings, data_ranges};
 use clap::Args;
 
 /// How a lifetime is scored, and which experts it is compared with.
 #[derive(Args, Default)]
 #[command(next_help_heading = "Scoring")]
 pub(crate) struct Scoring {
-    /// Compare with the single-task experts logged in these folders.
-    #[arg(long, value_name = "DIR", num_args = 1..)]
-    ste: Vec<PathBuf>,
-    /// Compare with the experts stored in this folder.
-    ///
-    /// `driftworld metrics --ste-store-mode` stores them. Experts for the lifetime's tasks are used.
-    #[arg(long, value_name = "DIR")]
-    ste_data: Option<PathBuf>,
-    /// The column to score [default: reward].
-    #[arg(short, long, value_name = "COLUMN")]
-    perf_measure: Option<String>,
-    /// Score each variant (aware, the default) or whole tasks (agnostic).
-    #[arg(short = 'r', long, value_name = "MODE")]
-    variant_mode: Option<VariantMode>,
-    /// How to combine several runs of an expert: metrics (default) or time.
-    #[arg(short = 'v', long, value_name = "METHOD")]
-    ste_averaging_method: Option<SteAveragingMethod>,
-    /// How to aggregate over tasks: mean (default) or median.
-    #[arg(short, long, value_name = "METHOD")]
-    aggregation_method: Option<AggregationMethod>,
-    /// The baseline of performance maintenance: mrlep (default), mrtlp or both.
-    #[arg(short, long, value_name = "METHOD")]
-    maintenance_method: Option<MaintenanceMethod>,
-    /// How to compare performance before and after: ratio (default), contrast or both.
-    #[arg(short, long, value_name = "METHOD")]
-    transfer_method: Option<TransferMethod>,
-    /// How to normalise performance: task (default), run or none.
-    #[arg(short, long, value_name = "METHOD")]
-    normalization_method: Option<NormalizationMethod>,
-    /// The smoothing window: flat (default), hanning, hamming, bartlett, blackman or none.
-    #[arg(short = 'g', long, value_name = "METHOD")]
-    smoothing_method: Option<SmoothingMethod>,
-    /// Smooth evaluation blocks too.
-    #[arg(short = 'G', long)]
-    smooth_eval_data: bool,
-    /// Length of the smoothing window [default: a fifth of a regime, at most 100].
-    #[arg(short, long, value_name = "N")]
-    window_length: Option<usize>,
-    /// Clip performance to the given ranges, or else to each task's 0.1 and 0.9 quantiles.
-    #[arg(short = 'x', long)]
-    clamp_outliers: bool,
+    #[command(flatten)]
+    choice: ScoringChoice,
     /// Read each task's range from a JSON file: `{"find_red": {"min": 0, "max": 10}}`.
     #[arg(short, long, value_name = "FILE")]
     data_range_file: Option<PathBuf>,
@@ -99,20 +57,8 @@ impl Scoring {
             _ => None,
         });
         Ok(ScoringSettings {
-            experts: self.ste.clone(),
-            expert_store: self.ste_data.clone(),
+            choice: self.choice.clone(),
             file: self.load_settings.clone(),
-            perf_measure: self.perf_measure.clone(),
-            variant_mode: self.variant_mode,
-            ste_averaging_method: self.ste_averaging_method,
-            aggregation_method: self.aggregation_method,
-            maintenance_method: self.maintenance_method,
-            transfer_method: self.transfer_method,
-            normalization_method: self.normalization_method,
-            smoothing_method: self.smoothing_method,
-            smooth_eval_data: self.smooth_eval_data,
-            window_length: self.window_length,
-            clamp_outliers: self.clamp_outliers,
             data_range: self.data_range_file.as_deref().map(data_ranges).transpose()?,
             scales: (self.scales.as_deref())
                 .map(|path| ScalesFile::read(path).map(|file| file.anchors()))
@@ -124,7 +70,7 @@ impl Scoring {
 
     /// Where experts are kept.
     pub(crate) fn ste_data(&self) -> Option<&Path> {
-        self.ste_data.as_deref()
+        self.choice.expert_store.as_deref()
     }
 }
 

@@ -12,7 +12,7 @@ mod setup;
 mod varied;
 
 pub use comparison::Comparison;
-pub use request::{ScoringRequest, ScoringSettings};
+pub use request::{ScoringChoice, ScoringRequest, ScoringSettings};
 pub use scores::{Scores, score};
 pub use settings::data_ranges;
 pub use varied::Varied;

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use clap::Args;
 use driftworld_metrics::{
     AggregationMethod, BootstrapOptions, DataRanges, Definitions, MaintenanceMethod, Noise, NormalizationMethod,
     Options, Scales, SmoothingMethod, SteAveragingMethod, TransferMethod, VariantMode,
@@ -45,7 +46,7 @@ impl ScoringRequest {
             named.extend(self.settings.log_of_file()?);
         }
         if named.is_empty() {
-            let hint = if self.settings.experts.len() > 1 {
+            let hint = if self.settings.choice.experts.len() > 1 {
                 format!("; {} took all folders after it: put the log before it", argument("ste"))
             } else {
                 String::new()
@@ -54,46 +55,64 @@ impl ScoringRequest {
                 "found no DIR, expected one or more folders of logs{hint}"
             )));
         }
-        if self.recursive {
-            log_folders::below(&named)
-        } else {
-            log_folders::named(&named)
-        }
+        log_folders::found(&named, self.recursive)
     }
 }
 
-/// How a lifetime is scored, and with which experts it is compared. What is `None` is as the file of settings says, or
-/// as is usual.
+/// How a lifetime is scored, and with which experts it is compared, in the words of the command's options. `None` falls back to the
+/// file of settings, then to the default.
+#[derive(Args, Clone, Debug, Default)]
+pub struct ScoringChoice {
+    /// Compare with the single-task experts logged in these folders.
+    #[arg(long = "ste", value_name = "DIR", num_args = 1..)]
+    pub experts: Vec<PathBuf>,
+    /// Compare with the experts stored in this folder.
+    ///
+    /// `driftworld metrics --ste-store-mode` stores them. Experts for the lifetime's tasks are used.
+    #[arg(id = "ste_data", long = "ste-data", value_name = "DIR")]
+    pub expert_store: Option<PathBuf>,
+    /// The column to score [default: reward].
+    #[arg(short, long, value_name = "COLUMN")]
+    pub perf_measure: Option<String>,
+    /// Score each variant (aware, the default) or whole tasks (agnostic).
+    #[arg(short = 'r', long, value_name = "MODE")]
+    pub variant_mode: Option<VariantMode>,
+    /// How to combine several runs of an expert: metrics (default) or time.
+    #[arg(short = 'v', long, value_name = "METHOD")]
+    pub ste_averaging_method: Option<SteAveragingMethod>,
+    /// How to aggregate over tasks: mean (default) or median.
+    #[arg(short, long, value_name = "METHOD")]
+    pub aggregation_method: Option<AggregationMethod>,
+    /// The baseline of performance maintenance: mrlep (default), mrtlp or both.
+    #[arg(short, long, value_name = "METHOD")]
+    pub maintenance_method: Option<MaintenanceMethod>,
+    /// How to compare performance before and after: ratio (default), contrast or both.
+    #[arg(short, long, value_name = "METHOD")]
+    pub transfer_method: Option<TransferMethod>,
+    /// How to normalise performance: task (default), run or none.
+    #[arg(short, long, value_name = "METHOD")]
+    pub normalization_method: Option<NormalizationMethod>,
+    /// The smoothing window: flat (default), hanning, hamming, bartlett, blackman or none.
+    #[arg(short = 'g', long, value_name = "METHOD")]
+    pub smoothing_method: Option<SmoothingMethod>,
+    /// Smooth evaluation blocks too.
+    #[arg(short = 'G', long)]
+    pub smooth_eval_data: bool,
+    /// Length of the smoothing window [default: a fifth of a regime, at most 100].
+    #[arg(short, long, value_name = "N")]
+    pub window_length: Option<usize>,
+    /// Clip performance to the given ranges, or else to each task's 0.1 and 0.9 quantiles.
+    #[arg(short = 'x', long)]
+    pub clamp_outliers: bool,
+}
+
+/// How a lifetime is scored: what was chosen, and what was read from files for it.
 #[derive(Clone, Debug, Default)]
 pub struct ScoringSettings {
-    /// Folders of single-task-expert logs to compare with.
-    pub experts: Vec<PathBuf>,
-    /// The folder where experts are kept; those of the lifetime's tasks are taken.
-    pub expert_store: Option<PathBuf>,
+    /// What was chosen.
+    pub choice: ScoringChoice,
     /// A JSON file of settings, l2metrics' or ours, to start from.
     pub file: Option<PathBuf>,
-    /// The column that holds the performance; default `reward`.
-    pub perf_measure: Option<String>,
-    /// Whether variants of a task count as tasks; default aware.
-    pub variant_mode: Option<VariantMode>,
-    /// How several runs of an expert are brought together; default metrics.
-    pub ste_averaging_method: Option<SteAveragingMethod>,
-    /// How the values of the tasks become the lifetime's; default mean.
-    pub aggregation_method: Option<AggregationMethod>,
-    /// What maintenance compares with; default mrlep.
-    pub maintenance_method: Option<MaintenanceMethod>,
-    /// How transfer compares before and after; default ratio.
-    pub transfer_method: Option<TransferMethod>,
-    /// How performances are scaled; default task.
-    pub normalization_method: Option<NormalizationMethod>,
-    /// How learning curves are smoothed; default flat.
-    pub smoothing_method: Option<SmoothingMethod>,
-    /// Smooth evaluations too.
-    pub smooth_eval_data: bool,
-    /// How long the smoothing window is, in experiences; default a fifth of a regime, at most 100.
-    pub window_length: Option<usize>,
-    /// Clip performances to the given ranges, or else to the 0.1 and 0.9 quantiles of each task.
-    pub clamp_outliers: bool,
     /// The range of each task.
     pub data_range: Option<DataRanges>,
     /// The floor and ceiling of tasks; not together with `data_range`.
@@ -117,17 +136,18 @@ impl ScoringSettings {
                 argument("scales")
             )));
         }
-        set(&mut options.perf_measure, self.perf_measure.clone());
-        set(&mut options.variant_mode, self.variant_mode);
-        set(&mut options.ste_averaging_method, self.ste_averaging_method);
-        set(&mut options.aggregation_method, self.aggregation_method);
-        set(&mut options.maintenance_method, self.maintenance_method);
-        set(&mut options.transfer_method, self.transfer_method);
-        set(&mut options.normalization_method, self.normalization_method);
-        set(&mut options.smoothing_method, self.smoothing_method);
-        options.smooth_eval_data |= self.smooth_eval_data;
-        options.window_length = self.window_length.or(options.window_length);
-        options.clamp_outliers |= self.clamp_outliers;
+        let choice = &self.choice;
+        set(&mut options.perf_measure, choice.perf_measure.clone());
+        set(&mut options.variant_mode, choice.variant_mode);
+        set(&mut options.ste_averaging_method, choice.ste_averaging_method);
+        set(&mut options.aggregation_method, choice.aggregation_method);
+        set(&mut options.maintenance_method, choice.maintenance_method);
+        set(&mut options.transfer_method, choice.transfer_method);
+        set(&mut options.normalization_method, choice.normalization_method);
+        set(&mut options.smoothing_method, choice.smoothing_method);
+        options.smooth_eval_data |= choice.smooth_eval_data;
+        options.window_length = choice.window_length.or(options.window_length);
+        options.clamp_outliers |= choice.clamp_outliers;
         options.data_range = self.data_range.clone().or(options.data_range);
         options.scales = self.scales.clone().or(options.scales);
         options.noise = self.noise.or(options.noise);
@@ -139,7 +159,7 @@ impl ScoringSettings {
 
     /// The experts to compare with.
     pub(crate) fn experts(&self) -> Result<Experts, Failure> {
-        Experts::new(&self.experts, self.expert_store.as_deref())
+        Experts::new(&self.choice.experts, self.choice.expert_store.as_deref())
     }
 
     /// The log that the file of settings was saved for.

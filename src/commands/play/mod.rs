@@ -11,6 +11,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use crate::env::{RecordingLines, Renderer, RendererKind};
+use crate::worlds::WorldRequest;
 use clap::Args;
 use driftworld_text::{ShownPath, printable};
 
@@ -21,7 +22,6 @@ use self::terminal::RawTerminal;
 use super::assets::LibraryChoice;
 use super::film_choice::summary;
 use super::interrupt::Interrupt;
-use super::world_choice::WorldChoice;
 use super::{Failure, output};
 
 /// How often the terminal is looked at and drawn.
@@ -41,7 +41,7 @@ const HELP: &str = "arrows or wasd: walk · space: use · v: view · r: again ·
   driftworld replay mine.jsonl --episode 0 -o mine.gif")]
 pub(crate) struct Play {
     #[command(flatten)]
-    choice: WorldChoice,
+    choice: WorldRequest,
     #[command(flatten)]
     libraries: LibraryChoice,
     /// Steps per second, 20 at most [default: the world's own time].
@@ -64,7 +64,7 @@ fn rate(text: &str) -> Result<f64, String> {
 
 impl Play {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let world = self.choice.world()?;
+        let world = self.choice.world(&|text| output::warning(text))?;
         let agent = &world.agent_params;
         let own = agent.time_step * f64::from(agent.frame_skip.max(1));
         let pace = self.fps.map_or(own, |rate| 1.0 / rate);
