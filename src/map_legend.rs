@@ -4,6 +4,7 @@
 use driftworld_env::Scene;
 use driftworld_report::picture::{Drawing, Level, Picture, Rgb, Side, TextLine, ring, text_width};
 use driftworld_spec::{MotionModel, Object, World, Zone, ZoneEnd};
+use driftworld_text::when;
 
 use crate::map_colors::MapColors;
 use crate::map_drawing::{INK, Moves, RING, TRAIL, WHITE, annotated, arrow, ground, map_size, pay, trigger_radius};
@@ -135,16 +136,8 @@ fn object_entries(world: &World, scene: &Scene, ground: &Picture, places: &Place
         if let (true, Some(first)) = (seen.is_empty(), members.first()) {
             seen.push(at(ground, places.pixel(scene.items[*first].position)));
         }
-        let count = if members.len() > 1 {
-            format!(" ×{}", members.len())
-        } else {
-            String::new()
-        };
-        let pay = if pay == 0.0 {
-            String::new()
-        } else {
-            format!(", {}", signed(pay))
-        };
+        let count = when(members.len() > 1, || format!(" ×{}", members.len()));
+        let pay = when(pay != 0.0, || format!(", {}", signed(pay)));
         Entry::new(Mark::Colors(seen), format!("{name}{count}{pay}"))
     };
     groups.into_iter().map(entry).collect()

@@ -1,6 +1,7 @@
 //! What came of drawing a few worlds of everything, for people and for programs. Drawing them is `curriculum`'s.
 
 use driftworld_curriculum::{Failed, Trial};
+use driftworld_text::when;
 
 use crate::table::table;
 
@@ -56,11 +57,7 @@ pub(crate) fn shown(trials: &[Trial]) -> String {
         let experience = first
             .experience
             .map_or_else(String::new, |experience| format!(", experience {experience}"));
-        let way = if first.progress == 0.0 {
-            String::new()
-        } else {
-            format!(", at {} of its way", first.progress)
-        };
+        let way = when(first.progress != 0.0, || format!(", at {} of its way", first.progress));
         lines.push(format!(
             "{}{experience}, world {}{way}: {}",
             trial.variant, first.index, first.reason

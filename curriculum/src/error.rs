@@ -7,7 +7,7 @@ use driftworld_files::FileError;
 use driftworld_generator::GeneratorError;
 use driftworld_metrics::MetricsError;
 use driftworld_similarity::SimilarityError;
-use driftworld_text::{ShownPath, one_line};
+use driftworld_text::{ShownPath, one_line, when};
 
 /// Everything that can go wrong in this crate.
 #[derive(Debug, thiserror::Error, strum::IntoStaticStr, strum::VariantNames)]
@@ -83,11 +83,8 @@ pub enum CurriculumError {
         last: u32,
     },
     /// A variant that is held out is learned as well.
-    #[error("design: found {variant} among the variants to learn and among those held out, expected one of the two")]
-    HeldOut {
-        /// The variant.
-        variant: String,
-    },
+    #[error("design: found {0} among the variants to learn and among those held out, expected one of the two")]
+    HeldOut(String),
     /// A drift has nowhere to go.
     #[error("design: found one variant to drift through, expected at least 2")]
     NoWay,
@@ -340,13 +337,10 @@ pub enum CurriculumError {
     },
     /// Transfer is measured by evaluations, and there are none.
     #[error(
-        "transfer: found no evaluation in {logs} logs, expected every variant evaluated before and after another is \
+        "transfer: found no evaluation in {0} logs, expected every variant evaluated before and after another is \
          learned; design the curriculum with --evaluate every"
     )]
-    NoEvaluations {
-        /// How many logs there are.
-        logs: usize,
-    },
+    NoEvaluations(usize),
     /// Logs and distances speak of different variants.
     #[error(
         "transfer: found {found} variants that are both in the logs ({logs}) and in the distance matrix ({matrix}), \
@@ -379,11 +373,8 @@ pub enum CurriculumError {
         needed: usize,
     },
     /// The test cannot be run as asked.
-    #[error("transfer: {source}")]
-    Relabelling {
-        /// What the test says.
-        source: SimilarityError,
-    },
+    #[error("transfer: {0}")]
+    Relabelling(#[source] SimilarityError),
     /// A file of recordings is damaged, or of another kind.
     #[error("{}: {source}", path.shown())]
     Recording {
@@ -394,10 +385,7 @@ pub enum CurriculumError {
     },
     /// A file of recordings cannot be opened.
     #[error(transparent)]
-    UnreadableRecordings {
-        /// Why.
-        source: FileError,
-    },
+    UnreadableRecordings(FileError),
     /// A file of recordings cannot be read or written.
     #[error("{}: cannot {doing}: {source}", path.shown())]
     Recordings {
@@ -432,11 +420,7 @@ fn and_blocks(blocks: Option<u32>) -> String {
 }
 
 fn on_its_way(progress: f64) -> String {
-    if progress == 0.0 {
-        String::new()
-    } else {
-        format!(" at {progress} of its way")
-    }
+    when(progress != 0.0, || format!(" at {progress} of its way"))
 }
 
 impl CurriculumError {

@@ -23,8 +23,8 @@ fn all() -> Vec<MetricsError> {
             doing: "open this file",
             source: io::Error::other("no permission"),
         },
-        E::LogExists { path: "run".into() },
-        E::InUse { path: "run".into() },
+        E::LogExists("run".into()),
+        E::InUse("run".into()),
         E::FolderLost {
             path: "run".into(),
             found: "no directory",
@@ -46,7 +46,7 @@ fn all() -> Vec<MetricsError> {
             path: "run".into(),
             found: "nothing",
         },
-        E::NoDataFiles { path: "run".into() },
+        E::NoDataFiles("run".into()),
         E::MissingFile {
             path: "run/logger_info.json".into(),
             expected: "a JSON object",
@@ -73,7 +73,7 @@ fn all() -> Vec<MetricsError> {
             found: 9,
             limit: 8,
         },
-        E::EmptyFile { path: path() },
+        E::EmptyFile(path()),
         E::NoHeader {
             path: path(),
             found: text("0 0 worker-default"),
@@ -150,7 +150,7 @@ fn all() -> Vec<MetricsError> {
             found: text("inf"),
             expected: text("a finite number"),
         },
-        E::Timestamp { found: text("\"now\"") },
+        E::Timestamp(text("\"now\"")),
         E::UnknownWord {
             what: "transfer",
             found: text("sum"),
@@ -177,9 +177,7 @@ fn all() -> Vec<MetricsError> {
             path: "data".into(),
             found: "nothing",
         },
-        E::StePickle {
-            path: "data/taskinfo/a_1.pickle".into(),
-        },
+        E::StePickle("data/taskinfo/a_1.pickle".into()),
         E::TooManyRegimes {
             run_id: text("run"),
             limit: 10_000,

@@ -14,7 +14,7 @@ use crate::scenarios::{Missing, ScenarioFile};
 use crate::spec::BlockKind;
 use crate::tasks;
 use clap::Args;
-use driftworld_text::{ShownPath, printable};
+use driftworld_text::{ShownPath, printable, when};
 
 use super::agent::{AgentArg, NamedAgent};
 use super::assets::LibraryChoice;
@@ -198,11 +198,9 @@ fn skipped(summary: &Summary) -> Option<String> {
         return None;
     }
     let shown = summary.left_out.iter().take(SHOWN).map(|left_out| {
-        let way = if left_out.progress == 0.0 {
-            String::new()
-        } else {
+        let way = when(left_out.progress != 0.0, || {
             format!(" at {} of its way", left_out.progress)
-        };
+        });
         format!(
             "  block {}, experience {}, {}{way}: {}",
             left_out.block, left_out.experience, left_out.variant, left_out.reason
@@ -324,7 +322,7 @@ impl LifetimeRun<'_> {
             Start::Resumed => Journal::resume(self.logs, self.plan, &self.agent.name),
         };
         opened.map_err(|error| match error {
-            CurriculumError::Log(MetricsError::LogExists { path }) => Failure::input(format!(
+            CurriculumError::Log(MetricsError::LogExists(path)) => Failure::input(format!(
                 "{}: found a folder that is not empty; choose a new one with --output, or continue its log with --resume",
                 path.shown()
             )),

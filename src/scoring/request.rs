@@ -8,6 +8,8 @@ use driftworld_metrics::{
     Options, Scales, SmoothingMethod, SteAveragingMethod, TransferMethod, VariantMode,
 };
 
+use driftworld_text::when;
+
 use super::{Experts, settings};
 use crate::{Failure, argument, log_folders};
 
@@ -46,11 +48,9 @@ impl ScoringRequest {
             named.extend(self.settings.log_of_file()?);
         }
         if named.is_empty() {
-            let hint = if self.settings.choice.experts.len() > 1 {
+            let hint = when(self.settings.choice.experts.len() > 1, || {
                 format!("; {} took all folders after it: put the log before it", argument("ste"))
-            } else {
-                String::new()
-            };
+            });
             return Err(Failure::usage(format!(
                 "found no DIR, expected one or more folders of logs{hint}"
             )));

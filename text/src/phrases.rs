@@ -33,3 +33,8 @@ pub fn first_of<S: AsRef<str>>(names: &[S], most: usize) -> String {
         more => format!("{shown} and {more} more"),
     }
 }
+
+/// Words that are said in some cases alone.
+pub fn when(is_said: bool, words: impl FnOnce() -> String) -> String {
+    if is_said { words() } else { String::new() }
+}

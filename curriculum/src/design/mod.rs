@@ -212,7 +212,7 @@ fn check(variants: &[Choice], options: &Design) -> Result<(), CurriculumError> {
         ));
     }
     if let Some(both) = options.held_out.iter().find(|choice| variants.contains(choice)) {
-        return Err(CurriculumError::HeldOut { variant: both.id() });
+        return Err(CurriculumError::HeldOut(both.id()));
     }
     let before = options.pre_deployment.max(1);
     for (kind, found) in [

@@ -30,7 +30,7 @@ fn every_error_has_its_message() {
             expected: "2 variants".into(),
         },
         CurriculumError::NoSuchPlace { found: 4, last: 3 },
-        CurriculumError::HeldOut { variant: "t#v".into() },
+        CurriculumError::HeldOut("t#v".into()),
         CurriculumError::NoWay,
         CurriculumError::DriftBetweenTasks {
             from: "t#v".into(),
@@ -135,7 +135,7 @@ fn every_error_has_its_message() {
             experience: 5,
             source: EnvError::Ended,
         },
-        CurriculumError::NoEvaluations { logs: 2 },
+        CurriculumError::NoEvaluations(2),
         CurriculumError::NoCommonNames {
             found: 0,
             logs: "t_x, t_y".into(),
@@ -146,13 +146,11 @@ fn every_error_has_its_message() {
             backward: 0,
             needed: 3,
         },
-        CurriculumError::Relabelling {
-            source: SimilarityError::MantelCount {
-                what: "relabellings",
-                found: 0,
-                limit: 9,
-            },
-        },
+        CurriculumError::Relabelling(SimilarityError::MantelCount {
+            what: "relabellings",
+            found: 0,
+            limit: 9,
+        }),
         CurriculumError::Recording {
             path: "logs/a/worker-default/0-test/actions.jsonl".into(),
             source: driftworld_env::EnvError::Recording {
@@ -161,11 +159,11 @@ fn every_error_has_its_message() {
                 expected: "a line end".into(),
             },
         },
-        CurriculumError::UnreadableRecordings {
-            source: driftworld_files::open(std::path::Path::new("no/such/actions.jsonl"), 1)
+        CurriculumError::UnreadableRecordings(
+            driftworld_files::open(std::path::Path::new("no/such/actions.jsonl"), 1)
                 .err()
                 .unwrap(),
-        },
+        ),
         CurriculumError::Recordings {
             path: "logs/a".into(),
             doing: "list this folder",
@@ -176,9 +174,7 @@ fn every_error_has_its_message() {
             found: "no file".into(),
             expected: 1234,
         },
-        CurriculumError::Log(MetricsError::LogExists {
-            path: "logs/run".into(),
-        }),
+        CurriculumError::Log(MetricsError::LogExists("logs/run".into())),
     ];
     let said: Vec<String> = errors
         .iter()

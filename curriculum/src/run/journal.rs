@@ -8,6 +8,7 @@ use driftworld_metrics::{
     ScenarioType, TaskParams, Timestamp, begun_log, read_log_with_texts,
 };
 use driftworld_spec::{ScenarioComplexity, ScenarioDifficulty, ScenarioForm, Variant};
+use driftworld_text::when;
 use serde_json::{Map, Value, json};
 
 use super::columns::{self, COLUMNS, ENDED_BY, ENDING, block_type};
@@ -83,7 +84,7 @@ impl Journal {
         let writer = LogWriter::resume(folder)?;
         let rows = match read_log_with_texts(folder) {
             Ok(log) => log.rows,
-            Err(MetricsError::NoDataFiles { .. }) => Rows::default(),
+            Err(MetricsError::NoDataFiles(_)) => Rows::default(),
             Err(error) => return Err(error.into()),
         };
         let mut summary = Summary::default();
@@ -269,11 +270,7 @@ fn count_row(plan: &Plan, summary: &mut Summary, number: u64, row: Row<'_>) -> R
     let described =
         |block: u64, experience: u64, kind, name: &str, params: &TaskParams, [index, progress]: [f64; 2]| {
             let params = Value::Object(Map::clone(params));
-            let drift = if progress == 0.0 {
-                String::new()
-            } else {
-                format!(", {progress} of its way")
-            };
+            let drift = when(progress != 0.0, || format!(", {progress} of its way"));
             format!("experience {experience} in block {block}-{kind}, {name} {params}, world {index}{drift}")
         };
     let expected = described(

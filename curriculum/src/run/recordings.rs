@@ -253,7 +253,7 @@ fn open(path: &Path) -> Result<Option<Opened>, CurriculumError> {
     let opened = match driftworld_files::open(path, MAX_RECORDINGS_BYTES) {
         Ok(opened) => opened,
         Err(error) if error.missing().is_some() => return Ok(None),
-        Err(source) => return Err(CurriculumError::UnreadableRecordings { source }),
+        Err(source) => return Err(CurriculumError::UnreadableRecordings(source)),
     };
     let reader = RecordingReader::new(BufReader::new(opened.file)).map_err(|source| wrong(path, source))?;
     Ok(Some((reader, None)))

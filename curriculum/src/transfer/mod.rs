@@ -107,7 +107,7 @@ pub fn transfer_report(
     options: &TransferOptions,
 ) -> Result<TransferReport, CurriculumError> {
     if lifetimes.iter().all(|lifetime| lifetime.num_ex == 0) {
-        return Err(CurriculumError::NoEvaluations { logs: lifetimes.len() });
+        return Err(CurriculumError::NoEvaluations(lifetimes.len()));
     }
     let names = Names::of(distances.labels())?;
     let logged: BTreeSet<&str> = lifetimes
@@ -174,7 +174,7 @@ fn tested(
         (Ok(spearman), Ok(pearson)) => (Some(spearman), Some(pearson), None),
         // Wrong whatever was measured.
         (Err(source), _) if source.code() == "similarity/mantel-count" => {
-            return Err(CurriculumError::Relabelling { source });
+            return Err(CurriculumError::Relabelling(source));
         }
         (Err(reason), _) | (_, Err(reason)) => (None, None, Some(reason.to_string())),
     };

@@ -32,23 +32,17 @@ pub enum MetricsError {
     #[error(
         "{}: found a directory that is not empty, expected a new or an empty one; choose another name, or continue \
          its log with LogWriter::resume",
-        path.shown()
+        .0.shown()
     )]
-    LogExists {
-        /// The directory that was asked for.
-        path: PathBuf,
-    },
+    LogExists(PathBuf),
 
     /// Another writer is at work on the log.
     #[error(
         "{}: found a log that another run is writing, expected one not in use; wait for that run, or choose another \
          name",
-        path.shown()
+        .0.shown()
     )]
-    InUse {
-        /// The log's directory.
-        path: PathBuf,
-    },
+    InUse(PathBuf),
 
     /// The directory of a log went away while it was written.
     #[error(
@@ -116,12 +110,9 @@ pub enum MetricsError {
     #[error(
         "{}: found no data-log.tsv, expected at least one as WORKER/BLOCKNUM-BLOCKTYPE/data-log.tsv; \
          is this the directory of one log, and has its run begun?",
-        path.shown()
+        .0.shown()
     )]
-    NoDataFiles {
-        /// The directory that was searched.
-        path: PathBuf,
-    },
+    NoDataFiles(PathBuf),
 
     /// A side file of the log is not there.
     #[error("{}: found no such file, expected {expected}", path.shown())]
@@ -186,12 +177,9 @@ pub enum MetricsError {
     /// A data file has no header line.
     #[error(
         "{}:1: found an empty file, expected a header line that begins with block_num",
-        path.shown()
+        .0.shown()
     )]
-    EmptyFile {
-        /// The data file.
-        path: PathBuf,
-    },
+    EmptyFile(PathBuf),
 
     /// A data file begins with a row in place of its header.
     #[error(
@@ -440,13 +428,10 @@ pub enum MetricsError {
 
     /// A time stamp is not of the form `20200913T122640.000000`.
     #[error(
-        "timestamp: found {found}, expected YYYYMMDDTHHMMSS.ffffff as in 20200913T122640.000000, on an existing day",
-        found = one_line(found)
+        "timestamp: found {}, expected YYYYMMDDTHHMMSS.ffffff as in 20200913T122640.000000, on an existing day",
+        one_line(.0)
     )]
-    Timestamp {
-        /// What was given.
-        found: String,
-    },
+    Timestamp(String),
 
     /// A word is not one of those that are understood.
     #[error("{what}: found {found:?}, expected one of {expected}", expected = one_line(expected))]
@@ -524,12 +509,9 @@ pub enum MetricsError {
     #[error(
         "{}: found a pickle of l2metrics, expected folders of logs: reading a pickle can run code; store the original \
          logs instead, and remove the pickle from this folder",
-        path.shown()
+        .0.shown()
     )]
-    StePickle {
-        /// The pickle.
-        path: PathBuf,
-    },
+    StePickle(PathBuf),
 
     /// More regimes than a lifetime may have.
     #[error("log {run_id}: found more than {limit} regimes, expected at most that; do tasks alternate row by \

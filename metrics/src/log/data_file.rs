@@ -45,9 +45,7 @@ pub(super) fn read(
         .from_reader((&source.file).take(source.whole));
     let mut row = StringRecord::new();
     if !next_row(&mut rows, &mut row, path)? {
-        return Err(source
-            .torn
-            .unwrap_or_else(|| MetricsError::EmptyFile { path: path.to_owned() }));
+        return Err(source.torn.unwrap_or_else(|| MetricsError::EmptyFile(path.to_owned())));
     }
     let is_last = |rows: &csv::Reader<_>| rows.position().byte() >= source.whole;
     if is_last(&rows)

@@ -153,7 +153,7 @@ fn lock_by(dir: &Path, try_lock: fn(&File) -> Result<(), TryLockError>) -> Resul
     // A folder to be locked, not by driftworld-files: that opens regular files only.
     let file = File::open(dir).map_err(MetricsError::io(dir, "open this directory"))?;
     match try_lock(&file) {
-        Err(TryLockError::WouldBlock) => Err(MetricsError::InUse { path: dir.to_owned() }),
+        Err(TryLockError::WouldBlock) => Err(MetricsError::InUse(dir.to_owned())),
         // Held all the same, to be known again.
         Ok(()) | Err(TryLockError::Error(_)) => Ok(Some(file)),
     }

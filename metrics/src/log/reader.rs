@@ -57,7 +57,7 @@ fn read(dir: &Path, texts: Texts) -> Result<Log, MetricsError> {
     let mut warnings = Vec::new();
     let scenario_info = ScenarioInfo::read(dir, &mut warnings)?;
     if files.is_empty() {
-        return Err(MetricsError::NoDataFiles { path: dir.to_owned() });
+        return Err(MetricsError::NoDataFiles(dir.to_owned()));
     }
     let mut table = Table::new(dir, logger_info.metrics_columns(), texts);
     for path in &files {

@@ -11,7 +11,7 @@ const REMEMBERED: usize = 65_536;
 ///
 /// A value may stand in [`values`](Self::values) twice where a log has very many different ones, so that two rows with the
 /// same number are equal and two rows with different ones usually are not.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct SharedColumn<T> {
     values: Vec<T>,
     ids: Vec<u32>,
@@ -45,15 +45,6 @@ impl<T> SharedColumn<T> {
 
     pub(super) fn reorder(&mut self, order: &[u32]) {
         reorder(&mut self.ids, order);
-    }
-}
-
-impl<T> Default for SharedColumn<T> {
-    fn default() -> Self {
-        Self {
-            values: Vec::new(),
-            ids: Vec::new(),
-        }
     }
 }
 

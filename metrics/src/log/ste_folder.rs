@@ -130,7 +130,7 @@ pub(super) fn refuse_pickles(data_folder: &Path) -> Result<(), MetricsError> {
             .filter(|path| path.extension().is_some_and(|end| end == "pickle"))
             .min()
         {
-            return Err(MetricsError::StePickle { path });
+            return Err(MetricsError::StePickle(path));
         }
     }
     Ok(())

@@ -34,9 +34,7 @@ impl Timestamp {
     pub fn from_unix_micros(micros: i64) -> Result<Self, MetricsError> {
         match moment(micros) {
             Some(_) => Ok(Self { micros }),
-            None => Err(MetricsError::Timestamp {
-                found: format!("{micros} microseconds after 1970"),
-            }),
+            None => Err(MetricsError::Timestamp(format!("{micros} microseconds after 1970"))),
         }
     }
 
@@ -56,9 +54,7 @@ impl FromStr for Timestamp {
 
     /// Reads `YYYYMMDDTHHMMSS.f` with one to six digits after the point.
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        parse(text).ok_or_else(|| MetricsError::Timestamp {
-            found: format!("{text:?}"),
-        })
+        parse(text).ok_or_else(|| MetricsError::Timestamp(format!("{text:?}")))
     }
 }
 

@@ -93,7 +93,7 @@ impl Check {
         self.scenario_info(dir);
         let logger_info = LoggerInfo::read(dir)?;
         if files.is_empty() {
-            return Err(MetricsError::NoDataFiles { path: dir.to_owned() });
+            return Err(MetricsError::NoDataFiles(dir.to_owned()));
         }
         let table = self.read(dir, &files, &logger_info)?;
         self.order_in_files(&table, &files);

@@ -41,8 +41,9 @@ impl WholeRows {
     }
 }
 
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, Default, PartialEq)]
 enum Place {
+    #[default]
     CellStart,
     Cell,
     Quotes,
@@ -67,6 +68,7 @@ pub(super) fn measure(mut file: impl BufRead) -> io::Result<WholeRows> {
     }
 }
 
+#[derive(Default)]
 struct Scan {
     place: Place,
     bytes: u64,
@@ -77,19 +79,6 @@ struct Scan {
     broken: bool,
     /// Whether the last byte was a carriage return outside quotes.
     returned: bool,
-}
-
-impl Default for Scan {
-    fn default() -> Self {
-        Self {
-            place: Place::CellStart,
-            bytes: 0,
-            lines: 0,
-            tabs: 0,
-            broken: false,
-            returned: false,
-        }
-    }
 }
 
 impl Scan {

@@ -59,7 +59,7 @@ impl LogWriter {
         // Before anything is looked at or written: two that begin at the same moment would both find the directory free.
         let folder = LogFolder::lock(dir)?;
         if !begun::is_free(dir)? {
-            return Err(MetricsError::LogExists { path: dir.to_owned() });
+            return Err(MetricsError::LogExists(dir.to_owned()));
         }
         json_file::write_json(&dir.join(scenario_info::FILE_NAME), scenario_info)?;
         json_file::write_json(&dir.join(logger_info::FILE_NAME), logger_info)?;

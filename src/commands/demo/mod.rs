@@ -16,7 +16,7 @@ use crate::similarity::{DistanceMatrix, Method, OrderOptions, Ordering, order};
 use crate::spec::{BlockKind, Scenario, Variant, World};
 use crate::tasks;
 use clap::Args;
-use driftworld_text::ShownPath;
+use driftworld_text::{ShownPath, when};
 
 use super::agent::AgentArg;
 use super::curriculum::{blocks, choices};
@@ -195,11 +195,7 @@ impl Demo {
 }
 
 fn heading(number: &str, text: &str) -> Result<(), Failure> {
-    let number = if number.is_empty() {
-        String::new()
-    } else {
-        format!("{number}. ")
-    };
+    let number = when(!number.is_empty(), || format!("{number}. "));
     output::line(format!("\n{number}{text}\n"))
 }
 

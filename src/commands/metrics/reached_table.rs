@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::metrics::{EvaluationCell, LEARNED_SHARE, LifetimeMetrics, Reached, Unlabelled};
 
-use driftworld_text::whole;
+use driftworld_text::{when, whole};
 
 use super::tables::{number, with_error};
 use crate::table::without_empty;
@@ -159,16 +159,8 @@ pub(super) fn reached_by_several(agent: &str, lifetimes: &[LifetimeMetrics], nam
                 (true, true) => mean(&|task| task.score(task.expert?), percent),
                 (true, false) => mean(&|task| task.expert, number),
             },
-            if has_own {
-                mean(&|task| task.share, percent)
-            } else {
-                String::new()
-            },
-            if not == 0 {
-                String::new()
-            } else {
-                format!("{NEVER_LEARNED} in {not} of {all}")
-            },
+            when(has_own, || mean(&|task| task.share, percent)),
+            when(not > 0, || format!("{NEVER_LEARNED} in {not} of {all}")),
         ]
     });
     let rows: Vec<Vec<String>> = rows.collect();

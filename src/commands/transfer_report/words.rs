@@ -3,7 +3,7 @@
 use crate::curriculum::{DirectionReport, TransferReport};
 use crate::metrics::TransferMethod;
 use crate::similarity::MantelTest;
-use driftworld_text::counted;
+use driftworld_text::{counted, when};
 
 use crate::report::picture::{Panel, Point};
 use crate::table::table;
@@ -115,14 +115,12 @@ fn notes(report: &TransferReport) -> Vec<String> {
              as well. It is not the probability that similarity does not matter, nor a measure of how much it \
              matters. A large p means that this many variants could not show an effect, not that there is none.{}",
             relabellings(&test),
-            if test.exact {
+            when(test.exact, || {
                 format!(
                     " With {} variants it cannot be below 1/{}.",
                     test.items, test.relabellings
                 )
-            } else {
-                String::new()
-            }
+            })
         ));
     }
     if report.learning_orders < 2 {
