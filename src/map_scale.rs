@@ -114,16 +114,12 @@ impl Bar {
     pub(crate) fn draw(&self, on: &mut Drawing, [left, top]: [f32; 2], on_a_map: bool) {
         let [wide, high] = self.size();
         if on_a_map {
-            on.shapes.push(Shape::Area {
-                points: vec![
-                    [left, top],
-                    [left + wide, top],
-                    [left + wide, top + high],
-                    [left, top + high],
-                ],
-                color: WHITE,
-                alpha: 0.75,
-            });
+            let (right, bottom) = (left + wide, top + high);
+            on.tint(
+                [[left, top], [right, top], [right, bottom], [left, bottom]],
+                WHITE,
+                0.75,
+            );
         }
         on.write(TextLine::new(&self.label, [left + 4.0, top + 3.0], self.letters, INK));
         let bar = [left + 4.0, top + high - self.thick - 3.0, self.long, self.thick];

@@ -52,3 +52,10 @@ pub fn neighbours(lifetime: &Lifetime) -> Vec<[&str; 2]> {
         .collect();
     learnt.windows(2).map(|pair| [pair[0], pair[1]]).collect()
 }
+
+/// The smallest and the largest of some numbers.
+fn extent(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(value), high.max(value))
+    })
+}

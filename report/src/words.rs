@@ -19,6 +19,13 @@ pub(crate) fn note_shown(text: &str) -> String {
     cut(text.trim_end_matches('.'), LONGEST_SENTENCE)
 }
 
+/// A number with at most so many digits, one or more, behind its point.
+pub(crate) fn short(number: f64, digits: usize) -> String {
+    let text = format!("{number:.digits$}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
 fn cut(name: &str, longest: usize) -> String {
     // What XML has no character for.
     let calm = |letter: char| match letter {

@@ -193,11 +193,13 @@ impl Drawing {
 
     /// Adds a filled polygon.
     pub fn area(&mut self, points: impl Into<Vec<[f32; 2]>>, color: Rgb) {
-        self.shapes.push(Shape::Area {
-            points: points.into(),
-            color,
-            alpha: 1.0,
-        });
+        self.tint(points, color, 1.0);
+    }
+
+    /// Adds a polygon through which the ground is seen where alpha is below 1.
+    pub fn tint(&mut self, points: impl Into<Vec<[f32; 2]>>, color: Rgb, alpha: f32) {
+        let points = points.into();
+        self.shapes.push(Shape::Area { points, color, alpha });
     }
 
     /// Adds a filled rectangle: left, top, width, height.
@@ -239,10 +241,8 @@ impl Drawing {
 
     /// Adds another drawing, cut off where it ends.
     pub fn put(&mut self, drawing: impl Into<Self>, at: [u32; 2]) {
-        self.shapes.push(Shape::Inner {
-            at,
-            drawing: drawing.into(),
-        });
+        let drawing = drawing.into();
+        self.shapes.push(Shape::Inner { at, drawing });
     }
 
     /// The drawing as pixels.

@@ -40,11 +40,7 @@ impl<'a> Recorder<'a> {
     fn push_area(&mut self, points: Vec<[f32; 2]>, color: BackendColor) {
         let BackendColor { alpha, rgb: (r, g, b) } = color;
         if alpha > 0.0 {
-            self.drawing.shapes.push(Shape::Area {
-                points,
-                color: [r, g, b],
-                alpha: alpha as f32,
-            });
+            self.drawing.tint(points, [r, g, b], alpha as f32);
         }
     }
 }

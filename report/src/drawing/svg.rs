@@ -148,11 +148,7 @@ fn places(points: &[[f32; 2]]) -> String {
 }
 
 fn opacity(what: &str, alpha: f32) -> String {
-    if alpha >= 1.0 {
-        String::new()
-    } else {
-        format!(" {what}-opacity=\"{}\"", short(alpha))
-    }
+    driftworld_text::when(alpha < 1.0, || format!(" {what}-opacity=\"{}\"", short(alpha)))
 }
 
 fn hex([red, green, blue]: Rgb) -> String {
@@ -161,9 +157,7 @@ fn hex([red, green, blue]: Rgb) -> String {
 
 /// A number with at most two decimals.
 fn short(number: f32) -> String {
-    let text = format!("{number:.2}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+    crate::words::short(f64::from(number), 2)
 }
 
 #[cfg(test)]

@@ -70,9 +70,7 @@ fn entries(scene: &Scene, clusters: &[Cluster]) -> Vec<Entry> {
         .take(super::scene::MOST_TASKS)
         .collect();
     entries.push(Entry::new("while it was learnt", Sample::Tint(FAINT.light)));
-    if clusters.len() > MOST_PANELS {
-        entries.push(Entry::rest(format!("{} tasks", clusters.len() - MOST_PANELS)));
-    }
+    entries.extend(Entry::rest(clusters.len(), MOST_PANELS, " tasks"));
     entries
 }
 

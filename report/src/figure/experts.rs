@@ -66,9 +66,7 @@ fn entries(panels: &[Panel]) -> Vec<Entry> {
         ),
         Entry::new("an expert's run", Sample::Line(FAINT.light)),
     ];
-    if panels.len() > MOST_PANELS {
-        entries.push(Entry::rest(format!("{} tasks", panels.len() - MOST_PANELS)));
-    }
+    entries.extend(Entry::rest(panels.len(), MOST_PANELS, " tasks"));
     entries
 }
 

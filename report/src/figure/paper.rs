@@ -18,6 +18,7 @@ use plotters::style::{FontStyle, register_font};
 
 use super::Layout;
 use super::palette::{FAINT, INK, Look, Mark, RIM};
+use crate::words::short;
 
 pub(super) type Area<DB> = DrawingArea<DB, Shift>;
 pub(super) type Chart<'a, DB> = ChartContext<'a, DB, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
@@ -49,9 +50,10 @@ impl Entry {
         Self { name, sample }
     }
 
-    /// For so many that are not drawn.
-    pub(super) fn rest(more: impl std::fmt::Display) -> Self {
-        Self::new(format!("and {more} more, not drawn"), Sample::Nothing)
+    /// For those of `all` that are not drawn, if any; `what` they are follows their number.
+    pub(super) fn rest(all: usize, drawn: usize, what: &str) -> Option<Self> {
+        let rest = || Self::new(format!("and {}{what} more, not drawn", all - drawn), Sample::Nothing);
+        (all > drawn).then(rest)
     }
 }
 
@@ -264,19 +266,7 @@ pub(super) fn label(value: f64, range: &Range<f64>) -> String {
 
 /// A number that stands alone: round ones stay short.
 pub(crate) fn number(value: f64) -> String {
-    let trimmed = |value: f64, digits: usize| {
-        let text = format!("{value:.digits$}");
-        let text = if text.contains('.') {
-            text.trim_end_matches('0').trim_end_matches('.')
-        } else {
-            &text
-        };
-        if text == "-0" {
-            "0".to_owned()
-        } else {
-            text.replace('-', "−")
-        }
-    };
+    let trimmed = |value: f64, digits: usize| short(value, digits).replace('-', "−");
     match value.abs() {
         0.0 => "0".to_owned(),
         size if !(1e-4..1e12).contains(&size) => format!("{value:.1e}").replace('-', "−"),

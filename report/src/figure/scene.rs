@@ -10,8 +10,8 @@ use driftworld_metrics::{BlockType, Lifetime, Regime};
 use super::palette::{Look, SHADE};
 use super::paper::{Entry, Sample};
 use super::{FigureOptions, Unit};
-use crate::ReportError;
 use crate::words::shown;
+use crate::{ReportError, extent};
 
 /// Tasks beyond these are left out of curves: more cannot be told apart.
 pub(super) const MOST_TASKS: usize = 28;
@@ -88,12 +88,8 @@ impl<'a> Scene<'a> {
                 expected,
             });
         }
-        let first = stretches.iter().map(|stretch| stretch.range().start);
-        let last = stretches.iter().map(|stretch| stretch.range().end);
-        let (first, last) = (
-            first.fold(f64::INFINITY, f64::min),
-            last.fold(f64::NEG_INFINITY, f64::max),
-        );
+        let (first, _) = extent(stretches.iter().map(|stretch| stretch.range().start));
+        let (_, last) = extent(stretches.iter().map(|stretch| stretch.range().end));
         Ok(Self {
             lifetime,
             column,
@@ -135,9 +131,7 @@ impl<'a> Scene<'a> {
     /// The names of the tasks that are drawn, and how many are not.
     pub(super) fn entries(&self) -> Vec<Entry> {
         let mut entries: Vec<Entry> = self.names.iter().take(MOST_TASKS).enumerate().map(task_entry).collect();
-        if self.names.len() > MOST_TASKS {
-            entries.push(Entry::rest(self.names.len() - MOST_TASKS));
-        }
+        entries.extend(Entry::rest(self.names.len(), MOST_TASKS, ""));
         entries
     }
 
@@ -210,9 +204,7 @@ fn positions(lifetime: &Lifetime, regime: &Regime, unit: Unit) -> Result<Vec<f64
 
 /// A range with a little room at both ends; one of its own where all values are equal.
 pub(super) fn roomy(values: impl Iterator<Item = f64>) -> Range<f64> {
-    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-        (low.min(value), high.max(value))
-    });
+    let (low, high) = extent(values);
     match high - low {
         room if room > 0.0 => low - room * 0.04..high + room * 0.04,
         0.0 => low - low.abs().max(1.0) * 0.5..high + high.abs().max(1.0) * 0.5,

@@ -7,7 +7,7 @@ use plotters::prelude::*;
 use super::palette::{FAINT, INK, Look, RIM};
 use super::paper::{Paper, draw_mark, line};
 use super::vectors;
-use crate::ReportError;
+use crate::{ReportError, extent};
 
 const SIZE: (i32, i32) = (220, 30);
 /// More marks than these are thinned out evenly.
@@ -27,8 +27,7 @@ pub(crate) fn thinned_count(marks: usize) -> Option<String> {
 /// Marks for `tasks` (place in the lifetime's list, value), a stroke for the lifetime's value, a dashed one for no effect.
 pub(crate) fn strip(tasks: &[(usize, f64)], value: Option<f64>, neutral: Option<f64>) -> Result<String, ReportError> {
     let all = || tasks.iter().map(|task| task.1).chain(value).chain(neutral);
-    let low = all().fold(f64::INFINITY, f64::min);
-    let high = all().fold(f64::NEG_INFINITY, f64::max);
+    let (low, high) = extent(all());
     let d = Paper::dots;
     let x = |value: f64| {
         let share = if high > low { (value - low) / (high - low) } else { 0.5 };

@@ -2,6 +2,8 @@
 //!
 //! Not here: which columns there are, see `paper`.
 
+use crate::extent;
+
 /// The first, the lowest, the highest and the last point of each column, in their order: a line through them looks as the
 /// whole line does.
 pub(super) fn line(points: &[(f64, f64)], column: impl Fn(f64) -> i64) -> Vec<(f64, f64)> {
@@ -28,11 +30,7 @@ pub(super) fn outline(
     let mut upper = Vec::new();
     let mut lower = Vec::new();
     for group in points.chunk_by(|a, b| column(a.0) == column(b.0)) {
-        let heights = || group.iter().map(|point| point.1);
-        let (high, low) = (
-            heights().fold(f64::NEG_INFINITY, f64::max),
-            heights().fold(f64::INFINITY, f64::min),
-        );
+        let (low, high) = extent(group.iter().map(|point| point.1));
         let more = ((least_height - (high - low)) / 2.0).max(0.0);
         upper.push((group[0].0, high + more));
         lower.push((group[0].0, low - more));

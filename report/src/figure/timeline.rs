@@ -54,6 +54,11 @@ impl Plan {
         self.strip + row as i32 * self.row + above
     }
 
+    /// A line from side to side, in dots.
+    fn across(&self, y: i32) -> [(i32, i32); 2] {
+        [self.left, self.right].map(|x| (Paper::dots(x), y))
+    }
+
     fn bottom(&self) -> i32 {
         self.strip + self.rows as i32 * self.row + 4
     }
@@ -64,9 +69,7 @@ fn entries(scene: &Scene) -> Vec<Entry> {
         Entry::new("learning, in the task's colour", Sample::Area(TASKS[0].light)),
         Entry::new("evaluation, frozen", Sample::Line(FROZEN.light)),
     ];
-    if scene.names.len() > MOST_ROWS {
-        entries.push(Entry::rest(format!("{} tasks", scene.names.len() - MOST_ROWS)));
-    }
+    entries.extend(Entry::rest(scene.names.len(), MOST_ROWS, " tasks"));
     entries
 }
 
@@ -82,28 +85,17 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
     let x = |value: f64| d(plan.left) + ((value - scene.span.start) * per_x).round() as i32;
     for (row, name) in scene.names.iter().take(plan.rows).enumerate() {
         let y = d(plan.middle(row, paper));
-        line(
-            &below,
-            [(d(plan.left), y), (d(plan.right), y)],
-            RIM.light.stroke_width(1),
-        )?;
+        line(&below, plan.across(y), RIM.light.stroke_width(1))?;
         name_row(&below, &plan, paper, row, name)?;
     }
     let columns = plan.right - plan.left;
-    for stretch in scene
-        .drawn(false, columns)
-        .into_iter()
-        .chain(scene.drawn(true, columns))
-    {
-        if stretch.task >= plan.rows {
-            continue;
-        }
+    let drawn = [false, true].map(|learning| scene.drawn(learning, columns)).concat();
+    for stretch in drawn.into_iter().filter(|stretch| stretch.task < plan.rows) {
         let (range, y) = (stretch.range(), d(plan.middle(stretch.task, paper)));
-        let half = if stretch.learns() { d(BAR / 2) } else { d(3) };
-        let color = if stretch.learns() {
-            Look::of(stretch.task).color
+        let (half, color) = if stretch.learns() {
+            (d(BAR / 2), Look::of(stretch.task).color)
         } else {
-            FROZEN.light
+            (d(3), FROZEN.light)
         };
         // A stretch too short to be seen is drawn a pixel wide.
         let (start, end) = (x(range.start), x(range.end).max(x(range.start) + d(1)));
@@ -116,17 +108,12 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
 /// A task's name with its mark, beside or above its row.
 fn name_row<DB: DrawingBackend>(area: &Area<DB>, plan: &Plan, paper: &Paper, row: usize, name: &str) -> Drawn<DB> {
     let d = Paper::dots;
-    let y = if paper.is_narrow() {
-        plan.middle(row, paper) - BAR / 2 - 10
+    let (mark, x, side, above) = if paper.is_narrow() {
+        (plan.left + 5, plan.left + 14, HPos::Left, BAR / 2 + 10)
     } else {
-        plan.middle(row, paper)
+        (13, plan.left - 12, HPos::Right, 0)
     };
-    let (x, side) = if paper.is_narrow() {
-        (plan.left + 14, HPos::Left)
-    } else {
-        (plan.left - 12, HPos::Right)
-    };
-    let mark = if paper.is_narrow() { plan.left + 5 } else { 13 };
+    let y = plan.middle(row, paper) - above;
     draw_mark(area, Look::of(row), (d(mark), d(y)), d(4))?;
     area.draw_text(name, &Paper::words(12, INK.light, side, VPos::Center), (d(x), d(y)))
 }
@@ -140,11 +127,7 @@ fn axis<DB: DrawingBackend>(
 ) -> Drawn<DB> {
     let d = Paper::dots;
     let y = d(plan.bottom());
-    line(
-        area,
-        [(d(plan.left), y), (d(plan.right), y)],
-        FAINT.light.stroke_width(2),
-    )?;
+    line(area, plan.across(y), FAINT.light.stroke_width(2))?;
     let marks = plotters::coord::types::RangedCoordf64::from(scene.span.clone());
     let most = if paper.is_narrow() { 5 } else { 10 };
     for value in plotters::coord::ranged1d::Ranged::key_points(&marks, most) {
@@ -175,11 +158,7 @@ fn draw_distances<DB: DrawingBackend>(
     let (base, tallest) = (d(STRIP - 14), d(STRIP - 46));
     let style = Paper::words(12, FAINT.light, HPos::Left, VPos::Center);
     area.draw_text("distance between neighbours", &style, (d(8), d(8)))?;
-    line(
-        area,
-        [(d(plan.left), base), (d(plan.right), base)],
-        RIM.light.stroke_width(1),
-    )?;
+    line(area, plan.across(base), RIM.light.stroke_width(1))?;
     let largest = distances.iter().flatten().copied().fold(0.0, f64::max);
     let learnt: Vec<&Stretch> = scene
         .stretches

@@ -8,7 +8,7 @@ use maud::{Markup, html};
 
 use super::verdict::{self, Verdict, pill};
 use super::{calm, count, metric_table, number};
-use crate::words::shown;
+use crate::words::{short, shown};
 
 /// How likely one agent is to be better than another.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,7 +23,7 @@ pub struct Comparison {
 
 /// Both, where there are any.
 pub(super) fn section(overall: &[RepeatedMetric], comparisons: &[Comparison], intervals: &BootstrapOptions) -> Markup {
-    let percent = format!("{} %", number_plain(intervals.confidence * 100.0));
+    let percent = format!("{} %", short(intervals.confidence * 100.0, 2));
     html! {
         @if !overall.is_empty() || !comparisons.is_empty() {
             section.part.only id="overall" aria-labelledby="overall-name" {
@@ -126,7 +126,7 @@ fn improvement(comparison: &Comparison, percent: &str, confidence: f64) -> Marku
             "Probability of improvement: how likely a lifetime of " bdi { (shown(&comparison.agent)) } " has the better value; 0.5 means that "
             "neither is better. In brackets: its " (percent) " bootstrap interval, and Student’s t interval for few lifetimes. p: how often two "
             "equal agents would differ at least as much, by permuting lifetimes between them. Agents differ where p is at most "
-            (number_plain(1.0 - confidence)) "."
+            (short(1.0 - confidence, 2)) "."
         }
         div.scroll role="region" aria-label=(title) tabindex="0" {
             table.stacked {
@@ -151,12 +151,6 @@ fn improvement(comparison: &Comparison, percent: &str, confidence: f64) -> Marku
             }
         }
     }
-}
-
-/// A share of a hundred without needless digits.
-fn number_plain(value: f64) -> String {
-    let text = format!("{value:.2}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// Whether two agents are told apart, with a chance of at most `alpha` that equal ones are.

@@ -5,7 +5,7 @@
     reason = "ticks and arrows of a figure, rounded to what is drawn"
 )]
 
-use super::{Drawing, FAINT, INK, Level, Rgb, Shape, Side, TextLine, WHITE, corner, letters, middle, text_width};
+use super::{Drawing, FAINT, INK, Level, Rgb, Side, WHITE, corner, middle, text_width, words};
 use crate::figure::task_color;
 use driftworld_spec::{Block, BlockKind, Phase, Regime, Scenario};
 
@@ -43,29 +43,18 @@ pub fn blocks(scenario: &Scenario) -> Drawing {
     let mut picture = Drawing::blank((WIDTH + 28) as u32, (bottom + 56) as u32);
     let x = |experience: f64| left + (f64::from(WIDTH - left) * experience / total).round() as i32;
     let y = |row: f64| TOP + (f64::from(ROW) * (row + 0.5)).round() as i32;
-    let write = |picture: &mut Drawing, text: &str, at: (i32, i32), size: f64, color: Rgb, side: Side, level: Level| {
-        picture.write(TextLine::new(text, corner(at), letters(size), color).anchored(side, level));
-    };
-    write(
-        &mut picture,
-        &scenario.name,
-        (16, 12),
-        26.0,
-        INK,
-        Side::Left,
-        Level::Top,
-    );
+    picture.write(words(&scenario.name, (16, 12), 26.0, INK));
     for (index, (name, color, alpha, height)) in kinds(scenario).into_iter().enumerate() {
         let x = left + index as i32 * 190;
         let [(x0, y0), (x1, y1)] = [(x, 56 - height / 2), (x + 31, 57 + height / 2)];
         fill(&mut picture, &[(x0, y0), (x1, y0), (x1, y1), (x0, y1)], color, alpha);
-        write(&mut picture, name, (x + 38, 48), 16.5, FAINT, Side::Left, Level::Top);
+        picture.write(words(name, (x + 38, 48), 16.5, FAINT));
     }
     for (index, row) in rows.iter().enumerate() {
         let across = y(index as f64);
         picture.line([middle((left, across)), middle((WIDTH, across))], 1.0, [228, 230, 233]);
-        let at = (left - 12, across);
-        write(&mut picture, row, at, f64::from(NAME), INK, Side::Right, Level::Middle);
+        let name = words(row, (left - 12, across), f64::from(NAME), INK);
+        picture.write(name.anchored(Side::Right, Level::Middle));
     }
     for stretch in &stretches {
         // A stretch too short to be seen is drawn a pixel wide.
@@ -100,25 +89,16 @@ pub fn blocks(scenario: &Scenario) -> Drawing {
     for tick in ticks(total) {
         let at = x(tick);
         picture.line([middle((at, bottom)), middle((at, bottom + 5))], 1.0, INK);
-        let words = tick.to_string();
-        write(
-            &mut picture,
-            &words,
-            (at, bottom + 8),
-            15.5,
-            FAINT,
-            Side::Middle,
-            Level::Top,
-        );
+        let number = words(tick.to_string(), (at, bottom + 8), 15.5, FAINT);
+        picture.write(number.anchored(Side::Middle, Level::Top));
     }
-    let below = (left, bottom + 28);
-    write(&mut picture, "experiences", below, 16.5, FAINT, Side::Left, Level::Top);
+    picture.write(words("experiences", (left, bottom + 28), 16.5, FAINT));
     picture
 }
 
 fn fill(picture: &mut Drawing, corners: &[(i32, i32)], color: Rgb, alpha: f32) {
-    let points = corners.iter().map(|place| corner(*place)).collect();
-    picture.shapes.push(Shape::Area { points, color, alpha });
+    let points: Vec<_> = corners.iter().map(|place| corner(*place)).collect();
+    picture.tint(points, color, alpha);
 }
 
 /// The kinds of bars that a scenario has: name, colour, alpha, height. A sample of each stands under the title.
@@ -127,25 +107,17 @@ fn kinds(scenario: &Scenario) -> Vec<(&'static str, Rgb, f32, i32)> {
         let is = |block: &Block| block.kind == kind && phase.is_none_or(|phase| block.phase == phase);
         scenario.blocks.iter().any(is)
     };
-    let early = Some(Phase::PreDeployment);
-    let all = [
-        (
-            has(BlockKind::Learning, Some(Phase::Deployment)),
-            ("learning", task_color(0), 1.0, BAR / 2),
-        ),
-        (
-            has(BlockKind::Learning, early),
-            ("before deployment", task_color(0), EARLY, BAR / 2),
-        ),
-        (
-            has(BlockKind::Evaluation, None),
-            ("evaluation, frozen", EVALUATION, 1.0, BAR / 4),
-        ),
-    ];
-    all.into_iter()
-        .filter(|(is_there, _)| *is_there)
-        .map(|(_, kind)| kind)
-        .collect()
+    let mut kinds = Vec::new();
+    if has(BlockKind::Learning, Some(Phase::Deployment)) {
+        kinds.push(("learning", task_color(0), 1.0, BAR / 2));
+    }
+    if has(BlockKind::Learning, Some(Phase::PreDeployment)) {
+        kinds.push(("before deployment", task_color(0), EARLY, BAR / 2));
+    }
+    if has(BlockKind::Evaluation, None) {
+        kinds.push(("evaluation, frozen", EVALUATION, 1.0, BAR / 4));
+    }
+    kinds
 }
 
 /// The names of the rows, and every stretch.

@@ -27,6 +27,11 @@ const INK: Rgb = [38, 42, 48];
 const FAINT: Rgb = [110, 116, 124];
 const WHITE: Rgb = [255; 3];
 
+/// Words from a corner on, or from where they are anchored then, in letters of a height.
+fn words(text: impl Into<String>, at: (i32, i32), height: f64, color: Rgb) -> TextLine {
+    TextLine::new(text, corner(at), letters(height), color)
+}
+
 /// The size of letters whose font is so high from its lowest to its highest line.
 fn letters(height: f64) -> f32 {
     (height / 1.24) as f32

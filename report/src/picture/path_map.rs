@@ -8,6 +8,7 @@
 use driftworld_similarity::{DistanceMatrix, Method, Ordering, classical_map};
 
 use super::{Drawing, FAINT, INK, Level, Rgb, Side, TextLine, WHITE, text_width};
+use crate::extent;
 
 /// Twice the size of the picture: places are rounded to half a pixel.
 const SIZE: (i32, i32) = (2000, 1600);
@@ -95,14 +96,7 @@ fn common_task(labels: &[String]) -> &str {
 
 /// The map's points as pixels: as large as fits, not distorted, the second axis upwards.
 fn on_paper(points: &[[f64; 2]]) -> Vec<(i32, i32)> {
-    let bounds = |axis: usize| {
-        points
-            .iter()
-            .map(|point| point[axis])
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-                (low.min(value), high.max(value))
-            })
-    };
+    let bounds = |axis: usize| extent(points.iter().map(|point| point[axis]));
     let [x, y] = [bounds(0), bounds(1)];
     let [side, top, bottom] = MARGINS;
     let (free_x, free_y) = (f64::from(SIZE.0 - 2 * side), f64::from(SIZE.1 - top - bottom));

@@ -5,7 +5,8 @@
     reason = "ticks and arrows of a figure, rounded to what is drawn"
 )]
 
-use super::{Drawing, FAINT, INK, Level, Rgb, Side, TextLine, corner, letters, middle, text_width};
+use super::{Drawing, FAINT, INK, Level, Rgb, Side, corner, letters, middle, text_width, words};
+use crate::extent;
 
 /// A point with a name.
 #[derive(Clone, Debug)]
@@ -65,9 +66,7 @@ struct Axis {
 impl Axis {
     /// As far as the numbers reach, with a mark at every round number.
     fn around(values: impl Iterator<Item = f64>) -> Self {
-        let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| {
-            (least.min(value), most.max(value))
-        });
+        let (least, most) = extent(values);
         let (least, most) = if most > least {
             (least, most)
         } else {
@@ -110,21 +109,21 @@ impl Panel {
         let (y0, y1) = (room_above, HEIGHT as i32 - room_below);
         let x = |value: f64| x0 + (x_axis.share(value) * f64::from(x1 - x0)).round() as i32;
         let y = |value: f64| y1 - (y_axis.share(value) * f64::from(y1 - y0)).round() as i32;
-        write(picture, &self.title, (left + 16, 14), 24.0, INK, Side::Left);
-        write(picture, &self.words, (left + 16, 44), 17.0, FAINT, Side::Left);
+        picture.write(words(&self.title, (left + 16, 14), 24.0, INK));
+        picture.write(words(&self.words, (left + 16, 44), 17.0, FAINT));
         for (value, word) in x_axis.marks() {
             picture.line([middle((x(value), y0)), middle((x(value), y1))], 1.0, RIM);
-            write(picture, &word, (x(value), y1 + 8), 17.0, FAINT, Side::Middle);
+            picture.write(words(word, (x(value), y1 + 8), 17.0, FAINT).anchored(Side::Middle, Level::Top));
         }
         for (value, word) in y_axis.marks() {
             picture.line([middle((x0, y(value))), middle((x1, y(value)))], 1.0, RIM);
-            write(picture, &word, (x0 - 8, y(value) - 8), 17.0, FAINT, Side::Right);
+            picture.write(words(word, (x0 - 8, y(value) - 8), 17.0, FAINT).anchored(Side::Right, Level::Top));
         }
         let neutral = y(self.neutral);
         picture.line([corner((x0, neutral)), corner((x1, neutral))], 2.0, FAINT);
         let below = (i32::midpoint(x0, x1), y1 + 30);
-        write(picture, &self.across, below, 18.0, INK, Side::Middle);
-        write(picture, &self.up, (x0, y0 - 24), 18.0, INK, Side::Left);
+        picture.write(words(&self.across, below, 18.0, INK).anchored(Side::Middle, Level::Top));
+        picture.write(words(&self.up, (x0, y0 - 24), 18.0, INK));
         let dots: Vec<(i32, i32)> = self.points.iter().map(|point| (x(point.x), y(point.y))).collect();
         for dot in &dots {
             picture.disc(middle(*dot), 4.0, DOT);
@@ -133,7 +132,7 @@ impl Panel {
         let unnamed = self.name(picture, &dots, line, [x0, y0, x1, y1]);
         if unnamed > 0 {
             let label = format!("{unnamed} of {} without room for a name", dots.len());
-            write(picture, &label, (x1, y0 - 22), 16.0, FAINT, Side::Right);
+            picture.write(words(label, (x1, y0 - 22), 16.0, FAINT).anchored(Side::Right, Level::Top));
         }
     }
 
@@ -147,7 +146,7 @@ impl Panel {
             let wide = text_width(&point.label, size).ceil() as i32;
             match free_place(*dot, [wide + 2, size as i32], &taken, rim) {
                 Some(place) => {
-                    write(picture, &point.label, (place[0], place[1]), LABEL, INK, Side::Left);
+                    picture.write(words(&point.label, (place[0], place[1]), LABEL, INK));
                     taken.push(place);
                 }
                 None => unnamed += 1,
@@ -177,12 +176,6 @@ fn free_place((x, y): (i32, i32), [wide, high]: [i32; 2], taken: &[Box4], rim: B
     places
         .into_iter()
         .find(|place| inside(place) && taken.iter().all(|other| apart(place, other)))
-}
-
-/// Writes a text below its anchor.
-fn write(picture: &mut Drawing, text: &str, at: (i32, i32), size: f64, color: Rgb, side: Side) {
-    let words = TextLine::new(text, corner(at), letters(size), color);
-    picture.write(words.anchored(side, Level::Top));
 }
 
 #[cfg(test)]
