@@ -2,16 +2,17 @@
 //! become a sheet is `report`'s.
 
 use driftworld_env::{
-    Agent, Catalogue, Effect, EndedBy, Environment, Event, Recorder, Recording, Renderer, Replay, Step, category_color,
-    depth_to_gray, top_down_with_way,
+    Agent, Catalogue, Effect, EndedBy, Environment, Event, Recorder, Recording, Renderer, Replay, Step,
+    top_down_with_way,
 };
 use driftworld_report::picture::{Picture, SheetRow};
-use driftworld_spec::{Object, Stimulus, World};
+use driftworld_spec::{Modality, Object, Stimulus, World};
 use driftworld_text::{amount, whole};
 
 use crate::Failure;
 use crate::film::{FilmModality, FilmOptions, FilmView};
 use crate::map_drawing::map_size;
+use crate::modality::{number_color, to_rgb};
 
 /// What one step did, in words, and how much it matters: 0 for a step on the way.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -257,23 +258,18 @@ pub(crate) fn map_beside(environment: &Environment, height: u32) -> [u32; 2] {
 
 /// What the agent sees: in colours with smooth edges, else pixel by pixel.
 pub(crate) fn seen_by(environment: &mut Environment, options: &FilmOptions) -> Result<Picture, Failure> {
-    let (size, modality) = (options.size, options.modality);
-    let side = size
-        * if modality == FilmModality::Rgb {
-            oversize(size)
-        } else {
-            1
-        };
-    let frame = environment.observe_at(side, side)?;
-    let rgb = match modality {
-        FilmModality::Rgb => return Ok(finished(frame.width, frame.height, frame.rgb, size)),
-        FilmModality::Segmentation => frame.category.iter().flat_map(|it| category_color(*it)).collect(),
-        FilmModality::Depth => depth_to_gray(&frame.depth)
-            .into_iter()
-            .flat_map(|gray| [gray; 3])
-            .collect(),
+    let size = options.size;
+    let kind = match options.modality {
+        FilmModality::Rgb => {
+            let side = size * oversize(size);
+            let frame = environment.observe_at(side, side)?;
+            return Ok(finished(frame.width, frame.height, frame.rgb, size));
+        }
+        FilmModality::Segmentation => Modality::Segmentation,
+        FilmModality::Depth => Modality::Depth,
     };
-    Ok(Picture::new(size, size, rgb))
+    let frame = environment.observe_at(size, size)?;
+    Ok(Picture::new(size, size, to_rgb(kind, &frame, number_color)))
 }
 
 /// The map with the agent, and a way to it.

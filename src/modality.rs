@@ -1,6 +1,6 @@
 //! The kinds of images there are, and how each is kept in a PNG file. What a pixel means is decided in `env`.
 
-use crate::env::{Frame, Target, category_color};
+use crate::env::{Frame, Target, category_color, depth_to_gray};
 use crate::spec::Modality;
 
 use crate::report::ReportError;
@@ -26,6 +26,30 @@ pub(crate) fn name(kind: Modality) -> &'static str {
     NAMES[kind as usize]
 }
 
+/// A frame as colours, three bytes a pixel; the numbers of classes and instances have the colours of `color_of`.
+pub(crate) fn to_rgb(kind: Modality, frame: &Frame, color_of: fn(u32) -> [u8; 3]) -> Vec<u8> {
+    match kind {
+        Modality::Rgb => frame.rgb.clone(),
+        Modality::Depth => gray_rgb(&frame.depth),
+        Modality::Segmentation => frame.category.iter().flat_map(|it| category_color(*it)).collect(),
+        Modality::Class => frame.class.iter().flat_map(|id| color_of(u32::from(*id))).collect(),
+        Modality::Instance => frame.instance.iter().flat_map(|id| color_of(*id)).collect(),
+    }
+}
+
+/// Distances as greys, three bytes for each.
+pub(crate) fn gray_rgb(metres: &[f32]) -> Vec<u8> {
+    depth_to_gray(metres).into_iter().flat_map(|gray| [gray; 3]).collect()
+}
+
+/// A colour for a number, unlike those of its neighbours; black for 0.
+pub(crate) fn number_color(number: u32) -> [u8; 3] {
+    [97_u32, 53, 151].map(|step| {
+        let share = number.wrapping_mul(step) % 192;
+        if number == 0 { 0 } else { 64 + share as u8 }
+    })
+}
+
 /// A PNG file's bytes: colours and reward categories as RGB; depths (in levels of so many metres, at most 65535 of them),
 /// classes and instances as 16-bit numbers. Numbers beyond are cut.
 pub(crate) fn to_png(kind: Modality, frame: &Frame, metres_per_level: f32) -> Result<Vec<u8>, ReportError> {
@@ -34,8 +58,7 @@ pub(crate) fn to_png(kind: Modality, frame: &Frame, metres_per_level: f32) -> Re
     let gray = |levels: Vec<u16>| Gray { width, height, levels }.to_png();
     let cut = |number: &u32| u16::try_from(*number).unwrap_or(u16::MAX);
     match kind {
-        Modality::Rgb => picture(frame.rgb.clone()),
-        Modality::Segmentation => picture(frame.category.iter().flat_map(|it| category_color(*it)).collect()),
+        Modality::Rgb | Modality::Segmentation => picture(to_rgb(kind, frame, number_color)),
         Modality::Depth => {
             let level = |metres: &f32| (metres / metres_per_level + 0.5).min(FULL) as u16;
             gray(frame.depth.iter().map(level).collect())

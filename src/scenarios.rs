@@ -286,6 +286,13 @@ pub enum Missing {
     StandIn,
 }
 
+impl Missing {
+    /// Whether another world may be lived in its place.
+    pub fn may_stand_in(may: bool) -> Self {
+        if may { Self::StandIn } else { Self::Refused }
+    }
+}
+
 /// A scenario with everything that it names, tasks from the working folder; its world files come from `world`.
 ///
 /// # Errors

@@ -3,6 +3,7 @@
 #![expect(clippy::disallowed_methods, reason = "where a camera stands for a picture")]
 
 use std::cell::RefCell;
+use std::collections::BTreeSet;
 use std::rc::Rc;
 
 use driftworld_env::{
@@ -15,6 +16,7 @@ use driftworld_spec::{Modality, World};
 use crate::Failure;
 use crate::map_drawing::{self, Moves};
 use crate::map_legend;
+use crate::modality::{gray_rgb, number_color, to_rgb};
 use crate::subject::sight;
 
 /// The pictures of one world.
@@ -36,7 +38,7 @@ pub(crate) struct Seen {
     /// Metres to the farthest thing that is not the sky.
     farthest: f32,
     /// The reward categories that are in it.
-    categories: Vec<u8>,
+    categories: BTreeSet<u8>,
 }
 
 impl Seen {
@@ -143,10 +145,8 @@ const SCALES: [f32; 4] = [10.0, 20.0, 40.0, DEPTH_METRES];
 
 /// The first scale on which nothing is white but the sky.
 fn white_at(farthest: f32) -> f32 {
-    SCALES
-        .into_iter()
-        .find(|most| *most >= farthest)
-        .unwrap_or(DEPTH_METRES)
+    let scale = SCALES.into_iter().find(|most| *most >= farthest);
+    scale.unwrap_or(DEPTH_METRES)
 }
 
 /// The size of a legend's letters below a picture of this width.
@@ -176,19 +176,6 @@ const CLOSE_UPS: [(f32, f32); 24] = {
     }
     all
 };
-
-/// Distances as greys, three bytes for each.
-fn gray_rgb(metres: &[f32]) -> Vec<u8> {
-    depth_to_gray(metres).into_iter().flat_map(|gray| [gray; 3]).collect()
-}
-
-/// A colour for a number, unlike those of its neighbours; black for 0.
-fn number_color(number: u32) -> [u8; 3] {
-    [97_u32, 53, 151].map(|step| {
-        let share = number.wrapping_mul(step) % 192;
-        if number == 0 { 0 } else { 64 + share as u8 }
-    })
-}
 
 /// What a reward category is.
 fn category_name(category: u8) -> &'static str {
@@ -323,27 +310,16 @@ impl<'a> Views<'a> {
     pub(crate) fn first_person(&self) -> Result<Seen, Failure> {
         let camera = self.agent_camera(self.turn);
         let frame = self.frame(&self.scene, &camera, self.size, self.size)?;
-        let picture = |rgb| Picture::new(self.size, self.size, rgb);
+        let picture = |kind| Picture::new(self.size, self.size, to_rgb(kind, &frame, number_color));
         Ok(Seen {
             rgb: self.smooth(&self.scene, &camera, self.size)?,
-            depth: picture(gray_rgb(&frame.depth)),
-            segmentation: picture(
-                frame
-                    .category
-                    .iter()
-                    .flat_map(|category| category_color(*category))
-                    .collect(),
-            ),
+            depth: picture(Modality::Depth),
+            segmentation: picture(Modality::Segmentation),
             farthest: (frame.depth.iter().zip(&frame.category))
                 .filter(|(_, category)| **category != CATEGORY_SKY)
                 .fold(0.0, |most, (metres, _)| metres.max(most)),
             distances: frame.depth,
-            categories: {
-                let mut categories = frame.category;
-                categories.sort_unstable();
-                categories.dedup();
-                categories
-            },
+            categories: frame.category.into_iter().collect(),
         })
     }
 
@@ -354,13 +330,7 @@ impl<'a> Views<'a> {
             return self.smooth(&self.scene, &camera, self.size);
         }
         let frame = self.frame(&self.scene, &camera, self.size, self.size)?;
-        let rgb = match modality {
-            Modality::Rgb => frame.rgb,
-            Modality::Depth => gray_rgb(&frame.depth),
-            Modality::Segmentation => frame.category.iter().flat_map(|it| category_color(*it)).collect(),
-            Modality::Class => frame.class.iter().flat_map(|it| number_color(u32::from(*it))).collect(),
-            Modality::Instance => frame.instance.iter().flat_map(|it| number_color(*it)).collect(),
-        };
+        let rgb = to_rgb(modality, &frame, number_color);
         Ok(Picture::new(self.size, self.size, rgb))
     }
 

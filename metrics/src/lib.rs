@@ -44,7 +44,7 @@ mod statistics;
 mod tier;
 
 pub use error::MetricsError;
-pub use lifetime::{Drift, Lifetime, MAX_REGIMES, Regime, SteLog, experts_serving, read_ste_log};
+pub use lifetime::{Drift, Lifetime, MAX_REGIMES, Regime, SteLog, experts_serving, logged_word, read_ste_log};
 pub use log::{
     BlockSubtype, BlockType, Complexity, DEFAULT_WORKER, Delimiter, Difficulty, ExpStatus, KeptRows,
     LOG_FORMAT_VERSION, Log, LogCounts, LogTable, LogWarning, LogWriter, LoggerInfo, MAX_CELL_BYTES, MAX_CELLS,

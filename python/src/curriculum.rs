@@ -60,11 +60,7 @@ impl PyPlan {
             let mut warn = |warning| warnings.push(warning);
             let file = ScenarioFile::from_text(Path::new(&path), text, &mut warn)?;
             // The original's own scenario names a map that it does not come with, and has to run as it stands.
-            let missing = if stand_in.unwrap_or(file.original) {
-                Missing::StandIn
-            } else {
-                Missing::Refused
-            };
+            let missing = Missing::may_stand_in(stand_in.unwrap_or(file.original));
             let undrawable = undrawable(skip_undrawable);
             let (plan, named) = file
                 .plan_named(missing, undrawable, &mut warn)

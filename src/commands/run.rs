@@ -120,11 +120,8 @@ impl Run {
         self.refuse_task()?;
         let file = ScenarioFile::read(&self.scenario, &mut output::warning)?;
         // The original's own scenario names a map that it does not come with, and has to run as it stands.
-        let missing = if self.missing.stand_in || (file.original && !self.missing.no_stand_in) {
-            Missing::StandIn
-        } else {
-            Missing::Refused
-        };
+        let may = self.missing.stand_in || (file.original && !self.missing.no_stand_in);
+        let missing = Missing::may_stand_in(may);
         let undrawable = if self.skip_undrawable {
             Undrawable::Skipped
         } else {

@@ -231,11 +231,7 @@ impl Validate {
                 let warn = &mut |_| {};
                 let file =
                     ScenarioFile::from_text(path, text, warn).map_err(|error| (error.code(), error.to_string()))?;
-                let missing = if file.original {
-                    Missing::StandIn
-                } else {
-                    Missing::Refused
-                };
+                let missing = Missing::may_stand_in(file.original);
                 let plan = file.plan_with(missing, Undrawable::Skipped, warn);
                 let plan = plan.map_err(|error| (error.code(), error.to_string()))?;
                 for (task, spec) in plan.tasks() {

@@ -6,10 +6,10 @@ use driftworld_text::ShownPath;
 
 use super::line::Picture;
 use super::map;
-use super::screen::{colors, half_blocks, letters};
+use super::screen::{color_of, half_blocks, letters};
 use super::session::{Session, plain};
 use crate::map_drawing::{self, Moves};
-use crate::modality::{self, target};
+use crate::modality::{self, target, to_rgb};
 use crate::report::picture;
 use crate::spec::Modality;
 
@@ -53,7 +53,7 @@ impl Session<'_> {
         Ok(match (picture, self.screen.colors) {
             (Picture::Map, true) => half_blocks(size[0], &self.bird_view(size[0], size[1]).rgb),
             (Picture::Map, false) => map::letters(&self.environment, size[0]),
-            (Picture::Seen(kind), true) => half_blocks(size[0], &colors(&self.seen(kind, size)?, kind)),
+            (Picture::Seen(kind), true) => half_blocks(size[0], &to_rgb(kind, &self.seen(kind, size)?, color_of)),
             (Picture::Seen(kind), false) => letters(&self.seen(kind, size)?, kind),
         })
     }

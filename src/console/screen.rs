@@ -3,10 +3,7 @@
 use std::fmt::Write;
 use std::io::IsTerminal;
 
-use crate::env::{
-    CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE, Frame, category_color,
-    depth_to_gray,
-};
+use crate::env::{CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE, Frame};
 
 use crate::spec::Modality;
 
@@ -83,22 +80,8 @@ pub(super) fn half_blocks(width: u32, rgb: &[u8]) -> String {
     text
 }
 
-/// A frame as colours of one modality.
-pub(super) fn colors(frame: &Frame, kind: Modality) -> Vec<u8> {
-    match kind {
-        Modality::Rgb => frame.rgb.clone(),
-        Modality::Depth => depth_to_gray(&frame.depth)
-            .into_iter()
-            .flat_map(|gray| [gray; 3])
-            .collect(),
-        Modality::Segmentation => frame.category.iter().flat_map(|it| category_color(*it)).collect(),
-        Modality::Class => frame.class.iter().flat_map(|id| color_of(u32::from(*id))).collect(),
-        Modality::Instance => frame.instance.iter().flat_map(|id| color_of(*id)).collect(),
-    }
-}
-
 /// A colour for a number: neighbours differ much, 0 is black.
-fn color_of(id: u32) -> [u8; 3] {
+pub(super) fn color_of(id: u32) -> [u8; 3] {
     if id == 0 {
         return [0; 3];
     }

@@ -56,7 +56,6 @@ pub const ENDED_BY: &str = "ended_by";
 
 /// The row of experience `number`.
 pub(super) fn record(planned: &Planned, number: u64, experience: &Experience, gap: &Gap, now: Timestamp) -> Record {
-    let kind = block_type(planned.kind);
     let [state, action, transition, reward, observation] = gap.elements;
     let values = [
         experience.reward,
@@ -73,12 +72,7 @@ pub(super) fn record(planned: &Planned, number: u64, experience: &Experience, ga
         reward,
         observation,
     ];
-    let record = Record::new(planned.block as u64, number, kind, &planned.log_name, now);
-    COLUMNS
-        .into_iter()
-        .zip(values)
-        .fold(record, |record, (name, value)| record.with_metric(name, value))
-        .with_task_params(planned.params())
+    row(planned, number, values, planned.params(), now)
 }
 
 /// The key of a row's parameters that says why its experience was left out.
@@ -86,19 +80,21 @@ pub(super) const SKIPPED: &str = "skipped";
 
 /// The row of experience `number`, which was left out.
 pub(super) fn skipped(planned: &Planned, number: u64, reason: &str, now: Timestamp) -> Record {
+    let values = COLUMNS.map(|name| match name {
+        "world_index" => planned.world_index(number),
+        "progress" => planned.progress(number),
+        _ => f64::NAN,
+    });
+    row(planned, number, values, skipped_params(planned, reason), now)
+}
+
+/// A row with a number for each of [`COLUMNS`].
+fn row(planned: &Planned, number: u64, values: [f64; 13], params: TaskParams, now: Timestamp) -> Record {
     let kind = block_type(planned.kind);
     let record = Record::new(planned.block as u64, number, kind, &planned.log_name, now);
-    COLUMNS
-        .into_iter()
-        .fold(record, |record, name| {
-            let value = match name {
-                "world_index" => planned.world_index(number),
-                "progress" => planned.progress(number),
-                _ => f64::NAN,
-            };
-            record.with_metric(name, value)
-        })
-        .with_task_params(skipped_params(planned, reason))
+    let named = COLUMNS.into_iter().zip(values);
+    let record = named.fold(record, |record, (name, value)| record.with_metric(name, value));
+    record.with_task_params(params)
 }
 
 /// What a log says of an experience that was left out.

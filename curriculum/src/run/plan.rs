@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use driftworld_env::Label;
 use driftworld_generator::{Drift, Sampler};
+use driftworld_metrics::logged_word;
 use driftworld_spec::{Block, BlockKind, BlockMix, Regime, Scenario, TaskLabel, TaskSpec, Variant, World};
 use serde_json::{Value, json};
 
@@ -451,15 +452,7 @@ fn end_name(task: &str, to: &Variant) -> String {
 /// The format wants `task_variant` with letters and digits alone: `find_objects` and `red` are `findobjects_red`. A name
 /// without any is `x`.
 pub fn log_name(task: &str, variant: &str) -> String {
-    let plain = |text: &str| {
-        let plain: String = text.chars().filter(char::is_ascii_alphanumeric).collect();
-        if plain.is_empty() {
-            "x".to_owned()
-        } else {
-            plain.to_lowercase()
-        }
-    };
-    format!("{}_{}", plain(task), plain(variant))
+    format!("{}_{}", logged_word(task), logged_word(variant))
 }
 
 #[cfg(test)]

@@ -38,12 +38,12 @@ impl Drift {
         let (from, to) = (from?, to?);
         // An end of another task is said as `task#variant`.
         let logged = |end: &str| match end.split_once('#') {
-            Some((task, variant)) => format!("{}_{}", plain(task), plain(variant)),
-            None => format!("{head}_{}", plain(end)),
+            Some((task, variant)) => format!("{}_{}", logged_word(task), logged_word(variant)),
+            None => format!("{head}_{}", logged_word(end)),
         };
         let scored = |end: &str| options.variant_mode.scored_name(&logged(end));
         let ends = (scored(from), scored(to));
-        if tail != format!("{}to{}", plain(from), plain(to)) || ends.0 == ends.1 {
+        if tail != format!("{}to{}", logged_word(from), logged_word(to)) || ends.0 == ends.1 {
             return None;
         }
         let progress = rows.metric(PROGRESS);
@@ -73,9 +73,9 @@ impl Drift {
     }
 }
 
-/// The letters and digits of a variant's name, lower-case, as logs have them.
-fn plain(variant: &str) -> String {
-    let plain: String = variant.chars().filter(char::is_ascii_alphanumeric).collect();
+/// The letters and digits of the name of a task or variant, lower-case, as logs have them; `x` where there are none.
+pub fn logged_word(name: &str) -> String {
+    let plain: String = name.chars().filter(char::is_ascii_alphanumeric).collect();
     if plain.is_empty() {
         "x".to_owned()
     } else {

@@ -13,7 +13,7 @@ mod worlds;
 use indexmap::IndexMap;
 
 pub(crate) use budget::{Budget, budgets, present};
-pub use drift::Drift;
+pub use drift::{Drift, logged_word};
 pub(crate) use regime::mean_per_experience;
 pub use regime::{MAX_REGIMES, Regime};
 pub(crate) use ste::SteRun;
