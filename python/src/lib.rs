@@ -3,7 +3,6 @@
 //! Values cross the border as JSON text, as arrays, or as handles; nothing here is an idea of its own.
 #![expect(clippy::needless_pass_by_value, reason = "PyO3 hands arguments over by value")]
 
-mod action;
 mod batch;
 mod classes;
 mod command;

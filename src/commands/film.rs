@@ -1,8 +1,8 @@
 //! `driftworld film`: an agent's episode in a world, filmed. What a frame shows is the library's.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use crate::env::MAX_EXPERT_STEPS;
+use crate::env::{MAX_EXPERT_STEPS, Recording, RecordingLines};
 use crate::episode_frames::recorded;
 use crate::film::{FilmOptions, expect_film};
 use crate::worlds::WorldRequest;
@@ -13,7 +13,6 @@ use serde_json::json;
 use super::agent::AgentArg;
 use super::assets::LibraryChoice;
 use super::film_choice::{self, summary, tell};
-use super::recording_file::write_recording;
 use super::{Failure, output};
 
 /// Steps of a film in a world that has no limit of its own: 5 minutes of 0.1 s.
@@ -89,4 +88,10 @@ impl Film {
             .as_ref()
             .map_or(Ok(()), |path| output::line(format!("wrote {}", path.shown())))
     }
+}
+
+/// Writes an episode as a file of recordings, whole or not at all.
+fn write_recording(path: &Path, recording: &Recording) -> Result<(), Failure> {
+    let text = RecordingLines::header() + &RecordingLines::default().lines(recording);
+    output::write(path, text.as_bytes())
 }

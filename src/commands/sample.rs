@@ -12,7 +12,6 @@ use driftworld_atomic_files::AtomicFile;
 use rayon::prelude::*;
 
 use super::interrupt::Interrupt;
-use super::mix::Mix;
 use crate::{Failure, worlds};
 
 use super::{output, overwrite};
@@ -316,4 +315,13 @@ fn each(
 /// One world as one line: alone it has the same bytes as in a stream.
 fn line_of(source: &Source, index: u64) -> Result<String, Failure> {
     Ok(source.world(index)?.1.to_json() + "\n")
+}
+
+/// How values or variants switch in a drift.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Mix {
+    /// Each parameter that cannot be interpolated by itself.
+    Parameter,
+    /// The whole variant: each world is of one of the two.
+    Task,
 }

@@ -10,7 +10,7 @@ use rustyline::validate::Validator;
 use rustyline::{Config, Context, Helper};
 
 use super::line::COMMANDS;
-use super::names::Names;
+use super::session::Names;
 use crate::Failure;
 use crate::modality;
 

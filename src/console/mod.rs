@@ -8,7 +8,6 @@ mod line;
 mod look;
 mod map;
 mod messages;
-mod names;
 mod place;
 #[cfg(not(feature = "line-editor"))]
 mod prompt;

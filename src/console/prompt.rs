@@ -2,7 +2,7 @@
 
 use std::io::{self, BufRead, Write};
 
-use super::names::Names;
+use super::session::Names;
 use crate::Failure;
 
 /// Reads lines from a terminal.

@@ -10,7 +10,6 @@ use driftworld_text::{ShownPath, amount, counted, joined_or};
 
 use super::line::Line;
 use super::messages::shown;
-use super::names::Names;
 use super::place::Folder;
 use super::report::help;
 use super::screen::Screen;
@@ -265,4 +264,15 @@ impl<'a> Session<'a> {
             .map(|&category| format!("{} {}", category.name(), state(category)));
         each.collect::<Vec<_>>().join(", ")
     }
+}
+
+/// Names that the world gives at this moment.
+#[derive(Default)]
+#[cfg_attr(
+    not(feature = "line-editor"),
+    expect(dead_code, reason = "read where there is the feature")
+)]
+pub(crate) struct Names {
+    pub(super) objects: Vec<String>,
+    pub(super) snapshots: Vec<String>,
 }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::jackknife::{FEW_RUNS, LeftOut, t_interval};
 use super::resample::Resample;
-use super::{Aggregate, BootstrapOptions, Interval, ScoreTable};
+use super::{Aggregate, BootstrapOptions, ScoreTable};
 use crate::MetricsError;
 
 /// A number and how sure it is.
@@ -107,6 +107,24 @@ pub(super) fn estimate_each(
         estimate.interval = Some(options.interval(drawn));
     }
     estimates
+}
+
+/// From low to high. With the default options the bootstrap's holds the value that infinitely many runs would show in about 92 of 100
+/// repetitions with 20 runs, in 87 with 9, in 82 with 5, in 76 with 3: few runs cannot show how much they vary. Student's does in 95, as
+/// far as runs are normal. `metrics/tests/repeats_coverage.rs` simulates both.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Interval {
+    /// Lower end, in the unit of the value.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+impl Interval {
+    /// Whether a number lies within, ends included.
+    pub fn contains(&self, number: f64) -> bool {
+        (self.low..=self.high).contains(&number)
+    }
 }
 
 #[cfg(test)]

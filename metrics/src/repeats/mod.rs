@@ -10,7 +10,6 @@ mod bootstrap;
 mod contest;
 mod estimate;
 mod improvement;
-mod interval;
 mod jackknife;
 mod permutation;
 mod power;
@@ -20,9 +19,8 @@ mod student;
 
 pub use aggregate::Aggregate;
 pub use bootstrap::{BootstrapOptions, MAX_RESAMPLES, MAX_SCORES_DRAWN, Resampling};
-pub use estimate::{Estimate, estimate};
+pub use estimate::{Estimate, Interval, estimate};
 pub use improvement::{Improvement, StratumImprovement, probability_of_improvement};
-pub use interval::Interval;
 pub use jackknife::FEW_RUNS;
 pub use power::{MAX_POWER_LIFETIMES, POWER_LEVEL, POWER_WANTED, lifetimes_for, smallest_effect, welch_power};
 pub use score_table::{MAX_RUNS, MAX_SCORES, MAX_STRATA, ScoreTable};

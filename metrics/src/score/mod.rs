@@ -5,26 +5,22 @@
 mod assessment;
 mod average_performance;
 mod exchange;
-mod metric;
 mod null_bands;
 mod performance_maintenance;
 mod performance_recovery;
-mod recovery_time;
 mod sample_efficiency;
 mod saturation;
 mod scorer;
-mod statistic;
 mod ste_relative_performance;
 mod terminal_performance;
 mod transfer;
 
 pub use assessment::Assessment;
-pub use metric::Metric;
 pub use null_bands::NULL_PERMUTATIONS;
 pub use scorer::{Scorer, score};
 
 use crate::results::Headline;
-use crate::{MaintenanceMethod, Options, TransferMethod};
+use crate::{MaintenanceMethod, MetricsError, Options, TransferMethod};
 
 /// The metrics of this crate, in the order in which they are computed and shown.
 fn built_in() -> Vec<Box<dyn Metric>> {
@@ -56,4 +52,47 @@ fn all_asked() -> Options {
         transfer_method: TransferMethod::Both,
         ..Options::default()
     }
+}
+
+/// A measure of a lifetime. The crate's own are computed through this trait, too; a [`Scorer`](crate::Scorer) takes
+/// others beside them.
+///
+/// A metric looks at the regimes of a preprocessed lifetime and at what metrics before it found, and sets values: for
+/// regimes (columns of the regime table), for tasks (the numbers, and the lists behind them), for the lifetime. Where
+/// it sets a headline for tasks only, the lifetime's value is their mean or median, as the options say. One scorer may
+/// score many lifetimes at once, hence `Send` and `Sync`.
+///
+/// ```
+/// use driftworld_metrics::{Assessment, BlockType, Direction, Headline, Metric, MetricsError, Options};
+///
+/// /// The worst that a task came to in an evaluation.
+/// struct WorstEvaluation;
+///
+/// impl Metric for WorstEvaluation {
+///     fn headlines(&self, _: &Options) -> Vec<Headline> {
+///         vec![Headline::new("worst_eval_perf", "how bad did it get? worst mean of an evaluation", Direction::Higher)]
+///     }
+///
+///     fn judge(&self, assessment: &mut Assessment<'_>) -> Result<(), MetricsError> {
+///         for task in assessment.lifetime().tasks().to_vec() {
+///             let regimes = assessment.lifetime().regimes_of(&task);
+///             let evaluations = regimes.filter(|regime| regime.block_type == BlockType::Test);
+///             let terminal = evaluations.filter_map(|regime| assessment.term_perf(regime.regime_num));
+///             assessment.set_task(&task, "worst_eval_perf", terminal.reduce(f64::min));
+///         }
+///         Ok(())
+///     }
+/// }
+/// ```
+pub trait Metric: Send + Sync {
+    /// The values by which a lifetime is known that this metric sets under these options, in order. Their names must be its
+    /// own.
+    fn headlines(&self, options: &Options) -> Vec<Headline>;
+
+    /// Computes the metric.
+    ///
+    /// # Errors
+    /// Where it cannot be computed although the lifetime has what it needs; a value for which something is missing
+    /// is not an error, it is left out. [`MetricsError::Metric`] is there for errors of a user's metric.
+    fn judge(&self, assessment: &mut Assessment<'_>) -> Result<(), MetricsError>;
 }

@@ -7,7 +7,6 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
 use super::exchange::Evaluations;
-use super::statistic::Statistic;
 use super::{performance_maintenance, transfer};
 use crate::lifetime::{Lifetime, Regime, worlds};
 use crate::results::{NullBand, performance_error};
@@ -110,4 +109,27 @@ fn standard_error(statistic: &Statistic<'_>, term_perfs: &[f64], errors: &[(usiz
         }
     }
     Some(square.sqrt())
+}
+
+/// A value of the lifetime, of terminal performances by regime number.
+type Compute<'a> = dyn Fn(&[f64]) -> Option<f64> + 'a;
+
+/// A headline that terminal performances alone decide.
+pub(super) struct Statistic<'a> {
+    pub(super) name: &'static str,
+    compute: Box<Compute<'a>>,
+}
+
+impl<'a> Statistic<'a> {
+    pub(super) fn new(name: &'static str, compute: impl Fn(&[f64]) -> Option<f64> + 'a) -> Self {
+        Self {
+            name,
+            compute: Box::new(compute),
+        }
+    }
+
+    /// The value of the lifetime for the terminal performance of each regime, by its number; `None` where it cannot be computed.
+    pub(super) fn of(&self, term_perfs: &[f64]) -> Option<f64> {
+        (self.compute)(term_perfs).filter(|value| value.is_finite())
+    }
 }

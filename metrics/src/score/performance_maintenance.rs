@@ -5,7 +5,7 @@
 use std::rc::Rc;
 
 use super::assessment::aggregate;
-use super::statistic::Statistic;
+use super::null_bands::Statistic;
 use super::{Assessment, Metric};
 use crate::lifetime::Lifetime;
 use crate::results::{Direction, Headline};

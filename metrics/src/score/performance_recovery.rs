@@ -1,8 +1,7 @@
 //! Performance recovery: whether an agent recovers faster and faster.
-//!
-//! Not here: the single recovery times, see `recovery_time`.
 
-use super::{Assessment, Metric, recovery_time};
+use super::saturation::ROUNDING;
+use super::{Assessment, Metric};
 use crate::results::{Direction, Headline};
 use crate::statistics::theil_sen_slope;
 use crate::{Definitions, MetricsError, Options};
@@ -28,10 +27,7 @@ impl Metric for PerformanceRecovery {
 
     fn judge(&self, assessment: &mut Assessment<'_>) -> Result<(), MetricsError> {
         let tasks = assessment.lifetime().tasks();
-        let mut times: Vec<Vec<f64>> = tasks
-            .iter()
-            .map(|task| recovery_time::of_task(assessment, task))
-            .collect();
+        let mut times: Vec<Vec<f64>> = tasks.iter().map(|task| times_of(assessment, task)).collect();
         let is_alone = times.iter().map(Vec::len).sum::<usize>() == 1;
         if is_alone && assessment.options().definitions == Definitions::Reference {
             times.iter_mut().for_each(Vec::clear);
@@ -44,4 +40,25 @@ impl Metric for PerformanceRecovery {
         }
         Ok(())
     }
+}
+
+/// Recovery time, in experiences, of the second and every later wake learning regime of a task.
+///
+/// The first index at which the regime reaches the terminal performance of the one before; its number of rows plus
+/// one where it never does. Under the published definitions a performance that is lower by rounding reaches it, too.
+fn times_of(assessment: &Assessment<'_>, task: &str) -> Vec<f64> {
+    let trained: Vec<_> = (assessment.lifetime().regimes_of(task))
+        .filter(|regime| regime.is_wake_training())
+        .collect();
+    let time = |pair: &[&crate::Regime]| {
+        let ended = assessment.term_perf(pair[0].regime_num)?;
+        let wanted = match assessment.options().definitions {
+            Definitions::Reference => ended,
+            Definitions::Published => ended - ROUNDING * ended.abs(),
+        };
+        let mut performances = pair[1].per_experience().into_iter();
+        let reached = performances.position(|performance| performance >= wanted);
+        Some(reached.unwrap_or(pair[1].len() + 1) as f64)
+    };
+    trained.windows(2).filter_map(time).collect()
 }

@@ -2,8 +2,7 @@
 
 use std::io::Write;
 
-use super::clock::Delays;
-use super::expect_size;
+use super::{Delays, expect_size};
 use crate::ReportError;
 use crate::picture::Picture;
 

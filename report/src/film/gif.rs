@@ -5,9 +5,8 @@ use std::io::Write;
 
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
 
-use super::clock::Delays;
-use super::expect_size;
 use super::palette::Palette;
+use super::{Delays, expect_size};
 use crate::ReportError;
 use crate::picture::Picture;
 

@@ -1,7 +1,6 @@
 //! Films: pictures one after the other, as GIF or animated PNG. Which pictures, and files, are the callers'.
 
 mod apng;
-mod clock;
 mod gif;
 mod palette;
 
@@ -102,6 +101,34 @@ fn expect_size(picture: &Picture, [width, height]: [u32; 2]) -> Result<(), Repor
         found: format!("a picture of {} × {} pixels", picture.width, picture.height),
         expected: format!("{width} × {height}, as the film's first"),
     })
+}
+
+/// How long pictures are shown, in whole units.
+#[derive(Debug)]
+struct Delays {
+    units_per_second: f64,
+    /// Seconds, and units that were given out.
+    seconds: f64,
+    units: u64,
+}
+
+impl Delays {
+    fn new(units_per_second: f64) -> Self {
+        Self {
+            units_per_second,
+            seconds: 0.0,
+            units: 0,
+        }
+    }
+
+    /// The units of the next picture.
+    fn next(&mut self, seconds: f64) -> u16 {
+        self.seconds += seconds.max(0.0);
+        let units = (self.seconds * self.units_per_second).round() as u64;
+        let next = u16::try_from(units - self.units).unwrap_or(u16::MAX);
+        self.units = units;
+        next
+    }
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 use driftworld_metrics::{BlockSubtype, BlockType, Lifetime, LifetimeMetrics};
 use maud::{Markup, html};
 
-use super::{count, described, facts, metric_table, pair_table, task_table, warnings};
+use super::{count, described, metric_table, number, pair_table, task_table, warnings};
 use crate::ReportError;
 use crate::figure::{Figure, FigureOptions, Figures, Layout};
 use crate::words::shown;
@@ -103,7 +103,7 @@ impl Chapter {
             (false, false) => "in the log's unit",
         };
         let body = html! {
-            (facts::facts(lifetime, metrics))
+            (facts(lifetime, metrics))
             (warnings(&options.warnings))
             h3 { "Metrics" }
             (table)
@@ -179,5 +179,42 @@ fn alternative(lifetime: &Lifetime, figure: Figure) -> String {
         Figure::Evaluation => format!("means with intervals over the lifetime, a panel for each of {tasks} tasks"),
         Figure::Experts => "for each task, a curve of this agent and one for each run of its expert".to_owned(),
         Figure::Raw => format!("points for each experience of {tasks} tasks, with curves of learning"),
+    }
+}
+
+/// How much was lived, and by what it is judged.
+fn facts(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Markup {
+    let learnt = || {
+        let regimes = lifetime.regimes().iter();
+        regimes.filter(|regime| regime.block_type == BlockType::Train)
+    };
+    let asleep = learnt().filter(|regime| !regime.is_wake_training()).count();
+    let blocks = match asleep {
+        0 => count(learnt().count()),
+        _ => format!("{} ({} asleep)", count(learnt().count()), count(asleep)),
+    };
+    let mut facts = Vec::new();
+    // How good the agent is comes first: the metrics, scaled by the lifetime's own range, do not say it.
+    for (column, means) in &metrics.as_logged {
+        for (mean, when) in [(means.learning, "learning"), (means.evaluation, "evaluations")] {
+            if let Some(mean) = mean {
+                facts.push((format!("mean {}, {when}", shown(column)), number(mean)));
+            }
+        }
+    }
+    let counts = [
+        ("learning experiences", count(metrics.num_lx)),
+        ("evaluation experiences", count(metrics.num_ex)),
+        ("tasks", count(lifetime.tasks().len())),
+        ("learning blocks", blocks),
+        ("scored by", shown(&metrics.metrics_column)),
+    ];
+    facts.extend(counts.map(|(name, value)| (name.to_owned(), value)));
+    html! {
+        dl.facts {
+            @for (name, value) in &facts {
+                div { dt { (name) } dd { (value) } }
+            }
+        }
     }
 }

@@ -3,7 +3,6 @@
 //! Not here: figures, see `figure`; files and dates, which are the caller's.
 
 mod chapter;
-mod facts;
 mod metric_table;
 mod overall;
 mod pair_table;

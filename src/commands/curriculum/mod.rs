@@ -18,9 +18,9 @@ use clap::{Args, ValueEnum};
 use serde_json::json;
 
 use super::assets::LibraryChoice;
-use super::mix::Mix;
 use super::numbers::documented;
 use super::order::OrderArgs;
+use super::sample::Mix;
 use super::{Failure, output, overwrite};
 use folders::write_into;
 pub(crate) use tables::{blocks, choices};

@@ -2,16 +2,15 @@
 
 mod power_table;
 mod reached_table;
-mod store;
 mod tables;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use crate::Failure;
 use crate::figure_files::{Files, drawn};
 use crate::log_names::called_in;
-use crate::metrics::SteStoreMode;
+use crate::metrics::{SteStoreMode, store_ste};
 use crate::report::FigureOptions;
 use crate::scoring::{Scores, ScoringRequest, score, score_looking};
 use clap::Args;
@@ -111,7 +110,7 @@ impl Metrics {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let request = self.request()?;
         if let (Some(mode), Some(data)) = (self.ste_store_mode, self.scoring.ste_data()) {
-            return store::store(&request.folders()?, mode, data);
+            return store(&request.folders()?, mode, data);
         }
         let scores = self.score(&request)?;
         if self.json {
@@ -169,4 +168,23 @@ impl Metrics {
         let folder = self.save.as_ref().or(self.output_dir.as_ref());
         folder.cloned().unwrap_or_else(|| "results".into())
     }
+}
+
+/// Keeps the logs in the folder.
+///
+/// Where several logs of one task replace what is there, only the first does: the others are its further runs.
+fn store(logs: &[PathBuf], mode: SteStoreMode, data: &Path) -> Result<(), Failure> {
+    let mut replaced: Vec<String> = Vec::new();
+    for log in logs {
+        let task = crate::metrics::read_ste_log(log)?.task_name().to_owned();
+        let mode = if replaced.contains(&task) {
+            SteStoreMode::Append
+        } else {
+            mode
+        };
+        let stored = store_ste(data, log, mode)?;
+        output::wrote(&stored.dir, format!("an expert of {}", stored.task_name));
+        replaced.push(task);
+    }
+    Ok(())
 }
