@@ -136,12 +136,7 @@ pub(crate) fn north_size(size: f32) -> f32 {
 pub(crate) fn north(map: &mut Drawing, [left, top]: [f32; 2], side: f32) {
     let high = side / 1.72;
     let x = left + side / 2.0;
-    map.shapes.push(Shape::Disc {
-        middle: [x, top + side / 2.0],
-        radius: side / 2.0,
-        color: WHITE,
-        alpha: 0.75,
-    });
+    map.tint_disc([x, top + side / 2.0], side / 2.0, WHITE, 0.75);
     let top = top + 0.14 * high;
     let half = high * 0.26;
     map.area(

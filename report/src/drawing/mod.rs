@@ -221,11 +221,16 @@ impl Drawing {
 
     /// Adds a filled circle.
     pub fn disc(&mut self, middle: [f32; 2], radius: f32, color: Rgb) {
+        self.tint_disc(middle, radius, color, 1.0);
+    }
+
+    /// Adds a circle through which the ground is seen where alpha is below 1.
+    pub fn tint_disc(&mut self, middle: [f32; 2], radius: f32, color: Rgb, alpha: f32) {
         self.shapes.push(Shape::Disc {
             middle,
             radius,
             color,
-            alpha: 1.0,
+            alpha,
         });
     }
 

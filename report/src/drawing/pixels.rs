@@ -31,12 +31,8 @@ impl Gray {
     /// [`ReportError::Png`] for a picture without pixels, or with others than its size says.
     pub fn to_png(&self) -> Result<Vec<u8>, ReportError> {
         let bytes: Vec<u8> = self.levels.iter().flat_map(|level| level.to_be_bytes()).collect();
-        png_of(
-            [self.width, self.height],
-            png::ColorType::Grayscale,
-            png::BitDepth::Sixteen,
-            &bytes,
-        )
+        let size = [self.width, self.height];
+        png_of(size, png::ColorType::Grayscale, png::BitDepth::Sixteen, &bytes)
     }
 }
 
@@ -104,12 +100,8 @@ impl Picture {
     /// # Errors
     /// [`ReportError::Png`] for a picture without pixels, or with others than its size says.
     pub fn to_png(&self) -> Result<Vec<u8>, ReportError> {
-        png_of(
-            [self.width, self.height],
-            png::ColorType::Rgb,
-            png::BitDepth::Eight,
-            &self.rgb,
-        )
+        let size = [self.width, self.height];
+        png_of(size, png::ColorType::Rgb, png::BitDepth::Eight, &self.rgb)
     }
 
     /// Mixes a colour into a pixel, with this share.

@@ -117,12 +117,7 @@ impl DrawingBackend for Recorder<'_> {
         let (at, radius) = (middle(at), radius as f32);
         let BackendColor { alpha, rgb: (r, g, b) } = style.color();
         if fill && alpha > 0.0 {
-            self.drawing.shapes.push(Shape::Disc {
-                middle: at,
-                radius,
-                color: [r, g, b],
-                alpha: alpha as f32,
-            });
+            self.drawing.tint_disc(at, radius, [r, g, b], alpha as f32);
         } else if !fill {
             self.push_line(super::ring(at, radius), style);
         }

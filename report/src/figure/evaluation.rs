@@ -29,17 +29,10 @@ fn clusters(scene: &Scene) -> Vec<Cluster> {
         evaluated[stretch.task] = true;
     }
     let mut found: IndexMap<&str, Vec<usize>> = IndexMap::new();
-    for (task, name) in scene
-        .lifetime
-        .tasks()
-        .iter()
-        .enumerate()
-        .filter(|(task, _)| evaluated[*task])
-    {
-        found
-            .entry(name.split('_').next().unwrap_or(name))
-            .or_default()
-            .push(task);
+    let tasks = scene.lifetime.tasks().iter().enumerate();
+    for (task, name) in tasks.filter(|(task, _)| evaluated[*task]) {
+        let variants = found.entry(name.split('_').next().unwrap_or(name));
+        variants.or_default().push(task);
     }
     let alone = |task: usize| Cluster {
         name: scene.names[task].clone(),
@@ -60,10 +53,8 @@ fn clusters(scene: &Scene) -> Vec<Cluster> {
 
 fn entries(scene: &Scene, clusters: &[Cluster]) -> Vec<Entry> {
     // A panel with one task has its name already.
-    let drawn = clusters
-        .iter()
-        .take(MOST_PANELS)
-        .filter(|cluster| cluster.tasks.len() > 1);
+    let drawn = clusters.iter().take(MOST_PANELS);
+    let drawn = drawn.filter(|cluster| cluster.tasks.len() > 1);
     let mut entries: Vec<Entry> = drawn
         .flat_map(|cluster| cluster.tasks.iter())
         .map(|task| task_entry((*task, &scene.names[*task])))
@@ -83,15 +74,10 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
     let clusters = clusters(scene);
     let below = paper.head(area, &entries(scene, &clusters))?;
     let grid = Grid::of(clusters.len(), paper);
-    let num_tasks: usize = clusters
-        .iter()
-        .take(MOST_PANELS)
-        .map(|cluster| cluster.tasks.len())
-        .sum();
+    let drawn = || clusters.iter().take(MOST_PANELS);
+    let num_tasks: usize = drawn().map(|cluster| cluster.tasks.len()).sum();
     let columns = grid.pixel_columns(paper).min((MOST_POINTS / num_tasks.max(1)) as i32);
-    let points: Vec<Vec<Point>> = (clusters.iter().take(MOST_PANELS))
-        .map(|cluster| points(scene, cluster, columns))
-        .collect();
+    let points: Vec<Vec<Point>> = drawn().map(|cluster| points(scene, cluster, columns)).collect();
     let ends = points
         .iter()
         .flatten()

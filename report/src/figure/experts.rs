@@ -4,7 +4,7 @@
 
 use plotters::prelude::*;
 
-use super::palette::{FAINT, INK, Look, RIM, TASKS};
+use super::palette::{FAINT, INK, Look, RIM};
 use super::panels::{Grid, MOST_PANELS};
 use super::paper::{Area, Axes, Drawn, Entry, Paper, Sample, chart, curve};
 use super::scene::{Scene, roomy};
@@ -55,15 +55,9 @@ fn panels(scene: &Scene) -> Vec<Panel> {
 }
 
 fn entries(panels: &[Panel]) -> Vec<Entry> {
+    let first = panels.first().map_or(0, |panel| panel.task);
     let mut entries = vec![
-        Entry::new(
-            "this agent, in the task's colour",
-            Sample::Line(
-                panels
-                    .first()
-                    .map_or(TASKS[0].light, |panel| Look::of(panel.task).color),
-            ),
-        ),
+        Entry::new("this agent, in the task's colour", Sample::Line(Look::of(first).color)),
         Entry::new("an expert's run", Sample::Line(FAINT.light)),
     ];
     entries.extend(Entry::rest(panels.len(), MOST_PANELS, " tasks"));
@@ -86,14 +80,8 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
     let num_curves: usize = panels.iter().take(MOST_PANELS).map(|panel| panel.runs.len() + 1).sum();
     let columns = f64::from(grid.pixel_columns(paper).min((MOST_COLUMNS / num_curves.max(1)) as i32));
     for (panel, place) in panels.iter().zip(grid.areas(&below)) {
-        let longest = panel
-            .runs
-            .iter()
-            .map(Vec::len)
-            .chain([panel.own.len()])
-            .max()
-            .unwrap_or(1)
-            .max(2) as f64;
+        let lengths = panel.runs.iter().map(Vec::len).chain([panel.own.len()]);
+        let longest = lengths.fold(2, usize::max) as f64;
         let axes = Axes {
             x: 0.0..longest,
             y: y.clone(),
