@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use driftworld_metrics::Lifetime;
 use driftworld_report::{Figure, FigureOptions, Figures};
-use driftworld_text::ShownPath;
 
 use crate::{Failure, output_file};
 
@@ -51,11 +50,6 @@ impl Files {
     }
 
     /// What was written, in words.
-    pub(crate) fn summary(&self) -> String {
-        format!("{}: {}", self.folder.shown(), self.what())
-    }
-
-    /// How many, without the folder.
     pub(crate) fn what(&self) -> String {
         format!("{} figures, {} kB", self.count, self.bytes.div_ceil(1000))
     }

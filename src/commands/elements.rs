@@ -4,12 +4,9 @@ use clap::Args;
 use driftworld_text::joined_or;
 
 use crate::elements::{ElementsOutcome, ElementsRequest, VariantElements, elements};
-use crate::modality;
-use crate::spec::{Element, Modality};
+use crate::spec::Element;
 use crate::table::table;
 
-use super::assets::LibraryChoice;
-use super::numbers::documented;
 use super::{Failure, output};
 
 /// Test what variants change: state, action, reward and so on.
@@ -31,27 +28,13 @@ use super::{Failure, output};
   driftworld elements find_objects red penalty --modalities rgb,depth
   driftworld elements my_task.json --worlds 100 --json")]
 pub(crate) struct Elements {
-    /// A task: PATH, PATH#variant, or a built-in such as `find_objects`.
-    task: String,
+    #[command(flatten)]
+    request: ElementsRequest,
     /// A variant of the task.
     #[arg(requires = "b")]
     a: Option<String>,
     /// The variant that is compared with it.
     b: Option<String>,
-    /// Which images the learner has; those that the task's worlds ask for if not said.
-    #[arg(long, value_parser = documented::<Modality>(&modality::NAMES), value_delimiter = ',', value_name = "KIND,…")]
-    modalities: Option<Vec<Modality>>,
-    /// How many pairs of worlds are tried.
-    #[arg(long, default_value_t = 32, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000))]
-    worlds: u64,
-    /// The seed that worlds are drawn under.
-    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = super::numbers::seed)]
-    seed: u64,
-    /// The most steps of an episode.
-    #[arg(long, default_value_t = 100, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
-    steps: u32,
-    #[command(flatten)]
-    libraries: LibraryChoice,
     /// Print the result as JSON.
     #[arg(long)]
     json: bool,
@@ -61,12 +44,7 @@ impl Elements {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let found = elements(&ElementsRequest {
             between: self.a.zip(self.b).map(|(a, b)| [a, b]),
-            modalities: self.modalities,
-            worlds: self.worlds,
-            seed: self.seed,
-            steps: self.steps,
-            libraries: self.libraries.paths().to_vec(),
-            ..ElementsRequest::of(self.task)
+            ..self.request
         })?;
         if self.json {
             output::json(&found)?;

@@ -10,7 +10,7 @@ pub(crate) fn seed(text: &str) -> Result<u64, String> {
 }
 
 /// Words that stand for the same in documents, each with what help says of it behind a colon, if anything.
-pub(super) fn documented<T>(words: &'static [&'static str]) -> impl TypedValueParser<Value = T>
+pub(crate) fn documented<T>(words: &'static [&'static str]) -> impl TypedValueParser<Value = T>
 where
     T: DeserializeOwned + Clone + Send + Sync + 'static,
 {

@@ -6,7 +6,7 @@ use crate::Failure;
 use crate::lifetime_report::{ReportRequest, write_report};
 use crate::scoring::ScoringRequest;
 use clap::Args;
-use driftworld_text::{ShownPath, counted};
+use driftworld_text::counted;
 
 use super::figures::FigureChoice;
 use super::output;
@@ -102,9 +102,7 @@ impl Report {
             format!("{}, {kilobytes} kB", counted(page.num_lifetimes, "lifetime")),
         );
         if let (Some(folder), Some(figures)) = (&request.plots, page.figures) {
-            // It says the folder first.
-            let what = figures.strip_prefix(&format!("{}: ", folder.shown()));
-            output::wrote(folder, what.unwrap_or_default());
+            output::wrote(folder, figures);
         }
         output::json_of_what_was_written(self.json)
     }

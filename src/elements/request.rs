@@ -3,9 +3,12 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use clap::Args;
 use driftworld_env::MAX_EXPERIMENT_STEPS;
 use driftworld_spec::{Modality, TaskSpec, Variant};
 
+use crate::commands::numbers::{self, documented};
+use crate::modality;
 use crate::{Failure, tasks, within};
 
 /// How many pairs of worlds are tried where nobody says.
@@ -14,22 +17,34 @@ pub const DEFAULT_ELEMENTS_WORLDS: u64 = 32;
 /// The most pairs of worlds that can be tried.
 pub const MAX_ELEMENTS_WORLDS: u64 = 1_000;
 
-/// What is tried.
-#[derive(Clone, Debug, PartialEq)]
+/// What is tried: the arguments of `driftworld elements`. There are 1 to [`MAX_ELEMENTS_WORLDS`] pairs of worlds, and 1 to
+/// [`MAX_EXPERIMENT_STEPS`] steps.
+#[derive(Args, Clone, Debug, PartialEq)]
+#[group(skip)]
 pub struct ElementsRequest {
-    /// The task: a name or a path; with `#variant`, that variant alone is compared with the first.
+    /// A task: PATH, PATH#variant, or a built-in such as `find_objects`.
     pub task: String,
-    /// Two variants of the task that are compared with each other, in place of all with the first.
+    /// Two variants of the task that are compared with each other, in place of all, or the one that `task` names, with the first.
+    #[arg(skip)]
     pub between: Option<[String; 2]>,
-    /// Which images the learner has; those that the task's worlds ask for if absent.
+    /// Which images the learner has; those that the task's worlds ask for if not said.
+    #[arg(long, value_parser = documented::<Modality>(&modality::NAMES), value_delimiter = ',', value_name = "KIND,…")]
     pub modalities: Option<Vec<Modality>>,
-    /// How many pairs of worlds, 1 to [`MAX_ELEMENTS_WORLDS`]; default [`DEFAULT_ELEMENTS_WORLDS`].
+    /// How many pairs of worlds are tried.
+    #[arg(long, default_value_t = DEFAULT_ELEMENTS_WORLDS, value_name = "N",
+        value_parser = clap::value_parser!(u64).range(1..=MAX_ELEMENTS_WORLDS))]
     pub worlds: u64,
-    /// The seed that worlds are drawn under; default 0.
+    /// The seed that worlds are drawn under.
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = numbers::seed)]
     pub seed: u64,
-    /// Steps of an episode, 1 to [`MAX_EXPERIMENT_STEPS`]; default 100.
+    /// The most steps of an episode.
+    #[arg(long, default_value_t = 100, value_name = "N",
+        value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_EXPERIMENT_STEPS)))]
     pub steps: u32,
-    /// Asset libraries whose classes the task uses, in front of the built-in assets, the last one first.
+    /// An asset library to search before the built-in assets. Repeatable.
+    ///
+    /// The last one given is searched first.
+    #[arg(long = "assets", value_name = "LIBRARY")]
     pub libraries: Vec<PathBuf>,
 }
 

@@ -136,7 +136,7 @@ pub fn write_report(request: &ReportRequest, warn: Warn<'_>) -> Result<Page, Fai
     Ok(Page {
         html: report.to_html()?,
         num_lifetimes: logs.len(),
-        figures: files.map(|files| files.summary()),
+        figures: files.map(|files| files.what()),
     })
 }
 

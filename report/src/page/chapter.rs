@@ -3,6 +3,7 @@
 //! Not here: what stands around the lifetimes, see the folder's `mod.rs`.
 
 use driftworld_metrics::{BlockSubtype, BlockType, Lifetime, LifetimeMetrics};
+use driftworld_text::when;
 use maud::{Markup, html};
 
 use super::{count, described, metric_table, number, pair_table, task_table, warnings};
@@ -80,22 +81,17 @@ impl Chapter {
             asleep_blocks(lifetime),
             super::calm(&options.distance_note)
         );
-        let lines = if options.figures.show_eval_lines {
-            ", joined by lines"
-        } else {
-            ""
-        };
+        let lines = when(options.figures.show_eval_lines, || ", joined by lines".to_owned());
         let lines_are = if options.smoothed {
             "after smoothing"
         } else {
             "as logged, joined"
         };
-        let asleep = if sleeps(lifetime) {
+        let asleep = when(sleeps(lifetime), || {
             " This lifetime has sleep phases: evaluations while awake are drawn, but do not count for maintenance, \
              transfer and evaluation performance."
-        } else {
-            ""
-        };
+                .to_owned()
+        });
         let preprocessing = match (options.smoothed, lifetime.normalization_data_range().is_some()) {
             (true, true) => "after smoothing, scaled to 1…101",
             (true, false) => "after smoothing, in the log's unit",

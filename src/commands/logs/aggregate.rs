@@ -87,7 +87,7 @@ impl Aggregate {
         }
         self.write(&table, format)?;
         let (rows, logs) = (table.len() as u64, logs.len() as u64);
-        let what = format!("{} of {}", count(rows, "row", "rows"), count(logs, "log", "logs"));
+        let what = format!("{} of {}", count(rows, "row"), count(logs, "log"));
         output::wrote(&self.output, what);
         output::json_of_what_was_written(self.json)
     }

@@ -38,8 +38,8 @@ impl Logs {
 }
 
 /// `1 row`, `2 rows`, `1,200,000 rows`.
-fn count(number: u64, one: &str, many: &str) -> String {
-    format!("{} {}", grouped(number), if number == 1 { one } else { many })
+fn count(number: u64, what: &str) -> String {
+    format!("{} {what}{}", grouped(number), if number == 1 { "" } else { "s" })
 }
 
 /// `1,200,000`.
@@ -61,7 +61,7 @@ mod tests {
 
     #[test]
     fn counts_are_easy_to_read() {
-        let check = |number: u64, expected: &str| assert_eq!(count(number, "row", "rows"), expected);
+        let check = |number: u64, expected: &str| assert_eq!(count(number, "row"), expected);
         check(0, "0 rows");
         check(1, "1 row");
         check(999, "999 rows");

@@ -84,19 +84,13 @@ impl Verdict {
             output::note(placed(&self.log, &problem.to_string()));
         }
         if found.more_problems > 0 {
-            output::note(format!(
-                "{log}: and {}",
-                count(found.more_problems, "more problem", "more problems")
-            ));
+            output::note(format!("{log}: and {}", count(found.more_problems, "more problem")));
         }
         for warning in &found.warnings {
             output::note(format!("warning: {}", placed(&self.log, &warning.to_string())));
         }
         if found.more_warnings > 0 {
-            output::note(format!(
-                "{log}: and {}",
-                count(found.more_warnings, "more warning", "more warnings")
-            ));
+            output::note(format!("{log}: and {}", count(found.more_warnings, "more warning")));
         }
         output::line(self.summary())
     }
@@ -106,7 +100,7 @@ impl Verdict {
         let problems = self.found.problems.len() as u64 + self.found.more_problems;
         let verdict = match problems {
             0 => "valid".to_owned(),
-            problems => count(problems, "problem", "problems"),
+            problems => count(problems, "problem"),
         };
         let incomplete = match (counts.rows - counts.complete_rows) as u64 {
             0 => String::new(),
@@ -115,11 +109,11 @@ impl Verdict {
         let mut text = format!(
             "{}: {verdict}; {}{incomplete} in {}, {}, {}, {}",
             self.log.shown(),
-            count(counts.rows as u64, "row", "rows"),
-            count(counts.files as u64, "file", "files"),
-            count(counts.workers as u64, "worker", "workers"),
-            count(counts.blocks as u64, "block", "blocks"),
-            count(counts.tasks as u64, "task", "tasks"),
+            count(counts.rows as u64, "row"),
+            count(counts.files as u64, "file"),
+            count(counts.workers as u64, "worker"),
+            count(counts.blocks as u64, "block"),
+            count(counts.tasks as u64, "task"),
         );
         if let Some((columns, version)) = &self.info {
             let columns = columns.join(", ");

@@ -189,22 +189,15 @@ pub(super) fn curves(scores: &LifetimeMetrics, names: &VariantNames) -> Option<S
     let level = |value: f64, is_scaled: bool| if is_scaled { percent(value) } else { number(value) };
     let rows = shown().take(MOST_ROWS).map(|(name, curve)| {
         let level = |value: f64| level(value, curve.is_scaled);
-        let is_noise = curve.forgetting > 0.0
-            && curve
-                .forgetting_error
-                .is_some_and(|error| curve.forgetting < 2.0 * error);
+        let is_noise =
+            curve.forgetting > 0.0 && (curve.forgetting_error).is_some_and(|error| curve.forgetting < 2.0 * error);
         vec![
             names.shown(name).to_owned(),
             level(curve.area),
             with_error(level(curve.forgetting), curve.forgetting_error.map(level)),
             curve.lag.map_or_else(String::new, |lag| format!("{lag:.0}")),
             curve.regret.map_or_else(String::new, level),
-            if is_noise {
-                "forgetting within 2 standard errors"
-            } else {
-                ""
-            }
-            .to_owned(),
+            when(is_noise, || "forgetting within 2 standard errors".to_owned()),
         ]
     });
     let rows: Vec<Vec<String>> = rows.collect();
