@@ -4,7 +4,7 @@
 #![expect(clippy::disallowed_methods, reason = "where lines and words stand on a map")]
 
 use driftworld_env::{Scene, top_down_scale};
-use driftworld_report::picture::{Drawing, Level, Rgb, Shape, Side, TextLine, text_width};
+use driftworld_report::picture::{Drawing, Level, Rgb, Side, TextLine, text_width};
 
 const INK: Rgb = [20, 24, 30];
 const WHITE: Rgb = [255, 255, 255];
