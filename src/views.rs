@@ -474,7 +474,7 @@ mod tests {
             segmentation: Picture::blank(size, size),
             distances,
             farthest,
-            categories: vec![CATEGORY_SKY],
+            categories: [CATEGORY_SKY].into(),
         }
     }
 
