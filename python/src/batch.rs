@@ -19,6 +19,7 @@ use crate::classes::catalogue;
 use crate::errors::{Error, Result};
 use crate::interruptible::run_between_envs;
 use crate::recordings::PyRecording;
+use crate::rounding::{detach, usually_rounded};
 use crate::supply::{PyStream, Stream, Supply, overrides_of};
 use crate::views::views;
 
@@ -213,7 +214,7 @@ impl PyBatch {
         while left > 0 {
             let now = left.min(256);
             let Stepping { batch, actions } = &mut *stepping;
-            py.detach(|| (0..now).try_for_each(|_| batch.step(actions)))?;
+            detach(py, || (0..now).try_for_each(|_| batch.step(actions)))?;
             left -= now;
             py.check_signals()?;
         }
@@ -266,7 +267,9 @@ impl PyBatch {
 
     /// The JSON of an environment's world as it is now.
     fn state(&self, env: usize) -> Result<String> {
-        Ok(self.lock()?.environment(env)?.state().to_json())
+        let stepping = self.lock()?;
+        let environment = stepping.environment(env)?;
+        Ok(usually_rounded(|| environment.state().to_json()))
     }
 
     /// What an environment's world asks for that is not as its author may think.
@@ -295,7 +298,7 @@ impl PyBatch {
             return Err(EnvError::PictureSize { width, height }.into());
         }
         let scene = environment.scene();
-        let pixels = py.detach(|| {
+        let pixels = detach(py, || {
             if from_above {
                 let agent = environment.agent();
                 top_down(scene, width, height, Some((agent.position, agent.heading_deg))).rgb
@@ -349,7 +352,7 @@ impl PyBatch {
     fn go(&self, py: Python<'_>, stepping: &mut Stepping) -> Result<()> {
         self.expect_own_process()?;
         let Stepping { batch, actions } = stepping;
-        py.detach(|| batch.step(actions)).map_err(|error| match error {
+        detach(py, || batch.step(actions)).map_err(|error| match error {
             // Alone, it needs no number.
             EnvError::BatchAction { error, .. } if actions.len() == 1 => *error,
             error => error,

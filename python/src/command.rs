@@ -2,11 +2,12 @@
 
 use std::ffi::OsString;
 
+use crate::rounding::detach;
 use driftworld::commands;
 use pyo3::prelude::*;
 
 /// Runs the command as a program does: prints, and returns the exit code. ``argv`` begins with the program's name.
 #[pyfunction]
 pub(crate) fn main(py: Python<'_>, argv: Vec<OsString>) -> u8 {
-    py.detach(|| commands::run(argv))
+    detach(py, || commands::run(argv))
 }

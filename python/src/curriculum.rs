@@ -23,6 +23,7 @@ use crate::covered::covered_in;
 use crate::document::{Whole, from_python, json_to_py, to_py};
 use crate::errors::{Error, Result};
 use crate::recordings::PyRecording;
+use crate::rounding::detach;
 use crate::supply::{PyStream, Stream};
 
 /// A scenario with everything that it names.
@@ -56,7 +57,7 @@ impl PyPlan {
     #[new]
     fn new(py: Python<'_>, path: PathBuf, text: &str, stand_in: Option<bool>, skip_undrawable: bool) -> Result<Self> {
         let mut warnings = Vec::new();
-        let (plan, named, undrawable) = py.detach(|| {
+        let (plan, named, undrawable) = detach(py, || {
             let mut warn = |warning| warnings.push(warning);
             let file = ScenarioFile::from_text(Path::new(&path), text, &mut warn)?;
             // The original's own scenario names a map that it does not come with, and has to run as it stands.
@@ -79,18 +80,20 @@ impl PyPlan {
     #[staticmethod]
     fn from_values(py: Python<'_>, values: Values, skip_undrawable: bool) -> Result<Self> {
         let (scenario, tasks, worlds, warnings) = values;
-        let mut named = Named::default();
-        for (called, name, text) in tasks {
-            named.tasks.insert(called, TaskSpec::from_json(&name, &text)?);
-        }
-        for (called, text, note) in worlds {
-            let world = World::from_json(&called, &text)?;
-            named.worlds.insert(called, FoundWorld { world, note });
-        }
-        let find = |task: &str| named.tasks.get(task).cloned();
-        let scenario = Scenario::from_json_with("scenario", &scenario, find)?;
         let undrawable = undrawable(skip_undrawable);
-        let plan = py.detach(|| named.plan(&scenario, undrawable))?;
+        let (plan, named) = detach(py, || {
+            let mut named = Named::default();
+            for (called, name, text) in tasks {
+                named.tasks.insert(called, TaskSpec::from_json(&name, &text)?);
+            }
+            for (called, text, note) in worlds {
+                let world = World::from_json(&called, &text)?;
+                named.worlds.insert(called, FoundWorld { world, note });
+            }
+            let find = |task: &str| named.tasks.get(task).cloned();
+            let scenario = Scenario::from_json_with("scenario", &scenario, find)?;
+            Ok::<_, Error>((named.plan(&scenario, undrawable)?, named))
+        })?;
         Ok(Self {
             plan,
             named,
@@ -159,7 +162,7 @@ impl PyPlan {
 
     /// The numbers of the first and the last experience of each regime: all variants, and both ends of each drift.
     fn ends_of_regimes(&self, py: Python<'_>) -> Result<Vec<u64>> {
-        py.detach(|| {
+        detach(py, || {
             let mut ends: BTreeMap<(usize, usize), [u64; 2]> = BTreeMap::new();
             for number in 0..self.plan.num_experiences() {
                 let spec = self.plan.experience_spec(number)?;
@@ -171,17 +174,17 @@ impl PyPlan {
 
     /// What options of environments take away from its variants: see `covered.rs`.
     fn covered(&self, py: Python<'_>, overrides: &str, shown: Option<&str>) -> Result<String> {
-        py.detach(|| covered_in(&self.plan, overrides, shown))
+        detach(py, || covered_in(&self.plan, overrides, shown))
     }
 
     /// The world of experience `number`; one without any limit has one of steps here.
     fn world(&self, py: Python<'_>, number: Whole) -> Result<PyStream> {
-        handle(py.detach(|| self.plan.world(number.0))?)
+        handle(detach(py, || self.plan.world(number.0))?)
     }
 
     /// Draws so many worlds of each regime, and says how often that fails, and why: a list of dictionaries.
     fn try_worlds<'py>(&self, py: Python<'py>, worlds: u32) -> Result<Bound<'py, PyAny>> {
-        let trials = py.detach(|| self.plan.try_worlds(worlds, &mut Tried::default()));
+        let trials = detach(py, || self.plan.try_worlds(worlds, &mut Tried::default()));
         Ok(to_py(py, &trials)?)
     }
 
@@ -223,7 +226,7 @@ impl PyJournal {
         record: bool,
     ) -> Result<Self> {
         let plan = &plan.borrow().plan;
-        let mut journal = py.detach(|| {
+        let mut journal = detach(py, || {
             if resume {
                 Journal::resume(&folder, plan, agent)
             } else {

@@ -19,6 +19,7 @@ use crate::classes::catalogue;
 use crate::document::{Whole, json_to_py, to_py};
 use crate::errors::Result;
 use crate::interruptible::{run_cancellable, run_detached};
+use crate::rounding::usually_rounded;
 use crate::variant::PyVariant;
 
 /// What elements weigh, by letters or names.
@@ -98,7 +99,7 @@ impl Compared<'_> {
     fn side(self) -> Result<Side> {
         Ok(match self {
             Self::Variant(variant) => Side::Variant(variant.get().0.clone()),
-            Self::World(name, text) => Side::World(Box::new(World::from_json(&name, &text)?)),
+            Self::World(name, text) => Side::World(Box::new(usually_rounded(|| World::from_json(&name, &text))?)),
         })
     }
 }
@@ -151,12 +152,12 @@ impl PyMatrix {
 
     #[staticmethod]
     fn from_csv(text: &str) -> Result<Self> {
-        Ok(Self(Arc::new(DistanceMatrix::from_csv(text)?)))
+        Ok(Self(Arc::new(usually_rounded(|| DistanceMatrix::from_csv(text))?)))
     }
 
     #[staticmethod]
     fn from_json(text: &str) -> Result<Self> {
-        Ok(Self(Arc::new(DistanceMatrix::from_json(text)?)))
+        Ok(Self(Arc::new(usually_rounded(|| DistanceMatrix::from_json(text))?)))
     }
 
     fn to_csv(&self) -> String {

@@ -11,6 +11,7 @@ use serde_json::Value;
 
 use crate::classes::catalogue;
 use crate::errors::{Result, described};
+use crate::rounding::{detach, usually_rounded};
 
 /// A JSON value as Python has it.
 pub(crate) fn json_to_py<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
@@ -43,6 +44,14 @@ pub(crate) fn to_py<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyRe
     json_to_py(py, &value)
 }
 
+/// What a text of ours says: as Python's own reader has it, but read the same however the calling thread rounds.
+#[pyfunction]
+pub(crate) fn parsed<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyAny>> {
+    let value: Value =
+        usually_rounded(|| serde_json::from_str(text)).map_err(|error| PyValueError::new_err(error.to_string()))?;
+    json_to_py(py, &value)
+}
+
 /// The JSON value of Python's, numbers of `NumPy` among them.
 pub(crate) fn from_python(value: &Bound<'_, PyAny>) -> PyResult<Value> {
     let py = value.py();
@@ -50,7 +59,8 @@ pub(crate) fn from_python(value: &Bound<'_, PyAny>) -> PyResult<Value> {
     options.set_item("default", py.import("driftworld._plain")?.getattr("plain")?)?;
     let text = py.import("json")?.call_method("dumps", (value,), Some(&options))?;
     let text: String = text.extract()?;
-    serde_json::from_str(&text).map_err(|error| PyValueError::new_err(format!("found {text}: {error}")))
+    let value = usually_rounded(|| serde_json::from_str(&text));
+    value.map_err(|error| PyValueError::new_err(format!("found {text}: {error}")))
 }
 
 /// A whole number from 0 on, such as a seed.
@@ -93,7 +103,7 @@ pub(crate) fn check<'py>(
     };
     let classes = tasks::classes(&catalogue(&libraries)?);
     let path = Path::new(name);
-    let checked = py.detach(|| {
+    let checked = detach(py, || {
         let mut task = |called: &str| {
             if path.is_file() {
                 scenarios::task_from(path, called)

@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 
 use crate::document::{Whole, from_python};
 use crate::errors::Result;
+use crate::rounding::usually_rounded;
 use crate::variant::PyVariant;
 
 /// The way from one variant of a task to another: ``Drift(blue, dusk, schedule="cosine").at(0.25)``.
@@ -65,7 +66,7 @@ impl PyDrift {
             ..RegimeDrift::to("")
         };
         Ok(Self {
-            drift: Drift::declared(&declared, from, end, seed.0)?,
+            drift: usually_rounded(|| Drift::declared(&declared, from, end, seed.0))?,
             made: (
                 from_.get().clone(),
                 to.get().clone(),
@@ -88,6 +89,6 @@ impl PyDrift {
             let message = format!("drift, progress: found {progress}, expected a number in 0..1");
             return Err(PyValueError::new_err(message).into());
         }
-        Ok(PyVariant(self.drift.at(progress, index.0)?))
+        Ok(PyVariant(usually_rounded(|| self.drift.at(progress, index.0))?))
     }
 }

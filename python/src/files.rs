@@ -3,6 +3,7 @@
 
 use std::path::PathBuf;
 
+use crate::rounding::detach;
 use driftworld::{MAX_LIBRARY_BYTES, MAX_MATRIX_BYTES};
 use driftworld_files::FileError;
 use driftworld_spec::MAX_BYTES;
@@ -14,7 +15,7 @@ use pyo3::types::PyBytes;
 /// Writes a file; its folder is made where it is missing.
 #[pyfunction]
 pub(crate) fn write_file(py: Python<'_>, path: PathBuf, content: &[u8]) -> PyResult<()> {
-    Ok(py.detach(|| driftworld_atomic_files::write(&path, content))?)
+    Ok(detach(py, || driftworld_atomic_files::write(&path, content))?)
 }
 
 /// The bytes of a regular file: a `"document"`, a `"library"` or a `"matrix"`, each up to its limit.
@@ -30,7 +31,7 @@ pub(crate) fn read_file<'py>(py: Python<'py>, path: PathBuf, kind: &str) -> PyRe
             )));
         }
     };
-    let bytes = py.detach(|| driftworld_files::read(&path, limit)).map_err(refused)?;
+    let bytes = detach(py, || driftworld_files::read(&path, limit)).map_err(refused)?;
     Ok(PyBytes::new(py, &bytes))
 }
 

@@ -13,6 +13,7 @@ use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::errors::Result;
+use crate::rounding::{detach, usually_rounded};
 
 /// How often signals are looked for.
 const LOOK: Duration = Duration::from_millis(50);
@@ -32,8 +33,7 @@ pub(crate) fn workers(_held: Python<'_>) -> PyResult<Arc<ThreadPool>> {
     {
         return Ok(Arc::clone(pool));
     }
-    let pool = ThreadPoolBuilder::new()
-        .build()
+    let pool = usually_rounded(|| ThreadPoolBuilder::new().build())
         .map_err(|error| PyRuntimeError::new_err(format!("threads: could not start any: {error}")))?;
     let pool = Arc::new(pool);
     // The parent's threads are not in this process: nothing that is left of them may be touched.
@@ -70,7 +70,7 @@ pub(crate) fn run_between_envs<T: Send>(
     work: impl FnOnce(GoOn<'_>) -> std::result::Result<T, EnvError> + Send,
 ) -> Result<T> {
     if num_envs < MANY_ENVS {
-        return Ok(py.detach(|| work(&|| true))?);
+        return Ok(detach(py, || work(&|| true))?);
     }
     Ok(run_cancellable(py, |stop| work(&|| !stop.load(Ordering::Relaxed)))??)
 }
@@ -89,7 +89,7 @@ pub(crate) fn spawn<T: Send + 'static>(py: Python<'_>, work: impl FnOnce() -> T 
     let (done, ended) = mpsc::channel();
     let worker = thread::spawn(move || {
         let _done: mpsc::Sender<()> = done;
-        work()
+        usually_rounded(work)
     });
     wait(py, &Mutex::new(ended))?;
     let result = py.detach(|| worker.join());

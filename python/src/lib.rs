@@ -21,6 +21,7 @@ mod options;
 mod overrides;
 mod portions;
 mod recordings;
+mod rounding;
 mod scores;
 mod supply;
 mod task;
@@ -42,7 +43,7 @@ mod native {
         curriculum::{PyJournal, PyPlan},
         design::design_curriculum,
         distances::{PyMatrix, compared_by, distance, order_methods, removed_format},
-        document::check,
+        document::{check, parsed},
         drift::PyDrift,
         elements::elements,
         files::{read_file, write_file},

@@ -18,6 +18,7 @@ use serde_json::{Map, Value, json};
 use crate::document::{Whole, from_python, json_to_py, to_py};
 use crate::errors::Result;
 use crate::recordings::PyRecording;
+use crate::rounding::detach;
 
 /// An open log. Threads that write into it take turns.
 #[pyclass(name = "LogFile", module = "driftworld._native", frozen)]
@@ -130,7 +131,7 @@ type ReadLog<'py> = (
 /// What a log holds: its name, its columns by name, its two info files, its warnings.
 #[pyfunction]
 pub(crate) fn read_log(py: Python<'_>, folder: PathBuf, texts: bool) -> Result<ReadLog<'_>> {
-    let log = py.detach(|| {
+    let log = detach(py, || {
         if texts {
             driftworld_metrics::read_log_with_texts(&folder)
         } else {
@@ -154,7 +155,7 @@ pub(crate) fn read_log(py: Python<'_>, folder: PathBuf, texts: bool) -> Result<R
 /// Every problem of a log: whether it is valid, problems as pairs of code and message, how many more, warnings, how many more, counts.
 #[pyfunction]
 pub(crate) fn validate_log(py: Python<'_>, folder: PathBuf) -> Result<Bound<'_, PyAny>> {
-    let found = py.detach(|| driftworld_metrics::validate_log(&folder));
+    let found = detach(py, || driftworld_metrics::validate_log(&folder));
     let problems = found.problems.iter();
     let problems: Vec<Value> = problems
         .map(|problem| json!({ "code": problem.code(), "message": problem.to_string() }))

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 
 use crate::errors::Result;
 use crate::interruptible::run_cancellable;
+use crate::rounding::detach;
 
 /// Worlds that are drawn at once: between two such portions Ctrl-C is looked for.
 const PORTION: u64 = 256;
@@ -32,7 +33,7 @@ pub(crate) fn draw<T: Send>(
     mut take: impl FnMut(T) -> PyResult<()>,
 ) -> Result<()> {
     let pool = pool(threads)?;
-    let sampler = py.detach(|| Sampler::new(variant, seed));
+    let sampler = detach(py, || Sampler::new(variant, seed));
     if numbers.end - numbers.start > ESTIMATED {
         expect_room(&numbers, sampler.world(numbers.start)?.to_json().len())?;
     }

@@ -17,6 +17,7 @@ use serde_json::json;
 use crate::classes::catalogue;
 use crate::document::{Whole, json_to_py};
 use crate::errors::{Error, Result};
+use crate::rounding::detach;
 
 /// The most bytes of frames that are handed out at once.
 const MAX_FRAME_BYTES: usize = 1 << 34;
@@ -141,7 +142,7 @@ impl PyRecording {
             ))
             .into());
         }
-        let (pixels, size) = py.detach(|| {
+        let (pixels, size) = detach(py, || {
             let (mut pixels, mut size) = (Vec::new(), [0, 0]);
             film(&self.0, &catalogue, &options, &mut |picture, _| {
                 size = [picture.height as usize, picture.width as usize];
@@ -158,7 +159,7 @@ impl PyRecording {
     fn write(&self, py: Python<'_>, path: PathBuf, shown: Shown, fps: Option<f64>) -> Result<(u32, u32, u32, f64)> {
         let (options, catalogue) = shown.options()?;
         let options = FilmOptions { fps, ..options };
-        let film = py.detach(|| write_film(&path, &self.0, &catalogue, &options, &mut |_| {}))?;
+        let film = detach(py, || write_film(&path, &self.0, &catalogue, &options, &mut |_| {}))?;
         Ok((film.frames, film.height, film.width, film.seconds))
     }
 
@@ -187,7 +188,7 @@ pub(crate) fn read_recording(
     worker: Option<&str>,
 ) -> Result<PyRecording> {
     let worker = worker.map(str::to_owned);
-    let recording = py.detach(|| {
+    let recording = detach(py, || {
         let episodes = RecordedEpisodes::open(&path)?;
         let recording = episodes.recording(episode.0, worker.as_deref())?;
         let recording = recording.ok_or_else(|| episodes.unrecorded(episode.0))?;

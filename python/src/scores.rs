@@ -16,6 +16,7 @@ use crate::document::{json_to_py, to_py};
 use crate::errors::{Result, refused};
 use crate::interruptible::run_detached;
 use crate::options::Options;
+use crate::rounding::detach;
 
 const REFUSED: &str = "MetricsError";
 
@@ -60,8 +61,7 @@ impl PyScores {
 
     /// Saves the results as ``driftworld metrics --do-save`` does.
     fn save(&self, py: Python<'_>, folder: PathBuf, name: Option<&str>) -> Result<()> {
-        py.detach(|| self.0.save(&folder, name))
-            .map_err(|failure| refused(REFUSED, &failure))?;
+        detach(py, || self.0.save(&folder, name)).map_err(|failure| refused(REFUSED, &failure))?;
         Ok(())
     }
 }

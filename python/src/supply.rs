@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 
 use crate::errors::Result;
 use crate::overrides::WorldOverrides;
+use crate::rounding::usually_rounded;
 use crate::variant::PyVariant;
 
 /// Worlds without end: number *i* under a seed.
@@ -109,14 +110,14 @@ impl PyStream {
             ..RegimeDrift::to("")
         };
         // Under one seed, so that every environment meets a new value in the same episode.
-        let drift = Arc::new(Drift::declared(&declared, from, to, 0)?);
+        let drift = Arc::new(usually_rounded(|| Drift::declared(&declared, from, to, 0))?);
         Ok(Self(Stream::Drift { drift, episodes }))
     }
 
     /// One world, in every episode from its start. `name` is what messages and infos call it.
     #[staticmethod]
     fn world(name: String, text: &str) -> Result<Self> {
-        let world = Arc::new(World::from_json(&name, text)?);
+        let world = Arc::new(usually_rounded(|| World::from_json(&name, text))?);
         Ok(Self(Stream::World { world, name }))
     }
 

@@ -11,6 +11,7 @@ use pyo3::types::PyDict;
 
 use crate::document::{Whole, from_python, json_to_py, to_py};
 use crate::errors::Result;
+use crate::rounding::usually_rounded;
 use crate::variant::PyVariant;
 
 /// A task: what its worlds have in common, and exactly what varies between them.
@@ -25,20 +26,21 @@ impl PyTask {
     /// The task of a built-in name, such as ``"find_objects"``, or of a path; a variant behind ``#`` is left aside.
     #[staticmethod]
     fn load(name_or_path: &Bound<'_, PyAny>) -> Result<Self> {
-        Ok(Self(tasks::task(&name_of(name_or_path)?)?))
+        let name = name_of(name_or_path)?;
+        Ok(Self(usually_rounded(|| tasks::task(&name))?))
     }
 
     /// The task that a JSON text says; ``name`` is what messages call the text.
     #[staticmethod]
     fn from_json(name: &str, text: &str) -> Result<Self> {
-        Ok(Self(TaskSpec::from_json(name, text)?))
+        Ok(Self(usually_rounded(|| TaskSpec::from_json(name, text))?))
     }
 
     /// The task that a dictionary says; ``name`` is what messages call it.
     #[staticmethod]
     #[pyo3(signature = (document, name="task spec"))]
     fn from_dict(document: &Bound<'_, PyDict>, name: &str) -> Result<Self> {
-        Ok(Self(TaskSpec::from_json(name, &from_python(document)?.to_string())?))
+        Self::from_json(name, &from_python(document)?.to_string())
     }
 
     /// The document as one line of JSON: ``from_json`` reads the same task from it.
@@ -101,13 +103,17 @@ impl PyTask {
     /// All variants that it declares, in the order of the document.
     #[getter]
     fn variants(&self) -> Vec<PyVariant> {
-        self.0.all_variants().into_iter().map(PyVariant).collect()
+        usually_rounded(|| self.0.all_variants())
+            .into_iter()
+            .map(PyVariant)
+            .collect()
     }
 
     /// One variant; without a name the one in which every parameter has its default.
     #[pyo3(signature = (name=None))]
     fn variant(&self, name: Option<&str>) -> Result<PyVariant> {
-        Ok(PyVariant(self.0.variant(name.unwrap_or(DEFAULT_VARIANT))?))
+        let name = name.unwrap_or(DEFAULT_VARIANT);
+        Ok(PyVariant(usually_rounded(|| self.0.variant(name))?))
     }
 
     /// World number ``index`` of a variant under a seed, as a dictionary.

@@ -15,6 +15,7 @@ use crate::document::{Whole, from_python, json_to_py, to_py};
 use crate::errors::Result;
 use crate::interruptible::run_detached;
 use crate::portions::{draw, numbers};
+use crate::rounding::{detach, usually_rounded};
 use crate::task::{PyTask, hash_of, wrong};
 
 /// One variant of a task, in which every parameter that is not drawn anew in each world has its value.
@@ -80,7 +81,7 @@ impl PyVariant {
             values.push((parameter, value));
         }
         sound_name(name)?;
-        Ok(Self(self.0.with(name, values)?))
+        Ok(Self(usually_rounded(|| self.0.with(name, values))?))
     }
 
     /// A variant at a wanted distance, 0 or more, from this one, by as few changed parameters as will do: what may change is an element of the decision process
@@ -127,14 +128,14 @@ impl PyVariant {
     /// World number ``index`` under a seed, as a dictionary.
     #[pyo3(signature = (seed=Whole(0), index=Whole(0)), text_signature = "($self, seed=0, index=0)")]
     pub(crate) fn sample<'py>(&self, py: Python<'py>, seed: Whole, index: Whole) -> Result<Bound<'py, PyAny>> {
-        let world = py.detach(|| driftworld_generator::sample(&self.0, seed.0, index.0))?;
+        let world = detach(py, || driftworld_generator::sample(&self.0, seed.0, index.0))?;
         Ok(to_py(py, &world)?)
     }
 
     /// The same as one line of JSON.
     #[pyo3(signature = (seed=Whole(0), index=Whole(0)), text_signature = "($self, seed=0, index=0)")]
     fn sample_json(&self, py: Python<'_>, seed: Whole, index: Whole) -> Result<String> {
-        let world = py.detach(|| driftworld_generator::sample(&self.0, seed.0, index.0))?;
+        let world = detach(py, || driftworld_generator::sample(&self.0, seed.0, index.0))?;
         Ok(world.to_json())
     }
 
@@ -177,7 +178,7 @@ impl PyVariant {
     /// Draws the first ``count`` worlds under a seed, and says how often that fails, and why.
     #[pyo3(signature = (count, *, seed=Whole(0)), text_signature = "($self, count, *, seed=0)")]
     fn try_worlds<'py>(&self, py: Python<'py>, count: Whole, seed: Whole) -> Result<Bound<'py, PyAny>> {
-        let trial = py.detach(|| driftworld_curriculum::try_worlds(&self.0, seed.0, count.0));
+        let trial = detach(py, || driftworld_curriculum::try_worlds(&self.0, seed.0, count.0));
         Ok(to_py(py, &trial)?)
     }
 
@@ -233,7 +234,10 @@ pub(crate) fn variant_again(task: &Bound<'_, PyTask>, name: &str, values: &str) 
         return Ok(PyVariant(declared));
     }
     // Values that are as in the variant begun with are left as they are: they may be ones that nothing can be set to.
-    let mut bases = task.all_variants().into_iter().map(Ok).collect::<Vec<_>>();
+    let mut bases = usually_rounded(|| task.all_variants())
+        .into_iter()
+        .map(Ok)
+        .collect::<Vec<_>>();
     bases.push(task.variant(DEFAULT_VARIANT));
     let mut refused = None;
     for base in bases.into_iter().flatten() {
@@ -249,13 +253,16 @@ pub(crate) fn variant_again(task: &Bound<'_, PyTask>, name: &str, values: &str) 
 /// A variant by its name: built in, or a path; with `#` before the variant's own name.
 #[pyfunction]
 pub(crate) fn load_variant(name: &str) -> Result<PyVariant> {
-    Ok(PyVariant(tasks::variant(name)?))
+    Ok(PyVariant(usually_rounded(|| tasks::variant(name))?))
 }
 
 /// The variants that a name stands for: one, a family, or all of a task.
 #[pyfunction]
 pub(crate) fn load_variants(name: &str) -> Result<Vec<PyVariant>> {
-    Ok(tasks::variants(name)?.into_iter().map(PyVariant).collect())
+    Ok(usually_rounded(|| tasks::variants(name))?
+        .into_iter()
+        .map(PyVariant)
+        .collect())
 }
 
 /// A value of a parameter, as a task spec writes it.
