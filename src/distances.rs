@@ -278,10 +278,14 @@ pub fn between(
     sample.check_scale(by)?;
     // Two worlds are one pair, however many are asked for.
     let are_worlds = matches!((a, b), (Side::World(_), Side::World(_)));
+    let are_variants = matches!((a, b), (Side::Variant(_), Side::Variant(_)));
     let count = if are_worlds { 1 } else { sample.count(by) };
     Sample::check_count(by, count)?;
     let (a, b) = (sample.of(a, count)?, sample.of(b, count)?);
     let mut description = format!("by {}", by.name());
+    if are_variants && task.is_none() && sample.by.is_none() {
+        description += " (two tasks have no parameters in common; the unit is another)";
+    }
     if !are_worlds {
         let mean = if by == By::Placements {
             "all places in"

@@ -144,7 +144,11 @@ def test_variants_of_several_tasks_are_compared_by_worlds() -> None:
     with pytest.raises(ValueError, match="by: found variants of several tasks"):
         distance_matrix(["find_objects#blue", "get_to_goal#plain"])
     matrix = distance_matrix(["find_objects#blue", "get_to_goal#plain"], by="worlds")
-    assert not matrix.is_metric and matrix[0, 1] == pytest.approx(distance("find_objects#blue", "get_to_goal#plain").total)
+    with pytest.warns(UserWarning, match="distance: found variants of two tasks and no by"):
+        apart = distance("find_objects#blue", "get_to_goal#plain")
+    assert "two tasks have no parameters in common; the unit is another" in apart.compared
+    assert apart == distance("find_objects#blue", "get_to_goal#plain", by="worlds")
+    assert not matrix.is_metric and matrix[0, 1] == pytest.approx(apart.total)
 
 
 @pytest.mark.parametrize("ending", ["csv", "json"])

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -160,6 +161,12 @@ def distance(
     """
     laid = None if weights is None else dict(weights)
     found = _native.distance(_side(a), _side(b), laid, worlds, seed, index, by, scale, library_bytes(assets))
+    if by is None and worlds is None and "two tasks" in found["compared"]:
+        warnings.warn(
+            "distance: found variants of two tasks and no by, expected by=\"worlds\" or another measure: they have no parameters in "
+            "common, so the number is by worlds, in another unit",
+            stacklevel=2,
+        )
     letters = {name: letter for letter, name in ELEMENTS.items()}
     return Distance(
         total=found["total"],
