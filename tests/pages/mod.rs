@@ -27,6 +27,7 @@ macro_rules! pages {
 }
 
 pages! {
+    assets_run: "docs/assets.md",
     commands_run: "docs/commands.md",
     concepts_run: "docs/concepts.md",
     curricula_run: "docs/curricula.md",

@@ -2,13 +2,16 @@
 //! `examples/` is the checkout's. A block `sh terminal=KEYS` is run on a terminal on which these keys are pressed, one after each
 //! step that it shows. A block `json file=NAME` or `text file=NAME` is saved; a block `sh fails` must fail; a
 //! block `text output` is what the commands above it print. A block `sh needs=MODULE` is skipped, and what it prints with it,
-//! where `python3`, or the Python that `DRIFTWORLD_PYTHON` names, cannot import the module.
+//! where `python3`, or the Python that `DRIFTWORLD_PYTHON` names, cannot import the module. A block `sh feature=NAME` wants a build
+//! with that feature: with another it must fail and name the feature; every other block runs in every build.
+//!
+//! `DRIFTWORLD_COMMAND` names the build that runs them, such as the release build that most readers have; else it is the tests' own.
 //!
 //! `DRIFTWORLD_UPDATE_PAGES=1` writes what is printed into the page, and copies the pictures that the commands made to where
 //! the page shows them: `sheet.png` is `images/PAGE-sheet.png`. Read the difference before you commit it.
 
 use std::io::{Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 
 use super::blocks::{Block, blocks};
@@ -41,6 +44,13 @@ pub(crate) fn run(page: &str) {
         if let Some(name) = block.file() {
             std::fs::write(folder.join(name), &block.text).unwrap();
         } else if is_skipped(page, &block, folder) {
+            LEFT_OUT.clone_into(&mut printed);
+        } else if let Some(feature) = missing_feature(&block, folder) {
+            let script = ["bash", "-euo", "pipefail", "-c", &block.text];
+            let done = command(&script, folder).output().unwrap();
+            let said = String::from_utf8_lossy(&done.stderr).into_owned();
+            let names_it = said.contains(&format!("`{feature}`"));
+            assert!(!done.status.success() && names_it, "{page}:{}: {said}", block.line);
             LEFT_OUT.clone_into(&mut printed);
         } else if block.language == "sh" && !block.has("by-hand") {
             printed = run_block(page, &block, folder);
@@ -118,6 +128,15 @@ fn is_skipped(page: &str, block: &Block, folder: &Path) -> bool {
     is_missing
 }
 
+/// The feature that a block wants and the command was built without.
+fn missing_feature<'a>(block: &'a Block, folder: &Path) -> Option<&'a str> {
+    let feature = block.marks.iter().find_map(|mark| mark.strip_prefix("feature="))?;
+    let told = command(&["driftworld", "doctor"], folder).output().unwrap().stdout;
+    let told = String::from_utf8_lossy(&told).into_owned();
+    let lacks = told.lines().find_map(|line| line.strip_prefix("build lacks "))?;
+    lacks.contains(feature).then_some(feature)
+}
+
 fn updates() -> bool {
     std::env::var_os("DRIFTWORLD_UPDATE_PAGES").is_some()
 }
@@ -164,7 +183,8 @@ fn run_block(page: &str, block: &Block, folder: &Path) -> String {
 
 /// A command that knows ours.
 fn command(words: &[&str], folder: &Path) -> Command {
-    let ours = Path::new(env!("CARGO_BIN_EXE_driftworld"));
+    let named = std::env::var_os("DRIFTWORLD_COMMAND").map(PathBuf::from);
+    let ours = named.unwrap_or_else(|| env!("CARGO_BIN_EXE_driftworld").into());
     let mut path = std::env::var("PATH").unwrap_or_default();
     // As if its virtual environment were active.
     let python = std::env::var("DRIFTWORLD_PYTHON").unwrap_or_default();

@@ -5,7 +5,7 @@ use std::env;
 use std::io::{self, BufRead, BufReader};
 use std::process::{Command, Stdio};
 
-use crate::process::{Result, Workspace, ended, works};
+use crate::process::{Result, Workspace, ended, run, works};
 use crate::stage::Outcome;
 
 /// Runs every test of the workspace; the note is the runner's summary.
@@ -17,7 +17,10 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
         workspace.cargo_everywhere(&["test", "--lib", "--bins", "--tests"])
     };
     if workspace.is_full {
-        command.env("DRIFTWORLD_FULL", "1");
+        // The commands of pages run in the build that their readers have.
+        run(workspace.cargo(&["build", "--release"]))?;
+        let built = workspace.target.join("release/driftworld");
+        command.env("DRIFTWORLD_FULL", "1").env("DRIFTWORLD_COMMAND", built);
     } else if env::var_os("PROPTEST_CASES").is_none() {
         command.env("PROPTEST_CASES", "24");
     }
