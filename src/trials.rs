@@ -85,11 +85,13 @@ pub(crate) fn unfinished(trial: &Trial) -> Option<String> {
     } else {
         ""
     };
+    let (variant, seed) = (&trial.variant, trial.seed);
     Some(format!(
-        "{}: the agent on rails came to the success in {} of {} worlds, not in {}{more}; look at one with driftworld render",
-        trial.variant,
+        "{variant}: the agent on rails came to the success in {} of {} worlds, not in {}{more}; look at one: driftworld render \
+         '{variant}' --seed {seed} --index {} -o world.png",
         expert.succeeded,
         expert.worlds,
-        listed.join(", ")
+        listed.join(", "),
+        listed.first().map_or("0", String::as_str)
     ))
 }

@@ -54,7 +54,7 @@ pub fn path_map(matrix: &DistanceMatrix, method: Method, ordering: &Ordering) ->
             ordering.mean_step()
         ),
         format!(
-            "From orange to blue. The map is flat: it keeps {:.0} % of the distances' eigenvalues, squared.",
+            "From orange, the first, to blue, the last. The map is flat: it shows {:.0} % of how the distances vary.",
             (100.0 * map.explained).floor()
         ),
     ];

@@ -16,8 +16,11 @@ impl Comparison {
             let found = order(matrix, method, options).map_err(|error| error.to_string());
             (method, found)
         };
+        // Steps of a wanted length are compared where a length is wanted.
+        let is_meant = |method: &Method| *method != Method::TargetStep || options.target_step.is_some();
+        let methods = Method::ALL.iter().copied().filter(is_meant);
         Self {
-            outcomes: Method::ALL.iter().copied().map(outcome).collect(),
+            outcomes: methods.map(outcome).collect(),
         }
     }
 
