@@ -117,7 +117,7 @@ def test_every_variant_of_every_task_passes_gymnasiums_check(task_variant: tuple
         {"size": (36, 48)},
         {"frame_skip": 4},
         {"supersampling": 2},
-        {"task_label": "obs"},
+        {"task_label": "observation"},
         {"task_label": "info"},
         {"drift": {"to": "dusk", "episodes": 3, "schedule": "cosine", "switch": "mixture"}},
         {"render_mode": "rgb_array", "camera": "both"},
@@ -286,7 +286,7 @@ def test_a_label_is_told_only_when_asked_for(label: str, told: bool) -> None:
 
 
 def test_a_label_in_the_observation_is_one_hot() -> None:
-    env = bare(FIND, variant="red", modalities=["state"], task_label="obs")
+    env = bare(FIND, variant="red", modalities=["state"], task_label="observation")
     names = [variant.name for variant in driftworld.TaskSpec.load("find_objects").variants]
     observation, _ = env.reset(seed=0)
     assert observation["task"].sum() == 1.0

@@ -57,7 +57,7 @@ def test_a_loop_that_keeps_observations_keeps_those_of_gymnasiums_loop(modalitie
 @given(
     modalities=st.lists(st.sampled_from(MODALITIES), min_size=1, unique=True),
     mode=st.sampled_from(["next_step", "same_step"]),
-    label=st.sampled_from(["none", "info", "obs"]),
+    label=st.sampled_from(["none", "info", "observation"]),
     seed=st.integers(0, 2**40),
 )
 def test_who_writes_into_what_was_handed_out_changes_nothing(
@@ -81,7 +81,7 @@ def test_who_writes_into_what_was_handed_out_changes_nothing(
 
 
 def test_views_are_the_same_numbers_and_cannot_be_written_through() -> None:
-    options = {"modalities": MODALITIES, "task_label": "obs"}
+    options = {"modalities": MODALITIES, "task_label": "observation"}
     views, copies = native(3, copy=False, **options), native(3, **options)
     seen, kept = views.reset(seed=0)[0], copies.reset(seed=0)[0]
     for action in turning(views, 5):
@@ -107,7 +107,7 @@ def test_copy_is_a_truth_value() -> None:
 
 
 def test_a_label_is_what_the_environment_says_whoever_writes_into_it() -> None:
-    envs = native(2, modalities=["state"], task_label="obs")
+    envs = native(2, modalities=["state"], task_label="observation")
     observations, _ = envs.reset(seed=0, options={"variants": ["red", "blue"]})
     observations["task"] *= 0.5
     assert envs.step(envs.action_space.sample())[0]["task"].sum(axis=1).tolist() == [1.0, 1.0]
@@ -238,3 +238,29 @@ def test_gymnasiums_wrapper_turns_everything_into_torchs(mode: str) -> None:
     single = gym.wrappers.NumpyToTorch(gym.make(FIND, modalities="rgb", size=16, info="full"))
     observation, info = single.reset(seed=0)
     assert isinstance(observation, torch.Tensor) and info["variant_id"] == "find_objects#default"
+
+
+@pytest.mark.parametrize("modalities", ["rgb", ["rgb", "state"]], ids=str)
+def test_a_step_writes_into_the_callers_arrays(modalities: Any) -> None:
+    options = {"modalities": modalities, "max_episode_steps": 3, "autoreset_mode": "same_step"}
+    ours, theirs = native(2, **options), native(2, **options)
+    first = theirs.reset(seed=3)[0]
+    ours.reset(seed=3)
+    # Rows of a buffer, as a learner keeps them.
+    if isinstance(first, dict):
+        rows = [{kind: np.zeros_like(array) for kind, array in first.items()} for _ in range(5)]
+    else:
+        rows = list(np.zeros((5, *first.shape), first.dtype))
+    actions = turning(ours, len(rows))
+    expected = []
+    for row, action in zip(rows, actions):
+        written = ours.step(action, out=row)
+        assert written[0] is row
+        expected.append(theirs.step(action))
+        assert first_difference(written[1:], expected[-1][1:]) is None
+    assert first_difference(rows, [observations for observations, *_ in expected]) is None
+    before = ours.state(0)
+    for wrong in (np.zeros((1, 2), np.float32), {}, {"rgb": np.zeros((2, 16, 16, 3), np.uint8)}):
+        with pytest.raises(ValueError, match="out: found other arrays than observations have"):
+            ours.step(actions[0], out=wrong)
+    assert first_difference(before, ours.state(0)) is None

@@ -37,7 +37,7 @@ def test_none_among_the_variants_is_that_of_the_task() -> None:
 def test_every_variant_that_an_environment_begins_with_has_a_label() -> None:
     env = env_of(task_label="info")
     assert env.reset(seed=0)[1]["task_label"] >= 0
-    seen = env_of(task_label="obs")
+    seen = env_of(task_label="observation")
     assert seen.reset(seed=0)[0]["task"].sum() == 1.0
     assert seen.observation_space.contains(seen.reset()[0])
 

@@ -86,7 +86,7 @@ def test_no_number_tells_a_world_again() -> None:
     assert all(len(found) == 1 for found in numbers.values())
 
 
-@pytest.mark.parametrize("where", ["none", "info", "obs"])
+@pytest.mark.parametrize("where", ["none", "info", "observation"])
 @pytest.mark.parametrize("wanted", ["agent", "full"])
 def test_a_single_environment_names_its_variant_where_it_may(where: str, wanted: str) -> None:
     options: dict[str, Any] = {"modalities": ["rgb"], "size": 8, "task_label": where, "info": wanted, "max_steps": 2}

@@ -352,7 +352,7 @@ OPTIONS = st.fixed_dictionaries(
         "actions": st.sampled_from(["normalized", "continuous", "discrete", [[5.0, 0.0, 0.0], [0.0, 90.0, 1.0]]]),
         "frame_skip": st.one_of(st.none(), st.integers(1, 3)),
         "max_steps": st.integers(2, 9),
-        "task_label": st.sampled_from(["none", "info", "obs"]),
+        "task_label": st.sampled_from(["none", "info", "observation"]),
     }
 )
 

@@ -167,6 +167,7 @@ class Matrix:
 
 # -- document.rs -------------------------------------------------------------------------------------------------------
 
+def parsed(text: str) -> Any: ...
 def check(
     name: str, text: str, kind: str | None, libraries: list[bytes]
 ) -> tuple[str, list[dict[str, Any]], list[str], BaseException | None]: ...

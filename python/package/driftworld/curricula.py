@@ -80,7 +80,7 @@ class Experience:
 
     def world(self) -> dict[str, Any]:
         """Its world, as it is run: with the scenario's limit of steps laid over it."""
-        world: dict[str, Any] = json.loads(self._plan.world(self.number).text())
+        world: dict[str, Any] = _native.parsed(self._plan.world(self.number).text())
         return world
 
 

@@ -511,7 +511,8 @@ PERMITTED = ("is_success", "ended_by")
 class Permitted(gymnasium.Wrapper[Any, Any, Any, Any]):
     """An environment whose infos hold what the scenario permits: no name of a variant or a world, and no events.
 
-    Where the scenario wants labels, the number of the variant is ``info["task_label"]``, or one-hot ``"task"`` in observations.
+    Where the scenario wants labels, the number of the variant is ``info["task_label"]``, or one-hot ``"task"`` in observations that
+    are a dictionary.
 
     Args:
         env: The environment.
@@ -522,9 +523,10 @@ class Permitted(gymnasium.Wrapper[Any, Any, Any, Any]):
     def __init__(self, env: gymnasium.Env[Any, Any], label: Mapping[str, Any] | None, full: bool) -> None:
         super().__init__(env)
         self._label, self._full = label, full
-        self._observed = label is not None and bool(label["observed"])
+        self._observed = is_observed(label, env.observation_space)
         if label is not None and self._observed:
-            self.observation_space = with_label(env.observation_space, label)
+            box = gymnasium.spaces.Box(0.0, 1.0, (label["of"],), np.float32)
+            self.observation_space = gymnasium.spaces.Dict({**dict(env.observation_space.items()), "task": box})
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Begins an episode; ``options["label"]`` is its label, ``options["origin"]`` what it is called in full infos."""
@@ -550,18 +552,9 @@ class Permitted(gymnasium.Wrapper[Any, Any, Any, Any]):
         return observation, {**info, "task_label": self._label["number"]}
 
 
-def with_label(space: gymnasium.Space[Any], label: Mapping[str, Any]) -> gymnasium.spaces.Dict:
-    """The space of observations that hold a label.
-
-    Raises:
-        ValueError: If observations have no room for it.
-    """
-    if not isinstance(space, gymnasium.spaces.Dict):
-        raise ValueError(
-            "modalities: found a single image, expected a list: the scenario's task_label is a part of observations"
-        )
-    box = gymnasium.spaces.Box(0.0, 1.0, (label["of"],), np.float32)
-    return gymnasium.spaces.Dict({**space.spaces, "task": box})
+def is_observed(label: Mapping[str, Any] | None, space: gymnasium.Space[Any]) -> bool:
+    """Whether a label is a part of observations; where they are a single image, it is in the infos."""
+    return label is not None and bool(label["observed"]) and isinstance(space, gymnasium.spaces.Dict)
 
 
 def one_hot(label: Mapping[str, Any]) -> NDArray[np.float32]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import tempfile
 from pathlib import Path
@@ -68,7 +67,7 @@ class Recording:
 
     def world(self) -> dict[str, Any]:
         """The world that it began in."""
-        world: dict[str, Any] = json.loads(self._handle.world())
+        world: dict[str, Any] = _native.parsed(self._handle.world())
         return world
 
     def frames(

@@ -16,11 +16,11 @@ from driftworld.lifetimes import (
     Rollout,
     Trace,
     first_world,
+    is_observed,
     one_hot,
     origin,
     refuse_covering,
     refuse_options,
-    with_label,
 )
 
 if TYPE_CHECKING:
@@ -111,9 +111,7 @@ class VectorRollout(Rollout):
         super().__init__(agent, envs, experience, options, paired_chance, watch, save)
         self._plan, self._num_envs, self._full = plan, num_envs, options.get("info") == "full"
         label = plan.experience_spec(0)["label"]
-        self._labelled, self._observed = label is not None, label is not None and bool(label["observed"])
-        if label is not None and self._observed:
-            with_label(envs.single_observation_space, label)
+        self._labelled, self._observed = label is not None, is_observed(label, envs.single_observation_space)
         self._labels: list[Mapping[str, Any] | None] = [label] * num_envs
         self._names: list[dict[str, Any]] = [{}] * num_envs
         self._has_begun = self._learning = self._records = False

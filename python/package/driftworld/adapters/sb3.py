@@ -62,8 +62,7 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
     """The native vector environment behind Stable-Baselines3's interface.
 
     An episode's end is followed by the next episode's first observation, as Stable-Baselines3 expects; ``info`` then says
-    ``"terminal_observation"`` and ``"TimeLimit.truncated"``, and the rest of it is what the step itself returned. ``set_options`` takes what
-    ``reset(options=…)`` of a single environment takes, for all or one by one, such as ``[{"variant": "red"}, {"variant": "blue"}]``.
+    ``"terminal_observation"`` and ``"TimeLimit.truncated"``, and the rest of it is what the step itself returned.
     ``get_attr``, ``set_attr`` and ``env_method`` answer for each environment by itself, as ``DummyVecEnv`` does over single ones;
     what would change nothing is refused.
 
@@ -100,6 +99,21 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
             seed = int(np.random.randint(0, np.iinfo(np.int32).max))
         self._seeds: list[int | None] = list(driftworld.spread_seeds(seed, self.num_envs))
         return self._seeds
+
+    def set_options(self, options: Sequence[dict[str, Any]] | dict[str, Any] | None = None) -> None:
+        """Says what comes next, in the midst of ``learn``, too: from its next episode on, each environment does what its options ask.
+
+        Args:
+            options: What ``reset(options=…)`` of a single environment takes, for all or one by one, such as
+                ``[{"variant": "red"}, {"variant": "blue"}]``. :meth:`reset` asks for them once more.
+        """
+        super().set_options(cast(Any, options))
+        for asked, mask in self._groups():
+            unknown = sorted(asked.keys() - _NEXT)
+            if unknown:
+                self._reset_options()
+                raise ValueError(f"set_options: found {unknown[0]!r}, expected some of {', '.join(_NEXT)}")
+            self.envs.set_next(**asked, mask=mask)
 
     def reset(self) -> Any:
         """Begins new episodes everywhere, with the seeds and options set before; both are used once.
@@ -216,6 +230,10 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
     def _chosen(self, indices: int | Iterable[int] | None) -> list[Part]:
         """The environments that are asked for; negative numbers count from the last."""
         return [self._parts[index] for index in self._get_indices(indices)]
+
+
+#: What the options of an environment may say.
+_NEXT = ("variant", "index", "world", "queue")
 
 
 class _Monitor(VecMonitor):  # type: ignore[misc, unused-ignore] # Any where it is not installed.

@@ -56,6 +56,7 @@ class Members:
         autoreset: ``"next_step"``, ``"same_step"`` or ``"disabled"``.
         num_threads: Threads that step and draw; 0 is one for each processor.
         max_episode_steps: A limit of steps that the worlds know nothing of.
+        labels: The ids of the variants in the order of their labels; the task's, and then the others of the sources if not given.
     """
 
     def __init__(
@@ -66,6 +67,7 @@ class Members:
         autoreset: str,
         num_threads: int,
         max_episode_steps: int | None = None,
+        labels: list[str] | None = None,
     ) -> None:
         self.num_envs = len(sources)
         self._home = home
@@ -80,8 +82,9 @@ class Members:
         self._checked: set[str] = set()
         self._covering: set[str] = set()
         streams = self._streams(self._sources)
-        self._labels = home.labels()
-        self.label_in_info = options.task_label == "info"
+        self._labels = home.labels(sources) if labels is None else labels
+        self._shows_label = options.task_label == "observation" and options.is_dict
+        self.label_in_info = options.task_label != "none" and not self._shows_label
         self.observation_space = observation_space(options, self.layout, len(self._labels))
         self.action_space = action_space(self.layout)
         self.batch = _native.Batch(
@@ -116,7 +119,7 @@ class Members:
         """The buffers in the order of the options."""
         buffers["state"] = buffers["state"].reshape(self.num_envs, -1)
         views = {kind: buffers[kind] for kind in self._modalities}
-        if self._options.task_label == "obs":
+        if self._shows_label:
             views["task"] = _locked(np.zeros((self.num_envs, len(self._labels)), dtype=np.float32))
         return views
 
@@ -204,6 +207,31 @@ class Members:
             self.batch.index(env, index)
         if prepared.world is not None:
             self.batch.give(env, prepared.world)
+
+    def set_next(self, envs: Sequence[int], asked: Mapping[str, Any]) -> None:
+        """Says what these environments do with their next episode; nothing is changed if anything is wrong.
+
+        Args:
+            envs: Which of them.
+            asked: Options of a reset, each for all of them or as a list with one for each; a queue is one for all.
+        """
+        queue = asked.get("queue")
+        spread = {name: _each(name, value, len(envs)) for name, value in asked.items() if name != "queue"}
+        indices = spread.pop("index", [None] * len(envs))
+        prepared: dict[Any, Prepared] = {}
+        chosen: list[Prepared] = []
+        for place in range(len(envs)):
+            options = {**{name: values[place] for name, values in spread.items()}, "queue": queue}
+            # Handles and documents by what they are: the lists keep them, so numbers are not used again.
+            key = tuple(one if isinstance(one, str) else id(one) for one in options.values())
+            if key not in prepared:
+                prepared[key] = self.checked(options, many=False)
+            chosen.append(prepared[key])
+        numbers = [None if index is None else index_in_range(index) for index in indices]
+        for env, one, number in zip(envs, chosen, numbers, strict=True):
+            self.take(one, env, None)
+            if number is not None:
+                self.batch.index(env, number)
 
     def _new_sources(self, options: Mapping[str, Any], many: bool) -> list[Source] | None:
         if options.get("variant") is not None:
@@ -295,6 +323,22 @@ class Members:
             return view.copy() if copied else view
         return {kind: view.copy() if copied else view[:] for kind, view in self._views.items()}
 
+    def expect_form(self, out: Any) -> None:
+        """Refuses arrays that observations cannot be written into."""
+        views, arrays = (self._views, out) if self._options.is_dict else ({"": self._views[self._modalities[0]]}, {"": out})
+        wanted = {kind: (view.shape, view.dtype.name) for kind, view in views.items()}
+        if not isinstance(arrays, Mapping) or {kind: _form(array) for kind, array in arrays.items()} != wanted:
+            told = ", ".join(f"{kind or 'an array'} {name} {shape}" for kind, (shape, name) in wanted.items())
+            raise ValueError(f"out: found other arrays than observations have, expected {told}; nothing was changed")
+
+    def write_into(self, out: Any) -> None:
+        """Writes all observations into such arrays."""
+        if not self._options.is_dict:
+            np.copyto(out, self._views[self._modalities[0]])
+            return
+        for kind, view in self._views.items():
+            np.copyto(out[kind], view)
+
     def step_one(self, action: Any) -> tuple[float, bool, bool, bool, bool]:
         """A step of the only environment: reward, terminated, truncated, success, whether anything happened."""
         if self._is_discrete:
@@ -334,7 +378,7 @@ class Members:
         """All that a copy is made from: running worlds, and where their next ones come from."""
         envs = range(self.num_envs)
         return {
-            "made_with": (self._home, list(self._sources), self._options, *self._made_with),
+            "made_with": (self._home, list(self._sources), self._options, *self._made_with, self._labels),
             "states": [self.batch.state(env) for env in envs],
             "steps": [self.batch.episode_steps(env) for env in envs],
             "places": [self.batch.place(env) for env in envs],
@@ -371,6 +415,12 @@ def _ends(source: Source) -> Sequence[_native.Variant]:
 _LEAST_ROW, _LAST_ROW = -(2**63), 2**63 - 1
 
 
+def _form(array: Any) -> tuple[tuple[int, ...], str] | None:
+    """Shape and type of an array that can be written into."""
+    is_free = isinstance(array, np.ndarray) and array.flags.writeable
+    return (array.shape, array.dtype.name) if is_free else None
+
+
 def _locked(array: NDArray[Any]) -> NDArray[Any]:
     """An array that cannot be written into, nor made writable through a view."""
     array.flags.writeable = False
@@ -382,6 +432,17 @@ def _write(array: NDArray[Any], env: int, row: Any) -> None:
     array.flags.writeable = True
     array[env] = row
     array.flags.writeable = False
+
+
+def _each(option: str, value: Any, count: int) -> list[Any]:
+    """One value for each of so many environments: the same for all, or those of a list."""
+    if isinstance(value, np.ndarray) and value.ndim == 1:
+        value = value.tolist()
+    if not isinstance(value, (list, tuple)):
+        return [value] * count
+    if len(value) != count:
+        raise ValueError(f"{option}: found {len(value)}, expected {count}, one for each environment that is asked")
+    return list(value)
 
 
 def _listed(names: Any, option: str) -> list[Any]:

@@ -16,14 +16,14 @@ import numpy as np
 
 from driftworld import _native
 from driftworld._files import read_bytes
-from driftworld._literals import ActionsName, DepthForm, InfoFor, LabelPlace, Modality, RendererName
+from driftworld._literals import ActionsName, DepthForm, InfoFor, Modality, RendererName, TaskLabel
 from driftworld.errors import SpecError
 
 #: What an observation may hold.
 MODALITIES: tuple[Modality, ...] = get_args(Modality)
 DEPTHS: tuple[DepthForm, ...] = get_args(DepthForm)
 RENDERERS: tuple[RendererName, ...] = get_args(RendererName)
-LABELS: tuple[LabelPlace, ...] = get_args(LabelPlace)
+LABELS: tuple[TaskLabel, ...] = get_args(TaskLabel)
 INFOS: tuple[InfoFor, ...] = get_args(InfoFor)
 #: What is laid over the actions of worlds; ``"task"`` lays nothing over a table, and −1..1 over numbers.
 ACTIONS: dict[str, str | None] = {
@@ -51,7 +51,7 @@ class EnvOptions(TypedDict, total=False):
     supersampling: Annotated[int | None, None]
     renderer: Annotated[RendererName, "cpu"]
     drift: Annotated[Mapping[str, Any] | None, None]
-    task_label: Annotated[LabelPlace, "none"]
+    task_label: Annotated[TaskLabel, "none"]
     info: Annotated[InfoFor, "agent"]
     assets: Annotated[str | PathLike[str] | Iterable[str | PathLike[str]], ()]
 
@@ -126,16 +126,14 @@ class Options:
         blank = _flag("blank", options["blank"])
         _one_of("depth", options["depth"], DEPTHS)
         _one_of("renderer", options["renderer"], RENDERERS)
+        if task_label == "obs":
+            raise ValueError('task_label: found "obs": removed in 0.3; use "observation"')
         _one_of("task_label", task_label, LABELS)
         _one_of("info", options["info"], INFOS)
         if blank and kinds is None:
             raise ValueError(
                 'blank: found True without modalities, expected them, such as modalities=["rgb", "depth", "state"]: without, they are '
                 "what the worlds ask for"
-            )
-        if task_label == "obs" and not is_dict:
-            raise ValueError(
-                'task_label: found "obs", expected modalities to be a list: a single image has no room for it'
             )
         overrides = {
             "modalities": None if kinds is None or blank else images_among(kinds),

@@ -137,12 +137,12 @@ class Home:
         # What was looked up can be looked up again.
         return {**self.__dict__, "_known": {}}
 
-    def labels(self) -> list[str]:
-        """The ids of the variants that an agent may be told: those of the task, and the first if it is none of them."""
+    def labels(self, sources: Iterable[Source]) -> list[str]:
+        """The ids of the variants that an agent may be told: those of the task, and then what else it or the sources begin with."""
         if self.task is None or self.first is None:
             return []
-        ids = [variant.id for variant in self.task.all_variants()]
-        return ids if self.first.id in ids else [*ids, self.first.id]
+        begun = [source.variant.id for source in sources if isinstance(source, OneVariant)]
+        return list(dict.fromkeys([*(variant.id for variant in self.task.all_variants()), self.first.id, *begun]))
 
     def source(self) -> Source:
         """The worlds that the environment begins with."""

@@ -68,6 +68,10 @@ class Part(gymnasium.Env[Any, Any]):
         """Begins an episode here; the other environments go on."""
         return self._envs.reset_one(self._index, seed=seed, options=options)
 
+    def set_next(self, *, variant: Any = None, index: int | None = None, world: Any = None, queue: Any = None) -> None:
+        """Says what its next episode is, as :meth:`DriftworldEnv.set_next` does; the one that runs goes on."""
+        self._envs.set_next_one(self._index, variant=variant, index=index, world=world, queue=queue)
+
     def step(self, action: Any) -> Any:
         """Refused: they step together.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import json
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -50,7 +49,8 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         supersampling: Points per pixel along each side, 1 to 4; more is smoother and slower.
         renderer: ``"cpu"``, ``"gpu"``, or ``"auto"`` for a graphics card if there is one.
         drift: The way to another variant, such as ``{"to": "dusk", "episodes": 500, "schedule": "cosine"}``.
-        task_label: Whether the agent gets the label of its variant: ``"none"``, in ``"info"``, or as a part of ``"obs"``, one-hot.
+        task_label: Whether the agent gets the label of its variant: ``"none"``; in ``"info"``, a number; or in the
+            ``"observation"``, as ``"task"``, one-hot (in the info, too, where the observation is a single image).
         info: ``"agent"``: infos name task and variant only where ``task_label`` tells the agent. ``"full"``: always, for records.
         assets: Paths of asset libraries (``driftworld assets pack``).
         render_mode: ``"rgb_array"``, ``"human"`` or ``None``.
@@ -139,6 +139,20 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
             self.render()
         return members.observation(0), info
 
+    def set_next(self, *, variant: Any = None, index: int | None = None, world: Any = None, queue: Any = None) -> None:
+        """Says what the next episode is; the one that runs goes on. As ``options`` of :meth:`reset`, only earlier.
+
+        Args:
+            variant: From the next episode on: a name, or a :class:`driftworld.Variant`.
+            index: The number of the next world. A reset with a ``seed`` begins at world 0 all the same.
+            world: A world for the next episode alone: a path, JSON, a dictionary.
+            queue: In place of ``variant``: a list of variants, one in each episode in turn, over and over.
+
+        Raises:
+            ValueError, TaskError, SpecError: As :meth:`reset` does; nothing is changed then.
+        """
+        self._members.set_next([0], {"variant": variant, "index": index, "world": world, "queue": queue})
+
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         """Lets the agent act once.
 
@@ -188,7 +202,7 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
 
     def state(self) -> dict[str, Any]:
         """The world as it is now, as a document: a reset to it (``options={"world": …}``) goes on to the last bit."""
-        state: dict[str, Any] = json.loads(self._members.batch.state(0))
+        state: dict[str, Any] = _native.parsed(self._members.batch.state(0))
         return state
 
     def record(self, records: bool = True) -> None:

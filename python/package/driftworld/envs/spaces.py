@@ -37,9 +37,11 @@ def observation_space(options: Options, layout: dict[str, Any], num_labels: int)
     """The space of one observation: a ``Dict``, or the ``Box`` of its one modality."""
     kinds = options.modalities or ()
     boxes: dict[str, spaces.Space[Any]] = {kind: _box(kind, options, layout) for kind in kinds}
-    if options.task_label == "obs":
+    if not options.is_dict:
+        return boxes[kinds[0]]
+    if options.task_label == "observation":
         boxes["task"] = spaces.Box(0.0, 1.0, (num_labels,), np.float32)
-    return spaces.Dict(boxes) if options.is_dict else boxes[kinds[0]]
+    return spaces.Dict(boxes)
 
 
 def _box(kind: str, options: Options, layout: dict[str, Any]) -> spaces.Box:

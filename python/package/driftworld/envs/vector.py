@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Sequence
 from copy import deepcopy
 from typing import TYPE_CHECKING, Any, Literal
@@ -15,6 +14,7 @@ from gymnasium.vector import VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
+from driftworld import _native
 from driftworld._literals import AutoresetName, CameraName
 from driftworld.envs.autoreset import AutoresetMode, autoreset_mode_of
 from driftworld.envs.conversion import teach_conversions
@@ -185,7 +185,9 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         """
         teach_conversions()
         options = dict(options or {})
-        mask = self._mask(options.pop("reset_mask", None))
+        mask = options.pop("reset_mask", None)
+        if mask is not None:
+            mask = self._mask(mask, "options['reset_mask']", at_least=1)
         seeds = self._seeds(seed)
         members = self._members
         prepared = members.checked(options, many=True)
@@ -211,6 +213,30 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         own = self._seeds([seed if one == env else None for one in range(self.num_envs)])[env]
         self._begin([env], [own] * self.num_envs, prepared, np.arange(self.num_envs) == env)
         return members.observation(env), members.reset_info(env)
+
+    def set_next(
+        self, *, variant: Any = None, index: Any = None, world: Any = None, queue: Any = None, mask: Any = None
+    ) -> None:
+        """Says what the next episodes are; those that run go on. Autoreset begins them as they come.
+
+        Args:
+            variant: From the next episode on: a name or a :class:`driftworld.Variant` for all, or a list of them.
+            index: The number of the next world, or a list. A reset with a ``seed`` begins at world 0 all the same.
+            world: A world for the next episode alone, or a list: a path, JSON, a dictionary.
+            queue: In place of ``variant``: a list of variants, which each environment takes in turn, over and over.
+            mask: Bool ``(num_envs,)``: which environments; all if not given. Lists have one entry for each of these alone, ``None`` for
+                no change.
+
+        Raises:
+            ValueError, TaskError, SpecError: As :meth:`reset` does; nothing is changed then.
+        """
+        chosen = range(self.num_envs) if mask is None else np.flatnonzero(self._mask(mask, "mask")).tolist()
+        self._members.set_next(chosen, {"variant": variant, "index": index, "world": world, "queue": queue})
+
+    def set_next_one(self, env: int, **asked: Any) -> None:
+        """The same for one environment, as :meth:`DriftworldEnv.set_next` takes it."""
+        self._expect("set_next", env)
+        self._members.set_next([env], asked)
 
     def _begin(
         self, chosen: Sequence[int], seeds: list[int | None], prepared: Prepared, mask: NDArray[np.bool_] | None
@@ -239,18 +265,11 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         if not 0 <= env < self.num_envs:
             raise IndexError(f"{method}: found environment {env}, expected 0 to {self.num_envs - 1}")
 
-    def _mask(self, mask: Any) -> NDArray[np.bool_] | None:
-        if mask is None:
-            return None
-        if (
-            not isinstance(mask, np.ndarray)
-            or mask.dtype != np.bool_
-            or mask.shape != (self.num_envs,)
-            or not mask.any()
-        ):
-            raise ValueError(
-                f"options['reset_mask']: found {mask!r}, expected a bool array of shape ({self.num_envs},) with at least one True"
-            )
+    def _mask(self, mask: Any, option: str, at_least: int = 0) -> NDArray[np.bool_]:
+        is_mask = isinstance(mask, np.ndarray) and mask.dtype == np.bool_ and mask.shape == (self.num_envs,)
+        if not is_mask or mask.sum() < at_least:
+            also = " with at least one True" if at_least else ""
+            raise ValueError(f"{option}: found {mask!r}, expected a bool array of shape ({self.num_envs},){also}")
         return mask
 
     def _seeds(self, seed: Any) -> list[int | None]:
@@ -266,7 +285,7 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         return [None if one is None else whole_number(one) for one in seeds]
 
     def step(
-        self, actions: Any
+        self, actions: Any, *, out: Any = None
     ) -> tuple[Any, NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
         """Lets every agent act once.
 
@@ -276,6 +295,8 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
 
         Args:
             actions: ``(num_envs,)`` rows, or ``(num_envs, numbers)``.
+            out: The caller's own arrays, in the form of observations, such as a row of a learner's buffer: observations are written into
+                them, without a copy in between, and handed out.
 
         Returns:
             Observations; rewards float64, terminated and truncated bool, each ``(num_envs,)``; infos.
@@ -289,6 +310,8 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
             waiting = np.flatnonzero(~members.has_begun).tolist()
             found = "no reset" if len(waiting) == self.num_envs else f"no reset of environments {_some(waiting)}"
             raise ResetNeeded(f"step: found {found}, expected reset() before the first step, and again after one that was stopped")
+        if out is not None:
+            members.expect_form(out)
         rewards, terminated, truncated, success, eventful = members.step(actions)
         ended = terminated | truncated
         begun = self._ended if self._mode == AutoresetMode.NEXT_STEP else ended
@@ -299,7 +322,10 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
             for env in np.flatnonzero(begun).tolist():
                 self._add_beginning(infos, env)
         self._ended = ended
-        return members.observations(self._copy), rewards, terminated, truncated, infos
+        if out is None:
+            return members.observations(self._copy), rewards, terminated, truncated, infos
+        members.write_into(out)
+        return out, rewards, terminated, truncated, infos
 
     def _infos(self, success: NDArray[np.bool_], eventful: list[int]) -> dict[str, Any]:
         """What every step says of every environment."""
@@ -378,7 +404,7 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
     def state(self, env: int) -> dict[str, Any]:
         """The world of an environment as it is now, as a document."""
         self._expect("state", env)
-        state: dict[str, Any] = json.loads(self._members.batch.state(env))
+        state: dict[str, Any] = _native.parsed(self._members.batch.state(env))
         return state
 
     def origin(self, env: int) -> dict[str, Any]:

@@ -1,0 +1,166 @@
+"""What comes next can be said while episodes run: it holds from the next episode on, in one environment as in many."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import driftworld
+import gymnasium as gym
+import numpy as np
+import pytest
+from driftworld._equality import first_difference
+from gymnasium.error import Error
+
+FIND = "driftworld/FindObjects-v0"
+OPTIONS: dict[str, Any] = {"size": 8, "modalities": ["rgb", "state"], "actions": "discrete", "info": "full"}
+VARIANTS = ["red", "blue", "dusk", "near"]
+
+
+def many(num_envs: int, mode: str, **options: Any) -> Any:
+    return gym.make_vec(
+        FIND,
+        num_envs,
+        vectorization_mode="vector_entry_point",
+        autoreset_mode=mode,
+        max_episode_steps=4,
+        **{**OPTIONS, **options},
+    ).unwrapped
+
+
+def drawn(chance: np.random.Generator) -> dict[str, Any]:
+    """Something to ask of one environment."""
+    match chance.integers(4):
+        case 0:
+            return {"variant": str(chance.choice(VARIANTS))}
+        case 1:
+            return {"index": int(chance.integers(100))}
+        case 2:
+            return {"queue": [str(name) for name in chance.choice(VARIANTS, 3)]}
+        case _:
+            seed = int(chance.integers(100))
+            return {"world": driftworld.variant("find_objects#red").sample(seed), "variant": str(chance.choice(VARIANTS))}
+
+
+@pytest.mark.parametrize("mode", ["next_step", "same_step"])
+@pytest.mark.parametrize("seed", range(3))
+def test_many_are_told_what_one_is_told(mode: str, seed: int) -> None:
+    chance = np.random.default_rng(seed)
+    envs = many(3, mode)
+    alone = [gym.make(FIND, max_episode_steps=4, **OPTIONS) for _ in range(3)]
+    envs.reset(seed=seed)
+    for env, own in zip(alone, driftworld.spread_seeds(seed, 3)):
+        env.reset(seed=own)
+    ended = [False] * 3
+    for _ in range(40):
+        env = int(chance.integers(3))
+        asked = drawn(chance)
+        queue = asked.pop("queue", None)
+        mask = np.arange(3) == env
+        envs.set_next(**{name: [value] for name, value in asked.items()}, queue=queue, mask=mask)
+        alone[env].unwrapped.set_next(**asked, queue=queue)  # type: ignore[attr-defined]
+        actions = chance.integers(0, envs.single_action_space.n, 3)
+        observations, rewards, terminated, truncated, _ = envs.step(actions)
+        for env, (one, action) in enumerate(zip(alone, actions)):
+            if mode == "next_step" and ended[env]:
+                observation, ended[env] = one.reset()[0], False
+                assert rewards[env] == 0.0
+            else:
+                observation, reward, *flags, _ = one.step(action)
+                assert (rewards[env], [terminated[env], truncated[env]]) == (reward, flags)
+                ended[env] = any(flags)
+                if mode == "same_step" and ended[env]:
+                    observation = one.reset()[0]
+            assert first_difference({kind: seen[env] for kind, seen in observations.items()}, observation) is None
+            assert envs.origin(env) == one.unwrapped.origin()  # type: ignore[attr-defined]
+
+
+def test_what_runs_goes_on_and_nothing_is_forgotten() -> None:
+    envs, plain = many(4, "same_step"), many(4, "same_step")
+    envs.reset(seed=1)
+    plain.reset(seed=1)
+    envs.set_next(variant=["dusk", None, "blue"], mask=np.array([True, True, True, False]))
+    envs.set_next(variant="red", mask=np.zeros(4, dtype=bool))
+    actions = np.zeros(4, dtype=np.int64)
+    for _ in range(3):
+        assert first_difference(envs.step(actions)[:4], plain.step(actions)[:4]) is None
+    for _ in range(2):
+        for _ in range(4):
+            envs.step(actions)
+        assert [envs.origin(env)["variant_id"].partition("#")[2] for env in range(4)] == [
+            "dusk",
+            "default",
+            "blue",
+            "default",
+        ]
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        {"variant": "rde"},
+        {"variant": ["red", "rde"]},
+        {"variant": ["red"]},
+        {"index": -1},
+        {"index": [1, -1]},
+        {"world": {"objects": 3}},
+        {"variant": "red", "queue": ["red"]},
+        {"queue": []},
+        {"mask": [True, False]},
+        {"variant": "red", "mask": np.ones(3, dtype=bool)},
+    ],
+    ids=str,
+)
+def test_what_is_wrong_changes_nothing(asked: dict[str, Any]) -> None:
+    envs = many(2, "same_step")
+    envs.reset(seed=5)
+    with pytest.raises((ValueError, TypeError, Error, driftworld.TaskError)):
+        envs.set_next(**asked)
+    envs.reset()
+    assert [envs.origin(env)["variant_id"] for env in range(2)] == ["find_objects#default"] * 2
+    assert [envs.origin(env)["index"] for env in range(2)] == [1, 1]
+
+
+def test_labels_count_what_a_batch_begins_with() -> None:
+    task = driftworld.TaskSpec.load("get_to_goal")
+    own = [variant.id for variant in driftworld.TaskSpec.load("find_objects").variants]
+    options: dict[str, Any] = {"modalities": "rgb", "size": 8, "actions": "discrete", "interact": False}
+    others = [task.variant("plain"), task.variant("soft"), None, task.variant("plain")]
+    for modalities, label in (("rgb", "observation"), ("rgb", "info"), (["rgb"], "observation")):
+        envs = many(4, "same_step", variants=others, **{**options, "modalities": modalities, "task_label": label})
+        observations, infos = envs.reset(seed=0)
+        # After the task's own comes the one that it begins with, which has no name there.
+        expected = [len(own) + 1, len(own) + 2, len(own), len(own) + 1]
+        if isinstance(modalities, list):
+            assert observations["task"].argmax(axis=1).tolist() == expected
+            assert observations["task"].sum(axis=1).tolist() == [1.0] * 4
+        else:
+            assert infos["task_label"].tolist() == expected
+
+
+def test_the_old_word_is_refused_with_the_new_one() -> None:
+    with pytest.raises(ValueError, match='task_label: found "obs": removed in 0.3; use "observation"'):
+        gym.make(FIND, task_label="obs")
+
+
+@pytest.mark.learners
+def test_sb3_learns_another_variant_without_a_reset() -> None:
+    pytest.importorskip("stable_baselines3", reason="the adapter is for it")
+    from driftworld.adapters.sb3 import make_vec_env
+    from stable_baselines3 import PPO
+
+    options = {"modalities": "rgb", "size": 36, "actions": "discrete", "max_episode_steps": 8, "info": "full"}
+    envs = make_vec_env(FIND, 2, seed=0, **options)
+    model = PPO("MlpPolicy", envs, n_steps=16, batch_size=16, n_epochs=1, seed=0, device="cpu")
+    model.learn(32)
+    envs.set_options([{"variant": "red"}, {"variant": "blue"}])
+    begun: list[list[str]] = [[], []]
+
+    def note(told: dict[str, Any], _: Any) -> bool:
+        for env in np.flatnonzero(told["dones"]):
+            begun[env].append(envs.unwrapped.reset_infos[env]["variant_id"])
+        return True
+
+    model.learn(128, reset_num_timesteps=False, callback=lambda told, more: note(told, more))
+    assert [set(names) for names in begun] == [{"find_objects#red"}, {"find_objects#blue"}]
+    with pytest.raises(ValueError, match="set_options: found 'varaint'"):
+        envs.set_options({"varaint": "red"})
