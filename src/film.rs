@@ -44,7 +44,10 @@ pub enum FilmModality {
     Segmentation,
 }
 
-/// What a word stands for, or which words there are.
+/// What a word stands for.
+///
+/// # Errors
+/// What was found, and the words there are.
 pub fn named<T: ValueEnum>(word: &str) -> Result<T, String> {
     T::from_str(word, false).map_err(|_| {
         let words = T::value_variants().iter().filter_map(ValueEnum::to_possible_value);

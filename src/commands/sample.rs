@@ -224,7 +224,7 @@ impl Sample {
             Some(Mix::Parameter) => Drift::new(variant.clone(), to)?.with_switch(Switch::Mixture { seed: self.seed }),
             Some(Mix::Task) => Drift::mixing(variant.clone(), to, self.seed),
         };
-        let drift = Box::new(drift.with_schedule(self.schedule.into()));
+        let drift = Box::new(drift.with_schedule(self.schedule));
         Ok(Source::Drift {
             drift,
             first: self.index,
