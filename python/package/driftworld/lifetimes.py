@@ -524,9 +524,9 @@ class Permitted(gymnasium.Wrapper[Any, Any, Any, Any]):
         super().__init__(env)
         self._label, self._full = label, full
         self._observed = is_observed(label, env.observation_space)
-        if label is not None and self._observed:
+        if label is not None and isinstance(env.observation_space, gymnasium.spaces.Dict) and self._observed:
             box = gymnasium.spaces.Box(0.0, 1.0, (label["of"],), np.float32)
-            self.observation_space = gymnasium.spaces.Dict({**dict(env.observation_space.items()), "task": box})
+            self.observation_space = gymnasium.spaces.Dict({**env.observation_space.spaces, "task": box})
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Begins an episode; ``options["label"]`` is its label, ``options["origin"]`` what it is called in full infos."""

@@ -270,7 +270,8 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         if not is_mask or mask.sum() < at_least:
             also = " with at least one True" if at_least else ""
             raise ValueError(f"{option}: found {mask!r}, expected a bool array of shape ({self.num_envs},){also}")
-        return mask
+        chosen: NDArray[np.bool_] = mask
+        return chosen
 
     def _seeds(self, seed: Any) -> list[int | None]:
         if seed is None:
