@@ -240,7 +240,17 @@ pub fn check(
                 Err(error) => Some(error),
             }
         }
-        Kind::L2ExplorerWorld => take_warnings(World::from_l2explorer(name, text), &mut warnings),
+        Kind::L2ExplorerWorld => {
+            let read = World::from_l2explorer(name, text);
+            // The original draws what it does not know, too.
+            if let Ok((world, _)) = &read {
+                let unknown = world.unknown_classes(classes).into_iter();
+                let unknown =
+                    unknown.map(|odd| format!("{name} ({}): {}; a placeholder stands there", odd.pointer, odd.found));
+                warnings.extend(unknown);
+            }
+            take_warnings(read, &mut warnings)
+        }
         Kind::L2ExplorerScenario => take_warnings(Scenario::from_l2explorer(name, text), &mut warnings),
     };
     Checked {

@@ -169,10 +169,10 @@ fn effects(zone: &Zone) -> Vec<String> {
 /// The name of a group of objects: what is only a shape is better named by what it is for.
 pub(crate) fn named(object: &Object) -> String {
     let class = object.class.to_lowercase();
-    let shape = match (class.as_str(), object.model.0.as_str()) {
-        ("geometric", "1") => "cube",
-        ("geometric", "2") => "sphere",
-        ("geometric", "3") => "cylinder",
+    let shape = match (class.as_str(), object.model.0.trim().to_lowercase().as_str()) {
+        ("geometric", "1" | "cube") => "cube",
+        ("geometric", "2" | "sphere") => "sphere",
+        ("geometric", "3" | "cylinder") => "cylinder",
         (class, _) => class,
     };
     object.tag.clone().unwrap_or_else(|| shape.to_owned())

@@ -7,7 +7,7 @@ use crate::contents::Contents;
 use crate::documents::{self, DocumentError};
 use driftworld_env::Catalogue;
 use driftworld_files::FileError;
-use driftworld_spec::{Classes, DEFAULT_VARIANT, SpecError, TaskSpec, Variant, did_you_mean};
+use driftworld_spec::{Classes, DEFAULT_VARIANT, Problem, SpecError, TaskSpec, Variant, World, did_you_mean};
 use driftworld_text::printable;
 
 /// The tasks that are built in: name and text. The files are `examples/tasks/`.
@@ -57,19 +57,30 @@ fn unknown(name: &str) -> String {
     format!("found task {name:?}, expected the path of a task spec or one of {all}{near}")
 }
 
-/// The classes that worlds can have objects of, by the libraries at hand; where one is not known, messages say how a library is named.
+/// The classes and models that objects of worlds can be of, by the libraries at hand; where one is not known, messages say how a library is named.
 pub fn classes(catalogue: &Catalogue) -> Classes {
     catalogue
         .classes()
         .with_advice("give the library that has it with --assets LIBRARY, in Python assets=LIBRARY")
 }
 
-/// Refuses a task with objects of a class that is not known.
+/// Refuses a task with objects of a class or model that is not known.
 ///
 /// # Errors
 /// [`SpecError::Document`] with every such object.
 pub fn check_classes(name: &str, task: &TaskSpec, classes: &Classes) -> Result<(), SpecError> {
-    let problems = task.unknown_classes(classes);
+    fail_on(name, task.unknown_classes(classes))
+}
+
+/// The same of a world.
+///
+/// # Errors
+/// [`SpecError::Document`] with every such object.
+pub fn check_world(name: &str, world: &World, catalogue: &Catalogue) -> Result<(), SpecError> {
+    fail_on(name, world.unknown_classes(&classes(catalogue)))
+}
+
+fn fail_on(name: &str, problems: Vec<Problem>) -> Result<(), SpecError> {
     if problems.is_empty() {
         return Ok(());
     }
@@ -79,6 +90,25 @@ pub fn check_classes(name: &str, task: &TaskSpec, classes: &Classes) -> Result<(
         problems,
         more: false,
     })
+}
+
+/// The same of the tasks of variants, each once.
+///
+/// # Errors
+/// As [`check_classes`].
+pub fn check_variants<'a>(
+    variants: impl IntoIterator<Item = &'a Variant>,
+    catalogue: &Catalogue,
+) -> Result<(), SpecError> {
+    let classes = classes(catalogue);
+    let mut checked: Vec<&Arc<TaskSpec>> = Vec::new();
+    for task in variants.into_iter().map(Variant::task) {
+        if !checked.iter().any(|known| Arc::ptr_eq(known, task)) {
+            check_classes(task.name(), task, &classes)?;
+            checked.push(task);
+        }
+    }
+    Ok(())
 }
 
 /// The names of the built-in tasks.

@@ -6,10 +6,11 @@ use std::num::NonZeroU32;
 use std::str::FromStr;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 
+use driftworld::tasks::{check_variants, check_world};
 use driftworld_env::{
-    Action, Batch, BatchOptions, Effect, EndedBy, EnvError, Event, GoOn, RendererKind, WorldSource, top_down,
+    Action, Batch, BatchOptions, Catalogue, Effect, EndedBy, EnvError, Event, GoOn, RendererKind, WorldSource, top_down,
 };
-use driftworld_spec::{Modality, World};
+use driftworld_spec::{Modality, TaskSpec, Variant, World};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -29,8 +30,34 @@ pub(crate) struct PyBatch {
     /// One thread at a time has it; another that wants it meanwhile is refused.
     stepping: Mutex<Stepping>,
     supplies: Vec<Arc<Supply>>,
+    known: Known,
     /// The process that the batch was made in: its threads live nowhere else.
     process: u32,
+}
+
+/// What objects may be, and the tasks found to have nothing else.
+struct Known {
+    catalogue: Catalogue,
+    tasks: Mutex<Vec<Arc<TaskSpec>>>,
+}
+
+impl Known {
+    /// Refuses a stream of worlds with objects of classes or models that are not known.
+    fn check(&self, stream: &Stream) -> Result<()> {
+        let mut known = self.tasks.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut check = |variant: &Variant| -> Result<()> {
+            if !known.iter().any(|task| Arc::ptr_eq(task, variant.task())) {
+                check_variants([variant], &self.catalogue)?;
+                known.push(Arc::clone(variant.task()));
+            }
+            Ok(())
+        };
+        match stream {
+            Stream::Variants { variants, .. } => variants.iter().try_for_each(check),
+            Stream::Drift { drift, .. } => [drift.at(0.0, 0)?, drift.at(1.0, 0)?].iter().try_for_each(check),
+            Stream::World { world, name } => Ok(check_world(name, world, &self.catalogue)?),
+        }
+    }
 }
 
 /// What a step changes.
@@ -75,6 +102,11 @@ impl PyBatch {
         let supply =
             |stream: &Bound<'_, PyStream>| Arc::new(Supply::new(stream.get().0.clone(), Arc::clone(&overrides)));
         let supplies: Vec<Arc<Supply>> = streams.iter().map(supply).collect();
+        let known = Known {
+            catalogue: catalogue(&libraries)?,
+            tasks: Mutex::default(),
+        };
+        streams.iter().try_for_each(|stream| known.check(&stream.get().0))?;
         let options = BatchOptions {
             autoreset: word("autoreset_mode", autoreset, "next_step, same_step or disabled")?,
             num_threads,
@@ -86,13 +118,14 @@ impl PyBatch {
         let make = |go_on: GoOn<'_>| {
             let worlds = supplies.clone();
             let source: WorldSource = Arc::new(move |episode| worlds[episode.env].world());
-            Batch::with_catalogue_while(supplies.len(), source, options, &catalogue(&libraries)?, go_on)
+            Batch::with_catalogue_while(supplies.len(), source, options, &known.catalogue, go_on)
         };
         let batch = run_between_envs(py, supplies.len(), make)?;
         let actions = Vec::with_capacity(supplies.len());
         Ok(Self {
             stepping: Mutex::new(Stepping { batch, actions }),
             supplies,
+            known,
             process: std::process::id(),
         })
     }
@@ -117,6 +150,7 @@ impl PyBatch {
 
     /// Lets an environment take its worlds from another stream from its next episode on.
     fn stream(&self, env: usize, stream: &Bound<'_, PyStream>) -> Result<()> {
+        self.known.check(&stream.get().0)?;
         self.supply(env)?.stream(stream.get().0.clone());
         Ok(())
     }
@@ -126,6 +160,7 @@ impl PyBatch {
         let Stream::World { world, .. } = &stream.get().0 else {
             return Err(PyValueError::new_err("world: found a stream of variants, expected one of a world").into());
         };
+        self.known.check(&stream.get().0)?;
         self.supply(env)?.give(World::clone(world));
         Ok(())
     }

@@ -1,8 +1,12 @@
-//! [`Classes`]: which classes of objects there are, as far as a reader of documents is told. Their models are `env`'s.
+//! [`Classes`]: which classes and models of objects there are, as far as a reader of documents is told. The models themselves are
+//! `env`'s.
+
+use std::sync::Arc;
 
 use crate::error::{Problem, nearest};
+use crate::world::{Model, Object};
 
-/// The most classes that a message lists.
+/// The most classes or models that a message lists.
 const LISTED: usize = 40;
 
 /// The classes that objects may be of. Capitals do not matter.
@@ -16,10 +20,20 @@ const LISTED: usize = 40;
 /// assert!(error.to_string().ends_with("did you mean \"barrel\"? Otherwise name its library"), "{error}");
 /// # Ok::<(), driftworld_spec::SpecError>(())
 /// ```
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default)]
 pub struct Classes {
     names: Vec<String>,
+    models: Option<Arc<dyn Models>>,
     advice: Option<String>,
+}
+
+/// The models of classes. Capitals do not matter.
+pub trait Models: std::fmt::Debug + Send + Sync {
+    /// Whether a class has a model of this name or number.
+    fn has(&self, class: &str, model: &Model) -> bool;
+
+    /// The names of a class's models.
+    fn names(&self, class: &str) -> Vec<String>;
 }
 
 impl Classes {
@@ -28,7 +42,17 @@ impl Classes {
         let mut names: Vec<String> = names.into_iter().map(|name| plain(name.as_ref())).collect();
         names.sort();
         names.dedup();
-        Self { names, advice: None }
+        Self {
+            names,
+            ..Self::default()
+        }
+    }
+
+    /// Also refuses models that a class does not have.
+    #[must_use]
+    pub fn with_models(mut self, models: impl Models + 'static) -> Self {
+        self.models = Some(Arc::new(models));
+        self
     }
 
     /// Says beside every unknown class what makes it known, such as how a library is named.
@@ -48,27 +72,57 @@ impl Classes {
         if self.has(class) {
             return None;
         }
-        let listed = self.names.iter().take(LISTED).cloned().collect::<Vec<_>>().join(", ");
-        let more = self.names.len().saturating_sub(LISTED);
-        let rest = if more > 0 {
-            format!(" and {more} more")
-        } else {
-            String::new()
-        };
-        let problem = Problem::new(
-            "spec/unknown-class",
-            pointer,
-            format!("the unknown class {class:?}"),
-            format!("one of {listed}{rest}"),
-        );
         let near = nearest(class, &self.names).or_else(|| self.called_otherwise(class));
+        let found = format!("the unknown class {class:?}");
+        let problem = Problem::new("spec/unknown-class", pointer, found, one_of(&self.names));
+        Some(self.advise(problem, near))
+    }
+
+    /// What is wrong with a model that a class does not have; nothing where the class or its models are not known.
+    pub(crate) fn model_problem(&self, pointer: impl Into<String>, class: &str, model: &Model) -> Option<Problem> {
+        let models = self.models.as_ref().filter(|_| self.has(class))?;
+        if models.has(class, model) {
+            return None;
+        }
+        let names = models.names(&plain(class));
+        let found = format!("the unknown model {:?} of class {class:?}", model.0);
+        let is_counted = names.iter().zip(1..).all(|(name, number)| *name == number.to_string());
+        let expected = match names.len() {
+            count if is_counted && count > 2 => format!("one of 1 to {count}"),
+            _ => one_of(&names),
+        };
+        let problem = Problem::new("spec/unknown-model", pointer, found, expected);
+        Some(self.advise(problem, nearest(&model.0, &names).filter(|_| !is_counted)))
+    }
+
+    /// What is wrong with the class and the models of an object.
+    pub(crate) fn problems(&self, pointer: &str, object: &Object) -> impl Iterator<Item = Problem> + use<> {
+        let class = self.problem(format!("{pointer}/class"), &object.class);
+        let models = [
+            ("model", Some(&object.model)),
+            ("body_model", object.body_model.as_ref()),
+        ];
+        let models = models.map(|(key, model)| self.model_problem(format!("{pointer}/{key}"), &object.class, model?));
+        class.into_iter().chain(models.into_iter().flatten())
+    }
+
+    fn advise(&self, problem: Problem, near: Option<String>) -> Problem {
         let near = near.map(|near| format!("did you mean {near:?}?"));
-        Some(match (near, &self.advice) {
+        match (near, &self.advice) {
             (Some(near), Some(advice)) => problem.advise(format!("{near} Otherwise {advice}")),
             (Some(near), None) => problem.advise(near),
             (None, Some(advice)) => problem.advise(advice.clone()),
             (None, None) => problem,
-        })
+        }
+    }
+}
+
+/// The first of some names, and how many more there are.
+fn one_of(names: &[String]) -> String {
+    let listed = names.iter().take(LISTED).cloned().collect::<Vec<_>>().join(", ");
+    match names.len().saturating_sub(LISTED) {
+        0 => format!("one of {listed}"),
+        more => format!("one of {listed} and {more} more"),
     }
 }
 

@@ -26,7 +26,7 @@ mod version;
 mod warning;
 mod world;
 
-pub use classes::Classes;
+pub use classes::{Classes, Models};
 pub use color::Color;
 pub use distribution::{
     CellKind, CellRoom, Channel, ChannelChance, ChannelSpread, Channels, Distribution, Moments, Number, Order,

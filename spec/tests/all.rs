@@ -9,6 +9,7 @@ mod documents;
 mod json_parameters;
 mod l2explorer;
 mod layouts;
+mod models;
 mod names;
 mod requirements;
 mod schemas;

@@ -113,6 +113,12 @@ fn cases() -> Vec<SpecError> {
             Some(&Classes::new(["shrub", "tree"]).with_advice("name the library that has it")),
         )
         .expect_err("there is no such class"),
+        World::from_json_with(
+            "w.json",
+            r#"{ "objects": [{ "class": "tree", "model": "oka", "coordinates": [1, 1] }] }"#,
+            Some(&Classes::new(["tree"]).with_models(crate::models::Wood)),
+        )
+        .expect_err("there is no such model"),
         limited
             .variant("default")
             .expect_err("the default breaks the requirement"),

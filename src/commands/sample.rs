@@ -11,6 +11,7 @@ use clap::{Args, ValueEnum};
 use driftworld_atomic_files::AtomicFile;
 use rayon::prelude::*;
 
+use super::assets::LibraryChoice;
 use super::interrupt::Interrupt;
 use crate::{Failure, worlds};
 
@@ -71,6 +72,8 @@ pub(crate) struct Sample {
     /// Use the layouts in this maps file, or folder of them, instead of the built-in maps.
     #[arg(long, value_name = "PATH")]
     maps: Option<PathBuf>,
+    #[command(flatten)]
+    libraries: LibraryChoice,
     /// Write one world per line instead of indented files.
     #[arg(long)]
     jsonl: bool,
@@ -205,6 +208,8 @@ impl Sample {
                 count,
             },
         };
+        let catalogue = self.libraries.catalogue()?;
+        tasks::check_variants([variant], &catalogue)?;
         let maps = self.maps.as_deref().map(worlds::maps).transpose()?.map(Arc::new);
         let Some(name) = &self.drift_to else {
             let mut sampler = Sampler::new(variant, self.seed).with_sequence(sequence);
@@ -219,6 +224,7 @@ impl Sample {
             Some(_) => tasks::variant(name)?,
             None => variant.task().variant(name)?,
         };
+        tasks::check_variants([&to], &catalogue)?;
         let drift = match self.mix {
             None => Drift::new(variant.clone(), to)?,
             Some(Mix::Parameter) => Drift::new(variant.clone(), to)?.with_switch(Switch::Mixture { seed: self.seed }),

@@ -52,6 +52,7 @@ pub fn elements_of(task: &Arc<TaskSpec>, request: &ElementsRequest) -> Result<El
     request.check()?;
     let compared = request.variants_of(task)?;
     let trial = Trial::new(request)?;
+    tasks::check_variants(&compared, &trial.experiment.catalogue)?;
     let mut outcome = ElementsOutcome::new(request, task.name());
     if let Some((base, others)) = compared.split_first() {
         base.name().clone_into(&mut outcome.base);

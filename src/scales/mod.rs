@@ -68,6 +68,7 @@ pub fn scales(request: &ScalesRequest, progress: &(dyn Fn() + Sync)) -> Result<S
     }
     let catalogue = libraries::catalogue(&request.libraries)?;
     let variants = tasks::variants_of(&request.tasks)?;
+    tasks::check_variants(variants.iter().map(|(_, variant)| variant), &catalogue)?;
     let measure = |(_, variant): &(String, Variant)| {
         let found = of_variant(variant, request, &catalogue)?;
         progress();

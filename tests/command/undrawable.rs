@@ -164,6 +164,77 @@ fn a_class_that_nobody_knows_is_an_error_that_says_how_a_library_is_named() {
     assert!(fail_in(here, 1, &["run", "s.json", "--agent", "random"]).contains("bushh"));
 }
 
+#[test]
+fn a_model_that_its_class_does_not_have_is_refused_by_everything_that_trains_on_it() {
+    let folder = scratch();
+    let here = folder.path();
+    let check = |class: &str, model: &str, expected: &[&str]| {
+        let object = format!(r#"{{ "class": "{class}", "model": {model}"#);
+        let task = format!(
+            r#"{{ "version": 2, "name": "t", "parameters": {{ "m": {{ "role": "variant", "type": "string", "affects": ["S"],
+                "choices": ["1", "foxx"], "default": "1" }} }}, "variants": {{ "plain": {{}} }}, "world": {{ "max_steps": 3 }},
+                "groups": [{{ "name": "g", "count": 1, "object": {object} }}, "placement": {{ "disc": {{ "center": [0, 0], "radius": 9 }} }} }}] }}"#
+        );
+        write(&here.join("t.json"), &task);
+        let scenario = r#"{ "version": 1, "name": "s", "blocks": [{ "type": "learning", "regimes": [{ "task": "t.json", "variant": "default", "count": 1 }] }] }"#;
+        write(&here.join("s.json"), scenario);
+        let mut commands = vec![
+            "validate t.json",
+            "validate s.json",
+            "validate t.json --worlds 1",
+            "curriculum t.json -o c.json",
+            "run s.json --agent random",
+            "sample t.json#plain",
+            "scales t.json --worlds 2",
+            "elements t.json",
+        ];
+        if !model.contains("param") {
+            write(
+                &here.join("w.json"),
+                &format!(r#"{{ "objects": [{object}, "coordinates": [3, 4] }}] }}"#),
+            );
+            commands.push("validate w.json");
+        }
+        for command in commands {
+            let said = output(&mut driftworld_in(here, command));
+            let error = String::from_utf8_lossy(&said.stderr).into_owned();
+            assert_eq!(said.status.success(), expected.is_empty(), "{command}: {error}");
+            assert!(expected.iter().all(|part| error.contains(part)), "{command}: {error}");
+        }
+    };
+    let advice = "--assets LIBRARY";
+    check(
+        "animal",
+        "\"foxx\"",
+        &[
+            "/model): found the unknown model \"foxx\" of class \"animal\"",
+            "did you mean \"fox\"?",
+            advice,
+        ],
+    );
+    check(
+        "geometric",
+        "\"9\"",
+        &["expected one of cube, sphere, cylinder", advice],
+    );
+    check("tree", "50", &["expected one of 1 to 49", advice]);
+    check(
+        "animal",
+        r#"{ "param": "m" }"#,
+        &["found the unknown model \"foxx\"", advice],
+    );
+    check("geometric", "\"Sphere\"", &[]);
+    // What the original does not know it draws all the same.
+    let original = r#"{ "objects": [{ "class": "Tree", "model": "77", "coordinates": ["3", 4] }] }"#;
+    write(&here.join("o.json"), original);
+    let said = output(&mut driftworld_in(here, "validate --l2explorer o.json"));
+    let warned = String::from_utf8_lossy(&said.stderr).into_owned();
+    assert!(
+        said.status.success() && warned.contains("model \"77\" of class \"tree\"; a placeholder stands there"),
+        "{warned}"
+    );
+}
+
 /// What a library has is known where it is named.
 #[cfg(feature = "gltf")]
 #[test]

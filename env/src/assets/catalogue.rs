@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
-use driftworld_spec::{Classes, Model, Style};
+use driftworld_spec::{Classes, Model, Models, Style};
 
 use super::library::{Library, LibraryModel};
 use super::{Asset, Lettering, asset_in, builtin, sign};
@@ -104,9 +104,10 @@ impl Catalogue {
             .map(|class| (class, self.class_number(class)))
     }
 
-    /// The classes that it has models of: the built-in ones, and those of its libraries.
+    /// The classes that it has models of, with these: the built-in ones, and those of its libraries.
     pub fn classes(&self) -> Classes {
         Classes::new(builtin::class_names().chain(self.models.keys().map(|(class, _)| class.as_str())))
+            .with_models(self.clone())
     }
 
     /// The asset of a class and model; what nobody knows is a placeholder.
@@ -136,6 +137,24 @@ impl Catalogue {
             Some(number) => sign(number, text, color.map(Lettering::on).unwrap_or_default()),
             None => self.asset(class, model),
         }
+    }
+}
+
+impl Models for Catalogue {
+    fn has(&self, class: &str, model: &Model) -> bool {
+        let key = key(class, &model.0);
+        builtin::number(&key.0, model).is_some() || self.models.contains_key(&key)
+    }
+
+    fn names(&self, class: &str) -> Vec<String> {
+        let own = self
+            .models
+            .keys()
+            .filter(|(of, _)| of == class)
+            .map(|(_, name)| name.clone());
+        let mut names: Vec<String> = builtin::model_names(class).map(str::to_owned).collect();
+        names.extend(own);
+        names
     }
 }
 

@@ -116,7 +116,7 @@ impl TaskSpec {
         Self::from_json_with(name, text, None)
     }
 
-    /// As [`TaskSpec::from_json`], and refuses objects whose classes are none of these, where it is told any.
+    /// As [`TaskSpec::from_json`], and refuses objects whose classes or models are none of these, where it is told any.
     ///
     /// # Errors
     /// As [`TaskSpec::from_json`].
@@ -143,7 +143,7 @@ impl TaskSpec {
         }
     }
 
-    /// Every object whose class is, or can be, none of these.
+    /// Every object whose class or model is, or can be, none of these.
     pub fn unknown_classes(&self, classes: &Classes) -> Vec<Problem> {
         // All else has been found sound.
         check::compile(self.document.clone(), Some(classes), check::Unsound::default())

@@ -110,7 +110,7 @@ impl World {
         Self::from_json_with(name, text, None)
     }
 
-    /// As [`World::from_json`], and refuses objects whose classes are none of these, where it is told any.
+    /// As [`World::from_json`], and refuses objects whose classes or models are none of these, where it is told any.
     ///
     /// # Errors
     /// As [`World::from_json`].
@@ -160,11 +160,11 @@ impl World {
 }
 
 impl WorldDraft {
-    /// Every object whose class is none of these.
+    /// Every object whose class or model is none of these.
     pub fn unknown_classes(&self, classes: &Classes) -> Vec<Problem> {
         let objects = self.objects.iter().enumerate();
         objects
-            .filter_map(|(index, object)| classes.problem(format!("/objects/{index}/class"), &object.class))
+            .flat_map(|(index, object)| classes.problems(&format!("/objects/{index}"), object))
             .collect()
     }
 }

@@ -1,13 +1,25 @@
 //! Templates of worlds and objects: whether each hole is one that may vary, and takes every value that it can be given.
 
+use indexmap::IndexMap;
 use serde_json::Value as Json;
 
-use super::super::template::{Hole, Opening, Template, openings};
+use super::super::template::{Hole, Opening, Source, Template, openings};
+use super::super::variant;
 use super::Check;
 use crate::describe::{describe, pointer_of};
+use crate::distribution::{Distribution, Number};
 use crate::error::Problem;
 use crate::value::Value;
-use crate::world::{Object, WorldDraft};
+use crate::world::{Model, Object, WorldDraft};
+
+/// The texts among some values.
+fn texts(values: Vec<Value>) -> Vec<String> {
+    let text = |value| match value {
+        Value::Text(text) => Some(text),
+        _ => None,
+    };
+    values.into_iter().filter_map(text).collect()
+}
 
 impl Check<'_> {
     /// The world's template and those of the objects it holds.
@@ -43,22 +55,75 @@ impl Check<'_> {
         Some(template)
     }
 
-    /// Whether the classes that an object can be of are known.
+    /// Whether the classes that an object can be of are known, and the models that it can have of them.
     fn known_class(&mut self, root: &str, template: &Template<Object>) {
         let Some(classes) = self.classes else { return };
+        let hole = |key: &str| template.holes.iter().find(|hole| hole.pointer == key);
+        let texts = |hole: &Hole<Object>| texts(self.candidates(&hole.source, hole.kind));
         let pointer = format!("{root}/class");
-        let hole = template.holes.iter().find(|hole| hole.pointer == "/class");
-        let found = match hole {
-            None => classes.problem(&pointer, &template.base.class),
-            Some(hole) => self
-                .candidates(&hole.source, hole.kind)
+        let class_hole = hole("/class");
+        let all = class_hole.map_or_else(|| vec![template.base.class.clone()], texts);
+        let mut found: Vec<Problem> = all
+            .iter()
+            .find_map(|class| classes.problem(&pointer, class))
+            .into_iter()
+            .collect();
+        for (key, base) in [
+            ("/model", Some(&template.base.model)),
+            ("/body_model", template.base.body_model.as_ref()),
+        ] {
+            let pointer = format!("{root}{key}");
+            let unknown =
+                |class: &String, model: &String| classes.model_problem(&pointer, class, &Model(model.clone()));
+            let of_any = |classes: &[String], models: &[String]| {
+                let mut of_class = classes
+                    .iter()
+                    .flat_map(|class| models.iter().map(move |model| (class, model)));
+                of_class.find_map(|(class, model)| unknown(class, model))
+            };
+            let models = hole(key).map_or_else(|| Vec::from_iter(base.map(|model| model.0.clone())), texts);
+            let (Some(class), Some(model)) = (class_hole, hole(key)) else {
+                found.extend(of_any(&all, &models));
+                continue;
+            };
+            // Variants choose which models meet which classes; yet each model is one of some class.
+            let nobodys = |model: &&String| all.iter().all(|class| unknown(class, model).is_some());
+            let nobodys = models
                 .iter()
-                .find_map(|value| match value {
-                    Value::Text(class) => classes.problem(&pointer, class),
-                    _ => None,
-                }),
-        };
+                .find(nobodys)
+                .and_then(|model| unknown(all.first()?, model));
+            found.extend(nobodys.or_else(|| {
+                let mut met = self
+                    .variants
+                    .iter()
+                    .map(|(_, values)| [class, model].map(|hole| self.texts_in(values, &hole.source)));
+                met.find_map(|[classes, models]| of_any(&classes, &models))
+            }));
+        }
         self.problems.extend(found);
+    }
+
+    /// The texts that a source can give in a variant of these values.
+    fn texts_in(&self, values: &IndexMap<String, Value>, source: &Source) -> Vec<String> {
+        let drawn = |law: &Distribution<Number>| {
+            let law = variant::settle(values, law).ok();
+            texts(
+                law.map(|law| law.support().unwrap_or_else(|| vec![law.example()]))
+                    .unwrap_or_default(),
+            )
+        };
+        match source {
+            Source::Distribution(law) => drawn(law),
+            Source::Param(reference) => match values.get(&reference.param) {
+                Some(Value::Distribution(law)) => drawn(law),
+                Some(value) => texts(value.at(reference.index).into_iter().collect()),
+                None => {
+                    let parameter = self.parameters.get(&reference.param);
+                    let source = parameter.and_then(|parameter| parameter.distribution.as_ref());
+                    source.map(|source| self.texts_in(values, source)).unwrap_or_default()
+                }
+            },
+        }
     }
 
     /// A template: each hole checked, and the rest read with an example in each hole.
