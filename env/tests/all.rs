@@ -15,6 +15,7 @@ mod errands;
 mod expert_of_puzzles;
 mod expert_of_what_remains;
 mod expert_of_zones;
+mod finite;
 mod hostile;
 mod import;
 mod layouts;

@@ -102,6 +102,10 @@ fn slide(bodies: &mut CollisionWorld, from: [f32; 2], by: [f32; 2], budget: &mut
     }
     let end = bodies.scratch.path.last().copied().unwrap_or(start);
     let mut place = end.map(|metres| metres as f32);
+    if !place.iter().all(|metres| metres.is_finite()) {
+        bodies.scratch.path.truncate(1);
+        return from;
+    }
     let inside = bodies.half.map(|half| half - (bodies.radius + SKIN) as f32);
     let is_within = (0..2).all(|axis| inside[axis] > 0.0 && from[axis].abs() <= inside[axis] + SKIN as f32);
     for axis in 0..2 {

@@ -132,8 +132,7 @@ pub(super) fn slowed(intent: Intent, state: &SimState, zones: &Zones) -> Intent 
         return intent;
     }
     let here = state.agent.position.map(f64::from);
-    let factor: f64 = zones.around(here).map(|zone| zone.speed_factor).product();
-    let factor = factor as f32;
+    let factor = Zone::speed_factor_of(zones.around(here).map(|zone| zone.speed_factor)) as f32;
     Intent {
         ahead: intent.ahead * factor,
         towards: intent.towards.map(|(point, reach)| (point, reach * factor)),

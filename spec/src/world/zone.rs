@@ -44,7 +44,8 @@ fields! {
         #[serde(default, skip_serializing_if = "is_default")]
         #[schemars(range(min = -1e9, max = 1e9))]
         pub reward_on_entering: f64 => Field::ours(Measured(&[ZonePay])),
-        /// Factor on how fast the agent goes, by where it is at the beginning of a time step.
+        /// Factor on how fast the agent goes, by where it is at the beginning of a time step. Factors of zones that overlap multiply,
+        /// to at most 100.
         #[serde(default = "one", skip_serializing_if = "is_one")]
         #[schemars(range(min = 0.0, max = 100.0))]
         pub speed_factor: f64 => Field::ours(Measured(&[Zones])),
@@ -92,6 +93,9 @@ pub enum ZoneEnd {
 
 word!(ZoneEnd);
 
+/// The largest factor on the agent's speed, of one zone or of several.
+const MOST_SPEED_FACTOR: f64 = 100.0;
+
 impl Zone {
     /// A round zone that does nothing; all else is at its default.
     pub fn disc(center: [f64; 2], radius: f64) -> Self {
@@ -107,6 +111,15 @@ impl Zone {
             color: None,
             visible: true,
         }
+    }
+
+    /// The factor on the agent's speed of zones that overlap.
+    pub fn speed_factor_of(factors: impl IntoIterator<Item = f64>) -> f64 {
+        // The product itself may leave the numbers that there are, and a factor of 0 behind it would make it none.
+        let product = factors
+            .into_iter()
+            .fold(1.0, |product: f64, factor| (product * factor).min(1e300));
+        product.min(MOST_SPEED_FACTOR)
     }
 
     /// A zone of these corners that does nothing; all else is at its default.

@@ -68,7 +68,7 @@ impl Tolls {
             let margin = if zone.is_costly() { seal(grid) } else { 0.0 };
             for cell in cells(zone, margin, grid) {
                 pay[cell] -= zone.reward_per_second;
-                pace[cell] *= zone.speed_factor;
+                pace[cell] = Zone::speed_factor_of([pace[cell], zone.speed_factor]);
                 if is_trap {
                     weight[cell] = weight[cell].saturating_mul(COSTS);
                 }
