@@ -10,6 +10,7 @@ mod json_parameters;
 mod l2explorer;
 mod layouts;
 mod models;
+mod mutations;
 mod names;
 mod requirements;
 mod schemas;

@@ -3,6 +3,8 @@
 use driftworld_text::{WordKind, removed};
 use serde_json::Value;
 
+use crate::error::nearest;
+
 /// The advice for a word that earlier releases took at a place.
 pub(super) fn for_removed(pointer: &str, value: &Value) -> Option<String> {
     let kind = match pointer.rsplit('/').next()? {
@@ -25,6 +27,12 @@ pub(super) fn for_types(value: &Value, allows: impl Fn(&str) -> bool) -> Option<
         _ => return None,
     };
     allows("boolean").then(|| format!("write {truth}, without quotes"))
+}
+
+/// The advice for a word that stands alone where a list of such words is wanted.
+pub(super) fn for_word_of_list(value: &Value, words: &[&str]) -> Option<String> {
+    let near = nearest(value.as_str()?, words)?;
+    Some(format!("write [{near:?}]"))
 }
 
 fn for_number(text: &str) -> Option<String> {

@@ -7,7 +7,7 @@ use jsonschema::error::{TypeKind, ValidationErrorKind};
 use serde_json::Value;
 
 use super::advice;
-use super::wording::{code_of, either, expected};
+use super::wording::{code_of, either, expected, words_of};
 use crate::describe::{describe, escape};
 use crate::error::{MAX_PROBLEMS, Problem};
 use crate::world::TEXT_PATTERN;
@@ -131,10 +131,15 @@ impl Explainer<'_> {
             self.expected(error),
         );
         let advice = match error.kind() {
-            ValidationErrorKind::Type { kind } => advice::for_types(value, |name| match kind {
-                TypeKind::Single(kind) => kind.to_string() == name,
-                TypeKind::Multiple(kinds) => kinds.iter().any(|kind| kind.to_string() == name),
-            }),
+            ValidationErrorKind::Type { kind } => {
+                let words = words_of(self.schema, &self.parent(error)["items"]);
+                advice::for_word_of_list(value, &words).or_else(|| {
+                    advice::for_types(value, |name| match kind {
+                        TypeKind::Single(kind) => kind.to_string() == name,
+                        TypeKind::Multiple(kinds) => kinds.iter().any(|kind| kind.to_string() == name),
+                    })
+                })
+            }
             ValidationErrorKind::Pattern { pattern } if pattern == TEXT_PATTERN => in_capitals(value),
             ValidationErrorKind::Pattern { .. } => renamed(value),
             _ => None,
@@ -151,7 +156,7 @@ impl Explainer<'_> {
                 let words = options.as_array().into_iter().flatten().map(describe);
                 format!("one of {}", words.collect::<Vec<_>>().join(", "))
             }
-            _ => expected(error, self.parent(error)),
+            _ => expected(error, self.schema, self.parent(error)),
         }
     }
 

@@ -5,7 +5,7 @@ use jsonschema::error::ValidationErrorKind;
 use serde_json::{Map, Value};
 
 use super::explain::{Explainer, Finding, missing_key};
-use super::wording::{article, both, either, object};
+use super::wording::{article, both, either, list, object, words_of};
 use super::{advice, color};
 use crate::describe::describe;
 use crate::error::{Problem, nearest};
@@ -19,6 +19,10 @@ struct Form<'a, 'e> {
     schema: &'a Value,
     /// The definition that it belongs to, if messages know that by name.
     name: Option<&'a str>,
+    /// What it is called if it is a list.
+    list: String,
+    /// The words that may stand in it, if it is a list of words.
+    listed: Vec<&'a str>,
     errors: Vec<&'e ValidationError<'static>>,
 }
 
@@ -70,7 +74,8 @@ impl Form<'_, '_> {
 
     /// Whether it is a list of three: a colour whose channels may be parameters, or a number for each channel.
     fn is_a_triple(&self) -> bool {
-        self.name.is_none() && self.has_type("array") && self.schema["maxItems"] == 3
+        let of_words = !self.listed.is_empty();
+        self.name.is_none() && self.has_type("array") && self.schema["maxItems"] == 3 && !of_words
     }
 
     /// The words that this form consists of.
@@ -100,6 +105,7 @@ impl Form<'_, '_> {
             }
             None if self.has_type("array") && of_numbers => (7, "a list of numbers".to_owned()),
             None if self.is_a_triple() => (7, "a list of three numbers or parameters".to_owned()),
+            None if self.has_type("array") => (7, self.list.clone()),
             None => match self.tag() {
                 Some(tag) => (8, format!("{{{tag:?}: …}}")),
                 None if self.has_type("object") => (8, object(self.schema)),
@@ -224,6 +230,8 @@ impl Explainer<'_> {
                 _ => forms.push(Form {
                     schema,
                     name,
+                    list: list(self.schema, schema),
+                    listed: words_of(self.schema, &schema["items"]),
                     errors: errors.iter().collect(),
                 }),
             }
@@ -354,7 +362,10 @@ fn advice_for(value: &Value, forms: &[Form], words: &[&str]) -> Option<String> {
             if let Some(near) = nearest(text, &tags) {
                 return Some(format!("did you mean {{{near:?}: …}}?"));
             }
-            advice::for_types(value, |name| forms.iter().any(|form| form.has_type(name)))
+            let listed = forms
+                .iter()
+                .find_map(|form| advice::for_word_of_list(value, &form.listed));
+            listed.or_else(|| advice::for_types(value, |name| forms.iter().any(|form| form.has_type(name))))
         }
         Value::Object(object) => {
             let named = ["type", "kind", "name", "distribution"]

@@ -5,6 +5,7 @@ use jsonschema::ValidationError;
 use jsonschema::error::{TypeKind, ValidationErrorKind};
 use serde_json::Value;
 
+use super::part;
 use crate::world::TEXT_PATTERN;
 
 pub(super) fn code_of(kind: &ValidationErrorKind) -> &'static str {
@@ -19,9 +20,12 @@ pub(super) fn code_of(kind: &ValidationErrorKind) -> &'static str {
     }
 }
 
-/// What an error says was expected; `schema` is the part of the schema that holds the keyword at fault.
-pub(super) fn expected(error: &ValidationError, schema: &Value) -> String {
+/// What an error says was expected; `schema` is the part of the schema, `root`, that holds the keyword at fault.
+pub(super) fn expected(error: &ValidationError, root: &Value, schema: &Value) -> String {
     match error.kind() {
+        ValidationErrorKind::Type {
+            kind: TypeKind::Single(kind),
+        } if kind.to_string() == "array" => list(root, schema),
         ValidationErrorKind::Type {
             kind: TypeKind::Single(kind),
         } if kind.to_string() == "object" => object(schema),
@@ -32,8 +36,15 @@ pub(super) fn expected(error: &ValidationError, schema: &Value) -> String {
             kind: TypeKind::Multiple(kinds),
         } => {
             // Null stands for an absent key, which nobody who wrote a value wants to hear of.
-            let kinds = kinds.iter().map(|kind| kind.to_string());
-            either(kinds.filter(|kind| kind != "null").map(|kind| article(&kind)).collect())
+            let kinds = kinds.iter().map(|kind| kind.to_string()).filter(|kind| kind != "null");
+            let word = |kind: String| {
+                if kind == "array" {
+                    list(root, schema)
+                } else {
+                    article(&kind)
+                }
+            };
+            either(kinds.map(word).collect())
         }
         ValidationErrorKind::Minimum { limit } => format!("at least {}", plain(limit)),
         ValidationErrorKind::Maximum { limit } => format!("at most {}", plain(limit)),
@@ -90,6 +101,43 @@ pub(super) fn article(kind: &str) -> String {
         "boolean" => "true or false".to_owned(),
         "string" => "text".to_owned(),
         other => format!("a {other}"),
+    }
+}
+
+/// The words that a part of a schema allows, where it allows nothing else.
+pub(super) fn words_of<'a>(root: &'a Value, part: &'a Value) -> Vec<&'a str> {
+    let part = part::resolve(root, part);
+    let forms = part
+        .get("oneOf")
+        .and_then(Value::as_array)
+        .map_or(std::slice::from_ref(part), Vec::as_slice);
+    let words = forms.iter().map(|form| {
+        let options = form["enum"]
+            .as_array()
+            .map(Vec::as_slice)
+            .or_else(|| form.get("const").map(std::slice::from_ref));
+        options?.iter().map(Value::as_str).collect::<Option<Vec<_>>>()
+    });
+    words.collect::<Option<Vec<_>>>().unwrap_or_default().concat()
+}
+
+/// A list of a schema, by what stands in it.
+pub(super) fn list(root: &Value, schema: &Value) -> String {
+    let items = part::resolve(root, &schema["items"]);
+    let words = words_of(root, items);
+    match items["type"].as_str() {
+        _ if !words.is_empty() => {
+            let words: Vec<String> = words.iter().map(|word| format!("{word:?}")).collect();
+            format!("a list of words ({})", words.join(", "))
+        }
+        Some("number" | "integer") if schema["minItems"] == 2 && schema["maxItems"] == 2 => {
+            "a list of two numbers".to_owned()
+        }
+        Some("number" | "integer") => "a list of numbers".to_owned(),
+        Some("string") => "a list of texts".to_owned(),
+        Some("object") => "a list of objects".to_owned(),
+        Some("array") => "a list of lists".to_owned(),
+        _ => article("array"),
     }
 }
 

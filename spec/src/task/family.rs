@@ -364,13 +364,13 @@ pub(crate) fn problems(
     parameters: &IndexMap<String, Parameter>,
     name: &str,
     spec: &VariantSpec,
-    problem_of: impl Fn(&str, &str, &Value) -> Option<Problem>,
+    problems_of: impl Fn(&str, &str, &Value) -> Vec<Problem>,
 ) -> Vec<Problem> {
     let pointer = format!("/variants/{}", escape(name));
     let mut found = Vec::new();
     for (parameter, values) in &spec.grid {
         for (index, value) in values.iter().enumerate() {
-            found.extend(problem_of(
+            found.extend(problems_of(
                 &format!("{pointer}/grid/{}/{index}", escape(parameter)),
                 parameter,
                 value,
@@ -396,9 +396,9 @@ pub(crate) fn problems(
             } else {
                 at.clone()
             };
-            let problem = problem_of(&place, parameter, &value);
-            let unknown = known.is_none() && problem.is_some();
-            found.extend(problem);
+            let problems = problems_of(&place, parameter, &value);
+            let unknown = known.is_none() && !problems.is_empty();
+            found.extend(problems);
             if unknown {
                 break;
             }

@@ -1,5 +1,7 @@
 //! One declared parameter: its role, type and domain. The values that variants give it are in `variant.rs`.
 
+use std::sync::LazyLock;
+
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::json;
@@ -8,8 +10,10 @@ use super::compare::Compare;
 use super::layouts;
 use super::template::Source;
 use crate::describe::escape;
+use crate::distribution::{Distribution, Number};
 use crate::element::Element;
 use crate::error::{Problem, cut};
+use crate::schema::document::DocumentSchema;
 use crate::value::{ParameterType, Value};
 
 /// Who settles a parameter's value, and when.
@@ -166,6 +170,41 @@ fn require_what_the_role_needs(schema: &mut schemars::Schema) {
     schema.insert("allOf".to_owned(), json!(rules));
 }
 
+/// The one place where two values of the same build differ; `None` where they differ as wholes, or in more than one.
+fn only_difference(found: &serde_json::Value, choice: &serde_json::Value, pointer: &str) -> Option<Problem> {
+    use serde_json::Value as Json;
+    let inner: Vec<(String, Option<&Json>, Option<&Json>)> = match (found, choice) {
+        (Json::Object(found), Json::Object(choice)) => {
+            let missing = choice.keys().filter(|key| !found.contains_key(*key));
+            let keys = found.keys().chain(missing);
+            keys.map(|key| (escape(key), found.get(key), choice.get(key))).collect()
+        }
+        (Json::Array(found), Json::Array(choice)) if found.len() == choice.len() => {
+            let pairs = found.iter().zip(choice).enumerate();
+            pairs
+                .map(|(index, (found, choice))| (index.to_string(), Some(found), Some(choice)))
+                .collect()
+        }
+        _ => return None,
+    };
+    let mut different = inner.into_iter().filter(|(_, found, choice)| found != choice);
+    let (key, found, choice) = different.next().filter(|_| different.next().is_none())?;
+    let pointer = format!("{pointer}/{key}");
+    let or = |value: Option<&Json>, absent: &str| value.map_or_else(|| absent.to_owned(), Json::to_string);
+    let whole = || {
+        Problem::new(
+            "spec/value",
+            pointer.as_str(),
+            or(found, "nothing"),
+            or(choice, "no such key"),
+        )
+    };
+    let deeper = found
+        .zip(choice)
+        .and_then(|(found, choice)| only_difference(found, choice, &pointer));
+    Some(deeper.unwrap_or_else(whole))
+}
+
 impl Parameter {
     /// Whether it touches this element, or its fine one, and no other.
     pub fn affects_only(&self, element: Element) -> bool {
@@ -199,6 +238,53 @@ impl Parameter {
                 Err(format!("one of {}{more}", shown.join(", ")))
             }
             _ => Ok(typed),
+        }
+    }
+
+    /// What is wrong with a value that stands at a pointer, as narrowly as its type and the choices can say.
+    pub(crate) fn value_problems(&self, pointer: &str, value: &Value) -> Vec<Problem> {
+        let Err(expected) = self.accept(value) else {
+            return Vec::new();
+        };
+        let json = value.to_json();
+        let within = |problem: Problem| problem.within(pointer);
+        let of_type = self.type_problems(&json);
+        if !of_type.is_empty() {
+            return of_type.into_iter().map(within).collect();
+        }
+        let choices = self.choices.iter().flatten();
+        let alike = choices.enumerate().find_map(|(index, choice)| {
+            let difference = only_difference(&json, &choice.to_json(), "")?;
+            Some(within(difference).advise(format!("choice {index} is the same but for this")))
+        });
+        if let Some(alike) = alike {
+            return vec![alike];
+        }
+        let word = if let Value::Text(word) = value {
+            word.as_str()
+        } else {
+            ""
+        };
+        let choices: Vec<String> = self.choices.iter().flatten().map(ToString::to_string).collect();
+        vec![Problem::new("spec/value", pointer, value.to_string(), expected).suggest(word, choices)]
+    }
+
+    /// What keeps JSON from being of this type, where the type has parts; places are within the value.
+    fn type_problems(&self, json: &serde_json::Value) -> Vec<Problem> {
+        static DISTRIBUTION: LazyLock<DocumentSchema> =
+            LazyLock::new(|| DocumentSchema::of::<Distribution<Number>>("distribution", "Distribution"));
+        let list = |length: usize| {
+            let number = json!({ "type": "number" });
+            DocumentSchema::new(json!({ "type": "array", "items": number, "minItems": length, "maxItems": length }))
+        };
+        match self.kind {
+            ParameterType::Distribution => DISTRIBUTION.problems(json).problems,
+            ParameterType::Layout => layouts::problems(json),
+            ParameterType::Point => list(2).problems(json).problems,
+            ParameterType::Vector => self
+                .vector_length()
+                .map_or_else(Vec::new, |length| list(length).problems(json).problems),
+            _ => Vec::new(),
         }
     }
 
@@ -302,10 +388,8 @@ impl Parameter {
         if let Some(compare) = &self.compare {
             problems.extend(compare.problems(&at("compare"), self));
         }
-        if let (Some(default), true) = (&self.default, problems.is_empty())
-            && let Err(expected) = self.accept(default)
-        {
-            problems.push(Problem::new("spec/value", at("default"), default.to_string(), expected));
+        if let (Some(default), true) = (&self.default, problems.is_empty()) {
+            problems.extend(self.value_problems(&at("default"), default));
         }
         if self.role == Role::Randomized && self.kind == ParameterType::Distribution {
             let advice = "draw from it where it is used: { \"param\": … } in place of a distribution";

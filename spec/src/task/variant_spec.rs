@@ -2,7 +2,6 @@
 //! variants of a checked task are in `variant.rs`, families in `family.rs`.
 
 use std::collections::BTreeSet;
-use std::sync::LazyLock;
 
 use driftworld_text::IDENTIFIER_PATTERN;
 use indexmap::IndexMap;
@@ -13,10 +12,8 @@ use super::DEFAULT_VARIANT;
 use super::family::{Sweep, Variants};
 use super::parameter::{Parameter, Role};
 use crate::describe::escape;
-use crate::distribution::{Distribution, Number};
 use crate::error::{MAX_PROBLEMS, Problem, first_of, nearest};
-use crate::schema::document::DocumentSchema;
-use crate::value::{ParameterType, Value};
+use crate::value::Value;
 
 /// A variant, or a family of them, as a document declares it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -175,10 +172,10 @@ pub(crate) fn problems(
         .collect();
     problems.dedup();
     let check = |pointer: &str, parameter: &str, value: &Value| {
-        let known = !is_unsound(parameter);
-        known
-            .then(|| problem_of(parameters, pointer, parameter, value))
-            .flatten()
+        if is_unsound(parameter) {
+            return Vec::new();
+        }
+        problems_of(parameters, pointer, parameter, value)
     };
     for (name, variant) in document {
         for (parameter, value) in &variant.values {
@@ -196,19 +193,7 @@ pub(crate) fn problems(
     problems
 }
 
-/// Why a value is no distribution, where the parameter is one and the value may have been meant to be.
-fn distribution_problem(parameter: &Parameter, pointer: &str, value: &Value) -> Option<Problem> {
-    static SCHEMA: LazyLock<DocumentSchema> =
-        LazyLock::new(|| DocumentSchema::of::<Distribution<Number>>("distribution", "Distribution"));
-    if parameter.kind != ParameterType::Distribution || !matches!(value, Value::Json(_)) {
-        return None;
-    }
-    let mut problem = SCHEMA.problems(&value.to_json()).problems.into_iter().next()?;
-    problem.pointer.insert_str(0, pointer);
-    Some(problem)
-}
-
-fn problem_of(parameters: &IndexMap<String, Parameter>, pointer: &str, name: &str, value: &Value) -> Option<Problem> {
+fn problems_of(parameters: &IndexMap<String, Parameter>, pointer: &str, name: &str, value: &Value) -> Vec<Problem> {
     let Some(parameter) = parameters.get(name) else {
         let known: Vec<&String> = parameters
             .iter()
@@ -218,10 +203,10 @@ fn problem_of(parameters: &IndexMap<String, Parameter>, pointer: &str, name: &st
         let expected = format!("a variant parameter, one of {}", first_of(&known));
         let found = format!("the unknown parameter {name:?}");
         let near = nearest(name, &known).or_else(|| nearest(name, RESERVED));
-        return Some(Problem {
+        return vec![Problem {
             advice: near.map(|near| format!("did you mean {near:?}?")),
             ..Problem::new("spec/unknown-key", pointer, found, expected)
-        });
+        }];
     };
     if parameter.role != Role::Variant {
         let role = if parameter.role == Role::Fixed {
@@ -231,17 +216,7 @@ fn problem_of(parameters: &IndexMap<String, Parameter>, pointer: &str, name: &st
         };
         let found = format!("a value for the {role} parameter {name:?}");
         let problem = Problem::new("spec/role", pointer, found, "values for variant parameters only");
-        return Some(problem.advise(format!("give {name:?} the role variant, or leave it out here")));
+        return vec![problem.advise(format!("give {name:?} the role variant, or leave it out here"))];
     }
-    let expected = parameter.accept(value).err()?;
-    if let Some(problem) = distribution_problem(parameter, pointer, value) {
-        return Some(problem);
-    }
-    let word = if let Value::Text(word) = value {
-        word.as_str()
-    } else {
-        ""
-    };
-    let choices: Vec<String> = parameter.choices.iter().flatten().map(ToString::to_string).collect();
-    Some(Problem::new("spec/value", pointer, value.to_string(), expected).suggest(word, choices))
+    parameter.value_problems(pointer, value)
 }
