@@ -13,10 +13,19 @@ const RANDOM_TRIES: usize = 32;
 /// How many places are tried in a cell where they stray from its middle; the last try is the middle.
 const TRIES_IN_CELL: usize = 8;
 
+/// A cell or a doorway of a plan, by its number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Spot {
+    Cell(usize),
+    Doorway(usize),
+}
+
 /// Where something can stand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FreePlace {
     pub(crate) place: [f64; 2],
+    /// The cell or doorway that it takes, if it was asked for one.
+    pub(crate) spot: Option<Spot>,
     /// Where it faces in degrees, if that is said: in a doorway.
     pub(crate) heading: Option<f64>,
 }
@@ -84,13 +93,14 @@ impl<'a> Cells<'a> {
         };
         let is_kind = |number: &usize| kind.has(plan.cells[*number].open_sides());
         let fitting: Vec<FreePlace> = if *kind == CellKind::Doorway {
-            let doorways = plan.doorways.iter();
-            let fits = |doorway: &&Doorway| {
+            let doorways = plan.doorways.iter().enumerate();
+            let fits = |(_, doorway): &(usize, &Doorway)| {
                 let cell = plan.cell_at(doorway.center);
                 cell.is_some_and(|cell| fits(&cell, doorway.rooms))
             };
-            let found = |doorway: &Doorway| FreePlace {
+            let found = |(number, doorway): (usize, &Doorway)| FreePlace {
                 place: doorway.center,
+                spot: Some(Spot::Doorway(number)),
                 heading: Some(doorway.heading),
             };
             doorways.filter(fits).map(found).collect()
@@ -99,6 +109,7 @@ impl<'a> Cells<'a> {
             let cells = cells.filter(|number| fits(number, [plan.cells[*number].room; 2]));
             let found = |number: usize| FreePlace {
                 place: plan.cells[number].center,
+                spot: Some(Spot::Cell(number)),
                 heading: None,
             };
             cells.map(found).collect()
@@ -135,6 +146,35 @@ impl<'a> Cells<'a> {
             taken: BTreeSet::new(),
             asked,
         })
+    }
+
+    /// Leaves the cells that others have taken.
+    pub(crate) fn leave(&mut self, taken: &BTreeSet<Spot>) {
+        let fitting = self.fitting.iter().enumerate();
+        let gone = fitting.filter(|(_, found)| found.spot.is_some_and(|spot| taken.contains(&spot)));
+        self.taken.extend(gone.map(|(number, _)| number));
+    }
+
+    /// Leaves the cells that a text has letters for, where there are others.
+    pub(crate) fn leave_letters(&mut self) {
+        let has_letter =
+            |found: &FreePlace| matches!(found.spot, Some(Spot::Cell(cell)) if self.plan.cells[cell].letter.is_some());
+        let plain: Vec<FreePlace> = self
+            .fitting
+            .iter()
+            .filter(|found| !has_letter(found))
+            .copied()
+            .collect();
+        if !plain.is_empty() {
+            self.fitting = plain;
+        }
+    }
+
+    /// Whether every cell that fits and is free satisfies a condition on its middle.
+    pub(crate) fn all(&self, is: impl Fn([f64; 2]) -> bool) -> bool {
+        let fitting = self.fitting.iter().enumerate();
+        let mut free = fitting.filter(|(number, _)| !self.taken.contains(number));
+        free.all(|(_, found)| is(found.place))
     }
 
     /// A place in a free cell that nothing is said against, whose cell it then takes: cells at random, then all in turn. `is_free` gets a

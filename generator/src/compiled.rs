@@ -167,8 +167,8 @@ pub(crate) enum Look {
 pub(crate) enum Start {
     /// In one of these cells, as the task says.
     Cells(Drawn),
-    /// Where a text has a letter for it, if it has one: the task says nothing.
-    Letters(Stream),
+    /// The task says nothing: where a text has a letter for it, else in any cell, if the layout has some.
+    Default(Stream),
 }
 
 /// Turns what a task declares into what is drawn for one variant under one seed.
@@ -238,7 +238,7 @@ impl Compiled {
             .map(|number| world.holes.remove(number).1);
         let start = match start {
             Some(Fill::Own(drawn)) => Some(Start::Cells(*drawn)),
-            _ if !task.says_start() => Some(Start::Letters(compiler.stream("world/agent_params/coordinates"))),
+            _ if !task.says_start() => Some(Start::Default(compiler.stream("world/agent_params/coordinates"))),
             _ => None,
         };
         Self {

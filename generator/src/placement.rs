@@ -1,8 +1,10 @@
 //! Placing objects: a free place for each. Candidates are drawn in `draw.rs`; the distance to walls is in `clearance.rs`.
 
-use driftworld_spec::{Distribution, Layout, Plan, Turns};
+use std::collections::BTreeSet;
 
-use crate::cells::{Cells, FreePlace};
+use driftworld_spec::{CellKind, Distribution, Layout, Plan, Turns};
+
+use crate::cells::{Cells, FreePlace, Spot};
 use crate::clearance::FreeSpace;
 use crate::draw::{self, Place};
 use crate::spatial_hash::SpatialHash;
@@ -19,6 +21,10 @@ pub(crate) struct PlacementContext<'a> {
     everything: SpatialHash,
     /// For each group the places of its objects.
     groups: Vec<SpatialHash>,
+    /// The cells and doorways that objects were given.
+    taken: BTreeSet<Spot>,
+    /// The middles of doorways.
+    doorways: SpatialHash,
 }
 
 /// What a place must keep clear of, in metres.
@@ -64,6 +70,8 @@ pub(crate) struct Request<'a> {
     pub(crate) anchor: Anchor,
     /// The group's number.
     pub(crate) group: usize,
+    /// Metres from the middle of a doorway within which it would stand in the way; 0 for what bars none.
+    pub(crate) mouth: f64,
     /// The object's number around its anchor: lists of places are taken in turn, as [`Turns`] says.
     pub(crate) number: u64,
 }
@@ -76,10 +84,18 @@ enum Condition {
     Neighbour,
     Own,
     Group,
+    Doorway,
 }
 
 impl Condition {
-    const ALL: [Self; 5] = [Self::Wall, Self::Agent, Self::Neighbour, Self::Own, Self::Group];
+    const ALL: [Self; 6] = [
+        Self::Wall,
+        Self::Agent,
+        Self::Neighbour,
+        Self::Own,
+        Self::Group,
+        Self::Doorway,
+    ];
 
     fn broken(self) -> &'static str {
         match self {
@@ -88,6 +104,7 @@ impl Condition {
             Self::Neighbour => "too near to another object",
             Self::Own => "too near to another object of the group",
             Self::Group => "too near to an object of a group to keep out of",
+            Self::Doorway => "in the way of a doorway",
         }
     }
 
@@ -98,6 +115,7 @@ impl Condition {
             Self::Neighbour => "the nearest neighbour",
             Self::Own => "the nearest of its group",
             Self::Group => "the nearest object to keep out of",
+            Self::Doorway => "the nearest doorway",
         }
     }
 
@@ -108,6 +126,7 @@ impl Condition {
             Self::Neighbour => "lower the count or the separation, or widen the placement",
             Self::Own => "lower the count or the distance of poisson_disc, or widen the placement",
             Self::Group => "lower the distance in keep_out.groups, or widen the placement",
+            Self::Doorway => "lower the count, make the rooms larger, or set \"solid\": false",
         }
     }
 }
@@ -122,11 +141,16 @@ struct Miss {
 
 impl<'a> PlacementContext<'a> {
     pub(crate) fn new(free_space: &'a FreeSpace, agent: [f64; 2], groups: usize) -> Self {
+        let mut doorways = SpatialHash::default();
+        let plan = free_space.plan.iter().flat_map(|plan| &plan.doorways);
+        plan.for_each(|doorway| doorways.push(doorway.center));
         Self {
             free_space,
             agent,
+            doorways,
             everything: SpatialHash::default(),
             groups: (0..groups).map(|_| SpatialHash::default()).collect(),
+            taken: BTreeSet::new(),
         }
     }
 
@@ -188,7 +212,24 @@ impl<'a> PlacementContext<'a> {
         asked: &Distribution,
         group: &str,
     ) -> Result<Cells<'a>, String> {
-        Cells::find(self.free_space.plan.as_deref(), layout, asked, group, self.agent)
+        let mut cells = Cells::find(self.free_space.plan.as_deref(), layout, asked, group, self.agent)?;
+        cells.leave(&self.taken);
+        Ok(cells)
+    }
+
+    /// Whether a placement in cells asks for the ways through doorways: by itself, by letters, or because nothing else is left. Those of
+    /// other kinds say where things stand in metres.
+    pub(crate) fn asks_for_doorways(&self, placement: &Distribution, cells: Option<&Cells>, mouth: f64) -> bool {
+        match placement {
+            Distribution::Cells {
+                kind, letter, of_group, ..
+            } => {
+                let is_asked = *kind == CellKind::Doorway || letter.is_some() || *of_group;
+                let bars = |middle| self.doorways.within(middle, mouth).is_some();
+                is_asked || cells.is_none_or(|cells| cells.all(bars))
+            }
+            _ => true,
+        }
     }
 
     /// As [`PlacementContext::find`], in a cell of a layout. The middle of a cell is never too near to a wall.
@@ -217,6 +258,7 @@ impl<'a> PlacementContext<'a> {
             Ok(found) => {
                 self.everything.push(found.place);
                 self.groups[request.group].push(found.place);
+                self.taken.extend(found.spot);
                 Ok(found)
             }
             Err((tries, asked)) if tried.failed.iter().all(|count| *count == 0) => {
@@ -299,12 +341,20 @@ impl<'a> PlacementContext<'a> {
                 wants: own_distance,
             });
         }
-        margins.groups.iter().find_map(|(group, wants)| {
+        let of_group = margins.groups.iter().find_map(|(group, wants)| {
             let has = self.groups[*group].within(place, *wants)?;
             Some(Miss {
                 condition: Condition::Group,
                 has,
                 wants: *wants,
+            })
+        });
+        of_group.or_else(|| {
+            let has = self.doorways.within(place, request.mouth)?;
+            Some(Miss {
+                condition: Condition::Doorway,
+                has,
+                wants: request.mouth,
             })
         })
     }

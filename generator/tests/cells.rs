@@ -240,6 +240,45 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 300)))]
+
+    /// Who says nothing of the start has one in a cell that no letter is in; no cell is given twice, and no way through a doorway is
+    /// barred by what is solid.
+    #[test]
+    fn cells_are_given_once_and_ways_through_doorways_stay_free(
+        layout in prop_oneof![
+            (1_u32..6, 2_u32..6).prop_map(|(a, b)| format!(r#"{{ "maze": {{ "cells": [{a}, {b}], "cell": 2 }} }}"#)),
+            (1_u32..4, 2_u32..4).prop_map(|(a, b)| format!(r#"{{ "rooms": {{ "grid": [{a}, {b}], "room": [6, 6] }} }}"#)),
+            Just(r#"{ "text": ["*******", "*wa.ab*", "***.***", "*ba..w*", "*******"], "cell": 2, "legend": { "w": "floor" } }"#.to_owned()),
+        ],
+        solid in any::<bool>(), jitter in 0.0..1.0_f64, index in 0_u64..1000,
+    ) {
+        let group = |name: &str| format!(r#"{{ "name": "{name}", "count": 1, "object": {{ "class": "geometric", "solid": {solid} }},
+            "placement": {{ "cells": {{ "jitter": {jitter} }} }}, "keep_out": {{ "agent": 0, "walls": 0 }} }}"#);
+        let text = format!(r#"{{ "name": "t", "world": {{ "environment_params": {{ "layout": {layout} }} }},
+            "groups": [{}, {}] }}"#, group("a"), group("b"));
+        let task = TaskSpec::from_json("t", &text).unwrap();
+        let world = Sampler::new(&task.variant("default").unwrap(), 5).world(index);
+        let world = match world {
+            // Small rooms, with things astray, can have no place that is off the doorways.
+            Err(error) if error.to_string().contains("in the way of a doorway") => return Ok(()),
+            world => world.unwrap(),
+        };
+        let (plan, agent, objects) = cells(&world);
+        prop_assert_eq!(plan.cells[agent].center, world.agent_params.coordinates);
+        prop_assert!(plan.cells[agent].letter.is_none());
+        prop_assert_ne!(objects[0], objects[1]);
+        for object in world.objects.iter().filter(|object| object.solid) {
+            let [x, y] = object.coordinates;
+            let bars = |doorway: &driftworld_spec::Doorway| {
+                (x - doorway.center[0]).powi(2) + (y - doorway.center[1]).powi(2) < 4.0 - 1e-9
+            };
+            prop_assert!(!plan.doorways.iter().any(bars));
+        }
+    }
+}
+
 #[test]
 fn doorways_hold_one_object_each_turned_along_the_wall() {
     let task = |layout: &str, count: u32| {

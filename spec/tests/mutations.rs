@@ -14,7 +14,10 @@ enum Mistake {
 /// Keys that authors choose themselves stand in these: another name for one is no mistake where it stands.
 fn is_chosen(parent: &str) -> bool {
     let words: Vec<&str> = parent.split('/').skip(1).collect();
-    matches!(words.as_slice(), ["parameters" | "variants"] | ["groups", _, "keep_out", "groups"] | [.., "legend"])
+    matches!(
+        words.as_slice(),
+        ["parameters" | "variants"] | ["groups", _, "keep_out", "groups"] | [.., "legend"]
+    )
 }
 
 /// Every key of a document: the pointers of what it stands in, and the key.
@@ -43,7 +46,10 @@ fn escaped(key: &str) -> String {
 /// The document with a mistake, and where that is.
 fn mistaken(document: &Value, parent: &str, key: &str, mistake: Mistake) -> (Value, String) {
     let mut document = document.clone();
-    let map = document.pointer_mut(parent).and_then(Value::as_object_mut).expect("the key is there");
+    let map = document
+        .pointer_mut(parent)
+        .and_then(Value::as_object_mut)
+        .expect("the key is there");
     let mut at = key.to_owned();
     match mistake {
         Mistake::Missing => drop(map.shift_remove(key)),
@@ -56,7 +62,11 @@ fn mistaken(document: &Value, parent: &str, key: &str, mistake: Mistake) -> (Val
             let wrong = match &map[key] {
                 Value::Null | Value::Number(_) | Value::Bool(_) => json!("what"),
                 Value::String(_) => json!(7.5),
-                Value::Array(items) => items.first().filter(|first| first.is_string()).cloned().unwrap_or(json!("what")),
+                Value::Array(items) => items
+                    .first()
+                    .filter(|first| first.is_string())
+                    .cloned()
+                    .unwrap_or(json!("what")),
                 Value::Object(_) => json!([true]),
             };
             map.insert(at.clone(), wrong);
@@ -77,12 +87,22 @@ fn nearly_every_mistake_in_a_shipped_task_is_named_where_it_is() {
         keys(&document, "", &mut all);
         // A part of them is enough for every change, another one for each task.
         let step = crate::tier::quick_or_full(7, 1);
-        for (place, (parent, key)) in all.iter().enumerate().filter(|(place, _)| place % step == text.len() % step) {
+        for (place, (parent, key)) in all
+            .iter()
+            .enumerate()
+            .filter(|(place, _)| place % step == text.len() % step)
+        {
             let mistake = [Mistake::Misspelt, Mistake::Missing, Mistake::Mistyped];
-            let mistakes = if step == 1 { &mistake[..] } else { &mistake[place / step % 3..][..1] };
+            let mistakes = if step == 1 {
+                &mistake[..]
+            } else {
+                &mistake[place / step % 3..][..1]
+            };
             for mistake in mistakes {
                 let (wrong, at) = mistaken(&document, parent, key, *mistake);
-                let Err(error) = TaskSpec::from_json("t", &wrong.to_string()) else { continue };
+                let Err(error) = TaskSpec::from_json("t", &wrong.to_string()) else {
+                    continue;
+                };
                 refused += 1;
                 let names = |pointer: &str| {
                     let missing = pointer == parent && matches!(mistake, Mistake::Missing | Mistake::Misspelt);

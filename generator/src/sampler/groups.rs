@@ -71,11 +71,15 @@ impl Sampler {
             }
             let mut rng = group.placement.stream.at(index, first + turn, 0);
             let placement = &group.placement.distribution;
+            // Between it and the wall the agent must get through: a body is about as wide as its scale, walls are thinner than agents.
+            let mouth = 1.5 * draft.world.agent_params.agent_width + object.scale / 2.0;
+            let is_free = !object.solid || draft.context.asks_for_doorways(placement, cells.as_ref(), mouth);
             let request = Request {
                 placement,
                 margins: &group.margins,
                 anchor,
                 group: number,
+                mouth: if is_free { 0.0 } else { mouth },
                 number: turn,
             };
             let found = match &mut cells {
@@ -83,9 +87,15 @@ impl Sampler {
                 None => draft
                     .context
                     .find(&request, turns.as_mut(), &mut rng)
-                    .map(|place| FreePlace { place, heading: None }),
+                    .map(|place| FreePlace {
+                        place,
+                        spot: None,
+                        heading: None,
+                    }),
             };
-            let FreePlace { place, heading: along } = found.map_err(|tried| failed(turn, tried))?;
+            let FreePlace {
+                place, heading: along, ..
+            } = found.map_err(|tried| failed(turn, tried))?;
             object.coordinates = place;
             object.heading = along.unwrap_or(object.heading);
             if place.iter().any(|metres| metres.abs() > 300.0) {

@@ -9,7 +9,7 @@ use crate::clearance::FreeSpace;
 use crate::compiled::Start;
 
 impl Sampler {
-    /// Puts the agent into a cell, where the task or the letters of the layout say so.
+    /// Puts the agent into a cell: where the task or the letters of the layout say, else into any if the task says nothing.
     pub(super) fn start_in_cell(
         &self,
         world: &mut WorldDraft,
@@ -23,19 +23,21 @@ impl Sampler {
         let layout = world.environment_params.layout.as_ref();
         let plan = free_space.plan.as_deref();
         let by_letters;
+        let mut is_default = false;
         let (asked, stream) = match start {
             Start::Cells(drawn) => (&drawn.distribution, &drawn.stream),
-            Start::Letters(stream) => {
+            Start::Default(stream) => {
+                if plan.is_none_or(|plan| plan.cells.is_empty()) {
+                    return Ok(());
+                }
                 let is_start =
                     |letter: &char| layout.is_some_and(|layout| layout.meaning(*letter) == Some(Legend::Start));
                 let letters = plan.iter().flat_map(|plan| &plan.cells).filter_map(|cell| cell.letter);
                 let letters: String = letters.filter(is_start).collect();
-                if letters.is_empty() {
-                    return Ok(());
-                }
+                is_default = letters.is_empty();
                 by_letters = Distribution::Cells {
                     kind: CellKind::Any,
-                    letter: Some(letters),
+                    letter: Some(letters).filter(|letters| !letters.is_empty()),
                     of_group: false,
                     room: None,
                     walk: None,
@@ -49,7 +51,12 @@ impl Sampler {
             |place: [f64; 2], middle: [f64; 2]| place == middle || free_space.clearance(place, radius) >= radius;
         let mut rng = stream.at(index, 0, attempt);
         let found = Cells::find(plan, layout, asked, "", world.agent_params.coordinates)
-            .and_then(|mut cells| cells.take(&mut rng, is_free).map_err(|(_, reason)| reason))
+            .and_then(|mut cells| {
+                if is_default {
+                    cells.leave_letters();
+                }
+                cells.take(&mut rng, is_free).map_err(|(_, reason)| reason)
+            })
             .map_err(|reason| GeneratorError::NoStartCell {
                 variant: self.variant.id(),
                 seed: self.seed,
