@@ -1,5 +1,7 @@
 //! [`ElementsOutcome`]: what was claimed, what was measured, and where the two contradict each other.
 
+use std::collections::BTreeMap;
+
 use driftworld_env::{Findings, Policy, Proof, Witness};
 use driftworld_spec::{Element, Modality, Variant};
 use driftworld_text::joined_or;
@@ -117,8 +119,44 @@ impl ElementsOutcome {
         each.map(|contradiction| contradiction.message.as_str())
     }
 
-    /// Every parameter that a variant sets and that made no difference, in a sentence.
+    /// Every parameter that a variant sets and that made no difference, and every element that a parameter declares in vain, in a
+    /// sentence.
     pub fn warnings(&self) -> impl Iterator<Item = String> {
+        self.idle().chain(self.declared_in_vain())
+    }
+
+    /// The elements that a parameter declares and that differed in no variant that changes it alone; of parameters that made any
+    /// difference.
+    fn declared_in_vain(&self) -> impl Iterator<Item = String> {
+        let alone = |variant: &&VariantElements| variant.parameters.len() == 1 && !variant.measured.is_empty();
+        let mut by_name: BTreeMap<&str, Vec<&VariantElements>> = BTreeMap::new();
+        for variant in self.variants.iter().filter(alone) {
+            by_name.entry(&variant.parameters[0]).or_default().push(variant);
+        }
+        by_name.into_iter().filter_map(|(name, variants)| {
+            let differed = |element: &Element| {
+                let mut measured = variants.iter().flat_map(|variant| &variant.measured);
+                measured.any(|measured| element.covers(measured.element))
+            };
+            let declared = variants[0].declared.iter();
+            let vain: Vec<&str> = declared.filter(|element| !differed(element)).map(|element| element.letter()).collect();
+            let tried: Vec<&str> = variants.iter().map(|variant| variant.variant.as_str()).collect();
+            (!vain.is_empty()).then(|| {
+                format!(
+                    "{}: {name} declares {}, which differed from {} in none of the variants that change it alone ({}): take it out of \
+                     \"affects\"; or, if it shows later or elsewhere, --steps takes more than {} and --worlds more than {}",
+                    self.task,
+                    vain.join(" "),
+                    self.base,
+                    tried.join(", "),
+                    self.steps,
+                    self.worlds,
+                )
+            })
+        })
+    }
+
+    fn idle(&self) -> impl Iterator<Item = String> {
         self.variants.iter().flat_map(move |variant| {
             let of = move |name: &String| {
                 let (task, base, own) = (&self.task, &self.base, &variant.variant);
