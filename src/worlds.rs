@@ -19,15 +19,15 @@ use driftworld_text::ShownPath;
 
 use crate::{Failure, Warn, argument};
 
-/// A world file, in our form or in the original's.
-pub(crate) fn world_file(path: &Path, l2explorer: bool) -> Result<(World, Vec<Warning>), Failure> {
+/// A world file, in our form or in the original's, with layouts in place of its maps.
+fn world_file(path: &Path, l2explorer: bool, maps: &MapLibrary) -> Result<(World, Vec<Warning>), Failure> {
     let name = documents::name_of(path);
     let text = documents::text_of(path, &[Contents::World])?;
     if l2explorer {
-        return Ok(World::from_l2explorer(&name, &text)?);
+        return Ok(World::from_l2explorer_with(&name, &text, maps)?);
     }
     match World::from_json(&name, &text) {
-        Ok(world) => Ok((world, Vec::new())),
+        Ok(world) => Ok((world.with_maps(maps), Vec::new())),
         Err(error) => Err(match World::from_l2explorer(&name, &text) {
             Ok(_) => Failure::input(format!(
                 "{error}\nhint: this looks like a map of L2Explorer; add {}",
@@ -161,12 +161,14 @@ impl WorldRequest {
 
     /// Another world, by the same options: a file, or the first world of a variant.
     pub(crate) fn named(&self, name: &str, warn: Warn<'_>) -> Result<World, Failure> {
-        let maps = self.maps.as_deref().map(maps).transpose()?;
-        let world = world(name, self.seed, 0, self.l2explorer, warn)?;
-        Ok(match maps {
-            Some(maps) => world.with_maps(&maps),
-            None => world,
-        })
+        let maps = self.maps.as_deref().map(maps).transpose()?.unwrap_or_default();
+        if !self.l2explorer && !is_world_file(name) {
+            expect_world_or_task(name)?;
+            return Ok(Sampler::new(&tasks::variant(name)?, self.seed)
+                .world(0)?
+                .with_maps(&maps));
+        }
+        file(name, self.l2explorer, &maps, warn)
     }
 
     fn is_file(&self) -> bool {
@@ -174,13 +176,10 @@ impl WorldRequest {
     }
 }
 
-/// The world that an argument names: a file, or number `index` of a variant under a seed.
-pub(crate) fn world(name: &str, seed: u64, index: u64, l2explorer: bool, warn: Warn<'_>) -> Result<World, Failure> {
+/// The world of a file, with layouts in place of its maps.
+pub(crate) fn file(name: &str, l2explorer: bool, maps: &MapLibrary, warn: Warn<'_>) -> Result<World, Failure> {
     expect_world_or_task(name)?;
-    if !l2explorer && !is_world_file(name) {
-        return Ok(Sampler::new(&tasks::variant(name)?, seed).world(index)?);
-    }
-    let (world, warnings) = world_file(Path::new(name), l2explorer)?;
+    let (world, warnings) = world_file(Path::new(name), l2explorer, maps)?;
     for warning in warnings {
         warn(warning.to_string());
     }

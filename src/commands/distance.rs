@@ -2,7 +2,7 @@
 
 use crate::distances::{By, Compared, Sample, Scale, Side, between};
 use crate::similarity::{Distance as Measured, Part};
-use crate::spec::Element;
+use crate::spec::{Element, maps::MapLibrary};
 use crate::tasks;
 use clap::Args;
 use driftworld_text::one_line;
@@ -120,7 +120,7 @@ impl Distance {
     fn side(&self, name: &str) -> Result<Side, Failure> {
         worlds::expect_world_or_task(name)?;
         if worlds::is_world_file(name) {
-            let world = worlds::world(name, self.seed, self.index, false, &|text| output::warning(text))?;
+            let world = worlds::file(name, false, &MapLibrary::default(), &|text| output::warning(text))?;
             Ok(Side::World(Box::new(world)))
         } else {
             Ok(Side::Variant(tasks::variant(name)?))

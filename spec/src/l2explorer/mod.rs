@@ -4,7 +4,7 @@
 //! files, are read in `read_scenario.rs`.
 //!
 //! Every file of the dialect becomes a world, with a [`Warning`](crate::Warning) for whatever is not taken as it stands. A
-//! number of a predefined map means the original's regions there, and our own here.
+//! number of a predefined map means the original's regions, which are written into the world.
 
 mod lenient;
 mod mend;

@@ -12,7 +12,7 @@ use crate::describe::{describe, escape};
 use crate::document::Document;
 use crate::error::{Listed, Problem, SpecError};
 use crate::limits::{MAX_VALUES, MAX_WORLD_VALUES};
-use crate::maps::MapLibrary;
+use crate::maps::{self, MapLibrary};
 use crate::warning::{Remarks, Warning};
 use crate::world::{Object, World, WorldDraft};
 
@@ -25,7 +25,7 @@ impl World {
     /// Entries of the original's keys that are empty or of another type get their defaults, or what of them can be read, each
     /// with a warning that says what is assumed: an object without a place stands at (0, 0), one that moves
     /// goes at 2 m/s unless our own key `speed` says otherwise. Objects outside the arena and inside walls stay where they are,
-    /// and are named.
+    /// and are named. Predefined maps are the original's, written into the world as `map_regions`.
     ///
     /// # Errors
     /// [`SpecError`] where the file is not JSON or no object, has keys and none of them a world's, has a number out of range or more
@@ -34,8 +34,8 @@ impl World {
         Self::from_l2explorer_with(name, text, &MapLibrary::default())
     }
 
-    /// The same, with the layouts of a library in place of the built-in ones: as [`World::with_maps`] writes them, before
-    /// it is seen which objects stand inside walls.
+    /// The same, with the layouts of a library in place of the original's: as [`World::with_maps`] writes them, before it is seen
+    /// which objects stand inside walls.
     ///
     /// # Errors
     /// Those of [`World::from_l2explorer`].
@@ -69,7 +69,14 @@ impl World {
         document.fail_on(Listed { problems, more })?;
         let draft: WorldDraft = document.deserialize()?;
         document.fail_on(draft.problems().into_iter().map(original).collect::<Vec<_>>())?;
-        let world = draft.check_in_range()?.with_maps(maps);
+        let world = draft.check_in_range()?;
+        let is_told = world.environment_params.map_regions.is_some();
+        let world = if is_told {
+            world
+        } else {
+            world.with_maps(maps::of_l2explorer())
+        };
+        let world = world.with_maps(maps);
         for (object, index) in world.objects.iter().zip(&kept) {
             if let Some(text) = world.out_of_reach(object) {
                 reader.warn(format!("/objects/{index}/coordinates"), text);

@@ -1,5 +1,6 @@
 //! The four built-in layouts: regions of a 200 × 200 m arena that cannot be entered. They are ours, in `builtin.json`; only names
-//! and numbers are the original's. Layouts from files are read in `library.rs`.
+//! and numbers are the original's. Those of the original, for worlds in its dialect, are in `l2explorer.json`, under the licence
+//! beside it. Layouts from files are read in `library.rs`.
 
 mod library;
 
@@ -16,6 +17,14 @@ fn built_in(predefined_map: u8) -> Option<&'static MapLayout> {
     static MAPS: LazyLock<MapsDocument> =
         LazyLock::new(|| serde_json::from_str(include_str!("builtin.json")).expect("the built-in layouts are sound"));
     MAPS.maps.iter().find(|map| map.id == predefined_map)
+}
+
+/// The original's layouts of its maps 1 to 4: what worlds in its dialect have.
+pub fn of_l2explorer() -> &'static MapLibrary {
+    static MAPS: LazyLock<MapLibrary> = LazyLock::new(|| {
+        MapLibrary::from_json("l2explorer.json", include_str!("l2explorer.json")).expect("the layouts are sound")
+    });
+    &MAPS
 }
 
 /// Regions of a predefined map that cannot be entered. 0 (and any number without a layout) has none.
