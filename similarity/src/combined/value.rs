@@ -5,6 +5,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use driftworld_spec::{Domain, Layout, MeasureName, Parameter, ParameterType, Value};
 
+use rayon::prelude::*;
+
 use crate::combined::arena::Arena;
 use crate::combined::sketch::doors;
 use crate::layout_shape::LayoutShape;
@@ -259,20 +261,27 @@ fn range(parameter: &Parameter, scale: impl Fn(f64) -> f64) -> f64 {
     }
 }
 
+/// From so many choices on their pairs are compared on all cores.
+const FEW_CHOICES: usize = 500;
+
 /// The widest pair of choices; `apart` is how far two are. 1 where there are none, or only one.
-fn widest_pair<T>(parameter: &Parameter, read: impl Fn(&Value) -> Option<T>, apart: impl Fn(&T, &T) -> f64) -> f64 {
+fn widest_pair<T: Sync>(
+    parameter: &Parameter,
+    read: impl Fn(&Value) -> Option<T>,
+    apart: impl Fn(&T, &T) -> f64 + Sync,
+) -> f64 {
     let Some(Domain::Choices(choices)) = parameter.domain() else {
         return 1.0;
     };
     let choices: Vec<T> = choices.iter().filter_map(read).collect();
-    let pairs = choices
-        .iter()
-        .enumerate()
-        .flat_map(|(index, a)| choices[..index].iter().map(move |b| (a, b)));
-    match pairs.map(|(a, b)| apart(a, b)).fold(0.0, f64::max) {
-        0.0 => 1.0,
-        widest => widest,
-    }
+    let farthest = |(index, a): (usize, &T)| choices[..index].iter().map(|b| apart(a, b)).fold(0.0, f64::max);
+    // The largest is the same whichever is looked at first.
+    let widest = if choices.len() < FEW_CHOICES {
+        choices.iter().enumerate().map(farthest).fold(0.0, f64::max)
+    } else {
+        choices.par_iter().enumerate().map(farthest).reduce(|| 0.0, f64::max)
+    };
+    if widest == 0.0 { 1.0 } else { widest }
 }
 
 fn widest_choice(parameter: &Parameter) -> f64 {
@@ -301,12 +310,12 @@ fn widest_relative(parameter: &Parameter) -> f64 {
 
 fn color(parameter: &Parameter, measure: &'static str, of: ColorMeasure) -> ValueMeasure {
     let read = |value: &Value| match value {
-        Value::Color(color) => Some(*color),
+        Value::Color(color) => Some(of.prepare(*color)),
         _ => None,
     };
     ValueMeasure::Color {
         measure,
         of,
-        widest: widest_pair(parameter, read, |a, b| of.between(*a, *b)),
+        widest: widest_pair(parameter, read, |a, b| of.between_prepared(*a, *b)),
     }
 }

@@ -82,16 +82,22 @@ impl<T> Hole<T> {
         }
     }
 
-    /// What keeps a value from standing there, as the schema of the place has it; places are within the value.
-    pub(crate) fn problems(&self, value: &Value) -> Vec<Problem> {
-        let Some(schema) = self.schema else { return Vec::new() };
-        let mut own = schema.clone();
-        own["$defs"] = World::schema().json()["$defs"].clone();
-        let json = value.to_json();
-        let found = DocumentSchema::new(own).problems(&json).problems;
-        match self.kind {
-            ParameterType::Layout if found.is_empty() && !json.is_null() => layouts::problems(&json),
-            _ => found,
+    /// Finds what keeps values from standing there, as the schema of the place has it; places are within the value.
+    pub(crate) fn checker(&self) -> impl Fn(&Value) -> Vec<Problem> + use<T> {
+        let schema = self.schema.map(|schema| {
+            let mut own = schema.clone();
+            own["$defs"] = World::schema().json()["$defs"].clone();
+            DocumentSchema::new(own)
+        });
+        let is_layout = self.kind == ParameterType::Layout;
+        move |value| {
+            let Some(schema) = &schema else { return Vec::new() };
+            let json = value.to_json();
+            let found = schema.problems(&json).problems;
+            if found.is_empty() && is_layout && !json.is_null() {
+                return layouts::problems(&json);
+            }
+            found
         }
     }
 

@@ -31,11 +31,12 @@ impl Check<'_> {
     /// Every value that such a source can give; reports those that cannot stand at the place.
     pub(super) fn json_candidates<T>(&mut self, place: &str, hole: &Hole<T>) -> Vec<Value> {
         let mut candidates = Vec::new();
+        let problems = hole.checker();
         for (pointer, value) in self.json_values(place, &hole.source) {
             let Some(value) = value.cast(ParameterType::Json) else {
                 continue;
             };
-            let found = hole.problems(&value);
+            let found = problems(&value);
             for mut problem in found.into_iter().map(|problem| problem.within(&pointer)) {
                 if !pointer.starts_with(&format!("{place}/")) {
                     let where_used = format!("the parameter stands at {place}");
@@ -80,7 +81,7 @@ impl Check<'_> {
                             listed(own, &pointer, &mut found);
                         }
                         // A default is one of the choices.
-                        _ if found.iter().any(|(_, known): &(String, Value)| known == value) => {}
+                        _ if pointer.ends_with("/default") && found.iter().any(|(_, known)| known == value) => {}
                         _ => found.push((pointer, value.clone())),
                     }
                 }
