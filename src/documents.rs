@@ -7,6 +7,7 @@ use std::str::FromStr;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use driftworld_curriculum::{CurriculumError, log_name};
+use driftworld_env::{Catalogue, Environment, Obstacle, Warning};
 use driftworld_files::FileError;
 use driftworld_spec::maps::MapLibrary;
 use driftworld_spec::{Classes, MAX_BYTES, Scenario, SpecError, TaskSpec, World, did_you_mean};
@@ -259,6 +260,24 @@ pub fn check(
         error,
         same_log_name,
     }
+}
+
+/// Warns of an agent that starts inside a solid object of a valid world: bodies are known to the catalogue alone.
+pub fn start_inside(name: &str, text: &str, catalogue: &Catalogue) -> Option<String> {
+    let world = World::from_json(name, text).ok()?;
+    let warnings = Environment::with_catalogue(world, catalogue.clone()).warnings();
+    let is_it = |warning: &Warning| {
+        let obstacle = if let Warning::StartsInside { obstacle } = warning {
+            Some(obstacle)
+        } else {
+            None
+        };
+        matches!(obstacle, Some(Obstacle::Object { .. }))
+    };
+    warnings
+        .into_iter()
+        .find(is_it)
+        .map(|warning| format!("{name}: {warning}"))
 }
 
 /// Variants of a task that no scenario can hold together: a log would call them by one name.

@@ -101,7 +101,8 @@ pub(crate) fn check<'py>(
         Some(word) => word.parse::<Kind>().map_err(PyValueError::new_err)?,
         None => Kind::of(text),
     };
-    let classes = tasks::classes(&catalogue(&libraries)?);
+    let catalogue = catalogue(&libraries)?;
+    let classes = tasks::classes(&catalogue);
     let path = Path::new(name);
     let checked = detach(py, || {
         let mut task = |called: &str| {
@@ -111,7 +112,11 @@ pub(crate) fn check<'py>(
                 tasks::task(called)
             }
         };
-        documents::check(name, text, kind, &mut task, &classes)
+        let mut checked = documents::check(name, text, kind, &mut task, &classes);
+        if kind == Kind::World && checked.error.is_none() {
+            checked.warnings.extend(documents::start_inside(name, text, &catalogue));
+        }
+        checked
     });
     let problems = PyList::empty(py);
     let mut error = None;

@@ -191,6 +191,30 @@ def test_unknown_classes_and_names_that_collide_are_problems(tmp_path: Path) -> 
     assert problem["code"] == "curriculum/same-log-name"
 
 
+def test_a_model_that_its_class_does_not_have_trains_nobody(tmp_path: Path) -> None:
+    world = {"objects": [{"class": "animal", "model": "foxx", "coordinates": [3, 4]}]}
+    task = {
+        "name": "t",
+        "groups": [
+            {
+                "name": "g",
+                "count": 1,
+                "object": {"class": "geometric", "model": "9"},
+                "placement": {"disc": {"center": [0, 0], "radius": 9}},
+            }
+        ],
+    }
+    for document, names in ((world, "fox"), (task, "cube, sphere, cylinder")):
+        (problem,) = driftworld.validate(document)
+        assert problem["code"] == "spec/unknown-model" and names in problem["message"]
+    path = tmp_path / "t.json"
+    path.write_text(json.dumps(task), encoding="utf-8")
+    with pytest.raises(SpecError, match='did you mean "fox"'):
+        driftworld.DriftworldEnv(world=world, size=16)
+    with pytest.raises(SpecError, match="cube, sphere, cylinder"):
+        driftworld.DriftworldEnv(str(path), size=16)
+
+
 def test_a_notebook_shows_a_curriculum_as_its_blocks() -> None:
     curriculum = Curriculum.design("find_objects#blue", "find_objects#red", learn=3, eval_episodes=2, seed=0)
     told = curriculum._repr_html_()

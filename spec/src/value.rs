@@ -105,6 +105,9 @@ impl Value {
             | (P::Distribution, Self::Distribution(_))
             | (P::Layout, Self::Layout(_)) => Some(self.clone()),
             (P::Number, Self::Integer(whole)) => Some(Self::Number(*whole as f64)),
+            (P::Integer, Self::Number(number)) if number.fract() == 0.0 && number.abs() <= 9_007_199_254_740_992.0 => {
+                Some(Self::Integer(*number as i64))
+            }
             (P::Heading, Self::Number(_) | Self::Integer(_)) => {
                 self.as_number().map(|degrees| Self::Number(turned(degrees)))
             }

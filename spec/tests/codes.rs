@@ -41,7 +41,6 @@ fn cases() -> Vec<SpecError> {
         world(r#"{ "max_steps": "many" }"#),
         world(r#"{ "agent_params": { "heading": 361 } }"#),
         world(r#"{ "objects": [{ "class": "tree", "coordinates": [1] }] }"#),
-        world(r#"{ "agent_params": { "observation_size": 84.0 } }"#),
         world(r#"{ "environment_params": { "sun_direction": [0, 0, 0] } }"#),
         world(r#"{ "environment_params": { "map_size": [0, 10] } }"#),
         world(r#"{ "agent_params": { "observation_size": 4096, "supersampling": 3 } }"#),

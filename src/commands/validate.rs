@@ -157,6 +157,8 @@ impl Validate {
         if is_sound && checked.kind == Kind::Task {
             let task = TaskSpec::from_json(&name, &text)?;
             remarks = remarks::of_task(&task, self.seed, u64::from(self.worlds));
+        } else if is_sound && checked.kind == Kind::World {
+            remarks.extend(documents::start_inside(&name, &text, &self.libraries.catalogue()?));
         }
         let mut elements = Vec::new();
         let is_drawn = trials.iter().all(|trial| trial.num_failed() == 0);

@@ -26,13 +26,17 @@ impl DesignRequest {
         };
         let variants: Vec<Variant> = picked.iter().map(|one| one.variant.clone()).collect();
         let Some(base) = variants.first() else { return Ok(None) };
-        let modalities = match &self.modalities {
-            Some(modalities) => modalities.clone(),
-            None => Sampler::new(base, 0).world(0)?.agent_params.modalities.clone(),
-        };
+        let asked =
+            |variant: &Variant| Ok::<_, Failure>(Sampler::new(variant, 0).world(0)?.agent_params.modalities.clone());
+        let own = asked(base)?;
+        let mut others = variants.iter().map(asked);
+        let are_alike = others.try_fold(true, |alike, other| Ok::<_, Failure>(alike && other? == own))?;
+        // Where the images are what differs, that is seen in what the worlds ask for.
+        let compared = self.modalities.clone().or_else(|| are_alike.then(|| own.clone()));
+        let modalities = self.modalities.clone().unwrap_or(own);
         let request = ElementsRequest {
             worlds: NUM_WORLDS,
-            modalities: Some(modalities.clone()),
+            modalities: compared,
             libraries: self.libraries.clone(),
             ..ElementsRequest::of(base.task().name())
         };

@@ -181,6 +181,8 @@ impl Trial {
 
 /// The parameters in which two variants of a task differ, with the elements that they claim to affect.
 fn changed(a: &Variant, b: &Variant) -> Vec<(String, Vec<Element>)> {
+    // What nothing reads stands at its default.
+    let (a, b) = (a.as_read(), b.as_read());
     let differs = |(name, value): &(&String, &Value)| a.value(name) != Some(*value);
     let declared = |name: &String| {
         a.task()

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use driftworld_metrics::{Anchors, Scales, Unlabelled};
-use driftworld_text::{ShownPath, one_line};
+use driftworld_text::{ShownPath, in_plain_words, one_line};
 use serde::{Deserialize, Serialize};
 
 use super::{BestAgent, UnlabelledCeiling};
@@ -81,8 +81,13 @@ impl ScalesFile {
     /// [`Failure`] where it cannot be read or says something else.
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let expected = "scales, such as {\"scales\": {\"find_red\": {\"floor\": 0, \"ceiling\": 10}}}";
-        serde_json::from_str(&documents::text(path)?)
-            .map_err(|error| Failure::input(format!("{}: {}; expected {expected}", path.shown(), one_line(error))))
+        serde_json::from_str(&documents::text(path)?).map_err(|error| {
+            Failure::input(format!(
+                "{}: {}; expected {expected}",
+                path.shown(),
+                one_line(in_plain_words(error))
+            ))
+        })
     }
 
     /// The floors and ceilings alone, by lower-case names.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use driftworld_metrics::{DataRange, DataRanges, Definitions, Noise, Options, Scales};
 use driftworld_spec::did_you_mean;
-use driftworld_text::{ShownPath, one_line};
+use driftworld_text::{ShownPath, in_plain_words, one_line};
 use serde_json::{Map, Value, json};
 
 use crate::contents::Contents;
@@ -74,7 +74,7 @@ pub(super) fn load(path: &Path) -> Result<Loaded, Failure> {
         )));
     }
     let mut options: Options = serde_json::from_value(Value::Object(settings))
-        .map_err(|error| Failure::input(format!("{}: {}", path.shown(), one_line(error))))?;
+        .map_err(|error| Failure::input(format!("{}: {}", path.shown(), one_line(in_plain_words(error)))))?;
     if let (Some(file), None) = (range_file, &options.data_range) {
         options.data_range = Some(data_ranges(&file)?);
     }
@@ -102,7 +102,7 @@ pub fn data_ranges(path: &Path) -> Result<DataRanges, Failure> {
             Failure::input(format!(
                 "{}, {task:?}: {}; expected {expected}",
                 path.shown(),
-                one_line(error)
+                one_line(in_plain_words(error))
             ))
         })?;
         ranges.insert(task.to_lowercase(), range);

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::io::{BufRead, ErrorKind, Read};
 
 use driftworld_spec::{MAX_BYTES, World};
+use driftworld_text::in_plain_words;
 
 use super::lines::{EpisodeLine, HeaderLine, RECORDING_FORMAT, RecordingLines, WorldLine, unsealed};
 use super::packed::inflated;
@@ -86,7 +87,7 @@ impl<R: BufRead> RecordingReader<R> {
         loop {
             let Some(line) = self.line()? else { return Ok(None) };
             let wrong = |this: &Self, error: &serde_json::Error| {
-                this.wrong(error.to_string(), "a line of a world or of an episode")
+                this.wrong(in_plain_words(error), "a line of a world or of an episode")
             };
             if line.starts_with(b"{\"world_hash\":") {
                 let world: WorldLine = serde_json::from_slice(&line).map_err(|error| wrong(self, &error))?;

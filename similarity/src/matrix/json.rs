@@ -1,5 +1,6 @@
 //! Distance matrices as JSON: `labels`, `nature` and `values` row by row. Files are the callers'.
 
+use driftworld_text::in_plain_words;
 use ndarray::Array2;
 use serde::Deserialize;
 
@@ -61,7 +62,7 @@ impl DistanceMatrix {
 fn without_place(error: &serde_json::Error) -> String {
     let said = error.to_string();
     let end = said.rfind(" at line ").unwrap_or(said.len());
-    said[..end].to_owned()
+    in_plain_words(&said[..end])
 }
 
 #[cfg(test)]

@@ -91,16 +91,17 @@ impl<'a> Document<'a> {
         if let Ok(typed) = T::deserialize(&self.value) {
             return Ok(typed);
         }
+        // JSON Schema takes 10.0 for the whole number that it is.
+        if let Ok(typed) = T::deserialize(&with_whole_numbers(self.value.clone())) {
+            return Ok(typed);
+        }
         serde_path_to_error::deserialize(&self.value).map_err(|error| {
             let pointer = pointer_of(error.path());
             let found = self
                 .value
                 .pointer(&pointer)
                 .map_or_else(|| "nothing".to_owned(), describe);
-            let expected = match error.into_inner().to_string() {
-                text if text.contains("floating point") => "a whole number, written without a decimal point".to_owned(),
-                text => text,
-            };
+            let expected = error.into_inner().to_string();
             let problem = Problem::new("spec/value", pointer, found, expected);
             self.error(vec![problem].into())
         })
@@ -136,6 +137,29 @@ impl<'a> Document<'a> {
         lines_and_columns(self.text, &places::offsets(self.text, wanted))
     }
 }
+
+/// The same value, in which numbers such as 10.0 and 1e2 are written as the whole ones that they are.
+pub(crate) fn with_whole_numbers(value: Value) -> Value {
+    match value {
+        Value::Number(number) => {
+            let whole = number
+                .as_f64()
+                .filter(|number| number.fract() == 0.0 && number.abs() <= MOST_WHOLE);
+            whole
+                .filter(|_| number.is_f64())
+                .map_or(Value::Number(number), |whole| Value::from(whole as i64))
+        }
+        Value::Array(items) => items.into_iter().map(with_whole_numbers).collect(),
+        Value::Object(map) => map
+            .into_iter()
+            .map(|(key, child)| (key, with_whole_numbers(child)))
+            .collect(),
+        other => other,
+    }
+}
+
+/// Every whole number up to this one, 2⁵³, is a number of its own in 64 bits.
+const MOST_WHOLE: f64 = 9_007_199_254_740_992.0;
 
 /// Lines and columns of the values of pointers into a JSON text, or of their nearest parents that are there.
 pub(crate) fn places_in(text: &str, pointers: &[&str]) -> Vec<(usize, usize)> {

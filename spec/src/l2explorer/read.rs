@@ -14,7 +14,7 @@ use crate::error::{Listed, Problem, SpecError};
 use crate::limits::{MAX_VALUES, MAX_WORLD_VALUES};
 use crate::maps::{self, MapLibrary};
 use crate::warning::{Remarks, Warning};
-use crate::world::{Object, World, WorldDraft};
+use crate::world::{Enclosure, Object, World, WorldDraft};
 
 impl World {
     /// Reads a reset file of the original: words in any case, numbers as strings, colours in 0..255, old keys.
@@ -78,9 +78,17 @@ impl World {
         };
         let world = world.with_maps(maps);
         for (object, index) in world.objects.iter().zip(&kept) {
-            if let Some(text) = world.out_of_reach(object) {
-                reader.warn(format!("/objects/{index}/coordinates"), text);
+            let Some(mut text) = world.out_of_reach(object) else {
+                continue;
+            };
+            // The file has no regions: they are those of its map.
+            if let (false, Some(Enclosure::OwnRegion { index })) = (is_told, world.enclosure(object.coordinates)) {
+                let (map, count) = (world.environment_params.map(), world.environment_params.regions().len());
+                let name = maps.name(map).unwrap_or_else(|| maps::name(map));
+                let region = format!("region {} of {count} of map {map} ({name})", index + 1);
+                text = text.replace(&format!("the region /environment_params/map_regions/{index}"), &region);
             }
+            reader.warn(format!("/objects/{index}/coordinates"), text);
         }
         let warnings = reader.warnings.in_text(name, text);
         Ok((world, warnings))

@@ -195,14 +195,14 @@ mod tests {
     fn objects_inside_walls_and_regions_are_named_with_the_wall() {
         let (world, warnings) = read(
             r#"{ "environment_params": { "predefined_map": 2, "walls": [{ "polygon": [[0, 0], [9, 0], [9, 9]] }] },
-  "objects": [{}, { "class": "tree", "coordinates": [-70, 60] }, { "class": "bag", "coordinates": [8, 1] },
+  "objects": [{}, { "class": "tree", "coordinates": [-20, 70] }, { "class": "bag", "coordinates": [8, 1] },
     { "class": "pot", "coordinates": [0, 1] }, { "class": "car", "coordinates": [0, 101] }] }"#,
         );
         assert_eq!(world.objects.len(), 4);
         assert_eq!(
             warnings[1..],
             [
-                "map.json:2:53 (/objects/1/coordinates): the tree stands at (-70.0, 60.0), inside region 1 of 12 of map 2 (village); it is kept, out of reach",
+                "map.json:2:53 (/objects/1/coordinates): the tree stands at (-20.0, 70.0), inside region 1 of 13 of map 2 (village); it is kept, out of reach",
                 "map.json:2:99 (/objects/2/coordinates): the bag stands at (8.0, 1.0), inside the wall /environment_params/walls/0; it is kept, out of reach",
                 "map.json:3:81 (/objects/4/coordinates): the car stands at (0.0, 101.0), outside the 200 × 200 m arena; it is kept, out of reach",
             ]

@@ -120,6 +120,11 @@ impl MapLibrary {
         self.maps.extend(other.maps);
     }
 
+    /// The name of the layout of a map, if there is one.
+    pub(crate) fn name(&self, map: u8) -> Option<&str> {
+        Some(&self.maps.get(&map)?.name)
+    }
+
     /// The layouts in the order of their numbers.
     pub fn layouts(&self) -> impl Iterator<Item = &MapLayout> {
         self.maps.values()

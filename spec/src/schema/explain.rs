@@ -7,6 +7,7 @@ use jsonschema::error::{TypeKind, ValidationErrorKind};
 use serde_json::Value;
 
 use super::advice;
+use super::part;
 use super::wording::{code_of, either, expected, words_of};
 use crate::describe::{describe, escape};
 use crate::error::{MAX_PROBLEMS, Problem};
@@ -87,7 +88,12 @@ impl Explainer<'_> {
                 unexpected
                     .iter()
                     .take(MAX_PROBLEMS + 1)
-                    .map(|key| unknown_key(pointer, key, &known).into())
+                    .map(|key| {
+                        let problem = unknown_key(pointer, key, &known);
+                        let within = self.part_with(error, key);
+                        let advice = within.map(|part| format!("did you mean {part:?}: {{ {key:?}: … }}?"));
+                        advice.map_or(problem.clone(), |advice| problem.advise(advice)).into()
+                    })
                     .collect()
             }
             ValidationErrorKind::Required { property } => {
@@ -177,6 +183,16 @@ impl Explainer<'_> {
             .map(|(key, _)| key.clone())
             .filter(|key| key != "$schema")
             .collect()
+    }
+
+    /// The part of a world that has a key which stands beside it.
+    fn part_with(&self, error: &ValidationError, key: &str) -> Option<&'static str> {
+        let parts = ["environment_params", "agent_params", "image_params", "rules"];
+        let has = |part: &&str| {
+            let part = part::at(self.schema, self.parent(error), &format!("/{part}"));
+            part.is_some_and(|part| part["properties"].get(key).is_some())
+        };
+        parts.into_iter().find(has)
     }
 
     /// The problem of a key that may not stand beside another, or not beside what that says.

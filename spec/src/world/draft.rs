@@ -65,7 +65,7 @@ fields! {
             => Field::original(Not("photographing objects is no decision process")),
         /// Rewards and endings beside those of the objects.
         pub rules: Rules = Rules::default() => Field::ours(AsPart),
-        /// What stands in the world.
+        /// What stands in the world. Objects that move do so one after the other in this order: where two meet, the first goes on.
         #[schemars(length(max = 100_000))]
         pub objects: Vec<Object> = Vec::new()
             => Field::original(Measured(&[Unmatched, Rewards, UnmatchedLooks]))

@@ -25,10 +25,10 @@ fields! {
             "reward_once_stimulus": ["AgentCollide"], "destroy_stimulus": ["AgentCollide"] },
     ]))]
     pub struct Object {
-        /// Kind of asset: `geometric`, `tree`, `barrel`, …; a class that is not known draws a placeholder.
+        /// Kind of asset: `geometric`, `tree`, `barrel`, …; commands refuse classes and models that are not known.
         #[schemars(length(min = 1, max = 100))]
         pub class: String => Field::original(Measured(&[Unmatched, Rewards, UnmatchedLooks])),
-        /// Which asset of the class, counted from "1".
+        /// Which asset of the class: its name, such as `sphere` or `fox`, or its number from "1".
         #[serde(default)]
         pub model: Model => Field::original(Leaves(ModelsOfObjects)),
         /// The model of the class whose body it has, whatever it looks like: the shape that is bumped into, and the height from which
@@ -248,7 +248,7 @@ impl JsonSchema for Model {
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({
-            "description": "Which asset of the class: \"1\", or 1.",
+            "description": "Which asset of the class: \"1\", 1, or a name such as \"sphere\".",
             "anyOf": [
                 { "type": "string", "minLength": 1, "maxLength": 100 },
                 { "type": "integer", "minimum": 0, "maximum": 1_000_000 }
@@ -299,7 +299,8 @@ pub enum MotionModel {
 }
 
 fields! {
-    /// How an object comes back.
+    /// How an object comes back: with the heading and reward that it began with, at rest. Where no free place is found for it
+    /// in a time step, it is looked for again in the next. What it paid or counted for before its return stays so.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(deny_unknown_fields)]
     #[schemars(extend("examples" = [{ "delay": 5, "radius": 10 }]))]

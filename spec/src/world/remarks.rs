@@ -52,6 +52,9 @@ impl World {
             let text = format!("the zone lies outside the {width} × {depth} m arena; it is kept, out of reach");
             remarks.push(format!("/environment_params/zones/{index}"), text);
         }
+        for (pointer, fault) in self.polygon_faults() {
+            remarks.push(pointer, format!("the polygon {fault}; it is kept as it stands"));
+        }
         let start = self.agent_params.coordinates;
         if let Some(place) = self.place_out_of_reach(start).filter(|_| self.progress.is_none()) {
             remarks.push(
@@ -110,6 +113,36 @@ impl World {
         remarks
     }
 
+    /// Polygons of walls and zones that enclose nothing or cross themselves.
+    fn polygon_faults(&self) -> Vec<(String, &'static str)> {
+        let arena = &self.environment_params;
+        let walls = arena.walls.iter().map(|wall| &wall.polygon).enumerate();
+        let walls = walls.map(|(index, corners)| (format!("/environment_params/walls/{index}/polygon"), corners));
+        let own = arena
+            .layout
+            .iter()
+            .flat_map(|layout| layout.walls.iter().flatten())
+            .enumerate();
+        let own = own.filter_map(|(index, wall)| {
+            Some((
+                format!("{}/walls/{index}/polygon", layout::POINTER),
+                wall.polygon.as_ref()?,
+            ))
+        });
+        let zones = arena.zones.iter().enumerate();
+        let zones = zones.filter_map(|(index, zone)| {
+            Some((
+                format!("/environment_params/zones/{index}/polygon"),
+                zone.polygon.as_ref()?,
+            ))
+        });
+        let mut left = MOST_PAIRS;
+        let faults = walls.chain(own).chain(zones);
+        faults
+            .filter_map(|(pointer, corners)| Some((pointer, polygon_fault(corners, &mut left)?)))
+            .collect()
+    }
+
     /// Whether the agent is to go to an object: it pays, or touching it or picking it up ends the episode well.
     fn is_wanted(&self, object: &Object) -> bool {
         let tag = object.tag.as_ref();
@@ -141,10 +174,67 @@ impl World {
     }
 }
 
+/// So many pairs of sides of polygons are looked at in a world.
+const MOST_PAIRS: usize = 2_000_000;
+
+/// What is odd about a polygon; `left` pairs of sides may still be looked at.
+fn polygon_fault(corners: &[[f64; 2]], left: &mut usize) -> Option<&'static str> {
+    let turn = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    let first = *corners.first()?;
+    if corners
+        .windows(2)
+        .all(|side| turn(first, side[0], side[1]).abs() < 1e-9)
+    {
+        return Some("has no area");
+    }
+    let sides: Vec<_> = corners.iter().zip(corners.iter().cycle().skip(1)).collect();
+    *left = left.checked_sub(sides.len() * sides.len() / 2)?;
+    let are_apart = |p: f64, q: f64| (p > 0.0 && q < 0.0) || (p < 0.0 && q > 0.0);
+    let crosses = |(index, (a, b)): (usize, &(&[f64; 2], &[f64; 2]))| {
+        sides[..index].iter().any(|(c, d)| {
+            are_apart(turn(**a, **b, **c), turn(**a, **b, **d)) && are_apart(turn(**c, **d, **a), turn(**c, **d, **b))
+        })
+    };
+    sides.iter().enumerate().any(crosses).then_some("crosses itself")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::{Rules, WorldDraft, Zone};
+
+    #[test]
+    fn polygons_without_area_and_those_that_cross_themselves_are_said() {
+        for (polygon, expected) in [
+            ("[[0, 0], [2, 2], [4, 4]]", Some("has no area")),
+            ("[[0, 0], [2, 2], [2, 0], [0, 2]]", Some("crosses itself")),
+            ("[[0, 0], [4, 0], [4, 4], [2, 0], [0, 4]]", None),
+            ("[[0, 0], [4, 0], [0, 4]]", None),
+        ] {
+            let own = format!(r#"{{ "polygon": {polygon} }}"#);
+            for part in ["walls", "zones", "layout"] {
+                let list = if part == "layout" {
+                    format!(r#"{{ "walls": [{own}] }}"#)
+                } else {
+                    format!("[{own}]")
+                };
+                let text = format!(
+                    r#"{{ "environment_params": {{ "{part}": {list} }}, "agent_params": {{ "coordinates": [-9, -9] }} }}"#
+                );
+                let world = World::from_json("w", &text).expect("it is valid");
+                let said: Vec<String> = world.remarks("w", &text).iter().map(ToString::to_string).collect();
+                let fits = said.iter().filter(|said| said.contains("/0/polygon): the polygon "));
+                let fits: Vec<bool> = fits
+                    .map(|said| expected.is_some_and(|expected| said.contains(expected)))
+                    .collect();
+                assert_eq!(
+                    fits,
+                    vec![true; usize::from(expected.is_some())],
+                    "{part} {polygon}: {said:?}"
+                );
+            }
+        }
+    }
 
     #[test]
     fn a_start_and_a_goal_in_a_zone_that_fails_are_said() {

@@ -41,7 +41,10 @@ impl Check<'_> {
                 if !pointer.starts_with(&format!("{place}/")) {
                     let where_used = format!("the parameter stands at {place}");
                     let advice = problem.advice.take();
-                    problem.advice = Some(advice.map_or(where_used.clone(), |advice| format!("{advice} {where_used}")));
+                    problem.advice = Some(advice.map_or(where_used.clone(), |advice| {
+                        let end = if advice.ends_with('?') { "" } else { ";" };
+                        format!("{advice}{end} {where_used}")
+                    }));
                 }
                 self.report(problem);
             }

@@ -8,6 +8,7 @@ use super::super::variant;
 use super::Check;
 use crate::describe::{describe, pointer_of};
 use crate::distribution::{Distribution, Number};
+use crate::document::with_whole_numbers;
 use crate::error::Problem;
 use crate::value::Value;
 use crate::world::{Model, Object, WorldDraft};
@@ -166,7 +167,9 @@ impl Check<'_> {
         if self.problems.len() > before || !is_known {
             return None;
         }
-        let base: T = match serde_path_to_error::deserialize(&example) {
+        let read = serde_path_to_error::deserialize(&example);
+        let base: T = match read.or_else(|error| T::deserialize(with_whole_numbers(example.clone())).map_err(|_| error))
+        {
             Ok(base) => base,
             Err(error) => {
                 let pointer = format!("{root}{}", pointer_of(error.path()));

@@ -1,0 +1,91 @@
+//! What a reader of JSON says of a value, without the words of its program: `struct ScalesFile` is an object to who wrote the file.
+
+use std::fmt::Display;
+
+/// Kinds of values as programs call them, and as people do.
+const KINDS: [(&str, &str); 12] = [
+    ("u8", "a whole number"),
+    ("u16", "a whole number"),
+    ("u32", "a whole number"),
+    ("u64", "a whole number"),
+    ("usize", "a whole number"),
+    ("i64", "a whole number"),
+    ("f32", "a number"),
+    ("f64", "a number"),
+    ("a sequence", "a list"),
+    ("sequence", "a list"),
+    ("a map", "an object"),
+    ("map", "an object"),
+];
+
+/// The same message in plain words; what stands in quotes stays as it is.
+///
+/// # Example
+/// ```
+/// let said = "invalid type: string \"u64\", expected struct Scales at line 1 column 3";
+/// assert_eq!(driftworld_text::in_plain_words(said), "invalid type: string \"u64\", expected an object at line 1 column 3");
+/// ```
+pub fn in_plain_words(message: impl Display) -> String {
+    let message = message.to_string();
+    let mut plain = String::new();
+    for (index, part) in message.split_inclusive(['"', '`']).enumerate() {
+        if index % 2 == 1 {
+            plain.push_str(part);
+            continue;
+        }
+        let mut words: Vec<&str> = part.split(' ').collect();
+        // `struct Name`, `internally tagged enum Name`: the name follows.
+        while let Some(at) = words.iter().position(|word| ["struct", "enum"].contains(word)) {
+            let of_tag = words[..at]
+                .iter()
+                .rev()
+                .take_while(|word| ["tuple", "internally", "tagged", "unit"].contains(word));
+            let first = at - of_tag.count();
+            let end = if words.get(at + 1).is_some_and(|name| name.ends_with(',')) {
+                "an object,"
+            } else {
+                "an object"
+            };
+            words.splice(first..words.len().min(at + 2), [end]);
+        }
+        let mut said = format!(" {} ", words.join(" "));
+        for (program, people) in KINDS {
+            for end in [" ", ", "] {
+                said = said.replace(&format!(" {program}{end}"), &format!(" {people}{end}"));
+            }
+        }
+        plain.push_str(&said[1..said.len() - 1]);
+    }
+    plain
+}
+
+#[cfg(test)]
+mod tests {
+    use super::in_plain_words;
+
+    #[test]
+    fn kinds_of_values_are_said_as_people_say_them() {
+        for (said, expected) in [
+            (
+                "invalid type: map, expected u64 at line 2",
+                "invalid type: an object, expected a whole number at line 2",
+            ),
+            ("expected struct ScalesFile", "expected an object"),
+            (
+                "invalid type: sequence, expected a map",
+                "invalid type: a list, expected an object",
+            ),
+            (
+                "invalid type: string \"a map of u64\", expected f64",
+                "invalid type: string \"a map of u64\", expected a number",
+            ),
+            (
+                "unknown field `struct`, expected `u64`",
+                "unknown field `struct`, expected `u64`",
+            ),
+            ("expected internally tagged enum Line", "expected an object"),
+        ] {
+            assert_eq!(in_plain_words(said), expected);
+        }
+    }
+}
