@@ -1,7 +1,7 @@
 //! What is said in a contact sheet: which world and which camera a cell shows, what differs from another variant, and what
 //! holds for all cells. Which they show is chosen in `contact_sheet.rs`.
 
-use driftworld_spec::{Element, Modality, Variant};
+use driftworld_spec::{Element, Modality, Value, Variant};
 use driftworld_text::whole;
 
 use crate::contact_sheet::{Choice, Look, Shown};
@@ -96,11 +96,19 @@ pub(crate) fn placed(shown: &Shown, choice: Choice, look: Look) -> String {
 
 /// The values that a variant has and another one has not, with those in brackets; each of them whole.
 pub(crate) fn differences(base: &Variant, variant: &Variant) -> String {
-    let of_base = |name: &str| base.value(name).map_or_else(|| "none".to_owned(), short);
+    let parameters = variant.task().parameters();
+    let short = |name: &str, value: &Value| {
+        let word = parameters.get(name).and_then(|parameter| parameter.name_of(value));
+        word.map_or_else(|| short(value), str::to_owned)
+    };
+    let of_base = |name: &str| {
+        base.value(name)
+            .map_or_else(|| "none".to_owned(), |value| short(name, value))
+    };
     let parts: Vec<String> = (variant.values().iter())
         .filter(|(name, value)| base.value(name) != Some(value))
         .map(|(name, value)| {
-            let (own, other) = (short(value), of_base(name));
+            let (own, other) = (short(name, value), of_base(name));
             let other = if own == other { "another".to_owned() } else { other };
             // A map may be called so itself: "map 2, 60 × 60 m".
             let own = own.strip_prefix(&format!("{name} ")).unwrap_or(&own);

@@ -133,8 +133,16 @@ fn world(dice: &mut Dice) -> World {
     small.expect("looks are not what makes it sound")
 }
 
+/// How many worlds are tried; `DRIFTWORLD_FINITE` says another number.
+fn num_worlds() -> u32 {
+    let asked = std::env::var("DRIFTWORLD_FINITE")
+        .ok()
+        .and_then(|number| number.parse().ok());
+    asked.unwrap_or_else(|| crate::tier::quick_or_full(48, 3000))
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(48, 3000)))]
+    #![proptest_config(ProptestConfig::with_cases(num_worlds()))]
 
     #[test]
     fn whatever_a_step_makes_is_finite_and_goes_on_when_it_was_written(seed in any::<u64>()) {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use driftworld_generator::{Drift, GeneratorError, Subject, Switch, at_distance, drift, sample};
+use driftworld_generator::{Drift, GeneratorError, Sampler, Subject, Switch, at_distance, drift, sample};
 use driftworld_spec::{Color, Distribution, DriftSchedule, Element, TaskSpec, Value, Variant};
 use proptest::prelude::*;
 
@@ -202,4 +202,87 @@ proptest! {
             prop_assert!(sample(&between("a", to, t), 5, index).is_ok());
         }
     }
+}
+
+/// Names of choices stand for their values: a task that has them draws the worlds of the one that lists these.
+#[test]
+fn named_choices_draw_the_worlds_of_listed_ones() {
+    let (open, maze) = (r#"{ "walls": [] }"#, r#"{ "maze": { "cells": [4, 4], "cell": 5 } }"#);
+    let (near, far) = (
+        r#"{ "disc": { "center": [0, 0], "radius": 5 } }"#,
+        r#"{ "disc": { "center": [0, 0], "radius": 9 } }"#,
+    );
+    let (touch, reach) = (r#"["AgentCollide"]"#, r#"["AgentInRange"]"#);
+    let task = |map: &str, place: &str, how: &str, [a, b, c]: [&str; 3], [d, e, f]: [&str; 3]| {
+        let parameter = |kind: &str, choices: &str, default: &str| {
+            format!(
+                r#"{{ "role": "variant", "type": "{kind}", "affects": ["S"], "choices": {choices}, "default": {default} }}"#
+            )
+        };
+        let (map, place, how) = (
+            parameter("layout", map, a),
+            parameter("distribution", place, b),
+            parameter("json", how, c),
+        );
+        let text = format!(
+            r#"{{ "version": 2, "name": "t", "parameters": {{ "map": {map}, "place": {place}, "how": {how} }},
+                "world": {{ "environment_params": {{ "layout": {{ "param": "map" }} }} }},
+                "groups": [{{ "name": "g", "count": 2, "placement": {{ "param": "place" }}, "keep_out": {{ "walls": 0, "agent": 0 }},
+                    "object": {{ "class": "geometric", "reward_stimulus": {{ "param": "how" }} }} }}],
+                "variants": {{ "first": {{}}, "second": {{ "map": {d}, "place": {e}, "how": {f} }}, "maps": {{ "grid": {{ "map": [{a}, {d}] }} }} }} }}"#
+        );
+        TaskSpec::from_json("t", &text).unwrap_or_else(|error| panic!("{error}"))
+    };
+    let listed = |a: &str, b: &str| format!("[{a}, {b}]");
+    let named = |a: &str, b: &str| format!(r#"{{ "one": {a}, "two": {b} }}"#);
+    let values = task(
+        &listed(open, maze),
+        &listed(near, far),
+        &listed(touch, reach),
+        [open, near, touch],
+        [maze, far, reach],
+    );
+    let names = task(
+        &named(open, maze),
+        &named(near, far),
+        &named(touch, reach),
+        [r#""one""#; 3],
+        [r#""two""#; 3],
+    );
+    for variant in ["first", "second"] {
+        let world =
+            |task: &std::sync::Arc<TaskSpec>| Sampler::new(&task.variant(variant).unwrap(), 3).world(5).unwrap();
+        assert_eq!(world(&values), world(&names), "{variant}");
+    }
+    assert_eq!(names.variant_names(), ["first", "second", "maps-one", "maps-two"]);
+    let second = names.variant("second").unwrap();
+    for (name, parameter) in names.parameters() {
+        assert_eq!(parameter.name_of(second.value(name).unwrap()), Some("two"), "{name}");
+    }
+    let again = TaskSpec::from_json("again", &names.to_json()).unwrap();
+    assert_eq!(again.to_json(), names.to_json());
+}
+
+#[test]
+fn mistakes_in_named_choices_are_named_by_their_names() {
+    let said = |kind: &str, choices: &str, default: &str, own: &str| {
+        let text = format!(
+            r#"{{ "version": 2, "name": "t", "parameters": {{ "p": {{ "role": "variant", "type": "{kind}", "affects": ["S"],
+                "choices": {choices}, "default": {default} }} }}, "variants": {{ "v": {{ "p": {own} }} }} }}"#
+        );
+        TaskSpec::from_json("t", &text).map_or_else(|error| error.to_string(), |_| String::new())
+    };
+    let maps = r#"{ "open": { "walls": [] }, "maze": { "maze": { "cells": [4, 4] } } }"#;
+    assert_eq!(said("layout", maps, r#""open""#, r#""maze""#), "");
+    assert!(
+        said("layout", maps, r#""open""#, r#""maize""#)
+            .contains(r#"(/variants/v/p): found "maize", expected one of open, maze; did you mean "maze"?"#)
+    );
+    assert!(said("layout", maps, r#""opn""#, r#""maze""#).contains("(/parameters/p/default): found \"opn\""));
+    let wrong = maps.replace("cells", "cel");
+    assert!(
+        said("layout", &wrong, r#""open""#, r#""maze""#)
+            .contains("(/parameters/p/choices/maze/maze/cel): found the unknown key")
+    );
+    assert!(said("number", r#"{ "one": 1 }"#, "1", "1").contains("(/parameters/p/choices): found"));
 }

@@ -49,8 +49,8 @@ pub use scenario::{
     Scenario, ScenarioComplexity, ScenarioDifficulty, ScenarioForm, ScenarioProof, TaskLabel,
 };
 pub use task::{
-    By, Compare, Count, DEFAULT_VARIANT, Domain, ElementWeights, Facing, Group, Hole, KeepOut, MeasureName, Parameter,
-    PlacedGroup, Readers, Requirement, Resolved, Role, Source, Spacing, Sweep, TaskSpec, Template, Variant,
+    By, Choices, Compare, Count, DEFAULT_VARIANT, Domain, ElementWeights, Facing, Group, Hole, KeepOut, MeasureName,
+    Parameter, PlacedGroup, Readers, Requirement, Resolved, Role, Source, Spacing, Sweep, TaskSpec, Template, Variant,
     VariantSpec,
 };
 pub use value::{ParameterType, Value};

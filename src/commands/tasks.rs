@@ -139,10 +139,7 @@ fn usual(variant: Option<&Variant>, name: &str, parameter: &Parameter) -> String
 fn differing(variant: &Variant) -> String {
     let parameters = variant.task().parameters().iter();
     let differing = parameters.filter_map(|(name, parameter)| {
-        let default = parameter
-            .default
-            .as_ref()
-            .and_then(|default| default.cast(parameter.kind));
+        let default = parameter.default.as_ref().and_then(|default| parameter.typed(default));
         let own = variant.value(name).filter(|own| default.as_ref() != Some(*own))?;
         (parameter.role == Role::Variant).then(|| whole(&format!("{name} = ")) + &in_few_words(own, parameter))
     });
@@ -151,8 +148,9 @@ fn differing(variant: &Variant) -> String {
 
 /// A value as captions have it; no line is broken beside a number, but behind commas of what is no place.
 fn in_few_words(value: &Value, parameter: &Parameter) -> String {
-    let cast = value.cast(parameter.kind);
-    let words = short(cast.as_ref().unwrap_or(value));
+    let typed = parameter.typed(value);
+    let value = typed.as_ref().unwrap_or(value);
+    let words = parameter.name_of(value).map_or_else(|| short(value), str::to_owned);
     if words.starts_with('[') {
         return whole(&words);
     }
@@ -187,7 +185,10 @@ fn in_words(domain: &Domain, parameter: &Parameter) -> String {
         .map_or_else(String::new, |unit| format!(" {unit}"));
     match domain {
         Domain::Range([low, high]) => whole(&format!("{low} to {high}{unit}")),
-        Domain::Choices(choices) if parameter.kind == ParameterType::Distribution => {
+        Domain::Choices(choices)
+            if parameter.kind == ParameterType::Distribution
+                && choices.first().is_none_or(|one| parameter.name_of(one).is_none()) =>
+        {
             format!("{} distributions", choices.len())
         }
         Domain::Choices(choices) => {

@@ -76,7 +76,7 @@ impl TaskSpec {
         let mut values = IndexMap::new();
         for (name, declared) in self.parameters() {
             let settled = declared.value.as_ref().or(declared.default.as_ref());
-            if let Some(value) = settled.and_then(|value| value.cast(declared.kind)) {
+            if let Some(value) = settled.and_then(|value| declared.typed(value)) {
                 values.insert(name.clone(), value);
             }
         }

@@ -2,6 +2,7 @@
 
 mod by;
 mod check;
+mod choices;
 mod compare;
 mod document;
 mod element_weights;
@@ -24,6 +25,7 @@ use indexmap::IndexMap;
 use serde_json::Value as Json;
 
 pub use by::By;
+pub use choices::Choices;
 pub use compare::{Compare, MeasureName};
 pub(crate) use document::TaskDocument;
 pub use element_weights::ElementWeights;

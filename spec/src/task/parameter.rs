@@ -6,13 +6,14 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::json;
 
+use super::choices::{self, Choices};
 use super::compare::Compare;
 use super::layouts;
 use super::template::Source;
 use crate::describe::escape;
 use crate::distribution::{Distribution, Number};
 use crate::element::Element;
-use crate::error::{Problem, cut};
+use crate::error::{Problem, cut, first_of};
 use crate::schema::document::DocumentSchema;
 use crate::value::{ParameterType, Value};
 
@@ -59,10 +60,10 @@ pub struct Parameter {
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
     #[schemars(schema_with = "any_value")]
     pub value: Option<Value>,
-    /// Variant only: the values it may have.
+    /// Variant only: the values it may have, in a list; layouts, distributions and JSON also by names, which then stand for them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(length(min = 1, max = 10_000), with = "Option<Vec<serde_json::Value>>")]
-    pub choices: Option<Vec<Value>>,
+    #[schemars(schema_with = "choices::schema")]
+    pub choices: Option<Choices>,
     /// Variant only: the least and greatest number it may have.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub range: Option<[f64; 2]>,
@@ -115,6 +116,12 @@ fn require_what_the_role_needs(schema: &mut schemars::Schema) {
     };
     let kind = |kinds: &[&str], value: serde_json::Value, range: bool| {
         let mut then = json!({ "properties": { "value": value, "default": value, "choices": { "items": value } } });
+        if ["layout", "distribution", "json"].contains(&kinds[0]) {
+            then["properties"]["default"] = json!({ "anyOf": [value, { "type": "string" }] });
+            then["properties"]["choices"]["additionalProperties"] = value;
+        } else {
+            then["properties"]["choices"]["type"] = json!("array");
+        }
         if !range {
             then["properties"]["range"] = json!(false);
         }
@@ -225,12 +232,28 @@ impl Parameter {
         self.range.map(Domain::Range).or_else(choices)
     }
 
+    /// A value, or the one that it names, as one of the parameter's type.
+    pub fn typed(&self, value: &Value) -> Option<Value> {
+        let named = self.choices.as_ref().and_then(|choices| choices.named(value));
+        named.unwrap_or(value).cast(self.kind)
+    }
+
+    /// The name of a choice, where choices have names.
+    pub fn name_of(&self, value: &Value) -> Option<&str> {
+        let choices = self.choices.as_ref().filter(|choices| !choices.names().is_empty())?;
+        let place = choices
+            .iter()
+            .position(|choice| choice.cast(self.kind).as_ref() == Some(value))?;
+        choices.names().get(place).map(String::as_str)
+    }
+
     /// The value with the parameter's type if it lies in the domain; else what was expected.
     pub(crate) fn accept(&self, value: &Value) -> Result<Value, String> {
         let typed = self.accept_typed(value)?;
         match self.domain() {
             Some(Domain::Choices(choices)) if !choices.contains(&typed) => {
-                let shown: Vec<String> = choices.iter().take(20).map(|choice| cut(&choice.to_string())).collect();
+                let word = |choice: &Value| self.name_of(choice).map_or_else(|| choice.to_string(), str::to_owned);
+                let shown: Vec<String> = choices.iter().take(20).map(|choice| cut(&word(choice))).collect();
                 let more = match choices.len() - shown.len() {
                     0 => String::new(),
                     more => format!(" and {more} more"),
@@ -246,16 +269,21 @@ impl Parameter {
         let Err(expected) = self.accept(value) else {
             return Vec::new();
         };
+        let names = self.choices.as_ref().map_or(&[][..], Choices::names);
+        if let (Value::Text(word), false) = (value, names.is_empty()) {
+            let expected = format!("one of {}", first_of(names));
+            return vec![Problem::new("spec/value", pointer, format!("{word:?}"), expected).suggest(word, names)];
+        }
         let json = value.to_json();
         let within = |problem: Problem| problem.within(pointer);
         let of_type = self.type_problems(&json);
         if !of_type.is_empty() {
             return of_type.into_iter().map(within).collect();
         }
-        let choices = self.choices.iter().flatten();
-        let alike = choices.enumerate().find_map(|(index, choice)| {
+        let choices = self.choices.iter().flat_map(Choices::entries);
+        let alike = choices.into_iter().find_map(|(key, choice)| {
             let difference = only_difference(&json, &choice.to_json(), "")?;
-            Some(within(difference).advise(format!("choice {index} is the same but for this")))
+            Some(within(difference).advise(format!("choice {key} is the same but for this")))
         });
         if let Some(alike) = alike {
             return vec![alike];
@@ -297,8 +325,8 @@ impl Parameter {
     }
 
     fn accept_typed(&self, value: &Value) -> Result<Value, String> {
-        let typed = value
-            .cast(self.kind)
+        let typed = self
+            .typed(value)
             .ok_or_else(|| format!("a value of type {}", self.kind.name()))?;
         if let Value::Layout(layout) = &typed {
             layout.check().map_err(|error| format!("a sound layout; {error}"))?;
@@ -358,14 +386,9 @@ impl Parameter {
         let lengths = |value: &Value| {
             self.kind != ParameterType::Vector || value.as_vector().map(<[f64]>::len) == self.vector_length()
         };
-        for (index, choice) in self
-            .choices
-            .iter()
-            .flatten()
-            .enumerate()
-            .filter(|(_, choice)| choice.cast(self.kind).is_none() || !lengths(choice))
-        {
-            let pointer = at(&format!("choices/{index}"));
+        let choices = self.choices.iter().flat_map(Choices::entries);
+        for (key, choice) in choices.filter(|(_, choice)| choice.cast(self.kind).is_none() || !lengths(choice)) {
+            let pointer = at(&format!("choices/{key}"));
             problems.push(Problem::new(
                 "spec/type",
                 pointer,
@@ -373,8 +396,8 @@ impl Parameter {
                 format!("a value of type {kind}"),
             ));
         }
-        let choices = self.choices.iter().flatten().enumerate();
-        let choices = choices.map(|(index, choice)| (at(&format!("choices/{index}")), choice));
+        let choices = self.choices.iter().flat_map(Choices::entries);
+        let choices = choices.map(|(key, choice)| (at(&format!("choices/{key}")), choice));
         for (pointer, value) in choices.chain(self.value.iter().map(|value| (at("value"), value))) {
             if let (ParameterType::Layout, Some(Value::Layout(layout))) = (self.kind, value.cast(self.kind)) {
                 problems.extend(

@@ -128,10 +128,7 @@ impl Variant {
             return Some(Cow::Borrowed(value));
         }
         let declared = self.task().parameters().get(parameter)?;
-        let default = declared
-            .default
-            .as_ref()
-            .and_then(|default| default.cast(declared.kind));
+        let default = declared.default.as_ref().and_then(|default| declared.typed(default));
         Some(default.map_or(Cow::Borrowed(value), Cow::Owned))
     }
 }

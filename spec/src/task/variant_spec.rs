@@ -123,7 +123,7 @@ pub(crate) fn values_of(
     {
         let own = chain.iter().find_map(|name| variants[*name].values.get(parameter));
         let value = own.or(declared.default.as_ref()).or(declared.value.as_ref());
-        if let Some(typed) = value.and_then(|value| value.cast(declared.kind)) {
+        if let Some(typed) = value.and_then(|value| declared.typed(value)) {
             values.insert(parameter.clone(), typed);
         }
     }

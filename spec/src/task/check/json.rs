@@ -1,6 +1,7 @@
 //! Values that only the schema of the place where they stand can judge: parameters of type JSON, and draws from lists with
 //! objects, lists or `null` in them.
 
+use super::super::choices::Choices;
 use super::super::layouts;
 use super::super::template::{Hole, Source};
 use super::Check;
@@ -72,12 +73,14 @@ impl Check<'_> {
                     return found;
                 };
                 let pointer = format!("/parameters/{}", escape(&reference.param));
-                let choices = parameter.choices.iter().flatten().enumerate();
-                let choices = choices.map(|(index, choice)| (format!("{pointer}/choices/{index}"), choice));
+                let choices = parameter.choices.iter().flat_map(Choices::entries);
+                let choices = choices.map(|(key, choice)| (format!("{pointer}/choices/{key}"), choice));
                 let alone = [("value", &parameter.value), ("default", &parameter.default)];
                 let alone = alone
                     .into_iter()
-                    .filter_map(|(key, value)| Some((format!("{pointer}/{key}"), value.as_ref()?)));
+                    .filter_map(|(key, value)| Some((format!("{pointer}/{key}"), value.as_ref()?)))
+                    // A name stands for a choice.
+                    .filter(|(_, value)| parameter.choices.iter().all(|choices| choices.named(value).is_none()));
                 for (pointer, value) in choices.chain(alone) {
                     match value {
                         Value::Distribution(own) if parameter.kind == ParameterType::Distribution => {

@@ -12,6 +12,7 @@ use std::sync::OnceLock;
 
 use indexmap::IndexMap;
 
+use super::choices::Choices;
 use super::expression::Kind;
 use super::family::{self, Variants};
 use super::parameter::{Parameter, Role};
@@ -218,8 +219,8 @@ impl<'a> Check<'a> {
                     .iter()
                     .map(|value| (format!("{pointer}/default"), value)),
             );
-            let choices = parameter.choices.iter().flatten().enumerate();
-            own.extend(choices.map(|(index, value)| (format!("{pointer}/choices/{index}"), value)));
+            let choices = parameter.choices.iter().flat_map(Choices::entries);
+            own.extend(choices.map(|(key, value)| (format!("{pointer}/choices/{key}"), value)));
             for (pointer, value) in own {
                 if let (ParameterType::Distribution, Value::Distribution(distribution)) = (parameter.kind, value)
                     && !self.has_unsound(distribution)

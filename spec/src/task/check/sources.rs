@@ -254,7 +254,7 @@ impl Check<'_> {
 
     /// Every value that a parameter is known to be able to have.
     pub(super) fn candidates_of_parameter(&self, parameter: &Parameter) -> Vec<Value> {
-        let typed = |value: &Value| value.cast(parameter.kind);
+        let typed = |value: &Value| parameter.typed(value);
         let mut values: Vec<Value> = parameter
             .default
             .iter()
