@@ -12,7 +12,7 @@ use driftworld_generator::Sampler;
 use driftworld_spec::{Element, TaskSpec, Value, Variant, World};
 
 pub use optimum::Optimum;
-pub use outcome::{Contradiction, ElementsOutcome, Measured, VariantElements, Verdict};
+pub use outcome::{Contradiction, ElementsOutcome, InVain, Measured, VariantElements, Verdict};
 pub use request::{DEFAULT_ELEMENTS_WORLDS, ElementsRequest, MAX_ELEMENTS_WORLDS};
 
 use crate::{Failure, libraries, tasks};
@@ -60,6 +60,10 @@ pub fn elements_of(task: &Arc<TaskSpec>, request: &ElementsRequest) -> Result<El
         for other in others {
             outcome.variants.push(trial.of_variant(base, &worlds, other)?);
         }
+    }
+    // One variant alone shows little of what a parameter can do.
+    if compared.len() == task.variant_names().len() {
+        outcome.note_in_vain(task);
     }
     Ok(outcome)
 }

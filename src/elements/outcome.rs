@@ -1,9 +1,7 @@
 //! [`ElementsOutcome`]: what was claimed, what was measured, and where the two contradict each other.
 
-use std::collections::BTreeMap;
-
 use driftworld_env::{Findings, Policy, Proof, Witness};
-use driftworld_spec::{Element, Modality, Variant};
+use driftworld_spec::{Element, Modality, TaskSpec, Variant};
 use driftworld_text::joined_or;
 use serde::{Deserialize, Serialize};
 
@@ -27,6 +25,20 @@ pub struct ElementsOutcome {
     pub steps: u32,
     /// The variants, in the order in which the task declares them.
     pub variants: Vec<VariantElements>,
+    /// What parameters declare and none of the variants shows.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub in_vain: Vec<InVain>,
+}
+
+/// Elements that a parameter declares, and that differed in none of the variants that change it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct InVain {
+    /// The parameter.
+    pub parameter: String,
+    /// The elements.
+    pub elements: Vec<Element>,
+    /// The variants.
+    pub variants: Vec<String>,
 }
 
 /// What a variant claims to change, and what it was seen to change.
@@ -105,6 +117,7 @@ impl ElementsOutcome {
             seed: request.seed,
             steps: request.steps,
             variants: Vec::new(),
+            in_vain: Vec::new(),
         }
     }
 
@@ -125,34 +138,45 @@ impl ElementsOutcome {
         self.idle().chain(self.declared_in_vain())
     }
 
-    /// The elements that a parameter declares and that differed in no variant that changes it alone; of parameters that made any
-    /// difference.
-    fn declared_in_vain(&self) -> impl Iterator<Item = String> {
-        let alone = |variant: &&VariantElements| variant.parameters.len() == 1 && !variant.measured.is_empty();
-        let mut by_name: BTreeMap<&str, Vec<&VariantElements>> = BTreeMap::new();
-        for variant in self.variants.iter().filter(alone) {
-            by_name.entry(&variant.parameters[0]).or_default().push(variant);
-        }
-        by_name.into_iter().filter_map(|(name, variants)| {
+    /// Notes what the parameters of a task declare and no variant shows, of all its variants. Where states differ in kind, or nothing
+    /// differs, nothing else can be said.
+    pub(super) fn note_in_vain(&mut self, task: &TaskSpec) {
+        for (name, parameter) in task.parameters() {
+            let shows = |variant: &&VariantElements| {
+                let measured = variant.elements();
+                let is_felt = variant.parameters.contains(name) && !variant.idle.contains(name);
+                is_felt && !measured.is_empty() && !measured.contains(&Element::S)
+            };
+            let tried: Vec<&VariantElements> = self.variants.iter().filter(shows).collect();
             let differed = |element: &Element| {
-                let mut measured = variants.iter().flat_map(|variant| &variant.measured);
+                let mut measured = tried.iter().flat_map(|variant| &variant.measured);
                 measured.any(|measured| element.covers(measured.element))
             };
-            let declared = variants[0].declared.iter();
-            let vain: Vec<&str> = declared.filter(|element| !differed(element)).map(|element| element.letter()).collect();
-            let tried: Vec<&str> = variants.iter().map(|variant| variant.variant.as_str()).collect();
-            (!vain.is_empty()).then(|| {
-                format!(
-                    "{}: {name} declares {}, which differed from {} in none of the variants that change it alone ({}): take it out of \
-                     \"affects\"; or, if it shows later or elsewhere, --steps takes more than {} and --worlds more than {}",
-                    self.task,
-                    vain.join(" "),
-                    self.base,
-                    tried.join(", "),
-                    self.steps,
-                    self.worlds,
-                )
-            })
+            let elements: Vec<Element> = parameter.affects.iter().copied().filter(|one| !differed(one)).collect();
+            if !tried.is_empty() && !elements.is_empty() {
+                self.in_vain.push(InVain {
+                    parameter: name.clone(),
+                    elements,
+                    variants: tried.iter().map(|variant| variant.variant.clone()).collect(),
+                });
+            }
+        }
+    }
+
+    fn declared_in_vain(&self) -> impl Iterator<Item = String> {
+        self.in_vain.iter().map(|vain| {
+            let letters: Vec<&str> = vain.elements.iter().map(|element| element.letter()).collect();
+            format!(
+                "{}: {} declares {}, which differed from {} in none of the variants that change it ({}): take it out of \"affects\"; \
+                 or, if it shows later or elsewhere, --steps takes more than {} and --worlds more than {}",
+                self.task,
+                vain.parameter,
+                letters.join(" "),
+                self.base,
+                vain.variants.join(", "),
+                self.steps,
+                self.worlds,
+            )
         })
     }
 

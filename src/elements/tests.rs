@@ -47,11 +47,15 @@ fn claims_that_are_true_are_sound_and_what_nothing_reads_is_idle() {
             warnings[0].starts_with("t#rich: reach made no difference"),
             "{warnings:?}"
         );
-        // What no variant shows that changes the colour alone is declared in vain.
-        let vain = "t: color declares S, which differed from red in none of the variants that change it alone (blue): ";
+        // What no variant shows that changes the colour is declared in vain.
+        let vain = "t: color declares S, which differed from red in none of the variants that change it (blue, rich): ";
         let vain = if affects.contains('S') { vec![vain] } else { Vec::new() };
         assert_eq!(warnings.len(), 1 + vain.len(), "{warnings:?}");
         assert!(vain.iter().all(|vain| warnings[1].starts_with(vain)), "{warnings:?}");
+        assert!(
+            warnings[1 + vain.len()].starts_with("t: reach declares T, "),
+            "{warnings:?}"
+        );
     }
 }
 

@@ -119,8 +119,6 @@ fn require_what_the_role_needs(schema: &mut schemars::Schema) {
         if ["layout", "distribution", "json"].contains(&kinds[0]) {
             then["properties"]["default"] = json!({ "anyOf": [value, { "type": "string" }] });
             then["properties"]["choices"]["additionalProperties"] = value;
-        } else {
-            then["properties"]["choices"]["type"] = json!("array");
         }
         if !range {
             then["properties"]["range"] = json!(false);
@@ -386,6 +384,16 @@ impl Parameter {
         let lengths = |value: &Value| {
             self.kind != ParameterType::Vector || value.as_vector().map(<[f64]>::len) == self.vector_length()
         };
+        let has_names = self.choices.as_ref().is_some_and(|choices| !choices.names().is_empty());
+        if has_names
+            && !matches!(
+                self.kind,
+                ParameterType::Layout | ParameterType::Distribution | ParameterType::Json
+            )
+        {
+            let found = format!("names for choices of type {kind}");
+            problems.push(Problem::new("spec/type", at("choices"), found, "a list of values"));
+        }
         let choices = self.choices.iter().flat_map(Choices::entries);
         for (key, choice) in choices.filter(|(_, choice)| choice.cast(self.kind).is_none() || !lengths(choice)) {
             let pointer = at(&format!("choices/{key}"));
