@@ -264,6 +264,16 @@ fn listed(folder: &Path) -> Vec<PathBuf> {
     folders.collect()
 }
 
+/// A message with the log in front, unless it begins with it: some name a file below the log, others only what is meant.
+pub(crate) fn placed(log: &Path, message: &str) -> String {
+    let log = log.shown().to_string();
+    if message.starts_with(&log) {
+        message.to_owned()
+    } else {
+        format!("{log}: {message}")
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

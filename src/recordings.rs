@@ -1,11 +1,12 @@
 //! Recorded episodes by what they are named: a log with the number of an experience, or a file of recordings. What a recording holds is
 //! `env`'s, where a log keeps it `curriculum`'s.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use driftworld_curriculum::{CurriculumError, RECORDINGS_FILE, list_recordings, read_recording, read_recording_file};
+use driftworld_curriculum::{CurriculumError, RECORDINGS_FILE, RecordingsFile};
 use driftworld_env::{Catalogue, EpisodeOrigin, Recording, Replay};
-use driftworld_metrics::{BlockType, Log, read_log_with_texts};
+use driftworld_metrics::{BlockType, read_log_with_texts};
 use driftworld_text::ShownPath;
 
 use crate::Failure;
@@ -14,18 +15,21 @@ use crate::contents::{Contents, OtherContents};
 /// Where recorded episodes are.
 pub struct RecordedEpisodes {
     path: PathBuf,
-    /// Nothing for a file of recordings.
-    log: Option<Log>,
-    /// The episodes of a file, and the first damage in it.
-    listed: (Vec<EpisodeOrigin>, Option<CurriculumError>),
+    /// The rows of a log by their numbers; nothing for a file of recordings.
+    rows: Option<BTreeMap<u64, Vec<LoggedRow>>>,
+    /// Whether the log is one that a run of ours wrote.
+    is_ours: bool,
+    /// The file that was read last, and whose block it is of.
+    file: Option<(Block, Option<RecordingsFile>)>,
 }
+
+/// A worker and its block.
+type Block = (String, u64, BlockType);
 
 /// What a log says of an episode.
 #[derive(Clone, Debug, PartialEq)]
 struct LoggedRow {
-    worker: String,
-    block: u64,
-    block_type: BlockType,
+    block: Block,
     reward: Option<f64>,
     steps: Option<f64>,
 }
@@ -36,32 +40,63 @@ impl RecordedEpisodes {
     /// # Errors
     /// If there is neither, or it cannot be read.
     pub fn open(path: &Path) -> Result<Self, Failure> {
-        if path.is_dir() {
-            if let Some(other) = OtherContents::check(path, Contents::of_folder(path), &[Contents::Log]) {
-                return Err(other.into());
-            }
-            return Ok(Self {
-                log: Some(read_log_with_texts(path)?),
-                listed: (Vec::new(), None),
-                path: path.to_owned(),
+        let mut this = Self {
+            path: path.to_owned(),
+            rows: None,
+            is_ours: false,
+            file: None,
+        };
+        if !path.is_dir() {
+            let file = RecordingsFile::open(path)?;
+            let missing = || {
+                Failure::input(format!(
+                    "{}: found no such file, expected a log or recordings",
+                    path.shown()
+                ))
+            };
+            this.file = Some(((String::new(), 0, BlockType::Train), Some(file.ok_or_else(missing)?)));
+            return Ok(this);
+        }
+        if let Some(other) = OtherContents::check(path, Contents::of_folder(path), &[Contents::Log]) {
+            return Err(other.into());
+        }
+        let log = read_log_with_texts(path)?;
+        // What others log under these names may be something else, such as a reward that was scaled.
+        this.is_ours = log.scenario_info.extra.contains_key("made_from");
+        let rows: &mut BTreeMap<u64, Vec<LoggedRow>> = this.rows.get_or_insert_default();
+        for row in log.rows.iter() {
+            let of_number = rows.entry(row.exp_num()).or_default();
+            // The last row of a worker completes the episode.
+            of_number.retain(|other| other.block.0 != row.worker_id());
+            of_number.push(LoggedRow {
+                block: (row.worker_id().to_owned(), row.block_num(), row.block_type()),
+                reward: row.metric("reward"),
+                steps: row.metric("episode_step_count"),
             });
         }
-        Ok(Self {
-            log: None,
-            listed: list_recordings(path)?,
-            path: path.to_owned(),
-        })
+        Ok(this)
     }
 
-    /// The numbers of the episodes that there are rows of, or that are in the file, rising.
-    pub fn numbers(&self) -> Vec<u64> {
-        let mut numbers: Vec<u64> = match &self.log {
-            Some(log) => log.rows.exp_nums().to_vec(),
-            None => self.listed.0.iter().map(|origin| origin.experience).collect(),
+    /// The episodes that there are rows of, or that are in the file: numbers, and in a log whose they are. Block by block, so that each
+    /// file is read once.
+    pub fn all(&self) -> Vec<(u64, Option<String>)> {
+        let Some(rows) = &self.rows else {
+            let numbers: BTreeSet<u64> = self.listed().map(|origin| origin.experience).collect();
+            return numbers.into_iter().map(|number| (number, None)).collect();
         };
-        numbers.sort_unstable();
-        numbers.dedup();
-        numbers
+        let mut all: Vec<(&Block, u64)> = (rows.iter())
+            .flat_map(|(number, rows)| rows.iter().map(|row| (&row.block, *number)))
+            .collect();
+        all.sort_by_key(|((worker, block, kind), number)| (*block, kind.name(), worker, *number));
+        all.into_iter()
+            .map(|((worker, ..), number)| (number, Some(worker.clone())))
+            .collect()
+    }
+
+    /// The first damaged line of a file of recordings.
+    pub fn damage(&self) -> Option<CurriculumError> {
+        let (_, file) = self.file.as_ref().filter(|_| self.rows.is_none())?;
+        file.as_ref()?.damage()
     }
 
     /// The recording of an episode; nothing where a log has its row and it was not recorded. Where several workers have an episode of
@@ -69,20 +104,21 @@ impl RecordedEpisodes {
     ///
     /// # Errors
     /// If there is no such episode, or its recording is damaged.
-    pub fn recording(&self, number: u64, worker: Option<&str>) -> Result<Option<Recording>, Failure> {
-        if self.log.is_none() {
-            return match read_recording_file(&self.path, number)? {
-                Some(recording) => Ok(Some(recording)),
-                None => Err(self.missing(number)),
-            };
+    pub fn recording(&mut self, number: u64, worker: Option<&str>) -> Result<Option<Recording>, Failure> {
+        if self.rows.is_some() {
+            let block = self.row(number, worker)?.block.clone();
+            if self.file.as_ref().is_none_or(|(open, _)| *open != block) {
+                let file = RecordingsFile::of_block(&self.path, &block.0, (block.1, block.2))?;
+                self.file = Some((block, file));
+            }
         }
-        let row = self.row(number, worker)?;
-        Ok(read_recording(
-            &self.path,
-            &row.worker,
-            (row.block, row.block_type),
-            number,
-        )?)
+        let Some((_, Some(file))) = &mut self.file else {
+            return Ok(None);
+        };
+        match file.recording(number)? {
+            None if self.rows.is_none() => Err(self.missing(number)),
+            recording => Ok(recording),
+        }
     }
 
     /// Runs an episode once more, and compares it with its recording and, where there is one, with its row in the log.
@@ -101,9 +137,7 @@ impl RecordedEpisodes {
     /// # Errors
     /// That says what differs.
     pub fn check_row(&self, recording: &Recording, worker: Option<&str>) -> Result<(), Failure> {
-        let Some(log) = &self.log else { return Ok(()) };
-        // What others log under these names may be something else, such as a reward that was scaled.
-        if !log.scenario_info.extra.contains_key("made_from") {
+        if !self.is_ours {
             return Ok(());
         }
         let number = recording.origin.experience;
@@ -126,26 +160,16 @@ impl RecordedEpisodes {
         }
     }
 
-    fn row(&self, number: u64, worker: Option<&str>) -> Result<LoggedRow, Failure> {
-        let rows = self.log.iter().flat_map(|log| log.rows.iter());
-        let mut found: Vec<LoggedRow> = rows
-            .filter(|row| row.exp_num() == number && worker.is_none_or(|worker| row.worker_id() == worker))
-            .map(|row| LoggedRow {
-                worker: row.worker_id().to_owned(),
-                block: row.block_num(),
-                block_type: row.block_type(),
-                reward: row.metric("reward"),
-                steps: row.metric("episode_step_count"),
-            })
+    fn row(&self, number: u64, worker: Option<&str>) -> Result<&LoggedRow, Failure> {
+        let of_number = self.rows.iter().filter_map(|rows| rows.get(&number)).flatten();
+        let found: Vec<&LoggedRow> = of_number
+            .filter(|row| worker.is_none_or(|worker| row.block.0 == worker))
             .collect();
-        // Rows before the one that completes an episode.
-        found.reverse();
-        found.dedup_by(|a, b| a.worker == b.worker);
         match &found[..] {
-            [row] => Ok(row.clone()),
+            [row] => Ok(row),
             [] => Err(self.missing(number)),
             several => {
-                let workers: Vec<&str> = several.iter().map(|row| row.worker.as_str()).collect();
+                let workers: Vec<&str> = several.iter().map(|row| row.block.0.as_str()).collect();
                 Err(Failure::input(format!(
                     "{}: found episodes {number} of {}, expected one; say whose with {}",
                     self.path.shown(),
@@ -156,11 +180,14 @@ impl RecordedEpisodes {
         }
     }
 
+    /// The episodes of a file.
+    fn listed(&self) -> impl Iterator<Item = &EpisodeOrigin> {
+        let file = self.file.iter().filter_map(|(_, file)| file.as_ref());
+        file.flat_map(RecordingsFile::episodes)
+    }
+
     fn missing(&self, number: u64) -> Failure {
-        if let Some(damage) = &self.listed.1 {
-            return Failure::input(format!("episode {number} cannot be found: {damage}"));
-        }
-        let numbers = self.numbers();
+        let numbers: BTreeSet<u64> = self.all().into_iter().map(|(number, _)| number).collect();
         let there = match (numbers.first(), numbers.last()) {
             (Some(first), Some(last)) if first == last => format!("episode {first}"),
             (Some(first), Some(last)) => format!("one of episodes {first} to {last}"),

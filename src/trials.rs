@@ -43,7 +43,7 @@ pub(crate) fn shown(trials: &[Trial]) -> String {
         "no place",
         "requirement",
         "other",
-        "expert finishes",
+        "planner finishes",
     ];
     let mut lines = vec![table(headings, rows.collect(), &[0, 2, 3, 4, 5, 6, 7])];
     // The first of each kind: what fails in one way may fail in another, too.
@@ -87,7 +87,7 @@ pub(crate) fn unfinished(trial: &Trial) -> Option<String> {
     };
     let (variant, seed) = (&trial.variant, trial.seed);
     Some(format!(
-        "{variant}: the agent on rails came to the success in {} of {} worlds, not in {}{more}; look at one: driftworld render \
+        "{variant}: the planner came to the success in {} of {} worlds, not in {}{more}; look at one: driftworld render \
          '{variant}' --seed {seed} --index {} -o world.png",
         expert.succeeded,
         expert.worlds,

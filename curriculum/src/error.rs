@@ -14,12 +14,12 @@ use driftworld_text::{ShownPath, one_line, when};
 #[strum(prefix = "curriculum/", serialize_all = "kebab-case")]
 #[non_exhaustive]
 pub enum CurriculumError {
-    /// An agent that is frozen earned something else when it ran an evaluation experience once more.
+    /// A frozen agent did something else when an evaluation was run once more.
     #[error(
-        "block {block}: found reward {again} in evaluation experience {experience} ({variant}) run once more, expected \
-         {first} as before, from an agent that is frozen; keep statistics, memory and random numbers of evaluations \
-         apart from the agent's own, and draw the latter from the seed that each experience begins with; or switch the \
-         check off"
+        "block {block}: found {found} of experience {experience} ({variant}) when this evaluation was run once more, \
+         expected the same: evaluations change the agent, or its random numbers are not drawn from the seed that each \
+         experience begins with; keep statistics, memories and counters of evaluations apart from the agent's own, or \
+         switch the check off"
     )]
     NotFrozen {
         /// The block.
@@ -28,10 +28,8 @@ pub enum CurriculumError {
         variant: String,
         /// The number of the experience over the whole lifetime.
         experience: u64,
-        /// What it earned first.
-        first: f64,
-        /// What it earned when it was run once more.
-        again: f64,
+        /// What differs: an action in a step, or the reward.
+        found: String,
     },
     /// There is nothing to make blocks of.
     #[error("design: found no variants, expected at least 1")]

@@ -19,9 +19,9 @@ pub use design::{
 pub use error::CurriculumError;
 pub use run::{
     COLUMNS, ENDED_BY, ENDING, Experience, ExperienceSpec, Failed, Finished, FoundWorld, Journal, LeftOut,
-    MAX_RECORDINGS_BYTES, MOST_STEPS, Plan, Progress, RECORDINGS_FILE, REPEATED_EVALUATIONS, Recordings, RegimeSummary,
-    Rollout, RunContext, Sources, Summary, Trial, Tried, Undrawable, list_recordings, log_name, read_recording,
-    read_recording_file, relearn, run, run_rollout, same_log_name, try_expert, try_worlds,
+    MAX_RECORDINGS_BYTES, MOST_STEPS, Plan, Progress, RECORDINGS_FILE, REPEATED_EVALUATIONS, Recordings,
+    RecordingsFile, RegimeSummary, Repeats, Rollout, RunContext, Sources, Summary, Trial, Tried, Undrawable, log_name,
+    relearn, run, run_rollout, same_log_name, try_expert, try_worlds,
 };
 pub use transfer::{
     DirectionReport, PairTransfer, TransferOptions, TransferReport, log_name_of_label, transfer_report,

@@ -1,6 +1,6 @@
 """Stable-Baselines3's PPO learns to find objects from 64 × 64 colour pictures, in minutes on two cores.
 
-The learner sees what the agent sees and nothing else; beside it stand an agent that acts at random and the scripted expert,
+The learner sees what the agent sees and nothing else; beside it stand an agent that acts at random and the planner,
 which knows the map and walks from cube to cube, both in the same environment.
 
     python examples/python/ppo_find_objects.py                               # one seed
@@ -165,8 +165,8 @@ def main() -> None:
     torch.set_num_threads(arguments.threads)
     watch = Watch()
     lines = {
-        "scripted expert": expert(arguments)["reward"],
-        "scripted expert that acts in every time step": expert(arguments, frame_skip=1, max_steps=300)["reward"],
+        "planner": expert(arguments)["reward"],
+        "planner that acts in every time step": expert(arguments, frame_skip=1, max_steps=300)["reward"],
         "random": evaluate(arguments, None, "sampled")["reward"],
     }
     for name, level in lines.items():

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use driftworld_curriculum::{RECORDINGS_FILE, Recordings, list_recordings, read_recording_file};
+use driftworld_curriculum::{RECORDINGS_FILE, Recordings, RecordingsFile};
 use driftworld_env::{
     Action, Catalogue, Environment, Recorder, Recording, RecordingLines, RecordingReader, Replay, Step,
 };
@@ -190,10 +190,17 @@ fn on_disk(file: &[u8]) {
     let path = log.path().join(WORKER).join("0-train").join(RECORDINGS_FILE);
     fs::create_dir_all(path.parent().expect("it is in a folder")).expect("there is room for a folder");
     fs::write(&path, file).expect("there is room for a small file");
-    let before: Vec<u64> = match list_recordings(&path) {
-        Ok((origins, damage)) => {
-            refusal::messages(damage);
-            origins.iter().map(|origin| origin.experience).collect()
+    let numbers = |file: &RecordingsFile| {
+        file.episodes()
+            .iter()
+            .map(|origin| origin.experience)
+            .collect::<Vec<u64>>()
+    };
+    let before: Vec<u64> = match RecordingsFile::open(&path) {
+        Ok(file) => {
+            let file = file.expect("it is there");
+            refusal::messages(file.damage());
+            numbers(&file)
         }
         Err(error) => {
             refusal::message(&error.to_string());
@@ -204,11 +211,12 @@ fn on_disk(file: &[u8]) {
     let added = small(next);
     match Recordings::new(log.path()).append(WORKER, (0, BlockType::Train), &added) {
         Ok(()) => {
-            let back = read_recording_file(&path, next).expect("what was written last can be read");
+            let file = RecordingsFile::open(&path).expect("it is a file of recordings");
+            let mut file = file.expect("it is there");
+            let back = file.recording(next).expect("what was written last can be read");
             assert_eq!(back.as_ref(), Some(&added));
-            let (after, _) = list_recordings(&path).expect("it is a file of recordings");
-            assert!(after.iter().any(|origin| origin.experience == next));
-            let kept: Vec<u64> = after.iter().map(|origin| origin.experience).collect();
+            let kept = numbers(&file);
+            assert!(kept.contains(&next));
             assert!(
                 kept.starts_with(&before) || before.is_empty(),
                 "found {kept:?} after {before:?}"

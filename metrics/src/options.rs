@@ -137,7 +137,7 @@ choice! {
     /// Whose definitions the metrics follow where the reference's program departs from its own documents.
     ///
     /// Under `published`, task parameters split regimes; saturation looks at data that were smoothed once; the last
-    /// tenth of a regime is reckoned in whole numbers; of several tasks that were learnt between two evaluations of
+    /// tenth of a regime is reckoned in whole numbers; of several tasks that were learned between two evaluations of
     /// another, each is said to have transferred; and files are not rounded.
     #[derive(Default)]
     Definitions, "definitions" {

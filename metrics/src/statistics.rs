@@ -74,12 +74,14 @@ pub(crate) fn theil_sen_slope(y: &[f64]) -> Option<f64> {
     median(slopes)
 }
 
-/// Whether the least-squares line through the points falls. A constant or a single point does not.
-pub(crate) fn trend_falls(x: &[f64], y: &[f64]) -> bool {
+/// Whether the least-squares line through the points falls by more than rounding of this much in each `y` explains. A constant or a
+/// single point does not.
+pub(crate) fn trend_falls(x: &[f64], y: &[f64], slack: f64) -> bool {
     let (Some(mean_x), Some(mean_y)) = (mean(x), mean(y)) else {
         return false;
     };
-    x.iter().zip(y).map(|(x, y)| (x - mean_x) * (y - mean_y)).sum::<f64>() < 0.0
+    let explained = slack * x.iter().map(|x| (x - mean_x).abs()).sum::<f64>();
+    x.iter().zip(y).map(|(x, y)| (x - mean_x) * (y - mean_y)).sum::<f64>() < -explained
 }
 
 #[cfg(test)]
@@ -119,12 +121,13 @@ mod tests {
     fn only_a_falling_line_falls() {
         let check = |y: &[f64], expected: bool| {
             let x: Vec<f64> = (0..y.len()).map(|i| i as f64).collect();
-            assert_eq!(trend_falls(&x, y), expected, "{y:?}");
+            assert_eq!(trend_falls(&x, y, 0.0), expected, "{y:?}");
         };
         check(&[], false);
         check(&[3.0], false);
         check(&[3.0, 3.0, 3.0], false);
         check(&[1.0, 2.0, 1.5], false);
         check(&[3.0, 5.0, 1.0], true);
+        assert!(!trend_falls(&[0.0, 1.0], &[1.0, 1.0 - 1e-12], 1e-9));
     }
 }

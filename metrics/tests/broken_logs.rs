@@ -89,7 +89,7 @@ fn a_cell_that_is_wrong_is_named_with_what_should_stand_there() {
         r#"{"a": [1, NaN]}"#,
         "task_params",
         r#""{/"a/": [1, NaN]}""#,
-        "a JSON object, which has null and no NaN or Infinity",
+        "a JSON object; not valid JSON: JSON has no NaN or Infinity; numbers are finite",
     );
     cell(7, "done", "exp_status", "\"done\"", "one of complete, incomplete");
     cell(
@@ -147,9 +147,7 @@ fn a_table_that_is_no_table_is_refused_with_its_place() {
     check(
         format!("{HEADER}{ROW}0\t1\tw\ttra"),
         "metrics/torn-last-line",
-        "LOG/w/0-train/data-log.tsv:3: found a last line without a line end, expected complete rows; its writer was \
-         interrupted: delete that line, or continue the log, which deletes it (`driftworld run … --resume`, \
-         LogWriter::resume)",
+        "LOG/w/0-train/data-log.tsv:3: found a last line without a line end, expected complete rows; its writer was interrupted, or an editor left the line end out: add one if the line is whole; else delete the line, or continue the log, which deletes it (`driftworld run … --resume`, LogWriter::resume)",
     );
     check(
         format!("{HEADER}{ROW}").replace('\n', "\r"),
@@ -214,8 +212,7 @@ fn a_directory_that_is_no_log_is_told_what_it_lacks() {
     );
     fs::write(base.path().join("logger_info.json"), "{\"metrics_columns\"").unwrap();
     check(
-        "LOG/logger_info.json:1:18: found EOF while parsing an object, expected a JSON object with the list \
-         metrics_columns",
+        "LOG/logger_info.json:1:18: not valid JSON: EOF while parsing an object; the document ends too early, is it cut off?",
     );
     fs::write(
         base.path().join("logger_info.json"),

@@ -59,8 +59,7 @@ fn all() -> Vec<MetricsError> {
             path: "i.json".into(),
             line: 1,
             column: 2,
-            found: text("EOF"),
-            expected: "a JSON object",
+            wrong: text("not valid JSON: EOF"),
         },
         E::LoggerInfo {
             field: "metrics_columns",

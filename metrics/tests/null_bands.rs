@@ -55,21 +55,21 @@ fn log_of(rows: &[Lived]) -> Log {
     read_log(&dir).unwrap()
 }
 
-/// Every task is evaluated before and after each is learnt, in the same worlds. `reward` is given how many tasks were learnt, whether
+/// Every task is evaluated before and after each is learned, in the same worlds. `reward` is given how many tasks were learned, whether
 /// this is learning, the number of the task and that of the world.
 fn lifetime(worlds: u32, mut reward: impl FnMut(usize, BlockType, usize, u32) -> f64) -> Vec<Lived> {
     let mut rows = Vec::new();
-    for learnt in 0..=TASKS.len() {
-        let block = 2 * learnt as u64;
+    for learned in 0..=TASKS.len() {
+        let block = 2 * learned as u64;
         for (number, task) in TASKS.into_iter().enumerate() {
             for world in 0..worlds {
-                let earned = reward(learnt, Test, number, world);
+                let earned = reward(learned, Test, number, world);
                 rows.push((block, Test, task, f64::from(world), earned));
             }
         }
-        if let Some(task) = TASKS.get(learnt) {
+        if let Some(task) = TASKS.get(learned) {
             for world in 0..worlds {
-                let earned = reward(learnt, Train, learnt, world);
+                let earned = reward(learned, Train, learned, world);
                 rows.push((block + 1, Train, *task, f64::from(world), earned));
             }
         }
@@ -195,13 +195,13 @@ fn copies_of_a_lifetime_have_the_band_of_one() {
 
 #[test]
 fn what_one_lifetime_leaves_open_several_show() {
-    // What was learnt is lost bit by bit, and luck covers it.
+    // What was learned is lost bit by bit, and luck covers it.
     let lifetimes: Vec<LifetimeMetrics> = (0..12_u64)
         .map(|seed| {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
-            let rows = lifetime(15, |learnt, kind, number, world| {
-                let kept = if learnt > number {
-                    20.0 - 6.0 * (learnt - number) as f64
+            let rows = lifetime(15, |learned, kind, number, world| {
+                let kept = if learned > number {
+                    20.0 - 6.0 * (learned - number) as f64
                 } else {
                     0.0
                 };
@@ -251,11 +251,11 @@ fn of_an_agent_whose_rewards_repeat_the_band_is_the_value() {
 
 /// Learns each task, and forgets it when it learns the next.
 fn forgetting(rng: &mut ChaCha8Rng) -> Vec<Lived> {
-    lifetime(20, |learnt, block_type, task, _| {
+    lifetime(20, |learned, block_type, task, _| {
         let knows = if block_type == Train {
             task
         } else {
-            learnt.wrapping_sub(1)
+            learned.wrapping_sub(1)
         };
         let level = if knows == task { 80.0 } else { 10.0 };
         level + rng.random_range(-8.0..8.0)
@@ -285,8 +285,8 @@ fn an_agent_that_forgets_lies_outside() {
 #[test]
 fn an_agent_that_learns_all_tasks_at_once_is_called_good() {
     let mut rng = ChaCha8Rng::seed_from_u64(2);
-    let scores = scored(&lifetime(20, |learnt, _, _, _| {
-        20.0 * learnt as f64 + rng.random_range(0.0..10.0)
+    let scores = scored(&lifetime(20, |learned, _, _, _| {
+        20.0 * learned as f64 + rng.random_range(0.0..10.0)
     }));
     for (name, good) in directions() {
         if name != "perf_maintenance_mrtlp" {
@@ -401,7 +401,7 @@ fn smoothed_evaluations_have_no_bands() {
     assert!(score(&log_of(&rows), &[], &options).unwrap().null_bands.is_empty());
 }
 
-/// Rewards of one task in three evaluations of four worlds; it is learnt after the first.
+/// Rewards of one task in three evaluations of four worlds; it is learned after the first.
 const EVALUATIONS: [[f64; 4]; 3] = [[3.0, 0.0, 10.0, 4.0], [9.0, 7.0, 2.0, 8.0], [1.0, 6.0, 5.0, 0.5]];
 
 /// All orders of three.
@@ -471,11 +471,13 @@ fn expert(task: &'static str, learning: f64, evaluation: Option<f64>) -> SteLog 
 #[test]
 fn a_task_below_a_fifth_of_the_expert_was_never_learned() {
     // The second task is never learned; the first is, and forgotten.
-    let rows = lifetime(4, |learnt, block_type, task, world| match (task, block_type, learnt) {
-        (0, Test, 1) => 60.0 + 10.0 * f64::from(world),
-        (1, ..) => -6.0,
-        (_, Train, _) => 30.0,
-        _ => 4.0,
+    let rows = lifetime(4, |learned, block_type, task, world| {
+        match (task, block_type, learned) {
+            (0, Test, 1) => 60.0 + 10.0 * f64::from(world),
+            (1, ..) => -6.0,
+            (_, Train, _) => 30.0,
+            _ => 4.0,
+        }
     });
     let experts = [
         expert("find_red", 10.0, Some(100.0)),

@@ -101,7 +101,7 @@ fn maintenance_is_the_difference_to_the_evaluation_right_after_learning() {
 }
 
 #[test]
-fn transfer_compares_evaluations_before_and_after_another_task_is_learnt() {
+fn transfer_compares_evaluations_before_and_after_another_task_is_learned() {
     let options = Options {
         transfer_method: TransferMethod::Both,
         ..plain()
@@ -109,13 +109,13 @@ fn transfer_compares_evaluations_before_and_after_another_task_is_learnt() {
     let metrics = scored(&ALTERNATING, &options);
     let (a, b) = (&metrics.task_metrics["a_1"], &metrics.task_metrics["b_1"]);
     let pair = |task: &str, values: &[f64]| PairValues::from([(task.to_owned(), values.to_vec())]);
-    // a is learnt (2) between the evaluations 1 and 4 of b, before b's first learning: 6/4, and 2/10.
+    // a is learned (2) between the evaluations 1 and 4 of b, before b's first learning: 6/4, and 2/10.
     assert_eq!(a.pairs("forward_transfer_ratio"), Some(&pair("b_1", &[1.5])));
     assert_eq!(a.pairs("forward_transfer_contrast"), Some(&pair("b_1", &[0.2])));
-    // a is learnt again (8) between the evaluations 7 and 10 of b, after b's first learning: 15/12, and 3/27.
+    // a is learned again (8) between the evaluations 7 and 10 of b, after b's first learning: 15/12, and 3/27.
     assert_eq!(a.pairs("backward_transfer_ratio"), Some(&pair("b_1", &[1.25])));
     assert_eq!(a.pairs("backward_transfer_contrast"), Some(&pair("b_1", &[3.0 / 27.0])));
-    // b is learnt (5) between the evaluations 3 and 6 of a, which was learnt before: 8/10, and −2/18.
+    // b is learned (5) between the evaluations 3 and 6 of a, which was learned before: 8/10, and −2/18.
     assert_eq!(b.pairs("forward_transfer_ratio"), Some(&[].into()));
     assert_eq!(b.pairs("backward_transfer_ratio"), Some(&pair("a_1", &[0.8])));
     assert_eq!(
@@ -202,7 +202,7 @@ fn recovery_that_takes_as_long_each_time_is_nothing_without_a_sign() {
 }
 
 #[test]
-fn where_two_tasks_are_learnt_in_one_gap_the_last_pair_gets_the_transfer() {
+fn where_two_tasks_are_learned_in_one_gap_the_last_pair_gets_the_transfer() {
     let blocks: [Block<'_>; 5] = [
         (Test, "c_1", &[2.0]),
         (Train, "b_1", &[1.0]),

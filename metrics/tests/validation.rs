@@ -8,7 +8,8 @@ use std::fs;
 use std::path::Path;
 
 use driftworld_metrics::{
-    BlockType, LogWriter, LoggerInfo, MAX_LISTED, Record, ScenarioInfo, Timestamp, Validation, read_log, validate_log,
+    BlockType, LogWarning, LogWriter, LoggerInfo, MAX_LISTED, MetricsError, Record, ScenarioInfo, Timestamp,
+    Validation, read_log, validate_log,
 };
 
 const HEADER: &str =
@@ -33,7 +34,35 @@ fn validate(files: &[(&str, String)], version: &str) -> (Vec<String>, Vec<String
     }
     let found = validate_log(dir);
     let plain = |text: String| text.replace(&dir.display().to_string(), "LOG").replace('\\', "/");
-    assert!(!found.is_valid() || read_log(dir).is_ok(), "what is valid can be read");
+    // Reading refuses, or warns of, what validating lists, in the same words.
+    let said = |problem: &MetricsError| problem.to_string();
+    match read_log(dir) {
+        Ok(log) => {
+            let warned = |text: String| {
+                log.warnings
+                    .iter()
+                    .any(|warning| warning.to_string().starts_with(&text))
+            };
+            assert!(
+                found.problems.iter().map(said).all(warned),
+                "{found:?} {:?}",
+                log.warnings
+            );
+            let of_rows = found
+                .warnings
+                .iter()
+                .filter(|warning| !matches!(warning, LogWarning::NoNumbers { .. }));
+            assert!(
+                of_rows.map(ToString::to_string).all(warned),
+                "{found:?} {:?}",
+                log.warnings
+            );
+        }
+        Err(error) => assert!(
+            found.problems.iter().any(|problem| said(problem) == said(&error)),
+            "{error}"
+        ),
+    }
     let problems = found.problems.iter().map(|problem| plain(problem.to_string()));
     let warnings = found.warnings.iter().map(|warning| plain(warning.to_string()));
     (problems.collect(), warnings.collect(), found)
@@ -98,9 +127,7 @@ fn every_fault_of_every_row_is_listed_and_the_other_rows_are_read() {
              missing one",
             "LOG/w/0-train/data-log.tsv:4: found 3 cells, expected 10 as in the header; is a tab or a quote missing?",
             "LOG/w/0-train/data-log.tsv:5, column exp_status: found \"done\", expected one of complete, incomplete",
-            "LOG/w/0-train/data-log.tsv:6: found a last line without a line end, expected complete rows; its writer \
-             was interrupted: delete that line, or continue the log, which deletes it (`driftworld run … --resume`, \
-             LogWriter::resume)",
+            "LOG/w/0-train/data-log.tsv:6: found a last line without a line end, expected complete rows; its writer was interrupted, or an editor left the line end out: add one if the line is whole; else delete the line, or continue the log, which deletes it (`driftworld run … --resume`, LogWriter::resume)",
             "LOG/w/1-train/data-log.tsv:1: found an empty file, expected a header line that begins with block_num",
         ]
     );
@@ -289,9 +316,7 @@ fn a_quote_that_is_never_closed_is_told_from_a_torn_row() {
         ],
         &[],
     );
-    let torn = "LOG/w/0-train/data-log.tsv:3: found a last line without a line end, expected complete rows; its \
-         writer was interrupted: delete that line, or continue the log, which deletes it (`driftworld run … \
-         --resume`, LogWriter::resume)";
+    let torn = "LOG/w/0-train/data-log.tsv:3: found a last line without a line end, expected complete rows; its writer was interrupted, or an editor left the line end out: add one if the line is whole; else delete the line, or continue the log, which deletes it (`driftworld run … --resume`, LogWriter::resume)";
     check(
         [HEADER, &row(0, 0, "complete"), "0\t1\tw\ttrain\twake\t\"a\n"].concat(),
         &[torn],

@@ -10,8 +10,8 @@ use driftworld::clock::Clock;
 use driftworld::scenarios::{Missing, Named, ScenarioFile, task_from};
 use driftworld::tasks::TaskError;
 use driftworld_curriculum::{
-    CurriculumError, Experience, FoundWorld, Journal, MOST_STEPS, Plan, Progress, REPEATED_EVALUATIONS, Rollout, Tried,
-    Undrawable, run_rollout,
+    CurriculumError, Experience, FoundWorld, Journal, MOST_STEPS, Plan, Progress, REPEATED_EVALUATIONS, Repeats,
+    Rollout, Tried, Undrawable, run_rollout,
 };
 use driftworld_env::{EndedBy, Recording};
 use driftworld_spec::{BlockKind, Scenario, TaskSpec, World};
@@ -246,8 +246,8 @@ impl PyJournal {
     }
 
     /// Runs the plan from the first experience that is not in the log, and says what it came to, as a dictionary. `learned`:
-    /// how many experiences the agent has learned from. `rollout` has the methods of [`Rollout`]. `check_frozen`: whether the first
-    /// evaluations of each block are run once more and have to pay the same.
+    /// how many experiences the agent has learned from. `rollout` has the methods of [`Rollout`]. `check_frozen`: whether some
+    /// evaluations of each block are run once more; its attribute `repeats_first` says whether these are the first.
     fn run<'py>(
         &mut self,
         py: Python<'py>,
@@ -257,7 +257,11 @@ impl PyJournal {
         check_frozen: bool,
     ) -> Result<Bound<'py, PyAny>> {
         let clock = Clock::from_environment().map_err(|error| PyValueError::new_err(error.to_string()))?;
-        let (plan, mut rollout) = (&plan.borrow().plan, PythonRollout { rollout, check_frozen });
+        let repeats = Repeats {
+            count: if check_frozen { REPEATED_EVALUATIONS } else { 0 },
+            first: rollout.getattr("repeats_first")?.extract()?,
+        };
+        let (plan, mut rollout) = (&plan.borrow().plan, PythonRollout { rollout, repeats });
         let summary = run_rollout(plan, &mut rollout, self.open()?, learned.0, &mut || clock.now())?;
         Ok(to_py(py, &summary)?)
     }
@@ -297,19 +301,19 @@ fn handle(world: World) -> Result<PyStream> {
 /// An agent of Python's with its environment: what it does is in `package/driftworld/lifetimes.py`.
 struct PythonRollout<'py> {
     rollout: Bound<'py, PyAny>,
-    /// Whether a block's first evaluations are run once more, to see that they change nothing.
-    check_frozen: bool,
+    repeats: Repeats,
 }
 
 impl Rollout for PythonRollout<'_> {
     type Error = Error;
 
-    fn repeated_evaluations(&self) -> usize {
-        if self.check_frozen { REPEATED_EVALUATIONS } else { 0 }
+    fn repeats(&self) -> Repeats {
+        self.repeats
     }
 
-    fn begin_block(&mut self, learning: bool) -> Result<()> {
-        self.rollout.call_method1("begin_block", (learning,))?;
+    fn begin_block(&mut self, learning: bool, repeated: &[u64]) -> Result<()> {
+        self.rollout
+            .call_method1("begin_block", (learning, repeated.to_vec()))?;
         Ok(())
     }
 

@@ -225,8 +225,7 @@ fn of_metrics(details: &Bound<'_, PyDict>, source: &MetricsError) -> PyResult<()
     details.set_item("code", source.code())?;
     details.set_item("line", source.line())?;
     if let MetricsError::Json { column, .. } = source {
-        // 0 says that the line as a whole is meant.
-        details.set_item("column", (*column > 0).then_some(column))?;
+        details.set_item("column", column)?;
     }
     Ok(())
 }

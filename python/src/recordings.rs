@@ -189,7 +189,7 @@ pub(crate) fn read_recording(
 ) -> Result<PyRecording> {
     let worker = worker.map(str::to_owned);
     let recording = detach(py, || {
-        let episodes = RecordedEpisodes::open(&path)?;
+        let mut episodes = RecordedEpisodes::open(&path)?;
         let recording = episodes.recording(episode.0, worker.as_deref())?;
         let recording = recording.ok_or_else(|| episodes.unrecorded(episode.0))?;
         episodes.check_row(&recording, worker.as_deref())?;

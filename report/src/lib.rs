@@ -46,11 +46,11 @@ use driftworld_metrics::Lifetime;
 
 /// The names of each two neighbouring learning blocks of a lifetime, in order: between them a distance can be given.
 pub fn neighbours(lifetime: &Lifetime) -> Vec<[&str; 2]> {
-    let learnt: Vec<&str> = (lifetime.regimes().iter())
+    let learned: Vec<&str> = (lifetime.regimes().iter())
         .filter(|regime| regime.is_wake_training())
         .map(|regime| regime.task_name.as_str())
         .collect();
-    learnt.windows(2).map(|pair| [pair[0], pair[1]]).collect()
+    learned.windows(2).map(|pair| [pair[0], pair[1]]).collect()
 }
 
 /// The smallest and the largest of some numbers.

@@ -193,8 +193,8 @@ fn nothing_is_wider_than_the_screen_and_every_word_can_be_read() {
             assert!(value("smallest").parse::<f64>().unwrap() >= 7.8, "{line}");
         }
     };
-    check(&Life::default().live().page(), "5", "0");
-    check(&lifetimes::page_of_two(), "10", "2");
+    check(&Life::default().live().page(), "5", "1");
+    check(&lifetimes::page_of_two(), "10", "4");
     let life = Life {
         name: "a_name_that_is_much_longer_than_any_name_of_a_lifetime_needs_to_be_and_has_no_spaces",
         tasks: (0..12)
@@ -203,7 +203,7 @@ fn nothing_is_wider_than_the_screen_and_every_word_can_be_read() {
         rounds: 1,
         ..Life::default()
     };
-    check(&life.live().page(), "5", "0");
+    check(&life.live().page(), "5", "1");
 }
 
 /// Heights, in pixels: of the room for a figure, and of the names on top of it.

@@ -50,10 +50,7 @@ pub(crate) fn plain_number(number: f64) -> String {
     }
 }
 
-/// Escapes a key for a JSON pointer.
-pub(crate) fn escape(key: &str) -> String {
-    key.replace('~', "~0").replace('/', "~1")
-}
+pub(crate) use driftworld_text::json::escape;
 
 pub(crate) fn pointer_of(path: &serde_path_to_error::Path) -> String {
     use serde_path_to_error::Segment;

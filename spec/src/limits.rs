@@ -12,12 +12,7 @@ pub const MAX_SCENARIO_VALUES: usize = 2_000_000;
 /// The most values of a task spec, a maps file or an object alone.
 pub const MAX_VALUES: usize = 1_000_000;
 
-/// The longest key, in bytes. Longer ones would stand in every pointer to what is below them.
-pub const MAX_KEY_BYTES: usize = 400;
-
-/// How deep lists and objects may stand in each other: `serde_json`'s limit, which keeps a hostile text from taking the
-/// whole stack.
-pub const MAX_DEPTH: usize = 127;
+pub use driftworld_text::json::{MAX_DEPTH, MAX_KEY_BYTES};
 
 /// How deep lists and objects may stand in each other in a task spec, whose values may be any JSON.
 pub const MAX_TASK_DEPTH: usize = 48;

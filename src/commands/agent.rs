@@ -27,7 +27,7 @@ pub(crate) enum AgentArg {
 
 impl AgentArg {
     /// What the help says of the argument.
-    pub(crate) const HELP: &'static str = "The agent: random, still, onrails (the expert: knows the map and visits what pays), sarsa (a small learner), or scripted:FILE";
+    pub(crate) const HELP: &'static str = "The agent: random, still, onrails (the planner: knows the map and visits what pays), sarsa (a small learner), or scripted:FILE";
 
     /// What logs call the agent.
     pub(crate) fn name(&self) -> String {
@@ -53,8 +53,13 @@ impl AgentArg {
                 (Box::new(agent), Some(checksum(text.as_bytes())))
             }
         };
-        let name = self.name();
-        Ok(NamedAgent { name, agent, script })
+        let (name, policy) = (self.name(), (*self == Self::Sarsa).then_some(SarsaAgent::POLICY));
+        Ok(NamedAgent {
+            name,
+            agent,
+            script,
+            policy,
+        })
     }
 }
 
@@ -65,6 +70,17 @@ pub(crate) struct NamedAgent {
     pub(crate) agent: Box<dyn Agent>,
     /// The checksum of its script, if it follows one.
     pub(crate) script: Option<String>,
+    /// How it chooses its actions, if it learns.
+    pub(crate) policy: Option<&'static str>,
+}
+
+impl NamedAgent {
+    /// What a log depends on of the agent, for a plan to note.
+    pub(crate) fn fingerprints(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        [("script", self.script.as_deref()), ("policy", self.policy)]
+            .into_iter()
+            .filter_map(|(what, fingerprint)| Some((what, fingerprint?)))
+    }
 }
 
 impl FromStr for AgentArg {
@@ -76,7 +92,7 @@ impl FromStr for AgentArg {
             None if text == "random" => Ok(Self::Random),
             None if text == "still" => Ok(Self::Still),
             // What tables call it.
-            None if ["onrails", "expert"].contains(&text) => Ok(Self::Onrails),
+            None if ["onrails", "planner", "expert"].contains(&text) => Ok(Self::Onrails),
             None if text == "sarsa" => Ok(Self::Sarsa),
             _ => {
                 let near = nearest(text, ["random", "still", "onrails", "sarsa", "scripted"]);
@@ -102,6 +118,7 @@ mod tests {
         assert_eq!("random".parse(), Ok(AgentArg::Random));
         assert_eq!("onrails".parse(), Ok(AgentArg::Onrails));
         assert_eq!("expert".parse(), Ok(AgentArg::Onrails));
+        assert_eq!("planner".parse(), Ok(AgentArg::Onrails));
         assert_eq!("sarsa".parse(), Ok(AgentArg::Sarsa));
         assert_eq!("scripted:a:b.txt".parse(), Ok(AgentArg::Scripted("a:b.txt".into())));
         assert_eq!(AgentArg::Scripted("a.txt".into()).name(), "scripted:a.txt");

@@ -17,7 +17,7 @@ use super::{Failure, output};
 /// Five simulated agents run the scenario: one that never learns, one that learns while it is evaluated, one that only
 /// remembers what paid at each number, one that learns every variant like its own expert, and one that forgets. The
 /// audit says what the metrics, experts and checks make of each. It fails if they can be fooled: if luck is called
-/// transfer, if worlds repeat so that memory scores, if experts have another budget, or if forgetting does not show.
+/// transfer, if worlds repeat so that memory scores, if experts have another budget, or if forgetting does not show; and if the scenario cannot test one of the agents.
 ///
 /// Only rewards are simulated, so no world is rendered. 11,000 experiences take about half a minute. Reward is 100
 /// times a skill from 0 to 1, plus luck of the layout (standard deviation 10) and of the episode (20).
@@ -43,11 +43,12 @@ pub(crate) struct Audit {
 
 impl Audit {
     pub(crate) fn run(self) -> Result<(), Failure> {
+        output::answers_by_code();
         let options = AuditOptions {
             lifetimes: self.lifetimes,
             repeats: self.repeats,
         };
-        let mut failed = 0;
+        let (mut failed, mut untested) = (0, 0);
         let mut all = Vec::new();
         for path in &self.scenarios {
             let file = ScenarioFile::read(path, &mut output::warning)?;
@@ -57,7 +58,9 @@ impl Audit {
                     .plan(Missing::StandIn, &mut output::warning)
             };
             let rows = audit(&file.scenario, &mut plan, folder.path(), options)?;
-            failed += rows.iter().filter(|row| row.passed == Some(false)).count();
+            let count = |passed| rows.iter().filter(|row| row.passed == passed).count();
+            failed += count(Some(false));
+            untested += count(None);
             if self.json {
                 all.push(json!({ "scenario": path, "agents": rows }));
             } else {
@@ -73,6 +76,12 @@ impl Audit {
                 if failed == 1 { "agent" } else { "agents" }
             )));
         }
+        if untested > 0 {
+            return Err(Failure::input(format!(
+                "found {untested} {} that the scenario cannot test, for the reasons above, expected none: not tested is not passed",
+                if untested == 1 { "agent" } else { "agents" }
+            )));
+        }
         Ok(())
     }
 }
@@ -81,7 +90,7 @@ fn shown(rows: &[AuditRow]) -> String {
     let verdict = |row: &AuditRow| match row.passed {
         Some(true) => "ok",
         Some(false) => "FAILED",
-        None => "-",
+        None => "not tested",
     };
     let row = |row: &AuditRow| {
         [

@@ -25,6 +25,7 @@ pub(crate) struct Doctor {
 
 impl Doctor {
     pub(crate) fn run(self) -> Result<(), Failure> {
+        output::answers_by_code();
         let report = RendererReport::make();
         let missing = missing(&report);
         if self.json {

@@ -17,7 +17,7 @@ use super::{Failure, output};
 /// be there, p where things are at the start, A what actions do to the body, T what follows, R what is paid and what ends, O the form of
 /// observations, phi how a state looks. Each variant is compared with the first that the task declares, or A with B.
 ///
-/// Of a variant that changes the reward, it is tried whether what is best changes: whether an expert of the first loses in its
+/// Of a variant that changes the reward, it is tried whether what is best changes: whether a planner of the first loses in its
 /// worlds, as by `distance --by behavior`. Where it does not, nothing has to be forgotten.
 ///
 /// A variant is contradicted where an element differs that no parameter that differs `affects`; S covers p, and O covers phi. It is idle

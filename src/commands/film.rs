@@ -38,7 +38,7 @@ pub(crate) struct Film {
     /// Steps after which the film ends; 3000 if the world has no limit of its own.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     max_steps: Option<u32>,
-    /// Keep the world and the actions in this file, for `driftworld replay`.
+    /// Keep the world and the actions in this file, for `driftworld replay`; replaces a file that is there, as the film does.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     #[command(flatten)]

@@ -45,11 +45,12 @@ mod weights;
 
 use std::borrow::Cow;
 use std::ffi::OsString;
+use std::io::Write as _;
 use std::sync::{Mutex, PoisonError};
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{ColorChoice, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
-use driftworld_text::{WordKind, printable, removed};
+use driftworld_text::{WordKind, is_unprintable, printable, removed};
 
 pub(crate) use crate::Failure;
 use crate::{documents, log_folders, matrix_file, overwrite, style};
@@ -79,8 +80,14 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> u8 {
             if help.use_stderr() {
                 output::note(help.render().to_string().trim_end());
             } else {
+                let printed = help.print().and_then(|()| std::io::stdout().flush());
                 // Where nobody reads, there is nobody to tell of it.
-                let _ = help.print();
+                if let Err(error) = printed.or_else(|error| match error.kind() {
+                    std::io::ErrorKind::BrokenPipe => Ok(()),
+                    _ => Err(error),
+                }) {
+                    return report(&Failure::input(format!("standard output: {error}")));
+                }
             }
             u8::try_from(help.exit_code()).unwrap_or(2)
         }
@@ -122,6 +129,14 @@ fn parse(args: &[OsString]) -> Result<Command, clap::Error> {
             .map_err(|error| error.format(&mut command))
     };
     read(args.to_vec()).map_err(|said| {
+        let said = with_printable_words(said);
+        if !said
+            .render()
+            .to_string()
+            .contains(|letter| letter != '\n' && is_unprintable(letter))
+        {
+            return removed_word(args, &said).unwrap_or(said);
+        }
         let shown = |arg: &OsString| match arg.to_str().map(printable) {
             Some(Cow::Owned(shown)) => shown.into(),
             _ => arg.clone(),
@@ -129,6 +144,21 @@ fn parse(args: &[OsString]) -> Result<Command, clap::Error> {
         let said = read(args.iter().map(shown).collect()).err().unwrap_or(said);
         removed_word(args, &said).unwrap_or(said)
     })
+}
+
+/// The error with the arguments that it quotes shown in one line each; what our own parsers say of them quotes them so already.
+fn with_printable_words(mut said: clap::Error) -> clap::Error {
+    let shown = said.context().filter_map(|(kind, value)| match value {
+        ContextValue::String(text) => match printable(text) {
+            Cow::Owned(shown) => Some((kind, ContextValue::String(shown))),
+            Cow::Borrowed(_) => None,
+        },
+        _ => None,
+    });
+    for (kind, value) in shown.collect::<Vec<_>>() {
+        said.insert(kind, value);
+    }
+    said
 }
 
 /// The error for an option, command or format that was removed, in place of clap's.

@@ -21,6 +21,14 @@ use crate::wrap::{columns_of_stderr, columns_of_stdout, wrap_lines};
 /// Whether data for a program went to standard output: then nothing else does.
 static IS_DATA: AtomicBool = AtomicBool::new(false);
 
+/// Whether the exit code is an answer, which counts also where nobody reads the words.
+static ANSWERS_BY_CODE: AtomicBool = AtomicBool::new(false);
+
+/// From now on the command goes on to its end where the reader of its output has gone: its exit code is an answer.
+pub(crate) fn answers_by_code() {
+    ANSWERS_BY_CODE.store(true, Ordering::Relaxed);
+}
+
 /// What was written, each with what it is, and was not reported yet.
 static WRITTEN: Mutex<Vec<(PathBuf, String)>> = Mutex::new(Vec::new());
 
@@ -101,6 +109,10 @@ pub(crate) fn print_as_is(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Ok(()) => Ok(()),
+        // What was not looked at yet may be wrong, and the exit code says so.
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe && ANSWERS_BY_CODE.load(Ordering::Relaxed) => {
+            Ok(())
+        }
         // As with `| head`: whoever read us has seen enough.
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe =>
         {

@@ -46,19 +46,20 @@ pub(crate) struct Replay {
 
 impl Replay {
     pub(crate) fn run(self) -> Result<(), Failure> {
+        output::answers_by_code();
         if let Some(path) = &self.output {
             expect_film(path)?;
             self.film.check()?;
         }
-        let episodes = RecordedEpisodes::open(&self.log)?;
+        let mut episodes = RecordedEpisodes::open(&self.log)?;
         let catalogue = self.libraries.catalogue()?;
         match self.episode {
-            Some(number) => self.one(&episodes, number, &catalogue),
-            None => self.all(&episodes, &catalogue),
+            Some(number) => self.one(&mut episodes, number, &catalogue),
+            None => self.all(&mut episodes, &catalogue),
         }
     }
 
-    fn one(&self, episodes: &RecordedEpisodes, number: u64, catalogue: &Catalogue) -> Result<(), Failure> {
+    fn one(&self, episodes: &mut RecordedEpisodes, number: u64, catalogue: &Catalogue) -> Result<(), Failure> {
         let worker = self.worker.as_deref();
         let recording = episodes.recording(number, worker)?;
         let recording = recording.ok_or_else(|| episodes.unrecorded(number))?;
@@ -82,19 +83,22 @@ impl Replay {
         written.map_or(Ok(()), |(path, film)| tell(path, &film))
     }
 
-    fn all(&self, episodes: &RecordedEpisodes, catalogue: &Catalogue) -> Result<(), Failure> {
-        let numbers = episodes.numbers();
-        let bar = output::progress(numbers.len() as u64, "replaying");
+    fn all(&self, episodes: &mut RecordedEpisodes, catalogue: &Catalogue) -> Result<(), Failure> {
+        let all = episodes.all();
+        let bar = output::progress(all.len() as u64, "replaying");
         let (mut checked, mut steps, mut unrecorded) = (0_u64, 0_u64, Vec::new());
-        let mut failures = Vec::new();
-        for number in numbers {
-            let checked_one = episodes.recording(number, None).and_then(|recording| match recording {
-                Some(recording) => {
-                    episodes.check(&recording, None, catalogue)?;
-                    Ok(Some(recording.actions.len()))
-                }
-                None => Ok(None),
-            });
+        let mut failures: Vec<Failure> = episodes.damage().into_iter().map(Failure::from).collect();
+        for (number, worker) in all {
+            let worker = worker.as_deref();
+            let checked_one = episodes
+                .recording(number, worker)
+                .and_then(|recording| match recording {
+                    Some(recording) => {
+                        episodes.check(&recording, worker, catalogue)?;
+                        Ok(Some(recording.actions.len()))
+                    }
+                    None => Ok(None),
+                });
             match checked_one {
                 Ok(Some(count)) => {
                     checked += 1;

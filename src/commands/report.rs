@@ -20,8 +20,8 @@ use super::scoring::{Intervals, Scoring};
 /// all together have confidence intervals. --against compares two agents.
 ///
 /// The timeline shows the distance between neighbouring learning blocks. It comes from the matrix given by --distances.
-/// Without one, and for logs of `driftworld run`, it is measured from the scenario in the log. That covers variants of
-/// built-in tasks and of tasks given by --task.
+/// Without one, it is measured from the scenario in the log, for variants of built-in tasks and of tasks given by
+/// --task; for others it is what the run logged (column distance).
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld report demo-out/log -o report.html
@@ -89,6 +89,7 @@ impl Report {
             distances: self.distances,
             tasks: self.tasks,
             plots: self.plots,
+            command: Some(command_line()),
         };
         let page = write_report(&request, &|text| output::warning(text))?;
         if output::is_stdout(&self.output) {
@@ -106,4 +107,32 @@ impl Report {
         }
         output::json_of_what_was_written(self.json)
     }
+}
+
+/// The command as a shell takes it.
+fn command_line() -> String {
+    let plain = |word: &str| {
+        word.bytes()
+            .all(|byte| byte.is_ascii_alphanumeric() || b"-_./=:,#@%+".contains(&byte))
+    };
+    let word = |word: std::ffi::OsString| {
+        let word = word.to_string_lossy().into_owned();
+        let is_plain = !word.is_empty() && plain(&word);
+        if is_plain {
+            word
+        } else {
+            format!("'{}'", word.replace('\'', "'\\''"))
+        }
+    };
+    let mut words = vec!["driftworld".to_owned()];
+    let mut given = std::env::args_os().skip(1);
+    while let Some(next) = given.next() {
+        // Where the page and the figures went says nothing of how it was made.
+        if ["-o", "--output", "--plots"].iter().any(|option| next == *option) {
+            given.next();
+        } else {
+            words.push(word(next));
+        }
+    }
+    words.join(" ")
 }

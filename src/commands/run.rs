@@ -34,8 +34,8 @@ const MAX_JOBS: usize = 256;
 /// byte for byte, as that of an uninterrupted run, except for time stamps. To fix those too, set
 /// DRIFTWORLD_CLOCK=2026-01-31T12:00:00Z in the environment.
 ///
-/// On Ctrl-C, SIGTERM or SIGHUP, the run stops at the next step with exit code 1. It also stops if the log is removed,
-/// renamed, replaced or truncated, and says what is lost.
+/// On Ctrl-C, SIGTERM or SIGHUP, the run stops at the next step; the exit code is 128 and the signal's number (130,
+/// 143, 129). It also stops if the log is removed, renamed, replaced or truncated, and says what is lost (exit code 1).
 #[derive(Args)]
 #[command(after_help = "Example:
   driftworld run scenario.json --agent onrails -o logs/first
@@ -141,8 +141,8 @@ impl Run {
         }
         plan.set_run_seed(self.seed);
         let agent = self.agent.agent()?;
-        if let Some(script) = &agent.script {
-            plan.add_fingerprint("script", script.as_str());
+        for (what, fingerprint) in agent.fingerprints() {
+            plan.add_fingerprint(what, fingerprint);
         }
         let libraries = self.libraries.fingerprints()?;
         if !libraries.is_empty() {

@@ -41,7 +41,7 @@ pub(crate) struct Scales {
     ///
     /// Of each set of the variants above that look alike, or of the set named; may be given several times. It is what
     /// the best of some scripted agents earns in the mean over the set: one that stands still, one that acts at random,
-    /// the expert of each variant, and that expert until a reward shows another variant. Without the last, it is the
+    /// the planner of each variant, and that planner until a reward shows another variant. Without the last, it is the
     /// ceiling of agents without memory.
     #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "", value_name = "VARIANT,…")]
     unlabelled: Vec<String>,

@@ -29,7 +29,7 @@ use super::output;
 /// --worlds also draws worlds: of every variant of a task, and of every regime of a scenario. Along a drift, the
 /// variants are checked one by one. A task or scenario fails if one of its worlds cannot be drawn.
 ///
-/// The agent on rails tries the first 100 of those worlds of a task. Where it does not come to a success that there is, a
+/// The planner tries the first 100 of those worlds of a task. Where it does not come to a success that there is, a
 /// warning names the worlds: the way may be closed, too hard for it, or not worth going.
 ///
 /// --elements also tests which elements of the decision process the variants of a task change, as `driftworld elements`
@@ -97,6 +97,7 @@ struct Found {
 
 impl Validate {
     pub(crate) fn run(self) -> Result<(), Failure> {
+        output::answers_by_code();
         let classes = tasks::classes(&self.libraries.catalogue()?);
         let verdicts: Vec<Verdict> = self.files.iter().flat_map(|path| self.judge(path, &classes)).collect();
         if self.json {

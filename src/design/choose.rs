@@ -175,6 +175,7 @@ impl DesignRequest {
         let choice = |(task, variant): &(String, Variant)| Choice::new(task, variant.name());
         Ok(Design {
             held_out: held_out.iter().map(choice).collect(),
+            form: self.form(),
             ..self.design.clone()
         })
     }

@@ -81,7 +81,7 @@ pub struct DesignRequest {
     pub tolerance: Option<f64>,
     /// How many steps: one fewer than variants; default [`DEFAULT_STEPS`](super::DEFAULT_STEPS).
     pub steps: Option<u32>,
-    /// So many lifetimes, each in worlds of its own and, in the permuted form, in an order of its own.
+    /// So many lifetimes, each in worlds of its own and, in the permuted form, which is then the default, in an order of its own.
     pub lifetimes: Option<u64>,
     /// Variants, or tasks, that are evaluated and never learned.
     pub hold_out: Vec<String>,
@@ -121,8 +121,13 @@ impl DesignRequest {
         }
     }
 
+    /// The form; that of several lifetimes is the permuted one, unless something else says which variants come when.
     pub(super) fn form(&self) -> Option<ScenarioForm> {
-        self.design.form
+        let is_drawn = self.lifetimes.is_some()
+            && self.design.blocks.is_none()
+            && self.design.drifting.is_none()
+            && self.order_given().is_none();
+        self.design.form.or(is_drawn.then_some(ScenarioForm::Permuted))
     }
 
     /// Whether there are several scenarios, each in a file of its own.
@@ -219,9 +224,21 @@ impl DesignRequest {
 
     /// Refuses an order beside the form whose order is drawn at random.
     fn check_permuted(&self) -> Result<(), Failure> {
-        if self.form() != Some(ScenarioForm::Permuted) {
-            return Ok(());
+        match self
+            .order_given()
+            .filter(|_| self.form() == Some(ScenarioForm::Permuted))
+        {
+            None => Ok(()),
+            Some(name) => Err(Failure::usage(format!(
+                "{}: found with {} permuted, whose order is drawn at random, expected one of the two",
+                argument(name),
+                argument("form")
+            ))),
         }
+    }
+
+    /// The first option that says which variants come first.
+    fn order_given(&self) -> Option<&'static str> {
         // The start of a probe or of steps says what is varied, not what comes first.
         let is_varied = self.probe.is_some() || self.step_distance.is_some();
         let ordered = [
@@ -231,13 +248,6 @@ impl DesignRequest {
             ("target_step", self.ordering.target_step.is_some()),
             ("start", self.ordering.start.is_some() && !is_varied),
         ];
-        match ordered.iter().find(|(_, is_given)| *is_given) {
-            None => Ok(()),
-            Some((name, _)) => Err(Failure::usage(format!(
-                "{}: found with {} permuted, whose order is drawn at random, expected one of the two",
-                argument(name),
-                argument("form")
-            ))),
-        }
+        ordered.iter().find(|(_, is_given)| *is_given).map(|(name, _)| *name)
     }
 }

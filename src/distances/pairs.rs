@@ -206,7 +206,7 @@ impl Means {
                 format!("; own experts succeed in {:.1} % of worlds more", 100.0 * self.mean(2))
             }
             "behavior" => format!(
-                "; the second's expert earns {:.1} points less in the first's worlds, the first's {:.1} less in the second's",
+                "; the second's planner earns {:.1} points less in the first's worlds, the first's {:.1} less in the second's",
                 self.mean(0),
                 self.mean(1)
             ),

@@ -5,7 +5,7 @@ mod neighbours;
 
 use std::path::PathBuf;
 
-use driftworld_metrics::{LifetimeMetrics, Options, SmoothingMethod, compare_agents, over_repeats};
+use driftworld_metrics::{LifetimeMetrics, Log, Options, SmoothingMethod, compare_agents, over_repeats};
 use driftworld_report::{
     Chapter, ChapterOptions, Comparison, Figure, FigureOptions, MAX_LIFETIMES, Report, ReportError,
 };
@@ -35,6 +35,8 @@ pub struct ReportRequest {
     pub figure_options: FigureOptions,
     /// A folder to write the figures into, too.
     pub plots: Option<PathBuf>,
+    /// The command that asks for it, to be written on the page.
+    pub command: Option<String>,
 }
 
 impl ReportRequest {
@@ -49,6 +51,7 @@ impl ReportRequest {
             figures: Figure::ALL.to_vec(),
             figure_options: FigureOptions::default(),
             plots: None,
+            command: None,
         }
     }
 }
@@ -131,6 +134,7 @@ pub fn write_report(request: &ReportRequest, warn: Warn<'_>) -> Result<Page, Fai
         // One lifetime has one scale.
         warnings: own_scale(options).filter(|_| logs.len() > 1).into_iter().collect(),
         options: serde_json::to_value(options)?,
+        command: request.command.clone(),
         date: request.date.clone(),
     };
     Ok(Page {
@@ -156,9 +160,25 @@ fn chapter_options(
         },
         shown: request.figures.clone(),
         smoothed: options.smoothing_method != SmoothingMethod::Off,
+        facts: facts(&log.log),
         warnings: log.warnings.clone(),
         distance_note,
     }
+}
+
+/// What a log says of its agent and of its scenario.
+fn facts(log: &Log) -> Vec<(String, String)> {
+    let extra = &log.scenario_info.extra;
+    let word = |place: &str, key: &str| extra.get(place)?.get(key)?.as_str();
+    let found = [
+        ("agent", extra.get("agent").and_then(serde_json::Value::as_str)),
+        ("policy", word("made_from", "policy")),
+        ("scenario", word("scenario", "name")),
+    ];
+    let said = found
+        .into_iter()
+        .filter_map(|(name, value)| Some((name.to_owned(), value?.to_owned())));
+    said.collect()
 }
 
 /// What the lifetimes under these folders are called together: by the folder, or the first of several.

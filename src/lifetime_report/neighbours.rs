@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use driftworld_curriculum::{log_name, log_name_of_label};
-use driftworld_metrics::{Lifetime, Log, VariantMode};
+use driftworld_metrics::{Lifetime, Log, Regime, VariantMode};
 use driftworld_report::neighbours;
 use driftworld_similarity::DistanceMatrix;
 use driftworld_spec::{BlockKind, Scenario, TaskSpec, Variant};
@@ -88,9 +88,39 @@ impl Neighbours {
             .or_insert_with_key(|scenario| measure(scenario, &self.tasks));
         match measured {
             Ok(named) => named.distances(lifetime),
-            Err(why) => (None, format!("No distances between blocks: {why}.")),
+            Err(why) => match logged(log, lifetime) {
+                Some(distances) => {
+                    let words = format!(
+                        "Stems: how far apart the variants of neighbouring learning blocks are, as the run logged it (column \
+                         distance); not measured anew: {why}."
+                    );
+                    (Some(distances), words)
+                }
+                None => (None, format!("No distances between blocks: {why}.")),
+            },
         }
     }
+}
+
+/// How far each learning block's variant is from the one learned before it, as the log says; `None` where it says nothing of it.
+fn logged(log: &Log, lifetime: &Lifetime) -> Option<Vec<Option<f64>>> {
+    let column = log.rows.metric("distance")?;
+    let numbers: BTreeMap<u64, f64> = log
+        .rows
+        .exp_nums()
+        .iter()
+        .copied()
+        .zip(column.iter().copied())
+        .collect();
+    let learned = lifetime.regimes().iter().filter(|regime| regime.is_wake_training());
+    let distance = |regime: &Regime| {
+        numbers
+            .get(regime.exp_nums.first()?)
+            .copied()
+            .filter(|value| value.is_finite())
+    };
+    let distances: Vec<Option<f64>> = learned.skip(1).map(distance).collect();
+    distances.iter().any(Option::is_some).then_some(distances)
 }
 
 impl Named {
@@ -182,8 +212,8 @@ fn measure(scenario: &str, tasks: &Tasks) -> Result<Named, String> {
         })
     };
     let mut index = BTreeMap::new();
-    let learnt = scenario.blocks.iter().filter(|block| block.kind == BlockKind::Learning);
-    for regime in learnt
+    let learned = scenario.blocks.iter().filter(|block| block.kind == BlockKind::Learning);
+    for regime in learned
         .flat_map(|block| &block.regimes)
         .filter(|regime| regime.world.is_none())
     {
@@ -212,7 +242,7 @@ fn measure(scenario: &str, tasks: &Tasks) -> Result<Named, String> {
         index.insert(name, Ends { first, last });
         if first.max(last) >= MOST_MEASURED {
             return Err(format!(
-                "more than {MOST_MEASURED} variants were learnt; measure them with driftworld order --matrix FILE and \
+                "more than {MOST_MEASURED} variants were learned; measure them with driftworld order --matrix FILE and \
                  give --distances FILE"
             ));
         }

@@ -136,7 +136,7 @@ fn sets_that_can_be_told_apart_are_refused() {
         assert_eq!(said, expected);
     };
     let advice = "expected variants that look alike at the start; the ceiling of those that can be told apart is the \
-                  expert's";
+                  planner's";
     check(
         &[&["select_object#green", "select_object#dusk"]],
         &format!(

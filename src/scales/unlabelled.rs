@@ -73,8 +73,8 @@ impl Ignorant {
         match self {
             Self::Still => "stands still".to_owned(),
             Self::Random => "acts at random".to_owned(),
-            Self::Fixed(own) => format!("expert of {}", variants[own].id()),
-            Self::FindsOut(own) => format!("expert of {} until a reward shows another", variants[own].id()),
+            Self::Fixed(own) => format!("planner of {}", variants[own].id()),
+            Self::FindsOut(own) => format!("planner of {} until a reward shows another", variants[own].id()),
         }
     }
 
@@ -173,7 +173,7 @@ fn named<'a>(
         {
             return Err(wrong(format!(
                 "found {} and {}, which {what}, expected variants that look alike at the start; the ceiling of those \
-                 that can be told apart is the expert's",
+                 that can be told apart is the planner's",
                 first.id(),
                 known.id()
             )));

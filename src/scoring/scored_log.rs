@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use driftworld_metrics::{ExpStatus, Lifetime, LifetimeMetrics, Log, MetricsError, Options, Scorer, read_log};
+use driftworld_metrics::{
+    ExpStatus, Lifetime, LifetimeMetrics, Log, LogWarning, MetricsError, Options, Scorer, read_log,
+};
 use driftworld_spec::did_you_mean;
-use driftworld_text::ShownPath;
 use rayon::prelude::*;
 
 use super::Experts;
@@ -37,10 +38,12 @@ impl ScoredLog {
         warnings.extend(missing_numbers(&log, &options.perf_measure));
         warnings.extend(experts.left_aside(&log, options));
         warnings.extend(unfit_scales(&log, options));
+        let experts = experts.of(&log, options)?;
+        warnings.extend(experts.iter().flat_map(|expert| missing_rows(expert.log())));
         for warning in &warnings {
-            warn(format!("{}: {warning}", folder.shown()));
+            warn(log_folders::placed(folder, warning));
         }
-        let lifetime = Lifetime::prepare(&log, &experts.of(&log, options)?, options).map_err(without_column)?;
+        let lifetime = Lifetime::prepare(&log, &experts, options).map_err(without_column)?;
         let metrics = Scorer::default().judge(&log, &lifetime, options)?;
         Ok(Self {
             log,
@@ -58,6 +61,12 @@ fn without_column(error: MetricsError) -> Failure {
     };
     let advice = did_you_mean(column, available.split(", "));
     Failure::because(format!("{}: {error}{advice}", argument("perf_measure")), error)
+}
+
+/// What is said of an expert's log that lacks rows.
+fn missing_rows(log: &Log) -> Option<String> {
+    let missing = |warning: &&LogWarning| matches!(warning, LogWarning::Missing { .. });
+    log.warnings.iter().find(missing).map(ToString::to_string)
 }
 
 /// Says how many rows are passed over because they have no number.

@@ -439,3 +439,64 @@ fn help_states_the_defaults_of_the_library() {
         );
     }
 }
+
+#[test]
+fn lifetimes_have_an_order_each_unless_one_was_chosen() {
+    let orders = |arguments: &str| -> Vec<String> {
+        let folder = with_park();
+        let design = "curriculum select_object --learn 2 --eval-episodes 1 --worlds 0 --lifetimes 4 -o lives";
+        succeed_in(folder.path(), &format!("{design} {arguments}"));
+        let order = |number: u32| {
+            let path = std::fs::read_dir(folder.path().join("lives")).expect("it was written");
+            let paths = path.map(|entry| entry.expect("it can be listed").path());
+            let ending = format!("-{number}.json");
+            let path = paths.into_iter().find(|path| path.to_string_lossy().ends_with(&ending));
+            let life = scenario(&path.expect("each lifetime has a file"));
+            let blocks = list(&life["blocks"]).iter().filter(|block| block["type"] == "learning");
+            blocks.map(|block| block["regimes"][0]["variant"].to_string()).collect()
+        };
+        (1..=4).map(order).collect()
+    };
+    let distinct = |orders: Vec<String>| orders.into_iter().collect::<std::collections::BTreeSet<_>>().len();
+    assert_eq!(distinct(orders("")), 4);
+    assert_eq!(distinct(orders("--form permuted")), 4);
+    assert_eq!(distinct(orders("--order named")), 1);
+}
+
+/// The shared library counts what a program asks the disk to keep.
+#[test]
+#[cfg(target_os = "linux")]
+fn audit_asks_the_disk_to_keep_nothing_and_fails_where_it_cannot_test() {
+    let folder = scratch();
+    let source = "#include <fcntl.h>\n#include <stdlib.h>\n#include <unistd.h>\n\
+        static int note(void) { int f = open(getenv(\"SYNCED\"), O_WRONLY | O_APPEND | O_CREAT, 0600);\n\
+        if (write(f, \"s\", 1) < 0) abort(); return close(f); }\n\
+        int fsync(int f) { (void)f; return note(); }\nint fdatasync(int f) { (void)f; return note(); }\n";
+    write(&folder.path().join("count.c"), source);
+    let mut cc = std::process::Command::new("cc");
+    cc.args(["-shared", "-fPIC", "-o", "count.so", "count.c"])
+        .current_dir(folder.path());
+    assert!(output(&mut cc).status.success());
+    let synced = |arguments: &str, code: i32| {
+        let mut command = driftworld_in(folder.path(), arguments);
+        let (library, notes) = (folder.path().join("count.so"), folder.path().join("synced"));
+        let run = output(command.env("LD_PRELOAD", library).env("SYNCED", &notes));
+        let said = String::from_utf8_lossy(&run.stdout).into_owned() + &String::from_utf8_lossy(&run.stderr);
+        assert_eq!(run.status.code(), Some(code), "{arguments}: {said}");
+        let count = std::fs::metadata(&notes).map_or(0, |found| found.len());
+        std::fs::remove_file(&notes).ok();
+        (count, said)
+    };
+    let design = "curriculum find_objects#blue find_objects#red --learn 4 --eval-episodes 2 -o";
+    assert!(
+        synced(&format!("{design} one.json"), 0).0 > 0,
+        "what is written is kept"
+    );
+    assert!(synced(&format!("{design} drift.json --drift linear"), 0).0 > 0);
+    let (count, said) = synced("audit drift.json --lifetimes 2 --repeats 2", 1);
+    assert_eq!(count, 0, "{said}");
+    assert!(
+        said.contains("not tested") && said.contains("not tested is not passed"),
+        "{said}"
+    );
+}

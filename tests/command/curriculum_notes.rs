@@ -72,7 +72,7 @@ fn what_stands_in_a_folder_is_not_replaced() {
     // Nothing is written where a later folder is in the way.
     std::fs::remove_dir_all(folder.path().join("lives")).expect("a folder");
     let again = fail_in(folder.path(), 1, &design(&other));
-    assert!(again.contains("experts/curriculum-1-blue.json"), "{again}");
+    assert!(again.contains("experts/curriculum-1-"), "{again}");
     assert!(!folder.path().join("lives").exists());
     said(folder.path(), &format!("{other} --force"));
     assert_ne!(std::fs::read(&file).expect("a scenario"), before);

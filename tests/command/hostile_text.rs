@@ -12,7 +12,7 @@ use driftworld_text::is_unprintable;
 use serde_json::{Value, json};
 
 use super::run_files::write;
-use super::terminal::{driftworld_in, output, scratch, subcommands, text};
+use super::terminal::{driftworld_in, output, root, scratch, subcommands, text};
 use crate::is_turn;
 
 /// What a hostile text says, without what no file name can have.
@@ -541,4 +541,16 @@ fn arguments(stage: &mut Stage) {
     }
     stage.run(&["doctor"]);
     stage.run(&["bench", "--help"]);
+}
+
+#[test]
+fn unprintable_letters_of_an_option_are_escaped_once() {
+    for arguments in [
+        ["curriculum", "find_objects", "--name", "a\u{202e}b"],
+        ["sample", "find_objects", "--count", "\u{202e}"],
+        ["run", "s.json", "--agent", "\u{1b}[2J"],
+    ] {
+        let said = String::from_utf8(output(&mut driftworld_in(root(), &arguments[..])).stderr).expect("UTF-8");
+        assert!(said.contains(r"\u{") && !said.contains(r"\\u{"), "{said}");
+    }
 }

@@ -41,8 +41,46 @@ fn a_sound_log_is_called_valid_with_what_it_holds() {
     write_log(&base.path().join("run"));
     let (out, error) = run(base.path(), 0, "logs validate run");
     let expected =
-        "run: valid; 3 rows (1 incomplete) in 2 files, 1 worker, 2 blocks, 2 tasks; metrics reward; format 1.1\n";
+        "run: valid; 3 rows (1 incomplete) in 2 files, 1 worker, 2 blocks, 1 task; metrics reward; format 1.1\n";
     assert_eq!((out.as_str(), error.as_str()), (expected, ""));
+}
+
+#[test]
+fn scoring_and_aggregating_refuse_and_warn_as_validating_does() {
+    let base = scratch();
+    let log = base.path().join("run");
+    write_log(&log);
+    let rows = |numbers: &[u64]| -> String {
+        let row = |number: &u64| {
+            format!("0\t{number}\tw\ttrain\twake\ta_b\t{{}}\tcomplete\t20200101T000001.{number:02}\t0.{number}\t\n")
+        };
+        HEADER.to_owned() + &numbers.iter().map(row).collect::<String>()
+    };
+    fs::remove_dir_all(log.join("w/1-test")).expect("it was written");
+    for (numbers, code, said) in [
+        (
+            &[0, 1, 1, 2][..],
+            1,
+            "run/w/0-train/data-log.tsv:4: found another row of experience 1 of w after its complete one",
+        ),
+        (
+            &[0, 1, 5, 6],
+            0,
+            "warning: run/w/0-train/data-log.tsv:4: found experience 5 after 1, expected 2; numbers without a row: 3",
+        ),
+    ] {
+        write(&log.join("w/0-train/data-log.tsv"), &rows(numbers));
+        for command in [
+            "logs validate run",
+            "metrics run --no-save",
+            "report run -o page.html",
+            "logs aggregate run -o - --format csv",
+            "metrics run --ste run --no-save",
+        ] {
+            let (_, error) = run(base.path(), code, command);
+            assert!(error.contains(said), "{command}: {error}");
+        }
+    }
 }
 
 #[test]

@@ -18,14 +18,14 @@ fn live(folder: &Path, tasks: &[&str], skill: f64) {
         log.write(&record).expect("the folder can be written");
         exp_num += 1;
     };
-    for (round, learnt) in (0..).zip(tasks) {
+    for (round, learned) in (0..).zip(tasks) {
         for task in tasks {
             for k in 0..3 {
                 let reward = skill * (round + 1) as f64 + f64::from(k);
                 experience(2 * round, BlockType::Test, task, reward);
             }
         }
-        (0..20).for_each(|k| experience(2 * round + 1, BlockType::Train, learnt, skill * f64::from(k) / 10.0));
+        (0..20).for_each(|k| experience(2 * round + 1, BlockType::Train, learned, skill * f64::from(k) / 10.0));
     }
     for task in tasks {
         experience(2 * tasks.len() as u64, BlockType::Test, task, skill * 4.0);

@@ -12,10 +12,10 @@ fn live(folder: &Path) {
     let regime = |variant: &str, count: u32| {
         format!(r#"{{ "task": "find_objects", "variant": "{variant}", "count": {count}, "max_steps": 20 }}"#)
     };
-    let blocks = ["blue", "red", "blue"].map(|learnt| {
-        let (blue, red, learnt) = (regime("blue", 2), regime("red", 2), regime(learnt, 6));
+    let blocks = ["blue", "red", "blue"].map(|learned| {
+        let (blue, red, learned) = (regime("blue", 2), regime("red", 2), regime(learned, 6));
         format!(
-            r#"{{ "type": "evaluation", "regimes": [{blue}, {red}] }}, {{ "type": "learning", "regimes": [{learnt}] }}"#
+            r#"{{ "type": "evaluation", "regimes": [{blue}, {red}] }}, {{ "type": "learning", "regimes": [{learned}] }}"#
         )
     });
     let scenario = format!(r#"{{ "name": "in_turns", "blocks": [{}] }}"#, blocks.join(", "));
@@ -189,7 +189,7 @@ fn files_that_a_log_names_are_not_opened() {
     // Not even one that would be the right one.
     succeed_in(path, "report log");
     let page = read(path.join("report.html"));
-    assert!(page.contains("give it with --task FILE") && !page.contains("as measured from"));
+    assert!(page.contains("give it with --task FILE") && page.contains("(column distance)") && !page.contains("as measured from"));
     succeed_in(path, "report log --task mine.json");
     assert!(read(path.join("report.html")).contains("as measured by parameters from the scenario in the log"));
     // From another folder the file's name says which is meant.

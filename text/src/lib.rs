@@ -4,9 +4,10 @@
 //! Seven ideas, a file each: `printable.rs` shows characters that a terminal obeys or hides, `cell.rs` guards what a
 //! spreadsheet would take for a formula, `name.rs` says what variants, tasks and groups may be called, `number.rs`
 //! leaves the noise of rounding out of numbers, `unbroken.rs` keeps together what no line breaks, `phrases.rs` counts and lists things,
-//! `removed.rs` lists the words that are no longer taken. Reading and printing are not here.
+//! `removed.rs` lists the words that are no longer taken, `json/` reads JSON. Files and printing are not here.
 
 mod cell;
+pub mod json;
 mod name;
 mod number;
 mod phrases;

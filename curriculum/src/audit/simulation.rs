@@ -8,7 +8,7 @@ use driftworld_spec::World;
 
 use crate::run::Meeting;
 use crate::{
-    COLUMNS, CurriculumError, Experience, Journal, Plan, Progress, REPEATED_EVALUATIONS, Rollout, run_rollout,
+    COLUMNS, CurriculumError, Experience, Journal, Plan, Progress, REPEATED_EVALUATIONS, Repeats, Rollout, run_rollout,
 };
 
 /// An agent of which only the rewards are simulated: what it earns in its next experience.
@@ -17,7 +17,7 @@ pub(super) type Simulated<'a> = dyn FnMut(&Meeting) -> f64 + 'a;
 /// The log of an agent's run; it stays in the folder.
 pub(super) fn simulate(plan: &Plan, agent: &mut Simulated<'_>, folder: &Path) -> Result<Log, CurriculumError> {
     let columns = LoggerInfo::new(COLUMNS)?;
-    let mut writer = LogWriter::create(folder, &columns, &plan.scenario_info("simulated"))?;
+    let mut writer = LogWriter::create_unsynced(folder, &columns, &plan.scenario_info("simulated"))?;
     for number in 0..plan.num_experiences() {
         let reward = agent(&plan.meeting(number));
         let now = Timestamp::from_unix_micros(number.cast_signed())?;
@@ -29,7 +29,7 @@ pub(super) fn simulate(plan: &Plan, agent: &mut Simulated<'_>, folder: &Path) ->
 
 /// Runs an agent as any other is run, with the check that it is frozen in evaluations. Says how many these were.
 pub(super) fn run(plan: &Plan, agent: &mut Simulated<'_>, folder: &Path) -> Result<u64, CurriculumError> {
-    let mut journal = Journal::create(folder, plan, "simulated")?;
+    let mut journal = Journal::create_unsynced(folder, plan, "simulated")?;
     let mut simulation = Simulation {
         plan,
         agent,
@@ -49,8 +49,11 @@ struct Simulation<'a> {
 impl Rollout for Simulation<'_> {
     type Error = CurriculumError;
 
-    fn repeated_evaluations(&self) -> usize {
-        REPEATED_EVALUATIONS
+    fn repeats(&self) -> Repeats {
+        Repeats {
+            count: REPEATED_EVALUATIONS,
+            first: false,
+        }
     }
 
     fn experience(&mut self, number: u64, _world: World) -> Result<Option<Experience>, CurriculumError> {

@@ -39,7 +39,7 @@ pub const MAX_SEED: u64 = 1 << 52;
 
 /// Experiences of a learning block where nobody says.
 ///
-/// PPO on 64 × 64 colour pictures (`examples/python/ppo_find_objects.py`) earned four fifths of the scripted expert's reward in
+/// PPO on 64 × 64 colour pictures (`examples/python/ppo_find_objects.py`) earned four fifths of the planner's reward in
 /// `find_objects#blue` after 115,000 and 137,000 decisions, which are 1,900 and 2,300 episodes.
 pub const LEARN: u32 = 2500;
 

@@ -12,8 +12,7 @@ fn every_error_has_its_message() {
             block: 2,
             variant: "find_objects#red".into(),
             experience: 45,
-            first: 5.0,
-            again: 23.8,
+            found: "another action in step 3".into(),
         },
         CurriculumError::NoVariants,
         CurriculumError::BadCount {

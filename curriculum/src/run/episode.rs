@@ -1,8 +1,9 @@
 //! One experience: an agent in a world from the first step to the last. Which world and what becomes of the numbers is said elsewhere.
 
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use driftworld_env::{Agent, EndedBy, EnvError, Environment, Label, Recorder, Step};
+use driftworld_env::{Action, Agent, EndedBy, EnvError, Environment, Label, Recorder, Step};
 
 /// Steps after which an experience in a world without a limit is over.
 pub const MOST_STEPS: u32 = 100_000;
@@ -46,7 +47,20 @@ impl Experience {
     }
 }
 
-/// Lives one experience in an environment that stands at its beginning.
+/// A hash of an action, and of where it led to.
+fn print_of(action: Action, environment: &Environment) -> u64 {
+    let mut hash = DefaultHasher::new();
+    match action {
+        Action::Continuous(numbers) => numbers.map(f64::to_bits).hash(&mut hash),
+        Action::Discrete(row) => row.hash(&mut hash),
+    }
+    let (agent, paid) = (environment.agent(), environment.episode_return());
+    let [x, y] = agent.position;
+    ([x, y, agent.heading_deg].map(f32::to_bits), paid.to_bits()).hash(&mut hash);
+    hash.finish()
+}
+
+/// Lives one experience in an environment that stands at its beginning; `trace` gets a hash of each step.
 ///
 /// It ends as the environment says, so that the last of a block ends like any other: by what happened, or cut off by
 /// the limit of steps, never because the block does. One that was stopped on its way returns nothing.
@@ -54,12 +68,14 @@ pub(super) fn run_episode(
     agent: &mut dyn Agent,
     environment: &mut Environment,
     mut recorder: Option<&mut Recorder>,
+    trace: &mut Vec<u64>,
     context: &EpisodeContext,
 ) -> Result<Option<Experience>, EnvError> {
     if let Some(label) = context.label {
         agent.set_task_label(label);
     }
     agent.begin(context.seed);
+    trace.clear();
     // A world without a limit of steps and without an end would never be over.
     let limit = environment.world().step_limit().map_or(MOST_STEPS, |_| u32::MAX);
     let mut last = Step::default();
@@ -72,6 +88,7 @@ pub(super) fn run_episode(
         if let Some(recorder) = &mut recorder {
             recorder.step(action);
         }
+        trace.push(print_of(action, environment));
         if !last.terminated && environment.num_steps() >= limit {
             last.truncated = true;
             last.ended_by.get_or_insert(EndedBy::Steps);

@@ -52,6 +52,16 @@ impl Journal {
         Ok(Self::new(writer, Summary::default()))
     }
 
+    /// As [`Journal::create`] for a log that is thrown away: the disk is never asked to have it.
+    ///
+    /// # Errors
+    /// As there.
+    pub(crate) fn create_unsynced(folder: &Path, plan: &Plan, agent: &str) -> Result<Self, CurriculumError> {
+        let columns = LoggerInfo::new(COLUMNS)?;
+        let writer = LogWriter::create_unsynced(folder, &columns, &scenario_info(plan, agent))?;
+        Ok(Self::new(writer, Summary::default()))
+    }
+
     /// Takes up a log that was interrupted, at any moment: it goes on with the first experience that is not completely in
     /// it. Where none was begun, it is begun.
     ///

@@ -19,7 +19,7 @@ mod summary;
 mod undrawable;
 mod worlds;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::num::NonZeroUsize;
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -34,10 +34,8 @@ pub use finishing::{Finished, try_expert};
 pub use journal::Journal;
 pub use log_names::same_log_name;
 pub use plan::{ExperienceSpec, FoundWorld, Plan, Sources, log_name};
-pub use recordings::{
-    MAX_RECORDINGS_BYTES, RECORDINGS_FILE, Recordings, list_recordings, read_recording, read_recording_file,
-};
-pub use rollout::{Rollout, run_rollout};
+pub use recordings::{MAX_RECORDINGS_BYTES, RECORDINGS_FILE, Recordings, RecordingsFile};
+pub use rollout::{Repeats, Rollout, run_rollout};
 pub(crate) use simulated::Meeting;
 pub use summary::{LeftOut, Progress, RegimeSummary, Summary};
 pub use undrawable::{Failed, Trial, Tried, Undrawable, try_worlds};
@@ -59,8 +57,8 @@ pub struct RunContext<'a> {
     pub catalogue: Catalogue,
     /// How many experiences are lived at the same time, where they do not depend on each other. Changes no byte of the log.
     pub jobs: NonZeroUsize,
-    /// How many of a block's first evaluation experiences are run once more at its end, to see that an agent that learns is
-    /// frozen there; [`REPEATED_EVALUATIONS`] is a good number, 0 switches the check off. Changes no byte of the log.
+    /// How many evaluations of each block, drawn by the scenario's seeds, are run once more at its end, to see that an agent that
+    /// learns is frozen there; [`REPEATED_EVALUATIONS`] is a good number, 0 switches the check off. Changes no byte of the log.
     pub repeated_evaluations: usize,
 }
 
@@ -79,7 +77,7 @@ pub const REPEATED_EVALUATIONS: usize = 4;
 /// blocks only. An agent that learns lives learning blocks one experience after the other; whoever takes up a log with such an
 /// agent hands over one that has learned what is in the log ([`relearn`]). Evaluation blocks, and all blocks of an agent that does not
 /// learn, are run by its [`Agent::frozen`] copies, several at a time; by the agent itself where it has no copies. Of an agent that
-/// learns the first evaluations of each block are run once more at its end, and have to pay the same.
+/// learns some evaluations of each block are run once more at its end, and must have the same actions, states and rewards.
 ///
 /// # Errors
 /// [`CurriculumError`] that says at which block, regime and experience; what was lived before is in the log.
@@ -93,6 +91,10 @@ pub fn run(
     let total = plan.num_experiences();
     let (jobs, catalogue, stop) = (context.jobs.get(), context.catalogue.clone(), context.stop);
     let records = journal.records();
+    let repeats = Repeats {
+        count: context.repeated_evaluations,
+        first: false,
+    };
     let worker = || Worker::new(plan, catalogue.clone(), stop).recording_if(records);
     let mut own = worker();
     let (mut worlds, mut block) = (Worlds::new(plan), None);
@@ -101,7 +103,7 @@ pub fn run(
         let learns = agent.learns();
         let end = if learns { plan.end_of_kind(next) } else { total };
         let still = !learns || plan.regimes[plan.regime_of(next)].kind == BlockKind::Evaluation;
-        let repeated = if learns { context.repeated_evaluations } else { 0 };
+        let repeats = if learns { repeats } else { Repeats::default() };
         let copies: Option<Vec<_>> = still
             .then(|| {
                 let copy = |_| Some((agent.frozen()?, worker()));
@@ -109,13 +111,13 @@ pub fn run(
             })
             .flatten();
         let flow = if let Some(copies) = copies {
-            run_in_parallel(plan, &with_repeats(plan, next..end, repeated), copies, journal, context)?
+            run_in_parallel(plan, &with_repeats(plan, next..end, repeats), copies, journal, context)?
         } else {
             let mut one_by_one = OneByOne {
                 agent,
                 worker: &mut own,
                 watch: context.watch,
-                repeated,
+                repeats,
             };
             let place = (&mut worlds, &mut block);
             rollout::run_range(plan, next..end, place, &mut one_by_one, journal, context.now)?
@@ -148,31 +150,29 @@ pub fn relearn(
         agent,
         worker: &mut worker,
         watch: context.watch,
-        repeated: 0,
+        repeats: Repeats::default(),
     };
     rollout::relearn_range(plan, 0..done, (&mut Worlds::new(plan), &mut None), &mut one_by_one)
 }
 
-/// Experiences, and whether each is run once more: the first so many of each block of evaluations, behind its last.
-fn with_repeats(plan: &Plan, numbers: Range<u64>, repeated: usize) -> Vec<(u64, bool)> {
+/// Experiences, and whether each is run once more: some of each block of evaluations, behind its last.
+fn with_repeats(plan: &Plan, numbers: Range<u64>, repeats: Repeats) -> Vec<(u64, bool)> {
     let mut items = Vec::new();
-    let mut first: Vec<u64> = Vec::new();
-    let end = numbers.end;
+    let (mut block, mut repeated) = (None, Vec::new());
     for number in numbers {
         let planned = &plan.regimes[plan.regime_of(number)];
+        if block.replace(planned.block) != Some(planned.block) {
+            items.extend(repeated.drain(..).map(|number| (number, true)));
+            repeated = plan.repeated(number, repeats);
+        }
         items.push((number, false));
-        if planned.kind == BlockKind::Evaluation && first.len() < repeated {
-            first.push(number);
-        }
-        if number + 1 == end || plan.regimes[plan.regime_of(number + 1)].block != planned.block {
-            items.extend(first.drain(..).map(|number| (number, true)));
-        }
     }
+    items.extend(repeated.drain(..).map(|number| (number, true)));
     items
 }
 
 /// Runs experiences that do not depend on each other at the same time, and logs them in their order, but for those that are
-/// run once more, which have to pay the same.
+/// run once more, which must come to the same.
 fn run_in_parallel(
     plan: &Plan,
     items: &[(u64, bool)],
@@ -180,17 +180,26 @@ fn run_in_parallel(
     journal: &mut Journal,
     context: &mut RunContext,
 ) -> Result<ControlFlow<()>, CurriculumError> {
+    let repeated: BTreeSet<u64> = items
+        .iter()
+        .filter_map(|(number, again)| again.then_some(*number))
+        .collect();
     let work = |(agent, worker): &mut (Box<dyn Agent + Send>, Worker), item| {
-        worker.draw_and_run(agent.as_mut(), items[item as usize].0)
+        let outcome = worker.draw_and_run(agent.as_mut(), items[item as usize].0);
+        (
+            outcome,
+            repeated.contains(&items[item as usize].0).then(|| worker.trace.clone()),
+        )
     };
-    let mut earned: BTreeMap<u64, f64> = BTreeMap::new();
-    in_order::in_order(0..items.len() as u64, copies, work, |item, outcome| {
+    let mut evaluated: BTreeMap<u64, (f64, Vec<u64>)> = BTreeMap::new();
+    in_order::in_order(0..items.len() as u64, copies, work, |item, (outcome, trace)| {
         let (number, is_repeat) = items[item as usize];
         let progress = match outcome? {
             Outcome::CutOff => return Ok(ControlFlow::Break(())),
             Outcome::Over { experience, .. } if is_repeat => {
-                let first = earned.remove(&number).unwrap_or(experience.reward);
-                rollout::expect_frozen(plan, number, first, experience.reward)?;
+                if let (Some((reward, first)), Some(again)) = (evaluated.remove(&number), trace) {
+                    rollout::expect_frozen(plan, number, (reward, &first), (experience.reward, &again))?;
+                }
                 return Ok(ControlFlow::Continue(()));
             }
             Outcome::LeftOut { .. } if is_repeat => return Ok(ControlFlow::Continue(())),
@@ -199,7 +208,7 @@ fn run_in_parallel(
                 between,
                 recording,
             } => {
-                earned.insert(number, experience.reward);
+                evaluated.extend(trace.map(|trace| (number, (experience.reward, trace))));
                 let logged = LoggedExperience {
                     experience,
                     between: between.as_deref(),
@@ -237,6 +246,8 @@ struct Worker<'a> {
     environment: Option<Environment>,
     /// Takes down what is done, if that is wanted.
     recorder: Option<Recorder>,
+    /// A hash of each step of the last experience.
+    trace: Vec<u64>,
 }
 
 impl<'a> Worker<'a> {
@@ -248,6 +259,7 @@ impl<'a> Worker<'a> {
             worlds: Worlds::new(plan),
             environment: None,
             recorder: None,
+            trace: Vec::new(),
         }
     }
 
@@ -308,7 +320,7 @@ impl<'a> Worker<'a> {
             learn: planned.kind == BlockKind::Learning,
             stop: self.stop,
         };
-        episode::run_episode(agent, environment, self.recorder.as_mut(), &episode).map_err(failed)
+        episode::run_episode(agent, environment, self.recorder.as_mut(), &mut self.trace, &episode).map_err(failed)
     }
 }
 
@@ -317,14 +329,18 @@ struct OneByOne<'a, 'b> {
     agent: &'a mut dyn Agent,
     worker: &'a mut Worker<'b>,
     watch: &'a mut dyn FnMut(&Progress) -> ControlFlow<()>,
-    repeated: usize,
+    repeats: Repeats,
 }
 
 impl Rollout for OneByOne<'_, '_> {
     type Error = CurriculumError;
 
-    fn repeated_evaluations(&self) -> usize {
-        self.repeated
+    fn repeats(&self) -> Repeats {
+        self.repeats
+    }
+
+    fn trace(&self) -> Vec<u64> {
+        self.worker.trace.clone()
     }
 
     fn experience(&mut self, number: u64, world: World) -> Result<Option<Experience>, CurriculumError> {

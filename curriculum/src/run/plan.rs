@@ -12,6 +12,7 @@ use serde_json::{Value, json};
 
 use super::log_names::LogNames;
 use super::planned::{Planned, Source};
+use super::rollout::Repeats;
 use super::shuffle::Shuffle;
 use super::undrawable::Undrawable;
 use crate::CurriculumError;
@@ -215,6 +216,24 @@ impl Plan {
         }
     }
 
+    /// The evaluations that are run once more at the end of the block that `from` belongs to, in ascending order: of those from
+    /// there on, the first, or some that its seeds draw.
+    pub(super) fn repeated(&self, from: u64, repeats: Repeats) -> Vec<u64> {
+        let index = self.regime_of(from);
+        let planned = &self.regimes[index];
+        if planned.kind == BlockKind::Learning || repeats.count == 0 {
+            return Vec::new();
+        }
+        let after = self.regimes[index..].iter().find(|other| other.block != planned.block);
+        let end = after.map_or(self.num_experiences(), |other| other.first);
+        let key = block_key(planned.seed ^ planned.run_seed.rotate_left(32), !planned.block);
+        let order = Shuffle::new(from, end - from, key);
+        let place = |number: &u64| if repeats.first { *number } else { order.place(*number) };
+        (from..end)
+            .filter(|number| place(number) - from < repeats.count as u64)
+            .collect()
+    }
+
     /// What becomes of experiences whose worlds cannot be drawn.
     pub fn undrawable(&self) -> Undrawable {
         self.undrawable
@@ -374,9 +393,12 @@ impl Plan {
 /// The order of a block that is shuffled.
 fn shuffle(number: usize, block: &Block, first: u64) -> Option<Shuffle> {
     let seed = block.regimes.first().map_or(0, |regime| regime.seed);
-    // Blocks of one seed have orders of their own.
-    let key = seed.wrapping_add((number as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15));
-    (block.mix == BlockMix::Shuffled).then(|| Shuffle::new(first, block.num_experiences(), key))
+    (block.mix == BlockMix::Shuffled).then(|| Shuffle::new(first, block.num_experiences(), block_key(seed, number)))
+}
+
+/// A key of its own for each block of a seed.
+fn block_key(seed: u64, block: usize) -> u64 {
+    seed.wrapping_add((block as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15))
 }
 
 /// Finds tasks and worlds, each once.

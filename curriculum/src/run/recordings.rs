@@ -2,11 +2,12 @@
 //!
 //! A recording is written before the row of its experience, so that every row of a recorded log has one, whenever the run is stopped.
 
+use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions};
-use std::io::{BufReader, ErrorKind, Write};
+use std::io::{BufRead, BufReader, ErrorKind, Seek, Write};
 use std::path::{Path, PathBuf};
 
-use driftworld_env::{EnvError, EpisodeOrigin, Recording, RecordingLines, RecordingReader};
+use driftworld_env::{EnvError, EpisodeOrigin, Recording, RecordingLines, RecordingMark, RecordingReader};
 use driftworld_metrics::BlockType;
 
 use crate::CurriculumError;
@@ -193,70 +194,85 @@ fn kept(path: &Path, experience: u64) -> Result<(u64, RecordingLines), Curriculu
     }
 }
 
-/// The recording of an experience beside the rows of its block; nothing where it was not recorded.
-///
-/// # Errors
-/// [`CurriculumError::Recording`] if its line, or that of its world, is damaged; a damaged line of another is passed over.
-/// [`CurriculumError::Recordings`] if the file cannot be read.
-pub fn read_recording(
-    log: &Path,
-    worker: &str,
-    block: (u64, BlockType),
-    experience: u64,
-) -> Result<Option<Recording>, CurriculumError> {
-    let folder = log.join(worker).join(format!("{}-{}", block.0, block.1));
-    read_recording_file(&folder.join(RECORDINGS_FILE), experience)
+/// A file of recordings, of which each episode is read from its own place.
+#[derive(Debug)]
+pub struct RecordingsFile<R = BufReader<File>> {
+    path: PathBuf,
+    reader: RecordingReader<R>,
+    episodes: Vec<EpisodeOrigin>,
+    /// Where each episode begins.
+    places: BTreeMap<u64, RecordingMark>,
+    damage: Option<EnvError>,
 }
 
-/// The recording of an episode in a file of its own, by its number; nothing where there is no such file or episode.
-///
-/// # Errors
-/// As [`read_recording`].
-pub fn read_recording_file(path: &Path, experience: u64) -> Result<Option<Recording>, CurriculumError> {
-    let Some((mut reader, mut damage)) = open(path)? else {
-        return Ok(None);
-    };
-    loop {
-        match reader.next_episode() {
-            Ok(Some(episode)) if episode.origin.experience == experience => {
-                let read = reader.recording(&episode);
-                return read.map(Some).map_err(|source| wrong(path, source));
+impl RecordingsFile {
+    /// Opens a file, and notes which episodes there are without making them out; nothing where there is no file.
+    ///
+    /// # Errors
+    /// [`CurriculumError::Recording`] for a file of something else; [`CurriculumError::UnreadableRecordings`] if it cannot be read.
+    pub fn open(path: &Path) -> Result<Option<Self>, CurriculumError> {
+        match driftworld_files::open(path, MAX_RECORDINGS_BYTES) {
+            Ok(opened) => Self::new(path, BufReader::new(opened.file)).map(Some),
+            Err(error) if error.missing().is_some() => Ok(None),
+            Err(source) => Err(CurriculumError::UnreadableRecordings(source)),
+        }
+    }
+
+    /// Opens the file beside the rows of a block, as [`RecordingsFile::open`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn of_block(log: &Path, worker: &str, block: (u64, BlockType)) -> Result<Option<Self>, CurriculumError> {
+        let folder = log.join(worker).join(format!("{}-{}", block.0, block.1));
+        Self::open(&folder.join(RECORDINGS_FILE))
+    }
+}
+
+impl<R: BufRead + Seek> RecordingsFile<R> {
+    fn new(path: &Path, reader: R) -> Result<Self, CurriculumError> {
+        let mut this = Self {
+            reader: RecordingReader::new(reader).map_err(|source| wrong(path, source))?,
+            path: path.to_owned(),
+            episodes: Vec::new(),
+            places: BTreeMap::new(),
+            damage: None,
+        };
+        loop {
+            match this.reader.next_episode() {
+                Ok(Some(episode)) => {
+                    this.places.entry(episode.origin.experience).or_insert(episode.place);
+                    this.episodes.push(episode.origin);
+                }
+                Ok(None) => return Ok(this),
+                Err(error) => this.damage = this.damage.or(Some(error)),
             }
-            Ok(Some(_)) => {}
-            Ok(None) => return damage.map_or(Ok(None), |source| Err(wrong(path, source))),
-            Err(error) => damage = damage.or(Some(error)),
         }
     }
-}
 
-/// The episodes of a file: which there are, without making them out, and the first damage among them.
-///
-/// # Errors
-/// As [`read_recording`]; a file that is not there is one.
-pub fn list_recordings(path: &Path) -> Result<(Vec<EpisodeOrigin>, Option<CurriculumError>), CurriculumError> {
-    let Some((mut reader, mut damage)) = open(path)? else {
-        return Err(failed(path, "read this file")(ErrorKind::NotFound.into()));
-    };
-    let mut found = Vec::new();
-    loop {
-        match reader.next_episode() {
-            Ok(Some(episode)) => found.push(episode.origin),
-            Ok(None) => return Ok((found, damage.map(|source| wrong(path, source)))),
-            Err(error) => damage = damage.or(Some(error)),
-        }
+    /// The episodes of which the lines are sound, in their order.
+    pub fn episodes(&self) -> &[EpisodeOrigin] {
+        &self.episodes
     }
-}
 
-type Opened = (RecordingReader<BufReader<File>>, Option<EnvError>);
+    /// The first line that is damaged.
+    pub fn damage(&self) -> Option<CurriculumError> {
+        self.damage.clone().map(|source| wrong(&self.path, source))
+    }
 
-fn open(path: &Path) -> Result<Option<Opened>, CurriculumError> {
-    let opened = match driftworld_files::open(path, MAX_RECORDINGS_BYTES) {
-        Ok(opened) => opened,
-        Err(error) if error.missing().is_some() => return Ok(None),
-        Err(source) => return Err(CurriculumError::UnreadableRecordings(source)),
-    };
-    let reader = RecordingReader::new(BufReader::new(opened.file)).map_err(|source| wrong(path, source))?;
-    Ok(Some((reader, None)))
+    /// The recording of an episode, by its number; nothing where there is none.
+    ///
+    /// # Errors
+    /// [`CurriculumError::Recording`] if its line, or that of its world, is damaged; a damaged line of another is passed over.
+    pub fn recording(&mut self, experience: u64) -> Result<Option<Recording>, CurriculumError> {
+        let Some(place) = self.places.get(&experience) else {
+            return self.damage().map_or(Ok(None), Err);
+        };
+        let wrong = |source| wrong(&self.path, source);
+        self.reader.turn_to(*place).map_err(wrong)?;
+        let episode = self.reader.next_episode().map_err(wrong)?;
+        let read = episode.map(|episode| self.reader.recording(&episode));
+        read.transpose().map_err(wrong)
+    }
 }
 
 fn wrong(path: &Path, source: EnvError) -> CurriculumError {
@@ -279,5 +295,55 @@ fn lost(path: &Path, found: String, expected: u64) -> CurriculumError {
         path: path.to_owned(),
         found,
         expected,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use driftworld_env::{Action, Environment, Recorder};
+    use std::io::{Cursor, Read, SeekFrom};
+
+    /// Counts the bytes that are read of it.
+    struct Counting<'a>(Cursor<Vec<u8>>, &'a std::cell::Cell<usize>);
+
+    impl Read for Counting<'_> {
+        fn read(&mut self, into: &mut [u8]) -> std::io::Result<usize> {
+            let read = self.0.read(into)?;
+            self.1.set(self.1.get() + read);
+            Ok(read)
+        }
+    }
+
+    impl Seek for Counting<'_> {
+        fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
+            self.0.seek(to)
+        }
+    }
+
+    #[test]
+    fn all_episodes_of_a_file_are_read_in_two_passes() {
+        let world = driftworld_spec::World::default();
+        let (mut environment, mut recorder) = (Environment::new(world.clone()), Recorder::default());
+        recorder.begin(world);
+        let action = Action::Continuous([1.0, 0.0, 0.0]);
+        environment.step(action).expect("it is valid");
+        recorder.step(action);
+        let mut recording = recorder.recording(&environment, None);
+        for episodes in [100, 400] {
+            let (mut file, mut lines) = (RecordingLines::header(), RecordingLines::default());
+            for number in 0..episodes {
+                recording.origin.experience = number;
+                file += &lines.lines(&recording);
+            }
+            let (length, read) = (file.len(), std::cell::Cell::new(0));
+            let reader = BufReader::new(Counting(Cursor::new(file.into_bytes()), &read));
+            let mut file = RecordingsFile::new(Path::new("actions.jsonl"), reader).expect("it is sound");
+            for number in 0..episodes {
+                recording.origin.experience = number;
+                assert_eq!(file.recording(number).expect("it is sound").as_ref(), Some(&recording));
+            }
+            assert!(read.get() <= 2 * length + 8192, "{} of {length} bytes", read.get());
+        }
     }
 }

@@ -11,24 +11,39 @@ use super::worlds::{Drawn, Worlds};
 use super::{Experience, Journal, Plan, Progress, Summary};
 use crate::CurriculumError;
 
+/// Which evaluations of each block are run once more at its end.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Repeats {
+    /// How many.
+    pub count: usize,
+    /// The first of the block, not some that the seeds of the scenario draw: where the order matters, as in batches.
+    pub first: bool,
+}
+
 /// Runs single experiences: an agent with an environment of its own.
 pub trait Rollout {
     /// What may go wrong in it.
     type Error: From<CurriculumError>;
 
-    /// Before the first experience of a block: whether the agent may learn in it.
+    /// Before the first experience of a block: whether the agent may learn in it, and which of its evaluations are run once more
+    /// at its end, in ascending order.
     ///
     /// # Errors
     /// Ends the run.
-    fn begin_block(&mut self, learning: bool) -> Result<(), Self::Error> {
-        let _ = learning;
+    fn begin_block(&mut self, learning: bool, repeated: &[u64]) -> Result<(), Self::Error> {
+        let _ = (learning, repeated);
         Ok(())
     }
 
-    /// How many of a block's first evaluation experiences are run once more at its end, to see that the agent was frozen: a
-    /// frozen one earns the same again. None by default.
-    fn repeated_evaluations(&self) -> usize {
-        0
+    /// Which evaluations of each block are run once more at its end, to see that the agent is frozen: none by default.
+    fn repeats(&self) -> Repeats {
+        Repeats::default()
+    }
+
+    /// What was done in the experience that was run last: a hash of each action and the state that it led to. An evaluation that is run
+    /// once more must have the same. Nothing by default: then rewards are compared alone.
+    fn trace(&self) -> Vec<u64> {
+        Vec::new()
     }
 
     /// Runs an experience in its world, from the first step to the last. `None` ends the run without a row.
@@ -69,7 +84,7 @@ pub trait Rollout {
 ///
 /// # Errors
 /// [`CurriculumError`] as [`run`](super::run), and those of the rollout; what was run before is in the log.
-/// [`CurriculumError::NotFrozen`] for an agent that earns something else in the same evaluation a second time.
+/// [`CurriculumError::NotFrozen`] for an agent that does something else in the same evaluation a second time.
 pub fn run_rollout<R: Rollout>(
     plan: &Plan,
     rollout: &mut R,
@@ -100,7 +115,7 @@ pub(super) fn relearn_range<R: Rollout>(
             && let Drawn::World { world, .. } = worlds.draw(number)?
         {
             if block.replace(planned.block) != Some(planned.block) {
-                rollout.begin_block(true)?;
+                rollout.begin_block(true, &[])?;
             }
             if rollout.experience(number, world)?.is_none() {
                 return Ok(ControlFlow::Break(()));
@@ -120,14 +135,17 @@ pub(super) fn run_range<R: Rollout>(
     now: &mut dyn FnMut() -> Timestamp,
 ) -> Result<ControlFlow<()>, R::Error> {
     let total = plan.num_experiences();
-    let mut evaluated: Vec<(u64, f64)> = Vec::new();
+    // Those of the present block, with what was earned and done in them.
+    let mut repeated: Vec<u64> = Vec::new();
+    let mut evaluated: Vec<(u64, f64, Vec<u64>)> = Vec::new();
     for number in numbers {
         let planned = &plan.regimes[plan.regime_of(number)];
         let (progress, reward) = match worlds.draw(number)? {
             Drawn::LeftOut { reason } => (journal.leave_out(plan, number, &reason, now())?, None),
             Drawn::World { world, between } => {
                 if block.replace(planned.block) != Some(planned.block) {
-                    rollout.begin_block(planned.kind == BlockKind::Learning)?;
+                    repeated = plan.repeated(number, rollout.repeats());
+                    rollout.begin_block(planned.kind == BlockKind::Learning, &repeated)?;
                 }
                 let Some(experience) = rollout.experience(number, world)? else {
                     return Ok(ControlFlow::Break(()));
@@ -143,8 +161,8 @@ pub(super) fn run_range<R: Rollout>(
                     recording: recording.as_ref(),
                 };
                 let progress = journal.append(plan, number, logged, now())?;
-                if planned.kind == BlockKind::Evaluation && evaluated.len() < rollout.repeated_evaluations() {
-                    evaluated.push((number, experience.reward));
+                if repeated.contains(&number) {
+                    evaluated.push((number, experience.reward, rollout.trace()));
                 }
                 (progress, Some(experience.reward))
             }
@@ -157,31 +175,45 @@ pub(super) fn run_range<R: Rollout>(
             return Ok(ControlFlow::Break(()));
         }
         if is_last {
-            for (number, reward) in evaluated.drain(..) {
+            for (number, reward, trace) in evaluated.drain(..) {
                 let Drawn::World { world, .. } = worlds.draw(number)? else {
                     continue;
                 };
                 let Some(again) = rollout.experience(number, world)? else {
                     return Ok(ControlFlow::Break(()));
                 };
-                expect_frozen(plan, number, reward, again.reward)?;
+                expect_frozen(plan, number, (reward, &trace), (again.reward, &rollout.trace()))?;
             }
         }
     }
     Ok(ControlFlow::Continue(()))
 }
 
-/// Refuses an agent that earned something else when it ran an evaluation experience once more.
-pub(super) fn expect_frozen(plan: &Plan, number: u64, first: f64, again: f64) -> Result<(), CurriculumError> {
-    if first.to_bits() == again.to_bits() {
+/// Refuses an agent that earned or did something else when it ran an evaluation once more.
+pub(super) fn expect_frozen(
+    plan: &Plan,
+    number: u64,
+    first: (f64, &[u64]),
+    again: (f64, &[u64]),
+) -> Result<(), CurriculumError> {
+    let found = if first.1 != again.1 {
+        let same = first
+            .1
+            .iter()
+            .zip(again.1)
+            .take_while(|(one, other)| one == other)
+            .count();
+        format!("another action in step {}", same + 1)
+    } else if first.0.to_bits() != again.0.to_bits() {
+        format!("reward {}, {} before, at the end", again.0, first.0)
+    } else {
         return Ok(());
-    }
+    };
     let planned = &plan.regimes[plan.regime_of(number)];
     Err(CurriculumError::NotFrozen {
         block: planned.block,
         variant: planned.id.clone(),
         experience: number,
-        first,
-        again,
+        found,
     })
 }

@@ -1,6 +1,6 @@
 //! Agents that evaluations change, though they promise to be frozen there.
 
-use driftworld_curriculum::REPEATED_EVALUATIONS;
+use driftworld_curriculum::{Experience, REPEATED_EVALUATIONS, Repeats, Rollout, run_rollout};
 
 use super::*;
 
@@ -37,17 +37,17 @@ impl Agent for Restless {
     }
 }
 
-/// A world in which each step pays by how much nearer the goal it leads, so that all that an agent does shows.
-pub(crate) fn hill() -> World {
+/// A world in which each step pays by how much nearer the goal, so far ahead, it leads, so that all that an agent does shows.
+pub(crate) fn hill(ahead: i32) -> World {
     let text = r#"{ "max_steps": 30,
-        "objects": [{ "class": "geometric", "coordinates": [0, 20], "tag": "goal" }],
-        "rules": { "shaping": { "toward": "goal", "scale": 1 } } }"#;
-    World::from_json("hill.json", text).unwrap_or_else(|error| panic!("{error}"))
+        "objects": [{ "class": "geometric", "coordinates": [0, AHEAD], "tag": "goal" }],
+        "rules": { "shaping": { "toward": "goal", "scale": 1 } } }"#.replace("AHEAD", &ahead.to_string());
+    World::from_json("hill.json", &text).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn shaped() -> Scenario {
+pub(crate) fn shaped(world: &str) -> Scenario {
     let regime = |count: u32| Regime {
-        world: Some("hill.json".to_owned()),
+        world: Some(world.to_owned()),
         ..Regime::new("Task 2", "hill", count)
     };
     let evaluation = || Block::new(BlockKind::Evaluation, vec![regime(6)]);
@@ -68,11 +68,108 @@ fn an_agent_that_evaluations_change_is_refused_by_one_or_several_at_a_time() {
             repeated: REPEATED_EVALUATIONS,
             ..WHOLE
         };
-        let refused = live_by(&shaped(), &mut agent, &folder.path().join(name), &living).expect_err("it changes");
+        let refused = live_by(&shaped("hill.json"), &mut agent, &folder.path().join(name), &living).expect_err("it changes");
         assert_eq!(refused.code(), "curriculum/not-frozen", "{name}: {refused}");
         let said = refused.to_string();
         assert!(said.contains("block 0") && said.contains("Task 2#hill"), "{said}");
     }
+}
+
+/// Stands still but for one step, in which it waits for another thing each time; nothing in its world pays.
+struct Fidgety {
+    episodes: u32,
+    step: u32,
+}
+
+impl Agent for Fidgety {
+    fn act(&mut self, environment: &Environment) -> Action {
+        let turn = f64::from(u32::from(environment.num_steps() == self.step) * self.episodes);
+        Action::Continuous([0.0, turn * 1e-9, 0.0])
+    }
+    fn begin(&mut self, _: u64) {
+        self.episodes += 1;
+    }
+}
+
+#[test]
+fn agent_that_acts_differently_is_refused_where_nothing_pays() {
+    let folder = scratch();
+    let regime = Regime {
+        world: Some("yard.json".to_owned()),
+        ..Regime::new("Task 1", "yard", 5)
+    };
+    let scenario = Scenario::new("idle", vec![Block::new(BlockKind::Evaluation, vec![regime])]);
+    let living = Living {
+        repeated: REPEATED_EVALUATIONS,
+        ..WHOLE
+    };
+    for step in [0, 17, 39] {
+        let mut agent = Fidgety { episodes: 0, step };
+        let log = folder.path().join(step.to_string());
+        let refused = live_by(&scenario, &mut agent, &log, &living).expect_err("it acts differently");
+        let expected = format!("found another action in step {} of experience", step + 1);
+        assert!(refused.to_string().contains(&expected), "{refused}");
+    }
+}
+
+/// Notes which evaluations of each block are run twice, and runs nothing.
+struct Noting {
+    repeats: Repeats,
+    blocks: Vec<Vec<u64>>,
+}
+
+impl Rollout for Noting {
+    type Error = CurriculumError;
+    fn begin_block(&mut self, _: bool, repeated: &[u64]) -> Result<(), CurriculumError> {
+        self.blocks.push(repeated.to_vec());
+        Ok(())
+    }
+    fn repeats(&self) -> Repeats {
+        self.repeats
+    }
+    fn experience(&mut self, _: u64, _: World) -> Result<Option<Experience>, CurriculumError> {
+        Ok(Some(Experience::default()))
+    }
+    fn logged(&mut self, _: &Progress, _: Option<f64>) -> Result<ControlFlow<()>, CurriculumError> {
+        Ok(ControlFlow::Continue(()))
+    }
+}
+
+#[test]
+fn repeated_evaluations_are_drawn_for_each_block() {
+    let regime = |seed: u64| Regime {
+        seed,
+        ..Regime::new("find_objects", "red", 40)
+    };
+    let blocks = |seed: u64| vec![Block::new(BlockKind::Evaluation, vec![regime(seed)]); 20];
+    let drawn = |seed: u64, first: bool| {
+        let plan = plan(&Scenario::new("drawn", blocks(seed))).unwrap_or_else(|error| panic!("{error}"));
+        let folder = scratch();
+        let mut journal = Journal::create(&folder.path().join("log"), &plan, "test").unwrap_or_else(|e| panic!("{e}"));
+        let repeats = Repeats { count: 4, first };
+        let mut noting = Noting {
+            repeats,
+            blocks: Vec::new(),
+        };
+        let now = Timestamp::from_unix_micros(0).expect("1970");
+        run_rollout(&plan, &mut noting, &mut journal, 0, &mut || now).unwrap_or_else(|error| panic!("{error}"));
+        let in_block = |(block, numbers): (u64, Vec<u64>)| -> Vec<u64> {
+            numbers.into_iter().map(|number| number - 40 * block).collect()
+        };
+        (0..).zip(noting.blocks).map(in_block).collect::<Vec<_>>()
+    };
+    let (one, other) = (drawn(1, false), drawn(2, false));
+    for block in &one {
+        assert!(
+            block.len() == 4 && block.is_sorted() && block.iter().all(|place| *place < 40),
+            "{block:?}"
+        );
+    }
+    let places: std::collections::BTreeSet<u64> = one.iter().flatten().copied().collect();
+    assert!(places.len() > 25, "every place may be checked: {places:?}");
+    assert_ne!(one, other);
+    assert_eq!(one, drawn(1, false));
+    assert!(drawn(1, true).iter().all(|block| *block == [0, 1, 2, 3]));
 }
 
 #[test]
@@ -98,7 +195,7 @@ fn one_that_only_learning_changes_leaves_the_same_log_checked_or_not() {
                 ..WHOLE
             },
         );
-        let summary = live_by(&shaped(), &mut agent, &log, &living).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let summary = live_by(&shaped("hill.json"), &mut agent, &log, &living).unwrap_or_else(|error| panic!("{name}: {error}"));
         assert!(summary.finished && summary.experiences == 15, "{name}: {summary:?}");
         logs.push(everything(&log));
     }

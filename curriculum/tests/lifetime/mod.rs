@@ -52,8 +52,8 @@ fn plan(scenario: &Scenario) -> Result<Plan, CurriculumError> {
                 world: yard(),
                 note: Some("made up".to_owned()),
             }),
-            "hill.json" => Ok(FoundWorld {
-                world: frozen::hill(),
+            "hill.json" | "behind.json" => Ok(FoundWorld {
+                world: frozen::hill(if path == "hill.json" { 20 } else { -20 }),
                 note: None,
             }),
             _ => Err(format!("{path}: not there")),

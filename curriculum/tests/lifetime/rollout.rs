@@ -21,7 +21,7 @@ struct Replay {
 impl Rollout for Replay {
     type Error = CurriculumError;
 
-    fn begin_block(&mut self, learning: bool) -> Result<(), CurriculumError> {
+    fn begin_block(&mut self, learning: bool, _: &[u64]) -> Result<(), CurriculumError> {
         self.blocks.push(learning);
         Ok(())
     }

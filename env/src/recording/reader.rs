@@ -2,7 +2,7 @@
 //! no other; writing is in `lines.rs`.
 
 use std::collections::BTreeMap;
-use std::io::{BufRead, ErrorKind, Read};
+use std::io::{BufRead, ErrorKind, Read, Seek};
 
 use driftworld_spec::{MAX_BYTES, World};
 use driftworld_text::in_plain_words;
@@ -45,6 +45,8 @@ pub struct RecordedEpisode {
     pub reward: f64,
     /// Its line in the file, from 1.
     pub line: u64,
+    /// Where that line begins.
+    pub place: RecordingMark,
     said: EpisodeLine,
 }
 
@@ -85,6 +87,7 @@ impl<R: BufRead> RecordingReader<R> {
     /// [`EnvError::Recording`] for a line that is damaged or cut off; the next call goes on behind it.
     pub fn next_episode(&mut self) -> Result<Option<RecordedEpisode>, EnvError> {
         loop {
+            let place = self.mark();
             let Some(line) = self.line()? else { return Ok(None) };
             let wrong = |this: &Self, error: &serde_json::Error| {
                 this.wrong(in_plain_words(error), "a line of a world or of an episode")
@@ -102,6 +105,7 @@ impl<R: BufRead> RecordingReader<R> {
                 steps: said.steps,
                 reward: said.reward,
                 line: self.line,
+                place,
                 said,
             }));
         }
@@ -114,6 +118,8 @@ impl<R: BufRead> RecordingReader<R> {
     pub fn recording(&self, episode: &RecordedEpisode) -> Result<Recording, EnvError> {
         let said = &episode.said;
         let at = |line: u64, (found, expected): (String, String)| EnvError::Recording { line, found, expected };
+        let world = self.world(episode.line, &said.world_hash)?;
+        check_said(said, &world).map_err(|error| at(episode.line, error))?;
         let actions = said
             .actions
             .unpack(said.steps)
@@ -136,12 +142,27 @@ impl<R: BufRead> RecordingReader<R> {
         Ok(Recording {
             origin: episode.origin.clone(),
             recorded_by: said.driftworld.clone(),
-            world: self.world(episode.line, &said.world_hash)?,
+            world,
             edits: edits.collect::<Result<_, _>>()?,
             actions,
             reward: said.reward,
             ended_by: ended_by.transpose()?,
         })
+    }
+
+    /// Turns to a place that was marked, for one that has read the file to its end. Places that follow each other are read as one.
+    ///
+    /// # Errors
+    /// [`EnvError::Recording`] if the file refuses.
+    pub fn turn_to(&mut self, place: RecordingMark) -> Result<(), EnvError>
+    where
+        R: Seek,
+    {
+        let by = place.offset.cast_signed() - self.offset.cast_signed();
+        let turned = self.reader.seek_relative(by);
+        turned.map_err(|error| self.wrong(error.to_string(), "a file that can be read"))?;
+        (self.line, self.offset) = (place.line, place.offset);
+        Ok(())
     }
 
     /// Where the reader stands.
@@ -223,6 +244,35 @@ impl<R: BufRead> RecordingReader<R> {
             expected: expected.into(),
         }
     }
+}
+
+/// What a line says for those who read it without its world must be what the world says, and its version one that there is.
+fn check_said(said: &EpisodeLine, world: &World) -> Result<(), (String, String)> {
+    let agent = &world.agent_params;
+    let numbers = |version: &str| {
+        version
+            .split('.')
+            .map(|part| part.parse().ok())
+            .collect::<Option<Vec<u64>>>()
+    };
+    let own = env!("CARGO_PKG_VERSION");
+    let differs =
+        |key: &str, found: &dyn std::fmt::Display, expected: String| Err((format!("{key} {found:.40}"), expected));
+    if said.time_step.to_bits() != agent.time_step.to_bits() {
+        return differs(
+            "time_step",
+            &said.time_step,
+            format!("{} as in its world", agent.time_step),
+        );
+    }
+    if said.frame_skip != agent.frame_skip.max(1) {
+        let expected = format!("{} as in its world", agent.frame_skip.max(1));
+        return differs("frame_skip", &said.frame_skip, expected);
+    }
+    if numbers(&said.driftworld).is_none_or(|found| found.len() != 3 || Some(found) > numbers(own)) {
+        return differs("driftworld", &said.driftworld, format!("a version up to {own}"));
+    }
+    Ok(())
 }
 
 #[cfg(test)]

@@ -134,18 +134,16 @@ pub enum MetricsError {
     },
 
     /// A side file is not JSON, or not the JSON that was expected.
-    #[error("{}:{line}:{column}: found {found}, expected {expected}", path.shown(), found = one_line(found))]
+    #[error("{}:{line}:{column}: {wrong}", path.shown(), wrong = one_line(wrong))]
     Json {
         /// The file.
         path: PathBuf,
-        /// Line, from 1; 0 where the file as a whole is meant.
+        /// Line, from 1.
         line: usize,
-        /// Column, from 1; 0 where the line as a whole is meant.
+        /// Column, from 1.
         column: usize,
-        /// What the parser stumbled over.
-        found: String,
-        /// What should stand there.
-        expected: &'static str,
+        /// What is wrong.
+        wrong: String,
     },
 
     /// A field of `logger_info.json`, or of the [`LoggerInfo`](crate::LoggerInfo) to be written there, is wrong.
@@ -274,8 +272,9 @@ pub enum MetricsError {
 
     /// The last line of a data file has no line end: its writer was stopped in the middle of a row.
     #[error(
-        "{}:{line}: found a last line without a line end, expected complete rows; its writer was interrupted: delete \
-         that line, or continue the log, which deletes it (`driftworld run … --resume`, LogWriter::resume)",
+        "{}:{line}: found a last line without a line end, expected complete rows; its writer was interrupted, or \
+         an editor left the line end out: add one if the line is whole; else delete the line, or continue the log, which \
+         deletes it (`driftworld run … --resume`, LogWriter::resume)",
         path.shown()
     )]
     TornLastLine {

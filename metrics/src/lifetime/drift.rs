@@ -84,9 +84,9 @@ pub fn logged_word(name: &str) -> String {
 }
 
 /// Says of each regime of learning which tasks it counts as learning of: its own; a drift, those of its ends that it
-/// comes near to and that the lifetime has otherwise. Where it goes from one that was learnt before to another, it is
+/// comes near to and that the lifetime has otherwise. Where it goes from one that was learned before to another, it is
 /// learning of the other alone: what becomes of the first is what learning the other does to it.
-pub(super) fn set_learnt(regimes: &mut [Regime], tasks: &[String]) {
+pub(super) fn set_learned(regimes: &mut [Regime], tasks: &[String]) {
     let tasks: IndexSet<&str> = tasks.iter().map(String::as_str).collect();
     let mut known: IndexSet<String> = IndexSet::new();
     for regime in regimes {

@@ -56,11 +56,11 @@ impl Lifetime {
         self.regimes.iter().filter(move |regime| regime.task_name == task)
     }
 
-    /// The regimes in which a task is evaluated or learnt, in order; also drifts that count as learning of it.
+    /// The regimes in which a task is evaluated or learned, in order; also drifts that count as learning of it.
     pub(crate) fn regimes_about(&self, task: &str) -> impl Iterator<Item = &Regime> {
         self.regimes.iter().filter(move |regime| match regime.block_type {
             BlockType::Test => regime.task_name == task,
-            BlockType::Train => regime.learns.iter().any(|learnt| learnt == task),
+            BlockType::Train => regime.learns.iter().any(|learned| learned == task),
         })
     }
 

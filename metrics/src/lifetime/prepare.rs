@@ -24,7 +24,7 @@ impl Lifetime {
         let rows = usable_rows(log, &log.run_id, &options.perf_measure)?;
         let mut regimes = regime::form(&log.run_id, &rows, options)?;
         let tasks = tasks_by_training(&regimes);
-        drift::set_learnt(&mut regimes, &tasks);
+        drift::set_learned(&mut regimes, &tasks);
         let experts = ste::gather(experts, &tasks, options)?;
         let stamps = || rows.indices.iter().map(|&row| log.rows.timestamps()[row]);
         let mut lifetime = Self {

@@ -19,7 +19,7 @@ pub const MAX_REGIMES: usize = 10_000;
 /// QUIRK: task parameters do not split regimes. A block that changes only a task's parameters is one regime, and
 /// stands in tables with the parameters of its first row. Under the published definitions they do split.
 ///
-/// Rows whose parameters say `"mix": "shuffled"` are of a block in which tasks are learnt among each other: the rows of one task
+/// Rows whose parameters say `"mix": "shuffled"` are of a block in which tasks are learned among each other: the rows of one task
 /// are one regime there, which the reference counts as many.
 #[derive(Debug, Clone, PartialEq)]
 #[expect(
@@ -66,7 +66,7 @@ impl Regime {
         self.performance.is_empty()
     }
 
-    /// Whether the agent learnt, awake.
+    /// Whether the agent learned, awake.
     pub fn is_wake_training(&self) -> bool {
         self.block_type == BlockType::Train && self.block_subtype == BlockSubtype::Wake
     }

@@ -4,6 +4,10 @@
 
 use std::path::Path;
 
+use driftworld_text::json::{Repeats, parse};
+use serde_json::Value;
+
+use super::json_file::{MAX_JSON_VALUES, fault};
 use super::record::{TaskParams, is_worker_id};
 use crate::MetricsError;
 
@@ -24,7 +28,14 @@ pub(super) struct Cell<'a> {
 
 impl Cell<'_> {
     pub(super) fn whole_number(self) -> Result<u64, MetricsError> {
-        self.text.parse().map_err(|_| {
+        // As data frames write whole numbers of a column that lacks some: 3.0.
+        let zeros = |rest: &str| !rest.is_empty() && rest.bytes().all(|byte| byte == b'0');
+        let whole = self
+            .text
+            .split_once('.')
+            .filter(|(_, rest)| zeros(rest))
+            .map(|(whole, _)| whole);
+        whole.unwrap_or(self.text).parse().map_err(|_| {
             if !self.text.is_empty() && self.text.bytes().all(|byte| byte.is_ascii_digit()) {
                 self.error(format!("a whole number of at most {}", u64::MAX))
             } else {
@@ -57,12 +68,10 @@ impl Cell<'_> {
     pub(super) fn params(self) -> Result<TaskParams, MetricsError> {
         match self.text {
             "" => Ok(TaskParams::default()),
-            text => match serde_json::from_str(text) {
-                Ok(object) => Ok(TaskParams::new(object)),
-                Err(error) if stumbles_over_no_number(&error, text) => {
-                    Err(self.error("a JSON object, which has null and no NaN or Infinity"))
-                }
-                Err(_) => Err(self.error("a JSON object")),
+            text => match parse(text, MAX_JSON_VALUES as usize, Repeats::Stop) {
+                Ok(Value::Object(object)) => Ok(TaskParams::new(object)),
+                Ok(_) => Err(self.error("a JSON object")),
+                Err((error, stop)) => Err(self.error(format!("a JSON object; {}", fault(text, &error, stop)))),
             },
         }
     }
@@ -81,17 +90,6 @@ impl Cell<'_> {
             expected: expected.into(),
         }
     }
-}
-
-/// Whether a parser of JSON met what Python writes there for numbers that are none.
-fn stumbles_over_no_number(error: &serde_json::Error, text: &str) -> bool {
-    // The parser reads a `-`, and stumbles over what is behind it.
-    let line = text.split('\n').nth(error.line().saturating_sub(1)).unwrap_or_default();
-    let rest = line
-        .as_bytes()
-        .get(error.column().saturating_sub(1)..)
-        .unwrap_or_default();
-    rest.starts_with(b"NaN") || rest.starts_with(b"Infinity")
 }
 
 /// A number; an empty cell or a word that table writers use for "missing" is NaN. `None` for anything else.
@@ -171,7 +169,7 @@ mod tests {
         let check = |text: &str, expected: bool| {
             let message = cell(text).params().unwrap_err().to_string();
             assert_eq!(
-                message.ends_with("which has null and no NaN or Infinity"),
+                message.ends_with("JSON has no NaN or Infinity; numbers are finite"),
                 expected,
                 "{message}"
             );

@@ -4,10 +4,13 @@
 
 use std::path::Path;
 
+use driftworld_text::json::{
+    MAX_KEY_BYTES, Repeats, Stop, Wanted, last_key, lines_and_columns, offsets, parse, reason, repeated,
+};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-use super::{json_values, regular_file};
+use super::regular_file;
 use crate::MetricsError;
 
 /// Largest side file that is read, in bytes.
@@ -17,30 +20,62 @@ pub const MAX_JSON_BYTES: u64 = 16 << 20;
 /// read.
 pub const MAX_JSON_VALUES: u64 = 1_000_000;
 
-/// Reads a file that holds one JSON object.
+/// Reads a file that holds one JSON object, as documents are read.
 ///
 /// # Errors
 /// [`MetricsError::MissingFile`], [`MetricsError::NotAFile`], [`MetricsError::TooLarge`] over 16 MiB and over a million
 /// values, [`MetricsError::Json`] with line and column.
 pub(super) fn read_object(path: &Path, expected: &'static str) -> Result<Map<String, Value>, MetricsError> {
-    let bytes = regular_file::read(path, MAX_JSON_BYTES)?.ok_or_else(|| MetricsError::missing_file(path, expected))?;
-    let wrong = |error: serde_json::Error| MetricsError::Json {
+    let text = regular_file::text(path, MAX_JSON_BYTES)?.ok_or_else(|| MetricsError::missing_file(path, expected))?;
+    let wrong = |(line, column): (usize, usize), wrong: String| MetricsError::Json {
         path: path.to_owned(),
-        line: error.line(),
-        column: error.column(),
-        found: without_place(&error),
-        expected,
+        line: line.max(1),
+        column: column.max(1),
+        wrong,
     };
-    let found = json_values::count(&bytes, MAX_JSON_VALUES).map_err(wrong)?;
-    if found > MAX_JSON_VALUES {
-        return Err(MetricsError::too_large(
+    match parse(&text, MAX_JSON_VALUES as usize, Repeats::Stop) {
+        Ok(Value::Object(object)) => Ok(object),
+        Ok(_) => Err(wrong((1, 1), format!("found no object, expected {expected}"))),
+        Err((_, Some(Stop::TooMany))) => Err(MetricsError::too_large(
             path,
             "values or more of JSON",
-            found,
+            MAX_JSON_VALUES + 1,
             MAX_JSON_VALUES,
-        ));
+        )),
+        Err((error, stop)) => {
+            let place = twice(&text)
+                .map(|(place, _)| place)
+                .filter(|_| stop == Some(Stop::Repeated));
+            Err(wrong(
+                place.unwrap_or((error.line(), error.column())),
+                fault(&text, &error, stop),
+            ))
+        }
     }
-    serde_json::from_slice(&bytes).map_err(wrong)
+}
+
+/// What is wrong with a text that was not read, in the words that documents have for it.
+pub(super) fn fault(text: &str, error: &serde_json::Error, stop: Option<Stop>) -> String {
+    match (stop, twice(text)) {
+        (Some(Stop::LongKey), _) => {
+            format!("found a key of more than {MAX_KEY_BYTES} bytes, expected at most that many")
+        }
+        (Some(Stop::Repeated), Some((_, key))) => {
+            format!("found the key {key:?} twice, expected each key once; remove one of the two")
+        }
+        _ => format!("not valid JSON: {}", reason(text, error)),
+    }
+}
+
+/// The first key that stands twice in one object, with its place.
+fn twice(text: &str) -> Option<((usize, usize), String)> {
+    let pointer = repeated(text, 1).pop()?;
+    let wanted = [Wanted {
+        pointer: &pointer,
+        at_key: false,
+    }];
+    let place = lines_and_columns(text, &offsets(text, &wanted))[0];
+    Some((place, last_key(&pointer)))
 }
 
 /// Writes a value as indented JSON, first under a temporary name beside the target, so that a reader never sees half.
@@ -48,25 +83,27 @@ pub(super) fn read_object(path: &Path, expected: &'static str) -> Result<Map<Str
 /// # Errors
 /// [`MetricsError::Io`].
 pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<(), MetricsError> {
+    write_info(path, value, true)
+}
+
+/// As [`write_json`]; without `syncs` straight into the file, for a log that is thrown away.
+pub(super) fn write_info(path: &Path, value: &impl Serialize, syncs: bool) -> Result<(), MetricsError> {
     let mut bytes = serde_json::to_vec_pretty(value).map_err(|error| MetricsError::Io {
         path: path.to_owned(),
         doing: "put this value into JSON",
         source: error.into(),
     })?;
     bytes.push(b'\n');
-    write_whole(path, &bytes)
+    if syncs {
+        write_whole(path, &bytes)
+    } else {
+        std::fs::write(path, &bytes).map_err(MetricsError::io(path, "write this file"))
+    }
 }
 
 /// Writes bytes under a temporary name beside the target and renames. The file keeps its mode if there was one.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), MetricsError> {
     driftworld_atomic_files::write(path, bytes).map_err(MetricsError::io(path, "write this file"))
-}
-
-/// The parser's words without "at line 1 column 2", which stands in front of the message already.
-fn without_place(error: &serde_json::Error) -> String {
-    let text = error.to_string();
-    let place = format!(" at line {} column {}", error.line(), error.column());
-    text.strip_suffix(&place).unwrap_or(&text).to_owned()
 }
 
 #[cfg(test)]
@@ -100,19 +137,27 @@ mod tests {
     }
 
     #[test]
-    fn broken_json_is_placed() {
+    fn broken_json_is_placed_as_in_documents() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("info.json");
-        let check = |text: &str, expected: &str| {
-            fs::write(&path, text).unwrap();
-            let message = read_object(&path, "an object").unwrap_err().to_string();
-            assert_eq!(message.strip_prefix(&path.display().to_string()).unwrap(), expected);
+        let check = |bytes: &[u8], expected: &str| {
+            fs::write(&path, bytes).unwrap();
+            let message = read_object(&path, "an object").map_or_else(|error| error.to_string(), |_| "read".to_owned());
+            assert_eq!(message.replace(&path.display().to_string(), ""), expected);
         };
-        check("{\n  \"a\": }", ":2:8: found expected value, expected an object");
+        check(b"{\n  \"a\": }", ":2:8: not valid JSON: expected value");
+        check(b"[1]", ":1:1: found no object, expected an object");
+        check(b"", ":1:1: not valid JSON: the document is empty");
         check(
-            "[1]",
-            ":1:0: found invalid type: sequence, expected a map, expected an object",
+            b"{\"a\": NaN}",
+            ":1:7: not valid JSON: JSON has no NaN or Infinity; numbers are finite",
         );
-        check("", ":1:0: found EOF while parsing a value, expected an object");
+        let twice = ":1:16: found the key \"a\" twice, expected each key once; remove one of the two";
+        check(b"{ \"a\": 1, \"a\": 2 }", twice);
+        check("\u{feff}{}".as_bytes(), "read");
+        check(
+            b"\xff\xfe{\0}\0",
+            ":1:1: byte 0 is not UTF-8, expected UTF-8 text; save it as such",
+        );
     }
 }

@@ -14,7 +14,6 @@ mod folder_name;
 mod header;
 mod identity;
 mod json_file;
-mod json_values;
 mod log_folder;
 mod logger_info;
 mod reader;

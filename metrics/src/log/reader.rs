@@ -1,17 +1,16 @@
 //! A whole log: its two info files and the rows of all its workers, in order.
 //!
-//! Not here: how one data file is read, see `data_file`; every fault of a log at once, see `validation`.
+//! Not here: how one data file is read, see `data_file`; the rules of a log, see `validation`.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::faults::Faults;
 use super::logger_info::LoggerInfo;
-use super::record::is_conventional_task_name;
 use super::rows::Rows;
 use super::scenario_info::ScenarioInfo;
-use super::table::{Table, Texts};
+use super::table::Texts;
+use super::validation::Check;
 use super::warning::LogWarning;
-use super::{data_file, data_files};
 use crate::MetricsError;
 
 /// A log as it was read.
@@ -29,7 +28,8 @@ pub struct Log {
     pub warnings: Vec<LogWarning>,
 }
 
-/// Reads the log in a directory: format 1.0 or 1.1, written by us or by l2logger, by one worker or by several.
+/// Reads the log in a directory: format 1.0 or 1.1, written by us or by l2logger, by one worker or by several. Faults are those of
+/// [`validate_log`](crate::validate_log), which lists them all; those that scores do not depend on are warnings here.
 ///
 /// Columns of words that `logger_info.json` does not declare are left out; see [`read_log_with_texts`]. Data files may be links, and so
 /// may the directories of workers and blocks.
@@ -52,62 +52,15 @@ pub fn read_log_with_texts(dir: impl AsRef<Path>) -> Result<Log, MetricsError> {
 }
 
 fn read(dir: &Path, texts: Texts) -> Result<Log, MetricsError> {
-    let files = data_files::find(dir)?;
-    let logger_info = LoggerInfo::read(dir)?;
-    let mut warnings = Vec::new();
-    let scenario_info = ScenarioInfo::read(dir, &mut warnings)?;
-    if files.is_empty() {
-        return Err(MetricsError::NoDataFiles(dir.to_owned()));
-    }
-    let mut table = Table::new(dir, logger_info.metrics_columns(), texts);
-    for path in &files {
-        data_file::read(path, logger_info.metrics_columns(), &mut table, &mut Faults::Stop)?;
-    }
-    table.complete()?;
-    let order = table.rows.sort();
-    if let Some(fault) = block_order(&table, order.as_deref(), &files) {
-        return Err(fault);
-    }
-    warn_of_task_names(&table.rows, |warning| warnings.push(warning));
+    let mut check = Check::new(Faults::Stop);
+    let (logger_info, scenario_info, rows) = check.all(dir, texts)?;
     Ok(Log {
         run_id: run_id(dir),
         logger_info,
         scenario_info,
-        rows: table.rows,
-        warnings,
+        rows,
+        warnings: check.warnings.first,
     })
-}
-
-/// The fault of block numbers that fall while experience numbers rise, in a table that was sorted: `order` is where its rows
-/// were before.
-pub(super) fn block_order(table: &Table<'_>, order: Option<&[u32]>, files: &[PathBuf]) -> Option<MetricsError> {
-    let blocks = table.rows.block_nums();
-    let row = (1..blocks.len()).find(|&row| blocks[row] < blocks[row - 1])?;
-    let (file, line) = table.place(order.map_or(row, |order| order[row] as usize));
-    Some(MetricsError::BlockOrder {
-        path: files[file].clone(),
-        line,
-        found: blocks[row],
-        expected: blocks[row - 1],
-    })
-}
-
-/// Warns of each odd name once, in the order of the rows.
-pub(super) fn warn_of_task_names(rows: &Rows, mut warn: impl FnMut(LogWarning)) {
-    let names = rows.task_names();
-    let mut odd: Vec<bool> = names
-        .values()
-        .iter()
-        .map(|name| !is_conventional_task_name(name))
-        .collect();
-    if odd.contains(&true) {
-        for &id in names.ids() {
-            if std::mem::take(&mut odd[id as usize]) {
-                let found = names.values()[id as usize].clone();
-                warn(LogWarning::TaskName { found });
-            }
-        }
-    }
 }
 
 /// The directory's own name; where the path ends in `..` or is `.`, the name it stands for if there is one.

@@ -27,7 +27,7 @@ choice! {
 }
 
 choice! {
-    /// Whether the agent consolidates what it learnt, without new experience.
+    /// Whether the agent consolidates what it learned, without new experience.
     BlockSubtype, "block subtype" {
         /// Awake: the usual case, and what logs of format 1.0 mean.
         Wake = "wake",

@@ -22,10 +22,10 @@ pub(super) fn open(path: &Path, limit: u64) -> Result<Opened, MetricsError> {
     driftworld_files::open(path, limit).map_err(as_metrics_error)
 }
 
-/// The bytes of a file of at most `limit`; `None` where there is nothing.
-pub(super) fn read(path: &Path, limit: u64) -> Result<Option<Vec<u8>>, MetricsError> {
-    match driftworld_files::read(path, limit) {
-        Ok(bytes) => Ok(Some(bytes)),
+/// The text of a file of at most `limit`; `None` where there is nothing.
+pub(super) fn text(path: &Path, limit: u64) -> Result<Option<String>, MetricsError> {
+    match driftworld_files::text(path, limit) {
+        Ok(text) => Ok(Some(text)),
         Err(error) if error.missing().is_some() => Ok(None),
         Err(error) => Err(as_metrics_error(error)),
     }
@@ -38,6 +38,12 @@ fn as_metrics_error(error: FileError) -> MetricsError {
             path,
             // The word that all messages about logs have for it.
             found: if found == "a folder" { "a directory" } else { found },
+        },
+        FileError::NotText { path, at, line } => MetricsError::Json {
+            path,
+            line,
+            column: 1,
+            wrong: format!("byte {at} is not UTF-8, expected UTF-8 text; save it as such"),
         },
         FileError::TooLarge { path, found, limit } => MetricsError::too_large(path, "bytes or more", found, limit),
         other => MetricsError::Io {

@@ -1,6 +1,4 @@
-//! Every fault of a log at once, those included that do not keep it from being read: the rules its writer should have kept.
-//!
-//! Not here: reading it to score it, see `reader`.
+//! Reads a log and checks the rules that its writer should have kept: the first fault ends the reading, or all are listed.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -8,8 +6,8 @@ use std::path::{Path, PathBuf};
 use super::cell::listed;
 use super::faults::{Faults, Listed};
 use super::logger_info::LoggerInfo;
-use super::reader::{block_order, warn_of_task_names};
-use super::record::ExpStatus;
+use super::record::{ExpStatus, is_conventional_task_name};
+use super::rows::Rows;
 use super::scenario_info::ScenarioInfo;
 use super::table::{Table, Texts};
 use super::warning::LogWarning;
@@ -59,110 +57,136 @@ pub struct LogCounts {
     pub tasks: usize,
 }
 
-/// Checks a log: all that [`read_log`](crate::read_log) checks, and what only its writer could have kept to. Numbers never fall
+/// Checks a log by the rules of [`read_log`](crate::read_log), and lists every fault: numbers never fall
 /// within a file; every file has the same columns, those of the version the log says it has; each experience has exactly one
 /// complete row, its last. What is no rule but usual is warned about: task names of two words, the words of
 /// `scenario_info.json`, time stamps that do not run backwards, folders named after the worker and the block of their rows, a last experience that was finished, metrics that hold numbers.
-///
-/// A log without problems can be read.
 pub fn validate_log(dir: impl AsRef<Path>) -> Validation {
     let dir = dir.as_ref();
-    let mut check = Check::default();
-    check.all(dir).unwrap_or_else(|error| check.problems.add(error));
+    let mut check = Check::new(Faults::List(Listed::default()));
+    let mut problems = check.all(dir, Texts::Leave).err();
+    let mut listed = Listed::default();
+    if let Faults::List(found) = check.faults {
+        listed = found;
+    }
+    problems.take().into_iter().for_each(|error| listed.add(error));
     Validation {
-        problems: check.problems.first,
-        more_problems: check.problems.more,
+        problems: listed.first,
+        more_problems: listed.more,
         warnings: check.warnings.first,
         more_warnings: check.warnings.more,
         counts: check.counts,
     }
 }
 
-#[derive(Default)]
-struct Check {
-    problems: Listed<MetricsError>,
-    warnings: Listed<LogWarning>,
+/// Reads a log, as far as its faults allow, and checks it.
+pub(super) struct Check {
+    faults: Faults,
+    pub(super) warnings: Listed<LogWarning>,
     counts: LogCounts,
 }
 
+/// What a log holds: its two files of information, and its rows in order.
+pub(super) type Read = (LoggerInfo, ScenarioInfo, Rows);
+
 impl Check {
-    /// The error is a problem after which nothing more can be said.
-    fn all(&mut self, dir: &Path) -> Result<(), MetricsError> {
+    pub(super) fn new(faults: Faults) -> Self {
+        Self {
+            faults,
+            warnings: Listed::default(),
+            counts: LogCounts::default(),
+        }
+    }
+
+    /// The error is the first fault where reading stops there, else a problem after which nothing more can be said.
+    pub(super) fn all(&mut self, dir: &Path, texts: Texts) -> Result<Read, MetricsError> {
         let files = data_files::find(dir)?;
         self.counts.files = files.len();
-        self.scenario_info(dir);
+        let scenario_info = self.scenario_info(dir)?;
         let logger_info = LoggerInfo::read(dir)?;
         if files.is_empty() {
             return Err(MetricsError::NoDataFiles(dir.to_owned()));
         }
-        let table = self.read(dir, &files, &logger_info)?;
-        self.order_in_files(&table, &files);
+        let mut table = self.read(
+            Table::new(dir, logger_info.metrics_columns(), texts),
+            &files,
+            &logger_info,
+        )?;
+        self.order_in_files(&table, &files)?;
         self.folders(dir, &table, &files);
-        self.completions(&table, &files);
+        self.completions(&table, &files)?;
         self.metrics(&table, logger_info.metrics_columns());
         self.count(&table);
-        self.sorted(table, &files);
-        Ok(())
+        self.sort(&mut table, &files)?;
+        Ok((logger_info, scenario_info, table.rows))
     }
 
-    fn scenario_info(&mut self, dir: &Path) {
+    /// A rule was broken that scores do not depend on: who reads the log is warned of it in the same words.
+    fn breach(&mut self, fault: MetricsError) -> Result<(), MetricsError> {
+        match self.faults {
+            Faults::List(_) => self.faults.add(fault),
+            Faults::Stop => {
+                self.warnings.add(LogWarning::Breach(fault.to_string()));
+                Ok(())
+            }
+        }
+    }
+
+    fn scenario_info(&mut self, dir: &Path) -> Result<ScenarioInfo, MetricsError> {
         let mut warnings = Vec::new();
-        match ScenarioInfo::read(dir, &mut warnings) {
-            Err(error) => self.problems.add(error),
-            Ok(_) if warnings.contains(&LogWarning::NoScenarioInfo) => {}
-            Ok(info) => info.warn_of_missing(&mut warnings),
+        let info = self.faults.sift(ScenarioInfo::read(dir, &mut warnings))?;
+        if let (Some(info), Faults::List(_)) = (&info, &self.faults)
+            && !warnings.contains(&LogWarning::NoScenarioInfo)
+        {
+            info.warn_of_missing(&mut warnings);
         }
         for warning in warnings {
             self.warnings.add(warning);
         }
+        Ok(info.unwrap_or_default())
     }
 
     /// Reads every file as far as it can be read.
     fn read<'d>(
         &mut self,
-        dir: &'d Path,
+        mut table: Table<'d>,
         files: &[PathBuf],
         logger_info: &LoggerInfo,
     ) -> Result<Table<'d>, MetricsError> {
         let metrics = logger_info.metrics_columns();
-        let mut table = Table::new(dir, metrics, Texts::Leave);
-        let mut faults = Faults::List(std::mem::take(&mut self.problems));
         let mut headers: Vec<(usize, Vec<String>)> = Vec::new();
-        let mut ended = Ok(());
         for (file, path) in files.iter().enumerate() {
-            match data_file::read(path, metrics, &mut table, &mut faults) {
+            match data_file::read(path, metrics, &mut table, &mut self.faults) {
                 Ok(header) => headers.push((file, header)),
                 // The log as a whole is too large: there is no use in going on.
-                Err(error @ MetricsError::TooLarge { .. }) if table.is_full() => {
-                    ended = Err(error);
-                    break;
-                }
-                Err(error) => faults.add(error)?,
+                Err(error @ MetricsError::TooLarge { .. }) if table.is_full() => return Err(error),
+                Err(error) => self.faults.add(error)?,
             }
         }
-        if let Faults::List(listed) = faults {
-            self.problems = listed;
-        }
-        ended?;
-        self.headers(&headers, files, logger_info);
+        self.headers(&headers, files, logger_info)?;
         table.complete()?;
         Ok(table)
     }
 
     /// Every file has the columns of the first, and those of the log's version.
-    fn headers(&mut self, headers: &[(usize, Vec<String>)], files: &[PathBuf], logger_info: &LoggerInfo) {
+    fn headers(
+        &mut self,
+        headers: &[(usize, Vec<String>)],
+        files: &[PathBuf],
+        logger_info: &LoggerInfo,
+    ) -> Result<(), MetricsError> {
         let sorted = |names: &[String]| names.iter().cloned().collect::<BTreeSet<String>>();
         let Some((first, expected)) = headers.first() else {
-            return;
+            return Ok(());
         };
         for (file, names) in &headers[1..] {
             if sorted(names) != sorted(expected) {
-                self.problems.add(MetricsError::ColumnsDiffer {
+                self.breach(MetricsError::ColumnsDiffer {
                     path: files[*file].clone(),
                     found: listed(names),
                     expected: listed(expected),
                     first: files[*first].clone(),
-                });
+                })?;
             }
         }
         let has_subtype = expected.iter().any(|name| name == columns::SINCE_1_1);
@@ -176,10 +200,11 @@ impl Check {
                 has_subtype,
             });
         }
+        Ok(())
     }
 
     /// Numbers never fall within a file; time stamps that do are warned about, once a file.
-    fn order_in_files(&mut self, table: &Table<'_>, files: &[PathBuf]) {
+    fn order_in_files(&mut self, table: &Table<'_>, files: &[PathBuf]) -> Result<(), MetricsError> {
         let rows = &table.rows;
         for (file, path) in files.iter().enumerate().take(table.num_files()) {
             let mut reported = false;
@@ -188,13 +213,13 @@ impl Check {
             for row in range {
                 for (column, numbers) in [("block_num", rows.block_nums()), ("exp_num", rows.exp_nums())] {
                     if numbers[row] < numbers[before] {
-                        self.problems.add(MetricsError::NumberFalls {
+                        self.breach(MetricsError::NumberFalls {
                             path: path.clone(),
                             line: table.place(row).1,
                             column,
                             found: numbers[row],
                             expected: numbers[before],
-                        });
+                        })?;
                     }
                 }
                 let stamps = rows.timestamps();
@@ -209,6 +234,7 @@ impl Check {
                 before = row;
             }
         }
+        Ok(())
     }
 
     /// Rows lie where their writer puts them, in a folder for each worker and block; those that do not are warned about, once a file.
@@ -244,7 +270,7 @@ impl Check {
     }
 
     /// Exactly one complete row for each experience of a worker, the last; its very last experience may be unfinished.
-    fn completions(&mut self, table: &Table<'_>, files: &[PathBuf]) {
+    fn completions(&mut self, table: &Table<'_>, files: &[PathBuf]) -> Result<(), MetricsError> {
         let rows = &table.rows;
         self.missing(table, files);
         let key = |row: usize| (rows.workers().ids()[row], rows.exp_nums()[row]);
@@ -272,26 +298,27 @@ impl Check {
                 }
                 None => {
                     let (path, line) = place(first);
-                    self.problems.add(MetricsError::NotCompleted {
+                    self.breach(MetricsError::NotCompleted {
                         path,
                         line,
                         exp_num,
                         worker,
-                    });
+                    })?;
                 }
                 Some(end) => {
                     if let Some(&after) = experience.get(end + 1) {
                         let (path, line) = place(after as usize);
-                        self.problems.add(MetricsError::RowAfterComplete {
+                        self.faults.add(MetricsError::RowAfterComplete {
                             path,
                             line,
                             exp_num,
                             worker,
-                        });
+                        })?;
                     }
                 }
             }
         }
+        Ok(())
     }
 
     /// Numbers of experiences go up one by one, over all workers; a log that lacks some is warned about once.
@@ -318,8 +345,11 @@ impl Check {
         }
     }
 
-    /// A declared metric that never has a number is good for nothing.
+    /// A declared metric that never has a number is good for nothing; who reads a log looks at the one that is scored.
     fn metrics(&mut self, table: &Table<'_>, declared: &[String]) {
+        if matches!(self.faults, Faults::Stop) {
+            return;
+        }
         for name in declared {
             let numbers = table.rows.metric(name).unwrap_or_default();
             if !numbers.is_empty() && numbers.iter().all(|number| number.is_nan()) {
@@ -335,15 +365,41 @@ impl Check {
         self.counts.complete_rows = rows.exp_statuses().iter().filter(complete).count();
         self.counts.blocks = rows.block_nums().iter().collect::<BTreeSet<_>>().len();
         self.counts.workers = rows.workers().values().iter().collect::<BTreeSet<_>>().len();
-        self.counts.tasks = rows.task_names().values().iter().collect::<BTreeSet<_>>().len();
+        // As they are scored: in lower case.
+        let tasks = rows.task_names().values().iter().map(|name| name.to_lowercase());
+        self.counts.tasks = tasks.collect::<BTreeSet<_>>().len();
     }
 
-    /// What shows once all rows are in the order of experiences.
-    fn sorted(&mut self, mut table: Table<'_>, files: &[PathBuf]) {
+    /// Sorts the rows by experience; block numbers must not fall then.
+    fn sort(&mut self, table: &mut Table<'_>, files: &[PathBuf]) -> Result<(), MetricsError> {
         let order = table.rows.sort();
-        if let Some(fault) = block_order(&table, order.as_deref(), files) {
-            self.problems.add(fault);
+        let blocks = table.rows.block_nums();
+        if let Some(row) = (1..blocks.len()).find(|&row| blocks[row] < blocks[row - 1]) {
+            let (file, line) = table.place(order.map_or(row, |order| order[row] as usize));
+            self.faults.add(MetricsError::BlockOrder {
+                path: files[file].clone(),
+                line,
+                found: blocks[row],
+                expected: blocks[row - 1],
+            })?;
         }
-        warn_of_task_names(&table.rows, |warning| self.warnings.add(warning));
+        self.task_names(&table.rows);
+        Ok(())
+    }
+
+    /// Warns of each odd name once, in the order of the rows.
+    fn task_names(&mut self, rows: &Rows) {
+        let names = rows.task_names();
+        let mut odd: Vec<bool> = (names.values().iter())
+            .map(|name| !is_conventional_task_name(name))
+            .collect();
+        if odd.contains(&true) {
+            for &id in names.ids() {
+                if std::mem::take(&mut odd[id as usize]) {
+                    let found = names.values()[id as usize].clone();
+                    self.warnings.add(LogWarning::TaskName { found });
+                }
+            }
+        }
     }
 }

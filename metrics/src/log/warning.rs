@@ -13,6 +13,10 @@ use super::timestamp::Timestamp;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LogWarning {
+    /// A rule of the format was broken that scores do not depend on; the words are those of the
+    /// [`MetricsError`](crate::MetricsError) that validating lists.
+    #[error("{0}; scored as it is")]
+    Breach(String),
     /// There is no `scenario_info.json`.
     #[error("scenario_info.json: found no such file; read without it")]
     NoScenarioInfo,

@@ -30,6 +30,8 @@ pub struct LogWriter {
     file: Option<BlockFile>,
     /// The files that are not open, by their paths inside the directory.
     files: BTreeMap<PathBuf, Written>,
+    /// Whether the disk is asked to have what was written.
+    syncs: bool,
 }
 
 /// What later records are checked against.
@@ -54,22 +56,38 @@ impl LogWriter {
         logger_info: &LoggerInfo,
         scenario_info: &ScenarioInfo,
     ) -> Result<Self, MetricsError> {
-        let dir = dir.as_ref();
+        Self::begin(dir.as_ref(), logger_info, scenario_info, true)
+    }
+
+    /// As [`LogWriter::create`] for a log that is read at once and thrown away: the disk is never asked to have it.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn create_unsynced(
+        dir: impl AsRef<Path>,
+        logger_info: &LoggerInfo,
+        scenario_info: &ScenarioInfo,
+    ) -> Result<Self, MetricsError> {
+        Self::begin(dir.as_ref(), logger_info, scenario_info, false)
+    }
+
+    fn begin(
+        dir: &Path,
+        logger_info: &LoggerInfo,
+        scenario_info: &ScenarioInfo,
+        syncs: bool,
+    ) -> Result<Self, MetricsError> {
         fs::create_dir_all(dir).map_err(MetricsError::io(dir, "make this directory"))?;
         // Before anything is looked at or written: two that begin at the same moment would both find the directory free.
         let folder = LogFolder::lock(dir)?;
         if !begun::is_free(dir)? {
             return Err(MetricsError::LogExists(dir.to_owned()));
         }
-        json_file::write_json(&dir.join(scenario_info::FILE_NAME), scenario_info)?;
-        json_file::write_json(&dir.join(logger_info::FILE_NAME), logger_info)?;
+        json_file::write_info(&dir.join(scenario_info::FILE_NAME), scenario_info, syncs)?;
+        json_file::write_info(&dir.join(logger_info::FILE_NAME), logger_info, syncs)?;
         begun::remove_leftovers(dir)?;
-        Ok(Self::with_progress(
-            folder,
-            logger_info,
-            Progress::default(),
-            BTreeMap::new(),
-        ))
+        let writer = Self::with_progress(folder, logger_info, Progress::default(), BTreeMap::new());
+        Ok(Self { syncs, ..writer })
     }
 
     /// Goes on in a directory that holds these data files.
@@ -86,6 +104,7 @@ impl LogWriter {
             progress,
             file: None,
             files,
+            syncs: true,
         }
     }
 
@@ -168,7 +187,9 @@ impl LogWriter {
     /// Closes the file that is open, once the disk has it.
     fn put_away(&mut self) -> Result<(), MetricsError> {
         let Some(open) = &self.file else { return Ok(()) };
-        open.sync(&self.folder)?;
+        if self.syncs {
+            open.sync(&self.folder)?;
+        }
         open.written.check(&self.folder, &open.inside)?;
         self.files.insert(open.inside.clone(), open.written);
         self.file = None;

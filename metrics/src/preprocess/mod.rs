@@ -20,6 +20,25 @@ use crate::{Anchors, DataRange, MetricsError, Options, VariantMode};
 /// not above the floor: then nothing can be learned. Where variants do not count, the lowest floor and the highest
 /// ceiling of its variants.
 pub(crate) fn anchors(task: &str, options: &Options) -> Option<Anchors> {
+    given_anchors(task, options).filter(|anchors| anchors.ceiling > anchors.floor)
+}
+
+/// What a reader must be told of tasks whose given ceiling is not above the floor: they are not scaled by them.
+pub(crate) fn caution_of_scales(lifetime: &Lifetime, options: &Options) -> Option<String> {
+    let flat = |task: &String| {
+        let Anchors { floor, ceiling, .. } = given_anchors(task, options)?;
+        (ceiling <= floor).then(|| format!("{task} (floor {floor}, ceiling {ceiling})"))
+    };
+    let flat: Vec<String> = lifetime.tasks().iter().filter_map(flat).collect();
+    (!flat.is_empty()).then(|| {
+        format!(
+            "scales: found no ceiling above the floor, expected one; each of these is scaled by its own range: {}",
+            flat.join(", ")
+        )
+    })
+}
+
+fn given_anchors(task: &str, options: &Options) -> Option<Anchors> {
     let scales = options.scales.iter().flatten();
     let of_task = scales.filter(|(name, _)| options.variant_mode.scored_name(name) == task);
     let hull = |a: Anchors, b: Anchors| Anchors {
@@ -27,8 +46,7 @@ pub(crate) fn anchors(task: &str, options: &Options) -> Option<Anchors> {
         ceiling: a.ceiling.max(b.ceiling),
         unlabelled: Vec::new(),
     };
-    let found = of_task.map(|(_, anchors)| anchors.clone()).reduce(hull);
-    found.filter(|anchors| anchors.ceiling > anchors.floor)
+    of_task.map(|(_, anchors)| anchors.clone()).reduce(hull)
 }
 
 /// The range a user gave for a task, under the name it is scored by: its own range, or else its floor and ceiling;

@@ -194,7 +194,7 @@ pub struct SummaryRow {
 /// The value of a metric for a task, or for a pair of tasks: one of those that the lifetime's value is made of.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Part<'a> {
-    /// The task; of a pair, the one that was learnt.
+    /// The task; of a pair, the one that was learned.
     pub task: &'a str,
     /// Of a pair the task that was evaluated before and after.
     pub other: Option<&'a str>,
@@ -236,7 +236,7 @@ impl LifetimeMetrics {
         parts(&self.task_metrics, &self.contrasts, name)
     }
 
-    /// The values of a metric from a learnt task to each other, in order of the later evaluation, also of a contrast of
+    /// The values of a metric from a learned task to each other, in order of the later evaluation, also of a contrast of
     /// transfer that was not asked for.
     pub fn pairs(&self, task: &str, name: &str) -> Option<&PairValues> {
         pairs(&self.task_metrics, &self.contrasts, task, name)

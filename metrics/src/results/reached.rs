@@ -130,17 +130,17 @@ pub(crate) fn reached(
         let mut evaluations = Vec::new();
         let (mut after_learning, mut was_learning) = (Vec::new(), false);
         let mut best: Option<(usize, f64)> = None;
-        let mut is_learnt = false;
+        let mut is_learned = false;
         for regime in lifetime
             .regimes_about(task)
             .filter(|regime| lifetime.is_assessed(regime))
         {
             if regime.block_type == BlockType::Train {
-                (is_learnt, was_learning) = (true, true);
+                (is_learned, was_learning) = (true, true);
                 continue;
             }
             let cell = cell(regime, &worlds[regime.regime_num]);
-            if is_learnt && best.is_none_or(|(_, highest)| cell.mean > highest) {
+            if is_learned && best.is_none_or(|(_, highest)| cell.mean > highest) {
                 best = Some((evaluations.len(), cell.mean));
             }
             if std::mem::take(&mut was_learning) {

@@ -47,6 +47,8 @@ pub struct ComparedMetric {
     pub headline: Headline,
     /// How probably a lifetime of the first agent is better than one of the second.
     pub improvement: Improvement,
+    /// The interquartile means of the first and of the second agent.
+    pub values: [Estimate; 2],
 }
 
 /// Every metric for which some lifetime has a value, over all of them, in the order of the headlines.
@@ -125,7 +127,19 @@ pub fn compare_agents(
             continue;
         }
         let improvement = probability_of_improvement(&of_a, &of_b, options)?;
-        found.push(ComparedMetric { headline, improvement });
+        let value = |lifetimes| {
+            let table = table(lifetimes, &headline, as_it_is)?;
+            let estimates = table.map(|table| estimate(&table, [Aggregate::Iqm], options));
+            Ok::<_, MetricsError>(estimates.transpose()?.map(|[iqm]| iqm))
+        };
+        let (Some(of_a), Some(of_b)) = (value(a)?, value(b)?) else {
+            continue;
+        };
+        found.push(ComparedMetric {
+            headline,
+            improvement,
+            values: [of_a, of_b],
+        });
     }
     Ok(found)
 }

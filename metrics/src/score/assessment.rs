@@ -7,7 +7,7 @@ use indexmap::{IndexMap, IndexSet};
 use crate::lifetime::Lifetime;
 use crate::results::{Value, Values};
 use crate::statistics::{mean, median};
-use crate::{AggregationMethod, Log, Options};
+use crate::{AggregationMethod, Definitions, Log, Options};
 
 /// What a [`Metric`](crate::Metric) sees and fills.
 #[derive(Debug)]
@@ -20,7 +20,12 @@ pub struct Assessment<'a> {
     whole: Values,
     /// Values of the lifetime that a metric said to be no number; they are not made of the tasks' either.
     none: IndexSet<String>,
+    /// Whether performances that differ by rounding alone count as equal.
+    resolves_ties: bool,
 }
+
+/// Part of a performance by which sums of the same numbers in another order may differ.
+const ROUNDING: f64 = 1e-9;
 
 impl<'a> Assessment<'a> {
     pub(super) fn new(log: &'a Log, lifetime: &'a Lifetime, options: &'a Options) -> Self {
@@ -34,7 +39,23 @@ impl<'a> Assessment<'a> {
                 .collect(),
             whole: Values::default(),
             none: IndexSet::new(),
+            resolves_ties: options.definitions == Definitions::Published,
         }
+    }
+
+    /// Takes performances that differ by rounding alone for equal, whatever the definitions.
+    pub(super) fn resolving_ties(self) -> Self {
+        Self {
+            resolves_ties: true,
+            ..self
+        }
+    }
+
+    /// By how much performances among these may differ and count as equal: a billionth of the largest, or nothing where rounding
+    /// decides.
+    pub(super) fn slack(&self, values: &[f64]) -> f64 {
+        let largest = || values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+        if self.resolves_ties { ROUNDING * largest() } else { 0.0 }
     }
 
     /// The log as it was read, with every column.

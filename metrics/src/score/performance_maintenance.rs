@@ -1,4 +1,4 @@
-//! Performance maintenance: how much of what was learnt is still there at later evaluations.
+//! Performance maintenance: how much of what was learned is still there at later evaluations.
 //!
 //! Not here: what learning one task does to another, see `transfer`.
 
@@ -20,12 +20,12 @@ impl Metric for PerformanceMaintenance {
     fn headlines(&self, options: &Options) -> Vec<Headline> {
         let mrlep = Headline::new(
             "perf_maintenance_mrlep",
-            "is a learnt task kept? points gained or lost since the evaluation right after learning it",
+            "is a learned task kept? points gained or lost since the evaluation right after learning it",
             Direction::HigherThan(0.0),
         );
         let mrtlp = Headline::new(
             "perf_maintenance_mrtlp",
-            "is a learnt task kept? points gained or lost since the end of learning it",
+            "is a learned task kept? points gained or lost since the end of learning it",
             Direction::HigherThan(0.0),
         );
         let method = options.maintenance_method;
@@ -91,7 +91,7 @@ struct Difference {
     /// The most recent reference evaluation.
     reference: usize,
     /// The most recent learning regime; `None` for a drift, whose end is on a scale of its own.
-    learnt: Option<usize>,
+    learned: Option<usize>,
 }
 
 impl Difference {
@@ -101,26 +101,26 @@ impl Difference {
     }
 
     fn mrtlp(&self, term_perfs: &[f64]) -> Option<f64> {
-        Some(term_perfs[self.evaluation] - term_perfs[self.learnt?])
+        Some(term_perfs[self.evaluation] - term_perfs[self.learned?])
     }
 }
 
 /// Compares each evaluation of a task with what it was right after learning, in runs of consecutive regimes of the task.
 ///
 /// The first evaluation after each learning regime is its reference. Every later evaluation that is no reference
-/// gives one difference of terminal performances; runs of such evaluations end where the task is learnt again. Drifts
+/// gives one difference of terminal performances; runs of such evaluations end where the task is learned again. Drifts
 /// that pass the task count as learning of it.
 fn differences(lifetime: &Lifetime, task: &str) -> Vec<Vec<Difference>> {
     let mut found: Vec<Vec<Difference>> = Vec::new();
     // The most recent learning regime; whether its reference is still to come.
-    let (mut learnt, mut awaits_reference) = (None, false);
+    let (mut learned, mut awaits_reference) = (None, false);
     let mut reference: Option<usize> = None;
     let mut continues_run = false;
     for regime in lifetime.regimes_about(task) {
         let number = regime.regime_num;
         let contributes = match regime.block_type {
             BlockType::Train => {
-                (learnt, awaits_reference) = (Some((number, regime.task_name == task)), true);
+                (learned, awaits_reference) = (Some((number, regime.task_name == task)), true);
                 None
             }
             BlockType::Test if !lifetime.is_assessed(regime) => None,
@@ -128,13 +128,13 @@ fn differences(lifetime: &Lifetime, task: &str) -> Vec<Vec<Difference>> {
                 (reference, awaits_reference) = (Some(number), false);
                 None
             }
-            BlockType::Test => reference.zip(learnt),
+            BlockType::Test => reference.zip(learned),
         };
-        if let Some((reference, learnt)) = contributes {
+        if let Some((reference, learned)) = contributes {
             let difference = Difference {
                 evaluation: number,
                 reference,
-                learnt: learnt.1.then_some(learnt.0),
+                learned: learned.1.then_some(learned.0),
             };
             match found.last_mut() {
                 Some(run) if continues_run => run.push(difference),

@@ -10,7 +10,7 @@ use crate::results::{Direction, Headline};
 use crate::statistics::{mean_of_known, trend_falls};
 use crate::{Definitions, MetricsError, Options, SteAveragingMethod};
 
-/// An agent that does not reach this part of the expert's saturation has not learnt the task: its efficiency is 0.
+/// An agent that does not reach this part of the expert's saturation has not learned the task: its efficiency is 0.
 const LEAST_SATURATION: f64 = 0.2;
 
 /// `sample_efficiency` of every task, the mean of its `sample_efficiency_vals`, and what these are made of.
@@ -56,7 +56,7 @@ impl Metric for SampleEfficiency {
     }
 }
 
-/// QUIRK: where a task was learnt in experience 0 alone, the reference finds no line through its performances and leaves the metric out
+/// QUIRK: where a task was learned in experience 0 alone, the reference finds no line through its performances and leaves the metric out
 /// for all tasks of the lifetime. Not so under the published definitions.
 fn is_given_up(assessment: &Assessment<'_>) -> bool {
     let lifetime = assessment.lifetime();
@@ -87,20 +87,22 @@ fn of_task(assessment: &Assessment<'_>, task: &str) -> Efficiency {
     let (lifetime, options) = (assessment.lifetime(), assessment.options());
     let (exp_nums, learning) = lifetime.training_of(task);
     let experts = lifetime.experts_of(task);
-    let peak_of = |values: &[f64]| peak(values, options.definitions);
+    let peak_of = |values: &[f64]| peak(values, assessment);
     let saturated = peak_of(&mean_per_experience(&exp_nums, &learning));
     if experts.is_empty() || saturated.experiences == 0 {
         return Efficiency::default();
     }
     let x: Vec<f64> = exp_nums.iter().map(|exp_num| *exp_num as f64).collect();
-    let falls = trend_falls(&x, &learning);
+    let falls = trend_falls(&x, &learning, assessment.slack(&learning));
     let mut efficiency = Efficiency {
         task_saturation: Some(saturated.value),
         task_exp_to_sat: Some(saturated.experiences as f64),
         ..Efficiency::default()
     };
     for performances in expert_performances(experts, options.ste_averaging_method) {
-        efficiency.compare(saturated, peak_of(&performances), falls);
+        let expert = peak_of(&performances);
+        let least = expert.value * LEAST_SATURATION - assessment.slack(&[expert.value]);
+        efficiency.compare(saturated, expert, falls || saturated.value < least);
     }
     // QUIRK: one run that cannot be compared still leaves the task's own saturation, their average does not.
     if options.ste_averaging_method == SteAveragingMethod::Time && efficiency.sample_efficiency_vals.is_empty() {
@@ -122,19 +124,18 @@ fn expert_performances(experts: &[SteRun], averaging: SteAveragingMethod) -> Vec
 }
 
 impl Efficiency {
-    fn compare(&mut self, task: Peak, expert: Peak, falls: bool) {
+    fn compare(&mut self, task: Peak, expert: Peak, is_unlearned: bool) {
         let height = task.value / expert.value;
         if expert.experiences == 0 {
             return;
         }
         let speed = expert.experiences as f64 / task.experiences as f64;
-        let unlearnt = falls || task.value < expert.value * LEAST_SATURATION;
         self.ste_saturation_vals.push(expert.value);
         self.ste_exp_to_sat_vals.push(expert.experiences as u64);
         self.se_saturation_vals.push(height);
         self.se_exp_to_sat_vals.push(speed);
         self.sample_efficiency_vals
-            .push(if unlearnt { 0.0 } else { height * speed });
+            .push(if is_unlearned { 0.0 } else { height * speed });
     }
 }
 
@@ -143,16 +144,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn height_and_speed_multiply_unless_nothing_was_learnt() {
-        let check = |task: (f64, usize), expert: (f64, usize), falls: bool, expected: &[f64]| {
+    fn height_and_speed_multiply_unless_nothing_was_learned() {
+        let check = |task: (f64, usize), expert: (f64, usize), is_unlearned: bool, expected: &[f64]| {
             let mut efficiency = Efficiency::default();
             let peak = |(value, experiences)| Peak { value, experiences };
-            efficiency.compare(peak(task), peak(expert), falls);
+            efficiency.compare(peak(task), peak(expert), is_unlearned);
             assert_eq!(efficiency.sample_efficiency_vals, expected);
         };
         check((50.0, 20), (100.0, 10), false, &[0.25]);
         check((50.0, 20), (100.0, 10), true, &[0.0]);
-        check((19.0, 5), (100.0, 10), false, &[0.0]);
         check((20.0, 5), (100.0, 10), false, &[0.4]);
         check((50.0, 20), (100.0, 0), false, &[]);
         // Over nothing it is no number.

@@ -17,7 +17,7 @@ impl Metric for Saturation {
 
     fn judge(&self, assessment: &mut Assessment<'_>) -> Result<(), MetricsError> {
         for regime in assessment.lifetime().regimes() {
-            let peak = peak(&regime.per_experience(), assessment.options().definitions);
+            let peak = peak(&regime.per_experience(), assessment);
             assessment.set_regime(regime.regime_num, "saturation", Some(peak.value));
             assessment.set_regime(regime.regime_num, "exp_to_sat", Some(peak.experiences));
         }
@@ -40,22 +40,24 @@ pub(super) struct Peak {
 /// a step of preprocessing, and whatever smoothing was chosen there. Not so under the published definitions.
 ///
 /// Additions run in a fixed order, so the result is the same on every machine. Where several windows would tie in
-/// exact arithmetic, rounding says which is the first maximum, and the reference's rounding may say another. Under the
-/// published definitions the first that comes within a billionth is taken.
-pub(super) fn peak(per_experience: &[f64], definitions: Definitions) -> Peak {
-    match definitions {
-        Definitions::Reference => first_maximum(&smoothed(per_experience, None, SmoothingMethod::Flat)),
-        Definitions::Published => first_that_reaches(per_experience),
-    }
+/// exact arithmetic, rounding says which is the first maximum, and the reference's rounding may say another. Where
+/// ties count as equal, the first that comes within a billionth is taken.
+pub(super) fn peak(per_experience: &[f64], assessment: &Assessment<'_>) -> Peak {
+    let again;
+    let values = match assessment.options().definitions {
+        Definitions::Reference => {
+            again = smoothed(per_experience, None, SmoothingMethod::Flat);
+            &again
+        }
+        Definitions::Published => per_experience,
+    };
+    first_maximum(values, assessment.slack(values))
 }
 
-/// Part of a performance by which sums of the same numbers in another order may differ.
-pub(super) const ROUNDING: f64 = 1e-9;
-
-/// The maximum, and the first place where it is reached but for rounding.
-fn first_that_reaches(values: &[f64]) -> Peak {
-    let Peak { value, experiences } = first_maximum(values);
-    let reached = value - ROUNDING * value.abs();
+/// The maximum, and the first place where it is reached but for this slack.
+fn first_maximum(values: &[f64], slack: f64) -> Peak {
+    let Peak { value, experiences } = very_first(values);
+    let reached = value - slack;
     let first = values.iter().position(|value| *value >= reached);
     Peak {
         value,
@@ -63,7 +65,7 @@ fn first_that_reaches(values: &[f64]) -> Peak {
     }
 }
 
-fn first_maximum(values: &[f64]) -> Peak {
+fn very_first(values: &[f64]) -> Peak {
     let first = Peak {
         value: values.first().copied().unwrap_or(0.0),
         experiences: 0,
@@ -83,34 +85,15 @@ mod tests {
 
     #[test]
     fn the_first_maximum_counts() {
-        let check = |values: &[f64], value: f64, experiences: usize| {
-            assert_eq!(peak(values, Definitions::Reference), Peak { value, experiences });
+        let check = |values: &[f64], slack: f64, value: f64, experiences: usize| {
+            assert_eq!(first_maximum(values, slack), Peak { value, experiences });
         };
-        check(&[4.0], 4.0, 0);
-        check(&[1.0, 3.0, 2.0, 3.0], 3.0, 1);
-        check(&[-2.0, -1.0], -1.0, 1);
-    }
-
-    #[test]
-    fn what_rounding_keeps_apart_is_one_plateau_by_the_published_definition() {
+        check(&[], 0.0, 0.0, 0);
+        check(&[4.0], 0.0, 4.0, 0);
+        check(&[1.0, 3.0, 2.0, 3.0], 0.0, 3.0, 1);
+        check(&[-2.0, -1.0], 0.0, -1.0, 1);
         let next = f64::from_bits(0.3_f64.to_bits() + 1);
-        let plateau = [0.1, 0.3, 0.3, next];
-        let check = |definitions, experiences| {
-            let found = peak(&plateau, definitions);
-            assert_eq!((found.value, found.experiences), (next, experiences));
-        };
-        check(Definitions::Reference, 3);
-        check(Definitions::Published, 1);
-    }
-
-    #[test]
-    fn fifteen_values_are_smoothed_with_a_window_of_three_but_not_by_the_published_definition() {
-        let mut late_peak = [0.0; 15];
-        late_peak[7] = 3.0;
-        let check = |definitions, value, experiences| {
-            assert_eq!(peak(&late_peak, definitions), Peak { value, experiences });
-        };
-        check(Definitions::Reference, 1.0, 7);
-        check(Definitions::Published, 3.0, 7);
+        check(&[0.1, 0.3, 0.3, next], 0.0, next, 3);
+        check(&[0.1, 0.3, 0.3, next], 1e-9, next, 1);
     }
 }

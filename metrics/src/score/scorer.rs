@@ -8,6 +8,7 @@ use super::assessment::aggregate;
 use super::null_bands::{NullBands, null_bands};
 use super::{Assessment, Metric, all_asked, built_in, built_in_headlines};
 use crate::lifetime::{Lifetime, Regime, SteLog};
+use crate::preprocess::caution_of_scales;
 use crate::results::{
     Headline, LEARNED_SHARE, LifetimeMetrics, Reached, Reading, RegimeMetrics, Value, Values, as_logged, curves,
     disagreements, expert_fits, is_regime_column, parts, reached, unlike_experts,
@@ -96,6 +97,7 @@ impl Scorer {
                 headlines.push(headline);
             }
         }
+        let ties = decided_by_rounding(&assessment)?;
         let notes: Vec<String> = super::transfer::caution(&assessment).into_iter().collect();
         let contrasts = super::transfer::contrasts_not_asked_for(&assessment);
         let null_bands = null_bands(log, lifetime, options, &assessment.term_perfs())?;
@@ -119,6 +121,8 @@ impl Scorer {
         let mut cautions: Vec<String> = never_learned(&reached, &tasks, options).into_iter().collect();
         cautions.extend(unlike_experts(&expert_fits));
         cautions.extend(super::ste_relative_performance::caution(lifetime));
+        cautions.extend(ties);
+        cautions.extend(caution_of_scales(lifetime, options));
         let readings = readings(&headlines, &null_bands, !notes.is_empty(), |name| {
             let parts = parts(&tasks, &contrasts, name);
             parts.into_iter().map(|part| part.value).collect()
@@ -215,6 +219,36 @@ fn never_learned(
         }
     }
     Some(parts.join("; "))
+}
+
+/// What a reader must be told of numbers that another rounding of the same performances would change, each with what it is where
+/// performances within a billionth count as equal.
+fn decided_by_rounding(found: &Assessment<'_>) -> Result<Option<String>, MetricsError> {
+    let mut resolved = Assessment::new(found.log(), found.lifetime(), found.options()).resolving_ties();
+    for metric in built_in() {
+        metric.judge(&mut resolved)?;
+    }
+    let mut differing = Vec::new();
+    for task in found.lifetime().tasks() {
+        let (Some(values), Some(others)) = (found.task(task), resolved.task(task)) else {
+            continue;
+        };
+        let names: IndexSet<&str> = values.iter().chain(others.iter()).map(|(name, _)| name).collect();
+        for name in names {
+            let [value, other] = [values, others].map(|values| values.number(name));
+            let shown = |value: Option<f64>| value.map_or("none".to_owned(), |value| format!("{value:.4}"));
+            if value != other {
+                differing.push(format!("{name} of {task} {} ({})", shown(value), shown(other)));
+            }
+        }
+    }
+    Ok((!differing.is_empty()).then(|| {
+        format!(
+            "rounding alone decides between performances that differ by less than a billionth (in brackets: what comes out where \
+             these count as equal): {}",
+            differing.join(", ")
+        )
+    }))
 }
 
 /// Fields of the results that no headline and no value of a lifetime may have as its name.

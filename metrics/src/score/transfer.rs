@@ -1,6 +1,6 @@
-//! Transfer: what learning one task does to another, not yet learnt (forward) or learnt before (backward).
+//! Transfer: what learning one task does to another, not yet learned (forward) or learned before (backward).
 //!
-//! Not here: what becomes of a task whatever was learnt in between, see `performance_maintenance`.
+//! Not here: what becomes of a task whatever was learned in between, see `performance_maintenance`.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -30,24 +30,24 @@ impl Metric for Transfer {
         if method.has_contrast() {
             headlines.push(Headline::new(
                 "forward_transfer_contrast",
-                "does learning one task help others not learnt yet? change over sum, from -1 to 1 if none is negative",
+                "does learning one task help others not learned yet? change over sum, from -1 to 1 if none is negative",
                 Direction::HigherThan(0.0),
             ));
             headlines.push(Headline::new(
                 "backward_transfer_contrast",
-                "does learning one task help others learnt before? change over sum, from -1 to 1 if none is negative",
+                "does learning one task help others learned before? change over sum, from -1 to 1 if none is negative",
                 Direction::HigherThan(0.0),
             ));
         }
         if method.has_ratio() {
             headlines.push(Headline::new(
                 "forward_transfer_ratio",
-                "does learning one task help others not learnt yet? after over before, if none is negative",
+                "does learning one task help others not learned yet? after over before, if none is negative",
                 Direction::HigherThan(1.0),
             ));
             headlines.push(Headline::new(
                 "backward_transfer_ratio",
-                "does learning one task help others learnt before? after over before, if none is negative",
+                "does learning one task help others learned before? after over before, if none is negative",
                 Direction::HigherThan(1.0),
             ));
         }
@@ -157,7 +157,7 @@ fn set(assessment: &mut Assessment<'_>, name: &str, pairs: &Pairs<'_>) {
     assessment.set_lifetime(name, assessment.aggregate(first_values.collect()));
 }
 
-/// Two consecutive evaluations of a task between which another was learnt, by their regime numbers.
+/// Two consecutive evaluations of a task between which another was learned, by their regime numbers.
 struct Gap<'a> {
     trained: &'a str,
     other: &'a str,
@@ -170,7 +170,7 @@ type Gaps<'a> = BTreeMap<(usize, usize), Gap<'a>>;
 
 /// All gaps of a lifetime, forward and backward.
 ///
-/// QUIRK: each later evaluation holds one value per direction. Where several tasks were learnt since the evaluation
+/// QUIRK: each later evaluation holds one value per direction. Where several tasks were learned since the evaluation
 /// before, all of them had a part in it, but the last pair in permutation order gets it: tasks in the order in which
 /// they first appear among the assessed regimes. Under the published definitions each of them gets it.
 fn gaps<'a>(lifetime: &'a Lifetime, options: &Options) -> (Gaps<'a>, Gaps<'a>) {
@@ -182,7 +182,7 @@ fn gaps<'a>(lifetime: &'a Lifetime, options: &Options) -> (Gaps<'a>, Gaps<'a>) {
             Definitions::Published => index,
         };
         for other in places.tasks.keys().copied().filter(|other| *other != trained) {
-            let (evaluated, first_learnt) = places.evaluated_and_first_learnt(other);
+            let (evaluated, first_learned) = places.evaluated_and_first_learned(other);
             for pair in evaluated.windows(2) {
                 let gap = || Gap {
                     trained,
@@ -191,10 +191,10 @@ fn gaps<'a>(lifetime: &'a Lifetime, options: &Options) -> (Gaps<'a>, Gaps<'a>) {
                     after: pair[1],
                 };
                 let between = &learning[above(learning, pair[0])..above(learning, pair[1])];
-                if between.first().is_some_and(|place| *place < first_learnt) && !places.drift_begins(other, pair) {
+                if between.first().is_some_and(|place| *place < first_learned) && !places.drift_begins(other, pair) {
                     forward.insert((pair[1], who), gap());
                 }
-                if between.last().is_some_and(|place| *place > first_learnt) && !places.drift_begins(other, pair) {
+                if between.last().is_some_and(|place| *place > first_learned) && !places.drift_begins(other, pair) {
                     backward.insert((pair[1], who), gap());
                 }
             }
@@ -237,7 +237,7 @@ impl<'a> Places<'a> {
         Self { tasks, drifts }
     }
 
-    /// Whether a task was learnt for the first time between two evaluations, by a drift: then what changed there was
+    /// Whether a task was learned for the first time between two evaluations, by a drift: then what changed there was
     /// its own learning, and no transfer.
     fn drift_begins(&self, task: &str, evaluations: &[usize]) -> bool {
         let first = self.tasks[task].0.first();
@@ -250,8 +250,8 @@ impl<'a> Places<'a> {
             .map(|(name, (learning, _))| (*name, learning.as_slice()))
     }
 
-    /// A task never learnt counts as learnt after everything.
-    fn evaluated_and_first_learnt(&self, task: &str) -> (&[usize], usize) {
+    /// A task never learned counts as learned after everything.
+    fn evaluated_and_first_learned(&self, task: &str) -> (&[usize], usize) {
         let (learning, evaluation) = &self.tasks[task];
         (evaluation, learning.first().copied().unwrap_or(usize::MAX))
     }

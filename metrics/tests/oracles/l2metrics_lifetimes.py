@@ -4,7 +4,7 @@ Usage: L2DATA=<empty folder> python l2metrics_lifetimes.py
 Made with l2metrics 3.1.0 and l2logger 1.8.2 under the versions that the JSON names.
 
 The lifetimes hold what the published example lacks: sleep, several workers, rows without a number, incomplete rows, tasks that are
-never trained or never evaluated, several tasks learnt between two evaluations, regimes of one row.
+never trained or never evaluated, several tasks learned between two evaluations, regimes of one row.
 """
 
 import json

@@ -292,6 +292,7 @@ class Curriculum(Sequence[Block]):
         """So many lifetimes, each in worlds of its own and, in the permuted form, which is the default, in an order of its own.
 
         The orders are the rows of a balanced Latin square: each variant comes equally often in each place and after each other.
+        With an order, blocks or a drift, all have that one.
 
         Args:
             count: How many, 1 to 10,000.
@@ -302,7 +303,6 @@ class Curriculum(Sequence[Block]):
         Raises:
             TypeError: For an option that there is not.
         """
-        options = {"form": "permuted", **options}
         return cls._several("lifetimes", options, {"tasks": tasks, "lifetimes": count}, ("fixed_evaluation",))
 
     @classmethod
@@ -398,7 +398,7 @@ class Curriculum(Sequence[Block]):
             resume: Go on with the log in the folder, if there is one; else the folder must hold nothing.
             skip_undrawable: Leave out experiences whose worlds cannot be drawn: each has a row without numbers in the log, and is
                 counted in the summary. If not, the run stops there; the same call with this goes on.
-            check_frozen: Run the first 4 evaluations of each block once more at its end, unlogged, and refuse an agent that does not
+            check_frozen: Run 4 drawn evaluations of each block once more at its end, unlogged, and refuse an agent that does not
                 do the same in them: evaluations change it, or its random numbers are not drawn from the seed of the experience.
             seed: What the agent begins experiences with follows from it, too: another seed is a repeat in the same worlds. 0 is the
                 run that the curriculum has of itself.
@@ -459,7 +459,7 @@ class Curriculum(Sequence[Block]):
             resume: As for :meth:`run`. What was under way when a learning block was interrupted has been learned from and is not
                 in the log: only an agent with ``save`` and ``load`` goes on as if nothing had happened.
             skip_undrawable: As for :meth:`run`, like all that follows.
-            check_frozen: As there.
+            check_frozen: As there, of the first 4 evaluations of each block: these share the same batches again.
             seed: As there.
             paired_chance: As there.
             watch: As there.

@@ -13,7 +13,7 @@ import os
 import re
 import shutil
 import tempfile
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from os import PathLike
@@ -35,9 +35,6 @@ from driftworld.errors import CurriculumError
 if TYPE_CHECKING:
     from driftworld.curricula import Experience
 
-
-#: How many evaluations of each block are run once more; the native loop says which.
-REPEATED_EVALUATIONS = 4
 
 #: The file among an agent's saves that says which lifetime they are of.
 WHOSE = "lifetime.json"
@@ -93,7 +90,7 @@ class Agent(Protocol):
     def freeze(self, frozen: bool) -> None:
         """Called before the first block, and before each block where it changes whether the agent may learn.
 
-        A frozen agent does the same in the same world, drawn by the same seed: the first evaluations of each block are run once more
+        A frozen agent does the same in the same world, drawn by the same seed: some evaluations of each block are run once more
         at its end, and a lifetime in which it does something else is refused. Running statistics, memories and random numbers of
         evaluations are kept apart from those of learning; the latter are drawn from the seed that ``begin`` gets.
         """
@@ -160,7 +157,7 @@ class Lifetime:
         agent: Who lives it.
         log: The folder to log into; without one the log is forgotten.
         resume: Go on with the log in the folder if there is one.
-        check_frozen: Run the first evaluations of each block once more, and refuse an agent that does something else in them.
+        check_frozen: Run some evaluations of each block once more, and refuse an agent that does something else in them.
         record: Keep what is done in each experience, beside its row.
     """
 
@@ -276,24 +273,20 @@ class Trace:
 
 
 class Frozenness:
-    """Looks whether an agent does the same when the first evaluations of a block are run once more."""
+    """Looks whether an agent does the same when evaluations of a block are run once more."""
 
     def __init__(self) -> None:
         self._first: dict[int, Trace] = {}
-        self._begun = 0
+        self._repeated: Sequence[int] = ()
 
-    def begin_block(self) -> None:
-        """Forgets the block before."""
+    def begin_block(self, repeated: Sequence[int]) -> None:
+        """Forgets the block before; these experiences are run twice."""
         self._first.clear()
-        self._begun = 0
+        self._repeated = repeated
 
-    def trace(self, number: int, learning: bool) -> Trace | None:
+    def trace(self, number: int) -> Trace | None:
         """What an experience is to be written down in; ``None`` for one that is never run twice."""
-        if learning:
-            return None
-        if number not in self._first:
-            self._begun += 1
-        return Trace() if number in self._first or self._begun <= REPEATED_EVALUATIONS else None
+        return Trace() if number in self._repeated else None
 
     def expect_same(self, now: Experience, trace: Trace | None) -> None:
         """Compares an experience with its first run, if this is the second.
@@ -343,6 +336,9 @@ class Rollout:
         save: Saves the agent after so many experiences.
     """
 
+    #: Which evaluations of a block are run twice: the first, or some that seeds draw.
+    repeats_first = False
+
     def __init__(
         self,
         agent: Any,
@@ -379,9 +375,10 @@ class Rollout:
         limited = max_seconds > 0 and self._options.get("max_steps") is None
         return min(steps * seconds_per_step, max_seconds if limited else math.inf)
 
-    def begin_block(self, learning: bool) -> None:
-        """Before the first experience of a block. An agent without labels is not to see the border between two blocks of learning."""
-        self._frozenness.begin_block()
+    def begin_block(self, learning: bool, repeated: Sequence[int]) -> None:
+        """Before the first experience of a block; ``repeated`` are run twice. An agent without labels is not to see the border between
+        two blocks of learning."""
+        self._frozenness.begin_block(repeated)
         if self._frozen is not (not learning):
             self._frozen = not learning
             self._agent.freeze(self._frozen)
@@ -399,7 +396,7 @@ class Rollout:
             begin(*self._beginning(now))
         observation, info = self._env.reset(options={"world": world, "label": now.label, "origin": origin(now)})
         earned, steps, terminated, truncated = 0.0, 0, False, False
-        trace = self._frozenness.trace(now.number, now.learning)
+        trace = self._frozenness.trace(now.number)
         while not (terminated or truncated):
             if trace is not None:
                 trace.see(observation)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
@@ -89,6 +89,9 @@ class VectorRollout(Rollout):
         save: Saves the agent after so many experiences.
     """
 
+    #: So that they share the batches that they shared at first: an agent may compute the last bits by batch.
+    repeats_first = True
+
     def __init__(
         self,
         plan: _native.Plan,
@@ -140,10 +143,10 @@ class VectorRollout(Rollout):
         self._events = np.empty(self._num_envs, dtype=object)
         self._events.fill(())
 
-    def begin_block(self, learning: bool) -> None:
-        """Before the first experience of a block."""
+    def begin_block(self, learning: bool, repeated: Sequence[int]) -> None:
+        """Before the first experience of a block; ``repeated`` are run twice."""
         self._abandon()
-        super().begin_block(learning)
+        super().begin_block(learning, repeated)
 
     def experience(
         self, number: int, world: _native.Stream, time: tuple[float, int, float]
@@ -223,7 +226,7 @@ class VectorRollout(Rollout):
                 self._names[env] = {**origin(now), "world_hash": infos["world_hash"][env]}
             self._labels[env] = now.label
             self._running[env], self._earned[env], self._steps[env] = now.number, 0.0, 0
-            self._traces[now.number] = self._frozenness.trace(now.number, now.learning)
+            self._traces[now.number] = self._frozenness.trace(now.number)
             return True
         return False
 

@@ -1,4 +1,4 @@
-//! The mean of each evaluation with its 95 % interval, a panel per task with all its variants, and when the task was learnt.
+//! The mean of each evaluation with its 95 % interval, a panel per task with all its variants, and when the task was learned.
 //!
 //! Not here: the interval itself, see `interval`.
 
@@ -60,7 +60,7 @@ fn entries(scene: &Scene, clusters: &[Cluster]) -> Vec<Entry> {
         .map(|task| task_entry((*task, &scene.names[*task])))
         .take(super::scene::MOST_TASKS)
         .collect();
-    entries.push(Entry::new("while it was learnt", Sample::Tint(FAINT.light)));
+    entries.push(Entry::new("while it was learned", Sample::Tint(FAINT.light)));
     entries.extend(Entry::rest(clusters.len(), MOST_PANELS, " tasks"));
     entries
 }
@@ -93,12 +93,12 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
         };
         let mut chart = chart(&panel, &axes)?;
         for task in &cluster.tasks {
-            let learnt = scene
+            let learned = scene
                 .stretches
                 .iter()
                 .filter(|stretch| stretch.task == *task && stretch.learns());
             let color = Look::of(*task).color.mix(0.14).filled();
-            let blocks = joined(learnt, scene.gap(grid.pixel_columns(paper))).into_iter();
+            let blocks = joined(learned, scene.gap(grid.pixel_columns(paper))).into_iter();
             chart.draw_series(blocks.map(|x| Rectangle::new([(x.start, y.start), (x.end, y.end)], color)))?;
         }
         for task in &cluster.tasks {

@@ -25,29 +25,29 @@ struct Panel {
     runs: Vec<Vec<f64>>,
 }
 
-/// Whether any task that was learnt has an expert.
+/// Whether any task that was learned has an expert.
 pub(super) fn any(scene: &Scene) -> bool {
     let mut tasks = scene.lifetime.tasks().iter();
     tasks.any(|task| scene.lifetime.expert_curves(task).next().is_some())
 }
 
-/// The tasks that were learnt and have an expert.
+/// The tasks that were learned and have an expert.
 fn panels(scene: &Scene) -> Vec<Panel> {
     let tasks = scene.lifetime.tasks().iter().enumerate();
     let panel = |(task, name): (usize, &String)| {
         let runs: Vec<Vec<f64>> = scene.lifetime.expert_curves(name).take(MOST_RUNS).collect();
-        let learnt: Vec<&[f64]> = (scene.lifetime.regimes_of(name))
+        let learned: Vec<&[f64]> = (scene.lifetime.regimes_of(name))
             .filter(|regime| regime.is_wake_training())
             .map(|regime| regime.performance.as_slice())
             .collect();
-        let ends = learnt.iter().scan(0.0, |sum, block| {
+        let ends = learned.iter().scan(0.0, |sum, block| {
             *sum += block.len() as f64;
             Some(*sum)
         });
-        (!runs.is_empty() && !learnt.is_empty()).then(|| Panel {
+        (!runs.is_empty() && !learned.is_empty()).then(|| Panel {
             task,
-            borders: ends.take(learnt.len() - 1).take(MOST_BORDERS).collect(),
-            own: learnt.concat(),
+            borders: ends.take(learned.len() - 1).take(MOST_BORDERS).collect(),
+            own: learned.concat(),
             runs,
         })
     };

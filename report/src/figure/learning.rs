@@ -48,9 +48,9 @@ pub(super) fn shade<DB: DrawingBackend>(
 pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &Paper) -> Drawn<DB> {
     let below = paper.head(area, &scene.entries_and_evaluation())?;
     let columns = COLUMNS[usize::from(paper.is_narrow())];
-    let learnt = scene.drawn(true, columns);
+    let learned = scene.drawn(true, columns);
     let evaluated = scene.drawn(false, columns);
-    let values = learnt
+    let values = learned
         .iter()
         .flat_map(|stretch| stretch.regime.performance.iter().copied());
     let name = scene.performance_name();
@@ -66,13 +66,13 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
         }
     }
     let column = scene.column(columns);
-    for stretch in &learnt {
+    for stretch in &learned {
         let line = thinning::line(&stretch.points(&stretch.regime.performance), &column);
         curve(&mut chart, line, Look::of(stretch.task).color)?;
     }
     let marked = |stretch: &&&Stretch| !stretch.learns() || scene.names.len() > super::palette::TASKS.len();
     let radius = Paper::dots(if evaluated.len() > 240 { 2 } else { 3 });
-    let places: Vec<((i32, i32), Look)> = (evaluated.iter().chain(&learnt).filter(marked))
+    let places: Vec<((i32, i32), Look)> = (evaluated.iter().chain(&learned).filter(marked))
         .map(|stretch| {
             let at = chart.backend_coord(&(stretch.middle(), stretch.mean()));
             (at, Look::of(stretch.task))

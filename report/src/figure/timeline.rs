@@ -160,13 +160,13 @@ fn draw_distances<DB: DrawingBackend>(
     area.draw_text("distance between neighbours", &style, (d(8), d(8)))?;
     line(area, plan.across(base), RIM.light.stroke_width(1))?;
     let largest = distances.iter().flatten().copied().fold(0.0, f64::max);
-    let learnt: Vec<&Stretch> = scene
+    let learned: Vec<&Stretch> = scene
         .stretches
         .iter()
         .filter(|stretch| stretch.regime.is_wake_training())
         .collect();
     let (mut free_from, mut stem_from) = (i32::MIN, i32::MIN);
-    for (pair, distance) in learnt.windows(2).zip(distances) {
+    for (pair, distance) in learned.windows(2).zip(distances) {
         let at = x(f64::midpoint(pair[0].range().end, pair[1].range().start));
         if at < stem_from {
             continue;

@@ -6,7 +6,7 @@ use driftworld_metrics::{BlockSubtype, BlockType, Lifetime, LifetimeMetrics};
 use driftworld_text::when;
 use maud::{Markup, html};
 
-use super::{count, described, metric_table, number, pair_table, task_table, warnings};
+use super::{count, described, metric_table, number, pair_table, reached, task_table, warnings};
 use crate::ReportError;
 use crate::figure::{Figure, FigureOptions, Figures, Layout};
 use crate::words::shown;
@@ -27,6 +27,8 @@ pub struct ChapterOptions {
     pub shown: Vec<Figure>,
     /// Whether learning was smoothed before it was judged; default yes.
     pub smoothed: bool,
+    /// What else the log says of itself, by name: agent, scenario, policy.
+    pub facts: Vec<(String, String)>,
     /// Warnings of the log's reader, and the like.
     pub warnings: Vec<String>,
     /// A sentence under the timeline: where its distances come from, or why there are none.
@@ -39,6 +41,7 @@ impl Default for ChapterOptions {
             figures: FigureOptions::default(),
             shown: Figure::ALL.to_vec(),
             smoothed: true,
+            facts: Vec::new(),
             warnings: Vec::new(),
             distance_note: String::new(),
         }
@@ -99,8 +102,10 @@ impl Chapter {
             (false, false) => "in the log's unit",
         };
         let body = html! {
-            (facts(lifetime, metrics))
+            (facts(lifetime, metrics, &options.facts))
             (warnings(&options.warnings))
+            (reached::section(metrics, &options.figures.names))
+            (pair_table::tables(metrics, &options.figures.names))
             h3 { "Metrics" }
             (table)
             (figure(Figure::Timeline, "Curriculum", &blocks)?)
@@ -110,17 +115,16 @@ impl Chapter {
             ))?)
             (figure(Figure::Evaluation, "Evaluations", &format!(
                 "Mean of each evaluation with its 95 % interval by Student's t over the evaluation's experiences; no \
-                 bar where all were equal or there was one only. The tint says when the task was learnt.{asleep}"))?)
+                 bar where all were equal or there was one only. The tint says when the task was learned.{asleep}"))?)
             (figure(Figure::Experts, "Against the single-task expert",
                 "The learning blocks of each task end to end, with vertical lines between them, against agents that \
-                 learnt only this task. Where a curve is above the expert's, this agent performs better after the \
+                 learned only this task. Where a curve is above the expert's, this agent performs better after the \
                  same amount of learning.")?)
             (figure(Figure::Raw, "Raw values",
                 &format!("As logged: points where there is room, the area they fill where there is none. Lines: \
                      learning {lines_are}."))?)
             h3 { "Tasks" }
             (task_table::table(lifetime, metrics, &options.figures.names))
-            (pair_table::tables(metrics, &options.figures.names))
         };
         Ok(Self {
             name: shown(lifetime.run_id()),
@@ -159,7 +163,7 @@ fn asleep_blocks(lifetime: &Lifetime) -> String {
 /// Why a figure is not there.
 fn absent(figure: Figure) -> &'static str {
     match figure {
-        Figure::Experts => "No single-task expert was given for any task learnt, so there is nothing to compare with.",
+        Figure::Experts => "No single-task expert was given for any task learned, so there is nothing to compare with.",
         Figure::Evaluation => "The log has no evaluations.",
         _ => "The log has no learning.",
     }
@@ -179,17 +183,17 @@ fn alternative(lifetime: &Lifetime, figure: Figure) -> String {
 }
 
 /// How much was lived, and by what it is judged.
-fn facts(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Markup {
-    let learnt = || {
+fn facts(lifetime: &Lifetime, metrics: &LifetimeMetrics, said: &[(String, String)]) -> Markup {
+    let learned = || {
         let regimes = lifetime.regimes().iter();
         regimes.filter(|regime| regime.block_type == BlockType::Train)
     };
-    let asleep = learnt().filter(|regime| !regime.is_wake_training()).count();
+    let asleep = learned().filter(|regime| !regime.is_wake_training()).count();
     let blocks = match asleep {
-        0 => count(learnt().count()),
-        _ => format!("{} ({} asleep)", count(learnt().count()), count(asleep)),
+        0 => count(learned().count()),
+        _ => format!("{} ({} asleep)", count(learned().count()), count(asleep)),
     };
-    let mut facts = Vec::new();
+    let mut facts: Vec<(String, String)> = said.iter().map(|(name, value)| (shown(name), shown(value))).collect();
     // How good the agent is comes first: the metrics, scaled by the lifetime's own range, do not say it.
     for (column, means) in &metrics.as_logged {
         for (mean, when) in [(means.learning, "learning"), (means.evaluation, "evaluations")] {

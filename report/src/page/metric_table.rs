@@ -17,7 +17,10 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
     let has_anchors = reached.any(|task| task.scaled_by == ScaledBy::Anchors);
     let mut rows = Vec::new();
     let mut absent = Vec::new();
-    for row in metrics.summary() {
+    let summary = metrics.summary();
+    let valued = summary.iter().filter(|row| row.value.is_some());
+    let known: Vec<&str> = valued.map(|row| &*row.name).collect();
+    for row in &summary {
         let name: &str = &row.name;
         let Some(value) = row.value else {
             absent.push(verdict::title(name));
@@ -35,6 +38,9 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
                 td.number { span.value { (number(value)) @if let Some(error) = standard_error(row.null_band) { span.from { "±\u{a0}" (error) } } } }
                 td {
                     @if let Some(reading) = row.reading { (verdict::pill(Verdict::of(reading, name))) }
+                    @if let Some(contrast) = contrast_of(name).filter(|contrast| known.contains(contrast)) {
+                        span.from { "read the " (verdict::title(contrast)) ": a mean of ratios is above 1 even if nothing is transferred" }
+                    }
                     span.from { (verdict::good_from(name, row.good)) }
                     span.from { (null_band(row.null_band)) }
                 }
@@ -76,10 +82,19 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
             }
         }
         p.note {
-            "Coloured marks: each task, for transfer each pair in the colour of the task learnt. Vertical line: the lifetime's value. Dashes: no effect."
+            "Coloured marks: each task, for transfer each pair in the colour of the task learned. Vertical line: the lifetime's value. Dashes: no effect."
             @if !absent.is_empty() { " Not computed: " (absent.join("; ")) "." }
         }
     })
+}
+
+/// The contrast that answers the same question as a ratio, better.
+fn contrast_of(name: &str) -> Option<&'static str> {
+    match name {
+        "forward_transfer_ratio" => Some("forward_transfer_contrast"),
+        "backward_transfer_ratio" => Some("backward_transfer_contrast"),
+        _ => None,
+    }
 }
 
 /// The explanation as a sentence.
@@ -117,7 +132,7 @@ fn reading_rule() -> String {
     )
 }
 
-/// The values of a metric for each task, by the task's place; of pairs, the first value of each, by the learnt task's place.
+/// The values of a metric for each task, by the task's place; of pairs, the first value of each, by the learned task's place.
 fn per_task(lifetime: &Lifetime, metrics: &LifetimeMetrics, name: &str) -> Vec<(usize, f64)> {
     let places: BTreeMap<&str, usize> = lifetime.tasks().iter().map(String::as_str).zip(0..).collect();
     let parts = metrics.parts(name).into_iter();

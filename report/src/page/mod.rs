@@ -6,6 +6,7 @@ mod chapter;
 mod metric_table;
 mod overall;
 mod pair_table;
+mod reached;
 mod task_table;
 mod verdict;
 
@@ -22,6 +23,10 @@ use crate::words::shown;
 
 /// Most lifetimes on one page.
 pub const MAX_LIFETIMES: usize = 40;
+
+/// A page that someone tampered with loads nothing, either.
+const POLICY: &str =
+    "default-src 'none'; style-src 'unsafe-inline'; img-src data:; form-action 'none'; base-uri 'none'";
 
 const STYLE: &str = include_str!("style.css");
 
@@ -40,6 +45,8 @@ pub struct Report {
     pub comparisons: Vec<Comparison>,
     /// Warnings about all of it; those of one lifetime stand in its chapter.
     pub warnings: Vec<String>,
+    /// The command that made the page; default none.
+    pub command: Option<String>,
     /// The options used, as a JSON object, such as `serde_json::to_value(&options)` gives.
     pub options: Value,
     /// When the report was made, in words; default left out, so that the same lifetimes give the same bytes.
@@ -73,6 +80,7 @@ impl Report {
                 head {
                     meta charset="utf-8";
                     meta name="viewport" content="width=device-width, initial-scale=1";
+                    meta http-equiv="Content-Security-Policy" content=(POLICY);
                     meta name="color-scheme" content="light dark";
                     meta name="generator" content=(concat!("driftworld ", env!("CARGO_PKG_VERSION")));
                     // A browser asks for a picture of the page unless it is told that there is none.
@@ -91,7 +99,7 @@ impl Report {
                         (warnings(&self.warnings))
                         (overall::section(&self.overall, &self.comparisons, &self.intervals))
                         @for (index, chapter) in self.chapters.iter().enumerate() { (self.life(index + 1, chapter)) }
-                        (options_table(&self.options))
+                        (options_table(&self.options, self.command.as_deref()))
                     }
                     footer {
                         "Made by driftworld " (env!("CARGO_PKG_VERSION")) ". Definitions: New et al. 2022, "
@@ -160,7 +168,7 @@ fn described(svg: &str, class: Option<&str>, alt: &str) -> Markup {
 }
 
 /// The options, and what is worth knowing of the calculation.
-fn options_table(options: &Value) -> Markup {
+fn options_table(options: &Value, command: Option<&str>) -> Markup {
     let rows = options.as_object().into_iter().flatten();
     let does = |name: &str| options.get(name).is_none_or(|method| method != "none");
     let prepared = match (does("smoothing_method"), does("normalization_method")) {
@@ -173,7 +181,7 @@ fn options_table(options: &Value) -> Markup {
         section.part id="how" aria-labelledby="how-name" {
             h2 id="how-name" { "How it was computed" }
             p {
-                "Complete rows with a number in the scored column form " i { "regimes" } ", one task learnt or \
+                "Complete rows with a number in the scored column form " i { "regimes" } ", one task learned or \
                  evaluated without a break. "
                 (prepared) " metric is computed per task and then aggregated over tasks. "
                 "A value that cannot be computed is left out, never guessed."
@@ -185,6 +193,7 @@ fn options_table(options: &Value) -> Markup {
                         @for (name, value) in rows {
                             tr { th scope="row" { (calm(&name.replace('_', " "))) } td { (calm(&plain(value))) } }
                         }
+                        @if let Some(command) = command { tr { th scope="row" { "command" } td { code { (calm(command)) } } } }
                         tr { th scope="row" { "version" } td { "driftworld " (env!("CARGO_PKG_VERSION")) } }
                     }
                 }

@@ -123,7 +123,7 @@ fn improvement(comparison: &Comparison, percent: &str, confidence: f64) -> Marku
     html! {
         h3 { (title) }
         p.note {
-            "Probability of improvement: how likely a lifetime of " bdi { (shown(&comparison.agent)) } " has the better value; 0.5 means that "
+            "Below each agent: the interquartile mean of its lifetimes. Probability of improvement: how likely a lifetime of " bdi { (shown(&comparison.agent)) } " has the better value; 0.5 means that "
             "neither is better. In brackets: its " (percent) " bootstrap interval, and Student’s t interval for few lifetimes. p: how often two "
             "equal agents would differ at least as much, by permuting lifetimes between them. Agents differ where p is at most "
             (short(1.0 - confidence, 2)) "."
@@ -133,6 +133,8 @@ fn improvement(comparison: &Comparison, percent: &str, confidence: f64) -> Marku
                 thead {
                     tr {
                         th scope="col" { "Metric" }
+                        th.number scope="col" { bdi { (shown(&comparison.agent)) } }
+                        th.number scope="col" { bdi { (shown(&comparison.other)) } }
                         th.number scope="col" { "Probability" br; "of improvement" }
                         th.number scope="col" { "p" }
                         th scope="col" { "Reading" }
@@ -142,6 +144,9 @@ fn improvement(comparison: &Comparison, percent: &str, confidence: f64) -> Marku
                     @for row in &comparison.metrics {
                         tr {
                             th scope="row" { (verdict::title(&row.headline.name)) }
+                            @for (agent, value) in [&comparison.agent, &comparison.other].into_iter().zip(row.values) {
+                                td.number data-name=(shown(agent)) { (estimate(value)) }
+                            }
                             td.number data-name="Probability of improvement" { (estimate(row.improvement.probability)) }
                             td.number data-name="p" { (row.improvement.p_value.map_or(String::new(), number)) }
                             td { @if let Some(judged) = better(&row.improvement, 1.0 - confidence) { (pill(judged)) } }

@@ -1,4 +1,4 @@
-//! The tables of transfer: from each task that was learnt to each other one, coloured like a map of heat.
+//! The tables of transfer: from each task that was learned to each other one, coloured like a map of heat.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ const MOST_TASKS: usize = 24;
 
 /// A table for each metric of pairs that has any. `called` are the tasks' names by those that the log has.
 pub(super) fn tables(metrics: &LifetimeMetrics, called: &BTreeMap<String, String>) -> Markup {
-    let named = |task: &String| shown(called.get(task).unwrap_or(task));
+    let whole = |task: &String| called.get(task).unwrap_or(task).clone();
     let summary = metrics.summary();
     let tasks = &metrics.task_metrics;
     let names: Vec<&String> = tasks.keys().take(MOST_TASKS).collect();
@@ -24,21 +24,29 @@ pub(super) fn tables(metrics: &LifetimeMetrics, called: &BTreeMap<String, String
             .any(|task| metrics.pairs(task, name).is_some_and(|pairs| !pairs.is_empty()))
     };
     let found: Vec<&SummaryRow> = summary.iter().filter(|row| has(&row.name)).collect();
+    // A task that all variants have in common is said once.
+    let task_of = |name: &&String| whole(name).split_once('#').map(|(task, _)| task.to_owned());
+    let common = names.first().and_then(task_of);
+    let common = common.filter(|task| names.iter().all(|name| task_of(name).as_ref() == Some(task)));
+    let named = |name: &String| match (&common, whole(name).split_once('#')) {
+        (Some(_), Some((_, variant))) => shown(variant),
+        _ => shown(&whole(name)),
+    };
     let first = |from: &str, to: &str, name: &str| metrics.pairs(from, name)?.get(to)?.first().copied();
     html! {
         @if !found.is_empty() {
             h3 { "Transfer between tasks" }
             p.note {
-                "Row: the task that was learnt. Column: the task that was evaluated before and after. The first time each pair occurs; ▲ better, ▼ worse after the row's task was learnt, ● no clear difference, or the lifetime shows no clear effect."
+                "Row: the task that was learned. Column: the task that was evaluated before and after. The first time each pair occurs; ▲ better, ▼ worse after the row's task was learned, ● no clear difference, or the lifetime shows no clear effect."
             }
         }
         @for row in &found {
             div.scroll role="region" aria-label=(verdict::title(&row.name)) tabindex="0" {
                 table.pairs {
-                    caption { (verdict::title(&row.name)) }
+                    caption { (verdict::title(&row.name)) @if let Some(task) = &common { " · variants of " (shown(task)) } }
                     thead {
                         tr {
-                            th scope="col" { "learnt ↓ evaluated →" }
+                            th scope="col" { "learned ↓ evaluated →" }
                             @for name in &names { th scope="col" { (named(name)) } }
                         }
                     }

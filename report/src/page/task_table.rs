@@ -1,8 +1,8 @@
-//! The table of tasks: how much of each was lived, what it reached, and the metrics of each that are one number.
+//! The table of tasks: how much of each was lived, and the metrics of each that are one number.
 
 use std::collections::BTreeMap;
 
-use driftworld_metrics::{BlockType, EvaluationCell, Lifetime, LifetimeMetrics, Reached};
+use driftworld_metrics::{BlockType, Lifetime, LifetimeMetrics};
 use maud::{Markup, html};
 
 use super::{count, number, verdict};
@@ -23,7 +23,6 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics, called: &BTr
             .filter(|regime| regime.block_type == block_type);
         regimes.fold((0, 0), |(blocks, rows), regime| (blocks + 1, rows + regime.len()))
     };
-    let has_reached = metrics.reached.values().any(|task| !task.evaluations.is_empty());
     html! {
         div.scroll role="region" aria-label="Tasks" tabindex="0" {
             table {
@@ -33,10 +32,6 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics, called: &BTr
                         th.number scope="col" { "Learning" br; "blocks" }
                         th.number scope="col" { "Learning" br; "experiences" }
                         th.number scope="col" { "Evaluation" br; "experiences" }
-                        @if has_reached {
-                            th.number scope="col" { "Best after" br; "learning" }
-                            th.number scope="col" { "Last" br; "evaluation" }
-                        }
                         @for name in &columns { th.number scope="col" { (heading(name)) } }
                     }
                 }
@@ -47,10 +42,6 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics, called: &BTr
                             td.number { (count(rows(task, BlockType::Train).0)) }
                             td.number { (count(rows(task, BlockType::Train).1)) }
                             td.number { (count(rows(task, BlockType::Test).1)) }
-                            @if has_reached {
-                                td.number { (level(metrics, task, Reached::best)) }
-                                td.number { (level(metrics, task, Reached::last)) }
-                            }
                             @for name in &columns {
                                 td.number { (value(task, name).map_or("–".to_owned(), number)) }
                             }
@@ -59,26 +50,10 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics, called: &BTr
                 }
             }
         }
-        @if has_reached {
-            p.note {
-                "Best and last evaluation: "
-                @if metrics.reached.values().any(Reached::is_scaled) { "in % of the way from floor to ceiling where these are known, else " }
-                "in the log's unit."
-            }
-        }
         @if lifetime.tasks().len() > MOST_ROWS {
             p.note { "and " (count(lifetime.tasks().len() - MOST_ROWS)) " tasks more: see the file of metrics." }
         }
     }
-}
-
-/// The mean of one of a task's evaluations, as the part of the way from floor to ceiling where these are known.
-fn level(metrics: &LifetimeMetrics, task: &str, of: fn(&Reached) -> Option<&EvaluationCell>) -> String {
-    let Some(found) = metrics.reached.get(task).and_then(of) else {
-        return "–".to_owned();
-    };
-    let score = found.score.map(|score| format!("{:.0}", 100.0 * score));
-    score.map_or_else(|| number(found.mean), |percent| percent.replace('-', "−") + "\u{a0}%")
 }
 
 /// What a task is called, with the log's own name below it where that is another.

@@ -14,7 +14,7 @@ use driftworld_report::{Chapter, ChapterOptions, Comparison, Report, neighbours}
 pub(crate) struct Life<'a> {
     pub(crate) name: &'a str,
     pub(crate) tasks: Vec<String>,
-    /// How often each task is learnt.
+    /// How often each task is learned.
     pub(crate) rounds: u64,
     /// Experiences of a learning block; an evaluation has a tenth of them.
     pub(crate) length: u64,
@@ -84,11 +84,11 @@ impl Life<'_> {
         let mut writer = LogWriter::create(dir, &info, &ScenarioInfo::default()).expect("the folder is new");
         let (mut block, mut experience) = (0, 0);
         for turn in 0..rounds * tasks.len() as u64 {
-            let learnt = (turn % tasks.len() as u64) as usize;
+            let learned = (turn % tasks.len() as u64) as usize;
             let mut rows: Vec<(BlockType, usize, u64)> = Vec::new();
             let evaluated = if self.evaluated { tasks.len() } else { 0 };
             rows.extend((0..evaluated).map(|task| (BlockType::Test, task, (self.length / 10).max(2))));
-            rows.push((BlockType::Train, learnt, self.length));
+            rows.push((BlockType::Train, learned, self.length));
             for (kind, task, count) in rows {
                 for row in 0..count {
                     let seen = turn as f64

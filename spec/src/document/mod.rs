@@ -1,18 +1,14 @@
 //! A JSON text with a memory of where each value stands. What is wrong with a value is said by `schema/` and the
-//! types; how the value is built within limits by `value.rs`, where things stand in the text by `places.rs`.
-
-mod places;
-mod value;
+//! types; how the value is built within limits and where things stand in the text by `driftworld_text::json`.
 
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use crate::describe::{describe, pointer_of};
 use crate::error::{Listed, MAX_PROBLEMS, Problem, SpecError};
-use crate::limits::{MAX_BYTES, MAX_DEPTH, MAX_KEY_BYTES};
+use crate::limits::{MAX_BYTES, MAX_KEY_BYTES};
 use crate::version::Format;
-use places::Wanted;
-use value::{Repeats, Stop};
+use driftworld_text::json::{self, Repeats, Stop, Wanted, lines_and_columns};
 
 /// A parsed JSON text.
 pub(crate) struct Document<'a> {
@@ -26,8 +22,7 @@ impl<'a> Document<'a> {
     pub(crate) fn parse(name: &'a str, text: &'a str, most: usize) -> Result<Self, SpecError> {
         let (document, repeated) = Self::parse_with_repeats(name, text, most)?;
         let twice = |pointer: String| {
-            let key = pointer.rsplit('/').next().unwrap_or_default();
-            let found = format!("the key {:?} twice", key.replace("~1", "/").replace("~0", "~"));
+            let found = format!("the key {:?} twice", json::last_key(&pointer));
             Problem::new(
                 "spec/duplicate-key",
                 pointer,
@@ -68,11 +63,11 @@ impl<'a> Document<'a> {
             Some(Stop::Repeated) | None => syntax_error(name, text, &error),
         };
         // One pass builds the value and finds out whether a key stands twice; only then are the places looked for.
-        let (value, repeated) = match value::parse(text, most, Repeats::Stop) {
+        let (value, repeated) = match json::parse(text, most, Repeats::Stop) {
             Ok(value) => (value, Vec::new()),
             Err((_, Some(Stop::Repeated))) => {
-                let value = value::parse(text, most, Repeats::LastCounts).map_err(refused)?;
-                (value, places::repeated(text, MAX_PROBLEMS + 1))
+                let value = json::parse(text, most, Repeats::LastCounts).map_err(refused)?;
+                (value, json::repeated(text, MAX_PROBLEMS + 1))
             }
             Err(found) => return Err(refused(found)),
         };
@@ -134,7 +129,7 @@ impl<'a> Document<'a> {
     }
 
     fn found(&self, wanted: &[Wanted]) -> Vec<(usize, usize)> {
-        lines_and_columns(self.text, &places::offsets(self.text, wanted))
+        lines_and_columns(self.text, &json::offsets(self.text, wanted))
     }
 }
 
@@ -165,7 +160,7 @@ const MOST_WHOLE: f64 = 9_007_199_254_740_992.0;
 pub(crate) fn places_in(text: &str, pointers: &[&str]) -> Vec<(usize, usize)> {
     let text = without_mark(text);
     let wanted = pointers.iter().map(|pointer| Wanted { pointer, at_key: false });
-    lines_and_columns(text, &places::offsets(text, &wanted.collect::<Vec<_>>()))
+    lines_and_columns(text, &json::offsets(text, &wanted.collect::<Vec<_>>()))
 }
 
 /// A text without the byte order mark that some editors put in front: it is no part of the document.
@@ -174,51 +169,12 @@ fn without_mark(text: &str) -> &str {
 }
 
 fn syntax_error(name: &str, text: &str, error: &serde_json::Error) -> SpecError {
-    let message = error.to_string();
-    let mut reason = message.split(" at line ").next().unwrap_or_default().to_owned();
-    let line_text = text.lines().nth(error.line().saturating_sub(1)).unwrap_or_default();
-    let start = line_text.floor_char_boundary(error.column().saturating_sub(1));
-    let rest = line_text[start..].trim_start();
-    if rest.starts_with("NaN") || rest.starts_with("Infinity") || rest.starts_with("-Infinity") {
-        "JSON has no NaN or Infinity; numbers are finite".clone_into(&mut reason);
-    } else if reason == "trailing comma" {
-        reason.push_str("; remove the comma before the closing bracket");
-    } else if rest.starts_with("//") || rest.starts_with("/*") || rest.starts_with('#') {
-        reason.push_str("; JSON has no comments, write a \"description\" instead");
-    } else if reason == "recursion limit exceeded" {
-        reason = format!("lists and objects stand in each other more than {MAX_DEPTH} deep; is a bracket missing?");
-    } else if text.trim().is_empty() {
-        "the document is empty".clone_into(&mut reason);
-    } else if reason.starts_with("EOF") {
-        reason.push_str("; the document ends too early, is it cut off?");
-    }
     SpecError::Syntax {
         name: name.to_owned(),
         line: error.line().max(1),
         column: error.column().max(1),
-        reason,
+        reason: json::reason(text, error),
     }
-}
-
-/// Lines and columns of offsets, in one walk through the text however many they are.
-fn lines_and_columns(text: &str, offsets: &[usize]) -> Vec<(usize, usize)> {
-    let mut order: Vec<usize> = (0..offsets.len()).collect();
-    order.sort_by_key(|index| offsets[*index]);
-    let mut places = vec![(1, 1); offsets.len()];
-    let (mut at, mut line, mut column) = (0, 1, 1);
-    for index in order {
-        let offset = text.floor_char_boundary(offsets[index]);
-        for letter in text[at..offset].chars() {
-            (line, column) = if letter == '\n' {
-                (line + 1, 1)
-            } else {
-                (line, column + 1)
-            };
-        }
-        at = offset;
-        places[index] = (line, column);
-    }
-    places
 }
 
 #[cfg(test)]
@@ -273,15 +229,6 @@ mod tests {
         check(
             "{\"a\": {\"b\": 1,\n \"b\": 2}}",
             "d.json:2:7 (/a/b): found the key \"b\" twice, expected each key once; remove one of the two",
-        );
-    }
-
-    #[test]
-    fn columns_count_characters() {
-        assert_eq!(lines_and_columns("\"ä\": x", &["\"ä\": ".len()]), [(1, 6)]);
-        assert_eq!(
-            lines_and_columns("a\nbc\n\nd", &[7, 0, 3, 3, 99, 1]),
-            [(4, 2), (1, 1), (2, 2), (2, 2), (4, 2), (1, 2)]
         );
     }
 }

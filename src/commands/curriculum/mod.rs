@@ -80,7 +80,7 @@ pub(crate) struct Curriculum {
     /// Number of steps, one fewer than variants [default: 4].
     #[arg(long, value_name = "N")]
     steps: Option<u32>,
-    /// Arrangement of the learning blocks [default: one variant after the other].
+    /// Arrangement of the learning blocks [default: one variant after the other; of several lifetimes: permuted].
     ///
     /// If there are more blocks than variants, the sequence starts over.
     #[arg(long, value_parser = documented::<ScenarioForm>(&FORMS))]
@@ -88,10 +88,10 @@ pub(crate) struct Curriculum {
     /// Number of learning blocks [default: set by the form].
     #[arg(long, value_name = "N")]
     blocks: Option<u32>,
-    /// Write this many lifetimes into the folder --output, each with worlds of its own.
+    /// Write this many lifetimes into the folder --output, each with worlds and an order of its own.
     ///
-    /// With --form permuted, their orders are the rows of a balanced Latin square: each variant is equally often in
-    /// each place and after each other variant.
+    /// Their orders are the rows of a balanced Latin square (--form permuted): each variant is equally often in each
+    /// place and after each other variant. With an order, blocks or a drift, all have that one.
     #[arg(long, value_name = "N")]
     lifetimes: Option<u64>,
     /// Evaluate all lifetimes on the same worlds.
@@ -116,7 +116,7 @@ pub(crate) struct Curriculum {
     name: String,
     /// Experiences per learning block.
     ///
-    /// By default, as many as a PPO learner took to reach 80 % of the expert's reward in `find_objects`.
+    /// By default, as many as a PPO learner took to reach 80 % of the planner's reward in `find_objects`.
     #[arg(long, default_value_t = LEARN, value_name = "N")]
     learn: u32,
     /// Experiences of the first variant before deployment.

@@ -191,9 +191,9 @@ pub(super) fn optima(found: &[PairOptimum]) -> String {
             points(pair.optimum.regret_in_base),
         ]
     });
-    let headings = ["pair", "best changes", "expert of the first loses", "of the second"];
+    let headings = ["pair", "best changes", "planner of the first loses", "of the second"];
     format!(
-        "{}\nWhat an expert of one variant earns less in worlds of the other than that one's own, in points; where nothing \
+        "{}\nWhat a planner of one variant earns less in worlds of the other than that one's own, in points; where nothing \
          changes, nothing has to be forgotten.\n",
         table(headings, rows.collect(), &[2, 3])
     )

@@ -1,4 +1,4 @@
-//! What was learnt, transferred and forgotten in a lifetime, read off the evaluations around its learning blocks.
+//! What was learned, transferred and forgotten in a lifetime, read off the evaluations around its learning blocks.
 
 use crate::curriculum::Summary;
 use crate::spec::BlockKind;
@@ -35,25 +35,25 @@ struct Account {
     at_first: i64,
     /// Gained before its own block: by learning others.
     transferred: i64,
-    learnt: i64,
+    learned: i64,
     /// Gained after its own block, while others were learned: below 0 where it was forgotten.
     afterwards: i64,
 }
 
 impl Account {
     fn at_the_end(&self) -> i64 {
-        self.at_first + self.transferred + self.learnt + self.afterwards
+        self.at_first + self.transferred + self.learned + self.afterwards
     }
 }
 
-/// One row for each variant: what it paid at first, what was transferred to it, learnt and forgotten, and what it paid at
+/// One row for each variant: what it paid at first, what was transferred to it, learned and forgotten, and what it paid at
 /// the end; below in words where transfer and forgetting were largest.
 pub(super) fn effects_table(summary: &Summary) -> String {
     let headings = [
         "variant",
         "at first",
         "transferred",
-        "learnt",
+        "learned",
         "forgotten",
         "at the end",
     ];
@@ -62,7 +62,7 @@ pub(super) fn effects_table(summary: &Summary) -> String {
             account.variant.clone(),
             account.at_first.to_string(),
             change(account.transferred),
-            change(account.learnt),
+            change(account.learned),
             change(account.afterwards),
             account.at_the_end().to_string(),
         ]
@@ -70,7 +70,7 @@ pub(super) fn effects_table(summary: &Summary) -> String {
     let rows = accounts(summary).iter().map(row).collect();
     let table = wide_table(headings.map(str::to_owned).to_vec(), rows, &[1, 2, 3, 4, 5]);
     let meaning = "transferred: gained before its own block, by learning others\n\
-                   learnt: gained in its own block\n\
+                   learned: gained in its own block\n\
                    forgotten: lost after it (-), or still gained (+)\n\
                    Each row adds up to its end.\n"
         .to_owned();
@@ -123,7 +123,7 @@ fn accounts(summary: &Summary) -> Vec<Account> {
             variant,
             at_first: first,
             transferred: before - first,
-            learnt: after - before,
+            learned: after - before,
             afterwards: last - after,
         });
     }
@@ -234,11 +234,11 @@ mod tests {
             &[("a", 3.0), ("b", 20.0), ("c", 8.0)],
         ]));
         let expected = "\
-variant  at first  transferred  learnt  forgotten  at the end
+variant  at first  transferred  learned  forgotten  at the end
 a               0            0     +10         -7           3
 b               1           +3     +16          0          20
 transferred: gained before its own block, by learning others
-learnt: gained in its own block
+learned: gained in its own block
 forgotten: lost after it (-), or still gained (+)
 Each row adds up to its end.
 

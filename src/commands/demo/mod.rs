@@ -36,7 +36,7 @@ use crate::views::Views;
 const TASK: &str = "find_objects";
 
 /// Its variants that the demo shows.
-const VARIANTS: [&str; 6] = ["blue", "red", "green", "dusk", "huddle", "penalty"];
+const VARIANTS: [&str; 3] = ["blue", "huddle", "penalty"];
 
 /// Run the whole pipeline once, from worlds to scores.
 ///
@@ -94,7 +94,7 @@ impl Demo {
 
         heading(
             "4",
-            "A lifetime: a small learner runs it (--agent sarsa), beside an agent at random and an expert that knows the map",
+            "A lifetime: a small learner runs it (--agent sarsa), beside an agent at random and a planner that knows the map",
         )?;
         let logs = folder.join("log");
         let outcome = run_lifetime(&scenario, &AgentArg::Sarsa, &logs)?;
@@ -127,7 +127,7 @@ impl Demo {
         output::line(lifetimes.collect::<String>())?;
         heading(
             "6",
-            "In short: what was learnt, transferred and forgotten, in mean reward",
+            "In short: what was learned, transferred and forgotten, in mean reward",
         )?;
         output::line(effects_table(&outcome))?;
         output::line(
@@ -202,9 +202,14 @@ fn heading(number: &str, text: &str) -> Result<(), Failure> {
 /// Runs a scenario into a folder, in place of what an earlier demo left there.
 fn run_lifetime(scenario: &Scenario, agent: &AgentArg, logs: &Path) -> Result<Summary, Failure> {
     remove_old_log(logs)?;
+    let mut plan = scenarios::plan(scenario, &mut |_| Err("the demo has no world files".to_owned()))?;
+    let agent = agent.agent()?;
+    for (what, fingerprint) in agent.fingerprints() {
+        plan.add_fingerprint(what, fingerprint);
+    }
     let run = LifetimeRun {
-        plan: &scenarios::plan(scenario, &mut |_| Err("the demo has no world files".to_owned()))?,
-        agent: agent.agent()?,
+        plan: &plan,
+        agent,
         logs,
         start: Start::New,
         jobs: processors(),
@@ -281,7 +286,7 @@ fn contents() -> String {
         ("distances.png", "the same as a heat map"),
         ("scenario.json", "the curriculum: driftworld run FILE runs it"),
         ("log/", "every experience, in l2logger's format"),
-        ("beside/", "the same of the agent at random and the expert"),
+        ("beside/", "the same of the agent at random and the planner"),
         ("report.html", "the lifetime on one page, for a browser"),
         ("scores/", "the metrics: driftworld metrics on the log prints them"),
     ];

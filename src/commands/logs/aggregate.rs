@@ -76,9 +76,11 @@ impl Aggregate {
         } else {
             KeptRows::Complete
         });
-        for (log, name) in logs.iter().zip(log_folders::names(&logs)) {
-            // Warnings are the business of `logs validate`: nothing of a row is lost for them.
-            let mut log = read_log_with_texts(log)?;
+        for (folder, name) in logs.iter().zip(log_folders::names(&logs)) {
+            let mut log = read_log_with_texts(folder)?;
+            for warning in &log.warnings {
+                output::warning(log_folders::placed(folder, &warning.to_string()));
+            }
             log.run_id = name;
             table.add(log)?;
         }

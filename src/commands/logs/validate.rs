@@ -1,6 +1,6 @@
 //! `driftworld logs validate`: every problem of a log with its place. The rules are the library's.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::metrics::{Validation, begun_log, validate_log};
 use clap::Args;
@@ -42,6 +42,7 @@ struct Verdict {
 
 impl Validate {
     pub(crate) fn run(self) -> Result<(), Failure> {
+        output::answers_by_code();
         let logs = log_folders::found(&self.logs, self.recursive)?;
         let (mut wrong, total) = (0, logs.len());
         let mut listed = Vec::new();
@@ -81,13 +82,16 @@ impl Verdict {
     fn print(&self) -> Result<(), Failure> {
         let (found, log) = (&self.found, self.log.shown());
         for problem in &found.problems {
-            output::note(placed(&self.log, &problem.to_string()));
+            output::note(log_folders::placed(&self.log, &problem.to_string()));
         }
         if found.more_problems > 0 {
             output::note(format!("{log}: and {}", count(found.more_problems, "more problem")));
         }
         for warning in &found.warnings {
-            output::note(format!("warning: {}", placed(&self.log, &warning.to_string())));
+            output::note(format!(
+                "warning: {}",
+                log_folders::placed(&self.log, &warning.to_string())
+            ));
         }
         if found.more_warnings > 0 {
             output::note(format!("{log}: and {}", count(found.more_warnings, "more warning")));
@@ -124,13 +128,13 @@ impl Verdict {
 
     fn to_json(&self) -> Value {
         let found = &self.found;
-        let problem = |problem: &crate::metrics::MetricsError| json!({ "code": problem.code(), "message": placed(&self.log, &problem.to_string()) });
+        let problem = |problem: &crate::metrics::MetricsError| json!({ "code": problem.code(), "message": log_folders::placed(&self.log, &problem.to_string()) });
         json!({
             "log": self.log,
             "valid": found.is_valid(),
             "problems": found.problems.iter().map(problem).collect::<Vec<_>>(),
             "more_problems": found.more_problems,
-            "warnings": found.warnings.iter().map(|warning| placed(&self.log, &warning.to_string())).collect::<Vec<_>>(),
+            "warnings": found.warnings.iter().map(|warning| log_folders::placed(&self.log, &warning.to_string())).collect::<Vec<_>>(),
             "more_warnings": found.more_warnings,
             "rows": found.counts.rows,
             "complete_rows": found.counts.complete_rows,
@@ -142,15 +146,5 @@ impl Verdict {
             "metrics_columns": self.info.as_ref().map(|(columns, _)| columns),
             "log_format_version": self.info.as_ref().map(|(_, version)| version),
         })
-    }
-}
-
-/// A message with the log in front, unless it begins with it: some name a file below the log, others only what is meant.
-fn placed(log: &Path, message: &str) -> String {
-    let log = log.shown().to_string();
-    if message.starts_with(&log) {
-        message.to_owned()
-    } else {
-        format!("{log}: {message}")
     }
 }

@@ -17,7 +17,7 @@ pub(super) fn report(report: &TransferReport) -> String {
     text.push_str(&pairs(report));
     text.push_str(&tests(report));
     text.push('\n');
-    for note in notes(report) {
+    for note in notes(report).into_iter().chain([conclusion(report)]) {
         text.extend(["\n", &note, "\n"]);
     }
     text.truncate(text.trim_end().len());
@@ -101,6 +101,28 @@ fn tests(report: &TransferReport) -> String {
     ];
     table(head, rows, &[2, 3, 4, 5, 6]) + &untested.concat()
 }
+
+/// The answer, by the test of ranks of each direction.
+fn conclusion(report: &TransferReport) -> String {
+    let answer = |name: &str, direction: &DirectionReport| {
+        let test = direction.spearman?;
+        let p = share(test.p_less, &test);
+        Some(if test.p_less <= SMALL {
+            format!("{name} transfer: yes, nearer variants got more of it (p {p}).")
+        } else {
+            format!("{name} transfer: not shown (p {p}, above {SMALL}); more variants or lifetimes may show it.")
+        })
+    };
+    let answers = [("Forward", &report.forward), ("Backward", &report.backward)];
+    let answers: Vec<String> = answers
+        .iter()
+        .filter_map(|(name, direction)| answer(name, direction))
+        .collect();
+    answers.join("\n")
+}
+
+/// The largest p of which an effect is named.
+const SMALL: f64 = 0.05;
 
 /// What the numbers do and do not say.
 fn notes(report: &TransferReport) -> Vec<String> {

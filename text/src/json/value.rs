@@ -11,7 +11,7 @@ use super::MAX_KEY_BYTES;
 
 /// Why a text was not read to its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Stop {
+pub enum Stop {
     /// A key stands twice in one object.
     Repeated,
     /// There are more values than allowed.
@@ -22,15 +22,18 @@ pub(super) enum Stop {
 
 /// Whether a key may stand twice in one object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Repeats {
+pub enum Repeats {
     /// It is where reading ends.
     Stop,
     /// The last counts.
     LastCounts,
 }
 
-/// The value of a text of at most `most` values; else the parser's error, and why it was stopped if it was.
-pub(super) fn parse(text: &str, most: usize, repeats: Repeats) -> Result<Value, (serde_json::Error, Option<Stop>)> {
+/// The value of a text of at most `most` values.
+///
+/// # Errors
+/// The parser's, and why it was stopped if it was.
+pub fn parse(text: &str, most: usize, repeats: Repeats) -> Result<Value, (serde_json::Error, Option<Stop>)> {
     let builder = Builder {
         left: Cell::new(most),
         most,

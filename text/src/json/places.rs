@@ -8,18 +8,28 @@ use std::fmt::Write;
 use jsonc_parser::tokens::Token;
 use jsonc_parser::{Scanner, ScannerOptions};
 
-use crate::describe::escape;
+/// Escapes a key for a JSON pointer.
+pub fn escape(key: &str) -> String {
+    key.replace('~', "~0").replace('/', "~1")
+}
+
+/// The key that a JSON pointer ends with.
+pub fn last_key(pointer: &str) -> String {
+    let key = pointer.rsplit('/').next().unwrap_or_default();
+    key.replace("~1", "/").replace("~0", "~")
+}
 
 /// A pointer whose place is wanted.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Wanted<'p> {
-    pub(super) pointer: &'p str,
+pub struct Wanted<'p> {
+    /// The pointer.
+    pub pointer: &'p str,
     /// Wanted is the key in front of the value.
-    pub(super) at_key: bool,
+    pub at_key: bool,
 }
 
 /// Where the values of pointers begin, or those of their nearest parents that are there.
-pub(super) fn offsets(text: &str, wanted: &[Wanted]) -> Vec<usize> {
+pub fn offsets(text: &str, wanted: &[Wanted]) -> Vec<usize> {
     let mut tree = Tree::default();
     let ways: Vec<Vec<usize>> = wanted.iter().map(|wanted| tree.way(wanted.pointer)).collect();
     walk(text, |event| {
@@ -34,7 +44,7 @@ pub(super) fn offsets(text: &str, wanted: &[Wanted]) -> Vec<usize> {
 }
 
 /// The pointers of keys that stand twice in one object, the first `most` of them, in the order of the text.
-pub(super) fn repeated(text: &str, most: usize) -> Vec<String> {
+pub fn repeated(text: &str, most: usize) -> Vec<String> {
     let mut open: Vec<Level> = Vec::new();
     let mut found = Vec::new();
     walk(text, |event| {

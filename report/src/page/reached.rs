@@ -1,0 +1,92 @@
+//! What each task came to, which leads a lifetime: before it was learned, at its best, and at the end.
+
+use std::collections::BTreeMap;
+
+use driftworld_metrics::{EvaluationCell, LEARNED_SHARE, LifetimeMetrics, Reached};
+use maud::{Markup, html};
+
+use super::number;
+use super::verdict::{Verdict, pill};
+use crate::words::shown;
+
+/// Standard errors by which an evaluation after learning is above the first one of a task that gained something.
+const CLEAR: f64 = 2.0;
+
+/// Tasks beyond these are in the files of metrics only.
+const MOST_ROWS: usize = 200;
+
+/// `called` are the tasks' names by those that the log has.
+pub(super) fn section(metrics: &LifetimeMetrics, called: &BTreeMap<String, String>) -> Markup {
+    let tasks = || metrics.reached.iter().filter(|(_, task)| !task.evaluations.is_empty());
+    let verdicts: Vec<Verdict> = tasks().filter_map(|(_, task)| verdict(task)).collect();
+    let is_nothing = !verdicts.is_empty() && verdicts.iter().all(|verdict| verdict.class != "good");
+    let scaled = metrics.reached.values().any(Reached::is_scaled);
+    html! {
+        @if tasks().next().is_some() {
+            h3 { "Reached" }
+            @if is_nothing {
+                ul.warnings aria-label="Nothing was learned" {
+                    li { "⚠ Nothing was learned: no task is better after it was learned than before. What is said of its \
+                          maintenance and transfer says nothing." }
+                }
+            }
+            div.scroll role="region" aria-label="Reached" tabindex="0" {
+                table.stacked {
+                    thead {
+                        tr {
+                            th scope="col" { "Task" }
+                            th.number scope="col" { "First evaluation" }
+                            th.number scope="col" { "Best after learning" }
+                            th.number scope="col" { "Last evaluation" }
+                            th scope="col" { "Reading" }
+                        }
+                    }
+                    tbody {
+                        @for (name, task) in tasks().take(MOST_ROWS) {
+                            tr {
+                                th scope="row" { (shown(called.get(name).unwrap_or(name))) }
+                                td.number data-name="First evaluation" { (level(task.evaluations.first())) }
+                                td.number data-name="Best after learning" { (level(task.best())) }
+                                td.number data-name="Last evaluation" { (level(task.last())) }
+                                td { @if let Some(verdict) = verdict(task) { (pill(verdict)) } }
+                            }
+                        }
+                    }
+                }
+            }
+            p.note {
+                @if scaled { "In % of the way from floor to ceiling where these are known, else in the log's unit" }
+                @else { "In the log's unit" }
+                "; ± the standard error over worlds. “never learned”: below " (format!("{:.0}", 100.0 * LEARNED_SHARE)) " % of the expert, \
+                 or of the ceiling. Where neither is known, “gained” needs two standard errors between the first evaluation and the best."
+            }
+        }
+    }
+}
+
+/// Whether a task was learned; `None` where it was not evaluated after it was learned.
+fn verdict(task: &Reached) -> Option<Verdict> {
+    let (first, best) = (task.evaluations.first()?, task.best()?);
+    let error = |cell: &EvaluationCell| cell.standard_error.unwrap_or(0.0);
+    let is_clear = best.mean - first.mean > CLEAR * error(first).hypot(error(best));
+    let (class, sign, word) = match (task.is_never_learned(), is_clear) {
+        (Some(true), _) => ("bad", "▼", "never learned"),
+        (Some(false), _) => ("good", "▲", "learned"),
+        (None, true) => ("good", "▲", "gained"),
+        (None, false) => ("bad", "▼", "no clear gain"),
+    };
+    Some(Verdict { class, sign, word })
+}
+
+/// The mean of an evaluation, as the part of the way from floor to ceiling where these are known.
+fn level(found: Option<&EvaluationCell>) -> String {
+    let Some(found) = found else {
+        return "–".to_owned();
+    };
+    let error = |per: f64| found.standard_error.map(|error| number(error * per));
+    let (value, error) = match (found.score, found.mean) {
+        (Some(score), _) => (format!("{:.0}\u{a0}%", 100.0 * score).replace('-', "−"), None),
+        (None, mean) => (number(mean), error(1.0)),
+    };
+    error.map_or(value.clone(), |error| format!("{value} ±\u{a0}{error}"))
+}

@@ -1,0 +1,72 @@
+//! JSON as documents and logs have it: its value within limits, what is wrong with it in words, and where things stand in it.
+
+mod places;
+mod value;
+
+pub use places::{Wanted, escape, last_key, offsets, repeated};
+pub use value::{Repeats, Stop, parse};
+
+/// The longest key, in bytes. Longer ones would stand in every pointer to what is below them.
+pub const MAX_KEY_BYTES: usize = 400;
+
+/// How deep lists and objects may stand in each other: `serde_json`'s limit, which keeps a hostile text from taking the
+/// whole stack.
+pub const MAX_DEPTH: usize = 127;
+
+/// Why a text is not JSON, in words with advice.
+pub fn reason(text: &str, error: &serde_json::Error) -> String {
+    let message = error.to_string();
+    let mut reason = message.split(" at line ").next().unwrap_or_default().to_owned();
+    let line_text = text.lines().nth(error.line().saturating_sub(1)).unwrap_or_default();
+    let start = line_text.floor_char_boundary(error.column().saturating_sub(1));
+    let rest = line_text[start..].trim_start();
+    if rest.starts_with("NaN") || rest.starts_with("Infinity") || rest.starts_with("-Infinity") {
+        "JSON has no NaN or Infinity; numbers are finite".clone_into(&mut reason);
+    } else if reason == "trailing comma" {
+        reason.push_str("; remove the comma before the closing bracket");
+    } else if rest.starts_with("//") || rest.starts_with("/*") || rest.starts_with('#') {
+        reason.push_str("; JSON has no comments, write a \"description\" instead");
+    } else if reason == "recursion limit exceeded" {
+        reason = format!("lists and objects stand in each other more than {MAX_DEPTH} deep; is a bracket missing?");
+    } else if text.trim().is_empty() {
+        "the document is empty".clone_into(&mut reason);
+    } else if reason.starts_with("EOF") {
+        reason.push_str("; the document ends too early, is it cut off?");
+    }
+    reason
+}
+
+/// Lines and columns of offsets, in one walk through the text however many they are.
+pub fn lines_and_columns(text: &str, offsets: &[usize]) -> Vec<(usize, usize)> {
+    let mut order: Vec<usize> = (0..offsets.len()).collect();
+    order.sort_by_key(|index| offsets[*index]);
+    let mut places = vec![(1, 1); offsets.len()];
+    let (mut at, mut line, mut column) = (0, 1, 1);
+    for index in order {
+        let offset = text.floor_char_boundary(offsets[index]);
+        for letter in text[at..offset].chars() {
+            (line, column) = if letter == '\n' {
+                (line + 1, 1)
+            } else {
+                (line, column + 1)
+            };
+        }
+        at = offset;
+        places[index] = (line, column);
+    }
+    places
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_count_characters() {
+        assert_eq!(lines_and_columns("\"ä\": x", &["\"ä\": ".len()]), [(1, 6)]);
+        assert_eq!(
+            lines_and_columns("a\nbc\n\nd", &[7, 0, 3, 3, 99, 1]),
+            [(4, 2), (1, 1), (2, 2), (2, 2), (4, 2), (1, 2)]
+        );
+    }
+}
