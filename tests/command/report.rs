@@ -189,7 +189,11 @@ fn files_that_a_log_names_are_not_opened() {
     // Not even one that would be the right one.
     succeed_in(path, "report log");
     let page = read(path.join("report.html"));
-    assert!(page.contains("give it with --task FILE") && page.contains("(column distance)") && !page.contains("as measured from"));
+    assert!(
+        page.contains("give it with --task FILE")
+            && page.contains("(column distance)")
+            && !page.contains("as measured from")
+    );
     succeed_in(path, "report log --task mine.json");
     assert!(read(path.join("report.html")).contains("as measured by parameters from the scenario in the log"));
     // From another folder the file's name says which is meant.

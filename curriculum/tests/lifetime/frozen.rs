@@ -41,7 +41,8 @@ impl Agent for Restless {
 pub(crate) fn hill(ahead: i32) -> World {
     let text = r#"{ "max_steps": 30,
         "objects": [{ "class": "geometric", "coordinates": [0, AHEAD], "tag": "goal" }],
-        "rules": { "shaping": { "toward": "goal", "scale": 1 } } }"#.replace("AHEAD", &ahead.to_string());
+        "rules": { "shaping": { "toward": "goal", "scale": 1 } } }"#
+        .replace("AHEAD", &ahead.to_string());
     World::from_json("hill.json", &text).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -68,7 +69,8 @@ fn an_agent_that_evaluations_change_is_refused_by_one_or_several_at_a_time() {
             repeated: REPEATED_EVALUATIONS,
             ..WHOLE
         };
-        let refused = live_by(&shaped("hill.json"), &mut agent, &folder.path().join(name), &living).expect_err("it changes");
+        let refused =
+            live_by(&shaped("hill.json"), &mut agent, &folder.path().join(name), &living).expect_err("it changes");
         assert_eq!(refused.code(), "curriculum/not-frozen", "{name}: {refused}");
         let said = refused.to_string();
         assert!(said.contains("block 0") && said.contains("Task 2#hill"), "{said}");
@@ -195,7 +197,8 @@ fn one_that_only_learning_changes_leaves_the_same_log_checked_or_not() {
                 ..WHOLE
             },
         );
-        let summary = live_by(&shaped("hill.json"), &mut agent, &log, &living).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let summary =
+            live_by(&shaped("hill.json"), &mut agent, &log, &living).unwrap_or_else(|error| panic!("{name}: {error}"));
         assert!(summary.finished && summary.experiences == 15, "{name}: {summary:?}");
         logs.push(everything(&log));
     }

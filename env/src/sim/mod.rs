@@ -7,8 +7,6 @@ mod broad_phase;
 mod budget;
 mod collision_world;
 mod contact;
-#[cfg(test)]
-mod crowds;
 mod doors;
 mod editing;
 mod encounters;
@@ -40,6 +38,8 @@ mod snapshot;
 mod state;
 mod step;
 mod termination;
+#[cfg(test)]
+mod tests;
 mod things;
 mod transplant;
 mod views;
