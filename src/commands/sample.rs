@@ -254,14 +254,14 @@ impl Sample {
         let count = range.end - range.start;
         if output::is_stdout(&self.output) {
             output::carries_data();
-            return each(source, range, |(_, _, world)| {
+            return each(source, range, REMOVED, |(_, _, world)| {
                 output::print_json(&(world.to_json() + "\n"))
             });
         }
         let file = output::create(&self.output)?;
         let is_read_now = file.is_straight();
         let mut file = BufWriter::new(file);
-        each(source, range, |(_, _, world)| {
+        each(source, range, REMOVED, |(_, _, world)| {
             let written = file.write_all((world.to_json() + "\n").as_bytes());
             let written = written.and_then(|()| if is_read_now { file.flush() } else { Ok(()) });
             written.map_err(|error| self.failed(&error))
@@ -273,23 +273,32 @@ impl Sample {
 
     fn files(&self, source: &Source, range: std::ops::Range<u64>) -> Result<(), Failure> {
         let count = range.end - range.start;
-        each(source, range, |(index, _, world)| {
-            let path = self.output.join(format!("{index:08}.json"));
-            output::write(&path, world.to_json_pretty().as_bytes())
-        })?;
+        each(
+            source,
+            range,
+            "what was written is whole and stays",
+            |(index, _, world)| {
+                let path = self.output.join(format!("{index:08}.json"));
+                output::write(&path, world.to_json_pretty().as_bytes())
+            },
+        )?;
         output::wrote(&self.output, format!("{count} worlds"));
         Ok(())
     }
 }
 
-/// Hands over the worlds with their numbers and variants, in order; draws a chunk at a time on all cores.
+const REMOVED: &str = "incomplete output was removed";
+
+/// Hands over the worlds with their numbers and variants, in order; draws a chunk at a time on all cores. `left` says what an
+/// interrupt leaves behind.
 fn each(
     source: &Source,
     range: std::ops::Range<u64>,
+    left: &str,
     mut take: impl FnMut((u64, String, World)) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     // Whoever is asked to stop gives up what is half written, and removes it.
-    let interrupt = Interrupt::listen("interrupted; incomplete output was removed");
+    let interrupt = Interrupt::listen(format!("interrupted; {left}"));
     let bar = output::progress(range.end - range.start, "sampling");
     let mut first = range.start;
     let mut chunk = 16;
@@ -304,7 +313,7 @@ fn each(
             if interrupt.is_asked() && index + 1 < range.end {
                 let done = index + 1 - range.start;
                 return Err(interrupt.failure(format!(
-                    "interrupted after {done} of {} worlds; incomplete output was removed",
+                    "interrupted after {done} of {} worlds; {left}",
                     range.end - range.start
                 )));
             }
