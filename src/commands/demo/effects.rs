@@ -235,8 +235,8 @@ mod tests {
         ]));
         let expected = "\
 variant  at first  transferred  learned  forgotten  at the end
-a               0            0     +10         -7           3
-b               1           +3     +16          0          20
+a               0            0      +10         -7           3
+b               1           +3      +16          0          20
 transferred: gained before its own block, by learning others
 learned: gained in its own block
 forgotten: lost after it (-), or still gained (+)
