@@ -193,7 +193,7 @@ fn options_table(options: &Value, command: Option<&str>) -> Markup {
                         @for (name, value) in rows {
                             tr { th scope="row" { (calm(&name.replace('_', " "))) } td { (calm(&plain(value))) } }
                         }
-                        @if let Some(command) = command { tr { th scope="row" { "command" } td { code { (calm(command)) } } } }
+                        @if let Some(command) = command { tr { th scope="row" { "command" } td { code { (driftworld_text::printable(&calm(command))) } } } }
                         tr { th scope="row" { "version" } td { "driftworld " (env!("CARGO_PKG_VERSION")) } }
                     }
                 }
