@@ -445,17 +445,3 @@ proptest! {
         }
     }
 }
-
-#[test]
-fn an_object_of_something_else_is_no_world() {
-    for text in [r#"{ "a": 1 }"#, r#"{ "blocks": [], "name": "scenario" }"#] {
-        let error = World::from_l2explorer("other", text).unwrap_err().to_string();
-        assert!(
-            error.contains("found an object without any key of a world, expected a world, which has some of game_mode"),
-            "{error}"
-        );
-    }
-    for text in ["{}", r#"{ "a": 1, "Objects": [] }"#] {
-        World::from_l2explorer("world", text).unwrap();
-    }
-}

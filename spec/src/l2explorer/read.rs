@@ -28,8 +28,8 @@ impl World {
     /// and are named. Predefined maps are the original's, written into the world as `map_regions`.
     ///
     /// # Errors
-    /// [`SpecError`] where the file is not JSON or no object, has keys and none of them a world's, has a number out of range or more
-    /// objects than a world may hold, or has keys of ours whose values no world can have.
+    /// [`SpecError`] where the file is not JSON or no object, has a number out of range or more objects than a world may hold, or
+    /// has keys of ours whose values no world can have.
     pub fn from_l2explorer(name: &str, text: &str) -> Result<(Self, Vec<Warning>), SpecError> {
         Self::from_l2explorer_with(name, text, &MapLibrary::default())
     }
@@ -46,18 +46,7 @@ impl World {
             reader.warn(pointer, "the key stands twice; the last one counts");
         }
         // Part by part what was read takes the place of what stood there: a large world is not there twice.
-        let is_empty = |value: &Json| value.as_object().is_none_or(Map::is_empty);
-        let was_empty = is_empty(&document.value);
         document.value = reader.world(std::mem::take(&mut document.value));
-        if !was_empty && is_empty(&document.value) {
-            let expected = format!("a world, which has some of {}", PARTS.world.keys.join(", "));
-            document.fail_on(vec![Problem::new(
-                "spec/value",
-                "",
-                "an object without any key of a world",
-                expected,
-            )])?;
-        }
         let kept = std::mem::take(&mut reader.kept);
         let spelled = reader.spelled.clone();
         let original = |mut problem: Problem| {
