@@ -22,18 +22,7 @@ impl Sampler {
         let index = draft.index;
         // Each anchor has numbers of its own, so that one more object around it moves nothing around another.
         let first = anchor_number << 32;
-        let count = match &group.count {
-            GroupCount::Fixed(count) => *count,
-            GroupCount::Drawn(fill) => fill.with(
-                Address {
-                    index,
-                    object: first,
-                    attempt: 0,
-                },
-                draft.values,
-                whole,
-            ),
-        };
+        let count = count_of(group, first, draft);
         let found = draft.world.objects.len().saturating_add(count as usize);
         self.check_count(found, index)?;
         let failed = |turn: u64, (tries, reason): (u32, String)| GeneratorError::NoPlace {
@@ -55,7 +44,7 @@ impl Sampler {
             }
             _ => None,
         };
-        let mut turns = group.placement.distribution.num_turns().map(Turns::new);
+        let mut turns = asked.num_turns().map(Turns::new);
         for turn in 0..u64::from(count) {
             let mut object = self.fill(
                 &group.object,
@@ -70,12 +59,11 @@ impl Sampler {
                 object.seed = object.seed.or_else(|| Some(seeds.seed(first + turn)));
             }
             let mut rng = group.placement.stream.at(index, first + turn, 0);
-            let placement = &group.placement.distribution;
             // Between it and the wall the agent must get through: a body is about as wide as its scale, walls are thinner than agents.
             let mouth = 1.5 * draft.world.agent_params.agent_width + object.scale / 2.0;
-            let is_free = !object.solid || draft.context.asks_for_doorways(placement, cells.as_ref(), mouth);
+            let is_free = !object.solid || draft.context.asks_for_doorways(asked, cells.as_ref(), mouth);
             let request = Request {
-                placement,
+                placement: asked,
                 margins: &group.margins,
                 anchor,
                 group: number,
@@ -133,6 +121,21 @@ pub(super) struct Draft<'a, 'g> {
     pub(super) values: &'a [Value],
     pub(super) context: &'a mut PlacementContext<'g>,
     pub(super) world: &'a mut WorldDraft,
+}
+
+/// How many objects of a group stand around an anchor; the first has this number.
+fn count_of(group: &Group, first: u64, draft: &Draft<'_, '_>) -> u32 {
+    match &group.count {
+        GroupCount::Fixed(count) => *count,
+        GroupCount::Drawn(fill) => {
+            let address = Address {
+                index: draft.index,
+                object: first,
+                attempt: 0,
+            };
+            fill.with(address, draft.values, whole)
+        }
+    }
 }
 
 /// A drawn count; what does not fit is as good as too many.

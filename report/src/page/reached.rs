@@ -67,8 +67,8 @@ pub(super) fn section(metrics: &LifetimeMetrics, called: &BTreeMap<String, Strin
 /// Whether a task was learned; `None` where it was not evaluated after it was learned.
 fn verdict(task: &Reached) -> Option<Verdict> {
     let (first, best) = (task.evaluations.first()?, task.best()?);
-    let error = |cell: &EvaluationCell| cell.standard_error.unwrap_or(0.0);
-    let is_clear = best.mean - first.mean > CLEAR * error(first).hypot(error(best));
+    let [before, after] = [first, best].map(|cell| cell.standard_error.unwrap_or(0.0));
+    let is_clear = best.mean - first.mean > CLEAR * (before * before + after * after).sqrt();
     let (class, sign, word) = match (task.is_never_learned(), is_clear) {
         (Some(true), _) => ("bad", "▼", "never learned"),
         (Some(false), _) => ("good", "▲", "learned"),
