@@ -107,7 +107,7 @@ impl Distance {
             scale: self.scale,
             catalogue: self.libraries.catalogue()?,
         };
-        let (a, b) = (self.side(&self.a)?, self.side(&self.other())?);
+        let (a, b) = (side(&self.a)?, side(&self.other())?);
         Ok(between(&a, &b, &sample, |declared| self.weights.over(declared))?)
     }
 
@@ -116,15 +116,16 @@ impl Distance {
         let named = tasks::with_tasks(&[self.a.clone(), self.b.clone()]);
         named.into_iter().next_back().unwrap_or_default()
     }
+}
 
-    fn side(&self, name: &str) -> Result<Side, Failure> {
-        worlds::expect_world_or_task(name)?;
-        if worlds::is_world_file(name) {
-            let world = worlds::file(name, false, &MapLibrary::default(), &|text| output::warning(text))?;
-            Ok(Side::World(Box::new(world)))
-        } else {
-            Ok(Side::Variant(tasks::variant(name)?))
-        }
+/// What a name stands for: a world file, or a variant.
+fn side(name: &str) -> Result<Side, Failure> {
+    worlds::expect_world_or_task(name)?;
+    if worlds::is_world_file(name) {
+        let world = worlds::file(name, false, &MapLibrary::default(), &|text| output::warning(text))?;
+        Ok(Side::World(Box::new(world)))
+    } else {
+        Ok(Side::Variant(tasks::variant(name)?))
     }
 }
 

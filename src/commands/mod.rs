@@ -55,6 +55,9 @@ use driftworld_text::{WordKind, is_unprintable, printable, removed};
 pub(crate) use crate::Failure;
 use crate::{documents, log_folders, matrix_file, overwrite, style};
 
+/// The words of the command that runs.
+static WORDS: Mutex<Vec<OsString>> = Mutex::new(Vec::new());
+
 /// Runs the command as a program of its own does, and prints what it has to say; `args` begins with the program's name.
 ///
 /// Returns the exit code: 0 when all went well, 1 when the input or the place for the output is wrong, 2 when the
@@ -69,6 +72,7 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> u8 {
     translate_panics();
     documents::accept_standard_input();
     let args: Vec<OsString> = args.into_iter().map(variant_of_standard_input).collect();
+    WORDS.lock().unwrap_or_else(PoisonError::into_inner).clone_from(&args);
     style::follow(asked_color(&args));
     match parse(&args) {
         Ok(command) => {

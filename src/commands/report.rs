@@ -1,6 +1,7 @@
 //! `driftworld report`: lifetimes on one page, and their figures as files. Pages are the library's.
 
 use std::path::PathBuf;
+use std::sync::PoisonError;
 
 use crate::Failure;
 use crate::lifetime_report::{ReportRequest, write_report};
@@ -125,7 +126,8 @@ fn command_line() -> String {
         }
     };
     let mut words = vec!["driftworld".to_owned()];
-    let mut given = std::env::args_os().skip(1);
+    let given = super::WORDS.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    let mut given = given.into_iter().skip(1);
     while let Some(next) = given.next() {
         // Where the page and the figures went says nothing of how it was made.
         if ["-o", "--output", "--plots"].iter().any(|option| next == *option) {

@@ -39,7 +39,7 @@ impl ScoredLog {
         warnings.extend(experts.left_aside(&log, options));
         warnings.extend(unfit_scales(&log, options));
         let experts = experts.of(&log, options)?;
-        warnings.extend(experts.iter().flat_map(|expert| missing_rows(expert.log())));
+        warnings.extend(experts.iter().filter_map(|expert| missing_rows(expert.log())));
         for warning in &warnings {
             warn(log_folders::placed(folder, warning));
         }
