@@ -6,10 +6,12 @@ use driftworld::similarity::distribution::{
 };
 use driftworld::spec::Distribution;
 
+/// A measure of two distributions; none where it is not defined for them.
+type Measure = fn(&Distribution, &Distribution) -> Option<Measured>;
+
 fn main() {
     let normal = |mean| Distribution::Normal { mean, std: 1.0 };
     let (here, near, far) = (normal(0.0), normal(4.0), normal(40.0));
-    type Measure = fn(&Distribution, &Distribution) -> Option<Measured>;
     let measures: [(&str, Measure); 7] = [
         ("Wasserstein 1", wasserstein_1),
         ("Wasserstein 2", wasserstein_2),

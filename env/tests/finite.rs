@@ -59,7 +59,7 @@ fn value(root: &Value, node: &Value, dice: &mut Dice) -> Value {
         Some(kind @ ("number" | "integer")) => {
             let [low, high] = ["minimum", "maximum"].map(|end| node[end].as_f64().unwrap_or(0.0));
             let near = low + (high - low).min(20.0) * dice.unit();
-            let middle = (low + high) / 2.0 + (high - low).min(20.0) * (dice.unit() - 0.5);
+            let middle = f64::midpoint(low, high) + (high - low).min(20.0) * (dice.unit() - 0.5);
             let number = [low, high, near, middle][dice.roll(4)];
             if kind == "integer" {
                 json!(number.round() as i64)

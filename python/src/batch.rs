@@ -45,7 +45,7 @@ impl Known {
     /// Refuses a stream of worlds with objects of classes or models that are not known.
     fn check(&self, stream: &Stream) -> Result<()> {
         let mut known = self.tasks.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut check = |variant: &Variant| -> Result<()> {
+        let check = |variant: &Variant| -> Result<()> {
             if !known.iter().any(|task| Arc::ptr_eq(task, variant.task())) {
                 check_variants([variant], &self.catalogue)?;
                 known.push(Arc::clone(variant.task()));

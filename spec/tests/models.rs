@@ -111,7 +111,7 @@ proptest! {
         let known = Classes::new(["tree", "rock"]).with_models(Wood);
         let refused = TaskSpec::from_json_with("t", &task.to_string(), Some(&known)).err();
         prop_assert_eq!(refused.is_some(), expected, "{:#} {:?}", task, refused);
-        for problem in refused.iter().flat_map(|error| error.problems()) {
+        for problem in refused.iter().flat_map(driftworld_spec::SpecError::problems) {
             prop_assert_eq!(problem.code, "spec/unknown-model");
             prop_assert!(problem.pointer.ends_with(key), "{problem:?}");
         }
