@@ -46,6 +46,7 @@ mod map_legend;
 mod map_scale;
 mod matrix_file;
 mod modality;
+mod numbers;
 pub mod ordering;
 mod output_file;
 mod overwrite;

@@ -5,9 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::commands::numbers::seed;
 use crate::contents::{Contents, OtherContents};
 use crate::documents;
+use crate::numbers::seed;
 use crate::tasks;
 use crate::top_level::TopLevel;
 use clap::Args;

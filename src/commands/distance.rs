@@ -54,7 +54,7 @@ pub(crate) struct Distance {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000), num_args = 0..=1, default_missing_value = "16")]
     worlds: Option<u64>,
     /// Seed for drawing worlds from variants.
-    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = super::numbers::seed)]
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = crate::numbers::seed)]
     seed: u64,
     /// Index of the first world drawn.
     #[arg(long, default_value_t = 0)]

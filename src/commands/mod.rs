@@ -22,7 +22,6 @@ mod interrupt;
 mod logs;
 mod metrics;
 mod new;
-pub(crate) mod numbers;
 mod optional;
 mod order;
 mod output;

@@ -12,9 +12,9 @@ use crate::spec::{Modality, Object, World};
 use clap::Args;
 use serde::Serialize;
 
-use super::numbers::documented;
 use super::{Failure, output};
 use crate::modality::{self, metres_per_level, target};
+use crate::numbers::documented;
 use crate::worlds::WorldRequest;
 
 /// The longest part of a file name that comes from the document.

@@ -67,7 +67,7 @@ pub(crate) struct Run {
     /// Seed of the agent's random numbers: another seed is a repeat in the same worlds.
     ///
     /// The log says it. 0 is the run that the scenario has of itself.
-    #[arg(long, default_value_t = 0, value_name = "S", allow_negative_numbers = true, value_parser = super::numbers::seed)]
+    #[arg(long, default_value_t = 0, value_name = "S", allow_negative_numbers = true, value_parser = crate::numbers::seed)]
     seed: u64,
     /// Skip experiences whose worlds cannot be drawn.
     ///

@@ -39,7 +39,7 @@ pub(crate) struct Sample {
     /// The variant: PATH, PATH#variant, or a built-in such as `find_objects#red`.
     task: String,
     /// Seed of the worlds.
-    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = super::numbers::seed)]
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = crate::numbers::seed)]
     seed: u64,
     /// Index of the first world.
     #[arg(long, default_value_t = 0)]

@@ -35,7 +35,7 @@ pub(crate) struct Scales {
         value_parser = clap::value_parser!(u64).range(2..=MAX_SCALES_WORLDS))]
     worlds: u64,
     /// Seed of the worlds.
-    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = super::numbers::seed)]
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = crate::numbers::seed)]
     seed: u64,
     /// Also the ceiling of agents that cannot tell variants apart which look alike at the start.
     ///

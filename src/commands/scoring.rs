@@ -31,7 +31,7 @@ pub(crate) struct Scoring {
         long,
         value_name = "N",
         default_value_t = 0,
-        requires = "noise", allow_negative_numbers = true, value_parser = super::numbers::seed
+        requires = "noise", allow_negative_numbers = true, value_parser = crate::numbers::seed
     )]
     noise_seed: u64,
     /// Follow the published definitions where the reference program differs.
@@ -93,7 +93,7 @@ pub(crate) struct Intervals {
     #[arg(long, value_name = "WHAT", default_value_t = BootstrapOptions::default().resampling)]
     resampling: Resampling,
     /// Seed of the bootstrap.
-    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = super::numbers::seed)]
+    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = crate::numbers::seed)]
     bootstrap_seed: u64,
 }
 

@@ -37,7 +37,7 @@ pub(crate) struct Sheet {
     #[arg(long, value_name = "FILE")]
     scenario: Option<PathBuf>,
     /// Seed of the worlds [default: 0; in a scenario, each block's own].
-    #[arg(long, allow_negative_numbers = true, value_parser = super::numbers::seed)]
+    #[arg(long, allow_negative_numbers = true, value_parser = crate::numbers::seed)]
     seed: Option<u64>,
     /// Index of each variant's world [default: of the first few, the one that shows most of what the variants are about].
     #[arg(long)]

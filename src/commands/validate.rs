@@ -61,7 +61,7 @@ pub(crate) struct Validate {
     #[arg(long, requires = "elements", default_value_t = 100, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     steps: u32,
     /// Seed for worlds of a task's variants. Scenarios have their own.
-    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = super::numbers::seed)]
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = crate::numbers::seed)]
     seed: u64,
     #[command(flatten)]
     libraries: LibraryChoice,

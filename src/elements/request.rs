@@ -7,8 +7,8 @@ use clap::Args;
 use driftworld_env::MAX_EXPERIMENT_STEPS;
 use driftworld_spec::{Modality, TaskSpec, Variant};
 
-use crate::commands::numbers::{self, documented};
 use crate::modality;
+use crate::numbers::{self, documented};
 use crate::{Failure, tasks, within};
 
 /// How many pairs of worlds are tried where nobody says.

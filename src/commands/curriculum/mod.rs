@@ -18,10 +18,10 @@ use clap::{Args, ValueEnum};
 use serde_json::json;
 
 use super::assets::LibraryChoice;
-use super::numbers::documented;
 use super::order::OrderArgs;
 use super::sample::Mix;
 use super::{Failure, output, overwrite};
+use crate::numbers::documented;
 use folders::write_into;
 pub(crate) use tables::{blocks, choices};
 
@@ -141,7 +141,7 @@ pub(crate) struct Curriculum {
     #[arg(long, value_parser = documented::<ScenarioDifficulty>(&DIFFICULTIES))]
     difficulty: Option<ScenarioDifficulty>,
     /// Seed of all worlds, at most 2^52. Learning and evaluation never share a world.
-    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = crate::commands::numbers::seed)]
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = crate::numbers::seed)]
     seed: u64,
     /// Which worlds to evaluate on: validation to choose hyperparameters, test for what you report.
     #[arg(long, value_enum, default_value_t = WorldSplit::Test)]

@@ -48,7 +48,7 @@ pub(crate) struct Demo {
     #[arg(short, long, default_value = "demo-out", value_name = "DIR")]
     output: PathBuf,
     /// Seed of the worlds.
-    #[arg(long, default_value_t = 7, allow_negative_numbers = true, value_parser = crate::commands::numbers::seed)]
+    #[arg(long, default_value_t = 7, allow_negative_numbers = true, value_parser = crate::numbers::seed)]
     seed: u64,
 }
 

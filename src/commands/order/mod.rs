@@ -60,7 +60,7 @@ pub(crate) struct Order {
     #[command(flatten)]
     weights: WeightArgs,
     /// Seed of the method random, and of the random orders that the length is compared with.
-    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = crate::commands::numbers::seed)]
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = crate::numbers::seed)]
     seed: u64,
     /// Compare all methods.
     #[arg(long, conflicts_with_all = ["order", "plot"])]

@@ -10,8 +10,8 @@ use crate::metrics::{NormalizationMethod, Options, SmoothingMethod, TransferMeth
 use crate::similarity::MAX_RELABELLINGS;
 use clap::Args;
 
-use super::numbers::documented;
 use super::{Failure, log_folders, matrix_file, output, overwrite};
+use crate::numbers::documented;
 use crate::report::picture::scatter;
 use crate::scoring::{Experts, score_logs};
 
@@ -56,7 +56,7 @@ pub(crate) struct TransferReport {
         value_parser = clap::value_parser!(u64).range(1..=MAX_RELABELLINGS))]
     relabellings: u64,
     /// Seed of the relabellings.
-    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = crate::commands::numbers::seed)]
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = crate::numbers::seed)]
     seed: u64,
     /// Draw transfer over distance into this PNG file.
     #[arg(long, value_name = "FILE")]

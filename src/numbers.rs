@@ -1,4 +1,4 @@
-//! Numbers and words of the command line that several commands take. What they mean stands with each.
+//! Numbers and words as several options of the command line take them. What they mean stands with each.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use serde::de::DeserializeOwned;
