@@ -60,7 +60,7 @@ fn print_of(action: Action, environment: &Environment) -> u64 {
     hash.finish()
 }
 
-/// Lives one experience in an environment that stands at its beginning; `trace` gets a hash of each step.
+/// Lives one experience in an environment that stands at its beginning; `trace`, where one is wanted, gets a hash of each step.
 ///
 /// It ends as the environment says, so that the last of a block ends like any other: by what happened, or cut off by
 /// the limit of steps, never because the block does. One that was stopped on its way returns nothing.
@@ -68,14 +68,16 @@ pub(super) fn run_episode(
     agent: &mut dyn Agent,
     environment: &mut Environment,
     mut recorder: Option<&mut Recorder>,
-    trace: &mut Vec<u64>,
+    mut trace: Option<&mut Vec<u64>>,
     context: &EpisodeContext,
 ) -> Result<Option<Experience>, EnvError> {
     if let Some(label) = context.label {
         agent.set_task_label(label);
     }
     agent.begin(context.seed);
-    trace.clear();
+    if let Some(trace) = &mut trace {
+        trace.clear();
+    }
     // A world without a limit of steps and without an end would never be over.
     let limit = environment.world().step_limit().map_or(MOST_STEPS, |_| u32::MAX);
     let mut last = Step::default();
@@ -88,7 +90,9 @@ pub(super) fn run_episode(
         if let Some(recorder) = &mut recorder {
             recorder.step(action);
         }
-        trace.push(print_of(action, environment));
+        if let Some(trace) = &mut trace {
+            trace.push(print_of(action, environment));
+        }
         if !last.terminated && environment.num_steps() >= limit {
             last.truncated = true;
             last.ended_by.get_or_insert(EndedBy::Steps);

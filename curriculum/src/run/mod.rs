@@ -246,7 +246,7 @@ struct Worker<'a> {
     environment: Option<Environment>,
     /// Takes down what is done, if that is wanted.
     recorder: Option<Recorder>,
-    /// A hash of each step of the last experience.
+    /// A hash of each step of the last evaluation.
     trace: Vec<u64>,
 }
 
@@ -320,7 +320,9 @@ impl<'a> Worker<'a> {
             learn: planned.kind == BlockKind::Learning,
             stop: self.stop,
         };
-        episode::run_episode(agent, environment, self.recorder.as_mut(), &mut self.trace, &episode).map_err(failed)
+        // Only evaluations are ever run once more.
+        let trace = (!episode.learn).then_some(&mut self.trace);
+        episode::run_episode(agent, environment, self.recorder.as_mut(), trace, &episode).map_err(failed)
     }
 }
 
