@@ -1,5 +1,4 @@
-//! [`Classes`]: which classes and models of objects there are, as far as a reader of documents is told. The models themselves are
-//! `env`'s.
+//! [`Classes`]: which classes and models of objects a reader of documents knows. The models themselves are `env`'s.
 
 use std::sync::Arc;
 
@@ -119,11 +118,7 @@ impl Classes {
 
 /// The first of some names, and how many more there are.
 fn one_of(names: &[String]) -> String {
-    let listed = names.iter().take(LISTED).cloned().collect::<Vec<_>>().join(", ");
-    match names.len().saturating_sub(LISTED) {
-        0 => format!("one of {listed}"),
-        more => format!("one of {listed} and {more} more"),
-    }
+    format!("one of {}", driftworld_text::first_of(names, LISTED))
 }
 
 impl Classes {

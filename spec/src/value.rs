@@ -105,9 +105,7 @@ impl Value {
             | (P::Distribution, Self::Distribution(_))
             | (P::Layout, Self::Layout(_)) => Some(self.clone()),
             (P::Number, Self::Integer(whole)) => Some(Self::Number(*whole as f64)),
-            (P::Integer, Self::Number(number)) if number.fract() == 0.0 && number.abs() <= 9_007_199_254_740_992.0 => {
-                Some(Self::Integer(*number as i64))
-            }
+            (P::Integer, Self::Number(number)) => whole(*number).map(Self::Integer),
             (P::Heading, Self::Number(_) | Self::Integer(_)) => {
                 self.as_number().map(|degrees| Self::Number(turned(degrees)))
             }
@@ -186,26 +184,31 @@ fn canonical_json<'de, D: serde::Deserializer<'de>>(json: D) -> Result<Box<serde
 
 /// JSON in the one way of writing it in which equal values have equal texts: keys in order, whole numbers without a point.
 fn canonical(json: serde_json::Value) -> serde_json::Value {
+    let mut json = with_whole_numbers(json);
+    json.sort_all_objects();
+    json
+}
+
+/// The same JSON, in which numbers such as 10.0 and 1e2 are written as the whole ones that they are.
+pub(crate) fn with_whole_numbers(json: serde_json::Value) -> serde_json::Value {
     use serde_json::Value as Json;
-    /// Up to here every whole number has a double of its own.
-    const MOST_WHOLE: f64 = 9_007_199_254_740_992.0;
     match json {
         Json::Number(number) => {
-            let whole = number
-                .as_f64()
-                .filter(|_| number.is_f64())
-                .filter(|real| real.fract() == 0.0 && real.abs() <= MOST_WHOLE);
-            whole.map_or(Json::Number(number), |real| Json::from(real as i64))
+            let whole = number.as_f64().filter(|_| number.is_f64()).and_then(whole);
+            whole.map_or(Json::Number(number), Json::from)
         }
-        Json::Array(list) => list.into_iter().map(canonical).collect(),
+        Json::Array(list) => list.into_iter().map(with_whole_numbers).collect(),
         Json::Object(map) => {
-            let mut entries: Vec<(String, Json)> =
-                map.into_iter().map(|(key, child)| (key, canonical(child))).collect();
-            entries.sort_by(|a, b| a.0.cmp(&b.0));
-            Json::Object(entries.into_iter().collect())
+            let entries = map.into_iter().map(|(key, child)| (key, with_whole_numbers(child)));
+            Json::Object(entries.collect())
         }
         other => other,
     }
+}
+
+/// The whole number that a double is; up to 2⁵³ each has a double of its own.
+fn whole(number: f64) -> Option<i64> {
+    (number.fract() == 0.0 && number.abs() <= 9_007_199_254_740_992.0).then_some(number as i64)
 }
 
 /// A heading of any size as one in 0..360: a tiny negative one would be rounded up to 360 itself.

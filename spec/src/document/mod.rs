@@ -7,6 +7,7 @@ use serde_json::Value;
 use crate::describe::{describe, pointer_of};
 use crate::error::{Listed, MAX_PROBLEMS, Problem, SpecError};
 use crate::limits::{MAX_BYTES, MAX_KEY_BYTES};
+use crate::value::with_whole_numbers;
 use crate::version::Format;
 use driftworld_text::json::{self, Repeats, Stop, Wanted, lines_and_columns};
 
@@ -132,29 +133,6 @@ impl<'a> Document<'a> {
         lines_and_columns(self.text, &json::offsets(self.text, wanted))
     }
 }
-
-/// The same value, in which numbers such as 10.0 and 1e2 are written as the whole ones that they are.
-pub(crate) fn with_whole_numbers(value: Value) -> Value {
-    match value {
-        Value::Number(number) => {
-            let whole = number
-                .as_f64()
-                .filter(|number| number.fract() == 0.0 && number.abs() <= MOST_WHOLE);
-            whole
-                .filter(|_| number.is_f64())
-                .map_or(Value::Number(number), |whole| Value::from(whole as i64))
-        }
-        Value::Array(items) => items.into_iter().map(with_whole_numbers).collect(),
-        Value::Object(map) => map
-            .into_iter()
-            .map(|(key, child)| (key, with_whole_numbers(child)))
-            .collect(),
-        other => other,
-    }
-}
-
-/// Every whole number up to this one, 2⁵³, is a number of its own in 64 bits.
-const MOST_WHOLE: f64 = 9_007_199_254_740_992.0;
 
 /// Lines and columns of the values of pointers into a JSON text, or of their nearest parents that are there.
 pub(crate) fn places_in(text: &str, pointers: &[&str]) -> Vec<(usize, usize)> {

@@ -8,9 +8,9 @@ use super::super::variant;
 use super::Check;
 use crate::describe::{describe, pointer_of};
 use crate::distribution::{Distribution, Number};
-use crate::document::with_whole_numbers;
+
 use crate::error::Problem;
-use crate::value::Value;
+use crate::value::{Value, with_whole_numbers};
 use crate::world::{Model, Object, WorldDraft};
 
 /// The texts among some values.
