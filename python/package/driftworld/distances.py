@@ -160,8 +160,10 @@ def distance(
         SimilarityError: For a weight that is none.
     """
     laid = None if weights is None else dict(weights)
-    found = _native.distance(_side(a), _side(b), laid, worlds, seed, index, by, scale, library_bytes(assets))
-    if by is None and worlds is None and "two tasks" in found["compared"]:
+    sides = _side(a), _side(b)
+    found = _native.distance(*sides, laid, worlds, seed, index, by, scale, library_bytes(assets))
+    tasks = [side.task for side in sides if isinstance(side, Variant)]
+    if by is None and worlds is None and len(tasks) == 2 and tasks[0] != tasks[1]:
         warnings.warn(
             "distance: found variants of two tasks and no by, expected by=\"worlds\" or another measure: they have no parameters in "
             "common, so the number is by worlds, in another unit",
