@@ -3,6 +3,8 @@
 //!
 //! Not here: warnings about logs that can still be read, see `LogWarning`.
 
+mod code;
+
 use std::io;
 use std::path::PathBuf;
 
@@ -604,31 +606,5 @@ impl MetricsError {
             found,
             expected,
         }
-    }
-}
-
-impl MetricsError {
-    /// The line of the file that is meant, from 1; `None` where the error is of no line.
-    pub fn line(&self) -> Option<u64> {
-        match self {
-            // 0 says that the file as a whole is meant.
-            Self::Json { line, .. } => Some(*line as u64).filter(|line| *line > 0),
-            Self::RaggedRow { line, .. }
-            | Self::Cell { line, .. }
-            | Self::TornLastLine { line, .. }
-            | Self::CarriageReturns { line, .. }
-            | Self::OpenQuote { line, .. }
-            | Self::NotUtf8 { line, .. }
-            | Self::BlockOrder { line, .. }
-            | Self::NumberFalls { line, .. }
-            | Self::NotCompleted { line, .. }
-            | Self::RowAfterComplete { line, .. } => Some(*line),
-            _ => None,
-        }
-    }
-
-    /// A stable code for programs, such as `metrics/ragged-row`.
-    pub fn code(&self) -> &'static str {
-        self.into()
     }
 }

@@ -64,12 +64,14 @@ pub struct LogCounts {
 pub fn validate_log(dir: impl AsRef<Path>) -> Validation {
     let dir = dir.as_ref();
     let mut check = Check::new(Faults::List(Listed::default()));
-    let mut problems = check.all(dir, Texts::Leave).err();
-    let mut listed = Listed::default();
-    if let Faults::List(found) = check.faults {
-        listed = found;
+    let ended = check.all(dir, Texts::Leave).err();
+    let mut listed = match check.faults {
+        Faults::List(found) => found,
+        Faults::Stop => Listed::default(),
+    };
+    if let Some(error) = ended {
+        listed.add(error);
     }
-    problems.take().into_iter().for_each(|error| listed.add(error));
     Validation {
         problems: listed.first,
         more_problems: listed.more,
