@@ -7,7 +7,7 @@ use crate::scenarios::{Missing, ScenarioFile};
 use crate::table::table;
 use clap::Args;
 use driftworld_atomic_files::ScratchFolder;
-use driftworld_text::ShownPath;
+use driftworld_text::{ShownPath, counted};
 use serde_json::json;
 
 use super::{Failure, output};
@@ -17,7 +17,8 @@ use super::{Failure, output};
 /// Five simulated agents run the scenario: one that never learns, one that learns while it is evaluated, one that only
 /// remembers what paid at each number, one that learns every variant like its own expert, and one that forgets. The
 /// audit says what the metrics, experts and checks make of each. It fails if they can be fooled: if luck is called
-/// transfer, if worlds repeat so that memory scores, if experts have another budget, or if forgetting does not show; and if the scenario cannot test one of the agents.
+/// transfer, if worlds repeat so that memory scores, if experts have another budget, or if forgetting does not show; and
+/// if the scenario cannot test one of the agents.
 ///
 /// Only rewards are simulated, so no world is rendered. 11,000 experiences take about half a minute. Reward is 100
 /// times a skill from 0 to 1, plus luck of the layout (standard deviation 10) and of the episode (20).
@@ -78,8 +79,8 @@ impl Audit {
         }
         if untested > 0 {
             return Err(Failure::input(format!(
-                "found {untested} {} that the scenario cannot test, for the reasons above, expected none: not tested is not passed",
-                if untested == 1 { "agent" } else { "agents" }
+                "found {} that the scenario cannot test, for the reasons above, expected none: not tested is not passed",
+                counted(untested, "agent")
             )));
         }
         Ok(())

@@ -48,6 +48,7 @@ pub(crate) fn wrote(path: &Path, what: impl Into<String>) {
 /// Says what was written: on standard output, or on standard error where data for a program is on the other.
 pub(crate) fn tell_what_was_written() -> Result<(), Failure> {
     let is_data = IS_DATA.swap(false, Ordering::Relaxed);
+    ANSWERS_BY_CODE.store(false, Ordering::Relaxed);
     for (path, what) in std::mem::take(&mut *written()) {
         let what = if what.is_empty() { what } else { format!(" ({what})") };
         let text = format!("wrote {}{what}", path.shown());
