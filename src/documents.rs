@@ -266,18 +266,16 @@ pub fn check(
 pub fn start_inside(name: &str, text: &str, catalogue: &Catalogue) -> Option<String> {
     let world = World::from_json(name, text).ok()?;
     let warnings = Environment::with_catalogue(world, catalogue.clone()).warnings();
-    let is_it = |warning: &Warning| {
-        let obstacle = if let Warning::StartsInside { obstacle } = warning {
-            Some(obstacle)
-        } else {
-            None
-        };
-        matches!(obstacle, Some(Obstacle::Object { .. }))
+    let is_it = |warning: &&Warning| {
+        matches!(
+            warning,
+            Warning::StartsInside {
+                obstacle: Obstacle::Object { .. }
+            }
+        )
     };
-    warnings
-        .into_iter()
-        .find(is_it)
-        .map(|warning| format!("{name}: {warning}"))
+    let found = warnings.iter().find(is_it)?;
+    Some(format!("{name}: {found}"))
 }
 
 /// Variants of a task that no scenario can hold together: a log would call them by one name.

@@ -57,7 +57,8 @@ fn unknown(name: &str) -> String {
     format!("found task {name:?}, expected the path of a task spec or one of {all}{near}")
 }
 
-/// The classes and models that objects of worlds can be of, by the libraries at hand; where one is not known, messages say how a library is named.
+/// The classes and models that objects of worlds can be of, by the libraries at hand. Where one is not known, messages say
+/// how a library is named.
 pub fn classes(catalogue: &Catalogue) -> Classes {
     catalogue
         .classes()

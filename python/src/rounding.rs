@@ -1,4 +1,4 @@
-//! Numbers rounded as everywhere, whatever another library has told the calling thread.
+//! Numbers rounded as everywhere, however another library has set the calling thread.
 
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 use std::arch::asm;
@@ -11,7 +11,7 @@ pub(crate) fn detach<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -
 }
 
 /// Does work with numbers rounded to the nearest and small ones kept, as a thread begins; threads begun by the work have that, too.
-/// What the thread was told before holds again afterwards.
+/// Afterwards the thread rounds as it did before.
 pub(crate) fn usually_rounded<T>(work: impl FnOnce() -> T) -> T {
     struct Before(Control);
     impl Drop for Before {

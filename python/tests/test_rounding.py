@@ -38,7 +38,7 @@ def rounding(mode: int) -> Any:
         maths.fesetround(before)
 
 
-#: What users bring is made before: NumPy and Python's own JSON round as the thread is told.
+#: What users bring is made before: NumPy and Python's own JSON round as the thread does.
 ACTION = np.array([0.7, 0.31, 0.0], dtype=np.float32)
 DOCUMENT = json.loads((ROOT / "examples" / "tasks" / "get_to_goal.json").read_text(encoding="utf-8"))
 

@@ -1,4 +1,5 @@
-//! Agents of which the scores are known beforehand: each says what it earns when it meets a world. A reward is 100 times the skill, plus luck.
+//! Agents of which the scores are known beforehand: each says what it earns when it meets a world. A reward is 100 times
+//! the skill, plus luck.
 
 use std::collections::BTreeMap;
 

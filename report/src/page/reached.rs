@@ -83,10 +83,12 @@ fn level(found: Option<&EvaluationCell>) -> String {
     let Some(found) = found else {
         return "–".to_owned();
     };
-    let error = |per: f64| found.standard_error.map(|error| number(error * per));
-    let (value, error) = match (found.score, found.mean) {
-        (Some(score), _) => (format!("{:.0}\u{a0}%", 100.0 * score).replace('-', "−"), None),
-        (None, mean) => (number(mean), error(1.0)),
-    };
-    error.map_or(value.clone(), |error| format!("{value} ±\u{a0}{error}"))
+    if let Some(score) = found.score {
+        return format!("{:.0}\u{a0}%", 100.0 * score).replace('-', "−");
+    }
+    let mean = number(found.mean);
+    match found.standard_error {
+        Some(error) => format!("{mean} ±\u{a0}{}", number(error)),
+        None => mean,
+    }
 }

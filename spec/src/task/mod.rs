@@ -118,7 +118,7 @@ impl TaskSpec {
         Self::from_json_with(name, text, None)
     }
 
-    /// As [`TaskSpec::from_json`], and refuses objects whose classes or models are none of these, where it is told any.
+    /// As [`TaskSpec::from_json`], and refuses objects whose classes or models are none of these, if there are any.
     ///
     /// # Errors
     /// As [`TaskSpec::from_json`].

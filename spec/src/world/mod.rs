@@ -110,7 +110,7 @@ impl World {
         Self::from_json_with(name, text, None)
     }
 
-    /// As [`World::from_json`], and refuses objects whose classes or models are none of these, where it is told any.
+    /// As [`World::from_json`], and refuses objects whose classes or models are none of these, if there are any.
     ///
     /// # Errors
     /// As [`World::from_json`].

@@ -39,8 +39,8 @@ const UNIT: f32 = 0.01;
 /// covers: 169 numbers. It knows no map, no state and no label, and remembers nothing within an episode. It is small: it finds
 /// coloured things and shows what learning one task does to others, but plans nothing and opens no door.
 ///
-/// A deed is ε-greedy (ε 0.1, in evaluations as well: [`SarsaAgent::POLICY`]) and held for 0.2 s. All that it draws comes from the seed of the episode, so a
-/// lifetime can be repeated to the bit.
+/// A deed is ε-greedy (ε 0.1, in evaluations as well: [`SarsaAgent::POLICY`]) and held for 0.2 s. All that it draws comes from
+/// the seed of the episode, so a lifetime can be repeated to the bit.
 ///
 /// # Source
 /// Sutton and Barto, *Reinforcement Learning*, 2nd edition, section 12.7, with accumulating traces.
