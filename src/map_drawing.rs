@@ -156,7 +156,9 @@ pub(crate) fn annotated(world: &World, scene: &Scene, moves: &Moves, ground: Pic
         let own = all
             .iter()
             .find(|(at, _)| points.first().is_some_and(|start| apart(*at, *start) < 0.5));
-        let points = own.map_or_else(|| points.clone(), |(_, radius)| from_rim(&points, *radius + 1.5 * thin));
+        // Of a thing smaller than a pixel, the pixel that it is in stays as it is.
+        let rim = |radius: f32| radius.max(1.5) + 1.5 * thin;
+        let points = own.map_or_else(|| points.clone(), |(_, radius)| from_rim(&points, rim(*radius)));
         map.line(points.clone(), 3.0 * thin, INK);
         map.line(points.clone(), 1.8 * thin, TRAIL);
         if let Some(end) = points.last() {
