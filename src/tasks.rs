@@ -39,6 +39,19 @@ pub enum TaskError {
     /// The document is wrong, or has no such variant.
     #[error(transparent)]
     Spec(#[from] SpecError),
+    /// The name is one of a family or a pattern where one variant is wanted.
+    #[error(
+        "{}: found a name of {count} variants, expected one of them, such as {first}",
+        printable(name)
+    )]
+    Several {
+        /// The name asked for.
+        name: String,
+        /// How many variants it stands for.
+        count: usize,
+        /// The first of them.
+        first: String,
+    },
 }
 
 /// That there is no such file, for a name that is a path; else that there is no such task.
@@ -148,8 +161,19 @@ pub fn task(name: &str) -> Result<Arc<TaskSpec>, TaskError> {
 /// # Errors
 /// [`TaskError`] if there is none, or the document is wrong.
 pub fn variant(name: &str) -> Result<Variant, TaskError> {
-    let (_, variant) = split(name);
-    Ok(task(name)?.variant(variant.unwrap_or(DEFAULT_VARIANT))?)
+    let own = split(name).1.unwrap_or(DEFAULT_VARIANT);
+    let task = task(name)?;
+    task.variant(own).map_err(|error| match variants_called(&task, own) {
+        Ok(several) => TaskError::Several {
+            name: name.to_owned(),
+            count: several.len(),
+            first: several
+                .first()
+                .map(|variant| variant.name().to_owned())
+                .unwrap_or_default(),
+        },
+        Err(_) => error.into(),
+    })
 }
 
 /// The variants that a name stands for: the one behind `#`, the members of the family behind `#`, those whose names fit a pattern
@@ -195,6 +219,11 @@ fn fits(pattern: &str, name: &str) -> bool {
     }
 }
 
+/// Whether a name is neither a path nor near to the name of a built-in task.
+fn is_word(name: &str) -> bool {
+    !name.contains(['/', '\\', '.']) && did_you_mean(name, built_in_names()).is_empty()
+}
+
 /// Whether something is there that can be read; a folder, which may be called as a variant is, is none.
 fn is_document(path: &Path) -> bool {
     path.exists() && !path.is_dir()
@@ -211,8 +240,15 @@ pub(crate) fn with_tasks(names: &[String]) -> Vec<String> {
         if !is_task && let Some((task, _)) = known.iter().rev().find(|(_, spec)| variants_called(spec, name).is_ok()) {
             return format!("{task}#{name}");
         }
-        if let Ok(spec) = task(of) {
-            known.push((of.to_owned(), spec));
+        match task(of) {
+            Ok(spec) => known.push((of.to_owned(), spec)),
+            // Behind a task a word is a variant of it, misspelt; unless it is near to the name of a task, or a path.
+            Err(TaskError::Unknown { .. }) if own.is_none() && is_word(name) => {
+                if let Some((task, _)) = known.last() {
+                    return format!("{task}#{name}");
+                }
+            }
+            Err(_) => {}
         }
         name.clone()
     });
@@ -289,11 +325,12 @@ mod tests {
             "found task \"find_object\", expected the path of a task spec or one of find_objects, get_to_goal, \
              select_object, moving_object, scavenger_hunt, blue_red_green; did you mean \"find_objects\"?"
         );
-        assert_eq!(
-            variant("find_objects#rde").unwrap_err().to_string(),
-            "find_objects: found variant \"rde\", expected one of blue, red, green, dusk, huddle, penalty, \
-             spheres, clearing, wide, modest, poor, half, turned, interact, near, held, long_held, slim, slow, \
-             stiff and 17 more; did you mean \"red\"?"
+        let near = "did you mean \"red\"?";
+        assert!(variant("find_objects#rde").unwrap_err().to_string().ends_with(near));
+        let several = variant("find_objects#any_*").unwrap_err().to_string();
+        assert!(
+            several.ends_with("expected one of them, such as any_light"),
+            "{several}"
         );
     }
 
@@ -333,7 +370,7 @@ mod tests {
         // A folder of the name of a variant is no document: this crate has one that is called `docs`.
         assert!(!is_document(Path::new("docs")) && is_document(Path::new("Cargo.toml")));
         let unknown = variants_of(&["find_objects#red".to_owned(), "dsk".to_owned()]).unwrap_err();
-        assert!(unknown.to_string().starts_with("found task \"dsk\""), "{unknown}");
+        assert!(unknown.to_string().ends_with("did you mean \"dusk\"?"), "{unknown}");
         assert!(fits("a*c", "abcc") && !fits("a*c", "abcd") && fits("*", "") && !fits("a", "ab"));
     }
 }

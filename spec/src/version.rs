@@ -49,7 +49,12 @@ impl Format {
         if found > u64::from(self.current) {
             let name = self.name;
             let expected = format!("a {name} of version {} or older", self.current);
-            let advice = "it was made for a newer Driftworld: update driftworld to read it";
+            // What nothing else tells apart is read as a world; task specs alone have come so far.
+            let advice = if self.name == "world" && found <= u64::from(TASK.current) {
+                "it may be a task spec, which has a name: {\"version\": 2, \"name\": …}"
+            } else {
+                "it was made for a newer Driftworld: update driftworld to read it"
+            };
             return Some(
                 Problem::new("spec/newer-version", "/version", format!("version {found}"), expected).advise(advice),
             );

@@ -206,9 +206,9 @@ impl<'a> Figures<'a> {
     fn titled(&self, figure: Figure) -> Paper {
         let what = match figure {
             Figure::Raw => "Raw and smoothed values",
-            Figure::Learning => "Learning performance",
-            Figure::Evaluation => "Evaluation performance, means with 95 % intervals",
-            Figure::Experts => "Learning against the single-task expert",
+            Figure::Learning => "Learning performance, scaled as for the metrics",
+            Figure::Evaluation => "Evaluation performance, scaled as for the metrics: means with 95 % intervals",
+            Figure::Experts => "Learning against the single-task expert, scaled as for the metrics",
             Figure::Timeline => "Curriculum",
         };
         Paper {
