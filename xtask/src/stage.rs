@@ -82,7 +82,7 @@ pub(crate) const STAGES: [Stage; 17] = [
         "schemas/*.json and docs/reference/*.md equal what the Rust types generate",
         schemas::check,
     ),
-    quick(
+    slow(
         "wheel",
         "`pip install ./python` does what the README says",
         python::wheel,
