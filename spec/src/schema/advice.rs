@@ -3,6 +3,7 @@
 use driftworld_text::{WordKind, removed};
 use serde_json::Value;
 
+use crate::Element;
 use crate::error::nearest;
 
 /// The advice for a word that earlier releases took at a place.
@@ -27,6 +28,14 @@ pub(super) fn for_types(value: &Value, allows: impl Fn(&str) -> bool) -> Option<
         _ => return None,
     };
     allows("boolean").then(|| format!("write {truth}, without quotes"))
+}
+
+/// The advice for the word of an element of the decision process where its letter is wanted: `R` for `reward`.
+pub(super) fn for_element(value: &Value) -> Option<String> {
+    let word = value.as_str()?.to_lowercase();
+    let named = |element: &Element| nearest(&word, [element.name()]).is_some();
+    let element = Element::WITH_FINE.into_iter().find(named)?;
+    Some(format!("did you mean {:?}?", element.letter()))
 }
 
 /// The advice for a word that stands alone where a list of such words is wanted.

@@ -353,6 +353,9 @@ fn advice_for(value: &Value, forms: &[Form], words: &[&str]) -> Option<String> {
             if let Some(near) = nearest(text, words) {
                 return Some(format!("did you mean {near:?}?"));
             }
+            if words.contains(&"phi") {
+                return advice::for_element(value);
+            }
             if let Some(parameter) = text.strip_prefix('$').filter(|_| tags.contains(&"param")) {
                 return Some(format!("write {{\"param\": {parameter:?}}}"));
             }
