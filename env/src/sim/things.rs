@@ -3,7 +3,7 @@
 
 use driftworld_spec::{Object, Stimulus, SwitchAction, World};
 
-use super::collision_world::{CollisionWorld, slot};
+use super::collision_world::{CollisionWorld, EDGE, slot};
 use super::doors::{close_soon, open, waits_to_close};
 use super::event::Effect;
 use super::footprint::Point;
@@ -100,7 +100,9 @@ pub(crate) fn put_down_place(sim: SimRef) -> Option<(u32, [f32; 2])> {
     let ahead = sim.world.agent_params.agent_width as f32 / 2.0 + radius + APART;
     let [east, north] = agent.forward();
     let place = [agent.position[0] + east * ahead, agent.position[1] + north * ahead];
-    let is_free = sim.views.bodies.is_way_free(agent.position, place, f64::from(radius));
+    // Beyond the edge of worlds nothing can be said to stand.
+    let is_inside = place.iter().all(|metres| metres.abs() <= EDGE);
+    let is_free = is_inside && sim.views.bodies.is_way_free(agent.position, place, f64::from(radius));
     is_free.then_some((index, place))
 }
 

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use serde_json::Value as Json;
 
-use crate::assignment::Assignment;
+use crate::assignment::{Assignment, MAX_ASSIGNED};
 use crate::scalar::relative_difference;
 
 /// Metres between two points that count 1, as between two objects.
@@ -206,15 +206,20 @@ fn between_things(a: &[Vec<(u32, Leaf)>], b: &[Vec<(u32, Leaf)>]) -> f64 {
     };
     // What is left over counts in full: so it is cheapest to match all of the fewer.
     let over = |a: &[(u32, Leaf)], b: &[(u32, Leaf)]| apart(a, b) - size(b);
-    let costs: Vec<f64> = fewer
-        .iter()
-        .flat_map(|one| more.iter().map(|other| over(one, other)))
-        .collect();
     let all: f64 = more.iter().map(|thing| size(thing)).sum();
     // More things than an assignment takes are compared in their order.
-    let matched = Assignment::new()
-        .solve(&costs, fewer.len(), more.len())
-        .unwrap_or_else(|_| fewer.iter().zip(&more).map(|(one, other)| over(one, other)).sum());
+    let in_order = || fewer.iter().zip(&more).map(|(one, other)| over(one, other)).sum();
+    let matched = if more.len() <= MAX_ASSIGNED {
+        let costs: Vec<f64> = fewer
+            .iter()
+            .flat_map(|one| more.iter().map(|other| over(one, other)))
+            .collect();
+        Assignment::new()
+            .solve(&costs, fewer.len(), more.len())
+            .unwrap_or_else(|_| in_order())
+    } else {
+        in_order()
+    };
     (all + matched).max(0.0)
 }
 

@@ -4,7 +4,7 @@
 use std::cell::RefCell;
 use std::cmp::Ordering;
 
-use crate::assignment::Assignment;
+use crate::assignment::{Assignment, MAX_ASSIGNED};
 use crate::combined::kinds::Kinds;
 #[cfg(test)]
 use crate::combined::kinds::KindsApart;
@@ -88,12 +88,14 @@ pub(super) fn each_match<'a>(
              is_met,
          }| {
             costs.clear();
-            if is_of_one_kind(fewer) && is_of_one_kind(more) {
+            // More objects than an assignment takes are compared in their order: what each would cost is gigabytes, and not asked.
+            let may_solve = more.len() <= MAX_ASSIGNED;
+            if may_solve && is_of_one_kind(fewer) && is_of_one_kind(more) {
                 // What the kinds cost is the same whichever are matched.
                 for one in fewer {
                     costs.extend(more.iter().map(|other| one.cost_of_place(other)));
                 }
-            } else {
+            } else if may_solve {
                 Kinds::with(|kinds| {
                     for one in fewer {
                         let cost = |other| one.cost_of_place(other) + kinds.apart(one, other).cost;
@@ -101,8 +103,8 @@ pub(super) fn each_match<'a>(
                     }
                 });
             }
-            // All are finite and within the limits of an assignment; more objects than it takes are compared in their order.
-            let is_solved = assignment.solve(costs, fewer.len(), more.len()).is_ok();
+            // All are finite.
+            let is_solved = may_solve && assignment.solve(costs, fewer.len(), more.len()).is_ok();
             let partner = |index: usize| {
                 if is_solved {
                     assignment.partners()[index]
