@@ -51,6 +51,24 @@ impl Designed {
     }
 }
 
+/// Most regimes of all lifetimes together: with their words some 2 GiB.
+const MAX_REGIMES: usize = 4_000_000;
+
+/// Refuses lifetimes that have no room in memory, by the scenarios of the first.
+fn refuse_too_many<'a>(lifetimes: usize, first: impl Iterator<Item = &'a Scenario>) -> Result<(), Failure> {
+    let regimes: usize = first
+        .flat_map(|scenario| &scenario.blocks)
+        .map(|block| block.regimes.len())
+        .sum();
+    if regimes.saturating_mul(lifetimes) <= MAX_REGIMES {
+        return Ok(());
+    }
+    Err(Failure::input(format!(
+        "lifetimes: found {lifetimes} of {regimes} regimes each, expected at most {MAX_REGIMES} regimes together: fewer \
+         lifetimes, variants or evaluations"
+    )))
+}
+
 /// Designs what a request asks for. A few worlds of everything are drawn, and every variant on the way of a drift is looked
 /// at: what could not be run is refused.
 ///
@@ -88,6 +106,9 @@ pub fn design(request: &DesignRequest) -> Result<Designed, Failure> {
         }
         if request.experts {
             experts.extend(single_task(&picked, lifetime)?);
+        }
+        if lifetime.lifetime == 0 {
+            refuse_too_many(lifetimes.len(), scenarios.iter().chain(&experts))?;
         }
     }
     let mut controls = Vec::new();

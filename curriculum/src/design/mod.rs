@@ -16,8 +16,8 @@ mod walk;
 use std::collections::BTreeSet;
 
 use driftworld_spec::{
-    Block, BlockKind, BlockMix, MAX_EXPERIENCES, Phase, Regime, Scenario, ScenarioComplexity, ScenarioDifficulty,
-    ScenarioForm, TaskLabel,
+    Block, BlockKind, BlockMix, MAX_EXPERIENCES, MAX_SCENARIO_VALUES, Phase, Regime, Scenario, ScenarioComplexity,
+    ScenarioDifficulty, ScenarioForm, TaskLabel,
 };
 
 pub use choice::Choice;
@@ -145,13 +145,25 @@ pub fn design_control(variants: &[Choice], order: &[usize], options: &Design) ->
     arranged(variants, options, Some(order))
 }
 
+/// More regimes than a document has room for: each has five values or more.
+const MAX_REGIMES: usize = MAX_SCENARIO_VALUES / 5;
+
 fn arranged(variants: &[Choice], options: &Design, control: Option<&[usize]>) -> Result<Scenario, CurriculumError> {
     check(variants, options)?;
     let streams = Streams::new(variants, options);
     let (path, lessons) = lessons(variants, options, control, &streams)?;
     let places = options.evaluation.places(lessons.len() as u32)?;
     let evaluated = variants.iter().chain(&options.held_out);
-    let evaluation = evaluated.map(|choice| streams.evaluation(choice)).collect();
+    let evaluation: Vec<Regime> = evaluated.map(|choice| streams.evaluation(choice)).collect();
+    let regimes = lessons.iter().map(Vec::len).sum::<usize>() + places.len() * evaluation.len();
+    if regimes > MAX_REGIMES {
+        return Err(CurriculumError::bad_form(
+            "chosen",
+            variants.len(),
+            options.blocks,
+            format!("a scenario of at most {MAX_REGIMES} regimes, not {regimes}: fewer variants, or fewer evaluations"),
+        ));
+    }
     let before = before_deployment(&variants[path[0]], options, &streams);
     Ok(scenario(options, before, lessons, &places, evaluation))
 }
