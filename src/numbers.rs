@@ -9,6 +9,25 @@ pub(crate) fn seed(text: &str) -> Result<u64, String> {
         .map_err(|_| format!("expected a whole number from 0 to {}", u64::MAX))
 }
 
+/// An angle in degrees.
+pub(crate) fn degrees(text: &str) -> Result<f64, String> {
+    within(
+        text,
+        |degrees| degrees.abs() <= 1e6,
+        "an angle in degrees, from -1000000 to 1000000",
+    )
+}
+
+/// A share, between 0 and 1.
+pub(crate) fn share(text: &str) -> Result<f64, String> {
+    within(text, |share| 0.0 < share && share < 1.0, "a share above 0 and below 1")
+}
+
+fn within(text: &str, is_sound: impl FnOnce(f64) -> bool, expected: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number| is_sound(*number));
+    number.ok_or_else(|| format!("expected {expected}"))
+}
+
 /// Words that stand for the same in documents, each with what help says of it behind a colon, if anything.
 pub(crate) fn documented<T>(words: &'static [&'static str]) -> impl TypedValueParser<Value = T>
 where

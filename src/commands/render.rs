@@ -34,7 +34,7 @@ pub(crate) struct Render {
     #[arg(long, default_value_t = 360, value_parser = clap::value_parser!(u32).range(1..=4096))]
     size: u32,
     /// Turn the first-person camera clockwise from the agent's heading, in degrees.
-    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true, value_parser = crate::numbers::degrees)]
     turn: f64,
     /// Number of frames of `--view episode` [default: 8].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(2..=60))]

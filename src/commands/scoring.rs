@@ -82,7 +82,7 @@ pub(crate) struct Intervals {
     #[arg(long)]
     pub(crate) common_ranges: bool,
     /// Confidence level of the bootstrap intervals.
-    #[arg(long, value_name = "SHARE", default_value_t = BootstrapOptions::default().confidence)]
+    #[arg(long, value_name = "SHARE", default_value_t = BootstrapOptions::default().confidence, value_parser = crate::numbers::share)]
     confidence: f64,
     /// Number of bootstrap resamples. Use 50000 for a published figure.
     #[arg(long, value_name = "N", default_value_t = BootstrapOptions::default().resamples)]

@@ -43,7 +43,7 @@ pub(crate) struct Sheet {
     #[arg(long)]
     index: Option<u64>,
     /// Turn the first-person cameras clockwise from the agent's heading, in degrees [default: as shows most].
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, allow_negative_numbers = true, value_parser = crate::numbers::degrees)]
     turn: Option<f64>,
     /// Height of each picture in pixels.
     #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u32).range(32..=480))]
