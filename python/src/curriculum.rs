@@ -266,6 +266,11 @@ impl PyJournal {
         Ok(to_py(py, &summary)?)
     }
 
+    /// Takes back the block that was logged last, of an agent that was refused by it.
+    fn withdraw_block(&mut self) -> Result<()> {
+        Ok(self.open()?.withdraw_block()?)
+    }
+
     /// How many experiences are in the log.
     fn __len__(&mut self) -> Result<usize> {
         let logged = self.open()?.num_experiences();

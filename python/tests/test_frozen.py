@@ -121,3 +121,19 @@ def test_a_frozen_agent_is_never_refused(name: str, num_envs: int | None) -> Non
     for seed in range(2):
         assert run(Uniform, name, seed, num_envs).finished
     assert run(FromNumpy, name, 0, num_envs, check_frozen=False).finished
+
+
+@pytest.mark.parametrize("num_envs", [None, 2], ids=["run", "run_vector"])
+def test_a_refused_lifetime_is_refused_again_and_goes_on_with_a_frozen_agent(tmp_path: Path, num_envs: int | None) -> None:
+    curriculum = Curriculum.design("find_objects#blue", "find_objects#red", learn=1, eval_episodes=2, seed=0)
+
+    def live(kind: type[Uniform]) -> Any:
+        agent = kind() if num_envs is None else Many(kind, num_envs)
+        agent.name = "one"  # type: ignore[union-attr]
+        run = curriculum.run if num_envs is None else lambda agent, **more: curriculum.run_vector(agent, num_envs=2, **more)
+        return run(agent, log=tmp_path / "log", modalities="rgb", size=8, max_steps=6)  # type: ignore[operator]
+
+    for _ in range(3):
+        with pytest.raises(CurriculumError, match="block 0: found another action"):
+            live(FromNumpy)
+    assert live(Uniform).finished

@@ -237,6 +237,16 @@ impl Journal {
         self.summary.num_over()
     }
 
+    /// Takes back the block that was logged last: an agent that may not be judged by it gets no rows, and a log that is taken up
+    /// runs it again. The journal is not to be used any more.
+    ///
+    /// # Errors
+    /// [`CurriculumError::Log`].
+    pub fn withdraw_block(&mut self) -> Result<(), CurriculumError> {
+        self.recordings = None;
+        Ok(self.writer.withdraw_block()?)
+    }
+
     /// Ends the log: asks the disk to have all of it.
     ///
     /// # Errors

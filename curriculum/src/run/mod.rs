@@ -198,7 +198,11 @@ fn run_in_parallel(
             Outcome::CutOff => return Ok(ControlFlow::Break(())),
             Outcome::Over { experience, .. } if is_repeat => {
                 if let (Some((reward, first)), Some(again)) = (evaluated.remove(&number), trace) {
-                    rollout::expect_frozen(plan, number, (reward, &first), (experience.reward, &again))?;
+                    let checked = rollout::expect_frozen(plan, number, (reward, &first), (experience.reward, &again));
+                    if checked.is_err() {
+                        journal.withdraw_block()?;
+                    }
+                    checked?;
                 }
                 return Ok(ControlFlow::Continue(()));
             }

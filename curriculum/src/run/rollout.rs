@@ -182,7 +182,11 @@ pub(super) fn run_range<R: Rollout>(
                 let Some(again) = rollout.experience(number, world)? else {
                     return Ok(ControlFlow::Break(()));
                 };
-                expect_frozen(plan, number, (reward, &trace), (again.reward, &rollout.trace()))?;
+                let checked = expect_frozen(plan, number, (reward, &trace), (again.reward, &rollout.trace()));
+                if checked.is_err() {
+                    journal.withdraw_block()?;
+                }
+                checked?;
             }
         }
     }

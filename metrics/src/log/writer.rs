@@ -144,6 +144,20 @@ impl LogWriter {
         Ok(())
     }
 
+    /// Takes back the block that was written last, as if it had never begun: its folder goes, with all that is in it.
+    ///
+    /// # Errors
+    /// [`MetricsError::Io`]; [`MetricsError::FolderLost`] when the log is no longer there.
+    pub fn withdraw_block(&mut self) -> Result<(), MetricsError> {
+        self.check_folder()?;
+        let Some(open) = self.file.take() else { return Ok(()) };
+        let rows = self.dir().join(&open.inside);
+        let folder = rows.parent().unwrap_or(&rows);
+        // The rows first: a log without them goes on with this block, whatever else is left of it.
+        let removed = fs::remove_file(&rows).and_then(|()| fs::remove_dir_all(folder));
+        removed.map_err(MetricsError::io(folder, "take back the block"))
+    }
+
     /// Ends the log: nothing is pending, since every record was flushed; this asks the disk to have it, too, and looks
     /// whether all of it is there.
     ///

@@ -204,7 +204,13 @@ class Lifetime:
                 lived.record()
             done = len(journal)
             self._own_saves(done, {"scenario": self._plan.scenario(), "agent": name, **notes})
-            said = journal.run(self._plan, lived, self._load(done), self._check_frozen)
+            try:
+                said = journal.run(self._plan, lived, self._load(done), self._check_frozen)
+            except CurriculumError as error:
+                # Else the same call would go on behind what was refused.
+                if error.code == "curriculum/not-frozen":
+                    journal.withdraw_block()
+                raise
         return Summary(**said, log=self._log)
 
     def _own_saves(self, done: int, lifetime: dict[str, Any]) -> None:
