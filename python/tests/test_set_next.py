@@ -142,6 +142,25 @@ def test_the_old_word_is_refused_with_the_new_one() -> None:
         gym.make(FIND, task_label="obs")
 
 
+def test_with_a_mask_each_takes_a_queue_for_itself() -> None:
+    envs, alone = many(4, "next_step"), gym.make(FIND, max_episode_steps=4, **OPTIONS)
+    envs.reset(seed=0)
+    queue = ["red", "dusk", "near"]
+    envs.reset(options={"queue": queue, "reset_mask": np.arange(4) >= 2})
+    for _ in range(6):
+        _, told = alone.reset(options={"queue": queue} if _ == 0 else None)
+        assert [envs.origin(env)["variant_id"] for env in (2, 3)] == [told["variant_id"]] * 2
+        for _ in range(5):
+            envs.step(np.zeros(4, dtype=np.int64))
+
+
+def test_the_first_observation_of_one_carries_its_label() -> None:
+    envs = many(2, "next_step", variant="near", task_label="observation")
+    envs.reset(seed=0)
+    first, told = envs.reset_one(1, options={"variant": "red"})
+    assert first["task"].argmax() == envs._members.label_number(1) and told["variant_id"] == "find_objects#red"
+
+
 @pytest.mark.learners
 def test_sb3_learns_another_variant_without_a_reset() -> None:
     pytest.importorskip("stable_baselines3", reason="the adapter is for it")
@@ -164,3 +183,13 @@ def test_sb3_learns_another_variant_without_a_reset() -> None:
     assert [set(names) for names in begun] == [{"find_objects#red"}, {"find_objects#blue"}]
     with pytest.raises(ValueError, match="set_options: found 'varaint'"):
         envs.set_options({"varaint": "red"})
+    # A wrong one among several changes none, and is not asked for again.
+    envs.set_options({"variant": "near"})
+    with pytest.raises(driftworld.errors.TaskError, match="nope"):
+        envs.set_options([{"variant": "red"}, {"variant": "nope"}])
+    envs.reset()
+    assert envs.env_method("origin")[0]["variant_id"] == "find_objects#near"
+    # As an environment alone has it, each takes a queue from its start.
+    envs.set_options([{"queue": ["red", "dusk"]}] * 2)
+    envs.reset()
+    assert [origin["variant_id"] for origin in envs.env_method("origin")] == ["find_objects#red"] * 2

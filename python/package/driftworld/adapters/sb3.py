@@ -89,7 +89,8 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
             copy=True,
             **options,
         )
-        self._parts = [Part(cast(Any, self.envs.unwrapped), index) for index in range(num_envs)]
+        self._native = cast(driftworld.DriftworldVectorEnv, self.envs.unwrapped)
+        self._parts = [Part(self._native, index) for index in range(num_envs)]
         self._actions: npt.NDArray[Any] | None = None
         super().__init__(num_envs, self.envs.single_observation_space, self.envs.single_action_space)
 
@@ -108,11 +109,18 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
                 ``[{"variant": "red"}, {"variant": "blue"}]``. :meth:`reset` asks for them once more.
         """
         super().set_options(cast(Any, options))
-        for asked, mask in self._groups():
-            unknown = sorted(asked.keys() - _NEXT)
-            if unknown:
-                self._reset_options()
-                raise ValueError(f"set_options: found {unknown[0]!r}, expected some of {', '.join(_NEXT)}")
+        groups = self._groups()
+        try:
+            for asked, _ in groups:
+                unknown = sorted(asked.keys() - _NEXT)
+                if unknown:
+                    raise ValueError(f"set_options: found {unknown[0]!r}, expected some of {', '.join(_NEXT)}")
+                # Wrong ones change nothing anywhere.
+                self._native.check_next(**asked)
+        except Exception:
+            self._reset_options()
+            raise
+        for asked, mask in groups:
             self.envs.set_next(**asked, mask=mask)
 
     def reset(self) -> Any:
@@ -125,9 +133,8 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
         try:
             for options, mask in self._groups():
                 seeds = [seed if is_in else None for seed, is_in in zip(self._seeds, mask, strict=True)]
-                asked: dict[str, Any] = dict(options)
-                if not mask.all():
-                    asked["reset_mask"] = mask
+                # With a mask, also one of all: as a single environment has it, each takes a queue for itself.
+                asked: dict[str, Any] = {**options, "reset_mask": mask}
                 observations, told = self.envs.reset(
                     seed=seeds if any(seed is not None for seed in seeds) else None, options=asked
                 )

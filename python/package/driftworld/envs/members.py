@@ -171,12 +171,13 @@ class Members:
                 self._covering.add(option)
                 warnings.warn(told, stacklevel=2)
 
-    def checked(self, options: Mapping[str, Any], *, many: bool) -> Prepared:
+    def checked(self, options: Mapping[str, Any], *, many: bool, deals: bool = False) -> Prepared:
         """What the options of a reset ask for, looked through before anything is changed.
 
         Args:
             options: As users hand them to ``reset``.
             many: Whether there may be one variant for each environment.
+            deals: Whether a queue is dealt out to all; else each environment has it for itself.
         """
         known = ["variant", "index", "world", "queue", *(["variants"] if many else [])]
         unknown = [key for key in options if key not in known]
@@ -185,7 +186,7 @@ class Members:
             raise ValueError(f"options: found {unknown[0]!r}, expected some of {', '.join(known)}{also}")
         if sum(options.get(key) is not None for key in ("variant", "variants", "queue")) > 1:
             raise ValueError("options: found several of variant, variants and queue, expected one of them")
-        sources = self._new_sources(options, many)
+        sources = self._new_sources(options, deals)
         streams = None if sources is None else self._streams(sources)
         world = options.get("world")
         given = None
@@ -233,7 +234,7 @@ class Members:
             if number is not None:
                 self.batch.index(env, number)
 
-    def _new_sources(self, options: Mapping[str, Any], many: bool) -> list[Source] | None:
+    def _new_sources(self, options: Mapping[str, Any], deals: bool) -> list[Source] | None:
         if options.get("variant") is not None:
             return [OneVariant(self._home.variant(options["variant"], "variant"))] * self.num_envs
         if options.get("variants") is not None:
@@ -243,7 +244,7 @@ class Members:
             return [OneVariant(self._home.variant(variant, "variant")) for variant in variants]
         if options.get("queue") is not None:
             queue = self._home.queue(_listed(options["queue"], "queue"))
-            return [queue if many else OwnQueue(queue.variants, queue.order)] * self.num_envs
+            return [queue if deals else OwnQueue(queue.variants, queue.order)] * self.num_envs
         return None
 
     def _indices(self, index: Any) -> list[int] | None:

@@ -12,8 +12,10 @@ from driftworld.envs.options import Options
 
 #: Depth of the sky in metres; nothing is farther.
 FAR_DEPTH = 1000.0
-#: Rewards and velocities have no bound of their own; a space wants one.
+#: Velocities have no bound of their own; a space wants one.
 _LARGE = 1e6
+#: Nor have rewards; each part of one is at most 1e9.
+_REWARD = 1e12
 #: Least and greatest value of each number of a state feature.
 _FEATURES: dict[str, list[tuple[float, float]]] = {
     "position": [(-300.0, 300.0)] * 2,
@@ -24,12 +26,12 @@ _FEATURES: dict[str, list[tuple[float, float]]] = {
     "goal": [(-1000.0, 1000.0)] * 2 + [(0.0, 1.0)],
     "nearest_target": [(-1000.0, 1000.0)] * 2 + [(0.0, 1.0)],
     "counts": [(0.0, _LARGE)] * 2,
-    "last_reward": [(-_LARGE, _LARGE)],
-    "last_event": [(0.0, 3.0), (-_LARGE, _LARGE), (0.0, 1.0)],
+    "last_reward": [(-_REWARD, _REWARD)],
+    "last_event": [(0.0, 3.0), (-_REWARD, _REWARD), (0.0, 1.0)],
     "steps_left": [(0.0, 1.0)],
     "carrying": [(0.0, 100.0), (0.0, 65535.0), (0.0, 100_000.0)],
     "energy": [(0.0, 1e9)],
-    "zone": [(0.0, 1000.0), (-1e12, 1e12)],
+    "zone": [(0.0, 1000.0), (-_REWARD, _REWARD)],
 }
 
 

@@ -178,7 +178,7 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
                 its own from a list; ``None`` goes on. (Gymnasium's own loops add 0, 1, 2 and so on, so that two seeds share worlds.)
             options: As for :meth:`DriftworldEnv.reset`, for all environments; and ``"variants"``, a variant for each; ``"index"`` may
                 be a list; a ``"queue"`` is dealt out like cards, episode after episode; ``"reset_mask"``, bool (num_envs,), says
-                which environments begin, the others go on.
+                which environments begin, the others go on. With a mask, each of these takes a queue for itself, from its start.
 
         Returns:
             Observations and infos, as :class:`gymnasium.vector.SyncVectorEnv` has them.
@@ -190,7 +190,7 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
             mask = self._mask(mask, "options['reset_mask']", at_least=1)
         seeds = self._seeds(seed)
         members = self._members
-        prepared = members.checked(options, many=True)
+        prepared = members.checked(options, many=True, deals=mask is None)
         chosen = range(self.num_envs) if mask is None else np.flatnonzero(mask).tolist()
         self._begin(chosen, seeds, prepared, mask)
         infos: dict[str, Any] = {}
@@ -212,7 +212,9 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         prepared = members.checked(options or {}, many=False)
         own = self._seeds([seed if one == env else None for one in range(self.num_envs)])[env]
         self._begin([env], [own] * self.num_envs, prepared, np.arange(self.num_envs) == env)
-        return members.observation(env), members.reset_info(env)
+        # The label that an observation carries is noted with the info.
+        info = members.reset_info(env)
+        return members.observation(env), info
 
     def set_next(
         self, *, variant: Any = None, index: Any = None, world: Any = None, queue: Any = None, mask: Any = None
@@ -232,6 +234,10 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         """
         chosen = range(self.num_envs) if mask is None else np.flatnonzero(self._mask(mask, "mask")).tolist()
         self._members.set_next(chosen, {"variant": variant, "index": index, "world": world, "queue": queue})
+
+    def check_next(self, **asked: Any) -> None:
+        """Refuses what :meth:`set_next` would refuse of one environment, and changes nothing."""
+        self._members.checked(asked, many=False)
 
     def set_next_one(self, env: int, **asked: Any) -> None:
         """The same for one environment, as :meth:`DriftworldEnv.set_next` takes it."""
