@@ -87,6 +87,30 @@ LAYOUT: dict[str, tuple[str, str, dict[str, list[str]]]] = {
             "driftworld.adapters.pufferlib": ["DriftworldPuffer"],
         },
     ),
+    "learners": (
+        "Continual learners",
+        "PPO and continual methods for `Curriculum.run_vector`. They need PyTorch. [How they are used](../how-to/learners.md).",
+        {
+            "driftworld.learners": [
+                "PPO",
+                "Settings",
+                "Learner",
+                "Rollout",
+                "PatchNetwork",
+                "RecurrentNetwork",
+                "FineTuning",
+                "ResetOptimizer",
+                "FromScratch",
+                "L2",
+                "EWC",
+                "OnlineEWC",
+                "PackNet",
+                "CLEAR",
+                "ShrinkAndPerturb",
+                "RecurrentPPO",
+            ]
+        },
+    ),
     "errors": (
         "Errors",
         "One base, and one subclass for each part of the toolkit.",

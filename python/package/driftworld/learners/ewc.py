@@ -1,0 +1,143 @@
+"""EWC: a spring from every weight to where it was, as strong as the weight was important for the policy.
+
+EWC (Kirkpatrick et al. 2017, arXiv:1612.00796, eq. 3) has a set of springs for each finished task k:
+
+    loss = loss of PPO + strength / 2 · Σₖ Σᵢ Fₖᵢ (θᵢ − θₖᵢ*)²,
+    Fₖᵢ = mean over the task's observations s of Σₐ π(a|s) (∂ log π(a|s) / ∂θᵢ)².
+
+Online EWC (Schwarz et al. 2018, arXiv:1805.06370, eq. 9) has one set: F ← decay · F + Fₖ, and θ* are the last task's weights.
+
+Known traps:
+
+- The square is of each sample's gradient. The square of a batch's mean gradient is another thing, and almost 0 after learning.
+- Actions are weighted by the policy, not by what was done: else it is the empirical Fisher.
+- Fisher information falls as a policy becomes certain, so that the best learned tasks are held least. Importances are therefore
+  scaled to mean 1 in each task, over the tensors that the policy depends on; ``strength`` then means the same everywhere.
+- The policy does not depend on the value's head: nothing holds that one.
+- A task that comes again gets a second set of springs, which pull to another place than the first.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import torch
+from torch import nn
+from torch.func import functional_call, grad, vmap
+
+from driftworld.learners.ppo import PPO
+
+Weights = dict[str, torch.Tensor]
+
+
+def fisher(network: nn.Module, images: torch.Tensor, chunk: int = 32) -> Weights:
+    """The diagonal of the policy's Fisher information, for each parameter of a network: squares per sample, actions by the policy.
+
+    Args:
+        network: Maps images ``(n, …)`` to log-probabilities ``(n, num_actions)`` and anything else.
+        images: What is seen, ``(n, …)``, from 1.
+        chunk: Images at a time; each needs memory for the gradients of all weights.
+    """
+    weights = {name: weight.detach() for name, weight in network.named_parameters()}
+
+    def log_probability(weights: Weights, image: torch.Tensor, action: torch.Tensor) -> torch.Tensor:
+        log_policy = functional_call(network, weights, (image.unsqueeze(0),))[0]
+        return log_policy.squeeze(0).gather(0, action.unsqueeze(0)).squeeze(0)
+
+    gradients = vmap(grad(log_probability), in_dims=(None, 0, 0))
+    total = {name: torch.zeros_like(weight) for name, weight in weights.items()}
+    for some in images.split(chunk):
+        with torch.no_grad():
+            policy = network(some)[0].exp()
+        for action in range(policy.shape[1]):
+            found = gradients(weights, some, torch.full((len(some),), action))
+            for name, gradient in found.items():
+                total[name] += torch.einsum("n...,n->...", gradient.square(), policy[:, action])
+    return {name: squares / len(images) for name, squares in total.items()}
+
+
+def normalized(importance: Weights) -> Weights:
+    """Importances of mean 1 over the tensors in which any is above 0."""
+    used = [values for values in importance.values() if values.any()]
+    mean = sum(values.sum() for values in used) / max(1, sum(values.numel() for values in used))
+    return {name: values / mean if used else values for name, values in importance.items()}
+
+
+class EWC(PPO):
+    """PPO with springs to the weights at the end of each task.
+
+    Args:
+        num_actions: Rows of the table of actions.
+        num_envs: Environments that it acts in.
+        strength: λ of the springs, from 0.
+        samples: Observations of the last rollout that the importances are computed from, from 1.
+        **options: As for :class:`PPO`; ``borders`` is ``"labels"`` by default.
+
+    Attributes:
+        springs: A pair of importances and weights for each finished task; one in all for :class:`OnlineEWC`.
+    """
+
+    name = "ewc"
+    own_borders = "labels"
+
+    def __init__(
+        self, num_actions: int, num_envs: int, *, strength: float = 1.0, samples: int = 256, **options: Any
+    ) -> None:
+        super().__init__(num_actions, num_envs, **options)
+        self.strength, self.samples = strength, samples
+        self.springs: list[tuple[Weights, Weights]] = []
+
+    def end_task(self, label: str | None) -> None:
+        """Adds the springs of the task that ends, by what was seen last in it."""
+        seen = self.rollout.images[:-1][self.rollout.active]
+        chosen = torch.randperm(len(seen), generator=self.shuffles)[: self.samples]
+        if len(chosen):
+            anchor = {name: weight.detach().clone() for name, weight in self.network.named_parameters()}
+            self.add_springs(normalized(fisher(self.network, seen[chosen])), anchor)
+
+    def add_springs(self, importance: Weights, anchor: Weights) -> None:
+        """Adds the springs of a task to those of the others."""
+        self.springs.append((importance, anchor))
+
+    def extra_loss(self) -> torch.Tensor | None:
+        """The energy of all springs; none in the first task."""
+        if not self.springs:
+            return None
+        weights = dict(self.network.named_parameters())
+        energy = sum(
+            (importance[name] * (weight - anchor[name]).square()).sum()
+            for importance, anchor in self.springs
+            for name, weight in weights.items()
+        )
+        return 0.5 * self.strength * energy
+
+    def method_state(self) -> dict[str, Any]:
+        """The springs."""
+        return {"springs": self.springs}
+
+    def load_method_state(self, state: dict[str, Any]) -> None:
+        """Takes them back."""
+        self.springs = [(importance, anchor) for importance, anchor in state["springs"]]
+
+
+class OnlineEWC(EWC):
+    """EWC with one set of springs, whose importances are those of all tasks and whose ends are the last task's weights.
+
+    Args:
+        num_actions: Rows of the table of actions.
+        num_envs: Environments that it acts in.
+        decay: γ, what is left of old importances at each border, 0 to 1.
+        **options: As for :class:`EWC`.
+    """
+
+    name = "online_ewc"
+
+    def __init__(self, num_actions: int, num_envs: int, *, decay: float = 1.0, **options: Any) -> None:
+        super().__init__(num_actions, num_envs, **options)
+        self.decay = decay
+
+    def add_springs(self, importance: Weights, anchor: Weights) -> None:
+        """Adds the importances to what is left of the old ones."""
+        for old, _ in self.springs:
+            importance = {name: self.decay * old[name] + values for name, values in importance.items()}
+        self.springs = [(importance, anchor)]

@@ -1,0 +1,55 @@
+"""L2: a spring from every weight to where it was at the last border of tasks.
+
+loss = loss of PPO + strength / 2 · Σᵢ (θᵢ − θᵢ*)², where θ* are the weights at the end of the last task. It is EWC with all
+importances 1, and the control of EWC (Kirkpatrick et al. 2017, arXiv:1612.00796, fig. 2): a method that is no better has not used
+its importances.
+
+Known traps: a spring that keeps old tasks keeps new ones from being learned, so report both; ``strength`` is tuned on sequences
+that are not scored. The value's weights are held like all others.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import torch
+
+from driftworld.learners.ppo import PPO
+
+
+class L2(PPO):
+    """PPO with a spring to the weights at the end of the last task.
+
+    Args:
+        num_actions: Rows of the table of actions.
+        num_envs: Environments that it acts in.
+        strength: Of the spring, from 0.
+        **options: As for :class:`PPO`; ``borders`` is ``"labels"`` by default.
+    """
+
+    name = "l2"
+    own_borders = "labels"
+
+    def __init__(self, num_actions: int, num_envs: int, *, strength: float = 1.0, **options: Any) -> None:
+        super().__init__(num_actions, num_envs, **options)
+        self.strength = strength
+        self.anchor: dict[str, torch.Tensor] = {}
+
+    def end_task(self, label: str | None) -> None:
+        """Moves the springs' ends to the present weights."""
+        self.anchor = {name: weight.detach().clone() for name, weight in self.network.named_parameters()}
+
+    def extra_loss(self) -> torch.Tensor | None:
+        """The energy of the springs; none in the first task."""
+        if not self.anchor:
+            return None
+        weights = self.network.named_parameters()
+        return 0.5 * self.strength * sum((weight - self.anchor[name]).square().sum() for name, weight in weights)
+
+    def method_state(self) -> dict[str, Any]:
+        """The springs' ends."""
+        return {"anchor": self.anchor}
+
+    def load_method_state(self, state: dict[str, Any]) -> None:
+        """Takes them back."""
+        self.anchor = state["anchor"]

@@ -1,0 +1,146 @@
+"""PackNet: every task gets weights of its own, which never move again; later tasks use them and train the others.
+
+Near the end of a task each layer keeps its largest free weights, an equal share for each task to come; the rest is set to 0 and
+free for later tasks. The kept ones are trained on for the rest of the task. In evaluations a task uses its own weights and those of
+the tasks before it. Source: Mallya and Lazebnik 2018 (arXiv:1711.05769), section 3; as in Continual World (Wołczyk et al. 2021,
+arXiv:2105.10919), every task gets an equal share, and biases belong to the first task.
+
+Known traps:
+
+- A gradient of 0 does not stop Adam: its moments move a weight on. They are cleared at borders and after pruning.
+- The learner must know how long a task is (``task_decisions``) and how many there are (``max_tasks``). The decisions of retraining
+  count: they are the last ``retraining`` of the task. A task that ends before has not been retrained, and its policy is worse.
+- Which weights an evaluation uses is told by its label. A method without labels in evaluations is another problem.
+- The value's head is left free: it is needed for learning alone, and not forgotten by anything that is scored.
+- A task that comes again is a further task with weights of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import torch
+from torch.func import functional_call
+
+from driftworld.learners.ppo import PPO
+from driftworld.learners.rollout import Rollout
+
+
+class PackNet(PPO):
+    """PPO with a part of the weights for each task.
+
+    Args:
+        num_actions: Rows of the table of actions.
+        num_envs: Environments that it acts in.
+        max_tasks: Tasks of the lifetime, each visit counted, from 1.
+        task_decisions: Decisions of each task, from 1.
+        retraining: Share of them after pruning, 0 to 1.
+        **options: As for :class:`PPO`; ``borders`` is ``"labels"`` by default.
+
+    Attributes:
+        owners: For each parameter but the value's head, which task owns each weight: 0 for none, else its number from 1.
+    """
+
+    name = "packnet"
+    own_borders = "labels"
+
+    def __init__(
+        self, num_actions: int, num_envs: int, *, max_tasks: int, task_decisions: int, retraining: float = 0.25, **options: Any
+    ) -> None:  # fmt: skip
+        super().__init__(num_actions, num_envs, **options)
+        self.max_tasks, self.pruning_after = max_tasks, (1.0 - retraining) * task_decisions
+        self.owners = {
+            name: torch.zeros_like(weight, dtype=torch.uint8)
+            for name, weight in self.network.named_parameters()
+            if not name.startswith("value.")
+        }
+        self.slots: dict[str, int] = {}
+        self.is_pruned = False
+        self._views: dict[int, dict[str, torch.Tensor]] = {}
+
+    def begin_task(self, label: str | None) -> None:
+        """Gives the task a number.
+
+        Raises:
+            ValueError: If there are more tasks than ``max_tasks``.
+        """
+        if self.tasks > self.max_tasks:
+            raise ValueError(
+                f"{self.name}: found task number {self.tasks}, expected at most max_tasks={self.max_tasks}"
+            )
+        self.slots[str(label)], self.is_pruned = self.tasks, False
+        self.reset_optimizer()
+
+    def end_task(self, label: str | None) -> None:
+        """Prunes if that has not happened."""
+        if not self.is_pruned:
+            self.prune()
+
+    def after_update(self, rollout: Rollout) -> None:
+        """Prunes when it is time."""
+        if not self.is_pruned and self.task_decisions >= self.pruning_after:
+            self.prune()
+
+    @torch.no_grad()
+    def prune(self) -> None:
+        """Gives the task its share of the free weights of each layer, the largest, and sets the others to 0."""
+        for name, weight in self.network.named_parameters():
+            if name not in self.owners:
+                continue
+            owner = self.owners[name]
+            free = owner == 0
+            if weight.dim() == 1:
+                owner[free] = self.tasks
+                continue
+            count = int(free.sum())
+            share = -(-count // (self.max_tasks - self.tasks + 1))
+            order = weight.abs().masked_fill(~free, -1.0).flatten().argsort(descending=True, stable=True)
+            owner.view(-1)[order[:share]] = self.tasks
+            weight[owner == 0] = 0.0
+        self.is_pruned = True
+        self.reset_optimizer()
+
+    def mask_gradients(self) -> None:
+        """Lets free weights learn before pruning, and the task's own afterwards."""
+        learning = self.tasks if self.is_pruned else 0
+        for name, weight in self.network.named_parameters():
+            if name in self.owners and weight.grad is not None:
+                weight.grad.mul_(self.owners[name] == learning)
+
+    def freeze(self, frozen: bool) -> None:
+        """Whether it is being evaluated."""
+        super().freeze(frozen)
+        self._views.clear()
+
+    def look(self, images: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
+        """Each environment by the weights of its label's task; an unknown label by those of the present one."""
+        if not self.frozen:
+            return super().look(images)
+        slots = torch.tensor([self.slots.get(str(label), self.tasks) for label in self.labels])
+        log_policy, values = torch.zeros(self.num_envs, self.num_actions), torch.zeros(self.num_envs)
+        for slot in slots.unique().tolist():
+            rows = slots == slot
+            log_policy[rows], values[rows] = functional_call(self.network, dict(self._weights(slot)), (images[rows],))
+        return log_policy, values
+
+    def _weights(self, slot: int) -> Mapping[str, torch.Tensor]:
+        """The weights that a task uses: its own and those of the tasks before; the present one's free weights, too."""
+        if slot not in self._views:
+            fewest = 0 if slot == self.tasks else 1
+            self._views[slot] = {
+                name: weight * ((self.owners[name] >= fewest) & (self.owners[name] <= slot))
+                if name in self.owners
+                else weight
+                for name, weight in self.network.named_parameters()
+            }
+        return self._views[slot]
+
+    def method_state(self) -> dict[str, Any]:
+        """Owners, and the numbers of labels."""
+        return {"owners": self.owners, "slots": dict(self.slots), "is_pruned": self.is_pruned}
+
+    def load_method_state(self, state: dict[str, Any]) -> None:
+        """Takes them back."""
+        self.owners, self.slots, self.is_pruned = state["owners"], dict(state["slots"]), state["is_pruned"]
+        self._views.clear()

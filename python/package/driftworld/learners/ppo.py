@@ -1,0 +1,224 @@
+"""PPO (Schulman et al. 2017, arXiv:1707.06347), with the hooks that a continual method overrides.
+
+Three things are easy to get wrong, and are tested: an episode that ran out of time is bootstrapped from its own last observation,
+one that terminated is not; a step of an environment without an experience is not learned from; evaluations have random numbers
+of their own, so that looking more often changes nothing that is learned.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import nn
+
+from driftworld.learners.learner import Learner
+from driftworld.learners.rollout import Rollout, gae
+from driftworld.vector_lifetimes import VectorTransition
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """Numbers of PPO. The defaults learn easy tasks in 150,000 decisions of 32 × 32 pixels, each held for 5 time steps.
+
+    Attributes:
+        rollout: Steps of each environment between updates, from 1.
+        epochs: Passes over a rollout, from 1.
+        minibatch: Decisions for a step of the optimiser, about, from 2.
+        learning_rate: Of Adam, above 0.
+        annealing: Decisions after a border of tasks in which the learning rate falls to a tenth; 0 keeps it.
+        discount: For each decision, 0 to 1.
+        trace: λ of generalised advantages, 0 to 1.
+        clip: How far a ratio of probabilities may leave 1, above 0.
+        entropy: Weight of the policy's entropy, from 0. With 0.01 the policy freezes after an easy task and learns no other.
+        reward_scale: Factor of rewards, above 0: 0.01 where an object pays 100.
+        max_gradient: Longest gradient, above 0; longer ones are shortened to it.
+    """
+
+    rollout: int = 32
+    epochs: int = 2
+    minibatch: int = 512
+    learning_rate: float = 1e-3
+    annealing: int = 0
+    discount: float = 0.98
+    trace: float = 0.95
+    clip: float = 0.2
+    entropy: float = 0.03
+    reward_scale: float = 0.01
+    max_gradient: float = 0.5
+
+
+class PPO(Learner):
+    """PPO with one network and one optimiser for its whole life: a :class:`driftworld.VectorAgent`.
+
+    It sees colour images and chooses rows of a table of actions: run it with ``modalities="rgb"``, ``size`` as here and
+    ``actions=[…]``. The same seed gives the same weights to the bit on the same machine with ``torch.set_num_threads(1)``.
+
+    A subclass is a continual method. It overrides some of :meth:`extra_loss` (added to each step's loss), :meth:`mask_gradients`
+    (what may move), :meth:`after_update` (steps on other data), ``begin_task`` and ``end_task`` (borders of tasks), and
+    ``method_state`` (what is saved, and counted as memory).
+
+    Args:
+        num_actions: Rows of the table of actions.
+        num_envs: Environments that it acts in.
+        settings: See :class:`Settings`.
+        **options: ``seed``, ``size``, ``policy`` and ``borders``, see :class:`Learner`.
+
+    Raises:
+        ValueError: If an option is wrong.
+    """
+
+    name = "ppo"
+
+    def __init__(self, num_actions: int, num_envs: int, *, settings: Settings | None = None, **options: Any) -> None:
+        super().__init__(num_actions, num_envs, **options)
+        self.settings = settings or Settings()
+        self.rollout, self.time = Rollout(self.settings.rollout, num_envs, self.size, num_actions), 0
+        self.reset_optimizer()
+
+    def extra_loss(self) -> torch.Tensor | None:
+        """A loss, a scalar, that is added in each step of the optimiser."""
+        return None
+
+    def mask_gradients(self) -> None:
+        """Called before each step of the optimiser, and before gradients are shortened; may change them in place."""
+
+    def after_update(self, rollout: Rollout) -> None:
+        """Called after the passes over a rollout; may take more steps with :meth:`step`."""
+
+    @torch.no_grad()
+    def act(self, observations: Any, infos: dict[str, Any]) -> NDArray[np.int64]:
+        """Actions ``(num_envs,)`` for images ``(num_envs, size, size, 3)``, alone or as ``"rgb"`` of a dictionary.
+
+        Raises:
+            ValueError: If the images are of another shape.
+        """
+        began = time.process_time()
+        images = self.images(observations)
+        log_policy, values = self.look(images)
+        if self.frozen and self.policy == "greedy":
+            return np.asarray(log_policy.argmax(dim=-1))
+        drawn = torch.tensor([chance.random() for chance in self.chances])
+        actions = (log_policy.exp().cumsum(dim=-1) < drawn[:, None]).sum(dim=-1).clamp(max=self.num_actions - 1)
+        if not self.frozen:
+            rollout, t = self.rollout, self.time
+            rollout.images[t], rollout.values[t], rollout.log_policy[t] = images, values, log_policy
+            rollout.actions[t] = actions
+            self.seconds += time.process_time() - began
+        return np.asarray(actions)
+
+    @torch.no_grad()
+    def learn(self, transition: VectorTransition) -> None:
+        """Keeps a step, and learns when the rollout is full. One that is not goes on in the task's next learning block."""
+        began = time.process_time()
+        rollout, t = self.rollout, self.time
+        rollout.rewards[t] = torch.from_numpy(transition.rewards * self.settings.reward_scale)
+        rollout.terminated[t] = torch.from_numpy(transition.terminated)
+        rollout.ended[t] = torch.from_numpy(transition.terminated | transition.truncated)
+        rollout.active[t] = torch.from_numpy(transition.active)
+        # The next call of act replaces it, by another episode's first image where one has ended.
+        rollout.images[t + 1] = following = self.images(transition.next_observations)
+        cut_off = torch.from_numpy(np.flatnonzero(transition.truncated & ~transition.terminated))
+        if len(cut_off):
+            rollout.last_values[t, cut_off] = self.values_of(following, cut_off)
+        self.time += 1
+        active = int(transition.active.sum())
+        self.decisions, self.task_decisions = self.decisions + active, self.task_decisions + active
+        if self.time == self.settings.rollout:
+            self.finish_rollout()
+        self.seconds += time.process_time() - began
+
+    def look(self, images: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
+        """Log-probabilities and values for acting, of one image for each environment."""
+        log_policy, values = self.network(images)
+        return log_policy, values
+
+    def values_of(self, images: torch.Tensor, envs: torch.Tensor) -> torch.Tensor:
+        """Values ``(len(envs),)`` of what some environments see; no step is taken."""
+        values: torch.Tensor = self.network(images[envs])[1]
+        return values
+
+    def look_again(self, rollout: Rollout, part: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
+        """Log-probabilities and values of a part of a flattened rollout, with gradients."""
+        log_policy, values = self.network(rollout.images[:-1].flatten(0, 1)[part])
+        return log_policy, values
+
+    @torch.no_grad()
+    def finish_rollout(self) -> None:
+        """Learns from the steps since the last update; at a border they are fewer than ``settings.rollout``."""
+        length, self.time = self.time, 0
+        if length == 0:
+            return
+        rollout = self.rollout.first(length)
+        rollout.values[length] = self.values_of(rollout.images[length], torch.arange(self.num_envs))
+        with torch.enable_grad():
+            self.update(rollout)
+
+    def forget_rollout(self) -> None:
+        """Marks all steps as not active."""
+        self.rollout.active.zero_()
+
+    def update(self, rollout: Rollout) -> None:
+        """Passes of PPO over a rollout, then what the method adds."""
+        settings = self.settings
+        left = 1.0 - self.task_decisions / settings.annealing if settings.annealing else 1.0
+        for group in self.optimizer.param_groups:
+            group["lr"] = settings.learning_rate * max(0.1, left)
+        advantages = gae(rollout, settings.discount, settings.trace)
+        for _ in range(settings.epochs):
+            for part in self.parts(rollout):
+                self.step(self.loss(rollout, advantages, part))
+        self.after_update(rollout)
+
+    def parts(self, rollout: Rollout) -> Iterator[torch.Tensor]:
+        """Places of active steps in the flattened rollout, shuffled, in parts of about one size: a single advantage has no deviation."""
+        places = rollout.active.flatten().nonzero().squeeze(-1)
+        if len(places) > 1:
+            shuffled = places[torch.randperm(len(places), generator=self.shuffles)]
+            yield from shuffled.tensor_split(max(1, round(len(places) / self.settings.minibatch)))
+
+    def loss(self, rollout: Rollout, advantages: torch.Tensor, part: torch.Tensor) -> torch.Tensor:
+        """PPO's loss: the clipped surrogate (eq. 7), half the squared error of values, and entropy."""
+        clip, actions = self.settings.clip, rollout.actions.flatten()[part, None]
+        target = (advantages + rollout.values[:-1]).flatten()[part]
+        advantage = advantages.flatten()[part]
+        advantage = (advantage - advantage.mean()) / (advantage.std() + 1e-8)
+        before = rollout.log_policy.flatten(0, 1)[part].gather(1, actions).squeeze(1)
+        log_policy, values = self.look_again(rollout, part)
+        ratio = (log_policy.gather(1, actions).squeeze(1) - before).exp()
+        gain = torch.min(ratio * advantage, ratio.clamp(1 - clip, 1 + clip) * advantage).mean()
+        entropy = -(log_policy.exp() * log_policy).sum(-1).mean()
+        return 0.5 * (values - target).square().mean() - gain - self.settings.entropy * entropy
+
+    def step(self, loss: torch.Tensor) -> None:
+        """One step of the optimiser, with the method's loss and mask."""
+        extra = self.extra_loss()
+        self.optimizer.zero_grad()
+        (loss if extra is None else loss + extra).backward()
+        self.mask_gradients()
+        nn.utils.clip_grad_norm_(self.network.parameters(), self.settings.max_gradient, foreach=True)
+        self.optimizer.step()
+        self.updates += 1
+
+    def reset_optimizer(self) -> None:
+        """Adam without moments, for the present network."""
+        rate = self.settings.learning_rate
+        self.optimizer = torch.optim.Adam(self.network.parameters(), lr=rate, eps=1e-5, foreach=True)
+
+    def state_dict(self) -> dict[str, Any]:
+        """All that it is between two experiences: :meth:`load_state_dict` makes another one go on to the same bits."""
+        return {
+            **super().state_dict(), "optimizer": self.optimizer.state_dict(), "rollout": dict(vars(self.rollout)), "time": self.time
+        }  # fmt: skip
+
+    def load_state_dict(self, state: dict[str, Any]) -> None:
+        """Becomes what :meth:`state_dict` gave. The learner must have been made with the same arguments."""
+        super().load_state_dict(state)
+        self.optimizer.load_state_dict(state["optimizer"])
+        vars(self.rollout).update({name: rows.clone() for name, rows in state["rollout"].items()})
+        self.time = state["time"]
