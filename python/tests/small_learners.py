@@ -1,0 +1,98 @@
+"""What tests of learners share: steps that are made up, a tiny lifetime, and a learner that is quick to make."""
+
+from __future__ import annotations
+
+import importlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import ROOT
+from driftworld import Curriculum, VectorTransition
+
+#: Ahead, two bends, two turns nearly on the spot.
+ACTIONS = [[10, 0, 0], [10, 27, 0], [10, -27, 0], [3, 90, 0], [3, -90, 0]]
+OPTIONS: dict[str, Any] = {"modalities": "rgb", "actions": ACTIONS, "interact": False, "frame_skip": 5}
+T_MAZE = str(ROOT / "examples" / "worlds" / "t_maze.json")
+#: Few and small, for tests that do not look at what is learned.
+TINY: dict[str, Any] = {"size": 8, "max_steps": 6}
+
+
+def package() -> Any:
+    """``driftworld.learners``, with one thread of torch; the test is skipped without torch."""
+    pytest.importorskip("torch", reason="the learners are networks").set_num_threads(1)
+    return importlib.import_module("driftworld.learners")
+
+
+def small(kind: str = "PPO", **options: Any) -> Any:
+    """A learner of four environments with images of 8 × 8 pixels and rollouts of 8 steps."""
+    learners = package()
+    extra = {"PackNet": {"max_tasks": 2, "task_decisions": 60}, "CLEAR": {"capacity": 6}}.get(kind, {})
+    settings = learners.Settings(rollout=8, minibatch=16)
+    made = getattr(learners, kind) if isinstance(kind, str) else kind
+    return made(5, 4, **{"seed": 3, "size": 8, "settings": settings, **extra, **options})
+
+
+def curriculum(*order: str, learn: int, evaluate: int = 4, task_label: str = "info") -> Curriculum:
+    """Learning blocks of variants of the T-maze, with evaluations of all of them around each."""
+
+    def regime(variant: str, count: int, seed: int) -> dict[str, Any]:
+        return {"task": T_MAZE, "variant": variant, "count": count, "seed": seed}
+
+    evaluation = {"type": "evaluation", "regimes": [regime(name, evaluate, 1000) for name in dict.fromkeys(order)]}
+    blocks = [evaluation]
+    for place, name in enumerate(order):
+        blocks += [{"type": "learning", "regimes": [regime(name, learn, place)]}, evaluation]
+    return Curriculum.from_dict({"version": 1, "name": "tiny", "task_label": task_label, "blocks": blocks})
+
+
+def live(learner: Any, log: Path | None, *order: str, learn: int = 24, **options: Any) -> Any:
+    """Runs a learner through a tiny lifetime; the learner."""
+    made = {name: options.pop(name) for name in ("evaluate", "task_label") if name in options}
+    plan = curriculum(*order, learn=learn, **made)
+    plan.run_vector(learner, log, num_envs=learner.num_envs, num_threads=1, **{**OPTIONS, **TINY, **options})
+    return learner
+
+
+class Steps:
+    """Steps of random images and rewards for a learner, from a seed."""
+
+    def __init__(
+        self, learner: Any, seed: int = 0, terminates: float = 0.1, truncates: float = 0.1, idles: float = 0.1, label: str | None = None
+    ) -> None:  # fmt: skip
+        self.learner, self.chance = learner, np.random.default_rng(seed)
+        self.shares = terminates, truncates, idles
+        self.seen = self.images()
+        for env in range(learner.num_envs):
+            learner.begin(env, label, env)
+
+    def images(self) -> Any:
+        shape = (self.learner.num_envs, self.learner.size, self.learner.size, 3)
+        return self.chance.integers(0, 256, shape, dtype=np.uint8)
+
+    def take(self, count: int) -> None:
+        """Lets the learner act and learn so often."""
+        for _ in range(count):
+            actions = self.learner.act(self.seen, {})
+            draws = self.chance.random((4, self.learner.num_envs))
+            terminated, truncated, idle = (row < share for row, share in zip(draws, self.shares, strict=False))
+            following = self.images()
+            active = ~idle
+            self.learner.learn(
+                VectorTransition(
+                    self.seen,
+                    actions,
+                    draws[3] * 100 * active,
+                    terminated & active,
+                    truncated & active,
+                    following,
+                    active,
+                    {},
+                )
+            )
+            # An episode that has ended is followed by the first image of another one.
+            ended = (terminated | truncated) & active
+            self.seen = np.where(ended[:, None, None, None], self.images(), following)
+            for env in np.flatnonzero(ended).tolist():
+                self.learner.begin(env, self.learner.task, int(self.chance.integers(2**32)))

@@ -1,0 +1,246 @@
+"""PPO: advantages by a direct sum, what is learned from, evaluations that change nothing, saves that go on to the same bits."""
+
+from __future__ import annotations
+
+import builtins
+import importlib
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import driftworld
+import numpy as np
+import pytest
+from small_learners import OPTIONS, Steps, curriculum, live, package, small
+
+needs_torch = pytest.mark.learners
+
+
+@pytest.fixture
+def learners() -> Any:
+    """The package."""
+    return package()
+
+
+KINDS = [
+    "PPO", "FineTuning", "ResetOptimizer", "FromScratch", "L2", "EWC", "OnlineEWC", "PackNet", "CLEAR", "ShrinkAndPerturb", "RecurrentPPO"
+]  # fmt: skip
+
+
+def test_without_torch_the_import_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    real = builtins.__import__
+
+    def refuse(name: str, *rest: Any) -> Any:
+        if name.partition(".")[0] == "torch":
+            raise ImportError(name)
+        return real(name, *rest)
+
+    monkeypatch.setattr(builtins, "__import__", refuse)
+    for name in [name for name in sys.modules if name.startswith("driftworld.learners")]:
+        monkeypatch.delitem(sys.modules, name)
+    with pytest.raises(ImportError, match=r'found no torch.*pip install "\./python\[learners\]"'):
+        importlib.import_module("driftworld.learners")
+
+
+@needs_torch
+def test_advantages_are_the_direct_sum_within_episodes(learners: Any) -> None:
+    torch = sys.modules["torch"]
+    chance = torch.Generator().manual_seed(1)
+    length, envs, discount, trace = 12, 5, 0.9, 0.8
+    rollout = learners.Rollout(length, envs, 8, 5)
+    for name in ("rewards", "values", "last_values"):
+        getattr(rollout, name).normal_(generator=chance)
+    rollout.terminated = torch.rand(length, envs, generator=chance) < 0.2
+    rollout.ended = rollout.terminated | (torch.rand(length, envs, generator=chance) < 0.2)
+    found = importlib.import_module("driftworld.learners.rollout").gae(rollout, discount, trace)
+
+    def surprise(t: int, env: int) -> float:
+        following = rollout.last_values[t, env] if rollout.ended[t, env] else rollout.values[t + 1, env]
+        following = 0.0 if rollout.terminated[t, env] else following
+        return float(rollout.rewards[t, env] + discount * following - rollout.values[t, env])
+
+    for env in range(envs):
+        for t in range(length):
+            end = next((k for k in range(t, length) if rollout.ended[k, env]), length - 1)
+            expected = sum((discount * trace) ** (k - t) * surprise(k, env) for k in range(t, end + 1))
+            assert found[t, env].item() == pytest.approx(expected, abs=1e-5)
+
+
+@needs_torch
+@pytest.mark.parametrize("kind", ["PPO", "RecurrentPPO"])
+def test_truncation_is_valued_by_the_episodes_own_last_image(learners: Any, kind: str) -> None:
+    torch = sys.modules["torch"]
+    learner = small(kind)
+    steps = Steps(learner, terminates=0.0, truncates=0.0, idles=0.0)
+    for env in range(4):
+        learner.begin(env, None, env)
+    steps.take(2)
+    last = steps.images()
+    learner.act(steps.seen, {})
+    with torch.no_grad():
+        # Before anything of the next episode is seen, with the memory of this one.
+        expected = learner.values_of(torch.from_numpy(last), torch.arange(4))
+    yes, no = np.array([True, False, False, False]), np.zeros(4, dtype=bool)
+    learner.learn(driftworld.VectorTransition(steps.seen, None, np.zeros(4), no, yes, last, ~no, {}))
+    learner.begin(0, None, 9)
+    learner.act(steps.images(), {})
+    assert learner.rollout.last_values[2, 0].item() == pytest.approx(expected[0].item(), abs=1e-6)
+    assert learner.rollout.following(learner.rollout.values)[2, 0] == learner.rollout.last_values[2, 0]
+    assert not learner.rollout.last_values[2, 1:].any()
+
+
+@needs_torch
+@pytest.mark.parametrize("kind", ["PPO", "CLEAR", "RecurrentPPO"])
+def test_what_idle_environments_hold_is_not_learned_from(learners: Any, kind: str) -> None:
+    torch = sys.modules["torch"]
+    digests = []
+    for noise in (0, 1):
+        learner, chance = small(kind), np.random.default_rng(5)
+        other = np.random.default_rng(noise)
+        for env in range(4):
+            learner.begin(env, None, env)
+        idle = np.array([False, False, True, True])
+        for _ in range(8):
+            images = chance.integers(0, 256, (4, 8, 8, 3), dtype=np.uint8)
+            following = chance.integers(0, 256, (4, 8, 8, 3), dtype=np.uint8)
+            images[idle] = other.integers(0, 256, (2, 8, 8, 3), dtype=np.uint8)
+            rewards = np.where(idle, other.random(4), chance.random(4))
+            actions = learner.act(images, {})
+            no = np.zeros(4, dtype=bool)
+            learner.learn(driftworld.VectorTransition(images, actions, rewards, no, no, following, ~idle, {}))
+        assert learner.decisions == 16 and learner.updates > 0
+        digests.append(torch.cat([weight.flatten() for weight in learner.network.parameters()]))
+    assert torch.equal(*digests)
+
+
+@needs_torch
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_learner_that_was_saved_goes_on_to_the_same_digest(learners: Any, kind: str, tmp_path: Path) -> None:
+    whole, half = small(kind), small(kind)
+    for learner in (whole, half):
+        live(learner, None, "left")
+    assert whole.updates > 0 and whole.digest() == half.digest()
+    half.save(tmp_path / "saved")
+    again = small(kind, seed=3)
+    again.load(tmp_path / "saved")
+    assert again.digest() == half.digest()
+    for learner in (whole, again):
+        live(learner, None, "right")
+    assert again.digest() == whole.digest() != half.digest()
+    report = again.report()
+    assert report["decisions"] == whole.decisions and report["tasks"] == (2 if whole.borders == "labels" else 1)
+    assert report["memory_bytes"] > report["method_bytes"] >= 0 and report["seconds"] > 0
+
+
+@needs_torch
+@pytest.mark.parametrize("kind", ["PackNet", "CLEAR", "RecurrentPPO"])
+def test_a_killed_lifetime_goes_on_to_the_same_digest(learners: Any, kind: str, tmp_path: Path) -> None:
+    whole = live(small(kind), tmp_path / "whole", "left", "right")
+    seen = 0
+
+    def kill(experience: Any, reward: float) -> bool:
+        nonlocal seen
+        seen += 1
+        return seen < 45
+
+    plan = curriculum("left", "right", learn=24)
+    options = {**OPTIONS, "size": 8, "max_steps": 6, "num_envs": 4, "num_threads": 1}
+    assert not plan.run_vector(small(kind), tmp_path / "log", watch=kill, **options).finished
+    resumed = small(kind)
+    assert plan.run_vector(resumed, tmp_path / "log", **options).finished
+    assert resumed.digest() == whole.digest()
+
+
+@needs_torch
+@pytest.mark.parametrize("kind", ["EWC", "PackNet", "CLEAR", "RecurrentPPO"])
+def test_evaluations_change_nothing_that_is_learned(learners: Any, kind: str) -> None:
+    # run_vector refuses a learner that acts differently in a repeated evaluation.
+    digests = set()
+    for policy, evaluate in (("sampled", 4), ("sampled", 9), ("greedy", 4)):
+        digests.add(live(small(kind, policy=policy), None, "left", "right", evaluate=evaluate).digest())
+    assert len(digests) == 1
+
+
+@needs_torch
+def test_global_random_numbers_are_neither_used_nor_changed(learners: Any) -> None:
+    torch = sys.modules["torch"]
+    digests = set()
+    for seed in (1, 2):
+        torch.manual_seed(seed)
+        np.random.seed(seed)
+        before = torch.get_rng_state(), np.random.get_state()[1].copy()
+        for kind in ("EWC", "CLEAR", "ShrinkAndPerturb"):
+            digests.add(live(small(kind), None, "left", "right").digest())
+        assert torch.equal(before[0], torch.get_rng_state())
+        assert (before[1] == np.random.get_state()[1]).all()
+    assert len(digests) == 3
+
+
+@needs_torch
+def test_borders_are_where_they_are_said_to_be(learners: Any) -> None:
+    class Noting(learners.PPO):  # type: ignore[misc, name-defined]
+        def __init__(self, *arguments: Any, **options: Any) -> None:
+            super().__init__(*arguments, **options)
+            self.noted: list[tuple[str, str | None, int]] = []
+
+        def begin_task(self, label: str | None) -> None:
+            self.noted.append(("begin", label, self.time))
+
+        def end_task(self, label: str | None) -> None:
+            self.noted.append(("end", label, self.time))
+
+    found = {}
+    for borders in ("none", "labels", "blocks"):
+        learner = Noting(5, 4, size=8, borders=borders, settings=learners.Settings(rollout=8, minibatch=16))
+        found[borders] = [row[:2] for row in live(learner, None, "left", "left", "right").noted]
+        assert all(time == 0 for *_, time in learner.noted), "a border finds nothing that was not learned from"
+    first, left, right = found["none"][0], found["labels"][0][1], found["labels"][-1][1]
+    assert "left" in str(left) and "right" in str(right)
+    assert found["none"] == [first] == [("begin", left)]
+    assert found["labels"] == [("begin", left), ("end", left), ("begin", right)]
+    assert found["blocks"] == [("begin", left), ("end", left), ("begin", left), ("end", left), ("begin", right)]
+    with pytest.raises(ValueError, match=r'without a label.*task_label="info".*borders="blocks"'):
+        live(small("EWC"), None, "left", task_label="none")
+    live(small("EWC", borders="blocks"), None, "left", "right", task_label="none")
+
+
+@needs_torch
+@pytest.mark.parametrize(
+    "options, message",
+    [
+        ({"policy": "best"}, "policy: found 'best', expected one of sampled, greedy"),
+        ({"borders": "some"}, "borders: found 'some', expected one of none, labels, blocks"),
+        ({"size": 36}, "size: found 36, expected a multiple of 8, such as 32"),
+    ],
+)
+def test_wrong_options_are_refused(learners: Any, options: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        small(**options)
+
+
+@needs_torch
+def test_images_of_another_size_are_refused_with_the_options_that_fit(learners: Any) -> None:
+    with pytest.raises(ValueError, match=r'found observations \(4, 16, 16, 3\).*modalities="rgb", size=8'):
+        live(small(), None, "left", size=16)
+
+
+@needs_torch
+def test_the_learning_rate_falls_to_a_tenth_within_a_task(learners: Any) -> None:
+    learner = small(settings=learners.Settings(rollout=8, minibatch=16, annealing=64))
+    steps, rates = Steps(learner, idles=0.0), []
+    for _ in range(4):
+        steps.take(8)
+        rates.append(learner.optimizer.param_groups[0]["lr"])
+    assert rates == pytest.approx([5e-4, 1e-4, 1e-4, 1e-4])
+
+
+@needs_torch
+def test_ppo_learns_a_t_maze_in_20_000_decisions(learners: Any) -> None:
+    learner, began = learners.PPO(5, 32, seed=1), time.process_time()
+    options = {**OPTIONS, "size": 32, "num_envs": 32, "num_threads": 1}
+    summary = curriculum("left", learn=1500, evaluate=64).run_vector(learner, **options)
+    before, _, after = summary.regimes
+    assert before["success_rate"] < 0.7 and after["success_rate"] > 0.95
+    assert learner.decisions < 25_000
+    assert time.process_time() - began < 30
