@@ -33,7 +33,7 @@ class Patches(nn.Module):
         """Features ``(n, hidden)`` of images ``(n, size, size, 3)``, bytes."""
         count, side = images.shape[0], self.side
         cut = images.reshape(count, side, PATCH, side, PATCH * 3).transpose(2, 3)
-        patches = cut.reshape(count * side * side, PATCH * PATCH * 3).float() * (1 / 255)
+        patches = cut.reshape(count * side * side, PATCH * PATCH * 3).float().mul_(1 / 255)
         small = torch.relu(self.small(patches)).reshape(count, side // 2, 2, side // 2, 2 * self.width)
         joined = small.transpose(2, 3).reshape(count * (side // 2) ** 2, 4 * self.width)
         return torch.relu(self.image(torch.relu(self.large(joined)).reshape(count, -1)))

@@ -1,0 +1,47 @@
+"""Prints what a decision of the learners costs: processor microseconds, with 64 environments of 32 × 32 pixels and one thread.
+
+    nice python scripts/learners.py                    # PPO
+    nice python scripts/learners.py PPO EWC CLEAR      # some learners, one after the other
+
+A row has the whole of `Curriculum.run_vector` on find_objects#huddle, the learner's part of that, and what is left: the environments
+and the loop. Only learning counts. Needs PyTorch.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from typing import Any
+
+import torch
+from driftworld import Curriculum, learners
+
+ACTIONS = [[10, 0, 0], [10, 27, 0], [10, -27, 0], [3, 90, 0], [3, -90, 0]]
+NUM_ENVS, EXPERIENCES = 64, 512
+OPTIONS: dict[str, Any] = {
+    "modalities": "rgb", "size": 32, "actions": ACTIONS, "interact": False, "frame_skip": 5, "max_steps": 60,
+}  # fmt: skip
+#: What a learner cannot do without.
+NEEDED: dict[str, dict[str, Any]] = {"PackNet": {"max_tasks": 2, "task_decisions": 10_000}}
+
+
+def main() -> None:
+    """Runs each learner through two learning blocks; the first one warms up, the second is measured."""
+    torch.set_num_threads(1)
+    print("| learner | µs a decision | acting and learning | environments and loop |\n|---|--:|--:|--:|")
+    for name in sys.argv[1:] or ["PPO"]:
+        learner = getattr(learners, name)(len(ACTIONS), NUM_ENVS, **NEEDED.get(name, {}))
+        marks: list[tuple[float, float, int]] = []
+        for variant in ("red", "huddle"):
+            block = {"type": "learning", "regimes": [{"task": "find_objects", "variant": variant, "count": EXPERIENCES, "seed": 1}]}
+            plan = Curriculum.from_dict({"version": 1, "name": "cost", "task_label": "info", "blocks": [block]})
+            marks.append((time.process_time(), learner.seconds, learner.decisions))
+            plan.run_vector(learner, num_envs=NUM_ENVS, num_threads=1, check_frozen=False, **OPTIONS)
+        marks.append((time.process_time(), learner.seconds, learner.decisions))
+        seconds, own_seconds, decisions = (after - before for before, after in zip(marks[1], marks[2], strict=True))
+        whole, own = 1e6 * seconds / decisions, 1e6 * own_seconds / decisions
+        print(f"| {learner.name} | {whole:.0f} | {own:.0f} | {whole - own:.0f} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
