@@ -5,7 +5,7 @@ EWC (Kirkpatrick et al. 2017, arXiv:1612.00796, eq. 3) has a set of springs for 
     loss = loss of PPO + strength / 2 · Σₖ Σᵢ Fₖᵢ (θᵢ − θₖᵢ*)²,
     Fₖᵢ = mean over the task's observations s of Σₐ π(a|s) (∂ log π(a|s) / ∂θᵢ)².
 
-Online EWC (Schwarz et al. 2018, arXiv:1805.06370, eq. 9) has one set: F ← decay · F + Fₖ, and θ* are the last task's weights.
+Online EWC (Schwarz et al. 2018, arXiv:1805.06370) has one set: F ← decay · F + Fₖ, and θ* are the last task's weights.
 
 Known traps:
 

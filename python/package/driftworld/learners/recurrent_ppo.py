@@ -2,7 +2,7 @@
 
 The memory is emptied where an episode starts. A rollout keeps the memory that it began with; each pass runs through the sequences
 from there, so that gradients reach back to the start of the rollout (truncated backpropagation through time).
-Source: Hausknecht and Stone 2015 (arXiv:1507.06527), "bootstrapped sequential updates"; PPO as in ``ppo.py``.
+Source: stored states as in R2D2 (Kapturowski et al. 2019, section 3), without its burn-in; PPO as in ``ppo.py``.
 
 Known traps:
 
