@@ -33,7 +33,10 @@ def main() -> None:
         learner = getattr(learners, name)(len(ACTIONS), NUM_ENVS, **NEEDED.get(name, {}))
         marks: list[tuple[float, float, int]] = []
         for variant in ("red", "huddle"):
-            block = {"type": "learning", "regimes": [{"task": "find_objects", "variant": variant, "count": EXPERIENCES, "seed": 1}]}
+            block = {
+                "type": "learning",
+                "regimes": [{"task": "find_objects", "variant": variant, "count": EXPERIENCES, "seed": 1}],
+            }
             plan = Curriculum.from_dict({"version": 1, "name": "cost", "task_label": "info", "blocks": [block]})
             marks.append((time.process_time(), learner.seconds, learner.decisions))
             plan.run_vector(learner, num_envs=NUM_ENVS, num_threads=1, check_frozen=False, **OPTIONS)

@@ -9,7 +9,7 @@ is frozen and evaluated in both before and after each block.
     python examples/python/experts_and_sequential_ppo.py --quick       # does it run?
 
 The loop is `Curriculum.run_vector`: it lives the blocks, freezes the learner, checks that evaluations change nothing, and logs.
-What `replay_ppo.py` changes is `Learner.update` alone. Needs PyTorch (`pip install torch`).
+The learner is `driftworld.learners.PPO`; `replay_ppo.py` takes `CLEAR` in its place. Needs PyTorch (`pip install torch`).
 """
 
 from __future__ import annotations
@@ -18,13 +18,14 @@ import argparse
 import json
 import os
 import shutil
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 import driftworld
 import numpy as np
 import torch
+from driftworld.learners import PPO, Settings
 from record import T_95, Record, Watch, folder_of
 from torch import nn
 
@@ -36,7 +37,6 @@ ACTIONS = [[10, 0, 0], [10, 27, 0], [10, -27, 0], [3, 90, 0], [3, -90, 0]]
 OPTIONS: dict[str, Any] = {
     "modalities": "rgb", "size": 64, "actions": ACTIONS, "interact": False, "frame_skip": 5, "max_steps": 60,
 }  # fmt: skip
-DISCOUNT = 0.98
 
 
 class Network(nn.Module):
@@ -62,167 +62,28 @@ class Network(nn.Module):
         return torch.log_softmax(self.policy(features), dim=-1), self.value(features).squeeze(-1)
 
 
-class Rollout:
-    """What the environments lived through in `length` steps, `(length, num_envs, …)`; images and values one more."""
-
-    def __init__(self, length: int, num_envs: int) -> None:
-        self.images = torch.zeros((length + 1, num_envs, 64, 64, 3), dtype=torch.uint8)
-        self.values = torch.zeros((length + 1, num_envs))
-        # What the last observation of an episode is worth, where one ended there.
-        self.last_values = torch.zeros((length, num_envs))
-        self.log_policy = torch.zeros((length, num_envs, len(ACTIONS)))
-        self.actions = torch.zeros((length, num_envs), dtype=torch.long)
-        self.rewards = torch.zeros((length, num_envs))
-        self.terminated = torch.zeros((length, num_envs), dtype=torch.bool)
-        self.ended = torch.zeros((length, num_envs), dtype=torch.bool)
-        # False where an environment has no experience: near the end of a block.
-        self.counts = torch.zeros((length, num_envs), dtype=torch.bool)
-
-    def advantages(self, trace: float = 0.95) -> torch.Tensor:
-        """Generalised advantages. What ran out of time is bootstrapped from its last observation, what terminated is not."""
-        advantages = torch.zeros_like(self.rewards)
-        later = torch.zeros_like(self.rewards[0])
-        following = torch.where(self.ended, self.last_values, self.values[1:])
-        for t in reversed(range(len(self.rewards))):
-            surprise = self.rewards[t] + DISCOUNT * following[t] * ~self.terminated[t] - self.values[t]
-            later = surprise + DISCOUNT * trace * later * ~self.ended[t]
-            advantages[t] = later
-        return advantages
-
-
-class Learner:
-    """PPO that goes on from block to block with the same network and optimiser: a `driftworld.VectorAgent`.
-
-    Actions are drawn from the number that each experience begins with and from the learner's own seed, minibatches from a
-    generator of learning's own. So evaluations take nothing from learning's chance: how often one looks changes nothing that
-    is learned, and a lifetime's first block is the block of its expert.
+class Learner(PPO):
+    """PPO of `driftworld.learners` with the network above, as it goes on from block to block.
 
     Args:
         seed: Of the network, the actions and the minibatches.
         num_envs: How many environments it lives in.
         policy: How it acts in evaluations: `"sampled"` from its policy, or `"greedy"`, the likeliest action.
         length: Steps of each environment between updates.
+        **options: Of the method.
     """
 
     #: Passes of PPO over a rollout, about four steps of the optimiser each.
-    passes = 4
+    epochs = 4
 
-    def __init__(self, seed: int, num_envs: int, policy: str = "sampled", length: int = 64) -> None:
-        self.seed, self.policy, self.frozen = seed, policy, False
-        with torch.random.fork_rng(devices=[]):
-            torch.manual_seed(seed)
-            self.network = Network()
-        self.optimizer = torch.optim.Adam(self.network.parameters(), lr=5e-4, eps=1e-5)
-        self.shuffles = torch.Generator().manual_seed(seed)
-        self.chances = [np.random.default_rng(seed) for _ in range(num_envs)]
-        self.rollout, self.time = Rollout(length, num_envs), 0
-        self.updates = 0
+    def __init__(self, seed: int, num_envs: int, policy: str = "sampled", length: int = 64, **options: Any) -> None:
+        # An object pays 100, or costs as much.
+        settings = Settings(rollout=length, epochs=self.epochs, learning_rate=5e-4, entropy=0.01, reward_scale=0.01)
+        super().__init__(len(ACTIONS), num_envs, seed=seed, size=64, policy=policy, settings=settings, **options)
 
-    def begin(self, env: int, label: str | None, seed: int) -> None:
-        """Before an experience: its actions are drawn from its own number."""
-        self.chances[env] = np.random.default_rng([seed, self.seed])
-
-    def freeze(self, frozen: bool) -> None:
-        """Whether it is being evaluated."""
-        self.frozen = frozen
-
-    @torch.no_grad()
-    def act(self, observations: Any, infos: dict[str, Any]) -> Any:
-        """Actions for all environments, `(num_envs,)`; in learning they are noted with what led to them."""
-        images = torch.from_numpy(observations)
-        log_policy, values = self.network(images)
-        if self.frozen and self.policy == "greedy":
-            return log_policy.argmax(dim=-1).numpy()
-        drawn = torch.tensor([chance.random() for chance in self.chances])
-        actions = (log_policy.exp().cumsum(dim=-1) < drawn[:, None]).sum(dim=-1).clamp(max=len(ACTIONS) - 1)
-        if not self.frozen:
-            rollout, t = self.rollout, self.time
-            rollout.images[t], rollout.values[t], rollout.log_policy[t] = images, values, log_policy
-            rollout.actions[t] = actions
-        return actions.numpy()
-
-    @torch.no_grad()
-    def learn(self, transition: driftworld.VectorTransition) -> None:
-        """Notes a step; when the rollout is full, learns from it. One that is not goes on in the next block of learning."""
-        rollout, t = self.rollout, self.time
-        rollout.rewards[t] = torch.from_numpy(transition.rewards / 100.0)  # an object pays 100, or costs as much
-        rollout.terminated[t] = torch.from_numpy(transition.terminated)
-        rollout.ended[t] = torch.from_numpy(transition.terminated | transition.truncated)
-        rollout.counts[t] = torch.from_numpy(transition.active)
-        images = torch.from_numpy(transition.next_observations)
-        self.time += 1
-        is_full = self.time == len(rollout.rewards)
-        if transition.truncated.any() or is_full:
-            rollout.last_values[t] = self.network(images)[1]
-        if is_full:
-            rollout.images[-1], rollout.values[-1] = images, rollout.last_values[t]
-            with torch.enable_grad():
-                self.update(rollout)
-            self.time = 0
-
-    def update(self, rollout: Rollout) -> None:
-        """Passes of PPO over a rollout."""
-        advantages = rollout.advantages()
-        for _ in range(self.passes):
-            for part in minibatches(rollout.counts, self.shuffles):
-                self.step(self.loss(rollout, advantages, part))
-
-    def loss(self, rollout: Rollout, advantages: torch.Tensor, part: torch.Tensor, clip: float = 0.2) -> torch.Tensor:
-        """PPO's loss over some steps of a rollout."""
-        target = (advantages + rollout.values[:-1]).flatten()[part]
-        advantage = advantages.flatten()[part]
-        advantage = (advantage - advantage.mean()) / (advantage.std() + 1e-8)
-        action = rollout.actions.flatten()[part, None]
-        before = rollout.log_policy.flatten(0, 1)[part].gather(1, action).squeeze(1)
-        log_policy, value = self.network(rollout.images[:-1].flatten(0, 1)[part])
-        ratio = (log_policy.gather(1, action).squeeze(1) - before).exp()
-        gain = torch.min(ratio * advantage, ratio.clamp(1 - clip, 1 + clip) * advantage).mean()
-        entropy = -(log_policy.exp() * log_policy).sum(-1).mean()
-        return 0.5 * (value - target).square().mean() - gain - 0.01 * entropy
-
-    def step(self, loss: torch.Tensor) -> None:
-        """One step of the optimiser."""
-        self.updates += 1
-        self.optimizer.zero_grad()
-        loss.backward()  # type: ignore[no-untyped-call]
-        nn.utils.clip_grad_norm_(self.network.parameters(), 0.5)
-        self.optimizer.step()
-
-    def kept(self) -> dict[str, Any]:
-        """All that it is, as `save` keeps it."""
-        return {
-            "network": self.network.state_dict(), "optimizer": self.optimizer.state_dict(),
-            "shuffles": self.shuffles.get_state(), "rollout": vars(self.rollout), "time": self.time, "updates": self.updates,
-        }  # fmt: skip
-
-    def save(self, path: Path) -> None:
-        """Keeps it: a lifetime that was interrupted goes on with the same call."""
-        torch.save(self.kept(), path)
-
-    def load(self, path: Path) -> None:
-        """Brings it back."""
-        self.take(torch.load(path))
-
-    def take(self, kept: dict[str, Any]) -> None:
-        """Becomes what was kept."""
-        self.network.load_state_dict(kept["network"])
-        self.optimizer.load_state_dict(kept["optimizer"])
-        self.shuffles.set_state(kept["shuffles"])
-        vars(self.rollout).update(kept["rollout"])
-        self.time, self.updates = kept["time"], kept["updates"]
-
-
-def minibatches(
-    counts: torch.Tensor, chance: torch.Generator | None = None, size: int = 512
-) -> Iterator[torch.Tensor]:
-    """The steps that count, by their place in the flattened rollout, shuffled and dealt out in parts of about one size.
-
-    None is much smaller than the others: the deviation of a single advantage is no number, and one such step would make the
-    whole network none.
-    """
-    places = counts.flatten().nonzero().squeeze(-1)
-    if len(places) > 1:
-        yield from places[torch.randperm(len(places), generator=chance)].tensor_split(max(1, round(len(places) / size)))
+    def make_network(self) -> nn.Module:
+        """Two convolutions in place of patches."""
+        return Network()
 
 
 def scenario(

@@ -170,29 +170,6 @@ def one_environment(**columns: list[Any]) -> dict[str, Any]:
     return {name: torch.tensor(values).unsqueeze(1) for name, values in columns.items()}
 
 
-@learners
-def test_advantages_bootstrap_an_episodes_last_observation() -> None:
-    torch = pytest.importorskip("torch", reason="the learners are networks")
-    module = load("experts_and_sequential_ppo")
-    rollout = module.Rollout(4, 1)
-    # An episode of two steps, the first step of the next, and a step of an environment without an experience.
-    columns = one_environment(
-        rewards=[1.0, 2.0, 4.0, 8.0],
-        values=[10.0, 20.0, 40.0, 50.0, 60.0],
-        last_values=[0.0, 30.0, 0.0, 0.0],
-        ended=[False, True, False, False],
-        terminated=[False, False, False, False],
-    )
-    for column, values in columns.items():
-        setattr(rollout, column, values)
-    discount = module.DISCOUNT
-    last = 2.0 + discount * 30.0 - 20.0  # what the episode's last observation is worth: not 40, which is the next one's first
-    first = 1.0 + discount * 20.0 - 10.0 + discount * 0.5 * last
-    assert rollout.advantages(trace=0.5)[:2].flatten().tolist() == pytest.approx([first, last])
-    rollout.terminated = torch.tensor([[False], [True], [False], [False]])
-    assert rollout.advantages(trace=0.5)[1].item() == pytest.approx(2.0 - 20.0)
-
-
 def arguments_of_a_lifetime(**changes: Any) -> argparse.Namespace:
     """A few experiences of the examples' curriculum; the second evaluation is of other worlds than the first block."""
     return argparse.Namespace(**{"learn": 12, "evaluate": 4, "num_envs": 4, "again": True, "policy": "sampled", **changes})
@@ -262,7 +239,8 @@ def test_a_learner_that_was_kept_goes_on_as_it_was(tmp_path: Path) -> None:
     assert again.time == learner.time and again.updates == learner.updates
     for one, other in zip(learner.network.parameters(), again.network.parameters(), strict=True):
         assert torch.equal(one, other)
-    assert again.reservoir.draw(2)["rewards"].tolist() == learner.reservoir.draw(2)["rewards"].tolist()
+    assert again.digest() == learner.digest()
+    assert again.reservoir.draw(2).rewards.tolist() == learner.reservoir.draw(2).rewards.tolist()
 
 
 @learners
@@ -288,54 +266,3 @@ def test_advantages_bootstrap_what_ran_out_of_time_and_nothing_that_terminated(n
     assert rollout.advantages(**settings)[:2].flatten().tolist() == pytest.approx([first, last])
     rollout.terminated = torch.tensor([[False], [True], [False], [False]])
     assert rollout.advantages(**settings)[1].item() == pytest.approx(2.0 - 20.0)
-
-
-@learners
-def test_v_trace_on_the_policy_itself_gives_discounted_returns() -> None:
-    torch = pytest.importorskip("torch", reason="the learners are networks")
-    load("experts_and_sequential_ppo")
-    module = load("replay_ppo")
-    old = one_environment(
-        rewards=[1.0, 2.0, 0.0, 4.0],
-        ended=[False, True, False, False],
-        terminated=[False, True, False, False],
-        last_values=[0.0, 6.0, 0.0, 0.0],
-    )
-    values = torch.tensor([[3.0], [5.0], [7.0], [9.0], [11.0]])
-    targets, advantages = module.v_trace(old, values, torch.zeros(4, 1))
-    discount = module.DISCOUNT
-    returns = [1.0 + discount * 2.0, 2.0, discount * (4.0 + discount * 11.0), 4.0 + discount * 11.0]
-    assert targets.flatten().tolist() == pytest.approx(returns)
-    assert advantages.flatten().tolist() == pytest.approx([r - v for r, v in zip(returns, values.flatten().tolist())])
-
-
-@learners
-def test_the_reservoir_keeps_a_fair_share_of_early_and_late() -> None:
-    torch = pytest.importorskip("torch", reason="the learners are networks")
-    load("experts_and_sequential_ppo")
-    module = load("replay_ppo")
-    reservoir = module.Reservoir(capacity=200, seed=1)
-    for number in range(250):
-        rollout = module.Rollout(1, 8)
-        rollout.rewards[:] = float(number)
-        rollout.counts[:] = number < 200  # what does not count is not offered
-        reservoir.offer(rollout)
-    kept = torch.stack([stretch["rewards"] for stretch in reservoir.stretches]).flatten()
-    assert len(kept) == 200
-    assert kept.max() < 200
-    early = (kept < 100).sum().item()
-    assert 70 <= early <= 130, "of 200 places half are for the first half, give or take four standard deviations"
-
-
-@learners
-@pytest.mark.parametrize("steps", [1, 2, 31, 512, 513, 1025, 1535, 4095])
-def test_no_minibatch_is_of_one_step(steps: int) -> None:
-    torch = pytest.importorskip("torch", reason="the learners are networks")
-    module = load("experts_and_sequential_ppo")
-    counts = torch.zeros(8192, dtype=torch.bool)
-    counts[torch.randperm(8192)[:steps]] = True
-    parts = list(module.minibatches(counts.reshape(-1, 8)))
-    # A deviation takes two; a rollout of one step teaches nothing.
-    assert sum(len(part) for part in parts) == (steps if steps > 1 else 0)
-    assert all(2 <= len(part) <= 768 for part in parts)
-    assert sorted(torch.cat(parts).tolist() if parts else []) == (counts.nonzero().flatten().tolist() if steps > 1 else [])

@@ -226,6 +226,21 @@ def test_images_of_another_size_are_refused_with_the_options_that_fit(learners: 
 
 
 @needs_torch
+@pytest.mark.parametrize("steps", [1, 2, 31, 512, 513, 1025, 1535, 4095])
+def test_no_minibatch_is_of_one_step(learners: Any, steps: int) -> None:
+    torch = sys.modules["torch"]
+    learner, rollout = learners.PPO(5, 8, size=8), learners.Rollout(512, 8, 8, 5)
+    rollout.active.view(-1)[torch.randperm(4096)[:steps]] = True
+    parts = list(learner.parts(rollout))
+    # A deviation takes two; a rollout of one step teaches nothing.
+    assert sum(len(part) for part in parts) == (steps if steps > 1 else 0)
+    assert all(2 <= len(part) <= 768 for part in parts)
+    assert sorted(torch.cat(parts).tolist() if parts else []) == (
+        rollout.active.flatten().nonzero().flatten().tolist() if steps > 1 else []
+    )
+
+
+@needs_torch
 def test_the_learning_rate_falls_to_a_tenth_within_a_task(learners: Any) -> None:
     learner = small(settings=learners.Settings(rollout=8, minibatch=16, annealing=64))
     steps, rates = Steps(learner, idles=0.0), []
