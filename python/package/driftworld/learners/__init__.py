@@ -2,7 +2,7 @@
 
     from driftworld.learners import EWC
 
-    learner = EWC(num_actions=5, num_envs=64, seed=1, strength=1.0)
+    learner = EWC(num_actions=5, num_envs=64, seed=1, strength=0.1)
     curriculum.run_vector(learner, "logs/ewc", num_envs=64, modalities="rgb", size=32, actions=ACTIONS, frame_skip=5)
     print(learner.report())
 

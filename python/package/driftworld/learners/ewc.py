@@ -69,7 +69,7 @@ class EWC(PPO):
     Args:
         num_actions: Rows of the table of actions.
         num_envs: Environments that it acts in.
-        strength: λ of the springs, from 0.
+        strength: λ of the springs, from 0; tune it on sequences that are not scored.
         samples: Observations of the last rollout that the importances are computed from, from 1.
         **options: As for :class:`PPO`; ``borders`` is ``"labels"`` by default.
 
@@ -81,7 +81,7 @@ class EWC(PPO):
     own_borders = "labels"
 
     def __init__(
-        self, num_actions: int, num_envs: int, *, strength: float = 1.0, samples: int = 256, **options: Any
+        self, num_actions: int, num_envs: int, *, strength: float = 0.1, samples: int = 256, **options: Any
     ) -> None:
         super().__init__(num_actions, num_envs, **options)
         self.strength, self.samples = strength, samples

@@ -23,14 +23,14 @@ class L2(PPO):
     Args:
         num_actions: Rows of the table of actions.
         num_envs: Environments that it acts in.
-        strength: Of the spring, from 0.
+        strength: Of the springs, from 0; tune it on sequences that are not scored.
         **options: As for :class:`PPO`; ``borders`` is ``"labels"`` by default.
     """
 
     name = "l2"
     own_borders = "labels"
 
-    def __init__(self, num_actions: int, num_envs: int, *, strength: float = 1.0, **options: Any) -> None:
+    def __init__(self, num_actions: int, num_envs: int, *, strength: float = 0.1, **options: Any) -> None:
         super().__init__(num_actions, num_envs, **options)
         self.strength = strength
         self.anchor: dict[str, torch.Tensor] = {}

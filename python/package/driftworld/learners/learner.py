@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import time
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -26,15 +27,16 @@ class Learner:
         seed: Of the weights, the actions and the minibatches, from 0.
         size: Side of the images in pixels, a multiple of 8.
         policy: Actions in evaluations: ``"sampled"`` from the policy, or ``"greedy"``, the likeliest. Learning samples.
-        borders: Where a task ends: ``"none"``, nowhere; ``"labels"``, where the label of a learning experience changes;
-            ``"blocks"``, at each learning block after an evaluation. ``None`` is the method's own.
+        borders: Where a task ends: ``"none"``, nowhere; ``"labels"``, where the label of a learning experience changes, so that a
+            block of mixed labels has many borders; ``"blocks"``, at each learning block after an evaluation, and after
+            :meth:`load_state_dict`. ``None`` is the method's own.
 
     Attributes:
         network: Of ``torch``.
         decisions: Decisions learned from, over all environments.
         task_decisions: Those since the last border.
         updates: Steps of the optimiser.
-        seconds: Processor seconds spent in acting while learning, and in learning.
+        seconds: Processor seconds spent in acting while learning, in learning, and at borders.
         task: Label of the task that is learned, if it has one.
         tasks: Tasks begun. Without borders there is one.
 
@@ -112,12 +114,14 @@ class Learner:
         is_border = {"none": False, "labels": label != self.task, "blocks": resumes}[self.borders]
         if self.tasks and not is_border:
             return
+        began = time.process_time()
         if self.tasks:
             self.finish_rollout()
             self.end_task(self.task)
             self.forget_rollout()
         self.task, self.tasks, self.task_decisions = label, self.tasks + 1, 0
         self.begin_task(label)
+        self.seconds += time.process_time() - began
 
     def freeze(self, frozen: bool) -> None:
         """Whether it is being evaluated."""
@@ -152,6 +156,8 @@ class Learner:
         self.network.load_state_dict(state["network"])
         self.shuffles.set_state(state["shuffles"])
         vars(self).update(state["counts"])
+        # A run that goes on with a learning block says nothing of the evaluation before it.
+        self._resumes = True
         self.load_method_state(state["method"])
 
     def save(self, path: Path) -> None:
