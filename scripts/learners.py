@@ -2,6 +2,7 @@
 
     nice python scripts/learners.py                    # PPO
     nice python scripts/learners.py PPO EWC CLEAR      # some learners, one after the other
+    nice python scripts/learners.py --quick            # does it run?
 
 A row has the whole of `Curriculum.run_vector` on find_objects#huddle, the learner's part of that, and what is left: the environments
 and the loop. Only learning counts. Needs PyTorch.
@@ -28,14 +29,16 @@ NEEDED: dict[str, dict[str, Any]] = {"PackNet": {"max_tasks": 2, "task_decisions
 def main() -> None:
     """Runs each learner through two learning blocks; the first one warms up, the second is measured."""
     torch.set_num_threads(1)
+    names = [name for name in sys.argv[1:] if name != "--quick"]
+    count = EXPERIENCES if "--quick" not in sys.argv else NUM_ENVS
     print("| learner | µs a decision | acting and learning | environments and loop |\n|---|--:|--:|--:|")
-    for name in sys.argv[1:] or ["PPO"]:
+    for name in names or ["PPO"]:
         learner = getattr(learners, name)(len(ACTIONS), NUM_ENVS, **NEEDED.get(name, {}))
         marks: list[tuple[float, float, int]] = []
         for variant in ("red", "huddle"):
             block = {
                 "type": "learning",
-                "regimes": [{"task": "find_objects", "variant": variant, "count": EXPERIENCES, "seed": 1}],
+                "regimes": [{"task": "find_objects", "variant": variant, "count": count, "seed": 1}],
             }
             plan = Curriculum.from_dict({"version": 1, "name": "cost", "task_label": "info", "blocks": [block]})
             marks.append((time.process_time(), learner.seconds, learner.decisions))

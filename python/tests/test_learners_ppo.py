@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import builtins
 import importlib
+import re
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -12,6 +14,7 @@ from typing import Any
 import driftworld
 import numpy as np
 import pytest
+from conftest import ROOT
 from small_learners import OPTIONS, Steps, curriculum, live, package, small
 
 needs_torch = pytest.mark.learners
@@ -262,3 +265,10 @@ def test_ppo_learns_a_t_maze_in_20_000_decisions(learners: Any) -> None:
     assert before["success_rate"] < 0.7 and after["success_rate"] > 0.95
     assert learner.decisions < 25_000
     assert time.process_time() - began < 30
+
+
+@needs_torch
+def test_what_a_decision_costs_is_measured(learners: Any) -> None:
+    program = ROOT / "scripts" / "learners.py"
+    done = subprocess.run([sys.executable, program, "--quick"], capture_output=True, text=True, check=True)
+    assert re.fullmatch(r"\| ppo \| \d+ \| \d+ \| \d+ \|", done.stdout.splitlines()[-1]), done.stdout
