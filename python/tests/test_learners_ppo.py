@@ -226,6 +226,28 @@ def test_wrong_options_are_refused(learners: Any, options: dict[str, Any], messa
 
 
 @needs_torch
+@pytest.mark.parametrize(
+    "name, value, bound",
+    [
+        ("rollout", 0, "at least 1"),
+        ("minibatch", 1, "at least 2"),
+        ("discount", 1.5, "at most 1"),
+        ("clip", 0, "more than 0"),
+    ],
+)
+def test_numbers_out_of_range_are_refused(learners: Any, name: str, value: float, bound: str) -> None:
+    with pytest.raises(ValueError, match=f"^{name}: found {value}, expected {bound}$"):
+        learners.Settings(**{name: value})
+
+
+@needs_torch
+def test_more_environments_than_it_was_made_for_are_refused(learners: Any) -> None:
+    plan = curriculum("left", learn=8, evaluate=8)
+    with pytest.raises(ValueError, match="found environment number 4, expected at most 3; pass run_vector num_envs=4"):
+        plan.run_vector(small(), num_envs=6, **{**OPTIONS, "size": 8, "max_steps": 6})
+
+
+@needs_torch
 def test_images_of_another_size_are_refused_with_the_options_that_fit(learners: Any) -> None:
     with pytest.raises(ValueError, match=r'found observations \(4, 16, 16, 3\).*modalities="rgb", size=8'):
         live(small(), None, "left", size=16)

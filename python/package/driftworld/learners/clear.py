@@ -77,17 +77,13 @@ def v_trace(
         discount: For each decision, 0 to 1.
     """
     ratio = log_ratio.exp().clamp(max=1.0)
-    following, goes_on = rollout.following(values), ~rollout.ended
-    targets, advantages = torch.zeros_like(ratio), torch.zeros_like(ratio)
-    above = torch.zeros_like(ratio[0])
+    surprise = rollout.rewards + discount * rollout.following(values) - values[:-1]
+    advantages, later = torch.zeros_like(ratio), torch.zeros_like(ratio[0])
     for step in reversed(range(len(ratio))):
-        # How far the next target is above its value; nothing of it crosses the end of an episode.
-        carried = above * goes_on[step]
-        surprise = rollout.rewards[step] + discount * following[step] - values[step]
-        advantages[step] = ratio[step] * (surprise + discount * carried)
-        above = ratio[step] * (surprise + discount * carried)
-        targets[step] = values[step] + above
-    return targets, advantages
+        # With both cut at 1, the advantage is how far the target is above the value. Nothing crosses the end of an episode.
+        later = ratio[step] * (surprise[step] + discount * later * ~rollout.ended[step])
+        advantages[step] = later
+    return values[:-1] + advantages, advantages
 
 
 class CLEAR(PPO):

@@ -99,8 +99,12 @@ class Learner:
         """Called before an experience: its actions are drawn from its own seed. A task may end, and another one begin.
 
         Raises:
-            ValueError: If borders are where labels change, and there is none.
+            ValueError: If borders are where labels change, and there is none; or if there are more environments than ``num_envs``.
         """
+        if env >= self.num_envs:
+            raise ValueError(
+                f"{self.name}: found environment number {env}, expected at most {self.num_envs - 1}; pass run_vector num_envs={self.num_envs}"
+            )
         self.chances[env] = np.random.default_rng([seed, self.seed])
         self.labels[env] = label
         if self.frozen:

@@ -38,6 +38,9 @@ class Settings:
         entropy: Weight of the policy's entropy, from 0. With 0.01 the policy freezes after an easy task and learns no other.
         reward_scale: Factor of rewards, above 0: 0.01 where an object pays 100.
         max_gradient: Longest gradient, above 0; longer ones are shortened to it.
+
+    Raises:
+        ValueError: If a number is out of its range.
     """
 
     rollout: int = 32
@@ -51,6 +54,18 @@ class Settings:
     entropy: float = 0.03
     reward_scale: float = 0.01
     max_gradient: float = 0.5
+
+    def __post_init__(self) -> None:
+        least = {"rollout": 1, "epochs": 1, "minibatch": 2, "annealing": 0, "discount": 0, "trace": 0, "entropy": 0}
+        for name, bound in least.items():
+            if not getattr(self, name) >= bound:
+                raise ValueError(f"{name}: found {getattr(self, name)!r}, expected at least {bound}")
+        for name in ("discount", "trace"):
+            if getattr(self, name) > 1:
+                raise ValueError(f"{name}: found {getattr(self, name)!r}, expected at most 1")
+        for name in ("learning_rate", "clip", "reward_scale", "max_gradient"):
+            if not getattr(self, name) > 0:
+                raise ValueError(f"{name}: found {getattr(self, name)!r}, expected more than 0")
 
 
 class PPO(Learner):

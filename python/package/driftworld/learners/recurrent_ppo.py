@@ -9,6 +9,7 @@ Known traps:
 - The memory at the start of a rollout is that of older weights: after several passes it is stale. Few epochs keep it small.
 - A cue that was seen before the rollout began is remembered, but how to remember it gets no gradient: ``settings.rollout`` should
   not be shorter than the gap that is to be bridged.
+- The other methods look at single images: they do not combine with it as they are.
 - The last observation of an episode that ran out of time is valued with the memory of that episode, not with an empty one.
 """
 
