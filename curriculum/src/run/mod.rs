@@ -198,11 +198,7 @@ fn run_in_parallel(
             Outcome::CutOff => return Ok(ControlFlow::Break(())),
             Outcome::Over { experience, .. } if is_repeat => {
                 if let (Some((reward, first)), Some(again)) = (evaluated.remove(&number), trace) {
-                    let checked = rollout::expect_frozen(plan, number, (reward, &first), (experience.reward, &again));
-                    if checked.is_err() {
-                        journal.withdraw_block()?;
-                    }
-                    checked?;
+                    rollout::expect_frozen(plan, number, (reward, &first), (experience.reward, &again), journal)?;
                 }
                 return Ok(ControlFlow::Continue(()));
             }

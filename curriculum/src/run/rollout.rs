@@ -182,23 +182,21 @@ pub(super) fn run_range<R: Rollout>(
                 let Some(again) = rollout.experience(number, world)? else {
                     return Ok(ControlFlow::Break(()));
                 };
-                let checked = expect_frozen(plan, number, (reward, &trace), (again.reward, &rollout.trace()));
-                if checked.is_err() {
-                    journal.withdraw_block()?;
-                }
-                checked?;
+                let (first, again) = ((reward, &trace[..]), (again.reward, &rollout.trace()[..]));
+                expect_frozen(plan, number, first, again, journal)?;
             }
         }
     }
     Ok(ControlFlow::Continue(()))
 }
 
-/// Refuses an agent that earned or did something else when it ran an evaluation once more.
+/// Refuses an agent that earned or did something else when it ran an evaluation once more, and takes its block out of the log.
 pub(super) fn expect_frozen(
     plan: &Plan,
     number: u64,
     first: (f64, &[u64]),
     again: (f64, &[u64]),
+    journal: &mut Journal,
 ) -> Result<(), CurriculumError> {
     let found = if first.1 != again.1 {
         let same = first
@@ -213,6 +211,7 @@ pub(super) fn expect_frozen(
     } else {
         return Ok(());
     };
+    journal.withdraw_block()?;
     let planned = &plan.regimes[plan.regime_of(number)];
     Err(CurriculumError::NotFrozen {
         block: planned.block,
