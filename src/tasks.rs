@@ -325,8 +325,12 @@ mod tests {
             "found task \"find_object\", expected the path of a task spec or one of find_objects, get_to_goal, \
              select_object, moving_object, scavenger_hunt, blue_red_green; did you mean \"find_objects\"?"
         );
-        let near = "did you mean \"red\"?";
-        assert!(variant("find_objects#rde").unwrap_err().to_string().ends_with(near));
+        assert_eq!(
+            variant("find_objects#rde").unwrap_err().to_string(),
+            "find_objects: found variant \"rde\", expected one of blue, red, green, dusk, huddle, penalty, \
+             spheres, clearing, wide, modest, poor, half, turned, interact, near, held, long_held, slim, slow, \
+             stiff and 17 more; did you mean \"red\"?"
+        );
         let several = variant("find_objects#any_*").unwrap_err().to_string();
         assert!(
             several.ends_with("expected one of them, such as any_light"),

@@ -51,7 +51,7 @@ impl Designed {
     }
 }
 
-/// Most regimes of all lifetimes together: with their words some 2 GiB.
+/// Most regimes of all lifetimes that are designed together.
 const MAX_REGIMES: usize = 4_000_000;
 
 /// Refuses lifetimes that have no room in memory, by the scenarios of the first.

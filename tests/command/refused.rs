@@ -15,7 +15,7 @@ pub(super) const PARK: &str = r#"{ "version": 2, "name": "park", "parameters": {
   "variants": { "blue": {}, "red": { "color": "red" }, "green": { "color": "green" }, "dusk": { "extends": "red", "light": 0.6 },
     "huddle": { "spread": 6 }, "penalty": { "extends": "red", "reward": -100 } } }"#;
 
-const REFUSED: [&str; 117] = [
+const REFUSED: [&str; 119] = [
     "sampel",
     "sample",
     "sample find_objects --count 0",
@@ -27,6 +27,7 @@ const REFUSED: [&str; 117] = [
     "schema",
     "completions csh",
     "render park.json --renderer crayon",
+    "render park.json --turn nan",
     "photograph park.json --modalities smell",
     "sheet park.json --scenario scenario.json",
     "film park.json -o film.jpg",
@@ -57,6 +58,7 @@ const REFUSED: [&str; 117] = [
     "curriculum park.json --form permuted --lifetimes 0",
     "curriculum park.json --form expert",
     "curriculum park.json --form expert --lifetimes 2",
+    "curriculum find_objects --lifetimes 10000 --worlds 0 -o many",
     "curriculum park.json --form expert --experts 2",
     "curriculum park.json --steps 3",
     "curriculum park.json --order given --order exact",

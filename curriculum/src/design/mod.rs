@@ -16,8 +16,8 @@ mod walk;
 use std::collections::BTreeSet;
 
 use driftworld_spec::{
-    Block, BlockKind, BlockMix, MAX_EXPERIENCES, MAX_SCENARIO_VALUES, Phase, Regime, Scenario, ScenarioComplexity,
-    ScenarioDifficulty, ScenarioForm, TaskLabel,
+    Block, BlockKind, BlockMix, MAX_EXPERIENCES, Phase, Regime, Scenario, ScenarioComplexity, ScenarioDifficulty,
+    ScenarioForm, TaskLabel,
 };
 
 pub use choice::Choice;
@@ -145,8 +145,8 @@ pub fn design_control(variants: &[Choice], order: &[usize], options: &Design) ->
     arranged(variants, options, Some(order))
 }
 
-/// More regimes than a document has room for: each has five values or more.
-const MAX_REGIMES: usize = MAX_SCENARIO_VALUES / 5;
+/// Most regimes of a design. A document has no room for more: each has five values or more.
+const MAX_REGIMES: usize = 400_000;
 
 fn arranged(variants: &[Choice], options: &Design, control: Option<&[usize]>) -> Result<Scenario, CurriculumError> {
     check(variants, options)?;

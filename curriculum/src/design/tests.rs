@@ -317,4 +317,5 @@ fn a_design_that_cannot_be_says_why() {
         ..Design::default()
     };
     assert!(said(1, still).contains("expected at least 2"));
+    assert!(said(700, Design::default()).contains("at most 400000 regimes, not 491400"));
 }
