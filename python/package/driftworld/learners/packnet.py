@@ -10,7 +10,7 @@ Known traps:
 - A gradient of 0 does not stop Adam: its moments move a weight on. They are cleared at borders and after pruning.
 - The learner must know how long a task is (``task_decisions``) and how many there are (``max_tasks``). The decisions of retraining
   count: they are the last ``retraining`` of the task. A task that ends before has not been retrained, and its policy is worse.
-- Which weights an evaluation uses is told by its label. A method without labels in evaluations is another problem.
+- The label says which weights an evaluation uses. A method without labels in evaluations is another problem.
 - The value's head is left free: it is needed for learning alone, and not forgotten by anything that is scored.
 - A task that comes again is a further task with weights of its own.
 """
@@ -142,5 +142,6 @@ class PackNet(PPO):
 
     def load_method_state(self, state: dict[str, Any]) -> None:
         """Takes them back."""
-        self.owners, self.slots, self.is_pruned = state["owners"], dict(state["slots"]), state["is_pruned"]
+        self.owners = {name: owner.clone() for name, owner in state["owners"].items()}
+        self.slots, self.is_pruned = dict(state["slots"]), state["is_pruned"]
         self._views.clear()
