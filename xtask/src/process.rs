@@ -25,7 +25,7 @@ impl Workspace {
     }
 
     /// `cargo` over all crates with one set of features, so that no stage builds what another has built. Without `--all`, but
-    /// for the protocol of Unity and the fuzz targets: nothing builds on them, and they bring sixty crates along.
+    /// for the protocol of Unity and the fuzz targets: nothing builds on them, and they bring fifty crates along.
     pub(crate) fn cargo_everywhere(&self, arguments: &[&str]) -> Command {
         let mut command = self.cargo(arguments);
         command.arg("--workspace");
