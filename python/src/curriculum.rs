@@ -1,7 +1,6 @@
 //! Scenarios and the logs that they are lived into, as Python holds them. What they mean is `spec`'s, the plan and the log
 //! `curriculum`'s; the agent and its environment are in `package/driftworld/curricula.py`.
 
-use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -155,21 +154,19 @@ impl PyPlan {
         let dictionary = json!({
             "number": number.0, "block": spec.block, "regime": spec.regime, "learning": spec.kind == BlockKind::Learning,
             "variant": spec.variant, "seed": spec.seed, "index": spec.index, "progress": spec.progress,
-            "chance": spec.agent_seed, "label": label,
+            "chance": spec.agent_seed, "steps": spec.steps, "label": label,
         });
         Ok(json_to_py(py, &dictionary)?)
     }
 
+    /// The experience that follows when the budget of the regime of experience `number` is spent.
+    fn after(&self, number: u64) -> u64 {
+        self.plan.after(number)
+    }
+
     /// The numbers of the first and the last experience of each regime: all variants, and both ends of each drift.
-    fn ends_of_regimes(&self, py: Python<'_>) -> Result<Vec<u64>> {
-        detach(py, || {
-            let mut ends: BTreeMap<(usize, usize), [u64; 2]> = BTreeMap::new();
-            for number in 0..self.plan.num_experiences() {
-                let spec = self.plan.experience_spec(number)?;
-                ends.entry((spec.block, spec.regime)).or_insert([number; 2])[1] = number;
-            }
-            Ok(ends.into_values().flatten().collect())
-        })
+    fn ends_of_regimes(&self) -> Vec<u64> {
+        self.plan.ends_of_regimes().collect()
     }
 
     /// What options of environments take away from its variants: see `covered.rs`.
@@ -186,6 +183,11 @@ impl PyPlan {
     fn try_worlds<'py>(&self, py: Python<'py>, worlds: u32) -> Result<Bound<'py, PyAny>> {
         let trials = detach(py, || self.plan.try_worlds(worlds, &mut Tried::default()));
         Ok(to_py(py, &trials)?)
+    }
+
+    /// How many environments run at the same time.
+    fn set_lanes(&mut self, lanes: usize) {
+        self.plan.set_lanes(lanes);
     }
 
     /// Notes what else its lifetime depends on: a log is taken up only if it is the same.

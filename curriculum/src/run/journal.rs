@@ -11,6 +11,7 @@ use driftworld_spec::{ScenarioComplexity, ScenarioDifficulty, ScenarioForm, Vari
 use driftworld_text::when;
 use serde_json::{Map, Value, json};
 
+use super::budget::Budget;
 use super::columns::{self, COLUMNS, ENDED_BY, ENDING, block_type};
 use super::episode::Experience;
 use super::gap::{Gap, Gaps};
@@ -24,6 +25,9 @@ use crate::CurriculumError;
 pub struct Journal {
     writer: LogWriter,
     summary: Summary,
+    /// The number of the experience that is to be logged next.
+    next: u64,
+    budget: Budget,
     gaps: Gaps,
     /// A learning regime, and the variant at the end of its drift if it has one.
     learned: Option<(usize, Option<Variant>)>,
@@ -97,18 +101,19 @@ impl Journal {
             Err(MetricsError::NoDataFiles(_)) => Rows::default(),
             Err(error) => return Err(error.into()),
         };
-        let mut summary = Summary::default();
-        for (number, row) in (0..).zip(rows.iter()) {
+        let mut journal = Self::new(writer, Summary::default());
+        for row in rows.iter() {
+            let number = journal.next;
             let wrong = |found: String, expected: String| CurriculumError::OtherRow {
                 path: folder.to_owned(),
                 row: number,
                 found,
                 expected,
             };
-            count_row(plan, &mut summary, number, row).map_err(|(found, expected)| wrong(found, expected))?;
+            let steps = count_row(plan, &mut journal.summary, number, row)
+                .map_err(|(found, expected)| wrong(found, expected))?;
+            journal.pass(plan, number, steps);
         }
-        summary.finished = summary.num_over() == plan.num_experiences();
-        let mut journal = Self::new(writer, summary);
         if Recordings::exist(folder)? {
             journal.record();
         }
@@ -119,6 +124,8 @@ impl Journal {
         Self {
             writer,
             summary,
+            next: 0,
+            budget: Budget::default(),
             gaps: Gaps::default(),
             learned: None,
             recordings: None,
@@ -150,6 +157,7 @@ impl Journal {
         let record = self.with_words(record, columns::SKIPPED, columns::SKIPPED);
         self.writer.write(&record)?;
         self.summary.leave_out(planned, number, reason);
+        self.pass(plan, number, None);
         Ok(self.progress(plan, number, f64::NAN))
     }
 
@@ -167,13 +175,21 @@ impl Journal {
         })
     }
 
-    /// How far the run has come with experience `number`; also notes whether that was the last.
-    fn progress(&mut self, plan: &Plan, number: u64, reward: f64) -> Progress {
-        let (planned, total) = (&plan.regimes[plan.regime_of(number)], plan.num_experiences());
-        self.summary.finished = self.num_experiences() == total;
+    /// Goes on behind experience `number`, which took so many steps, or was left out.
+    fn pass(&mut self, plan: &Plan, number: u64, steps: Option<u64>) {
+        if let Some(steps) = steps {
+            self.budget.count(plan, number, steps);
+        }
+        self.next = self.budget.next(plan, number + 1);
+        self.summary.finished = self.next == plan.num_experiences();
+    }
+
+    /// How far the run has come with experience `number`.
+    fn progress(&self, plan: &Plan, number: u64, reward: f64) -> Progress {
+        let planned = &plan.regimes[plan.regime_of(number)];
         Progress {
-            done: self.num_experiences(),
-            total,
+            done: self.next,
+            total: plan.num_experiences(),
             block: planned.block,
             kind: planned.kind,
             variant: planned.id.clone(),
@@ -208,6 +224,7 @@ impl Journal {
         let success = f64::from(u8::from(experience.success));
         let steps = u64::from(experience.steps);
         self.summary.count(planned, experience.reward, success, steps, ended_by);
+        self.pass(plan, number, Some(steps));
         Ok(self.progress(plan, number, experience.reward))
     }
 
@@ -232,9 +249,9 @@ impl Journal {
         &self.summary
     }
 
-    /// How many experiences are in the log, those that were left out included.
+    /// How many experiences of the plan are over: those in the log, and those that a spent budget passed over.
     pub fn num_experiences(&self) -> u64 {
-        self.summary.num_over()
+        self.next
     }
 
     /// Takes back the block that was logged last: an agent that may not be judged by it gets no rows, and a log that is taken up
@@ -275,8 +292,9 @@ fn origin(plan: &Plan, number: u64) -> Result<EpisodeOrigin, CurriculumError> {
 /// The word for what ended an experience where nobody said.
 const UNKNOWN: &str = "unknown";
 
-/// Counts a row of an earlier run, if it is the one that the plan has there; else says what it is, and what the plan has.
-fn count_row(plan: &Plan, summary: &mut Summary, number: u64, row: Row<'_>) -> Result<(), (String, String)> {
+/// Counts a row of an earlier run, if it is the one that the plan has there, and says how many steps it took if it was not left out;
+/// else says what it is, and what the plan has.
+fn count_row(plan: &Plan, summary: &mut Summary, number: u64, row: Row<'_>) -> Result<Option<u64>, (String, String)> {
     if number >= plan.num_experiences() {
         return Err((
             "one row more".to_owned(),
@@ -314,12 +332,12 @@ fn count_row(plan: &Plan, summary: &mut Summary, number: u64, row: Row<'_>) -> R
     }
     if let Some(why) = why {
         summary.leave_out(planned, number, why);
-        return Ok(());
+        return Ok(None);
     }
     let steps = value("episode_step_count") as u64;
     let ended_by = row.text(ENDED_BY).unwrap_or(UNKNOWN);
     summary.count(planned, value("reward"), value("success"), steps, ended_by);
-    Ok(())
+    Ok(Some(steps))
 }
 
 /// What the log says of a lifetime: the scenario, who lives it, and what its variants and worlds were made from.

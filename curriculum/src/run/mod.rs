@@ -2,6 +2,7 @@
 //!
 //! A [`Plan`] is a scenario with everything that it names, a [`Journal`] the log that it is lived into, [`run`] lives it.
 
+mod budget;
 mod columns;
 mod episode;
 mod finishing;
@@ -101,8 +102,15 @@ pub fn run(
     let mut next = journal.num_experiences();
     while next < total {
         let learns = agent.learns();
-        let end = if learns { plan.end_of_kind(next) } else { total };
-        let still = !learns || plan.regimes[plan.regime_of(next)].kind == BlockKind::Evaluation;
+        let planned = &plan.regimes[plan.regime_of(next)];
+        let has_budgets = plan.regimes.iter().any(|planned| planned.steps.is_some());
+        let end = if learns || has_budgets {
+            plan.end_of_kind(next)
+        } else {
+            total
+        };
+        // Which experiences a budget leaves is known from those before them.
+        let still = planned.kind == BlockKind::Evaluation || !(learns || has_budgets);
         let repeats = if learns { repeats } else { Repeats::default() };
         let copies: Option<Vec<_>> = still
             .then(|| {
@@ -125,7 +133,7 @@ pub fn run(
         if flow.is_break() {
             break;
         }
-        next = end;
+        next = journal.num_experiences().max(end);
     }
     Ok(journal.summary().clone())
 }

@@ -49,6 +49,8 @@ pub struct Plan {
     /// What becomes of experiences whose worlds cannot be drawn.
     pub(super) undrawable: Undrawable,
     tasks: BTreeMap<String, Arc<TaskSpec>>,
+    /// How many environments run at the same time.
+    pub(super) lanes: usize,
 }
 
 /// An experience that is to be lived, for whoever lives it elsewhere than [`run`](crate::run) does.
@@ -70,6 +72,8 @@ pub struct ExperienceSpec<'a> {
     pub progress: f64,
     /// The seed of the agent's own random numbers.
     pub agent_seed: u64,
+    /// Decisions after which no more experiences of its regime begin, if it has such a budget.
+    pub steps: Option<u32>,
     /// The label of its task that the agent gets, where the scenario has labels.
     pub label: Option<&'a Label>,
 }
@@ -101,6 +105,7 @@ impl Plan {
             notes: BTreeMap::new(),
             undrawable,
             tasks: BTreeMap::new(),
+            lanes: 1,
         };
         let mut finder = Finder {
             sources,
@@ -158,12 +163,23 @@ impl Plan {
         }
     }
 
+    /// Says how many environments run at the same time: what a budget of decisions leaves depends on it. One by default.
+    pub fn set_lanes(&mut self, lanes: usize) {
+        self.lanes = lanes.max(1);
+    }
+
+    /// Whether regimes of a block end after so many decisions.
+    pub(super) fn has_budgets(&self, block: usize) -> bool {
+        let mut of_block = self.regimes.iter().filter(|planned| planned.block == block);
+        of_block.any(|planned| planned.steps.is_some())
+    }
+
     /// The scenario that it was made from.
     pub fn scenario(&self) -> &Scenario {
         &self.scenario
     }
 
-    /// How many experiences the whole lifetime has.
+    /// How many experiences the whole lifetime has; the most that it may have, where regimes have a budget of decisions.
     pub fn num_experiences(&self) -> u64 {
         self.scenario.num_experiences()
     }
@@ -200,8 +216,23 @@ impl Plan {
             index: is_drawn.then(|| planned.index_of(number)),
             progress: planned.progress(number),
             agent_seed: planned.agent_seed(number),
+            steps: planned.steps,
             label: planned.label(number),
         })
+    }
+
+    /// The experience that may follow when the budget of the regime of experience `number` is spent: behind the regime, or the next of a
+    /// block that is shuffled.
+    pub fn after(&self, number: u64) -> u64 {
+        let planned = &self.regimes[self.regime_of(number)];
+        let end = planned.first + u64::from(planned.count);
+        if planned.shuffle.is_some() { number + 1 } else { end }
+    }
+
+    /// The numbers of the first and the last experience of each regime: all variants, and both ends of each drift.
+    pub fn ends_of_regimes(&self) -> impl Iterator<Item = u64> {
+        let ends = |planned: &Planned| [0, u64::from(planned.count) - 1].map(|offset| planned.number(offset));
+        self.regimes.iter().flat_map(ends)
     }
 
     /// The index of the regime that an experience belongs to.
@@ -314,6 +345,7 @@ impl Plan {
             first,
             shuffle,
             count: regime.count,
+            steps: regime.steps,
             seed: regime.seed,
             first_index: regime.first_index,
             max_steps: regime.max_steps,

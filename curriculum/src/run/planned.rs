@@ -28,6 +28,8 @@ pub(super) struct Planned {
     /// Which experience of its block is run when, where the block is shuffled.
     pub(super) shuffle: Option<Arc<Shuffle>>,
     pub(super) count: u32,
+    /// Decisions after which no more of its experiences begin.
+    pub(super) steps: Option<u32>,
     pub(super) seed: u64,
     pub(super) first_index: u64,
     pub(super) max_steps: Option<u32>,

@@ -6,6 +6,7 @@ use driftworld_env::Recording;
 use driftworld_metrics::Timestamp;
 use driftworld_spec::{BlockKind, World};
 
+use super::budget::Budget;
 use super::journal::LoggedExperience;
 use super::worlds::{Drawn, Worlds};
 use super::{Experience, Journal, Plan, Progress, Summary};
@@ -109,18 +110,24 @@ pub(super) fn relearn_range<R: Rollout>(
     (worlds, block): (&mut Worlds<'_>, &mut Option<usize>),
     rollout: &mut R,
 ) -> Result<ControlFlow<()>, R::Error> {
-    for number in numbers {
+    let mut budget = Budget::default();
+    let mut next = numbers.start;
+    while next < numbers.end {
+        let number = next;
         let planned = &plan.regimes[plan.regime_of(number)];
+        next = number + 1;
         if planned.kind == BlockKind::Learning
             && let Drawn::World { world, .. } = worlds.draw(number)?
         {
             if block.replace(planned.block) != Some(planned.block) {
                 rollout.begin_block(true, &[])?;
             }
-            if rollout.experience(number, world)?.is_none() {
+            let Some(experience) = rollout.experience(number, world)? else {
                 return Ok(ControlFlow::Break(()));
-            }
+            };
+            budget.count(plan, number, u64::from(experience.steps));
         }
+        next = budget.next(plan, next);
     }
     Ok(ControlFlow::Continue(()))
 }
@@ -138,7 +145,9 @@ pub(super) fn run_range<R: Rollout>(
     // Those of the present block, with what was earned and done in them.
     let mut repeated: Vec<u64> = Vec::new();
     let mut evaluated: Vec<(u64, f64, Vec<u64>)> = Vec::new();
-    for number in numbers {
+    let mut next = numbers.start;
+    while next < numbers.end {
+        let number = next;
         let planned = &plan.regimes[plan.regime_of(number)];
         let (progress, reward) = match worlds.draw(number)? {
             Drawn::LeftOut { reason } => (journal.leave_out(plan, number, &reason, now())?, None),
@@ -167,9 +176,10 @@ pub(super) fn run_range<R: Rollout>(
                 (progress, Some(experience.reward))
             }
         };
-        let is_last = number + 1 == total || plan.regimes[plan.regime_of(number + 1)].block != planned.block;
+        next = journal.num_experiences();
+        let is_last = next == total || plan.regimes[plan.regime_of(next)].block != planned.block;
         if planned.kind == BlockKind::Learning && is_last {
-            rollout.end_learning(number + 1)?;
+            rollout.end_learning(next)?;
         }
         if rollout.logged(&progress, reward)?.is_break() {
             return Ok(ControlFlow::Break(()));

@@ -314,7 +314,7 @@ fn what_cannot_be_lived_says_where() {
     assert_eq!(again.code(), "curriculum/log");
 }
 
-/// A lifetime with everything that a regime can be: before deployment, drawn, drifting, of a world file, cut short.
+/// A lifetime with everything that a regime can be: before deployment, drawn, drifting, of a world file, cut short, with a budget.
 fn varied() -> Scenario {
     let drawn = |variant: &str, count| Regime {
         seed: 3,
@@ -332,7 +332,12 @@ fn varied() -> Scenario {
         world: Some("yard.json".to_owned()),
         ..Regime::new("Task 1", "yard", 2)
     };
-    let mut before = Block::new(BlockKind::Learning, vec![short(drawn("blue", 2))]);
+    // Two experiences of 60 steps spend it.
+    let budgeted = Regime {
+        steps: Some(61),
+        ..drawn("blue", 9)
+    };
+    let mut before = Block::new(BlockKind::Learning, vec![short(budgeted)]);
     before.phase = Phase::PreDeployment;
     let evaluation = || Block::new(BlockKind::Evaluation, vec![short(drawn("blue", 2)), world.clone()]);
     let learning = Block::new(BlockKind::Learning, vec![short(drawn("red", 2)), short(drift)]);
@@ -416,7 +421,7 @@ fn a_log_is_taken_up_only_by_the_run_that_it_was_begun_with() {
     let folder = scratch();
     let log = folder.path().join("log");
     let scenario = varied();
-    live(&scenario, &mut RandomAgent::new(0), &log, 6).unwrap_or_else(|error| panic!("{error}"));
+    live(&scenario, &mut RandomAgent::new(0), &log, 13).unwrap_or_else(|error| panic!("{error}"));
     let before = everything(&log);
     let check = |scenario: &Scenario, agent: &str, expected: &str| {
         let error = Journal::resume(&log, &plan(scenario).unwrap_or_else(|error| panic!("{error}")), agent);
@@ -445,7 +450,7 @@ fn a_log_is_taken_up_only_by_the_run_that_it_was_begun_with() {
     let error = error.expect_err("a row is gone");
     assert_eq!(error.code(), "curriculum/other-row");
     assert!(
-        error.to_string().contains("row 1: found experience 2 in block 1-test"),
+        error.to_string().contains("row 1: found experience 9 in block 1-test"),
         "{error}"
     );
 }

@@ -58,6 +58,7 @@ class Experience:
         index: The number of its world under the seed.
         progress: How far on its way a drift is, in 0..=1; 0 where nothing drifts.
         chance: The seed that the agent's own random numbers should be drawn from.
+        steps: Decisions after which no more experiences of its regime begin, if it has such a budget.
         label: Where the scenario tells the task: ``number``, ``of``, ``name``, and ``observed``, whether in observations.
     """
 
@@ -70,6 +71,7 @@ class Experience:
     index: int | None
     progress: float
     chance: int = field(repr=False)
+    steps: int | None
     label: dict[str, Any] | None = field(repr=False)
     _plan: _native.Plan = field(repr=False, compare=False)
 
@@ -469,6 +471,7 @@ class Curriculum(Sequence[Block]):
             CurriculumError, MetricsError, EnvError, TypeError, ValueError: As :meth:`run`.
         """
         plan = self._own_plan(skip_undrawable, seed)
+        plan.set_lanes(int(num_envs))
 
         def rollout(save: Callable[[int], None]) -> Rollout:
             return VectorRollout(

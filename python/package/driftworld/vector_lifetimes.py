@@ -116,6 +116,7 @@ class VectorRollout(Rollout):
         label = plan.experience_spec(0)["label"]
         self._labelled, self._observed = label is not None, is_observed(label, envs.single_observation_space)
         self._labels: list[Mapping[str, Any] | None] = [label] * num_envs
+        self._num_regimes = max(len(block["regimes"]) for block in plan.scenario()["blocks"])
         self._names: list[dict[str, Any]] = [{}] * num_envs
         self._has_begun = self._learning = self._records = False
         self._abandon()
@@ -133,6 +134,8 @@ class VectorRollout(Rollout):
         """Forgets what is under way."""
         self._next, self._block = 0, -1
         self._running: list[int | None] = [None] * self._num_envs
+        self._regimes = np.zeros(self._num_envs, dtype=np.int64)
+        self._decisions = np.zeros(self._num_regimes, dtype=np.int64)
         self._over: dict[int, tuple[float, bool, int, bool, str | None]] = {}
         self._traces: dict[int, Trace | None] = {}
         self._recordings: dict[int, _native.RecordingHandle] = {}
@@ -182,6 +185,7 @@ class VectorRollout(Rollout):
         self._success, self._events = infos["is_success"] & active, infos["events"]
         self._earned += rewards
         self._steps += active
+        self._decisions += np.bincount(self._regimes[active], minlength=self._num_regimes)
         self._observations = self._copied()
         if self._learning:
             following = self._observations
@@ -207,6 +211,10 @@ class VectorRollout(Rollout):
             now = self._experience(self._next)
             if now.block != self._block:
                 return False
+            if now.steps is not None and self._decisions[now.regime] >= now.steps:
+                # As the native loop passes over what a spent budget leaves out.
+                self._next = self._plan.after(self._next)
+                continue
             self._next += 1
             try:
                 world = self._plan.world(now.number)
@@ -226,6 +234,7 @@ class VectorRollout(Rollout):
                 self._names[env] = {**origin(now), "world_hash": infos["world_hash"][env]}
             self._labels[env] = now.label
             self._running[env], self._earned[env], self._steps[env] = now.number, 0.0, 0
+            self._regimes[env] = now.regime
             self._traces[now.number] = self._frozenness.trace(now.number)
             return True
         return False

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use indexmap::IndexMap;
 
-use super::{DriftSwitch, Phase, Regime, Scenario};
+use super::{BlockKind, DriftSwitch, Phase, Regime, Scenario};
 use crate::error::{MAX_PROBLEMS, Problem, SpecError, first_of};
 use crate::names;
 use crate::task::TaskSpec;
@@ -93,6 +93,7 @@ impl<'a> Made<'a> {
 /// Everything wrong in a scenario that needs no task to be seen.
 pub(super) fn alone(scenario: &Scenario) -> Vec<Problem> {
     let mut problems = phases(scenario);
+    problems.extend(budgets(scenario));
     problems.extend(names::problem("/name", &scenario.name));
     let mut called: BTreeMap<(&str, &str), Made> = BTreeMap::new();
     for (pointer, regime) in regimes(scenario) {
@@ -173,6 +174,24 @@ fn phases(scenario: &Scenario) -> Vec<Problem> {
         Problem::new("spec/value", format!("/blocks/{b}/phase"), found, expected).advise("move the block up")
     };
     scenario.blocks.iter().enumerate().filter(late).map(problem).collect()
+}
+
+/// Budgets where the number of experiences has to be known: evaluations are compared, and a drift comes to its end with the last.
+fn budgets(scenario: &Scenario) -> impl Iterator<Item = Problem> {
+    let of_blocks = scenario
+        .blocks
+        .iter()
+        .flat_map(|block| block.regimes.iter().map(move |_| block.kind));
+    regimes(scenario)
+        .zip(of_blocks)
+        .filter_map(|((pointer, regime), kind)| {
+            let steps = regime
+                .steps
+                .filter(|_| kind == BlockKind::Evaluation || regime.drift.is_some())?;
+            let expected = "none in an evaluation or a drift";
+            let problem = Problem::new("spec/value", format!("{pointer}/steps"), steps.to_string(), expected);
+            Some(problem.advise("say with count how many experiences there are"))
+        })
 }
 
 /// Everything in a scenario that the tasks it names do not allow. A task that cannot be found is asked for once.

@@ -39,6 +39,11 @@ pub struct Regime {
     /// How many experiences.
     #[schemars(range(min = 1, max = 10_000_000))]
     pub count: u32,
+    /// A budget of decisions for a block of learning: once so many were made in its experiences, no more of them begin. `count` is the
+    /// most experiences then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 1_000_000_000))]
+    pub steps: Option<u32>,
     /// The seed of its worlds.
     #[serde(default)]
     pub seed: u64,
@@ -77,6 +82,7 @@ impl Regime {
             values: IndexMap::new(),
             name: None,
             count,
+            steps: None,
             seed: 0,
             first_index: 0,
             world: None,
