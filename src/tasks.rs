@@ -20,6 +20,20 @@ pub const BUILT_IN: [(&str, &str); 6] = [
     ("blue_red_green", include_str!("../examples/tasks/blue_red_green.json")),
 ];
 
+/// The example worlds, which are tasks, too, and found by name as well. The files are `examples/worlds/`.
+pub const WORLDS: [(&str, &str); 10] = [
+    ("foraging", include_str!("../examples/worlds/foraging.json")),
+    ("four_rooms", include_str!("../examples/worlds/four_rooms.json")),
+    ("hunt", include_str!("../examples/worlds/hunt.json")),
+    ("key_corridor", include_str!("../examples/worlds/key_corridor.json")),
+    ("lava_crossing", include_str!("../examples/worlds/lava_crossing.json")),
+    ("locked_rooms", include_str!("../examples/worlds/locked_rooms.json")),
+    ("maze", include_str!("../examples/worlds/maze.json")),
+    ("put_next", include_str!("../examples/worlds/put_next.json")),
+    ("switches", include_str!("../examples/worlds/switches.json")),
+    ("t_maze", include_str!("../examples/worlds/t_maze.json")),
+];
+
 /// Why no task is found by its name.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -56,7 +70,6 @@ pub enum TaskError {
 
 /// That there is no such file, for a name that is a path; else that there is no such task.
 fn unknown(name: &str) -> String {
-    let names = built_in_names();
     let has_ending = Path::new(name)
         .extension()
         .is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
@@ -66,7 +79,7 @@ fn unknown(name: &str) -> String {
             printable(name)
         );
     }
-    let (all, near) = (names.join(", "), did_you_mean(name, names));
+    let (all, near) = (built_in_names().join(", "), did_you_mean(name, names()));
     format!("found task {name:?}, expected the path of a task spec or one of {all}{near}")
 }
 
@@ -130,6 +143,17 @@ pub fn built_in_names() -> Vec<&'static str> {
     BUILT_IN.iter().map(|(name, _)| *name).collect()
 }
 
+/// The text of the task or example world of this name.
+pub fn text_by_name(name: &str) -> Option<&'static str> {
+    let mut known = BUILT_IN.iter().chain(&WORLDS);
+    known.find(|(known, _)| *known == name).map(|(_, text)| *text)
+}
+
+/// All names that tasks are found by.
+fn names() -> impl Iterator<Item = &'static str> {
+    BUILT_IN.iter().chain(&WORLDS).map(|(name, _)| *name)
+}
+
 /// A name cut into task and variant: `find_objects#red` is `("find_objects", Some("red"))`.
 pub fn split(name: &str) -> (&str, Option<&str>) {
     match name.rsplit_once('#') {
@@ -144,7 +168,7 @@ pub fn split(name: &str) -> (&str, Option<&str>) {
 /// [`TaskError`] if there is none, or the document is wrong.
 pub fn task(name: &str) -> Result<Arc<TaskSpec>, TaskError> {
     let (task, _) = split(name);
-    if let Some((_, text)) = BUILT_IN.iter().find(|(built_in, _)| *built_in == task) {
+    if let Some(text) = text_by_name(task) {
         return Ok(TaskSpec::from_json(&format!("{task}.json"), text)?);
     }
     let path = Path::new(task);
@@ -221,7 +245,7 @@ fn fits(pattern: &str, name: &str) -> bool {
 
 /// Whether a name is neither a path nor near to the name of a built-in task.
 fn is_word(name: &str) -> bool {
-    !name.contains(['/', '\\', '.']) && did_you_mean(name, built_in_names()).is_empty()
+    !name.contains(['/', '\\', '.']) && did_you_mean(name, names()).is_empty()
 }
 
 /// Whether something is there that can be read; a folder, which may be called as a variant is, is none.
@@ -235,8 +259,7 @@ pub(crate) fn with_tasks(names: &[String]) -> Vec<String> {
     let mut known: Vec<(String, Arc<TaskSpec>)> = Vec::new();
     let called = names.iter().map(|name| {
         let (of, own) = split(name);
-        let is_task =
-            own.is_some() || BUILT_IN.iter().any(|(built_in, _)| *built_in == of) || is_document(Path::new(of));
+        let is_task = own.is_some() || text_by_name(of).is_some() || is_document(Path::new(of));
         if !is_task && let Some((task, _)) = known.iter().rev().find(|(_, spec)| variants_called(spec, name).is_ok()) {
             return format!("{task}#{name}");
         }

@@ -74,6 +74,8 @@ fn list(as_json: bool) -> Result<(), Failure> {
         ]
     });
     output::line(table(["task", "what it is", "variants"], rows.collect(), &[]))?;
+    let worlds = tasks::WORLDS.map(|(name, _)| name).join(", ");
+    output::line(format!("\nThe example worlds are found by name, too: {worlds}."))?;
     output::line("\n`driftworld tasks show TASK` says what varies in one, and what each of its variants changes.")
 }
 

@@ -187,7 +187,7 @@ impl Tasks {
     /// The task of a name in a log: a file by its path, or else by its name alone, for the log may come from another
     /// folder.
     fn task(&self, called: &str) -> Option<Arc<TaskSpec>> {
-        if tasks::built_in_names().contains(&called) {
+        if tasks::text_by_name(called).is_some() {
             return tasks::task(called).ok();
         }
         let called = Path::new(called);

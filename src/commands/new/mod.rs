@@ -81,7 +81,11 @@ impl New {
 impl Export {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let (task, _) = tasks::split(&self.task);
-        let Some(built_in) = tasks::BUILT_IN.into_iter().find(|(name, _)| *name == task) else {
+        let Some(built_in) = tasks::BUILT_IN
+            .into_iter()
+            .chain(tasks::WORLDS)
+            .find(|(name, _)| *name == task)
+        else {
             let names = tasks::built_in_names();
             let near = did_you_mean(task, names.iter().copied());
             let names = names.join(", ");
