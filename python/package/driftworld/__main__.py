@@ -1,4 +1,4 @@
-"""The ``driftworld`` command, as the wheel installs it and as ``python -m driftworld`` runs it. Its work is native."""
+"""The ``driftworld`` command, as the wheel installs it and as ``python -m driftworld`` runs it. Its work is native, but for ``benchmark``."""
 
 from __future__ import annotations
 
@@ -10,6 +10,10 @@ from driftworld import _native
 
 def main() -> int:
     """Runs the command with the arguments of the process; returns its exit code: 0, 1 for wrong input, 2 for wrong arguments."""
+    if sys.argv[1:2] == ["benchmark"]:
+        from driftworld.benchmark import command
+
+        return command.main(sys.argv[2:])
     # As in the program itself: an interrupt ends it, unless a subcommand asks to be told.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     return _native.main(["driftworld", *sys.argv[1:]])

@@ -1,0 +1,266 @@
+"""Runs the cells of a table: each once, by whoever is free, and on from where it was killed.
+
+A cell's folder is ``FOLDER/SEQUENCE/LEARNER/SEED``. While it runs, its logs and its learner are in ``work/``; what stays is
+``report.json`` and ``logs.tar.xz``. Several processes and several machines may share the folder: who makes the folder ``claim/``
+first runs the cell, and touches it while it does. A claim that nobody touches any more is taken away by renaming it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import hashlib
+import importlib.util
+import inspect
+import io
+import json
+import os
+import platform
+import resource
+import shutil
+import tarfile
+import threading
+import time
+import uuid
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from functools import partial
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+from driftworld._files import write_whole
+from driftworld.benchmark.sequence import Sequence
+from driftworld.curricula import Curriculum
+from driftworld.logs import read_log
+
+#: Seconds between two touches of a claim, and after which a claim that was not touched is anybody's.
+TOUCH, STALE = 10.0, 120.0
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One learner with one seed in one sequence.
+
+    Attributes:
+        sequence: Name or file of the sequence.
+        learner: Name of a learner of ``driftworld.learners``, or ``FILE.py:CLASS``.
+        seed: Of the worlds and of the learner.
+        split: ``"test"``, or ``"validation"`` to tune.
+        arguments: Of the learner, laid over those that the sequence has for it.
+    """
+
+    sequence: str
+    learner: str
+    seed: int
+    split: str = "test"
+    arguments: tuple[tuple[str, Any], ...] = ()
+
+    @property
+    def label(self) -> str:
+        """What rows of tables and folders call the learner."""
+        own = self.learner.rpartition(":")[2].lower() if ":" in self.learner else self.learner
+        return "-".join([own, *(f"{name}={value}" for name, value in self.arguments)])
+
+    def folder(self, results: Path) -> Path:
+        """Where its results are."""
+        name = Sequence.load(self.sequence).name + ("" if self.split == "test" else f"-{self.split}")
+        return results / name / self.label / str(self.seed)
+
+    def run(self, results: Path) -> dict[str, Any] | None:
+        """Runs it, or goes on with it; its report. ``None`` if somebody else is running it."""
+        folder = self.folder(results)
+        report = folder / "report.json"
+        if report.is_file():
+            return _read(report)
+        folder.mkdir(parents=True, exist_ok=True)
+        with _claim(folder / "claim") as is_ours:
+            if not is_ours:
+                return None
+            if not report.is_file():
+                _live(self, folder)
+        return _read(report)
+
+
+def _read(file: Path) -> dict[str, Any]:
+    read: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+    return read
+
+
+@contextlib.contextmanager
+def _claim(claim: Path) -> Iterator[bool]:
+    """Whether the folder was ours to make."""
+    with contextlib.suppress(FileNotFoundError):
+        if time.time() - claim.stat().st_mtime > STALE:
+            # Only one of those who try can rename it.
+            gone = claim.with_name(f"claim-{uuid.uuid4().hex}")
+            with contextlib.suppress(FileNotFoundError):
+                claim.rename(gone)
+                gone.rmdir()
+    try:
+        claim.mkdir()
+    except FileExistsError:
+        yield False
+        return
+    over = threading.Event()
+
+    def touch() -> None:
+        while not over.wait(TOUCH):
+            with contextlib.suppress(OSError):
+                os.utime(claim)
+
+    toucher = threading.Thread(target=touch, daemon=True)
+    toucher.start()
+    try:
+        yield True
+    finally:
+        over.set()
+        toucher.join()
+        with contextlib.suppress(OSError):
+            claim.rmdir()
+
+
+def learner_class(name: str) -> Any:
+    """The class of a learner, by its name in ``driftworld.learners`` or as ``FILE.py:CLASS``.
+
+    Raises:
+        ValueError: If there is none.
+    """
+    if ":" in name:
+        file, _, own = name.rpartition(":")
+        if not Path(file).is_file():
+            raise ValueError(f"learner: found {name!r}, expected FILE.py:CLASS; there is no file {file!r}")
+        spec = importlib.util.spec_from_file_location(Path(file).stem, file)
+        assert spec is not None and spec.loader is not None, "a file of Python has a loader"
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        found = getattr(module, own, None)
+        if not inspect.isclass(found):
+            raise ValueError(f"learner: found {name!r}, expected a class {own} in {file}")
+        return found
+    known = learners_by_name()
+    if name not in known:
+        raise ValueError(f"learner: found {name!r}, expected FILE.py:CLASS or one of {', '.join(sorted(known))}")
+    return known[name]
+
+
+def learners_by_name() -> dict[str, Any]:
+    """The learners of ``driftworld.learners``."""
+    from driftworld import learners
+
+    classes = [getattr(learners, name) for name in learners.__all__]
+    return {each.name: each for each in classes if inspect.isclass(each) and issubclass(each, learners.PPO)}
+
+
+def make_learner(cell: Cell, sequence: Sequence, policy: str) -> Any:
+    """The learner of a cell as it is before it learns."""
+    from driftworld.learners import Settings
+
+    made = learner_class(cell.learner)
+    arguments = {**sequence.learners.get("all", {}), **sequence.learners.get(cell.learner, {}), **dict(cell.arguments)}
+    names = {each.name for each in dataclasses.fields(Settings)}
+    settings = Settings(**{name: arguments.pop(name) for name in list(arguments) if name in names})
+    # Who has to know it in advance is told how long the lifetime is.
+    known = {"max_tasks": len(sequence.tasks), "task_decisions": sequence.decisions}
+    told = {name: value for name, value in known.items() if name in inspect.signature(made).parameters}
+    return made(
+        len(sequence.options["actions"]), sequence.num_envs, seed=cell.seed, size=sequence.options["size"], policy=policy,
+        settings=settings, **{**told, **arguments},
+    )  # fmt: skip
+
+
+def _live(cell: Cell, folder: Path) -> None:
+    """The whole of a cell: the lifetime, and the greedy evaluations of what the learner was after each task."""
+    import torch
+
+    torch.set_num_threads(1)
+    sequence, work, began = Sequence.load(cell.sequence), folder / "work", time.time()
+    kept = work / "kept"
+    kept.mkdir(parents=True, exist_ok=True)
+    curriculum = sequence.curriculum(cell.seed, cell.split)
+    learner = make_learner(cell, sequence, "sampled")
+    save = learner.save
+
+    def save_and_keep(path: Path) -> None:
+        """Keeps what the learner is after each task, by how many decisions it has learned from."""
+        save(path)
+        shutil.copyfile(path, work / "unfinished")
+        (work / "unfinished").rename(kept / f"{learner.decisions:012d}.pt")
+
+    learner.save = save_and_keep
+    run = {"num_envs": sequence.num_envs, "num_threads": 1, **sequence.options}
+    curriculum.run_vector(learner, work / "sampled", **run)
+    evaluations = [block for block in curriculum.scenario["blocks"] if block["type"] == "evaluation"]
+    for number, (block, save_of) in enumerate(zip(evaluations[1:], sorted(kept.iterdir()), strict=True), start=1):
+        greedy = make_learner(cell, sequence, "greedy")
+        greedy.load(save_of)
+        alone = Curriculum.from_dict({**curriculum.scenario, "form": "custom", "blocks": [block]})
+        alone.run_vector(greedy, work / f"greedy-{number:02d}", check_frozen=False, **run)
+    logs = [work / "sampled", *sorted(each for each in work.glob("greedy-*") if not each.name.endswith(".agent"))]
+    _finish(cell, sequence, folder, logs, learner.report() | {"weights": learner.digest(), "wall_seconds": round(time.time() - began, 1)})
+
+
+def _finish(cell: Cell, sequence: Sequence, folder: Path, logs: list[Path], report: dict[str, Any]) -> None:
+    """Packs the logs, writes the report, and then lets the rest go."""
+    print = hashlib.sha256()
+    for log in logs:
+        columns = read_log(log).columns
+        for name in sorted(set(columns) - {"timestamp"}):
+            print.update(f"{log.name} {name} {columns[name].tolist()!r}".encode())
+    packed = io.BytesIO()
+    with tarfile.open(fileobj=packed, mode="w:xz", format=tarfile.USTAR_FORMAT) as tar:
+        for log in logs:
+            for file in sorted(each for each in log.rglob("*") if each.is_file()):
+                entry = tarfile.TarInfo(str(Path(log.name) / file.relative_to(log)))
+                entry.size = file.stat().st_size
+                with file.open("rb") as opened:
+                    tar.addfile(entry, opened)
+    write_whole(folder / "logs.tar.xz", packed.getvalue())
+    said = {
+        "sequence": sequence.name, "split": cell.split, "label": cell.label, "arguments": dict(cell.arguments), **report,
+        "peak_bytes": 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, "machine": platform.machine(),
+        "digest": print.hexdigest(),
+    }  # fmt: skip
+    write_whole(folder / "report.json", (json.dumps(said, indent=1) + "\n").encode())
+    shutil.rmtree(folder / "work")
+
+
+def run_cells(cells: Iterable[Cell], results: str | os.PathLike[str], jobs: int = 1, ray: str | None = None) -> list[dict[str, Any] | None]:
+    """Runs cells, several at a time; each once, whoever else runs them in the same folder. Finished ones are not run again.
+
+    Args:
+        cells: Which.
+        results: The folder, which several machines may share.
+        jobs: Processes here.
+        ray: The address of a Ray cluster whose nodes share the folder: they run the cells in place of processes here.
+
+    Returns:
+        The reports, in order; ``None`` for those that somebody else is running.
+    """
+    cells, folder = list(cells), Path(results).absolute()
+    if ray is not None:
+        return _run_by_ray(cells, folder, ray)
+    if jobs == 1:
+        return [cell.run(folder) for cell in cells]
+    # Each in a process of its own: what one leaves behind is no other's.
+    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), max_tasks_per_child=1) as pool:
+        return list(pool.map(partial(Cell.run, results=folder), cells))
+
+
+def _run_by_ray(cells: list[Cell], folder: Path, address: str) -> list[dict[str, Any] | None]:
+    """Cells as tasks of Ray: those of a node that dies are run again elsewhere, from where they were."""
+    os.environ.setdefault("RAY_worker_niceness", "0")
+    import ray
+
+    ray.init(address=address, ignore_reinit_error=True, log_to_driver=False)
+
+    @ray.remote(num_cpus=1, max_retries=-1, max_calls=1)
+    def run(cell: Cell) -> dict[str, Any] | None:
+        # The claim of a node that died is not touched any more.
+        while (report := cell.run(folder)) is None:
+            time.sleep(TOUCH)
+        return report
+
+    found: list[dict[str, Any] | None] = ray.get([run.remote(cell) for cell in cells])
+    return found

@@ -1,0 +1,177 @@
+"""Tables of what was run, from the logs alone."""
+
+from __future__ import annotations
+
+import json
+import tarfile
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from driftworld.benchmark.measures import Floats, Matrix, interquartile_mean, interval
+from driftworld.benchmark.sequence import Sequence
+from driftworld.logs import read_log
+
+#: The share of the scale from which on a task counts as learned.
+LEARNED = 0.5
+
+
+@dataclass(frozen=True)
+class Run:
+    """One finished cell.
+
+    Attributes:
+        folder: Where it is.
+        report: What the learner says of itself.
+        sampled: Of evaluations by the sampling policy.
+        greedy: Of those by the likeliest actions; its first row is the sampling policy's, which knows nothing yet.
+        rewards: Of the learning episodes, for each task.
+    """
+
+    folder: Path
+    report: dict[str, Any]
+    sampled: Matrix
+    greedy: Matrix
+    rewards: tuple[Floats, ...]
+
+    @classmethod
+    def read(cls, folder: Path, sequence: Sequence) -> Run:
+        """A cell from its report and its logs."""
+        report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
+        with tempfile.TemporaryDirectory() as place:
+            with tarfile.open(folder / "logs.tar.xz") as tar:
+                tar.extractall(place, filter="data")
+            evaluated, rewards = _of_log(Path(place) / "sampled", sequence)
+            greedy = [_of_log(log, sequence)[0][0] for log in sorted(Path(place).glob("greedy-*"))]
+        curves = tuple(sequence.scaled(task, earned) for task, earned in zip(sequence.tasks, rewards, strict=True))
+        return cls(
+            folder=folder, report=report, sampled=Matrix(np.array(evaluated), curves),
+            greedy=Matrix(np.array([evaluated[0], *greedy]), curves), rewards=tuple(rewards),
+        )  # fmt: skip
+
+
+def _of_log(log: Path, sequence: Sequence) -> tuple[list[Floats], list[Floats]]:
+    """A row of the matrix for each block of evaluation, and the rewards of each block of learning."""
+    columns = read_log(log).columns
+    blocks, rewards = columns["block_num"], columns["reward"].astype(float)
+    names = [task.replace("_", "").replace("#", "_") for task in sequence.tasks]
+    evaluated, learned = [], []
+    for block in np.unique(blocks):
+        here = blocks == block
+        if columns["block_type"][here][0] == "train":
+            learned.append(rewards[here])
+            continue
+        means = [rewards[here & (columns["task_name"] == name)].mean() for name in names]
+        evaluated.append(np.array([sequence.scaled(task, mean) for task, mean in zip(sequence.tasks, means, strict=True)]))
+    return evaluated, learned
+
+
+@dataclass(frozen=True)
+class Results:
+    """All finished cells of a sequence.
+
+    Args:
+        sequence: Which.
+        folder: Where the runner put them, such as ``results/mixed``.
+    """
+
+    sequence: Sequence
+    folder: Path
+
+    @cached_property
+    def runs(self) -> dict[str, list[Run]]:
+        """By learner, in the order of seeds.
+
+        Raises:
+            ValueError: If there are none.
+        """
+        found: dict[str, list[Run]] = {}
+        for report in sorted(self.folder.glob("*/*/report.json"), key=lambda path: (path.parts[-3], int(path.parts[-2]))):
+            run = Run.read(report.parent, self.sequence)
+            found.setdefault(run.report["label"], []).append(run)
+        if not found:
+            raise ValueError(f"{self.folder}: found no finished cell, expected LEARNER/SEED/report.json")
+        return found
+
+    def rows(self) -> list[dict[str, Any]]:
+        """One for each learner: every measure as its interquartile mean over seeds, with its interval, as ``(mean, low, high)``."""
+        alone = {run.report["seed"]: run.sampled for run in self.runs.get("from_scratch", [])}
+        measures: dict[str, Callable[[Run], float | None]] = {
+            "performance": lambda run: run.sampled.performance(),
+            "greedy": lambda run: run.greedy.performance(),
+            "learned": lambda run: float(run.sampled.learned().mean()),
+            "share": lambda run: float((run.sampled.learned() >= LEARNED).mean()),
+            "forgetting": lambda run: run.sampled.forgetting(),
+            "forward": lambda run: run.sampled.forward_transfer(alone[run.report["seed"]]) if run.report["seed"] in alone else None,
+            "backward": lambda run: run.sampled.backward(),
+            "seconds": lambda run: float(run.report["seconds"]),
+            "memory": lambda run: float(run.report["memory_bytes"]),
+        }  # fmt: skip
+        rows = []
+        for label, runs in self.runs.items():
+            row: dict[str, Any] = {"learner": label, "seeds": len(runs)}
+            for name, measure in measures.items():
+                values = [value for run in runs if (value := measure(run)) is not None]
+                row[name] = (interquartile_mean(values), *interval(values)) if values else None
+            rows.append(row)
+        return sorted(rows, key=lambda row: -row["performance"][0])
+
+    def markdown(self) -> str:
+        """A page: the table, each task of each learner, and what it does not show."""
+        return "\n".join([*_HEAD.format(sequence=self.sequence, share=LEARNED).splitlines(), "", *self._table(), "", *self._tasks(), "", *_FOOT.splitlines(), ""])
+
+    def _table(self) -> list[str]:
+        lines = [
+            "| learner | seeds | performance | greedy | just learned | tasks learned | forgetting | forward transfer | backward transfer | processor s | MB |",
+            "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|",
+        ]
+        for row in self.rows():
+            cells = [_cell(row[name]) for name in ("performance", "greedy", "learned", "share", "forgetting", "forward", "backward")]
+            own = [f"{row['seconds'][0]:.0f}", f"{row['memory'][0] / 1e6:.1f}"]
+            lines.append("| " + " | ".join([f"`{row['learner']}`", str(row["seeds"]), *cells, *own]) + " |")
+        return lines
+
+    def _tasks(self) -> list[str]:
+        lines = [
+            "Each task just after it was learned → at the end, the mean over seeds; in brackets how many of the seeds learned it.",
+            "",
+            "| learner | " + " | ".join(f"`{task}`" for task in self.sequence.tasks) + " |",
+            "|---|" + "--:|" * len(self.sequence.tasks),
+        ]
+        for label, runs in self.runs.items():
+            learned, ends = np.array([run.sampled.learned() for run in runs]), np.array([run.sampled.values[-1] for run in runs])
+            cells = [
+                f"{100 * learned[:, i].mean():.0f} → {100 * ends[:, i].mean():.0f} ({(learned[:, i] >= LEARNED).sum()})" for i in range(learned.shape[1])
+            ]
+            lines.append(f"| `{label}` | " + " | ".join(cells) + " |")
+        return lines
+
+
+def _cell(value: tuple[float, float, float] | None) -> str:
+    if value is None:
+        return "–"
+    mean, low, high = (100 * number for number in value)
+    return f"{mean:.0f} ({low:.0f} to {high:.0f})".replace("-0 ", "0 ")
+
+
+_HEAD = """# Learners compared in the sequence `{sequence.name}`
+
+{sequence.about} {sequence.decisions:,} decisions a task; after each task every task is evaluated in {sequence.evaluations} worlds that nobody
+learns in. Numbers are per cent of the way from a random agent (0) to the planner that acts as rarely (100). A number is the
+interquartile mean over seeds, with the 95 % interval of the bootstrap in brackets.
+
+- *performance*: all tasks at the end, actions sampled from the policy: the number that counts. *greedy*: the same by the
+  likeliest actions.
+- *just learned*: each task right after it. *tasks learned*: the share of tasks that came to {share:.0%} there.
+- *forgetting*: just learned minus the end. *backward transfer*: the same with the other sign, without the last task.
+- *forward transfer*: how much more was earned while learning than by `from_scratch` in the same worlds, as a share of what
+  was left to gain (Continual World's measure).
+- *processor s*: of acting while learning and of learning, on one core. *MB*: all that the learner keeps."""
+
+_FOOT = """What it does not show: one sequence in one order, one network, one budget. Seeds vary worlds and learners together. Strengths
+were tuned in validation worlds of the same tasks with one seed. Two learners whose intervals overlap are not told apart."""

@@ -1,0 +1,63 @@
+"""Measures the scale of a sequence of driftworld.benchmark, and what it is frozen with: what its JSON file has as "scale" and "frozen".
+
+    python scripts/scale_of_sequence.py mixed target/release/driftworld
+
+0 is what drawing rows of the table of actions at random earns, 1 what the planner earns when it holds each action for as many time
+steps as the learners do: 500 worlds each, that no lifetime has.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import driftworld
+import numpy as np
+from driftworld.benchmark import Sequence
+
+WORLDS, SEED = 500, 77
+
+
+def random(task: str, sequence: Sequence) -> float:
+    """Mean reward of random rows of the table."""
+    envs = driftworld.DriftworldVectorEnv(task, WORLDS, **sequence.options)
+    rng, earned, running = np.random.default_rng(SEED), np.zeros(WORLDS), np.ones(WORLDS, dtype=bool)
+    envs.reset(seed=SEED)
+    while running.any():
+        _, rewards, terminated, truncated, _ = envs.step(rng.integers(len(sequence.options["actions"]), size=WORLDS))
+        earned += rewards * running
+        running &= ~(terminated | truncated)
+    return float(earned.mean())
+
+
+def planner(task: str, sequence: Sequence, command: str) -> float:
+    """Mean reward of the planner, whose actions the task itself holds."""
+    spec, _, variant = task.partition("#")
+    document = driftworld.TaskSpec.load(spec).to_dict()
+    agent, held = document["world"].setdefault("agent_params", {}), sequence.options["frame_skip"]
+    if isinstance(agent.get("frame_skip"), dict):
+        document["variants"][variant][agent["frame_skip"]["param"]] = held
+    else:
+        agent["frame_skip"] = held
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"{spec}.json"
+        path.write_text(json.dumps(document), encoding="utf-8")
+        words = [command, "scales", f"{path}#{variant}", "--worlds", str(WORLDS), "--seed", str(SEED), "--json"]
+        said = json.loads(subprocess.run(words, check=True, capture_output=True, text=True).stdout)
+    (scale,) = said["scales"].values()
+    return float(scale["ceiling"])
+
+
+def main() -> None:
+    """Prints both."""
+    sequence, command = Sequence.load(sys.argv[1]), sys.argv[2]
+    tasks = list(dict.fromkeys(sequence.tasks))
+    scale = {task: [round(random(task, sequence), 2), round(planner(task, sequence, command), 2)] for task in tasks}
+    print(json.dumps({"scale": scale, "frozen": {task: sequence.prints(task) for task in tasks}}, indent=1))
+
+
+if __name__ == "__main__":
+    main()
