@@ -27,23 +27,27 @@ pub(super) struct Tile {
     pub(super) sharpness: f32,
 }
 
+macro_rules! baked {
+    ($period:literal, $is_grain:literal, $sharpness:expr, $texel:expr) => {{
+        static TILE: LazyLock<Tile> = LazyLock::new(|| Tile::baked($period, $is_grain, $sharpness, $texel));
+        &*TILE
+    }};
+}
+
 /// The tile of a surface; none of a plain one.
 pub(super) fn tile(surface: Surface) -> Option<&'static Tile> {
-    macro_rules! baked {
-        ($period:literal, $is_grain:literal, $sharpness:expr, $texel:expr) => {{
-            static TILE: LazyLock<Tile> = LazyLock::new(|| Tile::baked($period, $is_grain, $sharpness, $texel));
-            Some(&*TILE)
-        }};
-    }
-    match surface {
-        Surface::Plain => None,
+    Some(match surface {
+        Surface::Plain => return None,
         Surface::Noise => baked!(8.0, true, 1.0, noise),
         Surface::Brick => baked!(2.0, false, 1.0, brick),
         Surface::Plank => baked!(2.0, false, 1.0, plank),
         Surface::Tile => baked!(2.0, false, 1.0, floor_tile),
         Surface::Stripes => baked!(2.0, false, 0.5, stripes),
         Surface::Checker => baked!(2.0, false, 0.5, checker),
-    }
+        Surface::Stone => baked!(2.0, false, 1.0, stone),
+        Surface::Plaster => baked!(4.0, true, 1.0, plaster),
+        Surface::Cobbles => baked!(2.0, false, 1.0, cobbles),
+    })
 }
 
 /// How much of the sky clouds hide: the same in each byte but the highest, 0 to 255.
@@ -216,11 +220,59 @@ fn checker(x: f32, y: f32) -> [f32; 3] {
     [1.0 + side + 0.05 * fractal(x, y, 16, 4, 0.7, 43); 3]
 }
 
+fn stone(x: f32, y: f32) -> [f32; 3] {
+    let (course, up) = piece(y, 6);
+    let shifted = 4.0 * (1.0 + x + hash(course, 7, 51));
+    // Which of four stones, between joints that are off by up to a quarter.
+    let joint = |k: u32| k as f32 + 0.5 * (hash(k % 4, course, 52) - 0.5);
+    let near = (shifted + 0.5) as u32;
+    let number = if shifted < joint(near) { near - 1 } else { near };
+    let length = joint(number + 1) - joint(number);
+    let along = (shifted - joint(number)) / length;
+    let body = within(along, 0.08 / length) * within(up, 0.11);
+    let rough = fractal(x, y, 16, 4, 0.8, 53);
+    let own = 1.0 + 0.3 * (hash(number % 4, course, 54) - 0.5) + 0.45 * rough + 0.12 * (up - 0.5);
+    tinted(
+        0.55 + (own - 0.55) * body,
+        0.06 * (hash(number % 4, course, 55) - 0.5) * body,
+    )
+}
+
+fn plaster(x: f32, y: f32) -> [f32; 3] {
+    let patches = smooth(fractal(x, y, 3, 4, 0.6, 61) * 2.5 - 0.1);
+    let grain = fractal(x, y, 32, 3, 0.9, 63);
+    tinted(1.0 - 0.07 * patches + 0.3 * grain, 0.02 * patches)
+}
+
+fn cobbles(x: f32, y: f32) -> [f32; 3] {
+    const CELLS: i32 = 10;
+    let [x, y] = [x, y].map(|at| at * CELLS as f32);
+    let (mut nearest, mut next, mut own) = (f32::INFINITY, f32::INFINITY, [0; 2]);
+    for k in 0..9 {
+        let cell = [x as i32 + k % 3 - 1, y as i32 + k / 3 - 1];
+        let of = cell.map(|at| at.rem_euclid(CELLS) as u32);
+        let middle =
+            [0, 1].map(|axis: usize| cell[axis] as f32 + 0.5 + 0.7 * (hash(of[0], of[1], 81 + axis as u32) - 0.5));
+        let away = ((x - middle[0]) * (x - middle[0]) + (y - middle[1]) * (y - middle[1])).sqrt();
+        if away < nearest {
+            (next, nearest, own) = (nearest, away, of);
+        } else {
+            next = next.min(away);
+        }
+    }
+    let body = smooth((next - nearest) / 0.22);
+    let tone = 1.15 + 0.36 * (hash(own[0], own[1], 83) - 0.5) - 0.3 * nearest;
+    tinted(0.5 + (tone - 0.5) * body, 0.1 * (hash(own[0], own[1], 84) - 0.5) * body)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const ALL: [Surface; 6] = [
+    const ALL: [Surface; 9] = [
+        Surface::Stone,
+        Surface::Plaster,
+        Surface::Cobbles,
         Surface::Noise,
         Surface::Brick,
         Surface::Plank,

@@ -230,7 +230,14 @@ mod tests {
 
     /// Looks part by part, each of which may be said or not.
     fn looks() -> impl Strategy<Value = Looks> {
-        let surfaces = [Surface::Plain, Surface::Noise, Surface::Brick, Surface::Tile];
+        let surfaces = [
+            Surface::Plain,
+            Surface::Noise,
+            Surface::Brick,
+            Surface::Tile,
+            Surface::Stone,
+            Surface::Cobbles,
+        ];
         let covering = (
             prop::sample::select(surfaces.to_vec()),
             prop::sample::select(vec![1.0, 1.5, 3.0]),

@@ -45,6 +45,12 @@ pub enum Surface {
     Stripes,
     /// Squares of 0.5 m.
     Checker,
+    /// Courses of rough stones 0.33 m high, each of another length.
+    Stone,
+    /// Fine grain, here and there worn.
+    Plaster,
+    /// Round stones of 0.2 m.
+    Cobbles,
 }
 
 fields! {
