@@ -239,7 +239,7 @@ impl<'a> Views<'a> {
 
     /// From outside, above a corner of the arena.
     pub(crate) fn overview(&self, width: u32) -> Result<Picture, Failure> {
-        let scene = self.scene.clone().with_wall_tops();
+        let scene = self.scene.clone().with_wall_tops().with_surroundings();
         let camera = self.above(&scene);
         self.smooth(&scene, &self.with_all_in_it(&scene, camera, width), width)
     }

@@ -2,6 +2,8 @@
 
 use driftworld_spec::{Covering, Style, World};
 
+use crate::assets::ColliderShape;
+
 /// The natural style, every part decided.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct NaturalLooks {
@@ -15,6 +17,29 @@ pub(crate) struct NaturalLooks {
     pub(crate) has_clouds: bool,
 }
 
+/// How objects of a class are finished that nothing covers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Finish {
+    /// A door of boards: a frame around panels.
+    Door,
+    /// A box of boards with edges.
+    Crate,
+    /// Brushed metal.
+    Metal,
+}
+
+impl Finish {
+    /// That of a class, for a body of this shape.
+    pub(crate) fn of(class: &str, body: &ColliderShape) -> Option<Self> {
+        match (class, body) {
+            ("door", _) => Some(Self::Door),
+            ("key" | "switch", _) => Some(Self::Metal),
+            ("cube" | "geometric", ColliderShape::Box { .. }) => Some(Self::Crate),
+            _ => None,
+        }
+    }
+}
+
 /// A ceiling over the whole arena.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Ceiling {
@@ -22,6 +47,8 @@ pub(crate) struct Ceiling {
     pub(crate) height: f32,
     /// Its colour, sRGB.
     pub(crate) color: [f32; 3],
+    /// Whether every wall goes up to it.
+    pub(crate) meets_walls: bool,
 }
 
 impl NaturalLooks {
@@ -35,7 +62,7 @@ impl NaturalLooks {
         let has_ceiling = looks.has_ceiling(environment.layout.as_ref());
         let planned = world.plan().into_iter().flat_map(|plan| &plan.walls);
         let heights = planned.map(|wall| wall.height.unwrap_or(environment.wall_height));
-        let height = heights.fold(0.0, f64::max);
+        let height = heights.clone().fold(0.0, f64::max);
         let height = if height > 0.0 { height } else { environment.wall_height };
         Some(Self {
             ground: looks.ground(has_ceiling),
@@ -43,6 +70,11 @@ impl NaturalLooks {
             ceiling: (has_ceiling && height > 0.0).then(|| Ceiling {
                 height: height as f32,
                 color: looks.ceiling_color.to_f32(),
+                meets_walls: {
+                    let others = environment.walls.iter().filter_map(|wall| wall.height);
+                    let mut all = heights.chain(others).chain([environment.wall_height]);
+                    all.all(|wall| wall >= height)
+                },
             }),
             has_shadows: looks.has_shadows(),
             has_clouds: looks.has_clouds(),

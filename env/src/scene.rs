@@ -6,7 +6,7 @@ use driftworld_spec::{Object, Style, Surface, World};
 
 use crate::assets::{Asset, Block, Catalogue, ColliderShape, Mesh, lowercase};
 use crate::ground;
-use crate::looks::NaturalLooks;
+use crate::looks::{Finish, NaturalLooks};
 use crate::wall_tops::tops;
 
 /// Everything that a picture of a world depends on, but for the camera.
@@ -34,6 +34,9 @@ pub struct Scene {
 /// How many of a scene's walls, the first ones, are the arena's own: west, north, east, south.
 pub(crate) const ARENA_WALLS: usize = 4;
 
+/// Walls of more corners have no tops for the agent: cutting them into triangles takes long.
+const MOST_CORNERS: usize = 64;
+
 /// Panels that are drawn together: one wall of the arena, all of a region, or a zone on the ground.
 #[derive(Clone, Debug)]
 pub(crate) struct PanelGroup {
@@ -47,7 +50,7 @@ pub(crate) struct PanelGroup {
     pub(crate) lift: f32,
     /// Where upright panels stand on the ground, from and to; none of what lies.
     pub(crate) edges: Vec<[[f32; 2]; 2]>,
-    /// How high those are in metres.
+    /// How high those are in metres, or tops of walls; 0 of what lies on the ground.
     pub(crate) height: f32,
     pub(crate) blocks: Vec<Block>,
 }
@@ -69,6 +72,8 @@ pub struct Item {
     pub color: Option<[f32; 3]>,
     /// What covers it in the natural style.
     pub surface: Surface,
+    /// How it is finished there if nothing covers it.
+    pub(crate) finish: Option<Finish>,
     /// Whether its class is `building`, which has a category of its own.
     pub building: bool,
     /// What it is worth now: decides its category.
@@ -158,6 +163,12 @@ impl Scene {
         };
         scene.add_walls(world);
         scene.panels.extend(ground::patches(world));
+        if scene.natural.is_some() {
+            // Those that the agent looks down on.
+            let eye = world.agent_params.agent_height as f32;
+            let is_seen = |ring: &[WallPanel]| ring[0].height < eye && ring.len() <= MOST_CORNERS;
+            scene.panels.extend(tops(&scene.walls, is_seen));
+        }
         for object in &world.objects {
             scene.add(object);
         }
@@ -178,6 +189,7 @@ impl Scene {
             None => self.catalogue.asset_in(self.style, &class, &object.model),
         };
         self.items.push(Item {
+            finish: Finish::of(&class, &asset.collider),
             body,
             asset,
             position: object.coordinates.map(|metres| metres as f32),
@@ -192,10 +204,19 @@ impl Scene {
         });
     }
 
-    /// The same scene whose walls have tops, as pictures from above need them: the agent sees none.
+    /// The same scene whose walls have tops, as pictures from above need them.
     #[must_use]
     pub fn with_wall_tops(mut self) -> Self {
-        self.panels.extend(tops(&self.walls));
+        self.panels.extend(tops(&self.walls, |_| true));
+        self
+    }
+
+    /// The same scene, in natural looks with other ground around its arena, as pictures of it from outside need it.
+    #[must_use]
+    pub fn with_surroundings(mut self) -> Self {
+        if self.natural.is_some() {
+            self.panels.push(ground::around(self.arena_size, self.ground_color));
+        }
         self
     }
 

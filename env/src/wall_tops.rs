@@ -1,12 +1,12 @@
-//! The tops of walls, for pictures from above. The agent's own pictures have none: it looks from below them.
+//! The tops of walls: of all for pictures from above, in natural looks of those that the agent looks down on for its own.
 
 use crate::assets::Mesh;
 use crate::ground::triangles;
 use crate::scene::{ARENA_WALLS, PanelGroup, WallPanel};
 
 /// The tops of regions and walls as faces seen from above, each in its wall's colour. The arena's own walls have no
-/// thickness, and walls without height no top.
-pub(crate) fn tops(walls: &[WallPanel]) -> impl Iterator<Item = PanelGroup> {
+/// thickness, and walls without height no top. Those of walls by their edges alone that are seen.
+pub(crate) fn tops(walls: &[WallPanel], is_seen: impl Fn(&[WallPanel]) -> bool) -> impl Iterator<Item = PanelGroup> {
     let mut left = walls.get(ARENA_WALLS..).unwrap_or_default();
     std::iter::from_fn(move || {
         let first = left.first()?;
@@ -16,8 +16,11 @@ pub(crate) fn tops(walls: &[WallPanel]) -> impl Iterator<Item = PanelGroup> {
         left = rest;
         Some(ring)
     })
-    .filter(|ring| ring[0].height > 0.0)
-    .map(|ring| PanelGroup::of(top(ring), ring[0].color))
+    .filter(move |ring| ring[0].height > 0.0 && is_seen(ring))
+    .map(|ring| PanelGroup {
+        height: ring[0].height,
+        ..PanelGroup::of(top(ring), ring[0].color)
+    })
 }
 
 fn top(ring: &[WallPanel]) -> Mesh {

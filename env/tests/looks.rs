@@ -47,7 +47,7 @@ fn park() -> WorldDraft {
     for (class, place) in classes.into_iter().zip(places) {
         let mut object = Object::new(class, place);
         object.heading = 30.0;
-        if class == "cube" {
+        if class == "cube" && place[0] < 2.0 {
             object.surface = Surface::Brick;
         }
         world.objects.push(object);
@@ -113,7 +113,7 @@ fn every_instruction_set_draws_the_same_pixels() {
     }
 }
 
-/// Labels hold classes where no object is covered and no instances are asked for; else a buffer of items does.
+/// Labels hold classes where no instances are asked for; else a buffer of items does.
 #[test]
 fn classes_are_the_same_however_they_are_kept() {
     let uncovered = worlds().map(|mut world| {
@@ -202,7 +202,10 @@ fn ground(surface: Surface) -> WorldDraft {
     world
 }
 
-const SURFACES: [Surface; 6] = [
+const SURFACES: [Surface; 9] = [
+    Surface::Stone,
+    Surface::Plaster,
+    Surface::Cobbles,
     Surface::Noise,
     Surface::Brick,
     Surface::Plank,
@@ -246,6 +249,98 @@ fn a_surface_does_not_shimmer() {
         assert!(
             mean < 1.5 && most < 40,
             "{surface:?}: {mean} on the whole, {most} at most"
+        );
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 96)))]
+
+    /// Where a wall or a thing meets the ground, both are darker than a metre from there: in flat colours, without shadows.
+    #[test]
+    fn what_meets_the_ground_has_a_dark_line(away in 1.5..4.0_f64, eye in 0.6..1.6_f32, is_wall in any::<bool>(), ceiling in any::<bool>()) {
+        let mut world = ground(Surface::Plain);
+        let environment = &mut world.environment_params;
+        environment.looks.walls = Some(Covering::of(Surface::Plain));
+        (environment.looks.shadows, environment.looks.ceiling) = (Some(false), Some(ceiling));
+        environment.wall_height = 3.0;
+        if is_wall {
+            let polygon = vec![[-9.0, away], [9.0, away], [9.0, away + 1.0], [-9.0, away + 1.0]];
+            environment.walls = vec![Wall { polygon, height: Some(3.0), color: None }];
+        } else {
+            let mut thing = Object::new("geometric", [0.0, away + 1.0]);
+            (thing.model, thing.scale) = (driftworld_spec::Model("3".to_owned()), 2.2);
+            world.objects.push(thing);
+        }
+        let frame = draw(&world, &Camera::first_person([0.0; 2], 0.0, eye, 70.0), [84, 168]);
+        let middle = |row: usize| row * 84 + 42;
+        let green = |row: usize| f64::from(frame.rgb[3 * middle(row) + 1]);
+        let rows = 168 / 2..168;
+        let foot = rows.clone().find(|row| frame.depth[middle(*row)] < 0.999 * frame.depth[middle(row - 1)]);
+        let foot = foot.expect("the ground comes nearer row by row");
+        prop_assert!(green(foot - 1) < 0.8 * green(84), "{} at the foot, {} above", green(foot - 1), green(84));
+        prop_assert!(green(foot) < 0.8 * green(167), "{} at the foot, {} before it", green(foot), green(167));
+    }
+}
+
+/// Doors, keys, cubes and switches show a pattern, however many there are, and nothing but it: depth, categories and objects are
+/// those of the plain style.
+#[test]
+fn doors_keys_cubes_and_switches_are_finished() {
+    for class in ["door", "key", "cube", "switch"] {
+        let mut world = ground(Surface::Plain);
+        for k in 0..10 {
+            let mut object = Object::new(class, [f64::from(k) - 4.5, 4.0]);
+            (object.scale, object.color) = (0.9, driftworld_spec::Color::from_name("red"));
+            world.objects.push(object);
+        }
+        let camera = Camera::first_person([0.0; 2], 0.0, 0.3, 60.0);
+        let natural = draw(&world, &camera, [504, 168]);
+        world.environment_params.looks = Looks::default();
+        let plain = draw(&world, &camera, [504, 168]);
+        assert!(
+            natural.depth == plain.depth && natural.instance == plain.instance,
+            "{class}"
+        );
+        for number in 1..=10 {
+            let colors = |frame: &Frame| {
+                let of = |place: usize| [0, 1, 2].map(|channel| frame.rgb[3 * place + channel]);
+                // Above the eye, and so far from the ground.
+                let own = (0..504 * 84).filter(|place| frame.instance[*place] == number).map(of);
+                own.collect::<std::collections::BTreeSet<_>>().len()
+            };
+            assert!(
+                colors(&natural) > 3 * colors(&plain),
+                "{class} {number}: {}",
+                colors(&natural)
+            );
+        }
+    }
+}
+
+/// A wall that the agent looks down on has a top in the natural style: what is seen within its outline is no ground.
+#[test]
+fn low_walls_have_tops() {
+    let mut world = ground(Surface::Plain);
+    let polygon = vec![[-2.0, 3.0], [2.0, 3.0], [2.0, 6.0], [-2.0, 6.0]];
+    world.environment_params.walls = vec![Wall {
+        polygon,
+        height: Some(0.5),
+        color: None,
+    }];
+    world.agent_params.agent_height = 1.5;
+    let camera = Camera::first_person([0.0; 2], 0.0, 1.5, 60.0);
+    let frame = draw(&world, &camera, [85, 85]);
+    let inside = (0..85)
+        .map(|row| frame.depth[row * 85 + 42])
+        .filter(|metres| (3.1..5.9).contains(metres));
+    let rows = (0..85).filter(|row| (3.1..5.9).contains(&frame.depth[row * 85 + 42]));
+    for (metres, row) in inside.zip(rows) {
+        let down = (row as f32 - 42.0) * 2.0 * libm::tanf(30_f32.to_radians()) / 85.0;
+        assert!(
+            (metres * down - 1.0).abs() < 1e-2,
+            "row {row}: {} m below the eye",
+            metres * down
         );
     }
 }
@@ -329,7 +424,6 @@ proptest! {
                 let (right, down) = (offset(pixel % SIDE), offset(pixel / SIDE));
                 let depth = without.depth[pixel];
                 let at = [right * depth, depth - 2.0];
-                // From above one sees into walls, which have no tops.
                 let is_ground = (EYE - down * depth).abs() < 1e-2 && !comes_into([at, at], &polygon);
                 is_ground.then(|| comes_into([at, [at[0] + reach[0], at[1] + reach[1]]], &polygon))
             })

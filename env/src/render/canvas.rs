@@ -34,6 +34,27 @@ pub(super) struct Triangle {
     pub(super) item: u32,
 }
 
+/// What a triangle's pixels show besides its colour.
+pub(super) trait Texture: Copy {
+    /// The packed pixels that are taken, at these columns of a row, for 1 / depth.
+    fn shown<L: Lanes>(
+        self,
+        l: L,
+        taken: L::Mask,
+        packed: L::Word,
+        at: (usize, L::Float),
+        inverse: L::Float,
+    ) -> L::Word;
+}
+
+/// Nothing besides.
+impl Texture for () {
+    #[inline(always)]
+    fn shown<L: Lanes>(self, _: L, _: L::Mask, packed: L::Word, _: (usize, L::Float), _: L::Float) -> L::Word {
+        packed
+    }
+}
+
 impl Canvas {
     /// Empties the canvas, at this size.
     pub(super) fn clear(&mut self, width: usize, height: usize, with_items: bool) {
@@ -51,7 +72,7 @@ impl Canvas {
     ///
     /// All numbers of a pixel depend on its place and the triangle's first row alone, whatever the number of lanes.
     #[inline(always)]
-    pub(super) fn fill<L: Lanes, const ITEMS: bool>(&mut self, lanes: L, triangle: &Triangle) {
+    pub(super) fn fill<L: Lanes, const ITEMS: bool>(&mut self, lanes: L, triangle: &Triangle, texture: impl Texture) {
         let Triangle { columns, rows, .. } = *triangle;
         let zero = lanes.splat(0.0);
         let packed = lanes.splat_word(triangle.pixel);
@@ -81,12 +102,13 @@ impl Canvas {
                 inverse = lanes.add(inverse, down);
             }
             let mut pixel = first * stride + start;
-            for _ in first..=last {
+            for row in first..=last {
                 let depths = &mut depths[pixel..pixel + L::N];
                 let inside = lanes.at_least(lanes.min(e0, lanes.min(e1, e2)), zero);
                 let taken = lanes.both(inside, lanes.above(inverse, lanes.load(depths)));
                 lanes.store_where(taken, inverse, depths);
-                lanes.store_words_where(taken, packed, &mut pixels[pixel..pixel + L::N]);
+                let shown = texture.shown(lanes, taken, packed, (row, x), inverse);
+                lanes.store_words_where(taken, shown, &mut pixels[pixel..pixel + L::N]);
                 if ITEMS {
                     lanes.store_words_where(taken, item, &mut items[pixel..pixel + L::N]);
                 }
@@ -270,7 +292,7 @@ mod tests {
             let mut canvas = Canvas::default();
             canvas.clear(size[0], size[1], true);
             if let Some(triangle) = found {
-                canvas.fill::<_, true>(Portable, &triangle);
+                canvas.fill::<_, true>(Portable, &triangle, ());
                 let drawn: Vec<u32> = canvas.inverse_depth.iter().map(|depth| depth.to_bits()).collect();
                 let plain = plainly(&triangle, &canvas);
                 for (place, (drawn, plain)) in drawn.into_iter().zip(plain).enumerate() {

@@ -12,7 +12,7 @@ use super::compose::metres;
 use super::lanes::{Lanes, MOST_LANES};
 use super::natural::{BARE, GROUND, GROUND_IN_SHADOW, MATERIAL, MATERIAL_SHIFT, NO_MAP, Natural, WALLS};
 use super::patch::{Patch, Run};
-use super::rows::{Row, Shows};
+use super::rows::{CONTACT, CONTACT_PIXELS, Row, Shows};
 use super::shade::{FULL_LEVEL, ROUNDING};
 use super::surfaces::NEUTRAL;
 use super::target::Target;
@@ -21,8 +21,8 @@ use super::view::View;
 /// The share of detail of which nothing is left out.
 const FULL_SHARE: u32 = 255;
 
-/// Rows that are gone through before the next columns: what they lie in stays near the processor.
-const BAND: usize = 128;
+/// Metres to what meets the ground in columns where nothing does.
+const NOWHERE: f32 = 1e9;
 
 /// Everything that one picture is composed of.
 pub(super) struct Composition<'a> {
@@ -40,6 +40,8 @@ pub(super) struct Composition<'a> {
     /// Whether classes stand in labels.
     pub(super) labels_classes: bool,
     pub(super) classes: &'a [u16],
+    /// Whether walls go up to the ceiling, if there is one.
+    pub(super) ceiling_meets_walls: bool,
 }
 
 /// A vector's columns, from top to bottom.
@@ -49,6 +51,12 @@ struct Columns<'a, L: Lanes> {
     /// What covers walls, if columns show it all the way down.
     wall: Option<&'a Patch>,
     run: Run<L>,
+    /// Metres to the last thing that met the ground, and whether it may still darken it.
+    foot: L::Float,
+    is_near_foot: bool,
+    /// How far rows go down to ground, or up to a ceiling, before walls that go on meet it; metres to the nearest of them.
+    quiet: [f32; 2],
+    nearest: f32,
 }
 
 /// What lies behind a vector: its pixels, and the texels in them.
@@ -66,40 +74,35 @@ struct Seen<L: Lanes> {
     inverse: L::Float,
     metres: L::Float,
     in_front: L::Mask,
+    /// Whether something that stands there may meet the ground or the ceiling.
+    may_meet: bool,
 }
 
 impl Composition<'_> {
     /// Writes all images that the target asks for.
     #[inline(always)]
     pub(super) fn write<L: Lanes, const ITEMS: bool>(&self, l: L, target: &mut Target<'_>) {
-        let Canvas { width, height, .. } = *self.canvas;
-        for first_row in (0..height).step_by(BAND) {
-            let rows = first_row..(first_row + BAND).min(height);
-            let mut first = 0;
-            while first < width {
-                // The last columns are a vector, too, where there are enough: some are gone through again.
-                let start = first.min(width.saturating_sub(L::N));
-                self.write_columns::<L, ITEMS>(l, start, rows.clone(), target);
-                first = start + L::N;
-            }
+        let width = self.canvas.width;
+        let mut first = 0;
+        while first < width {
+            // The last columns are a vector, too, where there are enough: some are gone through again.
+            let start = first.min(width.saturating_sub(L::N));
+            self.write_columns::<L, ITEMS>(l, start, target);
+            first = start + L::N;
         }
     }
 
     #[inline(always)]
-    fn write_columns<L: Lanes, const ITEMS: bool>(
-        &self,
-        l: L,
-        start: usize,
-        rows: Range<usize>,
-        target: &mut Target<'_>,
-    ) {
+    fn write_columns<L: Lanes, const ITEMS: bool>(&self, l: L, start: usize, target: &mut Target<'_>) {
         let Canvas { width, stride, .. } = *self.canvas;
         let mut columns = self.columns(l, start);
         let count = width.min(L::N);
-        for y in rows {
-            let row = &self.natural.rows.seen[y];
+        for (y, row) in self.natural.rows.seen.iter().enumerate() {
             let up = -self.view.offset(1, y as f32);
             let mut seen = self.seen(l, &mut columns, row, up, y * stride + start);
+            if row.shows != Shows::Sky {
+                seen.word = self.in_contact(l, &mut columns, row, &seen);
+            }
             if let Some(distance) = self.fog {
                 seen.word = self.in_fog(l, seen.word, seen.inverse, distance, columns.glow);
             }
@@ -184,6 +187,10 @@ impl Composition<'_> {
             glow: l.load_words(&self.natural.glow[start..]),
             wall: self.natural.upright_walls(),
             run: Run::new(l),
+            foot: l.splat(NOWHERE),
+            is_near_foot: false,
+            quiet: [0.0; 2],
+            nearest: f32::INFINITY,
         };
         if columns.wall.is_some() {
             // Where walls are higher than the eye, all are seen in the row at its height.
@@ -193,12 +200,25 @@ impl Composition<'_> {
             let in_front = l.above(drawn, l.splat(0.0));
             let is_map = l.equal(l.and(pixels, l.splat_word(NO_MAP)), l.splat_word(0));
             let material = l.and(pixels, l.splat_word(MATERIAL));
-            for number in [WALLS, WALLS + 1] {
+            for (number, patch) in (WALLS..).zip(self.natural.walls.iter().flatten().take(2)) {
                 let same = l.both(is_map, l.equal(material, l.splat_word(number << MATERIAL_SHIFT)));
                 let same = l.both(in_front, same);
-                if let (true, Some(patch)) = (l.bits(same) != 0, &self.natural.patches[number as usize]) {
+                if l.bits(same) != 0 {
                     columns.run.note(l, same, patch, columns.offset, (drawn, material));
                 }
+            }
+            let rows = &self.natural.rows.seen;
+            let [above, below] = [0, rows.len() - 1].map(|row| rows[row].plane[0]);
+            let known = columns.run.known(l);
+            let [reach, least] = [CONTACT[1], CONTACT_PIXELS * self.view.step];
+            columns.quiet = [below, above].map(|away| {
+                let until = known
+                    .clone()
+                    .map(|inverse| away * inverse - (reach * inverse).max(least));
+                until.fold(f32::INFINITY, f32::min)
+            });
+            if self.ceiling_meets_walls {
+                columns.nearest = 1.0 / known.fold(0.0, f32::max);
             }
         }
         columns
@@ -216,6 +236,7 @@ impl Composition<'_> {
                 inverse: l.splat(row.inverse),
                 metres: l.splat(row.metres),
                 in_front,
+                may_meet: false,
             };
         }
         let pixels = l.load_words(&self.canvas.pixels[pixel..]);
@@ -235,6 +256,7 @@ impl Composition<'_> {
             inverse: drawn,
             metres: columns.run.metres,
             in_front,
+            may_meet: covered != front || row.plane[1] > columns.quiet[usize::from(row.shows == Shows::Ceiling)],
         };
         if front != all {
             seen.word = l.select_words(in_front, pixels, self.behind(l, row, columns).word);
@@ -282,10 +304,12 @@ impl Composition<'_> {
                 }
                 GROUND => l.modulate(pixels, behind.texel),
                 GROUND_IN_SHADOW => l.modulate(l.modulate(pixels, behind.texel), shade),
-                _ => match &self.natural.patches[number as usize] {
-                    Some(patch) => {
+                _ => match &self.natural.walls {
+                    Some(patches) => {
+                        let patch = &patches[(number - WALLS) as usize];
                         if columns.wall.is_some() && number <= WALLS + 1 {
                             columns.run.note(l, same, patch, columns.offset, (drawn, material));
+                            columns.quiet = [0.0; 2];
                         }
                         l.modulate(pixels, patch.texel(l, up, columns.offset, drawn))
                     }
@@ -299,7 +323,51 @@ impl Composition<'_> {
             inverse,
             metres: metres(l, inverse),
             in_front,
+            may_meet: true,
         }
+    }
+
+    /// Darker where walls and things meet the ground or the ceiling, on both sides of where they meet.
+    #[inline(always)]
+    fn in_contact<L: Lanes>(&self, l: L, columns: &mut Columns<'_, L>, row: &Row, seen: &Seen<L>) -> L::Word {
+        let (zero, one) = (l.splat(0.0), l.splat(1.0));
+        let ([below, nearer], [row_dark, row_fades]) = (row.plane, row.contact);
+        let is_ceiling = row.shows == Shows::Ceiling;
+        let (mut dark, mut is_dark) = (zero, false);
+        let standing = l.has_any(seen.word, NO_MAP | WALLS << MATERIAL_SHIFT);
+        if seen.may_meet && l.bits(standing) != 0 {
+            let [most, reach] = CONTACT;
+            let away = l.sub(l.splat(below), l.mul(seen.metres, l.splat(nearer)));
+            let fades = l.mul(seen.inverse, l.splat(1.0 / (CONTACT_PIXELS * self.view.step)));
+            let fades = l.min(fades, l.splat(1.0 / reach));
+            let near = l.min(l.sub(one, l.mul(away, fades)), one);
+            let meets = l.both(standing, l.above(near, zero));
+            if l.bits(meets) != 0 {
+                let made = l.mul(l.mul(near, near), l.mul(fades, l.splat(most * reach)));
+                (dark, is_dark) = (l.select(meets, made, dark), true);
+                if !is_ceiling {
+                    columns.foot = l.select(meets, seen.metres, columns.foot);
+                    columns.is_near_foot = true;
+                }
+            }
+        }
+        if is_ceiling && row.metres + 1.0 / row_fades > columns.nearest || columns.is_near_foot {
+            // A wall that goes up to the ceiling is as far there as at the height of the eye.
+            let from = if is_ceiling { columns.run.metres } else { columns.foot };
+            let gap = l.sub(from, l.splat(row.metres));
+            let near = l.sub(one, l.mul(gap, l.splat(row_fades)));
+            columns.is_near_foot = !is_ceiling && l.bits(l.above(near, zero)) != 0;
+            let meets = l.both(l.at_least(gap, zero), l.above(near, zero));
+            if l.bits(meets) != 0 {
+                let made = l.select(meets, l.mul(l.mul(near, near), l.splat(row_dark)), zero);
+                (dark, is_dark) = (l.select(standing, dark, made), true);
+            }
+        }
+        if !is_dark {
+            return seen.word;
+        }
+        let left = l.truncate(l.sub(l.splat(128.0 + ROUNDING), l.mul(dark, l.splat(128.0))));
+        l.modulate(seen.word, l.or(l.three_times(left), l.splat_word(0x80 << 24)))
     }
 
     #[inline(always)]

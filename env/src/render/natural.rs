@@ -1,19 +1,22 @@
-//! The natural style on the processor: what is drawn gets the number of what covers it, and texels are laid over it when the
-//! picture is composed, in `compose_natural.rs`. What lies behind everything is in `rows.rs`, patterns in `surfaces.rs`,
-//! light in `daylight.rs`, shadows in `shadows.rs`. The plain style is in `cpu.rs` and `compose.rs`.
+//! The natural style on the processor: objects are drawn with their texels; walls and zones get the number of what covers them,
+//! and texels are laid over them when the picture is composed, in `compose_natural.rs`. What lies behind everything is in
+//! `rows.rs`, patterns in `surfaces.rs`, light in `daylight.rs`, shadows in `shadows.rs`. The plain style is in `cpu.rs` and
+//! `compose.rs`.
 
-use driftworld_spec::{Covering, Surface};
+use driftworld_spec::Surface;
 
+use super::canvas::{Canvas, Triangle};
 use super::compose_natural::Composition;
 use super::cpu::{CpuRenderer, category};
 use super::daylight::Daylight;
 use super::frame::CATEGORY_MAP;
 use super::lanes::Lanes;
-use super::patch::Patch;
+use super::patch::{Patch, Sheet};
 use super::raster::{Shading, dot, draw_block};
 use super::rows::{Rows, packed};
 use super::shade::{FULL_LEVEL, ROUNDING};
 use super::shadows::{self, Cast, ShadowParams};
+use super::surfaces;
 use super::target::Target;
 use super::view::{NEAR, Placement, Pose, View};
 use super::visibility::{Drawable, Visible, find, level, sort_arena_last};
@@ -26,8 +29,8 @@ use crate::scene::{Item, PanelGroup, Scene};
 pub(super) const MATERIAL_SHIFT: u32 = 27;
 pub(super) const MATERIAL: u32 = 31 << MATERIAL_SHIFT;
 
-/// Bits of a category that no part of the map has: where they are all 0, the number above them is of what covers it; else it may be
-/// the item's class.
+/// Bits of a category that no part of the map has: where they are all 0, the number above them is of what covers it; else it is the
+/// item's class, or 0.
 pub(super) const NO_MAP: u32 = 6 << 24;
 
 /// Bare ground in shadow, for which nothing was drawn but the shadow.
@@ -35,24 +38,27 @@ pub(super) const BARE: u32 = 1;
 /// What lies on the ground; the next number is that in shadow.
 pub(super) const GROUND: u32 = 2;
 pub(super) const GROUND_IN_SHADOW: u32 = GROUND + 1;
-/// Walls that face along x; the next number is those along y.
+/// Walls that face along x; the next numbers are those along y, and their tops.
 pub(super) const WALLS: u32 = 4;
-/// Three for each object that is covered: its faces along x, y and z.
-pub(super) const OBJECTS: u32 = 6;
-pub(super) const MATERIALS: u32 = 32;
+/// Classes that a label has room for.
+const CLASSES: u16 = 32;
+
+/// Where in the packed pixel of a covered object's triangle the number of the axis stands that it faces along, until it is filled.
+const AXIS_SHIFT: u32 = 30;
 
 /// What the style keeps from picture to picture.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Natural {
     pub(super) rows: Rows,
-    pub(super) patches: Vec<Option<Patch>>,
+    /// What covers walls that face along x and y, and their tops.
+    pub(super) walls: Option<[Patch; 3]>,
     /// For each column how much it shows of the sky towards the sun: a byte, in the three of a colour.
     pub(super) glow: Vec<u32>,
 }
 
 /// What all triangles of a material share.
 #[derive(Clone, Copy, Debug)]
-struct NaturalParams {
+struct NaturalParams<'a> {
     /// Levels 0 to 255 that the sun gives; that come from around; that a face gets more which looks up.
     sun: [f32; 3],
     around: [f32; 3],
@@ -61,24 +67,37 @@ struct NaturalParams {
     labels: [u32; 3],
     item: u32,
     may_be_cut: bool,
+    cover: Option<&'a Cover>,
 }
 
-impl NaturalParams {
-    fn new(color: [f32; 3], daylight: &Daylight, category: u8, materials: [u32; 3]) -> Self {
+/// What covers an object's faces along x, y and z.
+#[derive(Clone, Copy, Debug)]
+struct Cover {
+    patches: [Patch; 3],
+    /// The object's label.
+    label: u32,
+    /// The picture's middle, and metres per pixel at 1 m.
+    middle: [f32; 2],
+    step: f32,
+}
+
+impl NaturalParams<'_> {
+    fn new(color: [f32; 3], daylight: &Daylight, labels: [u32; 3]) -> Self {
         let full = color.map(|channel| channel * FULL_LEVEL);
         let by = |light: [f32; 3]| [0, 1, 2].map(|k| full[k] * light[k]);
         Self {
             sun: by(daylight.sun),
             around: by(daylight.around),
             above: by(daylight.above),
-            labels: materials.map(|number| number << MATERIAL_SHIFT | u32::from(category) << 24),
+            labels,
             item: 0,
             may_be_cut: false,
+            cover: None,
         }
     }
 }
 
-impl Shading for NaturalParams {
+impl Shading for NaturalParams<'_> {
     #[inline(always)]
     fn item(&self) -> u32 {
         self.item
@@ -112,9 +131,24 @@ impl Shading for NaturalParams {
         l.store_words(l.or(rgb, label), &mut pixels);
         pixels
     }
+
+    #[inline(always)]
+    fn fill<L: Lanes, const ITEMS: bool>(&self, l: L, canvas: &mut Canvas, triangle: &Triangle) {
+        let Some(cover) = self.cover else {
+            canvas.fill::<L, ITEMS>(l, triangle, ());
+            return;
+        };
+        let sheet = Sheet {
+            patch: &cover.patches[(triangle.pixel >> AXIS_SHIFT) as usize],
+            middle: cover.middle,
+            step: cover.step,
+        };
+        let pixel = triangle.pixel & 0x00FF_FFFF | cover.label;
+        canvas.fill::<L, ITEMS>(l, &Triangle { pixel, ..*triangle }, sheet);
+    }
 }
 
-impl NaturalParams {
+impl NaturalParams<'_> {
     #[inline(always)]
     fn byte<L: Lanes>(&self, l: L, channel: usize, sun: L::Float, up: L::Float) -> L::Word {
         let around = l.splat(self.around[channel] + ROUNDING);
@@ -139,9 +173,9 @@ struct Picture<'a> {
     labels_classes: bool,
 }
 
-/// Whether a label has room for the classes of a scene's items: each has five bits, and none is covered by a surface.
+/// Whether a label has room for the classes of a scene's items: five bits.
 pub(super) fn labels_hold_classes(scene: &Scene) -> bool {
-    scene.highest_class() < MATERIALS as u16 && scene.items.iter().all(|item| item.surface == Surface::Plain)
+    scene.highest_class() < CLASSES
 }
 
 impl CpuRenderer {
@@ -205,6 +239,7 @@ impl CpuRenderer {
             keeps_classes: picture.keeps_classes,
             labels_classes: picture.labels_classes,
             classes: &self.classes,
+            ceiling_meets_walls: looks.ceiling.is_some_and(|ceiling| ceiling.meets_walls),
         };
         composition.write::<L, ITEMS>(lanes, target);
     }
@@ -224,14 +259,16 @@ impl CpuRenderer {
         if self.hides && self.hidden.hides_ball([x, y, top / 2.0], radius, top, view) {
             return;
         }
-        let materials = if picture.labels_classes {
-            [u32::from(item.class_id); 3]
-        } else {
-            self.natural.cover_item(item, view)
-        };
+        let class = if picture.labels_classes { item.class_id } else { 0 };
+        let label = u32::from(class) << MATERIAL_SHIFT | u32::from(category(item)) << 24;
+        let cover = cover(item, view, label);
         let at = view.placement(&Pose::of(item), picture.daylight.direction);
         for material in level(item, visible, view) {
             let color = color_of(item, material);
+            // A class's own finish is on what has the object's colour: not on handles and feet.
+            let is_covered = item.surface != Surface::Plain || matches!(material.paint, Paint::Main(_));
+            let cover = cover.as_ref().filter(|_| is_covered);
+            let labels = cover.map_or([label; 3], |_| [0, 1, 2].map(|axis| axis << AXIS_SHIFT));
             let params = NaturalParams {
                 item: if picture.keeps_classes {
                     u32::from(item.class_id)
@@ -239,7 +276,8 @@ impl CpuRenderer {
                     index + 1
                 },
                 may_be_cut: visible.nearest < NEAR,
-                ..NaturalParams::new(color, &picture.daylight, category(item), materials)
+                cover,
+                ..NaturalParams::new(color, &picture.daylight, labels)
             };
             for block in &material.blocks {
                 draw_block::<L, ITEMS, _>(lanes, &mut self.canvas, block, &at, &params);
@@ -256,16 +294,18 @@ impl CpuRenderer {
         picture: &Picture<'_>,
     ) {
         let (view, daylight) = (&picture.view, &picture.daylight);
-        let is_upright = !group.edges.is_empty();
-        let materials = match self.natural.patches[WALLS as usize] {
-            _ if !is_upright => [GROUND; 3],
-            Some(_) => [WALLS, WALLS + 1, 0],
-            None => [0; 3],
+        let materials = if group.height > 0.0 {
+            [WALLS, WALLS + 1, WALLS + 2]
+        } else if group.lift > 0.0 {
+            [GROUND; 3]
+        } else {
+            [0; 3]
         };
+        let labels = materials.map(|number| number << MATERIAL_SHIFT | u32::from(CATEGORY_MAP) << 24);
         let at = view.placement(&Pose::of_panels(group, view), daylight.direction);
         let params = NaturalParams {
             may_be_cut: visible.nearest < NEAR,
-            ..NaturalParams::new(group.color, daylight, CATEGORY_MAP, materials)
+            ..NaturalParams::new(group.color, daylight, labels)
         };
         for block in &group.blocks {
             draw_block::<L, ITEMS, _>(lanes, &mut self.canvas, block, &at, &params);
@@ -339,11 +379,39 @@ pub(super) fn glow_towards(looks: &NaturalLooks, daylight: &Daylight) -> Option<
     (length >= 0.05 && looks.ceiling.is_none()).then(|| [x / length, y / length])
 }
 
+/// How much of a pure colour is grey: paint that weather has been at.
+const MUTED: f32 = 0.28;
+
+/// A material's colour; the purer it is, the more it is muted.
 fn color_of(item: &Item, material: &Material) -> [f32; 3] {
-    match material.paint {
+    let color = match material.paint {
         Paint::Main(own) => item.color.unwrap_or(own),
         Paint::Fixed(color) => color,
-    }
+    };
+    let [red, green, blue] = color;
+    let most = red.max(green).max(blue);
+    let share = MUTED * (most - red.min(green).min(blue));
+    let gray = 0.6 * most;
+    color.map(|channel| channel + (gray - channel) * share)
+}
+
+/// What covers an object: its surface, or the finish of its class as large as the object, from its middle on.
+fn cover(item: &Item, view: &View, label: u32) -> Option<Cover> {
+    let (tile, scale, middle) = match surfaces::tile(item.surface) {
+        Some(tile) => (tile, 1.0, 0.0),
+        None => (item.finish?.tile(), item.scale, item.asset.height * item.scale / 2.0),
+    };
+    let heading = item.heading_deg.to_radians();
+    let (sine, cosine) = (libm::sinf(heading), libm::cosf(heading));
+    let (x, y, z) = ([cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]);
+    let origin = [item.position[0], item.position[1], middle];
+    let patch = |axes, normal| Patch::new((tile, scale), view, origin, axes, normal);
+    Some(Cover {
+        patches: [patch([y, z], x), patch([x, z], y), patch([x, y], z)],
+        label,
+        middle: view.size.map(|pixels| pixels / 2.0 - 0.5),
+        step: view.step,
+    })
 }
 
 fn fog_towards_sun(daylight: &Daylight) -> [f32; 3] {
@@ -351,39 +419,19 @@ fn fog_towards_sun(daylight: &Daylight) -> [f32; 3] {
 }
 
 impl Natural {
-    /// Forgets what covered objects, and finds what covers walls.
+    /// Finds what covers walls.
     pub(super) fn cover_walls(&mut self, looks: &NaturalLooks, view: &View) {
         let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
-        let wall = |axis, normal| Patch::new(looks.walls, view, [0.0; 3], [axis, z], normal);
-        self.patches.clear();
-        self.patches.resize(WALLS as usize, None);
-        self.patches.extend([wall(y, x), wall(x, y)]);
+        self.walls = surfaces::tile(looks.walls.surface).map(|tile| {
+            let of = (tile, looks.walls.scale as f32);
+            [([y, z], x), ([x, z], y), ([x, y], z)].map(|(axes, normal)| Patch::new(of, view, [0.0; 3], axes, normal))
+        });
     }
 
     /// What covers walls, if each column of the picture shows it from top to bottom: up a wall it is the same for all.
     pub(super) fn upright_walls(&self) -> Option<&Patch> {
-        let [Some(along_x), Some(along_y)] = &self.patches[WALLS as usize..OBJECTS as usize] else {
-            return None;
-        };
+        let [along_x, along_y, _] = self.walls.as_ref()?;
         (along_x.is_upright() && along_y.is_upright()).then_some(along_x)
-    }
-
-    /// The numbers of what covers an object; of nothing if it is plain, or if there are no numbers left.
-    pub(super) fn cover_item(&mut self, item: &Item, view: &View) -> [u32; 3] {
-        let first = self.patches.len() as u32;
-        if item.surface == Surface::Plain || first + 3 > MATERIALS {
-            return [0; 3];
-        }
-        let heading = item.heading_deg.to_radians();
-        let (sine, cosine) = (libm::sinf(heading), libm::cosf(heading));
-        let (x, y, z) = ([cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]);
-        let origin = [item.position[0], item.position[1], 0.0];
-        for (axes, normal) in [([y, z], x), ([x, z], y), ([x, y], z)] {
-            self.patches
-                .push(Patch::new(Covering::of(item.surface), view, origin, axes, normal));
-        }
-        debug_assert!(first >= OBJECTS, "walls are covered first");
-        [first, first + 1, first + 2]
     }
 
     /// How much each column shows of the sky towards the sun.

@@ -1,11 +1,10 @@
 //! How texels are found from places on the screen where walls or objects are covered: which tile, which level, which texel. The
 //! patterns are in `surfaces.rs`; those of ground, ceiling and clouds are found row by row, in `rows.rs`.
 
-use driftworld_spec::Covering;
-
+use super::canvas::Texture;
 use super::compose::metres;
-use super::lanes::Lanes;
-use super::surfaces::{self, SIDE};
+use super::lanes::{Lanes, MOST_LANES};
+use super::surfaces::{SIDE, Tile};
 use super::view::View;
 
 /// Metres along a wall or an object are never so many tiles.
@@ -29,28 +28,27 @@ pub(super) struct Patch {
 }
 
 impl Patch {
-    /// Of a surface on faces of this normal, along these axes from an origin: all in the world's frame.
+    /// Of a tile, so many times as large, on faces of this normal, along these axes from an origin: all in the world's frame.
     pub(super) fn new(
-        covering: Covering,
+        (tile, scale): (&'static Tile, f32),
         view: &View,
         origin: [f32; 3],
         axes: [[f32; 3]; 2],
         normal: [f32; 3],
-    ) -> Option<Self> {
-        let tile = surfaces::tile(covering.surface)?;
-        let period = tile.period * covering.scale as f32;
+    ) -> Self {
+        let period = tile.period * scale;
         let from = crate::vector::sub(view.position, origin);
         let along = |axis: [f32; 3]| {
             let rows = [from, view.axes.forward, view.axes.right, view.axes.up];
             rows.map(|row| crate::vector::dot(row, axis) / period)
         };
-        Some(Self {
+        Self {
             texels: &tile.texels,
             u: along(axes[0]),
             v: along(axes[1]),
             facing: [view.axes.forward, view.axes.right, view.axes.up].map(|axis| crate::vector::dot(axis, normal)),
             sharpness: SHARPNESS * tile.sharpness * period / view.step,
-        })
+        }
     }
 
     /// Texels at these columns of a row so far up at 1 m, for 1 / depth.
@@ -77,6 +75,33 @@ impl Patch {
     /// Whether each column of a picture shows it along the tile's v alone: an upright face before a level camera.
     pub(super) fn is_upright(&self) -> bool {
         [self.u[3], self.v[1], self.v[2], self.facing[2]] == [0.0; 4]
+    }
+}
+
+/// A patch as what triangles show, in pictures whose middle is at this column and row.
+#[derive(Clone, Copy)]
+pub(super) struct Sheet<'a> {
+    pub(super) patch: &'a Patch,
+    pub(super) middle: [f32; 2],
+    pub(super) step: f32,
+}
+
+impl Texture for Sheet<'_> {
+    #[inline(always)]
+    fn shown<L: Lanes>(
+        self,
+        l: L,
+        taken: L::Mask,
+        packed: L::Word,
+        (row, x): (usize, L::Float),
+        inverse: L::Float,
+    ) -> L::Word {
+        if l.bits(taken) == 0 {
+            return packed;
+        }
+        let up = (self.middle[1] - row as f32) * self.step;
+        let offset = l.mul(l.sub(x, l.splat(self.middle[0])), l.splat(self.step));
+        l.modulate(packed, self.patch.texel(l, up, offset, inverse))
     }
 }
 
@@ -140,6 +165,13 @@ impl<L: Lanes> Run<L> {
         l.both(l.same(inverse, self.inverse), l.equal(material, self.material))
     }
 
+    /// 1 / depth of the columns that are known.
+    pub(super) fn known(&self, l: L) -> impl Iterator<Item = f32> + Clone {
+        let mut inverse = [-1.0; MOST_LANES];
+        l.store(self.inverse, &mut inverse);
+        inverse.into_iter().filter(|inverse| *inverse > 0.0)
+    }
+
     /// Notes what these columns show; the patch is an upright one.
     #[inline(always)]
     pub(super) fn note(
@@ -173,12 +205,20 @@ impl<L: Lanes> Run<L> {
 
 #[cfg(test)]
 mod tests {
-    use driftworld_spec::Surface;
     use proptest::prelude::*;
 
     use super::super::lanes::Portable;
+    use super::super::surfaces;
     use super::*;
     use crate::camera::Camera;
+
+    /// Bricks at their own size.
+    fn bricks() -> (&'static Tile, f32) {
+        (
+            surfaces::tile(driftworld_spec::Surface::Brick).expect("bricks have a tile"),
+            1.0,
+        )
+    }
 
     proptest! {
         /// A run is a shorter way to the same texels, and says which columns it does not know.
@@ -190,7 +230,7 @@ mod tests {
         ) {
             let view = View::new(&Camera::first_person(at, heading, eye, 60.0), 84, 84);
             let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
-            let patch = Patch::new(Covering::of(Surface::Brick), &view, [0.0; 3], [y, z], x).expect("bricks have a tile");
+            let patch = Patch::new(bricks(), &view, [0.0; 3], [y, z], x);
             prop_assert!(patch.is_upright());
             let l = Portable;
             let offset: [f32; 4] = std::array::from_fn(|k| view.offset(0, (first + k) as f32));
@@ -214,8 +254,8 @@ mod tests {
         fn only_a_level_camera_sees_upright_patches(heading in 0.0_f32..360.0, pitch in prop_oneof![1.0_f32..80.0, -80.0_f32..-1.0]) {
             let camera = Camera { pitch_deg: pitch, ..Camera::first_person([0.0; 2], heading, 1.0, 60.0) };
             let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
-            let patch = Patch::new(Covering::of(Surface::Brick), &View::new(&camera, 84, 84), [0.0; 3], [x, z], y);
-            prop_assert!(!patch.expect("bricks have a tile").is_upright());
+            let patch = Patch::new(bricks(), &View::new(&camera, 84, 84), [0.0; 3], [x, z], y);
+            prop_assert!(!patch.is_upright());
         }
     }
 }

@@ -48,7 +48,7 @@ pub(super) trait Shading: Copy {
     /// Draws a triangle.
     #[inline(always)]
     fn fill<L: Lanes, const ITEMS: bool>(&self, l: L, canvas: &mut Canvas, triangle: &Triangle) {
-        canvas.fill::<L, ITEMS>(l, triangle);
+        canvas.fill::<L, ITEMS>(l, triangle, ());
     }
 }
 

@@ -27,6 +27,12 @@ const CLOUDS: [f32; 3] = [40.0, 150.0, 0.22];
 /// What covers the ceiling.
 pub(super) const CEILING: Surface = Surface::Tile;
 
+/// How dark it is where walls, ground, ceiling and things meet, and over how many metres that fades.
+pub(super) const CONTACT: [f32; 2] = [0.5, 0.35];
+
+/// The fewest pixels over which it fades, so that it does not flicker; it is fainter then.
+pub(super) const CONTACT_PIXELS: f32 = 1.5;
+
 /// How high fog reaches above the eye, in metres.
 const FOG_HEIGHT: f32 = 30.0;
 
@@ -64,6 +70,10 @@ pub(super) struct Row {
     /// How much of them is seen, 1 to 255: more of them the nearer a row is, so that they come in without a seam.
     pub(super) detail_share: u32,
     pub(super) shows: Shows,
+    /// Metres from the eye up or down to the plane that it shows, and how much nearer to it a ray through it comes with each.
+    pub(super) plane: [f32; 2],
+    /// How dark the plane is where something meets it, and 1 / the metres over which that fades.
+    pub(super) contact: [f32; 2],
 }
 
 /// What a row shows.
@@ -209,6 +219,10 @@ impl Plane {
         let inverse = self.rise.abs() / self.below;
         let base = packed(self.color, CATEGORY_MAP);
         let metres = 1.0 / inverse.max(1e-6);
+        // A pixel is longer than it is wide.
+        let length = metres * metres * key.step * key.up.abs().max(0.05) / self.below;
+        let [dark, reach] = CONTACT;
+        let fades = reach.max(CONTACT_PIXELS * length);
         let mut look = RowLook {
             metres,
             offset,
@@ -220,13 +234,13 @@ impl Plane {
                 cloud: base,
                 side: 1,
                 shows,
+                plane: [self.below, self.rise.abs()],
+                contact: [dark * reach / fades, 1.0 / fades],
                 ..Row::default()
             },
         };
         if let Some(tile) = tile {
             let period = tile.period * self.scale;
-            // A pixel is longer than it is wide.
-            let length = metres * metres * key.step * key.up.abs().max(0.05) / self.below;
             look.sharpen(period, length / tile.sharpness);
             let width = metres * key.step;
             let ([first, all], shown) = (DETAIL, width * SIDE as f32 / period);

@@ -8,6 +8,8 @@ use std::sync::LazyLock;
 
 use driftworld_spec::Surface;
 
+use crate::looks::Finish;
+
 /// Texels to a side of a tile's finest level.
 pub(super) const SIDE: usize = 256;
 
@@ -48,6 +50,17 @@ pub(super) fn tile(surface: Surface) -> Option<&'static Tile> {
         Surface::Plaster => baked!(4.0, true, 1.0, plaster),
         Surface::Cobbles => baked!(2.0, false, 1.0, cobbles),
     })
+}
+
+impl Finish {
+    /// Its tile, in metres of a model at scale 1; 0 is the middle.
+    pub(super) fn tile(self) -> &'static Tile {
+        match self {
+            Self::Door => baked!(2.0, false, 1.0, door),
+            Self::Crate => baked!(0.9, false, 1.0, wooden_box),
+            Self::Metal => baked!(1.0, false, 1.0, metal),
+        }
+    }
 }
 
 /// How much of the sky clouds hide: the same in each byte but the highest, 0 to 255.
@@ -263,6 +276,64 @@ fn cobbles(x: f32, y: f32) -> [f32; 3] {
     let body = smooth((next - nearest) / 0.22);
     let tone = 1.15 + 0.36 * (hash(own[0], own[1], 83) - 0.5) - 0.3 * nearest;
     tinted(0.5 + (tone - 0.5) * body, 0.1 * (hash(own[0], own[1], 84) - 0.5) * body)
+}
+
+/// A place in a tile, 0..1, as one around its middle, −0.5..0.5.
+fn around_middle(at: f32) -> f32 {
+    if at < 0.5 { at } else { at - 1.0 }
+}
+
+/// A frame with four panels, 1 m wide and 2 m high.
+fn door(x: f32, y: f32) -> [f32; 3] {
+    let [across, up] = [x, y].map(|at| 2.0 * around_middle(at));
+    let grain = lattice(x, y, [96, 6], 91) + 0.7 * lattice(x, y, [48, 3], 92);
+    let [low, high] = if up < 0.0 { [-0.82, -0.12] } else { [0.08, 0.86] };
+    let sides = [across.abs() - 0.06, 0.38 - across.abs(), up - low, high - up];
+    let inside = sides.into_iter().fold(f32::INFINITY, f32::min);
+    // Light comes from above: of a panel's rim the lower part shines, the upper part is dark.
+    let rim = if inside == sides[2] {
+        1.3
+    } else if inside == sides[3] {
+        0.5
+    } else {
+        0.68
+    };
+    let edge = across.abs().max(up.abs() - 0.5);
+    let own = match inside {
+        // Beyond the door there is nothing to see.
+        _ if across.abs() > 0.5 => 0.97,
+        _ if edge > 0.482 => 0.62,
+        0.0..0.04 => rim,
+        0.04.. => 0.94,
+        _ => 1.04,
+    };
+    tinted(own + 0.09 * grain, 0.04 * grain)
+}
+
+/// A frame around boards with a brace, 0.9 m to a side.
+fn wooden_box(x: f32, y: f32) -> [f32; 3] {
+    let [across, up] = [x, y].map(around_middle);
+    let out = across.abs().max(up.abs());
+    let (board, along) = piece(x + 0.5 - (x + 0.5) as u32 as f32, 6);
+    let brace = (across - up).abs();
+    let grain = lattice(x, y, [64, 6], 95) + 0.6 * lattice(x, y, [24, 3], 96);
+    let own = match out {
+        0.487.. => 1.25,
+        0.385..0.487 => 1.08,
+        0.365..0.385 => 0.55,
+        _ if brace < 0.085 => 1.05,
+        _ if brace < 0.11 => 0.6,
+        _ => 0.66 + (0.24 + 0.16 * (hash(board, 0, 97) - 0.5)) * within(along, 0.14),
+    };
+    tinted(own + 0.08 * grain, 0.04 * grain)
+}
+
+/// Brushed along, with what it mirrors in bands.
+fn metal(x: f32, y: f32) -> [f32; 3] {
+    let brushed = lattice(x, y, [4, 128], 98) + 0.6 * lattice(x, y, [8, 64], 99);
+    let wave = lattice(x, y, [2, 8], 100) + 0.5 * lattice(x, y, [3, 16], 101);
+    let own = 1.0 + 0.9 * wave + 0.1 * brushed;
+    [own; 3]
 }
 
 #[cfg(test)]
