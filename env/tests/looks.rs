@@ -77,77 +77,64 @@ fn worlds() -> [WorldDraft; 4] {
     [park(), dusk, rooms, maze]
 }
 
+/// Every instruction set draws the same pixels, and without instances, where labels hold classes if there is room, what it draws
+/// with them.
 #[test]
 fn every_instruction_set_draws_the_same_pixels() {
-    for (number, world) in worlds().iter().enumerate() {
+    let mut uncovered = worlds();
+    let objects = uncovered.iter_mut().flat_map(|world| &mut world.objects);
+    objects.for_each(|object| object.surface = Surface::Plain);
+    for (number, world) in worlds().iter().chain(&uncovered).enumerate() {
         let scene = Scene::from_world(&checked(world));
-        for (heading, size) in [(0.0, [84, 84]), (200.0, [33, 20]), (75.0, [5, 3])] {
-            let mut first: Option<(Frame, Vec<u8>)> = None;
+        let mut of_things = 0;
+        let views = [
+            (0.0, [84, 84]),
+            (200.0, [84, 84]),
+            (290.0, [84, 84]),
+            (200.0, [33, 20]),
+            (75.0, [5, 3]),
+        ];
+        for (heading, [width, height]) in views {
+            let mut first: Option<Frame> = None;
             for (name, mut renderer) in CpuRenderer::each_instruction_set() {
-                let mut frame = Frame::new(size[0], size[1]);
+                let mut frame = Frame::new(width, height);
                 renderer.render(&scene, &eyes(heading), &mut frame);
-                // Without instances the renderer keeps no items.
-                let mut rgb = vec![0; frame.rgb.len()];
-                let mut target = Target {
-                    width: size[0],
-                    height: size[1],
-                    rgb: Some(&mut rgb),
-                    ..Target::default()
-                };
-                renderer.draw(&scene, &eyes(heading), &mut target).expect("it draws");
-                assert_eq!(rgb, frame.rgb, "{name}: with and without items");
-                let Some((expected, _)) = &first else {
-                    first = Some((frame, rgb));
-                    continue;
-                };
-                assert_eq!(frame.rgb, expected.rgb, "world {number}, {name}, heading {heading}");
+                let place = format!("world {number}, {name}, heading {heading}");
+                for has_classes in [false, true] {
+                    let mut other = Frame::new(width, height);
+                    let mut target = Target {
+                        width,
+                        height,
+                        rgb: Some(&mut other.rgb),
+                        depth: has_classes.then_some(&mut other.depth[..]),
+                        category: has_classes.then_some(&mut other.category[..]),
+                        class: has_classes.then_some(&mut other.class[..]),
+                        ..Target::default()
+                    };
+                    renderer.draw(&scene, &eyes(heading), &mut target).expect("it draws");
+                    assert_eq!(other.rgb, frame.rgb, "{place}: without instances");
+                    if has_classes {
+                        assert_eq!(
+                            (&other.category, &other.class),
+                            (&frame.category, &frame.class),
+                            "{place}"
+                        );
+                        assert!(other.depth == frame.depth, "{place}");
+                    }
+                }
+                of_things += frame.class.iter().filter(|class| **class > 0).count();
+                let expected = first.get_or_insert_with(|| frame.clone());
+                assert_eq!(frame.rgb, expected.rgb, "{place}");
                 let bits = |frame: &Frame| frame.depth.iter().map(|metres| metres.to_bits()).collect::<Vec<_>>();
-                assert_eq!(bits(&frame), bits(expected), "world {number}, {name}");
+                assert_eq!(bits(&frame), bits(expected), "{place}");
                 assert_eq!(
                     (&frame.category, &frame.class, &frame.instance),
                     (&expected.category, &expected.class, &expected.instance),
-                    "world {number}, {name}"
+                    "{place}"
                 );
             }
         }
-    }
-}
-
-/// Labels hold classes where no instances are asked for; else a buffer of items does.
-#[test]
-fn classes_are_the_same_however_they_are_kept() {
-    let uncovered = worlds().map(|mut world| {
-        for object in &mut world.objects {
-            object.surface = Surface::Plain;
-        }
-        world
-    });
-    for (number, world) in worlds().iter().chain(&uncovered).enumerate() {
-        let scene = Scene::from_world(&checked(world));
-        let (mut found, mut of_things) = (0, 0);
-        for heading in [0.0, 75.0, 200.0, 290.0] {
-            let expected = draw(world, &eyes(heading), [84, 84]);
-            for (name, mut renderer) in CpuRenderer::each_instruction_set() {
-                let (mut rgb, mut depth) = (vec![0; expected.rgb.len()], vec![0.0; expected.depth.len()]);
-                let (mut category, mut class) = (vec![9; expected.category.len()], vec![9; expected.class.len()]);
-                let mut target = Target {
-                    width: 84,
-                    height: 84,
-                    rgb: Some(&mut rgb),
-                    depth: Some(&mut depth),
-                    category: Some(&mut category),
-                    class: Some(&mut class),
-                    ..Target::default()
-                };
-                renderer.draw(&scene, &eyes(heading), &mut target).expect("it draws");
-                assert_eq!(class, expected.class, "classes of world {number}, {name}");
-                assert_eq!(category, expected.category, "categories of world {number}, {name}");
-                assert!(rgb == expected.rgb && depth == expected.depth, "world {number}, {name}");
-                found += class.len();
-                of_things += class.iter().filter(|class| **class > 0).count();
-            }
-        }
-        assert!(of_things * 500 > found, "things are seen in world {number}");
+        assert!(of_things > 100, "things are seen in world {number}: {of_things}");
     }
 }
 
@@ -331,17 +318,12 @@ fn low_walls_have_tops() {
     world.agent_params.agent_height = 1.5;
     let camera = Camera::first_person([0.0; 2], 0.0, 1.5, 60.0);
     let frame = draw(&world, &camera, [85, 85]);
-    let inside = (0..85)
-        .map(|row| frame.depth[row * 85 + 42])
-        .filter(|metres| (3.1..5.9).contains(metres));
-    let rows = (0..85).filter(|row| (3.1..5.9).contains(&frame.depth[row * 85 + 42]));
-    for (metres, row) in inside.zip(rows) {
-        let down = (row as f32 - 42.0) * 2.0 * libm::tanf(30_f32.to_radians()) / 85.0;
-        assert!(
-            (metres * down - 1.0).abs() < 1e-2,
-            "row {row}: {} m below the eye",
-            metres * down
-        );
+    for row in 43..85 {
+        let metres = frame.depth[row * 85 + 42];
+        let below = metres * (row as f32 - 42.0) * 2.0 * libm::tanf(30_f32.to_radians()) / 85.0;
+        if (3.1..5.9).contains(&metres) {
+            assert!((below - 1.0).abs() < 1e-2, "row {row}: {below} m below the eye");
+        }
     }
 }
 

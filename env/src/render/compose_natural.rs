@@ -46,7 +46,15 @@ pub(super) struct Composition<'a> {
 
 /// A vector's columns, from top to bottom.
 struct Columns<'a, L: Lanes> {
+    /// Clouds of the last rows that showed some, and which those were.
+    clouds: L::Word,
+    pair: u32,
     offset: L::Float,
+    /// The same for each two and each four columns: that of their middle.
+    offset_of_two: L::Float,
+    offset_of_four: L::Float,
+    /// How many of its columns may be looked up at once.
+    most_alike: u32,
     glow: L::Word,
     /// What covers walls, if columns show it all the way down.
     wall: Option<&'a Patch>,
@@ -54,6 +62,8 @@ struct Columns<'a, L: Lanes> {
     /// Metres to the last thing that met the ground, and whether it may still darken it.
     foot: L::Float,
     is_near_foot: bool,
+    /// Metres to walls that go up to the ceiling: they are as far there as at the height of the eye.
+    lintel: L::Float,
     /// How far rows go down to ground, or up to a ceiling, before walls that go on meet it; metres to the nearest of them.
     quiet: [f32; 2],
     nearest: f32,
@@ -183,12 +193,18 @@ impl Composition<'_> {
     #[inline(always)]
     fn columns<L: Lanes>(&self, l: L, start: usize) -> Columns<'_, L> {
         let mut columns = Columns {
+            clouds: l.splat_word(0),
+            pair: u32::MAX,
             offset: l.load(&self.offsets[start..]),
+            offset_of_two: self.shared_offset(l, start, 2.0),
+            offset_of_four: self.shared_offset(l, start, 4.0),
+            most_alike: if start.is_multiple_of(4) { 4 } else { 1 },
             glow: l.load_words(&self.natural.glow[start..]),
             wall: self.natural.upright_walls(),
             run: Run::new(l),
             foot: l.splat(NOWHERE),
             is_near_foot: false,
+            lintel: l.splat(NOWHERE),
             quiet: [0.0; 2],
             nearest: f32::INFINITY,
         };
@@ -219,9 +235,19 @@ impl Composition<'_> {
             });
             if self.ceiling_meets_walls {
                 columns.nearest = 1.0 / known.fold(0.0, f32::max);
+                columns.lintel = columns.run.metres_or(l, NOWHERE);
             }
         }
         columns
+    }
+
+    /// How far the middle of each so many columns is to the right at 1 m.
+    #[inline(always)]
+    fn shared_offset<L: Lanes>(&self, l: L, start: usize, count: f32) -> L::Float {
+        let column = l.add(l.count_up(), l.splat(start as f32));
+        let first = l.mul(l.float(l.truncate(l.mul(column, l.splat(1.0 / count)))), l.splat(count));
+        let middle = l.splat(count / 2.0 - self.view.size[0] / 2.0);
+        l.mul(l.add(first, middle), l.splat(self.view.step))
     }
 
     #[inline(always)]
@@ -330,48 +356,43 @@ impl Composition<'_> {
     /// Darker where walls and things meet the ground or the ceiling, on both sides of where they meet.
     #[inline(always)]
     fn in_contact<L: Lanes>(&self, l: L, columns: &mut Columns<'_, L>, row: &Row, seen: &Seen<L>) -> L::Word {
-        let (zero, one) = (l.splat(0.0), l.splat(1.0));
-        let ([below, nearer], [row_dark, row_fades]) = (row.plane, row.contact);
         let is_ceiling = row.shows == Shows::Ceiling;
-        let (mut dark, mut is_dark) = (zero, false);
-        let standing = l.has_any(seen.word, NO_MAP | WALLS << MATERIAL_SHIFT);
-        if seen.may_meet && l.bits(standing) != 0 {
-            let [most, reach] = CONTACT;
-            let away = l.sub(l.splat(below), l.mul(seen.metres, l.splat(nearer)));
-            let fades = l.mul(seen.inverse, l.splat(1.0 / (CONTACT_PIXELS * self.view.step)));
-            let fades = l.min(fades, l.splat(1.0 / reach));
-            let near = l.min(l.sub(one, l.mul(away, fades)), one);
-            let meets = l.both(standing, l.above(near, zero));
-            if l.bits(meets) != 0 {
-                let made = l.mul(l.mul(near, near), l.mul(fades, l.splat(most * reach)));
-                (dark, is_dark) = (l.select(meets, made, dark), true);
-                if !is_ceiling {
-                    columns.foot = l.select(meets, seen.metres, columns.foot);
-                    columns.is_near_foot = true;
-                }
-            }
+        let (foot, is_near) = if is_ceiling {
+            (columns.lintel, row.metres + 1.0 / row.fades > columns.nearest)
+        } else {
+            (columns.foot, columns.is_near_foot)
+        };
+        if !seen.may_meet && !is_near {
+            return seen.word;
         }
-        if is_ceiling && row.metres + 1.0 / row_fades > columns.nearest || columns.is_near_foot {
-            // A wall that goes up to the ceiling is as far there as at the height of the eye.
-            let from = if is_ceiling { columns.run.metres } else { columns.foot };
-            let gap = l.sub(from, l.splat(row.metres));
-            let near = l.sub(one, l.mul(gap, l.splat(row_fades)));
-            columns.is_near_foot = !is_ceiling && l.bits(l.above(near, zero)) != 0;
-            let meets = l.both(l.at_least(gap, zero), l.above(near, zero));
-            if l.bits(meets) != 0 {
-                let made = l.select(meets, l.mul(l.mul(near, near), l.splat(row_dark)), zero);
-                (dark, is_dark) = (l.select(standing, dark, made), true);
-            }
+        let [most, reach] = CONTACT;
+        let (zero, one) = (l.splat(0.0), l.splat(1.0));
+        let [below, nearer] = row.plane;
+        // Of what stands: how far it is from the plane. Of the plane: how far before what stands there.
+        let standing = l.has_any(seen.word, NO_MAP | WALLS << MATERIAL_SHIFT);
+        let away = l.sub(l.splat(below), l.mul(seen.metres, l.splat(nearer)));
+        let away = l.select(standing, away, l.sub(foot, l.splat(row.metres)));
+        let fades = l.mul(seen.inverse, l.splat(1.0 / (CONTACT_PIXELS * self.view.step)));
+        let fades = l.select(standing, l.min(fades, l.splat(1.0 / reach)), l.splat(row.fades));
+        let near = l.max(l.min(l.sub(one, l.mul(away, fades)), one), zero);
+        let meets = l.above(near, zero);
+        let is_dark = l.bits(meets) != 0;
+        if !is_ceiling {
+            columns.is_near_foot = is_dark;
         }
         if !is_dark {
             return seen.word;
         }
-        let left = l.truncate(l.sub(l.splat(128.0 + ROUNDING), l.mul(dark, l.splat(128.0))));
+        if !is_ceiling {
+            columns.foot = l.select(l.both(standing, meets), seen.metres, foot);
+        }
+        let dark = l.mul(l.mul(near, near), l.mul(fades, l.splat(128.0 * most * reach)));
+        let left = l.truncate(l.sub(l.splat(128.0 + ROUNDING), dark));
         l.modulate(seen.word, l.or(l.three_times(left), l.splat_word(0x80 << 24)))
     }
 
     #[inline(always)]
-    fn behind<L: Lanes>(&self, l: L, row: &Row, columns: &Columns<'_, L>) -> Behind<L::Word> {
+    fn behind<L: Lanes>(&self, l: L, row: &Row, columns: &mut Columns<'_, L>) -> Behind<L::Word> {
         let base = l.splat_word(row.base);
         let neutral = l.splat_word(NEUTRAL);
         let texels = self.natural.rows.texels(row.shows);
@@ -381,7 +402,10 @@ impl Composition<'_> {
                 word = l.mix(base, l.splat_word(row.sunward), columns.glow);
             }
             if row.side > 1 {
-                word = l.mix(word, l.splat_word(row.cloud), found(l, row, texels, columns, 1.0));
+                if columns.pair != row.pair {
+                    (columns.clouds, columns.pair) = (found(l, row, texels, columns, 1.0), row.pair);
+                }
+                word = l.mix(word, l.splat_word(row.cloud), columns.clouds);
             }
             return Behind { word, texel: neutral };
         }
@@ -422,12 +446,17 @@ impl Composition<'_> {
 /// A row's texels, of a tile that is so many times as fine.
 #[inline(always)]
 fn found<L: Lanes>(l: L, row: &Row, texels: &[u32], columns: &Columns<'_, L>, finer: f32) -> L::Word {
+    let (offset, alike) = match row.alike {
+        4 if finer == 1.0 => (columns.offset_of_four, columns.most_alike),
+        2 if finer == 1.0 => (columns.offset_of_two, columns.most_alike.min(2)),
+        _ => (columns.offset, 1),
+    };
     let mask = l.splat_word(row.side - 1);
-    let u = l.mul_add(l.splat(row.u[1] * finer), columns.offset, l.splat(row.u[0] * finer));
-    let v = l.mul_add(l.splat(row.v[1] * finer), columns.offset, l.splat(row.v[0] * finer));
+    let u = l.mul_add(l.splat(row.u[1] * finer), offset, l.splat(row.u[0] * finer));
+    let v = l.mul_add(l.splat(row.v[1] * finer), offset, l.splat(row.v[0] * finer));
     let (u, v) = (l.and(l.truncate(u), mask), l.and(l.truncate(v), mask));
     let place = l.or(u, l.shift_left(v, row.side.ilog2()));
-    l.gather(texels, l.or(place, l.splat_word(row.side * row.side)))
+    l.gather_alike(texels, l.or(place, l.splat_word(row.side * row.side)), alike)
 }
 
 fn copy<T: Copy>(to: Option<&mut [T]>, from: &[T], start: usize) {

@@ -121,13 +121,18 @@ fn part_of_tile<L: Lanes>(
     side: L::Float,
 ) -> L::Float {
     let slope = l.mul_add(l.splat(right), offset, l.splat(ahead + up * above));
-    texel_of(l, l.mul_add(depth, slope, l.splat(at + SHIFT)), side)
+    texel_of(
+        l,
+        l.mul_add(l.mul(depth, side), slope, l.mul(side, l.splat(at + SHIFT))),
+        side,
+    )
 }
 
+/// The number in its tile of a texel that is so many texels along.
 #[inline(always)]
-fn texel_of<L: Lanes>(l: L, tiles: L::Float, side: L::Float) -> L::Float {
-    let part = l.sub(tiles, l.float(l.truncate(tiles)));
-    l.float(l.truncate(l.mul(part, side)))
+fn texel_of<L: Lanes>(l: L, texels: L::Float, side: L::Float) -> L::Float {
+    let last = l.truncate(l.sub(side, l.splat(1.0)));
+    l.float(l.and(l.truncate(texels), last))
 }
 
 /// What columns show of walls all the way down: as long as neither 1 / depth nor what covers it changes, level and column of
@@ -140,8 +145,10 @@ pub(super) struct Run<L: Lanes> {
     material: L::Word,
     /// Metres for the image of depths, and in formulas.
     pub(super) metres: L::Float,
-    depth: L::Float,
+    /// Texels to a side; so many for each metre of depth; and the last in a row of them.
     side: L::Float,
+    density: L::Float,
+    last: L::Word,
     /// The first texel of the column.
     first: L::Float,
 }
@@ -153,8 +160,9 @@ impl<L: Lanes> Run<L> {
             inverse: l.splat(-1.0),
             material: l.splat_word(0),
             metres: l.splat(0.0),
-            depth: l.splat(0.0),
             side: l.splat(1.0),
+            density: l.splat(0.0),
+            last: l.splat_word(0),
             first: l.splat(1.0),
         }
     }
@@ -163,6 +171,12 @@ impl<L: Lanes> Run<L> {
     #[inline(always)]
     pub(super) fn goes_on(&self, l: L, inverse: L::Float, material: L::Word) -> L::Mask {
         l.both(l.same(inverse, self.inverse), l.equal(material, self.material))
+    }
+
+    /// Metres to what is known, or so many.
+    #[inline(always)]
+    pub(super) fn metres_or(&self, l: L, otherwise: f32) -> L::Float {
+        l.select(l.above(self.inverse, l.splat(0.0)), self.metres, l.splat(otherwise))
     }
 
     /// 1 / depth of the columns that are known.
@@ -188,8 +202,9 @@ impl<L: Lanes> Run<L> {
         self.inverse = l.select(columns, inverse, self.inverse);
         self.material = l.select_words(columns, material, self.material);
         self.metres = l.select(columns, metres(l, inverse), self.metres);
-        self.depth = l.select(columns, depth, self.depth);
         self.side = l.select(columns, side, self.side);
+        self.density = l.select(columns, l.mul(depth, side), self.density);
+        self.last = l.truncate(l.sub(self.side, l.splat(1.0)));
         self.first = l.select(columns, l.mul_add(side, side, u), self.first);
     }
 
@@ -197,8 +212,8 @@ impl<L: Lanes> Run<L> {
     #[inline(always)]
     pub(super) fn texel(&self, l: L, patch: &Patch, up: f32) -> L::Word {
         let [at, _, _, above] = patch.v;
-        let tiles = l.mul_add(self.depth, l.splat(up * above), l.splat(at + SHIFT));
-        let v = texel_of(l, tiles, self.side);
+        let texels = l.mul_add(self.density, l.splat(up * above), l.mul(self.side, l.splat(at + SHIFT)));
+        let v = l.float(l.and(l.truncate(texels), self.last));
         l.gather(patch.texels, l.truncate(l.mul_add(self.side, v, self.first)))
     }
 }

@@ -18,6 +18,9 @@ const SHIFT: f32 = 65536.0;
 /// How much coarser than a pixel texels may be: a pixel shows less than one texel of its level, and none is skipped.
 const SHARPNESS: f32 = 1.25;
 
+/// How many times as wide as columns that show the same texel it must be.
+const WIDER: f32 = 1.25;
+
 /// How many of the finest texels a pixel shows where the first of their detail is seen, and where all of it is.
 const DETAIL: [f32; 2] = [0.5, 0.25];
 
@@ -43,8 +46,9 @@ struct RowLook {
     metres: f32,
     /// How far up a ray through it leads at 1 m.
     offset: f32,
-    /// Texels per metre at its level, and texels to a side.
+    /// Texels per metre at its level, and tiles per texel.
     density: f32,
+    tiles: f32,
     row: Row,
 }
 
@@ -65,6 +69,10 @@ pub(super) struct Row {
     pub(super) u: [f32; 2],
     pub(super) v: [f32; 2],
     pub(super) side: u32,
+    /// How many columns, 1, 2 or 4, show the same texel: where it is wider than those.
+    pub(super) alike: u32,
+    /// Which rows show the same texels: two by two, of clouds.
+    pub(super) pair: u32,
     /// Texels of the same tile, enlarged, laid over it, where a texel is larger than a pixel: by how much they are finer.
     pub(super) detail: f32,
     /// How much of them is seen, 1 to 255: more of them the nearer a row is, so that they come in without a seam.
@@ -72,8 +80,8 @@ pub(super) struct Row {
     pub(super) shows: Shows,
     /// Metres from the eye up or down to the plane that it shows, and how much nearer to it a ray through it comes with each.
     pub(super) plane: [f32; 2],
-    /// How dark the plane is where something meets it, and 1 / the metres over which that fades.
-    pub(super) contact: [f32; 2],
+    /// 1 / the metres over which the dark fades where something meets the plane.
+    pub(super) fades: f32,
 }
 
 /// What a row shows.
@@ -136,14 +144,16 @@ impl Rows {
         for (look, row) in self.looks.iter().zip(&mut self.seen) {
             if look.row.side > 1 {
                 let is_sky = look.row.shows == Shows::Sky;
-                let side = look.row.side as f32;
                 let place = |axis: usize| {
                     let from = if is_sky { 0.0 } else { view.position[axis] };
                     let ahead = axes.forward[axis] + look.offset * axes.up[axis];
                     let at = (from + ahead * look.metres) * look.density;
                     // Numbers of texels stay small, so that they are exact.
-                    let turns = (at / side) as i32 as f32;
-                    [at - turns * side + SHIFT, axes.right[axis] * look.metres * look.density]
+                    let turns = (at * look.tiles) as i32 as f32;
+                    [
+                        at - turns * look.row.side as f32 + SHIFT,
+                        axes.right[axis] * look.metres * look.density,
+                    ]
                 };
                 (row.u, row.v) = (place(0), place(1));
             }
@@ -199,6 +209,10 @@ impl Rows {
             } else {
                 FAR_DEPTH
             };
+            look.row.pair = y as u32 / 2;
+            if let (1, Some(above)) = (y % 2, self.looks.last()) {
+                look.share_clouds(above);
+            }
             self.looks.push(look);
         }
         self.seen.clear();
@@ -221,12 +235,11 @@ impl Plane {
         let metres = 1.0 / inverse.max(1e-6);
         // A pixel is longer than it is wide.
         let length = metres * metres * key.step * key.up.abs().max(0.05) / self.below;
-        let [dark, reach] = CONTACT;
-        let fades = reach.max(CONTACT_PIXELS * length);
         let mut look = RowLook {
             metres,
             offset,
             density: 0.0,
+            tiles: 0.0,
             row: Row {
                 inverse,
                 base,
@@ -235,14 +248,14 @@ impl Plane {
                 side: 1,
                 shows,
                 plane: [self.below, self.rise.abs()],
-                contact: [dark * reach / fades, 1.0 / fades],
+                fades: 1.0 / CONTACT[1].max(CONTACT_PIXELS * length),
                 ..Row::default()
             },
         };
         if let Some(tile) = tile {
             let period = tile.period * self.scale;
-            look.sharpen(period, length / tile.sharpness);
             let width = metres * key.step;
+            look.sharpen(period, length / tile.sharpness, width);
             let ([first, all], shown) = (DETAIL, width * SIDE as f32 / period);
             let share = ((first - shown) / (first - all)).min(1.0);
             if tile.is_grain && share > 0.0 {
@@ -255,12 +268,34 @@ impl Plane {
 }
 
 impl RowLook {
-    /// Chooses the level whose texels are about as large as a pixel, both in metres.
-    fn sharpen(&mut self, period: f32, pixel: f32) {
+    /// Chooses the level whose texels are about as large as a pixel is long, all in metres.
+    fn sharpen(&mut self, period: f32, pixel: f32, width: f32) {
         let texels = (SHARPNESS * period / pixel.max(1e-9)).clamp(1.0, SIDE as f32);
         let side = 1 << (texels as u32).ilog2();
         self.row.side = side;
         self.density = side as f32 / period;
+        self.tiles = 1.0 / side as f32;
+        let columns = 1.0 / (self.density * width);
+        self.row.alike = [4, 2]
+            .into_iter()
+            .find(|alike| columns >= WIDER * *alike as f32)
+            .unwrap_or(1);
+    }
+}
+
+impl RowLook {
+    /// Shows the same clouds as the row above it, if both show some.
+    fn share_clouds(&mut self, above: &Self) {
+        if [self, above]
+            .iter()
+            .all(|look| look.row.shows == Shows::Sky && look.row.side > 1)
+        {
+            (self.metres, self.offset, self.density, self.tiles) =
+                (above.metres, above.offset, above.density, above.tiles);
+            (self.row.side, self.row.alike) = (above.row.side, above.row.alike);
+        } else {
+            self.row.pair = u32::MAX - 1 - self.row.pair;
+        }
     }
 }
 
@@ -297,7 +332,7 @@ fn sky(key: &Key, daylight: &Daylight, offset: f32, rise: f32) -> RowLook {
         look.metres = height / rise;
         look.row.cloud = packed(mix(away, daylight.cloud, 0.85 * seen), CATEGORY_SKY);
         let pixel = look.metres * look.metres * key.step * key.up.abs().max(0.05) / height;
-        look.sharpen(period, pixel);
+        look.sharpen(period, pixel, look.metres * key.step);
     }
     look
 }

@@ -5,16 +5,17 @@
 )]
 
 use std::arch::x86_64::{
-    __m256, __m256i, _CMP_EQ_OQ, _CMP_GE_OQ, _CMP_GT_OQ, _mm_cvtsi32_si128, _mm_storel_epi64, _mm_storeu_si128,
-    _mm256_add_epi16, _mm256_add_ps, _mm256_and_ps, _mm256_and_si256, _mm256_blendv_epi8, _mm256_blendv_ps,
-    _mm256_castps_si256, _mm256_castsi256_ps, _mm256_castsi256_si128, _mm256_cmp_ps, _mm256_cmpeq_epi32,
-    _mm256_cvtepi32_ps, _mm256_cvttps_epi32, _mm256_div_ps, _mm256_extracti128_si256, _mm256_i32gather_epi32,
-    _mm256_loadu_ps, _mm256_loadu_si256, _mm256_maskstore_epi32, _mm256_maskstore_ps, _mm256_max_ps, _mm256_min_epu32,
-    _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_mullo_epi16, _mm256_or_si256, _mm256_packus_epi16,
-    _mm256_packus_epi32, _mm256_permute4x64_epi64, _mm256_permutevar8x32_epi32, _mm256_set1_epi8, _mm256_set1_epi16,
-    _mm256_set1_epi32, _mm256_set1_ps, _mm256_setr_epi8, _mm256_setr_epi32, _mm256_setr_ps, _mm256_setzero_si256,
-    _mm256_shuffle_epi8, _mm256_sll_epi32, _mm256_slli_epi32, _mm256_sqrt_ps, _mm256_srl_epi32, _mm256_srli_epi16,
-    _mm256_storeu_ps, _mm256_storeu_si256, _mm256_sub_ps, _mm256_unpackhi_epi8, _mm256_unpacklo_epi8, _mm256_xor_si256,
+    __m256, __m256i, _CMP_EQ_OQ, _CMP_GE_OQ, _CMP_GT_OQ, _mm_cvtsi32_si128, _mm_i32gather_epi32, _mm_storel_epi64,
+    _mm_storeu_si128, _mm256_add_epi16, _mm256_add_ps, _mm256_and_ps, _mm256_and_si256, _mm256_blendv_epi8,
+    _mm256_blendv_ps, _mm256_castps_si256, _mm256_castsi128_si256, _mm256_castsi256_ps, _mm256_castsi256_si128,
+    _mm256_cmp_ps, _mm256_cmpeq_epi32, _mm256_cvtepi32_ps, _mm256_cvttps_epi32, _mm256_div_ps,
+    _mm256_extracti128_si256, _mm256_i32gather_epi32, _mm256_loadu_ps, _mm256_loadu_si256, _mm256_maskstore_epi32,
+    _mm256_maskstore_ps, _mm256_max_ps, _mm256_min_epu32, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps,
+    _mm256_mullo_epi16, _mm256_or_si256, _mm256_packus_epi16, _mm256_packus_epi32, _mm256_permute4x64_epi64,
+    _mm256_permutevar8x32_epi32, _mm256_set1_epi8, _mm256_set1_epi16, _mm256_set1_epi32, _mm256_set1_ps,
+    _mm256_setr_epi8, _mm256_setr_epi32, _mm256_setr_ps, _mm256_setzero_si256, _mm256_shuffle_epi8, _mm256_sll_epi32,
+    _mm256_slli_epi32, _mm256_sqrt_ps, _mm256_srl_epi32, _mm256_srli_epi16, _mm256_storeu_ps, _mm256_storeu_si256,
+    _mm256_sub_ps, _mm256_unpackhi_epi8, _mm256_unpacklo_epi8, _mm256_xor_si256,
 };
 
 use super::{Lanes, first, first_mut, operations};
@@ -111,6 +112,24 @@ impl Lanes for Avx2 {
             let last = _mm256_set1_epi32((table.len() - 1).min(i32::MAX as usize) as i32);
             // No place is beyond the last word of the table.
             _mm256_i32gather_epi32::<4>(table.as_ptr().cast(), _mm256_min_epu32(at, last))
+        };
+        gather_alike(table: &[u32], at: Word, alike: u32) -> Word = {
+            assert!(!table.is_empty(), "a table has words");
+            let last = _mm256_set1_epi32((table.len() - 1).min(i32::MAX as usize) as i32);
+            // No place is beyond the last word of the table.
+            let at = _mm256_min_epu32(at, last);
+            if alike < 2 {
+                _mm256_i32gather_epi32::<4>(table.as_ptr().cast(), at)
+            } else {
+                let (few, all) = if alike == 2 {
+                    (_mm256_setr_epi32(0, 2, 4, 6, 0, 2, 4, 6), _mm256_setr_epi32(0, 0, 1, 1, 2, 2, 3, 3))
+                } else {
+                    (_mm256_setr_epi32(0, 4, 0, 4, 0, 4, 0, 4), _mm256_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1))
+                };
+                let few = _mm256_castsi256_si128(_mm256_permutevar8x32_epi32(at, few));
+                let found = _mm_i32gather_epi32::<4>(table.as_ptr().cast(), few);
+                _mm256_permutevar8x32_epi32(_mm256_castsi128_si256(found), all)
+            }
         };
         power_of_two(value: Float) -> Float = _mm256_and_ps(value, _mm256_castsi256_ps(_mm256_set1_epi32(0x7F80_0000)));
         truncate(value: Float) -> Word = _mm256_cvttps_epi32(value);

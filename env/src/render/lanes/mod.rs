@@ -104,6 +104,8 @@ pub(super) trait Lanes: Copy {
     /// # Panics
     /// On an empty table.
     fn gather(self, table: &[u32], at: Self::Word) -> Self::Word;
+    /// The same where each two or each four lanes have one place: the number of those says how many.
+    fn gather_alike(self, table: &[u32], at: Self::Word, alike: u32) -> Self::Word;
     /// The power of two that is next below each float, which is above 0.
     fn power_of_two(self, value: Self::Float) -> Self::Float;
     /// Floats cut to whole numbers; they must be within ±2³¹.
@@ -165,16 +167,15 @@ mod tests {
             let mut floats = |value: L::Float| {
                 let mut kept = [7.0; MOST_LANES];
                 lanes.store(value, &mut kept);
-                assert!(
-                    kept[L::N..].iter().all(|kept| *kept == 7.0),
-                    "no more is written than a vector holds"
-                );
+                assert!(kept[L::N..].iter().all(|kept| *kept == 7.0), "no more is written");
                 results.push(kept[..L::N].iter().map(|value| value.to_bits()).collect::<Vec<u32>>());
             };
             let (above, at_least) = (lanes.above(a, b), lanes.at_least(a, b));
             let small = lanes.min(lanes.max(a, lanes.splat(-1e6)), lanes.splat(1e6));
+            let count = lanes.add(lanes.count_up(), lanes.splat(first as f32));
+            let shared = |share: f32| lanes.truncate(lanes.mul_add(count, lanes.splat(share), lanes.splat(6.0)));
             for value in [
-                lanes.add(lanes.count_up(), lanes.splat(first as f32)),
+                count,
                 lanes.add(a, b),
                 lanes.sub(a, b),
                 lanes.mul(a, b),
@@ -198,10 +199,7 @@ mod tests {
             let mut words = |value: L::Word| {
                 let mut kept = [7; MOST_LANES];
                 lanes.store_words(value, &mut kept);
-                assert!(
-                    kept[L::N..].iter().all(|kept| *kept == 7),
-                    "no more is written than a vector holds"
-                );
+                assert!(kept[L::N..].iter().all(|kept| *kept == 7), "no more is written");
                 results.push(kept[..L::N].to_vec());
             };
             for value in [
@@ -215,6 +213,9 @@ mod tests {
                 lanes.modulate(word, lanes.xor(word, lanes.splat_word(0x8055_AAFF))),
                 lanes.mix(word, lanes.splat_word(0x00FF_8001), lanes.shift_byte(word)),
                 lanes.gather(&TABLE, lanes.and(word, lanes.splat_word(15))),
+                lanes.gather_alike(&TABLE, lanes.and(word, lanes.splat_word(15)), 1),
+                lanes.gather_alike(&TABLE, shared(0.5), 2),
+                lanes.gather_alike(&TABLE, shared(0.25), 4),
                 lanes.select_words(
                     lanes.equal(lanes.and(word, lanes.splat_word(1)), lanes.splat_word(1)),
                     word,
@@ -232,24 +233,15 @@ mod tests {
             results.push((0..L::N).map(|lane| bits >> lane & 1).collect());
             let mut bytes = [7_u8; 3 * MOST_LANES];
             lanes.store_rgb(word, &mut bytes);
-            assert!(
-                bytes[3 * L::N..].iter().all(|kept| *kept == 7),
-                "three bytes a lane, and no more"
-            );
+            assert!(bytes[3 * L::N..].iter().all(|kept| *kept == 7), "no more is written");
             results.push(bytes[..3 * L::N].iter().map(|byte| u32::from(*byte)).collect());
             let mut bytes = [7_u8; MOST_LANES];
             lanes.store_bytes(word, &mut bytes);
-            assert!(
-                bytes[L::N..].iter().all(|kept| *kept == 7),
-                "a byte a lane, and no more"
-            );
+            assert!(bytes[L::N..].iter().all(|kept| *kept == 7), "no more is written");
             results.push(bytes[..L::N].iter().map(|byte| u32::from(*byte)).collect());
             let mut halves = [7_u16; MOST_LANES];
             lanes.store_halves(lanes.and(word, lanes.splat_word(0xFFFF)), &mut halves);
-            assert!(
-                halves[L::N..].iter().all(|kept| *kept == 7),
-                "two bytes a lane, and no more"
-            );
+            assert!(halves[L::N..].iter().all(|kept| *kept == 7), "no more is written");
             results.push(halves[..L::N].iter().map(|half| u32::from(*half)).collect());
             made.resize(results.len(), Vec::new());
             for (made, result) in made.iter_mut().zip(results) {

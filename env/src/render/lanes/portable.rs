@@ -67,6 +67,17 @@ impl Lanes for Portable {
             byte(0) | byte(8) | byte(16) | byte(24)
         });
         gather(table: &[u32], at: Word) -> Word = at.map(|at| table[(at as usize).min(table.len() - 1)]);
+        gather_alike(table: &[u32], at: Word, alike: u32) -> Word = {
+            let word = |lane: usize| table[(at[lane] as usize).min(table.len() - 1)];
+            match alike {
+                4 => [word(0); N],
+                2 => {
+                    let [low, high] = [word(0), word(2)];
+                    [low, low, high, high]
+                }
+                _ => std::array::from_fn(word),
+            }
+        };
         power_of_two(value: Float) -> Float = value.map(|float| f32::from_bits(float.to_bits() & 0x7F80_0000));
         truncate(value: Float) -> Word = value.map(|float| float as i32 as u32);
         float(value: Word) -> Float = value.map(|word| word as i32 as f32);
