@@ -2,7 +2,7 @@
 //! that do not change by a bit.
 
 use driftworld_env::{Action, Camera, CpuRenderer, Environment, Frame, Scene, asset, asset_in, classes};
-use driftworld_spec::{Looks, Model, Object, Style, World, WorldDraft};
+use driftworld_spec::{Layout, Looks, Maze, Model, Object, Style, World, WorldDraft};
 
 fn world(objects: Vec<Object>, style: Style) -> World {
     let mut world = WorldDraft {
@@ -115,16 +115,11 @@ fn there_are_sixteen_kinds_of_trees_told_apart_by_their_outlines() {
 #[test]
 fn levels_of_detail_keep_outlines_where_they_take_over() {
     // A coarse form is drawn from where it is off by half a pixel: an outline moves by a pixel at most, but for what is thinner.
-    for (class, number) in [
-        ("tree", 1),
-        ("tree", 2),
-        ("tree", 9),
-        ("tree", 10),
-        ("rock", 5),
-        ("shrub", 4),
-        ("animal", 8),
-        ("animal", 3),
+    for name in [
+        "tree 1", "tree 2", "tree 9", "tree 10", "rock 5", "shrub 4", "animal 8", "animal 3",
     ] {
+        let (class, number) = name.split_once(' ').expect("a class and a number");
+        let number: u32 = number.parse().expect("a number");
         let model = Model(number.to_string());
         let asset = asset_in(Style::Natural, class, &model);
         let (_, error) = asset.levels().nth(1).expect("there is a coarse form");
@@ -163,6 +158,18 @@ fn levels_of_detail_keep_outlines_where_they_take_over() {
 
 #[test]
 fn looks_change_no_way_by_a_bit() {
+    for layout in [
+        None,
+        Some(Maze {
+            seed: Some(3),
+            ..Maze::default()
+        }),
+    ] {
+        looks_change_no_way_in(layout);
+    }
+}
+
+fn looks_change_no_way_in(maze: Option<Maze>) {
     let objects = || {
         let place = |k: u32| [f64::from(k * 37 % 19) - 9.0, f64::from(k * 53 % 17) + 1.5 - 8.0];
         let of = |(k, class): (u32, &str)| {
@@ -179,7 +186,12 @@ fn looks_change_no_way_by_a_bit() {
         (0..).zip(classes).map(of).collect::<Vec<Object>>()
     };
     let walk = |style: Style| {
-        let mut environment = Environment::new(world(objects(), style));
+        let layout = maze.clone().map(|maze| Layout {
+            maze: Some(maze),
+            ..Layout::default()
+        });
+        let world = world(objects(), style).edit(|world| world.environment_params.layout = layout);
+        let mut environment = Environment::new(world.expect("the world is sound"));
         let mut bits = Vec::new();
         for k in 0..400_u32 {
             let turn = [0.0, 40.0, -20.0, 0.0, 15.0][k as usize / 20 % 5];
@@ -187,7 +199,7 @@ fn looks_change_no_way_by_a_bit() {
             let step = step.expect("the episode goes on");
             let agent = environment.agent();
             bits.extend([agent.position[0], agent.position[1], agent.heading_deg].map(f32::to_bits));
-            bits.push(step.events.len() as u32);
+            bits.extend([step.reward.to_bits() as u32, step.events.len() as u32]);
             for item in &environment.scene().items {
                 bits.extend([item.position[0], item.position[1], item.heading_deg].map(f32::to_bits));
             }

@@ -46,8 +46,8 @@ pub(super) struct Composition<'a> {
 
 /// A vector's columns, from top to bottom.
 struct Columns<'a, L: Lanes> {
-    /// Clouds of the last rows that showed some, and which those were.
-    clouds: L::Word,
+    /// Texels of the last rows that showed ground, clouds or ceiling, and which those were.
+    shared: L::Word,
     pair: u32,
     offset: L::Float,
     /// The same for each two and each four columns: that of their middle.
@@ -193,7 +193,7 @@ impl Composition<'_> {
     #[inline(always)]
     fn columns<L: Lanes>(&self, l: L, start: usize) -> Columns<'_, L> {
         let mut columns = Columns {
-            clouds: l.splat_word(0),
+            shared: l.splat_word(0),
             pair: u32::MAX,
             offset: l.load(&self.offsets[start..]),
             offset_of_two: self.shared_offset(l, start, 2.0),
@@ -225,17 +225,17 @@ impl Composition<'_> {
             }
             let rows = &self.natural.rows.seen;
             let [above, below] = [0, rows.len() - 1].map(|row| rows[row].plane[0]);
-            let known = columns.run.known(l);
-            let [reach, least] = [CONTACT[1], CONTACT_PIXELS * self.view.step];
-            columns.quiet = [below, above].map(|away| {
-                let until = known
-                    .clone()
-                    .map(|inverse| away * inverse - (reach * inverse).max(least));
-                until.fold(f32::INFINITY, f32::min)
-            });
-            if self.ceiling_meets_walls {
-                columns.nearest = 1.0 / known.fold(0.0, f32::max);
-                columns.lintel = columns.run.metres_or(l, NOWHERE);
+            if let Some([far, near]) = columns.run.known(l) {
+                let [reach, least] = [CONTACT[1], CONTACT_PIXELS * self.view.step];
+                let until = |away: f32, inverse: f32| away * inverse - (reach * inverse).max(least);
+                columns.quiet = [
+                    until(below, far).min(until(below, near)),
+                    until(above, far).min(until(above, near)),
+                ];
+                if self.ceiling_meets_walls {
+                    columns.nearest = 1.0 / near;
+                    columns.lintel = columns.run.metres_or(l, NOWHERE);
+                }
             }
         }
         columns
@@ -402,10 +402,8 @@ impl Composition<'_> {
                 word = l.mix(base, l.splat_word(row.sunward), columns.glow);
             }
             if row.side > 1 {
-                if columns.pair != row.pair {
-                    (columns.clouds, columns.pair) = (found(l, row, texels, columns, 1.0), row.pair);
-                }
-                word = l.mix(word, l.splat_word(row.cloud), columns.clouds);
+                share(l, row, texels, columns);
+                word = l.mix(word, l.splat_word(row.cloud), columns.shared);
             }
             return Behind { word, texel: neutral };
         }
@@ -415,7 +413,8 @@ impl Composition<'_> {
                 texel: neutral,
             };
         }
-        let mut texel = found(l, row, texels, columns, 1.0);
+        share(l, row, texels, columns);
+        let mut texel = columns.shared;
         if row.detail > 0.0 {
             let mut detail = found(l, row, texels, columns, row.detail);
             if row.detail_share < FULL_SHARE {
@@ -443,6 +442,14 @@ impl Composition<'_> {
     }
 }
 
+/// Finds a row's texels, if the row above it does not share them.
+#[inline(always)]
+fn share<L: Lanes>(l: L, row: &Row, texels: &[u32], columns: &mut Columns<'_, L>) {
+    if columns.pair != row.pair {
+        (columns.shared, columns.pair) = (found(l, row, texels, columns, 1.0), row.pair);
+    }
+}
+
 /// A row's texels, of a tile that is so many times as fine.
 #[inline(always)]
 fn found<L: Lanes>(l: L, row: &Row, texels: &[u32], columns: &Columns<'_, L>, finer: f32) -> L::Word {
@@ -455,7 +462,7 @@ fn found<L: Lanes>(l: L, row: &Row, texels: &[u32], columns: &Columns<'_, L>, fi
     let u = l.mul_add(l.splat(row.u[1] * finer), offset, l.splat(row.u[0] * finer));
     let v = l.mul_add(l.splat(row.v[1] * finer), offset, l.splat(row.v[0] * finer));
     let (u, v) = (l.and(l.truncate(u), mask), l.and(l.truncate(v), mask));
-    let place = l.or(u, l.shift_left(v, row.side.ilog2()));
+    let place = l.or(v, l.shift_left(u, row.side.ilog2()));
     l.gather_alike(texels, l.or(place, l.splat_word(row.side * row.side)), alike)
 }
 

@@ -58,7 +58,7 @@ impl Patch {
         let side = self.side(l, up, offset, inverse);
         let u = part_of_tile(l, self.u, up, offset, depth, side);
         let v = part_of_tile(l, self.v, up, offset, depth, side);
-        l.gather(self.texels, l.truncate(l.mul_add(side, l.add(side, v), u)))
+        l.gather(self.texels, l.truncate(l.mul_add(side, l.add(side, u), v)))
     }
 
     /// Texels to a side of the level whose texels are about as large as a pixel.
@@ -150,7 +150,7 @@ pub(super) struct Run<L: Lanes> {
     density: L::Float,
     last: L::Word,
     /// The first texel of the column.
-    first: L::Float,
+    first: L::Word,
 }
 
 impl<L: Lanes> Run<L> {
@@ -163,7 +163,7 @@ impl<L: Lanes> Run<L> {
             side: l.splat(1.0),
             density: l.splat(0.0),
             last: l.splat_word(0),
-            first: l.splat(1.0),
+            first: l.splat_word(1),
         }
     }
 
@@ -179,11 +179,18 @@ impl<L: Lanes> Run<L> {
         l.select(l.above(self.inverse, l.splat(0.0)), self.metres, l.splat(otherwise))
     }
 
-    /// 1 / depth of the columns that are known.
-    pub(super) fn known(&self, l: L) -> impl Iterator<Item = f32> + Clone {
-        let mut inverse = [-1.0; MOST_LANES];
-        l.store(self.inverse, &mut inverse);
-        inverse.into_iter().filter(|inverse| *inverse > 0.0)
+    /// Least and greatest 1 / depth of the columns that are known, if any is.
+    #[inline(always)]
+    pub(super) fn known(&self, l: L) -> Option<[f32; 2]> {
+        let mut all = [-1.0; MOST_LANES];
+        l.store(self.inverse, &mut all);
+        let (mut least, mut most) = (f32::INFINITY, 0.0_f32);
+        for inverse in all {
+            if inverse > 0.0 {
+                (least, most) = (least.min(inverse), most.max(inverse));
+            }
+        }
+        (most > 0.0).then_some([least, most])
     }
 
     /// Notes what these columns show; the patch is an upright one.
@@ -205,7 +212,7 @@ impl<L: Lanes> Run<L> {
         self.side = l.select(columns, side, self.side);
         self.density = l.select(columns, l.mul(depth, side), self.density);
         self.last = l.truncate(l.sub(self.side, l.splat(1.0)));
-        self.first = l.select(columns, l.mul_add(side, side, u), self.first);
+        self.first = l.select_words(columns, l.truncate(l.mul(side, l.add(side, u))), self.first);
     }
 
     /// Texels of a row so far up at 1 m, of the tile of an upright patch: the same as [`Patch::texel`] finds.
@@ -213,8 +220,7 @@ impl<L: Lanes> Run<L> {
     pub(super) fn texel(&self, l: L, patch: &Patch, up: f32) -> L::Word {
         let [at, _, _, above] = patch.v;
         let texels = l.mul_add(self.density, l.splat(up * above), l.mul(self.side, l.splat(at + SHIFT)));
-        let v = l.float(l.and(l.truncate(texels), self.last));
-        l.gather(patch.texels, l.truncate(l.mul_add(self.side, v, self.first)))
+        l.gather(patch.texels, l.or(self.first, l.and(l.truncate(texels), self.last)))
     }
 }
 

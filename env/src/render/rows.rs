@@ -64,14 +64,14 @@ pub(super) struct Row {
     /// Of the sky towards the sun; of clouds. As `base` where there is no difference.
     pub(super) sunward: u32,
     pub(super) cloud: u32,
-    /// How a texel is found: at `texels[(v & mask) << bits | u & mask | first]`, each at the middle and how it changes to the
+    /// How a texel is found: at `texels[(u & mask) << bits | v & mask | first]`, each at the middle and how it changes to the
     /// right at 1 m. A side of 1 has nothing to find.
     pub(super) u: [f32; 2],
     pub(super) v: [f32; 2],
     pub(super) side: u32,
     /// How many columns, 1, 2 or 4, show the same texel: where it is wider than those.
     pub(super) alike: u32,
-    /// Which rows show the same texels: two by two, of clouds.
+    /// Rows of the same number show the same texels.
     pub(super) pair: u32,
     /// Texels of the same tile, enlarged, laid over it, where a texel is larger than a pixel: by how much they are finer.
     pub(super) detail: f32,
@@ -211,7 +211,7 @@ impl Rows {
             };
             look.row.pair = y as u32 / 2;
             if let (1, Some(above)) = (y % 2, self.looks.last()) {
-                look.share_clouds(above);
+                look.share_texels(above);
             }
             self.looks.push(look);
         }
@@ -268,6 +268,18 @@ impl Plane {
 }
 
 impl RowLook {
+    /// Shows the same texels as the row above it, if those are of one level and higher than a pixel, and show no detail.
+    fn share_texels(&mut self, above: &Self) {
+        let [row, other] = [&self.row, &above.row];
+        let has_detail = row.detail > 0.0 || other.detail > 0.0;
+        if row.shows == other.shows && row.side > 1 && row.side == other.side && !has_detail {
+            (self.metres, self.offset) = (above.metres, above.offset);
+            self.row.alike = above.row.alike;
+        } else {
+            self.row.pair = u32::MAX - 1 - self.row.pair;
+        }
+    }
+
     /// Chooses the level whose texels are about as large as a pixel is long, all in metres.
     fn sharpen(&mut self, period: f32, pixel: f32, width: f32) {
         let texels = (SHARPNESS * period / pixel.max(1e-9)).clamp(1.0, SIDE as f32);
@@ -280,22 +292,6 @@ impl RowLook {
             .into_iter()
             .find(|alike| columns >= WIDER * *alike as f32)
             .unwrap_or(1);
-    }
-}
-
-impl RowLook {
-    /// Shows the same clouds as the row above it, if both show some.
-    fn share_clouds(&mut self, above: &Self) {
-        if [self, above]
-            .iter()
-            .all(|look| look.row.shows == Shows::Sky && look.row.side > 1)
-        {
-            (self.metres, self.offset, self.density, self.tiles) =
-                (above.metres, above.offset, above.density, above.tiles);
-            (self.row.side, self.row.alike) = (above.row.side, above.row.alike);
-        } else {
-            self.row.pair = u32::MAX - 1 - self.row.pair;
-        }
     }
 }
 

@@ -72,9 +72,9 @@ impl Cast {
         ([x - away[0], y - away[1], 0.0], radius * self.spread + length)
     }
 
-    /// Whether a shadow is too flat to be seen: less than a pixel high.
+    /// Whether a shadow is too flat to be seen: less than two pixels high.
     fn is_too_flat(view: &View, depth: f32, radius: f32) -> bool {
-        depth > radius && 2.0 * radius * view.position[2].abs() * view.scale < 1.2 * depth * depth
+        depth > radius && 2.0 * radius * view.position[2].abs() * view.scale < 2.0 * depth * depth
     }
 
     /// The way from an object's frame to its shadow on the screen.

@@ -95,10 +95,11 @@ impl Tile {
     }
 }
 
-/// All levels of a pattern, the finest first; it is given by where in the tile, 0..1 along each side.
+/// All levels of a pattern, the finest first, column by column, as pictures are composed; it is given by where in the tile, 0..1
+/// along each side.
 fn levels(texel: impl Fn(f32, f32) -> [f32; 3]) -> Vec<Vec<[f32; 3]>> {
     let at = |k: usize| (k as f32 + 0.5) / SIDE as f32;
-    let finest = (0..SIDE * SIDE).map(|k| texel(at(k % SIDE), at(k / SIDE))).collect();
+    let finest = (0..SIDE * SIDE).map(|k| texel(at(k / SIDE), at(k % SIDE))).collect();
     let mut levels: Vec<Vec<[f32; 3]>> = vec![finest];
     let mut side = SIDE / 2;
     while side > 0 {
@@ -340,22 +341,15 @@ fn metal(x: f32, y: f32) -> [f32; 3] {
 mod tests {
     use super::*;
 
-    const ALL: [Surface; 9] = [
-        Surface::Stone,
-        Surface::Plaster,
-        Surface::Cobbles,
-        Surface::Noise,
-        Surface::Brick,
-        Surface::Plank,
-        Surface::Tile,
-        Surface::Stripes,
-        Surface::Checker,
-    ];
+    fn all() -> [Surface; 9] {
+        let names = r#"["stone", "plaster", "cobbles", "noise", "brick", "plank", "tile", "stripes", "checker"]"#;
+        serde_json::from_str(names).expect("they are surfaces")
+    }
 
     /// From afar a surface is its colour: at every level its mean is 1, and the coarsest level has no pattern.
     #[test]
     fn every_level_of_every_surface_is_on_the_whole_its_colour() {
-        for surface in ALL {
+        for surface in all() {
             let tile = tile(surface).expect("it is not plain");
             let mut side = 1;
             while side <= SIDE {
@@ -382,7 +376,7 @@ mod tests {
     fn grain_repeats_without_a_seam() {
         let tile = tile(Surface::Noise).expect("it is not plain");
         let side = 32;
-        let at = |x: usize, y: usize| i64::from(tile.texels[side * side + y * side + x] >> 8 & 255);
+        let at = |x: usize, y: usize| i64::from(tile.texels[side * side + x * side + y] >> 8 & 255);
         let inside = (0..side).map(|y| (at(15, y) - at(16, y)).abs()).sum::<i64>();
         let across = (0..side).map(|y| (at(side - 1, y) - at(0, y)).abs()).sum::<i64>();
         assert!(across < 2 * inside + 64, "{across} beside {inside}");

@@ -157,6 +157,14 @@ mod tests {
 
     const TABLE: [u32; 12] = [3, 1, 4, 1, 5, 9, 2, 6, 5, 3, 5, 8];
 
+    /// What is written to the first of many numbers, and to no more of them.
+    fn kept<T: Copy + PartialEq>(filler: T, count: usize, write: impl FnOnce(&mut [T])) -> Vec<T> {
+        let mut all = [filler; 3 * MOST_LANES + 1];
+        write(&mut all);
+        assert!(all[count..].iter().all(|kept| *kept == filler), "no more is written");
+        all[..count].to_vec()
+    }
+
     /// What every operation makes of these numbers, one vector after another: the same for all sets.
     fn all_operations<L: Lanes>(lanes: L, a: &[f32], b: &[f32], words: &[u32]) -> Vec<Vec<u32>> {
         let mut made: Vec<Vec<u32>> = Vec::new();
@@ -164,16 +172,11 @@ mod tests {
             let mut results = Vec::new();
             let (a, b) = (lanes.load(&a[first..]), lanes.load(&b[first..]));
             let word = lanes.load_words(&words[first..]);
-            let mut floats = |value: L::Float| {
-                let mut kept = [7.0; MOST_LANES];
-                lanes.store(value, &mut kept);
-                assert!(kept[L::N..].iter().all(|kept| *kept == 7.0), "no more is written");
-                results.push(kept[..L::N].iter().map(|value| value.to_bits()).collect::<Vec<u32>>());
-            };
             let (above, at_least) = (lanes.above(a, b), lanes.at_least(a, b));
             let small = lanes.min(lanes.max(a, lanes.splat(-1e6)), lanes.splat(1e6));
             let count = lanes.add(lanes.count_up(), lanes.splat(first as f32));
             let shared = |share: f32| lanes.truncate(lanes.mul_add(count, lanes.splat(share), lanes.splat(6.0)));
+            let of_bits = |floats: Vec<f32>| floats.into_iter().map(f32::to_bits).collect::<Vec<u32>>();
             for value in [
                 count,
                 lanes.add(a, b),
@@ -191,17 +194,9 @@ mod tests {
                 lanes.float(word),
                 lanes.power_of_two(lanes.max(a, lanes.splat(0.125))),
             ] {
-                floats(value);
+                results.push(of_bits(kept(7.0, L::N, |to| lanes.store(value, to))));
             }
-            let mut kept = [7.0; MOST_LANES];
-            lanes.store_where(above, a, &mut kept);
-            results.push(kept[..L::N].iter().map(|value| value.to_bits()).collect());
-            let mut words = |value: L::Word| {
-                let mut kept = [7; MOST_LANES];
-                lanes.store_words(value, &mut kept);
-                assert!(kept[L::N..].iter().all(|kept| *kept == 7), "no more is written");
-                results.push(kept[..L::N].to_vec());
-            };
+            results.push(of_bits(kept(7.0, L::N, |to| lanes.store_where(above, a, to))));
             for value in [
                 lanes.or(word, lanes.splat_word(0x0F0F_00FF)),
                 lanes.xor(word, lanes.truncate(small)),
@@ -224,25 +219,17 @@ mod tests {
                 lanes.three_times(lanes.and(word, lanes.splat_word(255))),
                 lanes.select_words(lanes.has_bit(word, 3), word, lanes.splat_word(1)),
             ] {
-                words(value);
+                results.push(kept(7, L::N, |to| lanes.store_words(value, to)));
             }
-            let mut kept = [7; MOST_LANES];
-            lanes.store_words_where(at_least, word, &mut kept);
-            results.push(kept[..L::N].to_vec());
+            results.push(kept(7, L::N, |to| lanes.store_words_where(at_least, word, to)));
             let bits = lanes.bits(above);
             results.push((0..L::N).map(|lane| bits >> lane & 1).collect());
-            let mut bytes = [7_u8; 3 * MOST_LANES];
-            lanes.store_rgb(word, &mut bytes);
-            assert!(bytes[3 * L::N..].iter().all(|kept| *kept == 7), "no more is written");
-            results.push(bytes[..3 * L::N].iter().map(|byte| u32::from(*byte)).collect());
-            let mut bytes = [7_u8; MOST_LANES];
-            lanes.store_bytes(word, &mut bytes);
-            assert!(bytes[L::N..].iter().all(|kept| *kept == 7), "no more is written");
-            results.push(bytes[..L::N].iter().map(|byte| u32::from(*byte)).collect());
-            let mut halves = [7_u16; MOST_LANES];
-            lanes.store_halves(lanes.and(word, lanes.splat_word(0xFFFF)), &mut halves);
-            assert!(halves[L::N..].iter().all(|kept| *kept == 7), "no more is written");
-            results.push(halves[..L::N].iter().map(|half| u32::from(*half)).collect());
+            let rgb = kept(7, 3 * L::N, |to| lanes.store_rgb(word, to));
+            let bytes = kept(7, L::N, |to| lanes.store_bytes(word, to));
+            results.extend([rgb, bytes].map(|bytes| bytes.into_iter().map(u32::from).collect()));
+            let low = lanes.and(word, lanes.splat_word(0xFFFF));
+            let halves = kept(7, L::N, |to| lanes.store_halves(low, to));
+            results.push(halves.into_iter().map(u32::from).collect());
             made.resize(results.len(), Vec::new());
             for (made, result) in made.iter_mut().zip(results) {
                 made.extend(result);
