@@ -165,11 +165,11 @@ fn looks_change_no_way_by_a_bit() {
             ..Maze::default()
         }),
     ] {
-        looks_change_no_way_in(layout);
+        looks_change_no_way_in(layout.as_ref());
     }
 }
 
-fn looks_change_no_way_in(maze: Option<Maze>) {
+fn looks_change_no_way_in(maze: Option<&Maze>) {
     let objects = || {
         let place = |k: u32| [f64::from(k * 37 % 19) - 9.0, f64::from(k * 53 % 17) + 1.5 - 8.0];
         let of = |(k, class): (u32, &str)| {
@@ -186,7 +186,7 @@ fn looks_change_no_way_in(maze: Option<Maze>) {
         (0..).zip(classes).map(of).collect::<Vec<Object>>()
     };
     let walk = |style: Style| {
-        let layout = maze.clone().map(|maze| Layout {
+        let layout = maze.cloned().map(|maze| Layout {
             maze: Some(maze),
             ..Layout::default()
         });
