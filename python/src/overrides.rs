@@ -1,6 +1,6 @@
 //! [`WorldOverrides`]: what an environment's options lay over each of its worlds. Where the worlds come from is in `supply.rs`.
 
-use driftworld_spec::{ActionModel, ActionSpace, AgentParams, Modality, SpecError, World, WorldDraft};
+use driftworld_spec::{ActionModel, ActionSpace, AgentParams, Modality, SpecError, StateFeature, World, WorldDraft};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
@@ -9,6 +9,8 @@ use serde_json::{Value, json};
 #[serde(default, deny_unknown_fields)]
 pub(crate) struct WorldOverrides {
     modalities: Option<Vec<Modality>>,
+    /// Whether observations have no state vector: what that would hold does not matter then.
+    stateless: bool,
     /// Height and width in pixels.
     size: Option<[u32; 2]>,
     actions: Option<ActionSpace>,
@@ -26,6 +28,9 @@ impl WorldOverrides {
         let agent = &mut world.agent_params;
         if let Some(modalities) = &self.modalities {
             agent.modalities.clone_from(modalities);
+        }
+        if self.stateless {
+            agent.state_features = StateFeature::CLASSIC.to_vec();
         }
         if let Some([height, width]) = self.size {
             agent.observation_size = height;

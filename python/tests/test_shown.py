@@ -9,7 +9,7 @@ from typing import Any
 import gymnasium
 import numpy as np
 import pytest
-from driftworld import Curriculum, DriftworldEnv, DriftworldVectorEnv, Transition
+from driftworld import Curriculum, DriftworldEnv, DriftworldVectorEnv, TaskSpec, Transition
 
 SIZE = 24
 ALL = ("rgb", "depth", "segmentation", "class", "instance")
@@ -180,3 +180,15 @@ def test_warnings_hold_what_is_odd_about_the_world_at_hand() -> None:
     ]
     del world["objects"]
     assert DriftworldEnv(world=world).warnings() == []
+
+
+def test_what_a_state_holds_does_not_matter_where_it_is_not_shown() -> None:
+    foraging = TaskSpec.load("foraging").variant("plenty")
+    envs = DriftworldVectorEnv("find_objects#red", 2, modalities="rgb", size=16)
+    envs.reset(seed=0)
+    seen, _ = envs.reset(seed=1, options={"variants": [foraging] * 2})
+    own, _ = DriftworldVectorEnv("foraging#plenty", 2, modalities="rgb", size=16).reset(seed=1)
+    np.testing.assert_array_equal(seen, own)
+    with pytest.raises(ValueError, match="found state_features"):
+        envs = DriftworldVectorEnv("find_objects#red", 2, modalities=["rgb", "state"], size=16)
+        envs.reset(options={"variants": [foraging] * 2})

@@ -137,6 +137,7 @@ class Options:
             )
         overrides = {
             "modalities": None if kinds is None or blank else images_among(kinds),
+            "stateless": None if kinds is None or "state" in kinds else True,
             "size": _size(options["size"]),
             "actions": _actions(options["actions"]),
             "normalizes": isinstance(options["actions"], str) and options["actions"] == "task",
