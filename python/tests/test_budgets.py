@@ -108,7 +108,7 @@ def test_a_budget_goes_on_after_a_kill(tmp_path: Path, num_envs: int) -> None:
     whole = rows(tmp_path / "whole")
     for place in range(1, len(whole["exp_num"]) - 1, 2):
         log, left = tmp_path / f"log{place}", iter(range(place))
-        watch = lambda *_, left=left: next(left, None) is not None  # noqa: E731
+        watch = lambda *_, left=left: next(left, None) is not None
         assert not curriculum.run_vector(Shared(), log, num_envs=num_envs, watch=watch, **SMALL).finished
         assert curriculum.run_vector(Shared(), log, num_envs=num_envs, **SMALL).finished
         assert rows(log) == whole

@@ -1,0 +1,125 @@
+"""The runner of benchmarks: cells once each, whoever runs them, to the same digests after kills; tables from the logs alone."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from driftworld.benchmark import Cell, Results, Sequence, run_cells
+from driftworld.benchmark import runner as running
+from driftworld.benchmark.command import main
+
+#: Seconds long: few decisions in the smoke sequence.
+TINY = {"decisions": 600, "evaluations": 2, "num_envs": 8}
+
+
+@pytest.fixture
+def tiny(tmp_path: Path) -> Path:
+    """A short sequence as a file."""
+    sequence = json.loads((Path(running.__file__).parent / "sequences/smoke.json").read_text(encoding="utf-8"))
+    del sequence["frozen"]
+    path = tmp_path / "tiny.json"
+    path.write_text(json.dumps({**sequence, **TINY, "tasks": ["t_maze#left", "t_maze#right", "t_maze#left"]}), encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize("name", Sequence.names())
+def test_a_sequence_is_what_it_was_frozen_as(name: str) -> None:
+    sequence = Sequence.load(name)
+    assert set(sequence.frozen) == set(sequence.tasks) == set(sequence.scale)
+    assert sequence.check() == []
+
+
+def test_a_sequence_that_changed_says_so(tiny: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    document = json.loads(tiny.read_text(encoding="utf-8"))
+    document["frozen"] = {"t_maze#left": {**Sequence.load("smoke").frozen["t_maze#left"], "frames": "0"}}
+    tiny.write_text(json.dumps(document), encoding="utf-8")
+    assert main(["check", str(tiny)]) == 1
+    assert "t_maze#left: found other frames than those" in capsys.readouterr().err
+
+
+def test_lifetimes_of_seeds_and_splits_share_no_world() -> None:
+    sequence = Sequence.load("smoke")
+    worlds = [
+        {(regime["seed"], regime["first_index"]) for block in lifetime.scenario["blocks"] for regime in block["regimes"]}
+        for lifetime in (sequence.curriculum(0), sequence.curriculum(1), sequence.curriculum(0, "validation"))
+    ]
+    evaluated = [
+        {regime["seed"] for block in lifetime.scenario["blocks"] if block["type"] == "evaluation" for regime in block["regimes"]}
+        for lifetime in (sequence.curriculum(0), sequence.curriculum(1), sequence.curriculum(0, "validation"))
+    ]
+    assert not worlds[0] & worlds[1] and not evaluated[0] & evaluated[2]
+
+
+def test_a_claim_is_one_process_s_and_anybody_s_when_it_is_left(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    claim = tmp_path / "claim"
+    with running._claim(claim) as first:
+        with running._claim(claim) as second:
+            assert (first, second) == (True, False)
+        assert claim.is_dir()
+    assert not claim.exists()
+    claim.mkdir()
+    os.utime(claim, (0, 0))
+    with running._claim(claim) as taken:
+        assert taken
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "words, expected",
+    [
+        (["run", "smoke"], "found no learner, expected --learner NAME or --all"),
+        (["run", "smok", "--learner", "ewc"], "found 'smok', expected a file or one of"),
+        (["run", "smoke", "--learner", "ewc", "--jobs", "0"], "--jobs: found 0, expected at least 1"),
+        (["run", "smoke", "--learner", "ewc", "--seed", "-1"], "expected --seed from 0, --seeds from 1"),
+        (["table", "nowhere", "--sequence", "smoke"], "nowhere: found no finished cell, expected LEARNER/SEED/report.json"),
+    ],
+)
+def test_what_is_wrong_is_said(words: list[str], expected: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(words) == 1
+    assert expected in capsys.readouterr().err
+
+
+@pytest.mark.learners
+def test_a_killed_run_ends_with_the_same_digests(tiny: Path, tmp_path: Path) -> None:
+    words = [sys.executable, "-m", "driftworld", "benchmark", "run", str(tiny), "--learner", "ewc", "--learner", "clear", "--jobs", "2"]
+    whole = tmp_path / "whole"
+    subprocess.run([*words, "-o", str(whole)], check=True, capture_output=True)
+    cells = [Cell(str(tiny), learner, 0) for learner in ("ewc", "clear")]
+    expected = [json.loads((cell.folder(whole) / "report.json").read_text(encoding="utf-8")) for cell in cells]
+    killed, random = tmp_path / "killed", np.random.default_rng(0)
+    for _ in range(4):
+        process = subprocess.Popen([*words, "-o", str(killed)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+        time.sleep(random.uniform(2.0, 7.0))
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+        for claim in killed.rglob("claim"):
+            # As when two minutes have passed.
+            os.utime(claim, (0, 0))
+    found = run_cells(cells, killed)
+    for report, before in zip(found, expected, strict=True):
+        assert report is not None
+        for name in ("digest", "weights", "decisions", "updates"):
+            assert report[name] == before[name], name
+    table = Results(Sequence.load(str(tiny)), killed / "tiny")
+    assert {row["learner"]: row["seeds"] for row in table.rows()} == {"ewc": 1, "clear": 1}
+    (run,) = table.runs["ewc"]
+    assert run.sampled.values.shape == run.greedy.values.shape == (4, 3)
+    assert [len(curve) > 0 for curve in run.sampled.curves] == [True] * 3 and "| `ewc` | 1 |" in table.markdown()
+
+
+@pytest.mark.learners
+def test_a_learner_of_one_s_own_is_one_file(tiny: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "my_learner"]) == 0
+    assert main(["run", str(tiny), "--learner", "my_learner.py:MyLearner", "--set", "strength=0.1", "-o", "results"]) == 0
+    report = json.loads(Path("results/tiny/mylearner-strength=0.1/0/report.json").read_text(encoding="utf-8"))
+    assert report["learner"] == "my_learner" and report["method_bytes"] > 0
+    assert main(["new", "my_learner"]) == 1
