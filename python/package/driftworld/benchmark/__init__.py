@@ -7,9 +7,11 @@
 A cell is one learner with one seed in one sequence. Learning needs torch; tables do not.
 """
 
-from driftworld.benchmark.measures import Matrix, cora, gem, interquartile_mean, interval
+from driftworld.benchmark.measures import Matrix, cora, gem, interquartile_mean, interval, regret
 from driftworld.benchmark.runner import Cell, run_cells
 from driftworld.benchmark.sequence import Sequence
 from driftworld.benchmark.table import Results
 
-__all__ = ["Cell", "Matrix", "Results", "Sequence", "cora", "gem", "interquartile_mean", "interval", "run_cells"]
+__all__ = [
+    "Cell", "Matrix", "Results", "Sequence", "cora", "gem", "interquartile_mean", "interval", "regret", "run_cells",
+]  # fmt: skip

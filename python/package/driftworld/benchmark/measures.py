@@ -1,7 +1,8 @@
-"""What papers report of a lifetime, from its matrix of evaluations, each as its own source defines it. Only NumPy.
+"""The measures that papers report of a lifetime, each as its source defines it. Needs only NumPy.
 
-The matrix of a lifetime of ``T`` tasks has a row for each time of evaluation, the first before anything was learned, and a column
-for each task, in the order in which they are learned: ``values[k, i]`` is task ``i`` after ``k`` tasks.
+The matrix of a lifetime of ``T`` tasks has a row for each block of evaluation, the first before any learning, and a
+column for each task, in the order of learning: ``values[k, i]`` is task ``i`` after ``k`` tasks. The papers evaluate
+many times while a task is learned and take the mean of the last few. A row is one block of evaluation instead.
 """
 
 from __future__ import annotations
@@ -18,15 +19,27 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Matrix:
-    """Evaluations of one lifetime, and Continual World's measures of them (Wołczyk et al. 2021, arXiv:2105.10919; COOM has the same).
+    """Evaluations of one lifetime, and Continual World's measures of them (Wołczyk et al. 2021, arXiv:2105.10919).
+
+    Continual World evaluates every 20,000 steps; its rows are means of five evaluations, its curves evaluations of the
+    current task. The curves here are the learning episodes.
 
     Attributes:
         values: ``(T + 1, T)``; 0 and 1 are the ends of the scale.
         curves: For each task what its learning episodes earned on the same scale, in the order in which they ended.
+        steps: For each task the lengths of these episodes; empty if all have the same length.
     """
 
     values: Floats
     curves: tuple[Floats, ...] = ()
+    steps: tuple[Floats, ...] = ()
+
+    @classmethod
+    def pooled(cls, lifetimes: SequenceOf[Matrix]) -> Matrix:
+        """The mean of several seeds. Continual World and COOM divide only after averaging: theirs are its measures."""
+        values = np.mean([each.values for each in lifetimes], axis=0)
+        areas = np.mean([each.areas() for each in lifetimes], axis=0)
+        return cls(values, tuple(areas[:, None]))
 
     def performance(self) -> float:
         """Mean of all tasks at the end."""
@@ -37,29 +50,46 @@ class Matrix:
         return np.diagonal(self.values, offset=-1).copy()
 
     def forgetting(self) -> float:
-        """Mean over the tasks of what was lost from right after learning to the end."""
+        """Mean over all tasks, the last included, of what was lost from right after learning to the end."""
         return float((self.learned() - self.values[-1]).mean())
 
     def forward_transfer(self, alone: Matrix) -> float:
-        """Mean over the tasks of (AUC − AUC alone) / (1 − AUC alone), AUC the mean of the curve while the task is learned.
+        """Mean over the tasks of (AUC − AUC alone) / (1 − AUC alone); meaningless once an AUC alone reaches 1.
 
         Args:
-            alone: The same tasks, each learned from scratch.
+            alone: The same tasks, each learned from scratch for as many steps.
         """
         here, there = self.areas(), alone.areas()
         return float(((here - there) / (1.0 - there)).mean())
 
     def areas(self) -> Floats:
-        """The mean of each task's curve."""
-        return np.array([curve.mean() for curve in self.curves])
+        """The AUC of each task: the mean of its curve over steps, so that long episodes weigh more."""
+        steps = self.steps or (None,) * len(self.curves)
+        return np.array([np.average(curve, weights=each) for curve, each in zip(self.curves, steps, strict=True)])
 
     def backward(self) -> float:
         """Mean over all tasks but the last of what later tasks did to them; below 0 is forgetting."""
-        return float((self.values[-1] - self.learned())[:-1].mean())
+        return _mean(list((self.values[-1] - self.learned())[:-1]))
+
+    def coom(self, alone: Matrix) -> dict[str, float]:
+        """``performance``, ``forgetting`` and ``transfer`` as COOM computes them (Tomilin et al. 2023).
+
+        Performance is the mean of every task in every row since it was learned (COOM: in all evaluations since its
+        learning began, without exact zeros). Forgetting omits the last task; transfer averages AUCs, then divides.
+        """
+        rows, here, there = self.values[1:], self.areas().mean(), alone.areas().mean()
+        return {
+            "performance": float(rows[np.tril_indices(len(rows))].mean()),
+            "forgetting": -self.backward(),
+            "transfer": float((here - there) / (1.0 - there)),
+        }
 
 
 def gem(values: ArrayLike) -> dict[str, float]:
-    """``ACC``, ``BWT`` and ``FWT`` of Lopez-Paz and Ranzato 2017 (arXiv:1706.08840), of a matrix as above: the first row is what a random start does."""
+    """``ACC``, ``BWT`` and ``FWT`` of Lopez-Paz and Ranzato 2017 (arXiv:1706.08840), from a matrix as above.
+
+    ``BWT`` and ``FWT`` are means over ``T - 1`` tasks, as in the paper. The authors' program divides by ``T``.
+    """
     matrix = np.asarray(values, dtype=float)
     start, result = matrix[0], matrix[1:]
     tasks = len(result)
@@ -69,41 +99,51 @@ def gem(values: ArrayLike) -> dict[str, float]:
 
 
 def cora(values: ArrayLike) -> dict[str, Floats]:
-    """Isolated forgetting and zero-shot transfer of CORA (Powers et al. 2022, arXiv:2110.10067), of a matrix as above.
+    """Isolated forgetting and zero-shot transfer of CORA (Powers et al. 2022, arXiv:2110.10067).
 
-    Both are what task ``j``, learned in between, changes of task ``i``, over the largest size of an evaluation of ``i``. Forgetting is counted for
-    tasks learned before ``j``, transfer for tasks learned after ``j``; elsewhere there is NaN.
+    Both are the change of task ``i`` while task ``j`` is learned, over the largest absolute evaluation of ``i`` in any
+    seed (CORA: in its whole smoothed curve, and undefined if that is 0). Forgetting counts where ``j`` comes after
+    ``i``, transfer where it comes before; elsewhere there is NaN. Entries are means over seeds. CORA prints ten times
+    the entries; the averages beside its tables are means of rows, of columns and of all entries, without NaN.
+
+    Args:
+        values: A matrix as above, or one for each seed: ``(seeds, T + 1, T)``.
 
     Returns:
         ``forgetting`` and ``transfer``, each ``(T, T)``: row ``i``, column ``j``.
     """
     matrix = np.asarray(values, dtype=float)
-    tasks = matrix.shape[1]
-    size = np.abs(matrix).max(axis=0)
-    gained = np.diff(matrix, axis=0).T / np.where(size > 0, size, 1.0)[:, None]
+    tasks = matrix.shape[-1]
+    lifetimes = matrix.reshape(-1, tasks + 1, tasks)
+    size = np.abs(lifetimes).max(axis=(0, 1))
+    gained = np.diff(lifetimes.mean(axis=0), axis=0).T / np.where(size > 0, size, 1.0)[:, None]
     i, j = np.indices((tasks, tasks))
     return {"forgetting": np.where(i < j, -gained, np.nan), "transfer": np.where(i > j, gained, np.nan)}
 
 
 def regret(rewards: SequenceOf[ArrayLike], ceilings: SequenceOf[float]) -> float:
-    """Mean over all learning episodes of what the ceiling of their task would have earned more."""
+    """Mean over all learning episodes of ceiling minus reward: bsuite's total regret per episode (arXiv:1908.03568)."""
     missed = [ceiling - np.asarray(earned, dtype=float) for earned, ceiling in zip(rewards, ceilings, strict=True)]
     return float(np.concatenate(missed).mean())
 
 
 def interquartile_mean(values: ArrayLike) -> float:
-    """The mean without the lowest and the highest quarter, as SciPy's ``trim_mean(values, 0.25)``."""
+    """The mean without the lowest and the highest quarter of all values: rliable's IQM (arXiv:2108.13264)."""
     ordered = np.sort(np.asarray(values, dtype=float), axis=None)
     cut = int(0.25 * len(ordered))
     return float(ordered[cut : len(ordered) - cut].mean())
 
 
 def interval(values: ArrayLike, draws: int = 10_000, seed: int = 0) -> tuple[float, float]:
-    """Where 95 % of the interquartile means lie of as many values, drawn again from these."""
+    """The 95 % interval of the interquartile mean, by rliable's stratified percentile bootstrap.
+
+    Of ``(seeds, tasks)``, seeds are drawn for each task separately. rliable takes 50,000 draws from another generator.
+    """
     found = np.asarray(values, dtype=float)
-    again = np.random.default_rng(seed).choice(found, (draws, len(found)))
-    cut = int(0.25 * len(found))
-    means = np.sort(again, axis=1)[:, cut : len(found) - cut].mean(axis=1)
+    drawn = np.random.default_rng(seed).integers(len(found), size=(draws, *found.shape))
+    again = np.take_along_axis(found[None], drawn, axis=1).reshape(draws, -1)
+    cut = int(0.25 * found.size)
+    means = np.sort(again, axis=1)[:, cut : found.size - cut].mean(axis=1)
     low, high = np.quantile(means, [0.025, 0.975])
     return float(low), float(high)
 

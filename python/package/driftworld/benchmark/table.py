@@ -46,29 +46,30 @@ class Run:
         with tempfile.TemporaryDirectory() as place:
             with tarfile.open(folder / "logs.tar.xz") as tar:
                 tar.extractall(place, filter="data")
-            evaluated, rewards = _of_log(Path(place) / "sampled", sequence)
+            evaluated, rewards, steps = _of_log(Path(place) / "sampled", sequence)
             greedy = [_of_log(log, sequence)[0][0] for log in sorted(Path(place).glob("greedy-*"))]
         curves = tuple(sequence.scaled(task, earned) for task, earned in zip(sequence.tasks, rewards, strict=True))
         return cls(
-            folder=folder, report=report, sampled=Matrix(np.array(evaluated), curves),
-            greedy=Matrix(np.array([evaluated[0], *greedy]), curves), rewards=tuple(rewards),
+            folder=folder, report=report, sampled=Matrix(np.array(evaluated), curves, tuple(steps)),
+            greedy=Matrix(np.array([evaluated[0], *greedy]), curves, tuple(steps)), rewards=tuple(rewards),
         )  # fmt: skip
 
 
-def _of_log(log: Path, sequence: Sequence) -> tuple[list[Floats], list[Floats]]:
-    """A row of the matrix for each block of evaluation, and the rewards of each block of learning."""
+def _of_log(log: Path, sequence: Sequence) -> tuple[list[Floats], list[Floats], list[Floats]]:
+    """A row of the matrix for each block of evaluation; rewards and lengths of episodes for each block of learning."""
     columns = read_log(log).columns
     blocks, rewards = columns["block_num"], columns["reward"].astype(float)
     names = [task.replace("_", "").replace("#", "_") for task in sequence.tasks]
-    evaluated, learned = [], []
+    evaluated, learned, steps = [], [], []
     for block in np.unique(blocks):
         here = blocks == block
         if columns["block_type"][here][0] == "train":
             learned.append(rewards[here])
+            steps.append(columns["episode_step_count"][here].astype(float))
             continue
         means = [rewards[here & (columns["task_name"] == name)].mean() for name in names]
         evaluated.append(np.array([sequence.scaled(task, mean) for task, mean in zip(sequence.tasks, means, strict=True)]))
-    return evaluated, learned
+    return evaluated, learned, steps
 
 
 @dataclass(frozen=True)
@@ -170,7 +171,7 @@ interquartile mean over seeds, with the 95 % interval of the bootstrap in bracke
 - *just learned*: each task right after it. *tasks learned*: the share of tasks that came to {share:.0%} there.
 - *forgetting*: just learned minus the end. *backward transfer*: the same with the other sign, without the last task.
 - *forward transfer*: how much more was earned while learning than by `from_scratch` in the same worlds, as a share of what
-  was left to gain (Continual World's measure).
+  was left to gain (Continual World's measure, from learning episodes weighted by their length, one number a seed).
 - *processor s*: of acting while learning and of learning, on one core. *MB*: all that the learner keeps."""
 
 _FOOT = """What it does not show: one sequence in one order, one network, one budget. Seeds vary worlds and learners together. Strengths

@@ -1,0 +1,128 @@
+"""The measures of a benchmark against the formulae of their references (scripts/golden_measures.py), and their laws."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from driftworld.benchmark import Matrix, cora, gem, interquartile_mean, interval, regret
+
+GOLDEN = json.loads((Path(__file__).parent / "golden_measures.json").read_text(encoding="utf-8"))
+EACH_CASE = pytest.mark.parametrize("case", GOLDEN["cases"], ids=range(len(GOLDEN["cases"])))
+
+
+def matrices(case: dict[str, Any], curves: str) -> list[Matrix]:
+    """A lifetime for each seed."""
+    steps = tuple(np.array(each, dtype=float) for each in case["steps"] or ())
+    return [
+        Matrix(np.array(values), tuple(np.array(curve) for curve in seed), steps)
+        for values, seed in zip(case["values"], case[curves], strict=True)
+    ]
+
+
+def near(expected: Any) -> Any:
+    """Within 1e-9."""
+    return pytest.approx(expected, rel=0, abs=1e-9)
+
+
+@EACH_CASE
+def test_pooled_seeds_give_the_numbers_of_continual_world_and_coom(case: dict[str, Any]) -> None:
+    lived, alone = Matrix.pooled(matrices(case, "curves")), Matrix.pooled(matrices(case, "alone"))
+    golden = case["golden"]["continual_world"]
+    assert lived.performance() == near(golden["performance"])
+    assert lived.forgetting() == near(golden["forgetting"])
+    assert lived.forward_transfer(alone) == near(golden["transfer"])
+    assert lived.coom(alone) == near(case["golden"]["coom"])
+
+
+@EACH_CASE
+def test_gem_divides_as_the_paper_and_not_as_its_program(case: dict[str, Any]) -> None:
+    for lived, golden in zip(matrices(case, "curves"), case["golden"]["gem"], strict=True):
+        found, tasks = gem(lived.values), lived.values.shape[1]
+        assert found == near({name: golden[name] for name in ("ACC", "BWT", "FWT")})
+        assert found["BWT"] * (tasks - 1) / tasks == near(golden["program_BWT"])
+        assert found["FWT"] * (tasks - 1) / tasks == near(golden["program_FWT"])
+        assert found["ACC"] == near(lived.performance())
+        assert found["BWT"] == near(lived.backward())
+
+
+@EACH_CASE
+def test_cora_gives_the_entries_and_averages_of_its_tables(case: dict[str, Any]) -> None:
+    found = cora(case["values"])
+    for name, table in found.items():
+        expected = np.array(case["golden"]["cora"][name], dtype=float)
+        np.testing.assert_allclose(table, expected, rtol=0, atol=1e-9, equal_nan=True)
+        assert np.nanmean(table) == near(case["golden"]["cora"][f"{name}_mean"])
+
+
+@EACH_CASE
+def test_regret_is_bsuites(case: dict[str, Any]) -> None:
+    assert regret(case["curves"][0], case["ceilings"]) == near(case["golden"]["regret"])
+
+
+@EACH_CASE
+def test_interquartile_mean_and_interval_are_rliables(case: dict[str, Any]) -> None:
+    ends = np.array(case["values"])[:, -1]
+    assert interquartile_mean(ends) == near(case["golden"]["iqm"])
+    assert interval(ends, GOLDEN["draws"]) == near(tuple(case["golden"]["interval"]))
+
+
+def test_interval_of_a_list_is_that_of_one_column() -> None:
+    values = np.random.default_rng(0).random(9)
+    assert interval(values) == interval(values[:, None])
+
+
+def test_a_lifetime_that_never_changes_has_no_forgetting_and_no_transfer() -> None:
+    still = Matrix(np.tile([0.1, 0.5, 0.9], (4, 1)), tuple(np.full(5, value) for value in (0.1, 0.5, 0.9)))
+    assert still.forgetting() == still.backward() == 0
+    assert still.coom(still)["forgetting"] == 0
+    assert gem(still.values) == near({"ACC": 0.5, "BWT": 0.0, "FWT": 0.0})
+    assert all(np.nanmax(np.abs(table)) == 0 for table in cora(still.values).values())
+
+
+@EACH_CASE
+def test_from_scratch_against_itself_has_no_forward_transfer(case: dict[str, Any]) -> None:
+    for alone in matrices(case, "alone"):
+        assert alone.forward_transfer(alone) == alone.coom(alone)["transfer"] == 0
+
+
+@EACH_CASE
+def test_permuted_seeds_change_nothing(case: dict[str, Any]) -> None:
+    lived, alone, values = matrices(case, "curves"), Matrix.pooled(matrices(case, "alone")), np.array(case["values"])
+    pooled, permuted = Matrix.pooled(lived), Matrix.pooled(lived[::-1])
+    assert permuted.forward_transfer(alone) == near(pooled.forward_transfer(alone))
+    assert permuted.coom(alone) == near(pooled.coom(alone))
+    for name, table in cora(values[::-1]).items():
+        np.testing.assert_allclose(table, cora(values)[name], rtol=0, atol=1e-9, equal_nan=True)
+    assert interquartile_mean(values[::-1, -1]) == near(interquartile_mean(values[:, -1]))
+
+
+@EACH_CASE
+def test_a_longer_scale_scales_all_but_cora(case: dict[str, Any]) -> None:
+    values, ends = np.array(case["values"]), np.array(case["values"])[:, -1]
+    once, thrice = Matrix(values[0]), Matrix(3 * values[0])
+    assert thrice.performance() == near(3 * once.performance())
+    assert thrice.forgetting() == near(3 * once.forgetting())
+    assert gem(thrice.values) == near({name: 3 * value for name, value in gem(once.values).items()})
+    assert interquartile_mean(3 * ends) == near(3 * interquartile_mean(ends))
+    assert interval(3 * ends, 100) == near(tuple(3 * end for end in interval(ends, 100)))
+    for name, table in cora(3 * values).items():
+        np.testing.assert_allclose(table, cora(values)[name], rtol=0, atol=1e-9, equal_nan=True)
+
+
+def test_long_episodes_weigh_more_in_the_area_of_a_curve() -> None:
+    curve, values = np.array([0.0, 1.0]), np.zeros((2, 1))
+    assert Matrix(values, (curve,)).areas().tolist() == [0.5]
+    assert Matrix(values, (curve,), (np.array([1.0, 3.0]),)).areas().tolist() == [0.75]
+
+
+def test_backward_transfer_of_a_single_task_is_undefined() -> None:
+    assert np.isnan(Matrix(np.zeros((2, 1))).backward())
+
+
+def test_a_task_that_was_never_rewarded_counts_zero_in_cora() -> None:
+    tables = cora(np.zeros((3, 2)))
+    assert (tables["forgetting"][0, 1], tables["transfer"][1, 0]) == (0, 0)
