@@ -125,7 +125,9 @@ mod tests {
     fn from_base(change: impl FnOnce(&mut WorldDraft)) -> Found {
         let (base, other) = (world(|_| ()), world(change));
         let found = between(&base, &other);
-        assert_eq!(found, between(&other, &base), "it makes no difference who comes first");
+        if crate::tier::quick_or_full(false, true) {
+            assert_eq!(found, between(&other, &base), "it makes no difference who comes first");
+        }
         found
     }
 

@@ -91,7 +91,7 @@ fn blue_red_green_is_solved_in_every_variant() {
 
 #[test]
 fn each_built_in_task_claims_no_less_than_its_variants_change() {
-    for (task, _) in tasks::BUILT_IN {
+    for (task, _) in tasks::BUILT_IN.into_iter().step_by(quick_or_full(2, 1)) {
         let request = ElementsRequest {
             worlds: quick_or_full(1, 4),
             ..ElementsRequest::of(task)

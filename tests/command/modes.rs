@@ -114,7 +114,9 @@ fn new_files_are_as_the_umask_has_them_and_a_file_that_is_written_over_keeps_its
                 mode(path)
             );
         }
-        write_over(folder.path(), &found);
+        if quick_or_full(false, true) {
+            write_over(folder.path(), &found);
+        }
     }
 }
 

@@ -95,7 +95,7 @@ fn pills(part: &str) -> Vec<String> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 16, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(5, 16), ..ProptestConfig::default() })]
 
     #[test]
     fn table_json_and_page_say_the_same_of_a_lifetime(drawn in drawn(), luck in 0..1000_u32) {

@@ -21,7 +21,12 @@ impl Workspace {
     /// `cargo` with these arguments, in the root.
     pub(crate) fn cargo(&self, arguments: &[&str]) -> Command {
         let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-        self.program(cargo.as_ref(), arguments)
+        let mut command = self.program(cargo.as_ref(), arguments);
+        // A stage builds once: files for building again would only cost time and disk.
+        if env::var_os("CARGO_INCREMENTAL").is_none() {
+            command.env("CARGO_INCREMENTAL", "0");
+        }
+        command
     }
 
     /// `cargo` over all crates with one set of features, so that no stage builds what another has built. Without `--all`, but

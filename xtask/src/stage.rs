@@ -129,7 +129,13 @@ fn fmt(workspace: &Workspace) -> Result<Outcome> {
 }
 
 fn clippy(workspace: &Workspace) -> Result<Outcome> {
-    let mut command = workspace.cargo_everywhere(&["clippy", "--all-targets"]);
+    // Benches bring crates of their own.
+    let targets: &[&str] = if workspace.is_full {
+        &["clippy", "--all-targets"]
+    } else {
+        &["clippy", "--lib", "--bins", "--tests", "--examples"]
+    };
+    let mut command = workspace.cargo_everywhere(targets);
     command.args(["--", "-D", "warnings"]);
     passed(command)
 }
