@@ -245,6 +245,36 @@ proptest! {
     }
 }
 
+/// Seen from above, the edge of a wall leans over ground that the wall does not meet: that stays as bright as without the wall.
+#[test]
+fn ground_under_the_leaning_edge_of_a_wall_is_not_dark() {
+    let mut world = ground(Surface::Plain);
+    world.environment_params.looks.shadows = Some(false);
+    let camera = Camera {
+        pitch_deg: -50.0,
+        ..Camera::first_person([0.0; 2], 0.0, 5.0, 90.0)
+    };
+    let empty = draw(&world, &camera, [672; 2]);
+    let polygon = vec![[-9.0, 4.0], [4.0, 4.0], [4.0, 6.0], [-9.0, 6.0]];
+    world.environment_params.walls = vec![Wall {
+        polygon,
+        height: Some(3.0),
+        color: None,
+    }];
+    let walled = draw(&world, &camera, [672; 2]);
+    let darker =
+        |pixel: &usize| walled.depth[*pixel] == empty.depth[*pixel] && walled.rgb[3 * pixel] < empty.rgb[3 * pixel];
+    let count = |columns: std::ops::Range<usize>| {
+        (0..672 * 672)
+            .filter(|k| columns.contains(&(k % 672)))
+            .filter(darker)
+            .count()
+    };
+    // The wall's corner stands in column 546.
+    assert_eq!(count(550..672), 0);
+    assert!(count(500..540) > 400);
+}
+
 /// Doors, keys, cubes and switches show a pattern, however many there are, and nothing but it: depth, categories and objects are
 /// those of the plain style.
 #[test]

@@ -384,7 +384,11 @@ impl Composition<'_> {
             return seen.word;
         }
         if !is_ceiling {
-            columns.foot = l.select(l.both(standing, meets), seen.metres, foot);
+            // Only the last pixels of a wall are its foot: seen from above, its edges lean over ground that it does not meet.
+            let is_map = l.equal(l.and(seen.word, l.splat_word(NO_MAP)), l.splat_word(0));
+            let is_above = l.above(l.mul(away, seen.inverse), l.splat(row.foot));
+            let met = l.select(l.both(is_map, is_above), foot, seen.metres);
+            columns.foot = l.select(l.both(standing, meets), met, foot);
         }
         let dark = l.mul(l.mul(near, near), l.mul(fades, l.splat(128.0 * most * reach)));
         let left = l.truncate(l.sub(l.splat(128.0 + ROUNDING), dark));

@@ -36,6 +36,9 @@ pub(super) const CONTACT: [f32; 2] = [0.5, 0.35];
 /// The fewest pixels over which it fades, so that it does not flicker; it is fainter then.
 pub(super) const CONTACT_PIXELS: f32 = 1.5;
 
+/// In so many of its last pixels a wall counts as meeting the ground.
+const FOOT_PIXELS: f32 = 3.0;
+
 /// How high fog reaches above the eye, in metres.
 const FOG_HEIGHT: f32 = 30.0;
 
@@ -82,6 +85,8 @@ pub(super) struct Row {
     pub(super) plane: [f32; 2],
     /// 1 / the metres over which the dark fades where something meets the plane.
     pub(super) fades: f32,
+    /// Up to which height above the plane a wall's pixel may be its last, for each metre of depth.
+    pub(super) foot: f32,
 }
 
 /// What a row shows.
@@ -249,6 +254,7 @@ impl Plane {
                 shows,
                 plane: [self.below, self.rise.abs()],
                 fades: 1.0 / CONTACT[1].max(CONTACT_PIXELS * length),
+                foot: FOOT_PIXELS * key.step / (key.up - offset * key.forward).max(0.05),
                 ..Row::default()
             },
         };
