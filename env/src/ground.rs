@@ -15,19 +15,24 @@ const LIFT: f32 = 1e-4;
 /// How much higher each patch lies than the one before it, as a share of the lift; up to so many patches.
 const STEP: (f32, usize) = (0.1, 100);
 
-/// How far the ground around an arena reaches and how high it lies, in metres.
-const AROUND: [f32; 2] = [3000.0, 0.01];
+/// How far the ground around an arena reaches in metres: in two bands, as corners so far away are not exact near by.
+const AROUND: [f32; 3] = [0.0, 500.0, 50_000.0];
+
+/// How high it lies in metres.
+const HEIGHT_AROUND: f32 = 0.01;
 
 /// The ground around an arena of this size: flat and pale beside the arena's own.
 pub(crate) fn around(size: [f32; 2], color: [f32; 3]) -> PanelGroup {
-    let [reach, height] = AROUND;
     let ring = |more: f32| {
         let [x, y] = size.map(|side| side / 2.0 + more);
-        [[-x, -y, height], [x, -y, height], [x, y, height], [-x, y, height]]
+        [[-x, -y], [x, -y], [x, y], [-x, y]].map(|[x, y]| [x, y, HEIGHT_AROUND])
     };
-    let quads = (0..4).map(|k| [k, (k + 1) % 4, 4 + (k + 1) % 4, 4 + k]);
+    let quads = [0, 4].into_iter().flat_map(|inner| {
+        let outer = inner + 4;
+        (0..4).map(move |k| [outer + k, outer + (k + 1) % 4, inner + (k + 1) % 4, inner + k])
+    });
     let mesh = Mesh {
-        corners: [ring(reach), ring(0.0)].concat(),
+        corners: AROUND.map(ring).concat(),
         triangles: quads.flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect(),
     };
     PanelGroup::of(mesh, color.map(|channel| 0.5 + 0.15 * channel))
