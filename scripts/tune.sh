@@ -11,8 +11,8 @@ one() { # LEARNER NAME=VALUE…
 results=$1
 one finetuning entropy=0.01 entropy=0.03 entropy=0.06
 one ewc strength=0.1 strength=1 strength=10 strength=100
+one clear policy_cloning=0.03 policy_cloning=0.1 policy_cloning=0.3
 one l2 strength=0.01 strength=0.1 strength=1
-one clear policy_cloning=0.03 policy_cloning=0.1 policy_cloning=0.3 policy_cloning=1
 one packnet retraining=0.15 retraining=0.25 retraining=0.4
-one shrink_and_perturb shrink=0.4 shrink=0.6 shrink=0.8
-one online_ewc strength=0.1 strength=1 strength=10 strength=100
+one shrink_and_perturb shrink=0.6 shrink=0.8
+one online_ewc strength=1 strength=10 strength=100

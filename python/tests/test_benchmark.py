@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -101,7 +102,7 @@ def test_a_killed_run_ends_with_the_same_digests(tiny: Path, tmp_path: Path) -> 
         os.killpg(process.pid, signal.SIGKILL)
         process.wait()
         for claim in killed.rglob("claim"):
-            # As when two minutes have passed.
+            # As when a minute has passed.
             os.utime(claim, (0, 0))
     found = run_cells(cells, killed)
     for report, before in zip(found, expected, strict=True):
@@ -123,3 +124,32 @@ def test_a_learner_of_one_s_own_is_one_file(tiny: Path, tmp_path: Path, monkeypa
     report = json.loads(Path("results/tiny/mylearner-strength=0.1/0/report.json").read_text(encoding="utf-8"))
     assert report["learner"] == "my_learner" and report["method_bytes"] > 0
     assert main(["new", "my_learner"]) == 1
+
+
+@pytest.mark.learners
+def test_the_smoke_sequence_is_learned_and_forgotten(tmp_path: Path) -> None:
+    (report,) = run_cells([Cell("smoke", "finetuning", 0)], tmp_path)
+    assert report is not None and report["decisions"] >= 4 * 33_000
+    (run,) = Results(Sequence.load("smoke"), tmp_path / "smoke").runs["finetuning"]
+    assert run.sampled.learned().mean() > 0.6, run.sampled.values
+    assert run.sampled.forgetting() > 0.3, run.sampled.values
+
+
+@pytest.mark.learners
+def test_a_node_of_ray_that_dies_changes_no_digest(tiny: Path, tmp_path: Path) -> None:
+    cluster_utils = pytest.importorskip("ray.cluster_utils")
+    ray = pytest.importorskip("ray")
+    cells = [Cell(str(tiny), learner, seed) for learner in ("finetuning", "ewc") for seed in (0, 1)]
+    alone = run_cells(cells, tmp_path / "alone")
+    cluster = cluster_utils.Cluster(initialize_head=True, head_node_args={"num_cpus": 0})
+    try:
+        nodes = [cluster.add_node(num_cpus=1) for _ in range(3)]
+        killer = threading.Timer(12.0, lambda: cluster.remove_node(nodes[0], allow_graceful=False))
+        killer.start()
+        found = run_cells(cells, tmp_path / "shared", ray=cluster.address)
+        killer.join()
+    finally:
+        ray.shutdown()
+        cluster.shutdown()
+    digests = [[report and report["digest"] for report in reports] for reports in (alone, found)]
+    assert digests[0] == digests[1] and None not in digests[0]

@@ -36,7 +36,7 @@ from driftworld.curricula import Curriculum
 from driftworld.logs import read_log
 
 #: Seconds between two touches of a claim, and after which a claim that was not touched is anybody's.
-TOUCH, STALE = 10.0, 120.0
+TOUCH, STALE = 5.0, 60.0
 
 
 @dataclass(frozen=True)
