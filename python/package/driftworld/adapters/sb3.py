@@ -5,6 +5,8 @@
 
     PPO("CnnPolicy", make_vec_env("driftworld/FindObjects-v0", num_envs=16, seed=0, modalities="rgb", actions="discrete")).learn(100_000)
 
+``Agent`` is the other way round: a model of Stable-Baselines3 that runs through a curriculum of ours.
+
 Observations are copies, for Stable-Baselines3 keeps the last one while the next is made. Without this adapter,
 ``DummyVecEnv`` works as well, one environment at a time.
 """
@@ -28,7 +30,9 @@ except ImportError as error:
         'driftworld.adapters.sb3: found no stable_baselines3, expected version 2.4 or later; pip install "./python[sb3]"'
     ) from error
 
-__all__ = ["DriftworldVecEnv", "make_vec_env"]
+from driftworld.adapters.sb3_agent import Agent
+
+__all__ = ["Agent", "DriftworldVecEnv", "make_vec_env"]
 
 
 def make_vec_env(

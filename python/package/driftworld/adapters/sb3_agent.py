@@ -1,0 +1,356 @@
+"""``Agent``: a model of Stable-Baselines3 that runs through a curriculum. It is imported from ``driftworld.adapters.sb3``.
+
+    options = {"modalities": "rgb", "size": 36, "actions": "discrete"}
+    model = DQN("CnnPolicy", curriculum.environment(**options))
+    curriculum.run(Agent(model, total_timesteps=100_000), "logs/dqn", **options)
+
+The environment of the model only says which spaces and how many environments there are; the curriculum makes its own.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
+from stable_baselines3.common.on_policy_algorithm import OnPolicyAlgorithm
+from stable_baselines3.common.preprocessing import maybe_transpose
+from stable_baselines3.common.save_util import load_from_pkl, save_to_pkl
+from stable_baselines3.common.utils import obs_as_tensor, should_collect_more_steps
+from stable_baselines3.common.vec_env import VecEnvWrapper, VecMonitor, VecTransposeImage
+
+from driftworld.lifetimes import Transition
+
+#: What a model keeps when another one is loaded into it.
+_KEPT = ("env", "_vec_normalize_env", "_logger", "_custom_logger")
+#: What falls with the share of ``total_timesteps`` that is left, in those models that have it.
+_SCHEDULES = ("lr_schedule", "clip_range", "clip_range_vf", "exploration_schedule")
+
+
+class Agent:
+    """A model that collects rollouts as Stable-Baselines3's ``OnPolicyAlgorithm`` or ``OffPolicyAlgorithm`` does: PPO, A2C, DQN, SAC, TD3.
+
+    It updates when ``model.learn`` would, and to the same weights from the same experience. Evaluations draw from the seeds of
+    their experiences, and leave the model and the global random generators as they were. In :meth:`driftworld.Curriculum.run_vector`
+    all environments of an evaluation share one draw, so an action also depends on the experiences that run beside it.
+
+    Near the end of a block some environments have no experience. PPO's updates leave their steps out. DQN fills a row of its replay
+    buffer as soon as there are ``n_envs`` steps of any environments, and counts rows.
+
+    :meth:`save` writes a folder: ``model.zip``, for Stable-Baselines3's own ``load``, and ``rest.pkl``, which has the buffer. Both
+    are read by unpickling, which may run code.
+
+    Args:
+        model: Made with ``curriculum.environment(**options)``, or with a ``DummyVecEnv`` of ``num_envs`` such environments.
+        total_timesteps: As ``model.learn`` takes it: decisions after which schedules stay at their end. It may be left out where
+            all of the model's numbers are constant.
+        policy: ``"sampled"`` or ``"greedy"``, in evaluations; ``None`` is sampled for PPO and its kin, greedy for the others.
+
+    Raises:
+        TypeError: If the model collects rollouts in a way of its own, as recurrent ones do.
+        ValueError: If the model has a schedule and there is no ``total_timesteps``; if its environment normalizes or stacks
+            observations; if it has ``use_sde``; for other options of the replay buffer that do not go with several environments.
+    """
+
+    def __init__(self, model: Any, *, total_timesteps: int | None = None, policy: str | None = None) -> None:
+        kinds: dict[Any, type[_Collector]] = {OnPolicyAlgorithm: _OnPolicy, OffPolicyAlgorithm: _OffPolicy}
+        kind = next((kind for kind in kinds if isinstance(model, kind)), None)
+        self.name = type(model).__name__
+        if kind is None or type(model).collect_rollouts is not kind.collect_rollouts:
+            raise TypeError(f"model: found {self.name}, which collects rollouts its own way, expected a model such as PPO or DQN")
+        _refuse(model, total_timesteps)
+        self.model = model
+        self.policy = policy or ("sampled" if kind is OnPolicyAlgorithm else "greedy")
+        if self.policy not in ("sampled", "greedy"):
+            raise ValueError(f"policy: found {policy!r}, expected sampled or greedy")
+        model._setup_learn(total_timesteps or 0)
+        model.policy.set_training_mode(False)
+        self._collector = kinds[kind](model, total_timesteps)
+        self._chances = [np.random.default_rng() for _ in range(model.n_envs)]
+        self._actions = copy.deepcopy(model.action_space)
+        self._frozen = False
+
+    def begin(self, *beginning: Any) -> None:
+        """Seeds the evaluation that begins: ``(label, seed)``, or ``(env, label, seed)``."""
+        env, seed = (beginning[0] if len(beginning) == 3 else 0), beginning[-1]
+        if env >= len(self._chances):
+            raise ValueError(f"Agent: found more environments than the model's {len(self._chances)}; pass num_envs={len(self._chances)}")
+        self._chances[env] = np.random.default_rng([seed, self.model.seed or 0])
+
+    def freeze(self, frozen: bool) -> None:
+        """Whether it is being evaluated."""
+        self._frozen = frozen
+
+    def act(self, observations: Any, infos: dict[str, Any]) -> Any:
+        """Actions for all environments, or for the only one."""
+        is_many = "active" in infos
+        seen = self._seen(observations if is_many else _lifted(observations))
+        if self._frozen:
+            with self._apart(np.flatnonzero(infos["active"]) if is_many else np.zeros(1, dtype=int)):
+                actions = self.model.predict(seen, deterministic=self.policy == "greedy")[0]
+        else:
+            actions = self._collector.act(seen)
+        return actions if is_many else actions[0]
+
+    def learn(self, transition: Any) -> None:
+        """Keeps a step, and learns when ``model.learn`` would."""
+        if isinstance(transition, Transition):
+            following = _lifted(transition.next_observation)
+            numbers = [transition.reward, transition.terminated, transition.truncated, True]
+        else:
+            following = transition.next_observations
+            numbers = [transition.rewards, transition.terminated, transition.truncated, transition.active]
+        rewards, terminated, truncated, active = (np.atleast_1d(number) for number in numbers)
+        self._collector.learn(
+            self._seen(following), rewards.astype(np.float32), terminated | truncated, truncated & ~terminated, active
+        )
+
+    def _seen(self, observations: Any) -> Any:
+        """Observations as the model's environment shows them: images with the channels first."""
+        space, model = self.model.observation_space, self.model
+        spaces = getattr(space, "spaces", {"": space})
+        arrays = observations if isinstance(observations, Mapping) else {"": observations}
+        seen = {kind: maybe_transpose(array, spaces[kind]) for kind, array in arrays.items() if kind in spaces}
+        expected = {kind: (model.n_envs, *each.shape) for kind, each in spaces.items()}
+        if {kind: array.shape for kind, array in seen.items()} != expected:
+            found = {kind: array.shape for kind, array in arrays.items()}
+            raise ValueError(
+                f"Agent: found observations {found}, expected {expected} (images with the channels first or last) as of the model's "
+                f"environment; make the model with curriculum.environment(**options), and run it with these options and num_envs={model.n_envs}"
+            )
+        return seen if isinstance(observations, Mapping) else seen[""]
+
+    @contextmanager
+    def _apart(self, active: NDArray[Any]) -> Iterator[None]:
+        """Draws from the seeds of these environments' experiences; the generators of learning stay as they are."""
+        model = self.model
+        seed = int(np.random.SeedSequence([int(self._chances[env].integers(2**32)) for env in active]).generate_state(1)[0])
+        before, space = np.random.get_state(), model.action_space
+        cards = [model.device] if model.device.type == "cuda" else []
+        with torch.random.fork_rng(devices=cards):
+            # `torch.manual_seed` takes milliseconds where torch was built for cards and there is none.
+            torch.default_generator.manual_seed(seed)
+            if cards:
+                torch.cuda.manual_seed(seed)
+            np.random.seed(seed)
+            self._actions.seed(seed)
+            model.action_space = self._actions
+            try:
+                yield
+            finally:
+                model.action_space = space
+                np.random.set_state(before)
+
+    def save(self, path: Path) -> None:
+        """Writes the model, its buffer and its random numbers into a folder."""
+        path.mkdir()
+        self.model.save(path / "model.zip")
+        chances = torch.get_rng_state(), np.random.get_state()
+        save_to_pkl(path / "rest.pkl", (self._collector.state(), chances))
+
+    def load(self, path: Path) -> None:
+        """Becomes what :meth:`save` wrote."""
+        loaded = type(self.model).load(path / "model.zip", device=self.model.device)
+        vars(self.model).update({name: value for name, value in vars(loaded).items() if name not in _KEPT})
+        state, (torch_state, numpy_state) = load_from_pkl(path / "rest.pkl")
+        self._collector.load_state(state)
+        self.model.policy.set_training_mode(False)
+        torch.set_rng_state(torch_state)
+        np.random.set_state(numpy_state)
+
+
+class _Collector:
+    """The part of a rollout that does not depend on the kind of model.
+
+    Args:
+        model: The model.
+        total: Decisions after which schedules stay at their end.
+    """
+
+    #: The model's buffer, and what else there is of a rollout.
+    kept: tuple[str, ...] = ()
+    buffer = ""
+
+    def __init__(self, model: Any, total: int | None) -> None:
+        self.model, self.total = model, total
+
+    def state(self) -> dict[str, Any]:
+        """What is kept of a rollout."""
+        return {"buffer": getattr(self.model, self.buffer), **{name: getattr(self, name) for name in self.kept}}
+
+    def load_state(self, state: dict[str, Any]) -> None:
+        """Takes back what :meth:`state` gave."""
+        setattr(self.model, self.buffer, state["buffer"])
+        vars(self).update({name: state[name] for name in self.kept})
+
+    def act(self, seen: Any) -> NDArray[Any]:
+        """Actions with exploration; what learning needs of them is kept."""
+        raise NotImplementedError
+
+    def learn(
+        self, following: Any, rewards: NDArray[np.float32], ended: NDArray[np.bool_], cut_off: NDArray[np.bool_], active: NDArray[np.bool_]
+    ) -> None:  # fmt: skip
+        """Keeps a step, of the environments that are active, and learns if it is time to."""
+        raise NotImplementedError
+
+    def note_progress(self) -> None:
+        """Tells the model how much of its schedules is left."""
+        if self.total is not None:
+            self.model._update_current_progress_remaining(min(self.model.num_timesteps, self.total), self.total)
+
+
+class _OnPolicy(_Collector):
+    """What ``OnPolicyAlgorithm.collect_rollouts`` does in one call, step by step."""
+
+    kept = ("active", "starts")
+    buffer = "rollout_buffer"
+
+    def __init__(self, model: Any, total: int | None) -> None:
+        super().__init__(model, total)
+        model.rollout_buffer.reset()
+        self.active: list[NDArray[np.bool_]] = []
+        self.starts = np.ones(model.n_envs, dtype=np.bool_)
+
+    def act(self, seen: Any) -> NDArray[Any]:
+        """Actions, clipped to the space; as they were drawn they are kept, with what the policy thinks of them."""
+        model = self.model
+        with torch.no_grad():
+            drawn, self.values, self.log_probs = model.policy(obs_as_tensor(seen, model.device))
+        self.seen, self.drawn = seen, drawn.cpu().numpy()
+        if not hasattr(model.action_space, "low"):
+            return np.asarray(self.drawn)
+        if model.policy.squash_output:
+            return np.asarray(model.policy.unscale_action(self.drawn))
+        return np.asarray(np.clip(self.drawn, model.action_space.low, model.action_space.high))
+
+    def learn(
+        self, following: Any, rewards: NDArray[np.float32], ended: NDArray[np.bool_], cut_off: NDArray[np.bool_], active: NDArray[np.bool_]
+    ) -> None:  # fmt: skip
+        """As :meth:`_Collector.learn`: a full buffer is learned from."""
+        model, buffer = self.model, self.model.rollout_buffer
+        model.num_timesteps += int(active.sum())
+        for env in np.flatnonzero(cut_off).tolist():
+            last = model.policy.obs_to_tensor(_row(following, env))[0]
+            with torch.no_grad():
+                # In float32, as Stable-Baselines3 does.
+                rewards[env] += (model.gamma * model.policy.predict_values(last)[0]).item()
+        drawn = self.drawn if hasattr(model.action_space, "low") else self.drawn.reshape(model.n_envs, -1)
+        buffer.add(self.seen, drawn, rewards, self.starts, self.values, self.log_probs)
+        self.active.append(active)
+        self.starts = ended | ~active
+        if not buffer.full:
+            return
+        with torch.no_grad():
+            values = model.policy.predict_values(obs_as_tensor(following, model.device))
+        buffer.compute_returns_and_advantage(last_values=values, dones=self.starts)
+        self.note_progress()
+        # As the buffer flattens its own arrays: environment by environment.
+        places = np.flatnonzero(np.stack(self.active, axis=1))
+        if len(places) < buffer.buffer_size * model.n_envs:
+            buffer.get = partial(_active_samples, buffer, places)
+        model.train()
+        vars(buffer).pop("get", None)
+        model.policy.set_training_mode(False)
+        buffer.reset()
+        self.active = []
+
+
+class _OffPolicy(_Collector):
+    """What ``OffPolicyAlgorithm.collect_rollouts`` does in one call, step by step; a step is a row of ``n_envs`` decisions."""
+
+    kept = ("waiting", "steps", "episodes")
+    buffer = "replay_buffer"
+
+    def __init__(self, model: Any, total: int | None) -> None:
+        super().__init__(model, total)
+        self.waiting: list[tuple[Any, ...]] = []
+        self.steps = self.episodes = 0
+
+    def act(self, seen: Any) -> NDArray[Any]:
+        """Actions with exploration; as the replay buffer wants them they are kept."""
+        model = self.model
+        self.seen = model._last_obs = seen
+        actions, self.stored = model._sample_action(model.learning_starts, model.action_noise, model.n_envs)
+        return np.asarray(actions)
+
+    def learn(
+        self, following: Any, rewards: NDArray[np.float32], ended: NDArray[np.bool_], cut_off: NDArray[np.bool_], active: NDArray[np.bool_]
+    ) -> None:  # fmt: skip
+        """As :meth:`_Collector.learn`: stores a row if there are enough decisions for one."""
+        model = self.model
+        for env in np.flatnonzero(active).tolist():
+            info = {"TimeLimit.truncated": bool(cut_off[env])}
+            step = _row(self.seen, env), _row(following, env), self.stored[env], rewards[env], ended[env], info
+            self.waiting.append(step)
+            if ended[env] and model.action_noise is not None:
+                model.action_noise.reset(**({"indices": [env]} if model.n_envs > 1 else {}))
+        if len(self.waiting) < model.n_envs:
+            return
+        row, self.waiting = self.waiting[: model.n_envs], self.waiting[model.n_envs :]
+        seen, then, actions, paid, dones, infos = zip(*row, strict=True)
+        model.num_timesteps += model.n_envs
+        model.replay_buffer.add(_stacked(seen), _stacked(then), np.stack(actions), np.array(paid), np.array(dones), list(infos))
+        self.note_progress()
+        model._on_step()
+        self.steps, self.episodes = self.steps + 1, self.episodes + sum(map(int, dones))
+        model._episode_num += sum(map(int, dones))
+        if should_collect_more_steps(model.train_freq, self.steps, self.episodes):
+            return
+        collected, self.steps, self.episodes = self.steps * model.n_envs, 0, 0
+        gradient_steps = model.gradient_steps if model.gradient_steps >= 0 else collected
+        if model.num_timesteps > model.learning_starts and gradient_steps > 0:
+            model.train(batch_size=model.batch_size, gradient_steps=gradient_steps)
+            model.policy.set_training_mode(False)
+
+
+def _refuse(model: Any, total: int | None) -> None:
+    """Refuses models that would not learn as ``model.learn`` does."""
+    schedules = [name for name in _SCHEDULES if callable(getattr(model, name, None))]
+    falling = [name for name in schedules if getattr(model, name)(1.0) != getattr(model, name)(0.0)]
+    if falling and total is None:
+        raise ValueError(f"total_timesteps: found none for the model's {falling[0]}, expected after how many decisions it has fallen")
+    if model.use_sde:
+        raise ValueError("model: found use_sde=True, expected False: its noise is drawn for rollouts, not for experiences")
+    wrapper = model.env
+    while isinstance(wrapper, VecEnvWrapper):
+        if not isinstance(wrapper, (VecMonitor, VecTransposeImage)):
+            raise ValueError(f"model: found an environment in {type(wrapper).__name__}, expected one that shows what the curriculum does")
+        wrapper = wrapper.venv
+    for name, plain in (("optimize_memory_usage", False), ("n_steps", 1)) if isinstance(model, OffPolicyAlgorithm) else ():
+        if model.n_envs > 1 and getattr(model, name, plain) != plain:
+            raise ValueError(f"model: found {name}={getattr(model, name)} with {model.n_envs} environments, expected one, or {name}={plain}")
+
+
+def _active_samples(buffer: Any, places: NDArray[np.intp], batch_size: int | None = None) -> Iterator[Any]:
+    """What ``buffer.get`` gives, from these places of its flattened arrays alone."""
+    # Its own call flattens them.
+    next(type(buffer).get(buffer, 1))
+    shuffled = np.random.permutation(places)
+    for start in range(0, len(shuffled), batch_size or len(shuffled)):
+        yield buffer._get_samples(shuffled[start : start + (batch_size or len(shuffled))])
+
+
+def _lifted(observation: Any) -> Any:
+    """One observation as a batch of one."""
+    return _stacked([observation])
+
+
+def _row(observations: Any, env: int) -> Any:
+    """What one environment shows."""
+    if isinstance(observations, Mapping):
+        return {kind: array[env] for kind, array in observations.items()}
+    return observations[env]
+
+
+def _stacked(rows: Any) -> Any:
+    """Observations of several environments as a batch."""
+    if isinstance(rows[0], Mapping):
+        return {kind: np.stack([row[kind] for row in rows]) for kind in rows[0]}
+    return np.stack(rows)
