@@ -393,3 +393,42 @@ def test_whatever_the_options_many_live_as_one_by_one(options: dict[str, Any], s
     ours, theirs = native(FIND, num_envs, **options), sync(FIND, num_envs, **options)
     expect_same(ours.reset(seed=seed), theirs.reset(seed=seed), "reset")
     live_side_by_side(ours, theirs, 12)
+
+
+@pytest.mark.parametrize("mode", ["next_step", "same_step", "disabled"])
+@pytest.mark.parametrize("modalities", ["rgb", ["rgb", "state"]], ids=str)
+def test_without_infos_all_else_is_the_same(mode: str, modalities: Any) -> None:
+    options: dict[str, Any] = {"modalities": modalities, "size": 8, "actions": "discrete", "max_episode_steps": 3}
+    label = {} if modalities == "rgb" else {"task_label": "observation"}
+    with_infos, without = (
+        gym.make_vec(FIND, 3, vectorization_mode="vector_entry_point", autoreset_mode=mode, info=info, **options, **label)
+        for info in ("agent", "none")
+    )
+    seen, infos = without.reset(seed=2)
+    assert first_difference(seen, with_infos.reset(seed=2)[0]) is None and infos == {}
+    with_infos.unwrapped.set_next(variant="red")
+    without.unwrapped.set_next(variant="red")
+    for _ in range(7):
+        *found, infos = without.step(np.zeros(3, dtype=np.int64))
+        *expected, told = with_infos.step(np.zeros(3, dtype=np.int64))
+        assert first_difference(found, expected) is None
+        ended = expected[2] | expected[3]
+        if mode == "same_step" and ended.any():
+            assert set(infos) == {"final_obs", "_final_obs"}
+            assert first_difference(infos, {key: told[key] for key in infos}) is None
+        else:
+            assert infos == {}
+        if mode == "disabled" and ended.any():
+            assert without.reset(options={"reset_mask": ended})[1] == {}
+            with_infos.reset(options={"reset_mask": ended})
+    assert [without.unwrapped.origin(env) for env in range(3)] == [with_infos.unwrapped.origin(env) for env in range(3)]
+    alone = gym.make(FIND, info="none", **{name: value for name, value in options.items() if name != "max_episode_steps"})
+    assert alone.reset(seed=2)[1] == alone.step(0)[-1] == {}
+
+
+def test_no_infos_are_refused_where_something_needs_them() -> None:
+    for label in ("info", "observation"):
+        with pytest.raises(ValueError, match='info: found "none" with task_label'):
+            gym.make(FIND, info="none", task_label=label, modalities="rgb")
+    with pytest.raises(ValueError, match="a log has what infos say"):
+        driftworld.Curriculum.design("find_objects#blue", learn=1, eval_episodes=1).environment(info="none")

@@ -450,6 +450,8 @@ def refuse_options(options: Mapping[str, Any]) -> None:
     refused = [name for name in ("task", "world", "variant", "drift", "task_label") if name in options]
     if refused:
         raise TypeError(f"{refused[0]}: found it among the options, expected none: the curriculum says what is lived")
+    if options.get("info") == "none":
+        raise ValueError('info: found "none", expected "agent" or "full": a log has what infos say')
 
 
 def refuse_covering(plan: _native.Plan, options: Mapping[str, Any]) -> None:

@@ -63,7 +63,7 @@ def collect(
 
     Returns:
         The ``minari.MinariDataset``; ``dataset.storage.get_episode_metadata([0])`` has ``variant_id``, ``task_id``, ``world_index``,
-        ``world_seed``, ``world_hash``, ``episode_return`` and ``is_success``.
+        ``world_seed``, ``world_hash``, ``episode_return`` and, where infos say it, ``is_success``.
 
     Raises:
         ValueError: ``episodes`` is below 1.
@@ -141,7 +141,7 @@ def _lived(
         "world_index": int(told["index"]),
         "world_hash": told["world_hash"],
         "episode_return": float(np.sum(rewards)),
-        "is_success": bool(info.get("is_success", False)),
+        **({"is_success": bool(info["is_success"])} if "is_success" in info else {}),
     }
     return buffer, metadata
 

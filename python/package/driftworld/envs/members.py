@@ -84,6 +84,7 @@ class Members:
         streams = self._streams(self._sources)
         self._labels = home.labels(sources) if labels is None else labels
         self._shows_label = options.task_label == "observation" and options.is_dict
+        self.has_infos = options.has_infos
         self.label_in_info = options.task_label != "none" and not self._shows_label
         self.observation_space = observation_space(options, self.layout, len(self._labels))
         self.action_space = action_space(self.layout)
@@ -274,8 +275,12 @@ class Members:
 
     def reset_info(self, env: int) -> dict[str, Any]:
         """What a reset says of an environment; notes in which variant it is."""
+        if not (self.has_infos or self._shows_label):
+            return {}
         origin = self.origin(env)
         self._name(env, origin["variant_id"])
+        if not self.has_infos:
+            return {}
         if not self._options.names_variant:
             del origin["task_id"], origin["variant_id"]
         info: dict[str, Any] = {**origin, "events": (), "is_success": False, "ended_by": None}

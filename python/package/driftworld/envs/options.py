@@ -88,6 +88,7 @@ class Options:
         renderer: What draws.
         task_label: Where the agent is told which variant it is in.
         names_variant: Whether infos name task and variant.
+        has_infos: Whether there is anything in infos.
         libraries: The bytes of asset libraries, the last one first in search.
         max_steps: The limit of steps laid over each world, if any.
         overrides: What is laid over each world, as JSON.
@@ -99,6 +100,7 @@ class Options:
     renderer: str
     task_label: str
     names_variant: bool
+    has_infos: bool
     libraries: tuple[bytes, ...]
     max_steps: int | None
     overrides: str
@@ -130,6 +132,8 @@ class Options:
             raise ValueError('task_label: found "obs": removed in 0.3; use "observation"')
         _one_of("task_label", task_label, LABELS)
         _one_of("info", options["info"], INFOS)
+        if options["info"] == "none" and (task_label == "info" or task_label == "observation" and not is_dict):
+            raise ValueError(f'info: found "none" with task_label={task_label!r}, which needs infos, expected "agent" or "full"')
         if blank and kinds is None:
             raise ValueError(
                 'blank: found True without modalities, expected them, such as modalities=["rgb", "depth", "state"]: without, they are '
@@ -151,6 +155,7 @@ class Options:
             renderer=options["renderer"],
             task_label=task_label,
             names_variant=task_label != "none" or options["info"] == "full",
+            has_infos=options["info"] != "none",
             libraries=library_bytes(options["assets"]),
             max_steps=overrides["max_steps"],
             overrides=json.dumps({name: value for name, value in overrides.items() if value is not None}),

@@ -52,6 +52,7 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         task_label: Whether the agent gets the label of its variant: ``"none"``; in ``"info"``, a number; or in the
             ``"observation"``, as ``"task"``, one-hot (in the info, too, where the observation is a single image).
         info: ``"agent"``: infos name task and variant only where ``task_label`` tells the agent. ``"full"``: always, for records.
+            ``"none"``: infos are empty, which saves time in large batches; ``final_obs`` of the autoreset ``"same_step"`` stays.
         assets: Paths of asset libraries (``driftworld assets pack``).
         render_mode: ``"rgb_array"``, ``"human"`` or ``None``.
         render_size: Height and width of rendered pictures.
@@ -175,11 +176,13 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         if not members.has_begun[0]:
             raise ResetNeeded("step: found an environment that had no reset, expected reset() before it")
         reward, terminated, truncated, success, eventful = members.step_one(action)
-        info: dict[str, Any] = {
-            "events": members.batch.events(0) if eventful else (),
-            "is_success": success,
-            "ended_by": members.ended_by(0) if terminated or truncated else None,
-        }
+        info: dict[str, Any] = {}
+        if members.has_infos:
+            info = {
+                "events": members.batch.events(0) if eventful else (),
+                "is_success": success,
+                "ended_by": members.ended_by(0) if terminated or truncated else None,
+            }
         if members.label_in_info:
             info["task_label"] = members.label_number(0)
         observation = members.observation(0)

@@ -322,9 +322,11 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         rewards, terminated, truncated, success, eventful = members.step(actions)
         ended = terminated | truncated
         begun = self._ended if self._mode == AutoresetMode.NEXT_STEP else ended
-        infos = self._infos(success, eventful)
-        for env in np.flatnonzero(ended).tolist():
-            infos["ended_by"][env] = members.ended_by(env)
+        infos: dict[str, Any] = {}
+        if members.has_infos:
+            infos = self._infos(success, eventful)
+            for env in np.flatnonzero(ended).tolist():
+                infos["ended_by"][env] = members.ended_by(env)
         if self._mode != AutoresetMode.DISABLED and begun.any():
             for env in np.flatnonzero(begun).tolist():
                 self._add_beginning(infos, env)
@@ -359,13 +361,14 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
             members.note_finals(env)
             final = {key: infos[key][env] for key in _STEP_KEYS if key in infos}
             final = {key: value.item() if isinstance(value, np.generic) else value for key, value in final.items()}
-            for key in ("final_obs", "_final_obs", "final_info", "_final_info"):
+            for key in ("final_obs", "_final_obs", *(("final_info", "_final_info") if members.has_infos else ())):
                 if key not in infos:
                     infos[key] = self._empty(key)
             infos["final_obs"][env] = members.final_observation(env)
             infos["_final_obs"][env] = True
-            infos["final_info"] = self._add_info(infos["final_info"], final, env)
-            infos["_final_info"][env] = True
+            if members.has_infos:
+                infos["final_info"] = self._add_info(infos["final_info"], final, env)
+                infos["_final_info"][env] = True
         self._add_info(infos, members.reset_info(env), env)
 
     def _empty(self, key: str) -> Any:
