@@ -193,3 +193,55 @@ def test_sb3_learns_another_variant_without_a_reset() -> None:
     envs.set_options([{"queue": ["red", "dusk"]}] * 2)
     envs.reset()
     assert [origin["variant_id"] for origin in envs.env_method("origin")] == ["find_objects#red"] * 2
+
+
+@pytest.mark.learners
+def test_sb3_issue_1790_options_reach_the_reset_that_ends_an_episode() -> None:
+    # https://github.com/DLR-RM/stable-baselines3/issues/1790: in an environment whose episodes end at each step, options that were
+    # set reach an explicit reset alone; the reset within `step` drops them.
+    pytest.importorskip("stable_baselines3", reason="the thread is about it")
+    from driftworld.adapters.sb3 import make_vec_env
+
+    envs = make_vec_env(FIND, 2, seed=0, max_episode_steps=1, **OPTIONS)
+    envs.reset()
+    actions = np.zeros(2, dtype=np.int64)
+
+    def begun() -> list[tuple[str, int]]:
+        return [(info["variant_id"].partition("#")[2], info["index"]) for info in envs.unwrapped.reset_infos]
+
+    assert begun() == [("default", 0)] * 2
+    envs.set_options({"variant": "dusk", "index": 7})
+    assert envs.step(actions)[2].all() and begun() == [("dusk", 7)] * 2
+    # A variant holds until another is asked for; an index is of one episode.
+    assert envs.step(actions)[2].all() and begun() == [("dusk", 8)] * 2
+    envs.set_options([{"variant": "red"}, {}])
+    assert envs.step(actions)[2].all() and begun() == [("red", 9), ("dusk", 9)]
+    envs.set_options({"variant": "near"})
+    envs.reset()
+    assert [variant for variant, _ in begun()] == ["near"] * 2
+
+
+@pytest.mark.learners
+@pytest.mark.filterwarnings("ignore")
+def test_rllibs_runner_goes_on_with_another_variant() -> None:
+    pytest.importorskip("ray.rllib", reason="the runner is its")
+    from ray.rllib.algorithms.ppo import PPOConfig
+    from ray.rllib.core.rl_module.default_model_config import DefaultModelConfig
+    from ray.rllib.env.single_agent_env_runner import SingleAgentEnvRunner
+    from ray.tune.registry import register_env
+
+    register_env("native", lambda config: driftworld.DriftworldVectorEnv(**config))
+    options = {**OPTIONS, "task": "find_objects", "modalities": "state", "max_episode_steps": 4}
+    config = (
+        PPOConfig()
+        .environment("native", env_config=options)
+        .env_runners(num_envs_per_env_runner=2, gym_env_vectorize_mode=gym.VectorizeMode.VECTOR_ENTRY_POINT)
+        .rl_module(model_config=DefaultModelConfig(fcnet_hiddens=[8]))
+    )
+    runner = SingleAgentEnvRunner(config=config)
+    runner.sample(num_timesteps=4, random_actions=True, force_reset=True)
+    runner.env.unwrapped.set_next(variant=["red", "blue"])
+    episodes = runner.sample(num_timesteps=40, random_actions=True)
+    begun = [episode.get_infos(0)["variant_id"] for episode in episodes if episode.t_started == 0 and len(episode) == 4]
+    assert set(begun) == {"find_objects#red", "find_objects#blue"}
+    runner.stop()
