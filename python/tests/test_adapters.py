@@ -21,6 +21,7 @@ PACKAGES = {
     "sb3": "stable_baselines3",
     "pufferlib": "pufferlib",
     "minari": "minari",
+    "syllabus": "syllabus",
 }
 
 

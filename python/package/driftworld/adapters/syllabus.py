@@ -1,0 +1,80 @@
+"""An environment for Syllabus (``syllabus-rl`` 0.7): its curricula choose the variant of each episode.
+
+    env = DriftworldTaskEnv(gymnasium.make("driftworld/FindObjects-v0"), {"red": 486.0, "blue": 486.0, "dusk": 450.0})
+    replay = {"strategy": "value_l1", "replay_schedule": "fixed"}
+    curriculum = CentralPrioritizedLevelReplay(env.task_space, num_processes=1, task_sampler_kwargs_dict=replay)
+    shared = make_multiprocessing_curriculum(curriculum)
+    env = GymnasiumSyncWrapper(env, env.task_space, shared.components)
+
+Version 0.7 does not install ``matplotlib`` and ``scipy``, lets NumPy raise at each underflow, and needs the schedule above. With
+NumPy 1.25, learning progress needs a subclass whose ``_sample_distribution`` is ``list(super()._sample_distribution())``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import gymnasium
+
+try:
+    from syllabus.core import TaskWrapper
+    from syllabus.task_space import DiscreteTaskSpace
+except ImportError as error:
+    raise ImportError(
+        "driftworld.adapters.syllabus: found no syllabus, expected version 0.7; pip install syllabus-rl matplotlib scipy"
+    ) from error
+
+__all__ = ["DriftworldTaskEnv"]
+
+
+class DriftworldTaskEnv(TaskWrapper):  # type: ignore[misc, unused-ignore] # Any where it is not installed.
+    """An environment whose tasks are variants, by their numbers. Each episode is of one task; a change is made at the next reset.
+
+    After each step ``info["task_completion"]`` is the share of the ceiling that the episode has earned, 0 to 1; ``info["task"]`` is
+    the task. Learning progress needs ``continuous_progress=True``, or only a whole ceiling counts.
+
+    Args:
+        env: From ``gymnasium.make``.
+        ceilings: What an expert earns (``driftworld scales``), by the names of the variants, which are the tasks in this order.
+
+    Attributes:
+        task_space: What curricula of Syllabus are made with.
+        variants: The names of the tasks.
+
+    Raises:
+        ValueError: If there is no variant, or a ceiling is not above 0.
+        TaskError: If the task has no variant of a name.
+    """
+
+    def __init__(self, env: gymnasium.Env[Any, Any], ceilings: Mapping[str, float]) -> None:
+        super().__init__(env)
+        if not ceilings or min(ceilings.values()) <= 0:
+            raise ValueError(f"ceilings: found {dict(ceilings)!r}, expected some above 0, by the name of the variant")
+        for name in ceilings:
+            env.unwrapped._members.checked({"variant": name}, many=False)  # type: ignore[attr-defined]
+        self.variants, self.ceilings = list(ceilings), list(ceilings.values())
+        # Numbers, for prioritized level replay makes an array of them.
+        self.task_space = DiscreteTaskSpace(len(ceilings))
+        self.task = self._next = 0
+        self._earned = 0.0
+
+    def reset(
+        self, new_task: int | None = None, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Any, dict[str, Any]]:
+        """Begins an episode of ``new_task``, or of the task that was asked for last."""
+        if new_task is not None:
+            self.change_task(new_task)
+        self.task, self._earned, self.task_completion = self._next, 0.0, 0.0
+        observation, info = self.env.reset(seed=seed, options={**(options or {}), "variant": self.variants[self.task]})
+        return observation, {**info, "task": self.task, "task_completion": 0.0}
+
+    def change_task(self, new_task: int) -> None:
+        """Says which task the next episode is of."""
+        if new_task not in range(len(self.variants)):
+            raise ValueError(f"task: found {new_task!r}, expected 0 to {len(self.variants) - 1}")
+        self._next = int(new_task)
+
+    def _task_completion(self, obs: Any, rew: Any, term: bool, trunc: bool, info: dict[str, Any]) -> float:
+        self._earned += float(rew)
+        return min(max(self._earned / self.ceilings[self.task], 0.0), 1.0)
