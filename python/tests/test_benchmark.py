@@ -136,11 +136,13 @@ def test_the_smoke_sequence_is_learned_and_forgotten(tmp_path: Path) -> None:
 
 
 @pytest.mark.learners
-def test_a_node_of_ray_that_dies_changes_no_digest(tiny: Path, tmp_path: Path) -> None:
+def test_a_node_of_ray_that_dies_changes_no_digest(tiny: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cluster_utils = pytest.importorskip("ray.cluster_utils")
     ray = pytest.importorskip("ray")
     cells = [Cell(str(tiny), learner, seed) for learner in ("finetuning", "ewc") for seed in (0, 1)]
     alone = run_cells(cells, tmp_path / "alone")
+    # Of the nodes, which start their own processes.
+    monkeypatch.setenv("DRIFTWORLD_STALE_SECONDS", "12")
     cluster = cluster_utils.Cluster(initialize_head=True, head_node_args={"num_cpus": 0})
     try:
         nodes = [cluster.add_node(num_cpus=1) for _ in range(3)]

@@ -35,8 +35,11 @@ from driftworld.benchmark.sequence import Sequence
 from driftworld.curricula import Curriculum
 from driftworld.logs import read_log
 
-#: Seconds between two touches of a claim, and after which a claim that was not touched is anybody's.
-TOUCH, STALE = 5.0, 60.0
+#: Seconds after which a claim that was not touched is anybody's; ``DRIFTWORLD_STALE_SECONDS`` in the environment says another number,
+#: the same in all processes that share the folder.
+STALE = float(os.environ.get("DRIFTWORLD_STALE_SECONDS", "60"))
+#: Seconds between two touches.
+TOUCH = STALE / 12
 
 
 @dataclass(frozen=True)
