@@ -1,9 +1,11 @@
-//! Options that lay something over a key in which variants differ. With such an option the variants would be one.
+//! Options that lay something over a key in which variants differ, or that leave out the only images that show it. With such
+//! an option the variants would be one.
 
 use std::collections::BTreeMap;
 
 use driftworld_curriculum::Plan;
-use driftworld_spec::{DEFAULT_VARIANT, Modality, Resolved, Variant, World, WorldDraft};
+use driftworld_generator::Sampler;
+use driftworld_spec::{DEFAULT_VARIANT, EnvironmentParams, Modality, Resolved, Value, Variant, World, WorldDraft};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde_json::{Value as Json, json};
@@ -78,6 +80,7 @@ struct Said {
     drawn: Vec<String>,
     /// The same of the task's own defaults.
     usual: Option<WorldDraft>,
+    variant: Option<Variant>,
 }
 
 impl Said {
@@ -90,6 +93,7 @@ impl Said {
             values,
             drawn,
             usual: usual.map(|usual| said(&usual, max_steps).0),
+            variant: Some(variant.clone()),
         }
     }
 
@@ -104,6 +108,7 @@ impl Said {
             values,
             drawn: Vec::new(),
             usual: None,
+            variant: None,
         }
     }
 }
@@ -164,6 +169,58 @@ impl EnvOption {
     }
 }
 
+/// How many worlds of variants are compared before they count as one.
+const HIDDEN_WORLDS: u64 = 3;
+
+/// The first two variants whose worlds differ in colours and light alone where no image shows colours: `laid` lays all options
+/// over a world.
+fn hidden(all: &[Said], laid: &dyn Fn(&WorldDraft) -> WorldDraft) -> Option<Json> {
+    let worlds = |variant: &Variant| -> Option<Vec<WorldDraft>> {
+        let sampler = Sampler::new(variant, 0);
+        let drawn = (0..HIDDEN_WORLDS).map(|index| Some(laid(&sampler.world(index).ok()?.into_draft())));
+        drawn.collect()
+    };
+    // By what is left without colours: the first variant that has it, and its worlds.
+    let mut first: BTreeMap<String, (&str, &Variant, Vec<WorldDraft>)> = BTreeMap::new();
+    for said in all {
+        let Some(variant) = &said.variant else { continue };
+        // What cannot be drawn is refused where the worlds are made.
+        let Some(plain) = worlds(variant) else { continue };
+        if plain
+            .iter()
+            .any(|world| world.agent_params.modalities.contains(&Modality::Rgb))
+        {
+            continue;
+        }
+        let colorless: Vec<WorldDraft> = plain.iter().cloned().map(without_colors).collect();
+        let key = json!([said.task, colorless]).to_string();
+        let (name, other, theirs) = first.entry(key).or_insert_with(|| (&said.name, variant, plain.clone()));
+        if *theirs != plain {
+            let (other, variant) = (other.as_read(), variant.as_read());
+            let differs = |(name, value): &(&String, &Value)| other.value(name) != Some(*value);
+            let names = variant.values().iter().filter(differs).map(|(name, _)| name.as_str());
+            let names = names.collect::<Vec<_>>().join(", ");
+            return Some(json!({ "option": "modalities", "hidden": names, "said": [[name, ""], [said.name, ""]] }));
+        }
+    }
+    None
+}
+
+/// A world without what only colours show.
+fn without_colors(mut world: WorldDraft) -> WorldDraft {
+    let (usual, environment) = (EnvironmentParams::default(), &mut world.environment_params);
+    environment.bounding_wall_color = usual.bounding_wall_color;
+    environment.light_intensity = usual.light_intensity;
+    environment.light_color = usual.light_color;
+    environment.ambient_light = usual.ambient_light;
+    environment.sky_color = usual.sky_color;
+    environment.ground_color = usual.ground_color;
+    for object in &mut world.objects {
+        object.color = None;
+    }
+    world
+}
+
 /// What options take away from these, as a JSON list: for each option the first that shows it.
 fn taken(all: &[Said], overrides: &str, shown: Option<&str>) -> Result<String> {
     let overrides = overrides_of(overrides)?;
@@ -186,7 +243,11 @@ fn taken(all: &[Said], overrides: &str, shown: Option<&str>) -> Result<String> {
     let found = OPTIONS
         .iter()
         .filter_map(|option| option.taken(all, given.contains(&option.name), &laid));
-    Ok(found.collect::<Json>().to_string())
+    let mut found: Vec<Json> = found.collect();
+    if (given.contains(&"modalities") || shown.is_some()) && !found.iter().any(|each| each["option"] == "modalities") {
+        found.extend(hidden(all, &laid));
+    }
+    Ok(Json::from(found).to_string())
 }
 
 /// What options take away from variants: a JSON list. `shown` are the images that observations hold, as a JSON list.

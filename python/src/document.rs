@@ -116,6 +116,7 @@ pub(crate) fn check<'py>(
         if kind == Kind::World && checked.error.is_none() {
             checked.warnings.extend(documents::start_inside(name, text, &catalogue));
         }
+        checked.warnings.append(&mut checked.missing_tasks);
         checked
     });
     let problems = PyList::empty(py);

@@ -1,8 +1,11 @@
 //! [`WorldOverrides`]: what an environment's options lay over each of its worlds. Where the worlds come from is in `supply.rs`.
 
-use driftworld_spec::{ActionModel, ActionSpace, AgentParams, Modality, SpecError, StateFeature, World, WorldDraft};
+use driftworld_spec::{
+    ActionModel, ActionSpace, AgentParams, Modality, Resolved, SpecError, StateFeature, Value, Variant, World,
+    WorldDraft,
+};
 use serde::Deserialize;
-use serde_json::{Value, json};
+use serde_json::{Value as Json, json};
 
 /// Options that stand in place of what worlds say; what is `None` stays as it is.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -77,13 +80,59 @@ impl WorldOverrides {
     ///
     /// # Errors
     /// [`SpecError`] with every value out of its range.
-    pub(crate) fn checked_layout(&self, world: World) -> Result<Value, SpecError> {
+    pub(crate) fn checked_layout(&self, world: World, reach: &Reach) -> Result<Json, SpecError> {
         let mut draft = world.into_draft();
         self.apply(&mut draft);
         let text = serde_json::to_string(&draft).expect("a world has string keys only, which always serialise");
-        Ok(layout(&World::from_json("options", &text)?))
+        Ok(layout(&World::from_json("options", &text)?, reach))
     }
 }
+
+/// The greatest values that bound actions, where a variant draws them anew for each world.
+#[derive(Default)]
+pub(crate) struct Reach {
+    speed: Option<f64>,
+    turn: Option<f64>,
+    /// The longest side of an arena that actions name places in.
+    side: Option<f64>,
+}
+
+impl Reach {
+    pub(crate) fn of(variant: &Variant) -> Self {
+        let mut reach = Self::default();
+        for hole in &variant.task().world().holes {
+            let drawn = match variant.resolve(&hole.source) {
+                Resolved::Value(_) => continue,
+                Resolved::Draw(distribution) => Some(distribution),
+                Resolved::Randomized(reference) => variant.distribution(&reference.param),
+            };
+            let place = match hole.pointer.as_str() {
+                "/agent_params/max_linear_speed" => &mut reach.speed,
+                "/agent_params/max_angular_speed" => &mut reach.turn,
+                pointer if ARENA.iter().any(|key| pointer.starts_with(key)) => {
+                    reach.side = Some(LONGEST_SIDE);
+                    continue;
+                }
+                _ => continue,
+            };
+            // What has no bounds of its own has the key's: worlds beyond them are refused.
+            let numbers = drawn.and_then(|drawn| drawn.support());
+            let numbers = numbers.and_then(|values| values.iter().map(Value::as_number).collect::<Option<Vec<f64>>>());
+            let greatest = numbers.and_then(|numbers| numbers.into_iter().reduce(f64::max));
+            *place = Some(greatest.map_or(hole.range[1], |greatest| greatest.min(hole.range[1])));
+        }
+        reach
+    }
+}
+
+/// Keys of a world that say how large its arena is.
+const ARENA: [&str; 3] = [
+    "/environment_params/map_size",
+    "/environment_params/layout",
+    "/environment_params/predefined_map",
+];
+/// The longest side of an arena in metres.
+const LONGEST_SIDE: f64 = 300.0;
 
 fn lay<T: Copy>(place: &mut T, value: Option<T>) {
     if let Some(value) = value {
@@ -92,7 +141,7 @@ fn lay<T: Copy>(place: &mut T, value: Option<T>) {
 }
 
 /// What the spaces of an environment are made from.
-fn layout(world: &World) -> Value {
+fn layout(world: &World, reach: &Reach) -> Json {
     let agent = &world.agent_params;
     let [width, height] = agent.picture_size();
     json!({
@@ -104,16 +153,18 @@ fn layout(world: &World) -> Value {
         "max_steps": world.step_limit().unwrap_or(0),
         "seconds_per_step": agent.time_step * f64::from(agent.frame_skip.max(1)),
         "action_model": agent.action_model,
-        "action": action(agent, world.environment_params.arena_size()),
+        "action": action(agent, world.environment_params.arena_size(), reach),
     })
 }
 
 /// The number of rows, or the bounds of the numbers that are looked at.
-fn action(agent: &AgentParams, [x, y]: [f64; 2]) -> Value {
+fn action(agent: &AgentParams, [x, y]: [f64; 2], reach: &Reach) -> Json {
     if let Some(rows) = agent.num_actions() {
         return json!({ "n": rows });
     }
-    let (speed, turn) = (agent.max_linear_speed, agent.max_angular_speed);
+    let speed = reach.speed.unwrap_or(agent.max_linear_speed);
+    let turn = reach.turn.unwrap_or(agent.max_angular_speed);
+    let [x, y] = reach.side.map_or([x, y], |side| [side; 2]);
     let mut low_high = match agent.action_model {
         ActionModel::ByWaypoint => vec![[-x / 2.0, x / 2.0], [-y / 2.0, y / 2.0], [-turn, turn]],
         ActionModel::ByVelocity | ActionModel::OnRails | ActionModel::None => {
@@ -124,8 +175,16 @@ fn action(agent: &AgentParams, [x, y]: [f64; 2]) -> Value {
             numbers
         }
     };
+    let places = agent.action_model == ActionModel::ByWaypoint;
+    let mut drawn = reach.turn.is_some()
+        || if places {
+            reach.side.is_some()
+        } else {
+            reach.speed.is_some()
+        };
     if agent.actions == ActionSpace::Normalized {
         low_high.fill([-1.0, 1.0]);
+        drawn = false;
     }
-    json!({ "bounds": low_high })
+    json!({ "bounds": low_high, "drawn": drawn })
 }

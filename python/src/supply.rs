@@ -9,7 +9,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::errors::Result;
-use crate::overrides::WorldOverrides;
+use crate::overrides::{Reach, WorldOverrides};
 use crate::rounding::usually_rounded;
 use crate::variant::PyVariant;
 
@@ -141,11 +141,11 @@ impl PyStream {
                 let ends = [drift.at(0.0, 0)?, drift.at(1.0, 0)?];
                 ends.iter().map(first_world).collect::<std::result::Result<_, _>>()?
             }
-            Stream::World { world, .. } => vec![World::clone(world)],
+            Stream::World { world, .. } => vec![(World::clone(world), Reach::default())],
         };
         let layouts = worlds
             .into_iter()
-            .map(|world| Ok(overrides.checked_layout(world)?.to_string()));
+            .map(|(world, reach)| Ok(overrides.checked_layout(world, &reach)?.to_string()));
         layouts.collect()
     }
 }
@@ -181,8 +181,8 @@ impl Stream {
     }
 }
 
-fn first_world(variant: &Variant) -> std::result::Result<World, GeneratorError> {
-    driftworld_generator::sample(variant, 0, 0)
+fn first_world(variant: &Variant) -> std::result::Result<(World, Reach), GeneratorError> {
+    Ok((driftworld_generator::sample(variant, 0, 0)?, Reach::of(variant)))
 }
 
 /// Options from the JSON that the package makes of them.

@@ -191,3 +191,31 @@ def test_options_that_variants_agree_in_are_not_warned_of() -> None:
         for options in EXAMPLES.values():
             gym.make("driftworld/FindObjects-v0", variant="blue", **options).close()
             DriftworldVectorEnv("find_objects", 3, variants=["blue", "red", "dusk"], **options).close()
+
+
+def test_variants_that_no_image_shows_apart_are_refused() -> None:
+    told = r"^modalities: found it over target_color, in which find_objects#blue and find_objects#red differ and which only rgb"
+    curriculum = regimes("find_objects#blue", "find_objects#red")
+    for shown in ("depth", ["depth", "class"], "state"):
+        with pytest.raises(CurriculumError, match=told) as refused:
+            curriculum.environment(size=8, modalities=shown)
+        assert refused.value.code == "curriculum/covered"
+    with pytest.warns(UserWarning, match=told):
+        DriftworldVectorEnv("find_objects#blue", 2, variants=["blue", "red"], size=8, modalities="depth").close()
+    curriculum.environment(size=8, modalities=["rgb", "depth"]).close()
+    regimes("find_objects#blue", "find_objects#huddle").environment(size=8, modalities="depth").close()
+
+
+def test_bounds_of_continuous_actions_hold_every_world_that_is_drawn() -> None:
+    env = DriftworldEnv("find_objects#any_speed", actions="continuous", size=8)
+    assert env.action_space.high.tolist() == [10, 90, 1]  # type: ignore[attr-defined]
+    for seed in range(8):
+        env.reset(seed=seed)
+        assert env.state()["agent_params"]["max_linear_speed"] <= 10
+    env.reset(options={"world": env.state()})
+    with pytest.raises(ValueError, match="found actions of numbers"):
+        DriftworldEnv("find_objects#blue", actions="continuous", size=8).reset(options={"world": {"agent_params": {"max_linear_speed": 11}}})
+    document = driftworld.TaskSpec.load("get_to_goal").to_dict()
+    document["name"] = "unbounded"
+    document["world"]["agent_params"]["max_linear_speed"] = {"normal": {"mean": 8, "std": 1}}
+    assert DriftworldEnv(document, actions="continuous", size=8).action_space.high[0] == 100  # type: ignore[attr-defined]

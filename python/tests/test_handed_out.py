@@ -263,4 +263,8 @@ def test_a_step_writes_into_the_callers_arrays(modalities: Any) -> None:
     for wrong in (np.zeros((1, 2), np.float32), {}, {"rgb": np.zeros((2, 16, 16, 3), np.uint8)}):
         with pytest.raises(ValueError, match="out: found other arrays than observations have"):
             ours.step(actions[0], out=wrong)
+    locked = rows[0]["rgb"] if isinstance(rows[0], dict) else rows[0]
+    locked.flags.writeable = False
+    with pytest.raises(ValueError, match="^out: found (rgb|the array) read-only, expected writable arrays"):
+        ours.step(actions[0], out=rows[0])
     assert first_difference(before, ours.state(0)) is None

@@ -132,6 +132,15 @@ def test_each_environment_of_many_is_recorded(autoreset: str) -> None:
         assert recording.frames(size=4).shape == (6, 4, 4, 3)
 
 
+def test_a_recording_begun_after_the_end_of_an_episode_says_no_end() -> None:
+    env = DriftworldEnv("find_objects", size=8, max_steps=1)
+    env.reset(seed=0)
+    assert env.step(env.action_space.sample())[3]
+    env.record()
+    recording = env.recording()
+    assert (recording.steps, recording.ended_by) == (0, None)
+
+
 def test_an_episode_is_drawn_at_any_size_and_from_anywhere(tmp_path: Path) -> None:
     env = DriftworldEnv("find_objects#red", size=8, max_steps=10)
     env.record()

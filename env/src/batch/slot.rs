@@ -95,7 +95,9 @@ impl Slot {
         if recorder.num_steps() == 0 && self.before.is_some() {
             return self.before.clone();
         }
-        Some(recorder.recording(&self.environment, self.step.ended_by))
+        // What ended before the first recorded step belongs to another episode.
+        let ended_by = self.step.ended_by.filter(|_| recorder.num_steps() > 0);
+        Some(recorder.recording(&self.environment, ended_by))
     }
 
     pub(super) fn episode(&self) -> Episode {

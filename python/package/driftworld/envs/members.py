@@ -334,6 +334,9 @@ class Members:
         views, arrays = (self._views, out) if self._options.is_dict else ({"": self._views[self._modalities[0]]}, {"": out})
         wanted = {kind: (view.shape, view.dtype.name) for kind, view in views.items()}
         if not isinstance(arrays, Mapping) or {kind: _form(array) for kind, array in arrays.items()} != wanted:
+            locked = [kind or "the array" for kind, array in (arrays.items() if isinstance(arrays, Mapping) else ()) if _is_locked(array)]
+            if locked:
+                raise ValueError(f"out: found {', '.join(locked)} read-only, expected writable arrays; nothing was changed")
             told = ", ".join(f"{kind or 'an array'} {name} {shape}" for kind, (shape, name) in wanted.items())
             raise ValueError(f"out: found other arrays than observations have, expected {told}; nothing was changed")
 
@@ -425,6 +428,10 @@ def _form(array: Any) -> tuple[tuple[int, ...], str] | None:
     """Shape and type of an array that can be written into."""
     is_free = isinstance(array, np.ndarray) and array.flags.writeable
     return (array.shape, array.dtype.name) if is_free else None
+
+
+def _is_locked(array: Any) -> bool:
+    return isinstance(array, np.ndarray) and not array.flags.writeable
 
 
 def _locked(array: NDArray[Any]) -> NDArray[Any]:

@@ -203,6 +203,12 @@ def coverings(found: str) -> dict[str, str]:
     told = {}
     for each in json.loads(found):
         option, said = each["option"], [(name, json.dumps(value)) for name, value in each["said"]]
+        if "hidden" in each:
+            told[option] = (
+                f"{option}: found it over {each['hidden']}, in which {said[0][0]} and {said[1][0]} differ and which only rgb images "
+                "show, expected rgb among them, or variants that differ elsewhere: under it they are one"
+            )
+            continue
         if len(said) == 1:
             found_over = f"{said[0][0]} draws anew in each world"
         else:
@@ -282,9 +288,19 @@ def expect_same_spaces(ours: dict[str, Any], theirs: dict[str, Any], modalities:
 
 
 def fits_into(action: dict[str, Any], other: dict[str, Any]) -> bool:
-    """Whether actions of one kind can be handed over as those of the other: the same, or without the last numbers."""
-    bounds = action.get("bounds")
-    return action == other or (bounds is not None and other.get("bounds", [])[: len(bounds)] == bounds)
+    """Whether actions of one kind can be handed over as those of the other: the same, or without the last numbers.
+
+    Bounds that worlds draw anew hold all that are within them.
+    """
+    if action == other:
+        return True
+    bounds, outer = action.get("bounds"), other.get("bounds", [])
+    if bounds is None or len(outer) < len(bounds):
+        return False
+    return all(
+        one == most or (other["drawn"] and most[0] <= one[0] and one[1] <= most[1])
+        for one, most in zip(bounds, outer, strict=False)
+    )
 
 
 def widest_action(layouts: Sequence[dict[str, Any]]) -> dict[str, Any]:
