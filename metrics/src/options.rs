@@ -323,7 +323,7 @@ impl Options {
             if !bounded || range.min > range.max {
                 return Err(MetricsError::bad_option(
                     "data_range",
-                    format!("{:e} to {:e} for task {task}", range.min, range.max),
+                    format!("{:?} to {:?} for task {task}", range.min, range.max),
                     "two numbers below 1e100 in magnitude, the smaller one first",
                 ));
             }
@@ -365,34 +365,23 @@ mod tests {
 
     #[test]
     fn windows_and_ranges_out_of_bounds_are_refused() {
-        let check = |options: Options, expected: &str| assert_eq!(options.check().unwrap_err().to_string(), expected);
+        let check = |options: &str, expected: &str| {
+            let options: Options = serde_json::from_str(options).unwrap();
+            assert_eq!(options.check().unwrap_err().to_string(), expected);
+        };
         check(
-            Options {
-                window_length: Some(0),
-                ..Options::default()
-            },
+            r#"{"window_length": 0}"#,
             "option window_length: found 0, expected 1 to 10000 experiences",
         );
-        let range = DataRange { min: 2.0, max: 1.0 };
         check(
-            Options {
-                data_range: Some([("a".to_owned(), range)].into()),
-                ..Options::default()
-            },
-            "option data_range: found 2e0 to 1e0 for task a, expected two numbers below 1e100 in magnitude, the \
-             smaller one first",
+            r#"{"data_range": {"a": {"min": 2, "max": 1}}}"#,
+            "option data_range: found 2.0 to 1.0 for task a, expected two numbers below 1e100 in magnitude, the smaller one first",
         );
-        let range = DataRange {
-            min: f64::NAN,
-            max: 1.0,
+        let (min, max) = (f64::NAN, 1.0);
+        let options = Options {
+            data_range: Some([("a".to_owned(), DataRange { min, max })].into()),
+            ..Options::default()
         };
-        assert!(
-            Options {
-                data_range: Some([("a".to_owned(), range)].into()),
-                ..Options::default()
-            }
-            .check()
-            .is_err()
-        );
+        assert!(options.check().is_err());
     }
 }

@@ -98,7 +98,9 @@ pub(super) fn each_log<T: Send>(
     let names = log_folders::names(logs);
     let read = |(log, name): (&PathBuf, &String)| {
         let name = (logs.len() > 1).then_some(name.as_str());
-        keep(ScoredLog::read(log, name, experts, options, warn)?)
+        ScoredLog::read(log, name, experts, options, warn)
+            .and_then(&keep)
+            .map_err(|failure| failure.at(log))
     };
     let kept: Vec<_> = logs.par_iter().zip(&names).map(read).collect();
     let failures: Vec<&Failure> = kept.iter().filter_map(|kept| kept.as_ref().err()).collect();

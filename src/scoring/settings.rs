@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use driftworld_metrics::{DataRange, DataRanges, Definitions, Noise, Options, Scales};
 use driftworld_spec::did_you_mean;
+use driftworld_text::json::{Wanted, lines_and_columns, offsets, repeated};
 use driftworld_text::{ShownPath, in_plain_words, one_line};
 use serde_json::{Map, Value, json};
 
@@ -68,10 +69,22 @@ pub(super) fn load(path: &Path) -> Result<Loaded, Failure> {
     let known = || known.as_object().into_iter().flat_map(|known| known.keys());
     if let Some(strange) = settings.keys().find(|key| known().all(|known| known != *key)) {
         let near = did_you_mean(strange, known());
+        let names = known()
+            .map(String::as_str)
+            .chain(NOT_SCORING)
+            .collect::<Vec<_>>()
+            .join(", ");
         return Err(Failure::input(format!(
-            "{}: found the setting {strange:?}, expected one of l2metrics{near}",
-            path.shown()
+            "{}: found the setting {strange:?}, expected one of {names}{near}",
+            place(path, &text, strange)
         )));
+    }
+    for (key, value) in &settings {
+        let alone = Map::from_iter([(key.clone(), value.clone())]);
+        serde_json::from_value::<Options>(Value::Object(alone)).map_err(|error| {
+            let error = one_line(in_plain_words(error)).to_string();
+            Failure::input(format!("{}, {key:?}: {error}", place(path, &text, key)))
+        })?;
     }
     let mut options: Options = serde_json::from_value(Value::Object(settings))
         .map_err(|error| Failure::input(format!("{}: {}", path.shown(), one_line(in_plain_words(error)))))?;
@@ -97,20 +110,52 @@ fn noise_of_l2metrics(noise: &Value) -> Value {
 pub fn data_ranges(path: &Path) -> Result<DataRanges, Failure> {
     let expected = "an object of ranges, such as {\"find_red\": {\"min\": 0, \"max\": 10}}";
     let mut ranges = DataRanges::new();
-    for (task, range) in object(path, &documents::text(path)?, expected)? {
+    let text = documents::text(path)?;
+    for (task, range) in object(path, &text, expected)? {
         let range: DataRange = serde_json::from_value(range).map_err(|error| {
             Failure::input(format!(
                 "{}, {task:?}: {}; expected {expected}",
-                path.shown(),
+                place(path, &text, &task),
                 one_line(in_plain_words(error))
             ))
         })?;
+        if range.min >= range.max {
+            return Err(Failure::input(format!(
+                "{}, {task:?}: found min {} and max {}, expected min below max",
+                place(path, &text, &task),
+                range.min,
+                range.max
+            )));
+        }
         ranges.insert(task.to_lowercase(), range);
     }
     Ok(ranges)
 }
 
+/// The file with the line and column at which a key of its object stands.
+fn place(path: &Path, text: &str, key: &str) -> String {
+    let pointer = format!("/{}", key.replace('~', "~0").replace('/', "~1"));
+    let wanted = [Wanted {
+        pointer: &pointer,
+        at_key: true,
+    }];
+    let (line, column) = lines_and_columns(text, &offsets(text, &wanted))[0];
+    format!("{}:{line}:{column}", path.shown())
+}
+
 fn object(path: &Path, text: &str, expected: &str) -> Result<Map<String, Value>, Failure> {
+    if let Some(pointer) = repeated(text, 1).first() {
+        let key = pointer
+            .rsplit('/')
+            .next()
+            .unwrap_or_default()
+            .replace("~1", "/")
+            .replace("~0", "~");
+        return Err(Failure::input(format!(
+            "{}: found the key {key:?} twice, expected each key once; remove one of the two",
+            path.shown()
+        )));
+    }
     match serde_json::from_str(text) {
         Ok(Value::Object(object)) => Ok(object),
         Ok(_) => Err(Failure::input(format!(
@@ -134,13 +179,8 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary folder can be made");
         let path = folder.path().join("settings.json");
         std::fs::write(&path, text).expect("a file can be written there");
-        load(&path).map_err(|failure| {
-            Failure::input(
-                failure
-                    .to_string()
-                    .replace(&format!("{}/", folder.path().display()), ""),
-            )
-        })
+        let here = format!("{}/", folder.path().display());
+        load(&path).map_err(|failure| Failure::input(failure.to_string().replace(&here, "")))
     }
 
     #[test]
@@ -166,8 +206,12 @@ mod tests {
             assert_eq!(loaded(text).expect_err("it is wrong").to_string(), expected);
         };
         check(
-            r#"{"perf_mesure": "reward"}"#,
-            "settings.json: found the setting \"perf_mesure\", expected one of l2metrics; did you mean \"perf_measure\"?",
+            r#"{"window_length": "x"}"#,
+            "settings.json:1:2, \"window_length\": invalid type: string \"x\", expected a whole number",
+        );
+        check(
+            r#"{"noise": null, "noise": [0, 1]}"#,
+            "settings.json: found the key \"noise\" twice, expected each key once; remove one of the two",
         );
         check(
             "[1]",

@@ -108,6 +108,8 @@ pub(crate) struct Metrics {
 
 impl Metrics {
     pub(crate) fn run(self) -> Result<(), Failure> {
+        // A slip is refused also where nothing is drawn.
+        let _ = (self.figures.shown()?, self.figures.options()?);
         let request = self.request()?;
         if let (Some(mode), Some(data)) = (self.ste_store_mode, self.scoring.ste_data()) {
             return store(&request.folders()?, mode, data);
