@@ -79,15 +79,14 @@ impl MapColors {
             })
             .collect();
         let mut pixels: Vec<Vec<Rgb>> = vec![Vec::new(); members.len()];
+        let nearest = Nearest::of(&middles, [width, height]);
         let pairs = image.rgb.chunks_exact(3).zip(self.bare.rgb.chunks_exact(3));
         for (place, (shown, bare)) in pairs.enumerate() {
             if shown == bare || shown == RIM {
                 continue;
             }
             let at = [place as u32 % width, place as u32 / width].map(|pixel| pixel as f32 + 0.5);
-            let far = |middle: &[f32; 2]| (middle[0] - at[0]).powi(2) + (middle[1] - at[1]).powi(2);
-            let nearest = (0..middles.len()).min_by(|a, b| far(&middles[*a]).total_cmp(&far(&middles[*b])));
-            if let Some(own) = nearest {
+            if let Some(own) = nearest.to(at) {
                 pixels[own].push([shown[0], shown[1], shown[2]]);
             }
         }
@@ -101,6 +100,59 @@ impl MapColors {
             Some((paint.unwrap_or(shaded), pixels.len()))
         };
         members.iter().zip(&pixels).filter_map(with_color).collect()
+    }
+}
+
+/// Places in a picture, by the square cells that they lie in.
+struct Nearest<'a> {
+    places: &'a [[f32; 2]],
+    columns: usize,
+    cells: Vec<Vec<usize>>,
+}
+
+impl<'a> Nearest<'a> {
+    /// Pixels along a cell.
+    const CELL: usize = 4;
+
+    /// Places beyond the picture are in the cell at its rim that is nearest to them.
+    fn of(places: &'a [[f32; 2]], size: [u32; 2]) -> Self {
+        let [columns, rows] = size.map(|pixels| (pixels as usize).div_ceil(Self::CELL).max(1));
+        let mut cells = vec![Vec::new(); columns * rows];
+        for (index, [x, y]) in places.iter().enumerate() {
+            let cell = |at: f32, count: usize| (at.max(0.0) as usize / Self::CELL).min(count - 1);
+            cells[cell(*y, rows) * columns + cell(*x, columns)].push(index);
+        }
+        Self { places, columns, cells }
+    }
+
+    /// The place nearest to a point of the picture, the first of several.
+    fn to(&self, at: [f32; 2]) -> Option<usize> {
+        let rows = self.cells.len() / self.columns;
+        let [column, row] = at.map(|pixel| pixel as usize / Self::CELL);
+        let mut best: Option<(f32, usize)> = None;
+        for ring in 0..self.columns.max(rows) {
+            // Nothing in this ring is nearer than this.
+            let least = (ring.saturating_sub(1) * Self::CELL) as f32;
+            if best.is_some_and(|(far, _)| far < least * least) {
+                break;
+            }
+            for y in row.saturating_sub(ring)..(row + ring + 1).min(rows) {
+                let is_edge = row.abs_diff(y) == ring;
+                for x in column.saturating_sub(ring)..(column + ring + 1).min(self.columns) {
+                    if !is_edge && column.abs_diff(x) != ring {
+                        continue;
+                    }
+                    for &index in &self.cells[y * self.columns + x] {
+                        let [across, down] = [0, 1].map(|axis| self.places[index][axis] - at[axis]);
+                        let found = (across * across + down * down, index);
+                        if best.is_none_or(|best| found < best) {
+                            best = Some(found);
+                        }
+                    }
+                }
+            }
+        }
+        best.map(|(_, index)| index)
     }
 }
 
@@ -174,6 +226,19 @@ mod tests {
             for (paint, other) in (0..5).flat_map(|paint| found.iter().map(move |other| (paint, *other))) {
                 prop_assert!(found.contains(&paint) || count(paint) <= count(other), "{:?} of {:?}", found, paints);
             }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn the_nearest_of_places_is_found_as_by_looking_at_all(
+            places in prop::collection::vec(prop::array::uniform2(-9.0..60.0_f32), 0..40),
+            at in (0_u32..50, 0_u32..37),
+        ) {
+            let at = [at.0 as f32 + 0.5, at.1 as f32 + 0.5];
+            let far = |place: &[f32; 2]| (place[0] - at[0]).powi(2) + (place[1] - at[1]).powi(2);
+            let expected = (0..places.len()).min_by(|a, b| far(&places[*a]).total_cmp(&far(&places[*b])));
+            prop_assert_eq!(Nearest::of(&places, [50, 37]).to(at), expected);
         }
     }
 
