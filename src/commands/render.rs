@@ -59,6 +59,9 @@ pub(crate) struct Render {
     json: bool,
 }
 
+/// The most pixels of all views of `--view episode` together; memory holds some fifteen bytes for each.
+const MAX_EPISODE_PIXELS: u64 = 67_108_864;
+
 /// Which picture of a world.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum View {
@@ -70,6 +73,7 @@ enum View {
     #[value(alias = "above")]
     TopDown,
     /// The agent's view in colour.
+    #[value(alias = "agent")]
     Rgb,
     /// The agent's view as distance, with a scale; white at 100 m with `--plain`.
     Depth,
@@ -142,6 +146,15 @@ impl Render {
 
     /// Two frames side by side.
     fn episode(&self, world: &World, catalogue: &Catalogue) -> Result<Drawing, Failure> {
+        let frames = u64::from(self.frames.unwrap_or(8));
+        if frames * u64::from(self.size).pow(2) > MAX_EPISODE_PIXELS {
+            return Err(Failure::usage(format!(
+                "--frames {frames}: found {frames} views of {0} × {0} pixels, expected at most {MAX_EPISODE_PIXELS} pixels in all; \
+                 give --size {1} or fewer --frames",
+                self.size,
+                (MAX_EPISODE_PIXELS / frames).isqrt()
+            )));
+        }
         let mut agent = self.agent.as_ref().unwrap_or(&AgentArg::Onrails).agent()?.agent;
         let recording = recorded(world, catalogue, agent.as_mut(), 0, MAX_EXPERT_STEPS)?;
         let most = usize::from(self.frames.unwrap_or(8));
