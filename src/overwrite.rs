@@ -1,7 +1,7 @@
 //! What a command does not write over: files of a log, and what it reads itself. A slip of the keyboard is refused, and
 //! costs nothing.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use driftworld_curriculum::RECORDINGS_FILE;
 use driftworld_text::ShownPath;
@@ -38,6 +38,33 @@ pub(crate) fn refuse_log_files(target: &Path) -> Result<(), Failure> {
             log.shown()
         ))),
     }
+}
+
+/// Refuses one file for two outputs: `targets` are options with the files that they name.
+pub(crate) fn refuse_same(targets: &[(&str, PathBuf)]) -> Result<(), Failure> {
+    // The folder as it is, for the file may not be there yet.
+    let place = |path: &Path| {
+        let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        whole
+            .canonicalize()
+            .unwrap_or_else(|_| match (whole.parent(), whole.file_name()) {
+                (Some(folder), Some(name)) => folder.canonicalize().unwrap_or_else(|_| folder.to_owned()).join(name),
+                _ => whole,
+            })
+    };
+    let files = targets.iter().filter(|(_, path)| !path.starts_with("/dev"));
+    let mut known: Vec<(&str, PathBuf)> = Vec::new();
+    for (option, path) in files {
+        let own = place(path);
+        if let Some((other, _)) = known.iter().find(|(_, other)| *other == own) {
+            return Err(Failure::usage(format!(
+                "--{option}: found {}, the file of --{other}, expected another file; one would overwrite the other",
+                path.shown()
+            )));
+        }
+        known.push((option, own));
+    }
+    Ok(())
 }
 
 /// Refuses a file that the command reads: `names` are paths, with or without a variant behind them.

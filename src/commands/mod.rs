@@ -45,6 +45,7 @@ mod weights;
 use std::borrow::Cow;
 use std::ffi::OsString;
 use std::io::Write as _;
+use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
@@ -74,8 +75,9 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> u8 {
     WORDS.lock().unwrap_or_else(PoisonError::into_inner).clone_from(&args);
     style::follow(asked_color(&args));
     match parse(&args) {
-        Ok(command) => {
-            let done = interrupt::watch().and_then(|_watch| command.run());
+        Ok((command, outputs)) => {
+            let done = overwrite::refuse_same(&outputs).and_then(|()| interrupt::watch());
+            let done = done.and_then(|_watch| command.run());
             let reported = output::tell_what_was_written();
             done.and(reported).map_or_else(|failure| report(&failure), |()| 0)
         }
@@ -122,14 +124,16 @@ fn asked_color(args: &[OsString]) -> ColorChoice {
     asked
 }
 
+/// The options that name files to write, with the files.
+type Outputs = Vec<(&'static str, PathBuf)>;
+
 /// Reads arguments. What is said of wrong ones quotes them, in one line each and without what a terminal would obey.
-fn parse(args: &[OsString]) -> Result<Command, clap::Error> {
+fn parse(args: &[OsString]) -> Result<(Command, Outputs), clap::Error> {
     let read = |args: Vec<OsString>| {
         let mut command = command().color(asked_color(&args));
         let matches = command.try_get_matches_from_mut(args)?;
-        Driftworld::from_arg_matches(&matches)
-            .map(|read| read.command)
-            .map_err(|error| error.format(&mut command))
+        let read = Driftworld::from_arg_matches(&matches).map_err(|error| error.format(&mut command))?;
+        Ok((read.command, outputs(&matches)))
     };
     read(args.to_vec()).map_err(|said| {
         let said = with_printable_words(said);
@@ -147,6 +151,23 @@ fn parse(args: &[OsString]) -> Result<Command, clap::Error> {
         let said = read(args.iter().map(shown).collect()).err().unwrap_or(said);
         removed_word(args, &said).unwrap_or(said)
     })
+}
+
+/// The files that a command is to write, by the option that names each.
+fn outputs(matches: &clap::ArgMatches) -> Outputs {
+    let mut leaf = matches;
+    while let Some((_, below)) = leaf.subcommand() {
+        leaf = below;
+    }
+    let file = |option| match leaf.try_get_one::<PathBuf>(option) {
+        Ok(path) => Some((option, path?.clone())),
+        // No option of this command, or none that names a file.
+        Err(_) => None,
+    };
+    ["output", "record", "matrix", "plot"]
+        .into_iter()
+        .filter_map(file)
+        .collect()
 }
 
 /// The error with the arguments that it quotes shown in one line each; what our own parsers say of them quotes them so already.

@@ -15,6 +15,7 @@ use crate::spec::{
     TaskLabel, sound_name,
 };
 use clap::{Args, ValueEnum};
+use driftworld_text::ShownPath;
 use serde_json::json;
 
 use super::assets::LibraryChoice;
@@ -169,7 +170,7 @@ pub(crate) struct Curriculum {
     /// Each learns one variant, in the worlds and as long as the lifetime does, and is evaluated where the lifetime is.
     #[arg(long, value_name = "DIR")]
     experts: Option<PathBuf>,
-    /// Replace the files of an earlier curriculum in a folder.
+    /// Replace the files of an earlier curriculum.
     #[arg(long)]
     force: bool,
     /// Draw the blocks over experiences into this PNG file.
@@ -270,6 +271,12 @@ impl Curriculum {
                 (self.controls.as_ref(), &designed.controls),
                 (self.experts.as_ref(), &designed.experts),
             ])?;
+            if !request.is_of_several() && self.output.is_file() {
+                return Err(Failure::input(format!(
+                    "{}: found a file, expected none; name another with -o, or replace it with --force",
+                    self.output.shown()
+                )));
+            }
         }
         let evidence = designed.chosen.evidence.as_ref();
         // What is printed beside a scenario on standard output would spoil it.
