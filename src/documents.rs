@@ -10,7 +10,7 @@ use driftworld_curriculum::{CurriculumError, log_name};
 use driftworld_env::{Catalogue, Environment, Obstacle, Warning};
 use driftworld_files::FileError;
 use driftworld_spec::maps::MapLibrary;
-use driftworld_spec::{Classes, MAX_BYTES, Scenario, SpecError, TaskSpec, World, did_you_mean};
+use driftworld_spec::{Classes, MAX_BYTES, Parameter, Role, Scenario, SpecError, TaskSpec, World, did_you_mean};
 use driftworld_text::one_line;
 
 use crate::contents::{Contents, OtherContents};
@@ -188,6 +188,8 @@ pub struct Checked {
     pub error: Option<SpecError>,
     /// Two variants of a scenario that is else valid and that no log could tell apart.
     pub same_log_name: Option<CurriculumError>,
+    /// Tasks that a scenario names and that were not found or not read, in sentences; their variants were not checked.
+    pub missing_tasks: Vec<String>,
 }
 
 /// Checks a document. `name` is what messages call it; `task` finds the tasks that a scenario names, whose variants are checked
@@ -201,10 +203,12 @@ pub fn check(
 ) -> Checked {
     let mut warnings = Vec::new();
     let mut same_log_name = None;
+    let mut missing_tasks = Vec::new();
     let error = match kind {
         Kind::Task => match TaskSpec::from_json_with(name, text, Some(classes)) {
             Ok(task) => {
                 warnings.extend(alike_in_logs(name, &task));
+                warnings.extend(without_elements(name, &task));
                 None
             }
             Err(error) => Some(error),
@@ -227,7 +231,9 @@ pub fn check(
                         one_line(called)
                     )
                 };
-                let task = task(called).map_err(|error| warnings.push(unchecked(error))).ok()?;
+                let task = task(called)
+                    .map_err(|error| missing_tasks.push(unchecked(error)))
+                    .ok()?;
                 found.insert(called.to_owned(), Arc::clone(&task));
                 Some(task)
             });
@@ -259,6 +265,7 @@ pub fn check(
         warnings,
         error,
         same_log_name,
+        missing_tasks,
     }
 }
 
@@ -276,6 +283,18 @@ pub fn start_inside(name: &str, text: &str, catalogue: &Catalogue) -> Option<Str
     };
     let found = warnings.iter().find(is_it)?;
     Some(format!("{name}: {found}"))
+}
+
+/// Parameters that say that they touch nothing.
+fn without_elements(document: &str, task: &TaskSpec) -> Vec<String> {
+    let none = |(_, parameter): &(&String, &Parameter)| parameter.role != Role::Fixed && parameter.affects.is_empty();
+    let odd = task.parameters().iter().filter(none).map(|(name, _)| {
+        format!(
+            "{}: parameter {name} affects no element, expected some, such as [\"S\"]; no distance by elements counts it",
+            one_line(document)
+        )
+    });
+    odd.collect()
 }
 
 /// Variants of a task that no scenario can hold together: a log would call them by one name.
@@ -364,6 +383,6 @@ mod tests {
         let found = check("s.json", text, Kind::Scenario, &mut tasks::task, &Classes::default());
         let error = found.error.expect("there is no such variant").to_string();
         assert!(error.contains("did you mean \"red\"?"), "{error}");
-        assert_eq!(found.warnings.len(), 1, "{:?}", found.warnings);
+        assert_eq!(found.missing_tasks.len(), 1, "{:?}", found.missing_tasks);
     }
 }

@@ -3,7 +3,10 @@
 use std::error::Error;
 use std::fmt;
 use std::ops::RangeInclusive;
+use std::path::Path;
 use std::sync::Arc;
+
+use driftworld_text::ShownPath;
 
 /// The error behind a failure, for programs that ask it more than its text.
 pub type Cause = Arc<dyn Error + Send + Sync>;
@@ -113,6 +116,17 @@ impl Failure {
     /// An error in other words than its own.
     pub(crate) fn because(text: impl Into<String>, error: impl Error + Send + Sync + 'static) -> Self {
         Self::Input(FailureText(text.into()), Some(Arc::new(error)))
+    }
+
+    /// The same, with the folder that it is of where the words do not name it.
+    pub(crate) fn at(self, folder: &Path) -> Self {
+        let shown = folder.shown().to_string();
+        match self {
+            Self::Input(text, cause) if !text.0.contains(&shown) => {
+                Self::Input(FailureText(format!("{shown}: {}", text.0)), cause)
+            }
+            other => other,
+        }
     }
 
     /// Several failures as one, by the cause of the first.

@@ -26,8 +26,10 @@ const SHEET_ROWS: usize = 12;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum FilmView {
     /// What the agent sees.
+    #[value(alias = "rgb")]
     Agent,
     /// The map, with the way so far.
+    #[value(alias = "top-down")]
     Above,
     /// Both, side by side.
     Both,

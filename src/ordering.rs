@@ -26,6 +26,14 @@ impl OrderRequest {
     /// The order of a matrix's items, and the method that found it. `seed` is what the method random draws from.
     pub(crate) fn order(&self, matrix: &DistanceMatrix, seed: u64) -> Result<(Method, Ordering), Failure> {
         let method = self.method.unwrap_or_else(|| Method::default_for(matrix.len()));
+        if self.target_step.is_some() && method != Method::TargetStep {
+            return Err(Failure::usage(format!(
+                "{}: found with the order {}, expected the order {}, which alone keeps to it",
+                argument("target_step"),
+                <&str>::from(method),
+                <&str>::from(Method::TargetStep)
+            )));
+        }
         let options = self.options(matrix, seed)?;
         let ordering = order(matrix, method, &options).map_err(|error| match error {
             SimilarityError::BadTargetStep { .. } => {

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use driftworld_curriculum::{CurriculumError, RECORDINGS_FILE, RecordingsFile};
 use driftworld_env::{Catalogue, EpisodeOrigin, Recording, Replay};
 use driftworld_metrics::{BlockType, read_log_with_texts};
-use driftworld_text::ShownPath;
+use driftworld_text::{ShownPath, printable};
 
 use crate::Failure;
 use crate::contents::{Contents, OtherContents};
@@ -167,7 +167,19 @@ impl RecordedEpisodes {
             .collect();
         match &found[..] {
             [row] => Ok(row),
-            [] => Err(self.missing(number)),
+            [] => match worker {
+                Some(worker) if self.rows.iter().any(|rows| rows.contains_key(&number)) => {
+                    let rows = self.rows.iter().flat_map(|rows| &rows[&number]);
+                    let workers: Vec<&str> = rows.map(|row| row.block.0.as_str()).collect();
+                    Err(Failure::input(format!(
+                        "{}: found no episode {number} of the worker {}, expected one of {}",
+                        self.path.shown(),
+                        printable(worker),
+                        workers.join(", ")
+                    )))
+                }
+                _ => Err(self.missing(number)),
+            },
             several => {
                 let workers: Vec<&str> = several.iter().map(|row| row.block.0.as_str()).collect();
                 Err(Failure::input(format!(

@@ -110,13 +110,13 @@ impl Drop for Watch {
 #[cfg(unix)]
 mod system {
     use std::io;
-    use std::sync::atomic::Ordering;
-    use std::sync::mpsc;
+    use std::sync::atomic::{AtomicBool, Ordering};
+    use std::sync::{Arc, mpsc};
     use std::thread;
     use std::time::Duration;
 
     use driftworld_atomic_files::remove_unfinished;
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
     use signal_hook::iterator::Signals;
     use signal_hook::low_level;
 
@@ -131,6 +131,8 @@ mod system {
     const LAST: Duration = Duration::from_millis(300);
 
     pub(super) fn follow_signals() -> io::Result<()> {
+        // A write beyond the limit of a file's size is an error then, said and cleaned up after as a full disk is.
+        signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)))?;
         let signals = Signals::new(signals())?;
         let thread = thread::Builder::new().name("signals".to_owned());
         thread.spawn(move || follow(signals)).map(drop)

@@ -46,8 +46,9 @@ const MAX_JOBS: usize = 256;
 pub(crate) struct Run {
     /// The scenario file.
     scenario: PathBuf,
-    #[arg(long, default_value = "onrails", value_name = "AGENT", help = AgentArg::HELP)]
-    agent: AgentArg,
+    // Not by clap: what was not asked for is said.
+    #[arg(long, value_name = "AGENT", help = format!("{} [default: onrails]", AgentArg::HELP))]
+    agent: Option<AgentArg>,
     /// Folder for the log. Must be empty, unless --resume is given.
     #[arg(short, long, default_value = "logs/run", value_name = "DIR")]
     output: PathBuf,
@@ -140,7 +141,10 @@ impl Run {
             tasks::check_classes(name, task, &classes)?;
         }
         plan.set_run_seed(self.seed);
-        let agent = self.agent.agent()?;
+        let agent = self.agent.as_ref().unwrap_or(&AgentArg::Onrails).agent()?;
+        let unasked = when(self.agent.is_none(), || {
+            format!(", by {} as no --agent was given", agent.name)
+        });
         for (what, fingerprint) in agent.fingerprints() {
             plan.add_fingerprint(what, fingerprint);
         }
@@ -160,7 +164,10 @@ impl Run {
         let summary = run.run()?;
         output::wrote(
             &self.output,
-            format!("a log of {} experiences, {} steps", summary.experiences, summary.steps),
+            format!(
+                "a log of {} experiences, {} steps{unasked}",
+                summary.experiences, summary.steps
+            ),
         );
         if self.json {
             return output::json(&summary);
@@ -260,6 +267,13 @@ impl LifetimeRun<'_> {
         let clock = Clock::from_environment()?;
         let mut journal = self.journal()?;
         if self.records {
+            if !journal.records() && journal.num_experiences() > 0 {
+                output::warning(format!(
+                    "{}: found experiences that were not recorded; --record keeps those from {} on",
+                    self.logs.shown(),
+                    journal.num_experiences()
+                ));
+            }
             journal.record();
         }
         let bar = output::progress(self.plan.num_experiences(), "living");

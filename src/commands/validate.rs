@@ -146,6 +146,9 @@ impl Validate {
             .same_log_name
             .as_ref()
             .map(|error| (error.code(), format!("{name}: {error}")));
+        if let (None, Some(missing)) = (&failure, checked.missing_tasks.first()) {
+            failure = Some(("document/no-task", missing.clone()));
+        }
         let mut trials = Vec::new();
         if self.worlds > 0 && checked.error.is_none() && failure.is_none() {
             match self.try_worlds(path, &text, checked.kind, classes) {

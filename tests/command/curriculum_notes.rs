@@ -82,7 +82,7 @@ fn what_stands_in_a_folder_is_not_replaced() {
 fn a_probe_of_the_reward_says_whether_what_is_best_changes() {
     let folder = scratch();
     let probe = |other: &str, worlds: u8| {
-        let line = format!("curriculum find_objects#blue {other} --probe reward --worlds {worlds} -o x.json");
+        let line = format!("curriculum find_objects#blue {other} --probe reward --worlds {worlds} --force -o x.json");
         succeed_in(folder.path(), &line)
     };
     let row = |shown: &str| {

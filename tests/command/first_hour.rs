@@ -399,7 +399,7 @@ fn the_variant_named_first_is_learned_first() {
     for names in ["red blue dusk", "dusk red blue", "blue dusk red"] {
         let found = json_in(
             folder.path(),
-            &format!("curriculum find_objects#{names} --worlds 0 -o s.json --json"),
+            &format!("curriculum find_objects#{names} --worlds 0 --force -o s.json --json"),
         );
         let first = names.split(' ').next().expect("three names");
         assert_eq!(found["variants"][0]["variant"], first, "{found}");
@@ -410,7 +410,7 @@ fn the_variant_named_first_is_learned_first() {
 fn a_probe_takes_the_variants_that_were_named_and_prints_what_made_ones_set() {
     let folder = scratch();
     let probe = |line: &str| {
-        let line = format!("curriculum find_objects#red {line} --probe O --worlds 0 -o s.json");
+        let line = format!("curriculum find_objects#red {line} --probe O --worlds 0 --force -o s.json");
         succeed_in(folder.path(), &line)
     };
     let shown = probe("blue dusk");

@@ -21,7 +21,7 @@ const COMMANDS: [&str; 21] = [
     "photograph small.json -o out/photographs",
     "order find_objects#red find_objects#blue --matrix out/matrix.csv --plot out/path.png",
     "order find_objects#red find_objects#blue --matrix out/matrix.json",
-    "curriculum find_objects#red find_objects#blue --learn 1 --eval-episodes 1 -o out/scenario.json --plot out/plan.png",
+    "curriculum find_objects#red find_objects#blue --learn 1 --eval-episodes 1 --force -o out/scenario.json --plot out/plan.png",
     "run out/scenario.json --agent random -o out/log",
     "logs aggregate out/log -o out/rows.tsv",
     "logs aggregate out/log -o out/rows.csv",

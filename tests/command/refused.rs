@@ -15,7 +15,7 @@ pub(super) const PARK: &str = r#"{ "version": 2, "name": "park", "parameters": {
   "variants": { "blue": {}, "red": { "color": "red" }, "green": { "color": "green" }, "dusk": { "extends": "red", "light": 0.6 },
     "huddle": { "spread": 6 }, "penalty": { "extends": "red", "reward": -100 } } }"#;
 
-const REFUSED: [&str; 119] = [
+const REFUSED: [&str; 129] = [
     "sampel",
     "sample",
     "sample find_objects --count 0",
@@ -31,6 +31,8 @@ const REFUSED: [&str; 119] = [
     "photograph park.json --modalities smell",
     "sheet park.json --scenario scenario.json",
     "film park.json -o film.jpg",
+    "film park.json -o new.gif --record ./new.gif",
+    "render park.json --view episode --frames 60 --size 4096",
     "vary park.json#red --element rewrd --distance 1",
     "vary park.json#red --element O --distance -1",
     "vary park.json#red --element R --distance 0.5 --name red",
@@ -47,6 +49,7 @@ const REFUSED: [&str; 119] = [
     "order",
     "order park.json --matrix matrix.txt",
     "order park.json --order target-step",
+    "order park.json --target-step 0.3",
     "order park.json --order shortest",
     "curriculum park.json --name a/b",
     "curriculum park.json --by rewards --probe reward",
@@ -65,6 +68,8 @@ const REFUSED: [&str; 119] = [
     "curriculum park.json --lifetimes 2 -o x.json",
     "curriculum park.json --experts - -o one.json",
     "curriculum park.json --controls - -o one.json",
+    "curriculum park.json -o c.png --plot c.png",
+    "curriculum park.json -o scenario.json",
     "run scenario.json --jobs 0",
     "run scenario.json --agent onrail",
     "metrics",
@@ -72,6 +77,7 @@ const REFUSED: [&str; 119] = [
     "metrics --ste expert log",
     "report log -T pie",
     "report log -u hours",
+    "metrics log -u hours",
     "sample park.json#rde",
     "sample park.json#blue --drift-to find_objects#red --count 3 --jsonl",
     "sample crowd.json",
@@ -79,6 +85,7 @@ const REFUSED: [&str; 119] = [
     "tasks show find_object",
     "tasks show park.json#dsk",
     "validate comma.json",
+    "validate nowhere.json",
     "sheet find_objects get_to_goal select_object moving_object",
     "vary park.json --element T --distance 0.5",
     "elements park.json red blu",
@@ -128,11 +135,14 @@ const REFUSED: [&str; 119] = [
     "play park.json",
     "replay nowhere",
     "replay log",
+    "replay log --episode 0 --worker nobody",
     "logs validate nowhere",
     "metrics .",
     "metrics nowhere",
     "metrics log -p rewrd",
     "metrics log -c bad.json",
+    "metrics log -c twice.json",
+    "metrics log -d range.json",
     "metrics log other --confidence 1.5",
     "report nowhere",
 ];
@@ -153,6 +163,9 @@ fn every_refusal_has_its_exit_code_and_its_words() {
         ("comma.json", "{\n  \"max_steps\": 3,\n}\n"),
         ("broken.csv", ",a,b\na,0,1\nb,2,0\n"),
         ("bad.json", r#"{"perf_mesure": "reward"}"#),
+        ("twice.json", r#"{"perf_measure": "reward", "perf_measure": "success"}"#),
+        ("range.json", r#"{"park_red": {"min": 3, "max": 3}}"#),
+        ("nowhere.json", &scenario.replace("park.json", "nowhere_else.json")),
     ] {
         write(&path.join(name), document);
     }

@@ -35,7 +35,7 @@ const TABLES: [(&str, &str); 11] = [
     ("order_compare", "order get_to_goal#plain soft dusk far --compare"),
     (
         "curriculum",
-        "curriculum mine.json --learn 2 --eval-episodes 2 -o again.json",
+        "curriculum mine.json --learn 2 --eval-episodes 2 --force -o again.json",
     ),
     ("run", "run scenario.json --agent random -o log --resume"),
     ("metrics", "metrics log"),

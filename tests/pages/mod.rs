@@ -51,7 +51,11 @@ const BY_HAND: &[(&str, usize, &str)] = &[
     ("docs/benchmarks.md", 8, "benches: the stage `benches`"),
     ("docs/curricula.md", 1, "half a minute, and tests of `curriculum`"),
     ("docs/first-hour.md", 1, "how the command is installed"),
-    ("docs/how-to/learners.md", 1, "minutes: the stage `learners` runs a smaller one"),
+    (
+        "docs/how-to/learners.md",
+        1,
+        "minutes: the stage `learners` runs a smaller one",
+    ),
     ("docs/l2explorer.md", 5, "the stage `unity`, with the published clients"),
     ("docs/python.md", 2, "`python/tests/`: windows and the checker"),
     ("docs/worlds.md", 1, "how its figures were measured"),

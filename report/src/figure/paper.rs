@@ -249,6 +249,8 @@ pub(super) fn label(value: f64, range: &Range<f64>) -> String {
         size if size >= 1e4 => 100.0,
         _ => 1e-4,
     };
+    // What is left of a sum that should be 0.
+    let value = if value.abs() < span * 1e-9 { 0.0 } else { value };
     if span / 20.0 >= seen || span.is_nan() || span <= 0.0 {
         return number(value);
     }
@@ -256,8 +258,11 @@ pub(super) fn label(value: f64, range: &Range<f64>) -> String {
     let text = if largest >= 1e15 {
         let digits = (largest / (span / 10.0)).log10().ceil().clamp(1.0, 15.0) as usize;
         format!("{value:.digits$e}")
-    } else if span < 1e-8 {
+    } else if span < 1e-8 && largest < 1e-7 {
         format!("{value:.1e}")
+    } else if span < 1e-8 {
+        // As many digits as a number has.
+        short(value, 15)
     } else {
         format!("{value:.digits$}")
     };
@@ -327,7 +332,8 @@ mod tests {
         check(0.0..1e9, [2e8, 4e8], ["200M", "400M"]);
         check(0.0..2e-4, [1e-4, 1.2e-4], ["0.00010", "0.00012"]);
         check(0.0..101.0, [0.0, 20.0], ["0", "20"]);
-        check(-0.5..0.5, [-0.2, 0.2], ["−0.2", "0.2"]);
+        check(-0.5..0.5, [-5.6e-17, 0.2], ["0", "0.2"]);
+        check(1.0..1.0 + 1e-11, [1.0, 1.0 + 2e-12], ["1", "1.000000000002"]);
         check(20_000.0..20_100.0, [20_020.0, 20_040.0], ["20020", "20040"]);
     }
 
