@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import tarfile
 import tempfile
+import textwrap
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -124,7 +125,7 @@ class Results:
 
     def markdown(self) -> str:
         """A page: the table, each task of each learner, and what it does not show."""
-        return "\n".join([*_HEAD.format(sequence=self.sequence, share=LEARNED).splitlines(), "", *self._table(), "", *self._tasks(), "", *_FOOT.splitlines(), ""])
+        return "\n".join([*_head(self.sequence), "", *self._table(), "", *self._tasks(), "", *_FOOT.splitlines(), ""])
 
     def _table(self) -> list[str]:
         lines = [
@@ -158,6 +159,12 @@ def _cell(value: tuple[float, float, float] | None) -> str:
         return "–"
     mean, low, high = (100 * number for number in value)
     return f"{mean:.0f} ({low:.0f} to {high:.0f})".replace("-0 ", "0 ")
+
+
+def _head(sequence: Sequence) -> list[str]:
+    """The title, what the sequence is, and what the columns are."""
+    title, about, *rest = _HEAD.format(sequence=sequence, share=LEARNED).split("\n\n")
+    return "\n\n".join([title, textwrap.fill(about, 120), *rest]).splitlines()
 
 
 _HEAD = """# Learners compared in the sequence `{sequence.name}`
