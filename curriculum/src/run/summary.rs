@@ -85,11 +85,6 @@ pub struct RegimeSummary {
 const MOST_NAMED: usize = 100;
 
 impl Summary {
-    /// Experiences that are over, lived or left out.
-    pub fn num_over(&self) -> u64 {
-        self.experiences + self.skipped
-    }
-
     /// Takes the next experience into account, which was ended by what the word says.
     pub(super) fn count(&mut self, planned: &Planned, reward: f64, success: f64, steps: u64, ended_by: &str) {
         self.experiences += 1;
