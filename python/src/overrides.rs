@@ -118,8 +118,13 @@ impl Reach {
             // What has no bounds of its own has the key's: worlds beyond them are refused.
             let numbers = drawn.and_then(|drawn| drawn.support());
             let numbers = numbers.and_then(|values| values.iter().map(Value::as_number).collect::<Option<Vec<f64>>>());
-            let greatest = numbers.and_then(|numbers| numbers.into_iter().reduce(f64::max));
-            *place = Some(greatest.map_or(hole.range[1], |greatest| greatest.min(hole.range[1])));
+            let greatest = match numbers {
+                // Noise of 0 draws nothing.
+                Some(numbers) if numbers.windows(2).all(|pair| pair[0].total_cmp(&pair[1]).is_eq()) => continue,
+                Some(numbers) => numbers.into_iter().fold(hole.range[0], f64::max),
+                None => hole.range[1],
+            };
+            *place = Some(greatest.min(hole.range[1]));
         }
         reach
     }

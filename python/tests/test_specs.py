@@ -328,3 +328,9 @@ def test_laws_of_colours_go_out_and_in_again(family: str) -> None:
     assert colors == [again.variant("autumn").sample(3, index)["environment_params"]["sky_color"] for index in range(5)]
     assert all(0 <= channel <= 1 for color in colors for channel in color)
     assert (colors[0] == colors[1]) == (family == "color_normal")
+
+
+def test_parameters_that_affect_nothing_are_warned_of() -> None:
+    idle = {"role": "variant", "type": "number", "affects": [], "range": [0, 1], "default": 0}
+    with pytest.warns(UserWarning, match="parameter idle affects no element, expected some"):
+        assert driftworld.validate({"version": 2, "name": "t", "parameters": {"idle": idle}}) == []
