@@ -96,11 +96,14 @@ def _claim(claim: Path) -> Iterator[bool]:
     """Whether the folder was ours to make."""
     with contextlib.suppress(FileNotFoundError):
         if time.time() - claim.stat().st_mtime > STALE:
-            # Only one of those who try can rename it.
+            # Only one process can rename a folder; another may have renamed the stale one, and made its own, meanwhile.
             gone = claim.with_name(f"claim-{uuid.uuid4().hex}")
             with contextlib.suppress(FileNotFoundError):
                 claim.rename(gone)
-                gone.rmdir()
+                if time.time() - gone.stat().st_mtime > STALE:
+                    gone.rmdir()
+                else:
+                    gone.rename(claim)
     try:
         claim.mkdir()
     except FileExistsError:
@@ -164,7 +167,7 @@ def make_learner(cell: Cell, sequence: Sequence, policy: str) -> Any:
     arguments = {**sequence.learners.get("all", {}), **sequence.learners.get(cell.learner, {}), **dict(cell.arguments)}
     names = {each.name for each in dataclasses.fields(Settings)}
     settings = Settings(**{name: arguments.pop(name) for name in list(arguments) if name in names})
-    # Who has to know it in advance is told how long the lifetime is.
+    # Methods that have to know it in advance get the length of the lifetime.
     known = {"max_tasks": len(sequence.tasks), "task_decisions": sequence.decisions}
     told = {name: value for name, value in known.items() if name in inspect.signature(made).parameters}
     return made(
