@@ -1,5 +1,7 @@
 //! A task for one variant under one seed, with all that is settled filled in and a stream for all that is drawn.
 
+use std::borrow::Cow;
+
 use driftworld_spec::{
     Count, Distribution, Facing, Hole, Object, ParameterType, PlacedGroup, Resolved, Role, Source, Template, Value,
     Variant, WorldDraft,
@@ -14,6 +16,8 @@ use crate::stream::{Rng, Stream};
 #[derive(Debug)]
 pub(crate) struct Compiled {
     pub(crate) parameters: Vec<Randomized>,
+    /// The numbers of the parameters, each behind those that its look-ups read.
+    pub(crate) order: Vec<usize>,
     pub(crate) world: Filled<WorldDraft>,
     /// The cells of a layout in which the agent starts, where it does so.
     pub(crate) start: Option<Start>,
@@ -26,8 +30,49 @@ pub(crate) struct Compiled {
 /// A distribution with numbers settled, and the stream it draws from.
 #[derive(Debug)]
 pub(crate) struct Drawn {
+    /// The distribution; where look-ups read what is drawn, over all that this can be.
     pub(crate) distribution: Distribution,
     pub(crate) stream: Stream,
+    look_up: Option<LookUp>,
+}
+
+impl Drawn {
+    /// The distribution in a world in which the randomized parameters have these values.
+    pub(crate) fn law(&self, values: &[Value]) -> Cow<'_, Distribution> {
+        let look_up = self.look_up.as_ref();
+        look_up.map_or(Cow::Borrowed(&self.distribution), |look_up| Cow::Owned(look_up.law(values)))
+    }
+}
+
+/// A source whose look-ups read what is drawn.
+#[derive(Debug)]
+struct LookUp {
+    variant: Variant,
+    source: Source,
+    /// The randomized parameters that it names, and their numbers.
+    reads: Vec<(String, usize)>,
+}
+
+impl LookUp {
+    fn law(&self, values: &[Value]) -> Distribution {
+        let drawn: Vec<(&str, Value)> = self
+            .reads
+            .iter()
+            .map(|(name, number)| (name.as_str(), values[*number].clone()))
+            .collect();
+        match self.variant.resolve_with(&self.source, &drawn) {
+            Some(Resolved::Draw(distribution)) => distribution,
+            Some(Resolved::Value(value)) => Distribution::Constant { value },
+            Some(Resolved::Randomized(reference)) => {
+                let drawn = drawn.into_iter().find(|(name, _)| *name == reference.param);
+                let value = drawn.and_then(|(_, value)| value.at(reference.index));
+                Distribution::Constant {
+                    value: value.expect("loading the task checked every reference"),
+                }
+            }
+            None => unreachable!("all randomized parameters that it names are known"),
+        }
+    }
 }
 
 /// A randomized parameter.
@@ -42,14 +87,22 @@ pub(crate) struct Randomized {
 
 impl Randomized {
     /// The parameter's value in a world.
-    pub(crate) fn value(&self, sequence: Sequence, stream: &Stream, index: u64, attempt: u32) -> Value {
+    ///
+    /// `known` are the values of the parameters that its look-ups read.
+    pub(crate) fn value(
+        &self,
+        sequence: Sequence,
+        stream: &Stream,
+        (index, attempt): (u64, u32),
+        known: &[Value],
+    ) -> Value {
         let covered = if attempt == 0 {
             self.covered(sequence, stream, index)
         } else {
             None
         };
         let value = covered.unwrap_or_else(|| {
-            draw(&self.drawn.distribution, &mut self.drawn.stream.at(index, 0, attempt)).into_owned()
+            draw(&self.drawn.law(known), &mut self.drawn.stream.at(index, 0, attempt)).into_owned()
         });
         value
             .cast(self.kind)
@@ -110,7 +163,7 @@ impl Fill {
             ),
             Self::Own(drawn) => {
                 let mut rng: Rng = drawn.stream.at(at.index, at.object, at.attempt);
-                take(&draw(&drawn.distribution, &mut rng))
+                take(&draw(&drawn.law(values), &mut rng))
             }
         }
     }
@@ -171,6 +224,23 @@ pub(crate) enum Start {
     Default(Stream),
 }
 
+/// The numbers of parameters, in the order of the task but for those that its look-ups read, which come first.
+fn order(parameters: &[Randomized]) -> Vec<usize> {
+    fn visit(number: usize, parameters: &[Randomized], order: &mut Vec<usize>) {
+        if order.contains(&number) {
+            return;
+        }
+        let reads = parameters[number].drawn.look_up.iter().flat_map(|look_up| &look_up.reads);
+        for (_, read) in reads {
+            visit(*read, parameters, order);
+        }
+        order.push(number);
+    }
+    let mut order = Vec::with_capacity(parameters.len());
+    (0..parameters.len()).for_each(|number| visit(number, parameters, &mut order));
+    order
+}
+
 /// Turns what a task declares into what is drawn for one variant under one seed.
 struct Compiler<'a> {
     variant: &'a Variant,
@@ -192,9 +262,10 @@ impl Compiled {
             randomized,
         };
         let mut dimension = 0;
-        let parameters = declared
+        let parameters: Vec<Randomized> = declared
             .filter_map(|(name, parameter)| {
                 let distribution = variant.distribution(name)?;
+                let look_up = compiler.look_up(parameter.distribution.as_ref()?);
                 let takes = match &distribution {
                     Distribution::Choice { .. } | Distribution::Constant { .. } => 0,
                     Distribution::Box { .. }
@@ -207,9 +278,11 @@ impl Compiled {
                     | Distribution::ColorHsv { .. } => 3,
                     other => usize::from(other.is_scalar()),
                 };
+                let takes = if look_up.is_some() { 0 } else { takes };
                 let dimensions = (takes > 0).then_some((dimension, takes));
                 dimension += takes;
-                let drawn = compiler.drawn(distribution, &format!("parameter/{name}"));
+                let mut drawn = compiler.drawn(distribution, &format!("parameter/{name}"));
+                drawn.look_up = look_up;
                 Some(Randomized {
                     name: name.clone(),
                     kind: parameter.kind,
@@ -244,6 +317,7 @@ impl Compiled {
         Self {
             // A quarter more than the mean is enough for most worlds; few have to move when they grow beyond.
             room: (expected * 1.25).min(4096.0) as usize + task.fixtures().len(),
+            order: order(&parameters),
             parameters,
             world,
             start,
@@ -271,7 +345,22 @@ impl Compiler<'_> {
         Drawn {
             distribution,
             stream: self.stream(name),
+            look_up: None,
         }
+    }
+
+    /// The look-ups of a source, if they read what is drawn.
+    fn look_up(&self, source: &Source) -> Option<LookUp> {
+        if self.variant.resolve_with(source, &[]).is_some() {
+            return None;
+        }
+        let number = |name: String| Some((self.randomized.iter().position(|known| *known == name)?, name));
+        let reads = source.names().into_iter().filter_map(number);
+        Some(LookUp {
+            variant: self.variant.clone(),
+            source: source.clone(),
+            reads: reads.map(|(number, name)| (name, number)).collect(),
+        })
     }
 
     /// Fills holes that a fixed or variant parameter settles; leaves the rest for each draw.
@@ -282,7 +371,8 @@ impl Compiler<'_> {
             match self.fill(&hole.source, &format!("{place}{}", hole.pointer)) {
                 Ok(fill) => holes.push((hole.clone(), fill)),
                 Err(value) => {
-                    hole.fill(&mut base, &value)
+                    let turned = value.cast(hole.kind).filter(|_| hole.kind == ParameterType::Heading);
+                    hole.fill(&mut base, turned.as_ref().unwrap_or(&value))
                         .expect("loading the task tried every value that this hole can be given");
                 }
             }
@@ -298,7 +388,11 @@ impl Compiler<'_> {
     fn fill(&self, source: &Source, name: &str) -> Result<Fill, Value> {
         match self.variant.resolve(source) {
             Resolved::Value(value) => Err(value),
-            Resolved::Draw(distribution) => Ok(Fill::Own(Box::new(self.drawn(distribution, name)))),
+            Resolved::Draw(distribution) => {
+                let mut drawn = self.drawn(distribution, name);
+                drawn.look_up = self.look_up(source);
+                Ok(Fill::Own(Box::new(drawn)))
+            }
             Resolved::Randomized(reference) => {
                 let parameter = self.randomized.iter().position(|name| *name == reference.param);
                 Ok(Fill::Parameter(
@@ -326,7 +420,7 @@ impl Compiler<'_> {
         };
         let mut object = self.template(&group.object, &format!("group/{name}/object"));
         object.base.tag.get_or_insert_with(|| name.clone());
-        let Resolved::Draw(placement) = self.variant.resolve(&spec.placement) else {
+        let Ok(Fill::Own(placement)) = self.fill(&spec.placement, &format!("group/{name}/placement")) else {
             unreachable!("loading the task checked that placements are distributions")
         };
         let facing = spec.facing.as_ref().map(|facing| match facing {
@@ -344,7 +438,7 @@ impl Compiler<'_> {
             name: name.clone(),
             count,
             object,
-            placement: self.drawn(placement, &format!("group/{name}/placement")),
+            placement: *placement,
             margins: Margins {
                 separation: self.variant.number(&spec.separation),
                 walls: self.variant.number(&spec.keep_out.walls),

@@ -29,7 +29,7 @@ mod world;
 pub use classes::{Classes, Models};
 pub use color::Color;
 pub use distribution::{
-    CellKind, CellRoom, Channel, ChannelChance, ChannelSpread, Channels, Distribution, Moments, Number, Order,
+    Case, CellKind, CellRoom, Channel, ChannelChance, ChannelSpread, Channels, Distribution, Moments, Number, Order,
     ParamRef, Spread, Turns,
 };
 pub use element::Element;

@@ -163,10 +163,11 @@ impl Sampler {
     /// attempt.
     fn draw_values(&self, index: u64, first: u32) -> Result<(Vec<Value>, u32), GeneratorError> {
         for attempt in first..ATTEMPTS {
-            let parameters = self.compiled.parameters.iter();
-            let values: Vec<Value> = parameters
-                .map(|parameter| parameter.value(self.sequence, &self.sequence_stream, index, attempt))
-                .collect();
+            let mut values = vec![Value::Boolean(false); self.compiled.parameters.len()];
+            for &number in &self.compiled.order {
+                let parameter = &self.compiled.parameters[number];
+                values[number] = parameter.value(self.sequence, &self.sequence_stream, (index, attempt), &values);
+            }
             if self.requirements.is_empty() {
                 return Ok((values, attempt));
             }

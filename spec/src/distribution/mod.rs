@@ -1,5 +1,6 @@
 //! [`Distribution`]: how values scatter, as data with its laws. Drawing from it is the generator's job, comparing two `similarity`'s.
 
+pub(crate) mod case;
 mod cells;
 mod channels;
 mod color;
@@ -22,6 +23,7 @@ mod von_mises;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use case::Case;
 pub use cells::{CellKind, CellRoom};
 pub use channels::{Channel, ChannelChance, ChannelSpread, Channels};
 pub use moments::Moments;

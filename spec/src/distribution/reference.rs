@@ -3,7 +3,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A number in a distribution: itself, or that of a fixed or variant parameter.
+use super::Distribution;
+use super::case::Case;
+
+/// A number in a distribution: itself, or that of a fixed or variant parameter, or one by the value of any parameter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "a number, or {\"param\": NAME}")]
 pub enum Number {
@@ -11,6 +14,35 @@ pub enum Number {
     Literal(f64),
     /// The number that a parameter has.
     Param(ParamRef),
+    /// A number by the value of a parameter.
+    Case(Box<Case<Number>>),
+}
+
+impl Distribution<Number> {
+    /// Its numbers in the order of the text.
+    pub(crate) fn numbers(&self) -> Vec<Number> {
+        let mut numbers = Vec::new();
+        let collected: Result<Distribution, ()> = self.try_map(&mut |number| {
+            numbers.push(number.clone());
+            Ok(0.0)
+        });
+        drop(collected);
+        numbers
+    }
+}
+
+impl Number {
+    /// The parameters that it names, look-ups included.
+    pub(crate) fn references(&self) -> Vec<&ParamRef> {
+        match self {
+            Self::Literal(_) => Vec::new(),
+            Self::Param(reference) => vec![reference],
+            Self::Case(case) => {
+                let cases = case.entries().flat_map(|(_, number)| number.references());
+                std::iter::once(&case.case).chain(cases).collect()
+            }
+        }
+    }
 }
 
 impl From<f64> for Number {
@@ -41,6 +73,7 @@ impl std::fmt::Display for Number {
         match self {
             Self::Literal(number) => write!(f, "{number}"),
             Self::Param(reference) => write!(f, "{reference}"),
+            Self::Case(case) => write!(f, "a number by {}", case.case),
         }
     }
 }

@@ -107,6 +107,36 @@ impl Distribution<f64> {
         }
     }
 
+    /// The values that it can draw with their probabilities, where it draws from a list of at most 1,000.
+    pub(crate) fn atoms(&self) -> Option<Vec<(Value, f64)>> {
+        let shares = |count: usize, weights: &Option<Vec<f64>>| {
+            let weights = weights.clone().unwrap_or_else(|| vec![1.0; count]);
+            let all: f64 = weights.iter().sum();
+            weights.into_iter().map(move |weight| weight / all)
+        };
+        let atoms: Vec<(Value, f64)> = match self {
+            Self::Constant { value } => vec![(value.clone(), 1.0)],
+            Self::Choice { values, weights } => {
+                let shares = shares(values.len(), weights);
+                values.iter().cloned().zip(shares).collect()
+            }
+            Self::Bernoulli { p } => vec![(Value::Boolean(false), 1.0 - p), (Value::Boolean(true), *p)],
+            Self::IntegerUniform { low, high } if high - low < 1000.0 => {
+                let count = high - low + 1.0;
+                (*low as i64..=*high as i64).map(|whole| (Value::Integer(whole), 1.0 / count)).collect()
+            }
+            Self::Mixture { parts, weights } => {
+                let mut all = Vec::new();
+                for (part, share) in parts.iter().zip(shares(parts.len(), weights)) {
+                    all.extend(part.atoms()?.into_iter().map(|(value, own)| (value, own * share)));
+                }
+                all
+            }
+            _ => return None,
+        };
+        (atoms.len() <= 1000).then_some(atoms)
+    }
+
     /// Some value it can draw, to try a template with.
     pub(crate) fn example(&self) -> Value {
         match self {

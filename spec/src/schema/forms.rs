@@ -11,7 +11,7 @@ use crate::describe::describe;
 use crate::error::{Problem, nearest};
 
 /// The definitions that messages call by a name of their own rather than by what they consist of.
-const NAMED: [&str; 3] = ["Color", "ParamRef", "Distribution"];
+const NAMED: [&str; 5] = ["Color", "ParamRef", "Case", "NumberCase", "Distribution"];
 
 /// One form that a value may take, and what keeps this value from having it.
 struct Form<'a, 'e> {
@@ -65,11 +65,19 @@ impl Form<'_, '_> {
 
     /// The one key that tells this form of an object from others: `uniform` of `{ "uniform": … }`.
     fn tag(&self) -> Option<&str> {
+        if self.is_case() {
+            return Some("case");
+        }
         let alone = self.is("ParamRef") || self.properties().is_some_and(|properties| properties.len() == 1);
         match self.schema["required"].as_array().map(Vec::as_slice) {
             Some([key]) if alone => key.as_str(),
             _ => None,
         }
+    }
+
+    /// Whether it is a look-up, which messages do not offer beside what it chooses from.
+    fn is_case(&self) -> bool {
+        self.is("Case") || self.is("NumberCase")
     }
 
     /// Whether it is a list of three: a colour whose channels may be parameters, or a number for each channel.
@@ -93,6 +101,7 @@ impl Form<'_, '_> {
         let label = match self.name {
             Some("Color") if beside_text => (6, "a colour".to_owned()),
             Some("Color") => (6, color::EXPECTED.to_owned()),
+            _ if self.is_case() => return None,
             Some("ParamRef") => (9, "a parameter ({\"param\": …})".to_owned()),
             Some(_) => (10, "a distribution".to_owned()),
             None if self.has_type("null") => return None,

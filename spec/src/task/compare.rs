@@ -202,7 +202,7 @@ impl MeasureName {
 fn distributions(parameter: &Parameter) -> impl Iterator<Item = &Distribution<Number>> {
     let own = match &parameter.distribution {
         Some(Source::Distribution(distribution)) => Some(&**distribution),
-        Some(Source::Param(_)) | None => None,
+        Some(Source::Param(_) | Source::Case(_) | Source::Value(_)) | None => None,
     };
     let values = parameter.value.iter().chain(&parameter.default);
     let values = values.chain(parameter.choices.iter().flatten());

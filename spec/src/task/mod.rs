@@ -14,6 +14,7 @@ mod layouts;
 mod parameter;
 mod read;
 mod require;
+mod scope;
 mod template;
 mod variant;
 mod variant_spec;
@@ -45,6 +46,7 @@ use crate::document::Document;
 use crate::error::{Listed, Problem, SpecError};
 use crate::limits::{MAX_TASK_DEPTH, MAX_VALUES};
 use crate::value::Value;
+use scope::{Scope, Unsettled};
 use crate::version;
 use crate::world::{Object, WorldDraft};
 
@@ -317,19 +319,25 @@ impl TaskSpec {
     /// What keeps a variant with these values from being drawn beside requirements: distributions with a fault, margins out of range.
     pub(crate) fn faults_of(&self, values: &IndexMap<String, Value>) -> Vec<Problem> {
         let mut problems = Vec::new();
+        let scope = Scope::new(&self.document.parameters, values);
         let mut check = |pointer: &dyn Fn() -> String, source: &Source| {
-            let distribution = match source {
-                Source::Distribution(distribution) => distribution,
-                Source::Param(reference) => match values.get(&reference.param) {
-                    Some(Value::Distribution(distribution)) => distribution,
-                    _ => return,
-                },
-            };
-            if let Some((found, expected)) = variant::settle(values, distribution)
-                .ok()
-                .and_then(|distribution| distribution.fault())
+            // A parameter that is drawn, or is no distribution, is sound by itself.
+            if let Source::Param(reference) = source
+                && !matches!(values.get(&reference.param), Some(Value::Distribution(_)))
             {
-                problems.push(Problem::new("spec/distribution", pointer(), found, expected));
+                return;
+            }
+            match scope.outcomes(source) {
+                Ok(outcomes) => {
+                    let fault = outcomes.iter().find_map(|(distribution, _)| distribution.fault());
+                    problems.extend(fault.map(|(found, expected)| {
+                        Problem::new("spec/distribution", pointer(), found, expected)
+                    }));
+                }
+                Err(Unsettled::NoCase(found, expected)) => {
+                    problems.push(Problem::new("spec/case", pointer(), found, expected));
+                }
+                Err(_) => {}
             }
         };
         for (name, parameter) in &self.document.parameters {
@@ -363,7 +371,7 @@ impl TaskSpec {
                 ("keep_out/agent", &group.spec.keep_out.agent),
             ];
             for (key, number) in margins {
-                let metres = variant::settle_number(values, number).unwrap_or(0.0);
+                let metres = scope.number(number).unwrap_or(0.0);
                 if !(0.0..=300.0).contains(&metres) {
                     let pointer = format!("/groups/{index}/{key}");
                     problems.push(Problem::new("spec/range", pointer, format!("{metres} m"), "0 to 300 m"));

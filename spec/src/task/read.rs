@@ -9,6 +9,7 @@ use serde::Serialize;
 use serde_json::Value as Json;
 
 use super::TaskSpec;
+use super::parameter::Role;
 use super::variant::Variant;
 use crate::value::Value;
 
@@ -61,7 +62,13 @@ impl TaskSpec {
         in_worlds.extend(names_in(&document.groups));
         for (name, other) in &document.parameters {
             in_worlds.extend(names_in(&other.value));
-            for read in names_in(&(&other.distribution, &other.choices, &other.default)) {
+            let read = names_in(&(&other.distribution, &other.choices, &other.default));
+            // What a look-up makes of another draw is more than how it is distributed by itself.
+            let is_drawn = |name: &String| document.parameters.get(name).is_some_and(|own| own.role == Role::Randomized);
+            if other.distribution.is_some() && read.iter().any(is_drawn) {
+                in_worlds.extend(read.iter().cloned());
+            }
+            for read in read {
                 readers.entry(read).or_default().draws.push(name.clone());
             }
         }

@@ -1,5 +1,6 @@
 //! Templates: a world or an object with holes that parameters and distributions fill. Filling them is the generator's job.
 
+use std::borrow::Cow;
 use std::sync::LazyLock;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
@@ -7,27 +8,46 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value as Json, json};
 
 use super::layouts;
-use crate::distribution::{Distribution, Number, ParamRef};
+use crate::distribution::{Case, Distribution, Number, ParamRef, case};
 use crate::error::Problem;
 use crate::schema::document::{DocumentSchema, of_type};
 use crate::schema::part;
 use crate::value::{ParameterType, Value};
 use crate::world::{FieldPlace, Object, Place, Setter, World, WorldDraft, places_of};
 
-/// Where a value comes from: a parameter, or a draw.
+/// Where a value comes from: a parameter, a draw, or one of several by the value of a parameter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "a distribution, or {\"param\": NAME}")]
 pub enum Source {
     /// The value of a parameter of any role, or a draw from one of type distribution.
     Param(ParamRef),
+    /// What the value of a parameter says, of any role.
+    Case(Box<Case<Source>>),
     /// A draw of its own.
     Distribution(Box<Distribution<Number>>),
+    /// A value that is written out, as a case of a look-up.
+    #[schemars(skip)]
+    Value(Value),
+}
+
+impl JsonSchema for Case<Source> {
+    fn schema_name() -> Cow<'static, str> {
+        "Case".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let description = "What stands here by the value of a parameter: cases are values, parameters, distributions or look-ups.";
+        case::schema(generator, description, &Schema::from(true))
+    }
 }
 
 impl Source {
-    /// Reads `{ "param": … }` or a distribution; `None` if the JSON is neither.
+    /// Reads `{ "param": … }`, a look-up or a distribution; `None` if the JSON is none of them.
     pub(crate) fn read(json: &Json) -> Option<Self> {
         let map = json.as_object()?;
+        if map.contains_key("case") {
+            return serde_json::from_value(json.clone()).ok().map(Self::Case);
+        }
         if map.contains_key("param") {
             return serde_json::from_value(json.clone()).ok().map(Self::Param);
         }
@@ -35,6 +55,45 @@ impl Source {
             return None;
         }
         serde_json::from_value(json.clone()).ok().map(Self::Distribution)
+    }
+
+    /// All that it can come to by look-ups, with the places in it: itself, or each case.
+    pub(crate) fn leaves(&self) -> Vec<(String, &Self)> {
+        let Self::Case(case) = self else {
+            return vec![(String::new(), self)];
+        };
+        let inside = case.entries().flat_map(|(key, case)| {
+            let leaves = case.leaves().into_iter();
+            leaves.map(move |(place, leaf)| (format!("/{key}{place}"), leaf))
+        });
+        inside.collect()
+    }
+
+    /// Its look-ups, with the places in it.
+    pub(crate) fn cases(&self) -> Vec<(String, &Case<Self>)> {
+        let Self::Case(own) = self else { return Vec::new() };
+        let inside = own.entries().flat_map(|(key, case)| {
+            let cases = case.cases().into_iter();
+            cases.map(move |(place, case)| (format!("/{key}{place}"), case))
+        });
+        std::iter::once((String::new(), &**own)).chain(inside).collect()
+    }
+
+    /// The parameters that it names, look-ups and numbers included.
+    pub fn names(&self) -> Vec<String> {
+        let mut names: Vec<String> = self.cases().iter().map(|(_, case)| case.case.param.clone()).collect();
+        for (_, leaf) in self.leaves() {
+            match leaf {
+                Self::Param(reference) => names.push(reference.param.clone()),
+                Self::Distribution(distribution) => {
+                    let numbers = distribution.numbers();
+                    let references = numbers.iter().flat_map(Number::references);
+                    names.extend(references.map(|reference| reference.param.clone()));
+                }
+                Self::Case(_) | Self::Value(_) => {}
+            }
+        }
+        names
     }
 }
 
@@ -279,7 +338,7 @@ fn open(schema: &mut Json, places: &[FieldPlace]) {
         let node = place.pointer.split('/').skip(1).fold(&mut *schema, inner);
         let value = node.take();
         let description = value.get("description").cloned();
-        *node = json!({ "anyOf": [value, { "$ref": "#/$defs/ParamRef" }, { "$ref": "#/$defs/Distribution" }] });
+        *node = json!({ "anyOf": [value, { "$ref": "#/$defs/ParamRef" }, { "$ref": "#/$defs/Case" }, { "$ref": "#/$defs/Distribution" }] });
         if let Some(description) = description {
             node["description"] = description;
         }
@@ -307,6 +366,7 @@ fn inner<'a>(node: &'a mut Json, key: &str) -> &'a mut Json {
 /// Makes the definitions that templates refer to known to a generator.
 fn define(generator: &mut SchemaGenerator) {
     generator.subschema_for::<ParamRef>();
+    generator.subschema_for::<Case<Source>>();
     generator.subschema_for::<Distribution<Number>>();
     generator.subschema_for::<crate::Color>();
     for (name, definition) in &SCHEMAS.definitions {
@@ -342,6 +402,7 @@ pub(crate) fn count_schema(generator: &mut SchemaGenerator) -> Schema {
         "anyOf": [
             { "type": "integer", "minimum": 0, "maximum": crate::MAX_OBJECTS },
             { "$ref": "#/$defs/ParamRef" },
+            { "$ref": "#/$defs/Case" },
             { "$ref": "#/$defs/Distribution" }
         ]
     }))

@@ -9,6 +9,7 @@ use sha2::{Digest, Sha256};
 use super::TaskSpec;
 use super::parameter::{Parameter, Role};
 use super::require::Requirement;
+use super::scope::{self, Scope, Unsettled};
 use super::template::Source;
 use crate::distribution::{Distribution, Number, ParamRef};
 use crate::error::{Problem, SpecError, first_of};
@@ -108,34 +109,46 @@ impl Variant {
         let declared = self.task.parameters().get(parameter)?.distribution.as_ref()?;
         match self.resolve(declared) {
             Resolved::Draw(distribution) => Some(distribution),
-            _ => None,
+            Resolved::Value(value) => Some(Distribution::Constant { value }),
+            Resolved::Randomized(_) => None,
         }
     }
 
-    /// What a source comes to in this variant.
+    /// What a source comes to in this variant; where its look-ups read what is drawn, a draw that mixes all their cases.
     pub fn resolve(&self, source: &Source) -> Resolved {
-        match source {
-            Source::Distribution(distribution) => Resolved::Draw(self.settle(distribution)),
-            Source::Param(reference) => match self.values.get(&reference.param) {
-                None => Resolved::Randomized(reference.clone()),
-                Some(Value::Distribution(distribution)) => Resolved::Draw(self.settle(distribution)),
-                Some(value) => Resolved::Value(
-                    value
-                        .at(reference.index)
-                        .expect("loading the task checked the index of every reference"),
-                ),
-            },
+        self.resolve_with(source, &[]).unwrap_or_else(|| {
+            let outcomes = self.scope().outcomes(source);
+            Resolved::Draw(scope::mixed(
+                outcomes.expect("loading the task went through the cases of every look-up"),
+            ))
+        })
+    }
+
+    /// What a source comes to in a world in which randomized parameters have these values; `None` where its look-ups read
+    /// others.
+    pub fn resolve_with(&self, source: &Source, drawn: &[(&str, Value)]) -> Option<Resolved> {
+        let scope = Scope { drawn, ..self.scope() };
+        match scope.resolve(source) {
+            Ok(resolved) => Some(resolved),
+            Err(Unsettled::Drawn(_)) => None,
+            Err(other) => unreachable!("loading the task checked every reference and look-up: {other:?}"),
         }
+    }
+
+    fn scope(&self) -> Scope<'_> {
+        Scope::new(self.task.parameters(), &self.values)
     }
 
     /// A distribution with every reference replaced by this variant's value.
     pub fn settle(&self, distribution: &Distribution<Number>) -> Distribution {
-        settle(&self.values, distribution).expect("loading the task checked that every reference names a number")
+        let settled = self.scope().settle(distribution);
+        settled.expect("loading the task checked that every reference names a number")
     }
 
     /// The number that a literal or a reference stands for in this variant.
     pub fn number(&self, number: &Number) -> f64 {
-        settle_number(&self.values, number).expect("loading the task checked that every reference names a number")
+        let settled = self.scope().number(number);
+        settled.expect("loading the task checked that every reference names a number")
     }
 
     /// A variant like this one under another name, with some parameters at other values.
@@ -213,30 +226,6 @@ fn accepted(parameters: &IndexMap<String, Parameter>, name: &str, value: &Value)
     parameter
         .accept_between(value)
         .map_err(|expected| Problem::new("spec/value", format!("/{name}"), value.to_string(), expected))
-}
-
-/// A reference that does not name a number of this variant.
-#[derive(Debug)]
-pub(crate) struct UnresolvedParams;
-
-pub(crate) fn settle_number(values: &IndexMap<String, Value>, number: &Number) -> Result<f64, UnresolvedParams> {
-    match number {
-        Number::Literal(number) => Ok(*number),
-        Number::Param(reference) => {
-            let value = values.get(&reference.param).ok_or(UnresolvedParams)?;
-            value
-                .at(reference.index)
-                .and_then(|value| value.as_number())
-                .ok_or(UnresolvedParams)
-        }
-    }
-}
-
-pub(crate) fn settle(
-    values: &IndexMap<String, Value>,
-    distribution: &Distribution<Number>,
-) -> Result<Distribution, UnresolvedParams> {
-    distribution.try_map(&mut |number| settle_number(values, number))
 }
 
 /// The first requirement that speaks of settled parameters only and does not hold, with the values it fails for.

@@ -1,11 +1,12 @@
 //! Groups: their counts, placements, distances, and the groups that they refer to.
 
-use indexmap::IndexMap;
 use serde_json::{Value as Json, json};
 
 use super::super::group::{Facing, Group};
+use super::super::scope::Scope;
 use super::super::template::Source;
-use super::super::{Count, PlacedGroup, variant};
+use super::super::variant::Resolved;
+use super::super::{Count, PlacedGroup};
 use super::Check;
 use crate::MAX_OBJECTS;
 use crate::describe::{describe, escape, plain_number};
@@ -71,6 +72,14 @@ impl Check<'_> {
         if self.is_unsound(placement) {
             return;
         }
+        if let Source::Case(_) = placement {
+            self.cases(pointer, placement);
+            for (place, leaf) in placement.leaves() {
+                self.placement(&format!("{pointer}{place}"), leaf);
+            }
+            self.has_outcomes(pointer, placement);
+            return;
+        }
         if let Source::Param(reference) = placement
             && let Some(parameter) = self.parameters.get(&reference.param)
             && parameter.kind != ParameterType::Distribution
@@ -88,7 +97,7 @@ impl Check<'_> {
                 self.unknown_parameter(pointer, &reference.param);
                 false
             }
-            Source::Param(_) => true,
+            Source::Param(_) | Source::Case(_) | Source::Value(_) => true,
             Source::Distribution(distribution) => self.distribution(pointer, distribution),
         };
         let odd = self
@@ -135,16 +144,11 @@ impl Check<'_> {
         let Some(count) = count else { return };
         let mut seen: Vec<(Distribution, u64, f64)> = Vec::new();
         for (name, values) in &self.variants {
-            let placement = match &group.placement {
-                Source::Distribution(distribution) => Some(&**distribution),
-                Source::Param(reference) => match values.get(&reference.param) {
-                    Some(Value::Distribution(distribution)) => Some(&**distribution),
-                    _ => None,
-                },
-            };
-            let placement = placement.and_then(|placement| variant::settle(values, placement).ok());
-            let separation = variant::settle_number(values, &group.separation).unwrap_or(0.0);
-            let (Some(placement), Some(least)) = (placement, self.least(count, values)) else {
+            let scope = Scope::new(self.parameters, values);
+            let separation = scope.number(&group.separation).unwrap_or(0.0);
+            let (Ok(Resolved::Draw(placement)), Some(least)) =
+                (scope.resolve(&group.placement), self.least(count, scope))
+            else {
                 continue;
             };
             let case = (placement, least, separation);
@@ -168,26 +172,20 @@ impl Check<'_> {
     }
 
     /// The fewest objects that a group can have in a variant, where that is known.
-    fn least(&self, count: &Count, values: &IndexMap<String, Value>) -> Option<u64> {
+    fn least(&self, count: &Count, scope: Scope) -> Option<u64> {
         let source = match count {
             Count::Fixed(count) => return Some(u64::from(*count)),
             Count::Drawn(source) => source,
         };
-        let own = match source {
-            Source::Param(reference) => values.get(&reference.param).and_then(|value| value.at(reference.index)),
-            Source::Distribution(_) => None,
-        };
-        let law = match (source, &own) {
-            (_, Some(Value::Distribution(distribution))) | (Source::Distribution(distribution), None) => {
-                variant::settle(values, distribution).ok()
-            }
-            (_, Some(value)) => return u64::try_from(value.as_integer()?).ok(),
-            (Source::Param(reference), None) => match self.parameters.get(&reference.param)?.distribution.as_ref()? {
-                Source::Distribution(distribution) => variant::settle(values, distribution).ok(),
-                Source::Param(_) => None,
+        let law = match scope.resolve(source).ok()? {
+            Resolved::Value(value) => return u64::try_from(value.as_integer()?).ok(),
+            Resolved::Draw(law) => law,
+            Resolved::Randomized(reference) => match self.parameters.get(&reference.param)?.distribution.as_ref()? {
+                Source::Distribution(distribution) => scope.settle(distribution).ok()?,
+                _ => return None,
             },
         };
-        let numbers = law?.support()?;
+        let numbers = law.support()?;
         let least = numbers
             .iter()
             .filter_map(Value::as_number)
@@ -264,16 +262,22 @@ impl Check<'_> {
     /// A number in metres, or a reference to one, that lies in a range in every variant.
     fn number(&mut self, pointer: &str, number: &Number, [low, high]: [f64; 2]) {
         let before = self.problems.len();
-        if let Number::Param(reference) = number {
-            if self.unsound.parameters.contains(&reference.param) {
-                return;
+        let references = number.references();
+        if references.iter().any(|reference| self.unsound.parameters.contains(&reference.param)) {
+            return;
+        }
+        match number {
+            Number::Param(reference) => self.number_reference(pointer, reference),
+            Number::Case(case) => {
+                self.number_case(pointer, case);
+                self.reads_no_draw(pointer, &references);
             }
-            self.number_reference(pointer, reference);
+            Number::Literal(_) => {}
         }
         let settled = self
             .variants
             .iter()
-            .filter_map(|(_, values)| variant::settle_number(values, number).ok());
+            .filter_map(|(_, values)| Scope::new(self.parameters, values).number(number).ok());
         let outside = settled.into_iter().find(|metres| !(low..=high).contains(metres));
         if let (Some(metres), true) = (outside, self.problems.len() == before) {
             self.report(Problem::new(

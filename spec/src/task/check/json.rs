@@ -13,6 +13,8 @@ impl Check<'_> {
     /// Whether what a source gives is for the schema of its place to judge.
     pub(super) fn is_json(&self, source: &Source, place: ParameterType) -> bool {
         match source {
+            Source::Case(_) => source.leaves().iter().any(|(_, leaf)| self.is_json(leaf, place)),
+            Source::Value(value) => is_for_schema(&Distribution::Constant { value: value.clone() }, place),
             Source::Param(reference) => {
                 let parameter = self.parameters.get(&reference.param);
                 reference.index.is_none()
@@ -30,16 +32,16 @@ impl Check<'_> {
     }
 
     /// Every value that such a source can give; reports those that cannot stand at the place.
-    pub(super) fn json_candidates<T>(&mut self, place: &str, hole: &Hole<T>) -> Vec<Value> {
+    pub(super) fn json_candidates<T>(&mut self, place: &str, source: &Source, hole: &Hole<T>) -> Vec<Value> {
         let mut candidates = Vec::new();
         let problems = hole.checker();
-        for (pointer, value) in self.json_values(place, &hole.source) {
+        for (pointer, value) in self.json_values(place, source) {
             let Some(value) = value.cast(ParameterType::Json) else {
                 continue;
             };
             let found = problems(&value);
             for mut problem in found.into_iter().map(|problem| problem.within(&pointer)) {
-                if !pointer.starts_with(&format!("{place}/")) {
+                if pointer != place && !pointer.starts_with(&format!("{place}/")) {
                     let where_used = format!("the parameter stands at {place}");
                     let advice = problem.advice.take();
                     problem.advice = Some(advice.map_or(where_used.clone(), |advice| {
@@ -67,6 +69,12 @@ impl Check<'_> {
     fn json_values(&self, place: &str, source: &Source) -> Vec<(String, Value)> {
         let mut found = Vec::new();
         match source {
+            Source::Case(_) => {
+                for (inside, leaf) in source.leaves() {
+                    found.extend(self.json_values(&format!("{place}{inside}"), leaf));
+                }
+            }
+            Source::Value(value) => found.push((place.to_owned(), value.clone())),
             Source::Distribution(distribution) => listed(distribution, place, &mut found),
             Source::Param(reference) => {
                 let Some(parameter) = self.parameters.get(&reference.param) else {
@@ -92,10 +100,8 @@ impl Check<'_> {
                     }
                 }
                 let drawn = format!("{pointer}/distribution");
-                match &parameter.distribution {
-                    Some(own @ Source::Param(_)) => found.extend(self.json_values(&drawn, own)),
-                    Some(Source::Distribution(own)) => listed(own, &drawn, &mut found),
-                    None => {}
+                if let Some(own) = &parameter.distribution {
+                    found.extend(self.json_values(&drawn, own));
                 }
             }
         }

@@ -1,5 +1,6 @@
 //! From a task's document to a checked task: references, types and ranges that the schema cannot see.
 
+mod cases;
 mod drawn;
 mod groups;
 mod json;
@@ -64,6 +65,7 @@ pub(super) fn compile(
     unsound.variants.extend(wrong.cloned());
 
     let mut check = Check::new(&document, &variants, classes, unsound);
+    check.cycles();
     check.parameters();
     let (world, fixtures) = check.world(&document.world);
     let groups: Vec<Option<PlacedGroup>> = (0..document.groups.len())
@@ -185,19 +187,15 @@ impl<'a> Check<'a> {
         if self.unsound.parameters.is_empty() {
             return false;
         }
-        let is_named = matches!(source, Source::Param(reference) if self.unsound.parameters.contains(&reference.param));
+        let is_named = source.names().iter().any(|name| self.unsound.parameters.contains(name));
         is_named || self.distributions_of(source).iter().any(|law| self.has_unsound(law))
     }
 
     /// Whether a distribution has a number of a parameter that something is wrong with.
     fn has_unsound(&self, distribution: &Distribution<Number>) -> bool {
-        let mut found = false;
-        let settled: Result<Distribution<f64>, ()> = distribution.try_map(&mut |number| {
-            found |= matches!(number, Number::Param(reference) if self.unsound.parameters.contains(&reference.param));
-            Ok(0.0)
-        });
-        drop(settled);
-        found
+        let numbers = distribution.numbers();
+        let mut references = numbers.iter().flat_map(Number::references);
+        references.any(|reference| self.unsound.parameters.contains(&reference.param))
     }
 
     fn report(&mut self, problem: Problem) {
@@ -225,7 +223,7 @@ impl<'a> Check<'a> {
                 if let (ParameterType::Distribution, Value::Distribution(distribution)) = (parameter.kind, value)
                     && !self.has_unsound(distribution)
                 {
-                    self.distribution(&pointer, distribution);
+                    self.settled_distribution(&pointer, distribution);
                 }
             }
             if let Some(source) = &parameter.distribution {
@@ -237,12 +235,21 @@ impl<'a> Check<'a> {
     /// Whether a randomized parameter's distribution yields its type.
     fn randomized(&mut self, parameter_pointer: &str, parameter: &Parameter, source: &Source) {
         let pointer = &format!("{parameter_pointer}/distribution");
-        if let Source::Param(reference) = source {
+        let is_plain = matches!(source, Source::Param(_));
+        for (place, leaf) in source.leaves() {
+            let Source::Param(reference) = leaf else { continue };
             let known = self.parameters.get(&reference.param);
-            if known.is_some_and(|known| known.kind != ParameterType::Distribution || known.role == Role::Randomized) {
+            let fits = |known: &Parameter| {
+                known.role != Role::Randomized && (known.kind == ParameterType::Distribution || !is_plain)
+            };
+            if known.is_some_and(|known| !fits(known)) {
                 let found = format!("the parameter {:?}", reference.param);
-                let expected = "a fixed or variant parameter of type distribution";
-                return self.report(Problem::new("spec/type", pointer, found, expected));
+                let expected = if is_plain {
+                    "a fixed or variant parameter of type distribution"
+                } else {
+                    "a fixed or variant parameter"
+                };
+                return self.report(Problem::new("spec/type", format!("{pointer}{place}"), found, expected));
             }
         }
         if parameter.kind == ParameterType::Layout {
@@ -250,7 +257,7 @@ impl<'a> Check<'a> {
         }
         if !self.is_unsound(source)
             && self.source(pointer, source, parameter.kind)
-            && matches!(source, Source::Param(_))
+            && matches!(source, Source::Param(_) | Source::Case(_))
         {
             self.compared_by(&format!("{parameter_pointer}/compare/measure"), parameter, source);
         }

@@ -2,7 +2,7 @@
 
 use super::super::parameter::{Domain, Parameter, Role};
 use super::super::template::Source;
-use super::super::variant;
+use super::super::scope::{Scope, Unsettled};
 use super::Check;
 use crate::describe::plain_number;
 use crate::distribution::{Distribution, Number, ParamRef};
@@ -14,14 +14,13 @@ impl Check<'_> {
     pub(super) fn distribution(&mut self, pointer: &str, distribution: &Distribution<Number>) -> bool {
         let before = self.problems.len();
         let mut references = Vec::new();
-        let collected: Result<Distribution<f64>, ()> = distribution.try_map(&mut |number| {
-            references.extend(match number {
-                Number::Param(reference) => Some(reference.clone()),
-                Number::Literal(_) => None,
-            });
-            Ok(0.0)
-        });
-        drop(collected);
+        for number in distribution.numbers() {
+            match number {
+                Number::Param(reference) => references.push(reference),
+                Number::Case(case) => self.number_case(pointer, &case),
+                Number::Literal(_) => {}
+            }
+        }
         let mut references = &references[..];
         while let Some(reference) = references.first() {
             if let Some(rest) = after_whole_color(references) {
@@ -35,8 +34,13 @@ impl Check<'_> {
         if self.problems.len() > before {
             return false;
         }
+        let source = Source::Distribution(Box::new(distribution.clone()));
         let fault = self.variants.iter().find_map(|(name, values)| {
-            let (found, expected) = variant::settle(values, distribution).ok()?.fault()?;
+            let (found, expected) = match Scope::new(self.parameters, values).outcomes(&source) {
+                Ok(outcomes) => outcomes.iter().find_map(|(law, _)| law.fault())?,
+                Err(Unsettled::NoCase(found, _)) => (found, "a case for it"),
+                Err(_) => return None,
+            };
             Some((name.clone(), found, expected))
         });
         if let Some((variant, found, expected)) = fault {
@@ -141,6 +145,17 @@ impl Check<'_> {
     /// Whether a source is known and yields the type that its place wants.
     pub(super) fn source(&mut self, pointer: &str, source: &Source, kind: ParameterType) -> bool {
         match source {
+            Source::Case(_) => {
+                let leaves = source.leaves().into_iter();
+                let sound = leaves.fold(self.cases(pointer, source), |sound, (place, leaf)| {
+                    self.source(&format!("{pointer}{place}"), leaf, kind) && sound
+                });
+                sound && self.has_outcomes(pointer, source)
+            }
+            Source::Value(value) => {
+                let fits = value.cast(kind).is_some();
+                self.type_matches(pointer, fits, value.to_string(), kind)
+            }
             Source::Param(reference) => {
                 let name = &reference.param;
                 if !self.parameters.contains_key(name) {
@@ -208,6 +223,11 @@ impl Check<'_> {
     /// Every distribution that a source can be drawn from: its own, or those that a parameter may be.
     pub(super) fn distributions_of(&self, source: &Source) -> Vec<Distribution<Number>> {
         match source {
+            Source::Case(_) => {
+                let leaves = source.leaves().into_iter();
+                leaves.flat_map(|(_, leaf)| self.distributions_of(leaf)).collect()
+            }
+            Source::Value(value) => vec![Distribution::Constant { value: value.clone() }],
             Source::Distribution(distribution) => vec![(**distribution).clone()],
             Source::Param(reference) => {
                 let Some(parameter) = self.parameters.get(&reference.param) else {
@@ -238,7 +258,11 @@ impl Check<'_> {
             }
         };
         match source {
-            Source::Distribution(_) => self.drawn(source).into_iter().filter_map(turned).collect(),
+            Source::Case(_) => {
+                let leaves = source.leaves().into_iter();
+                leaves.flat_map(|(_, leaf)| self.candidates(leaf, kind)).collect()
+            }
+            Source::Distribution(_) | Source::Value(_) => self.drawn(source).into_iter().filter_map(turned).collect(),
             Source::Param(reference) => {
                 let Some(parameter) = self.parameters.get(&reference.param) else {
                     return Vec::new();
@@ -275,12 +299,12 @@ impl Check<'_> {
     /// The ends of what the distributions of a source can draw, in every variant.
     fn drawn(&self, source: &Source) -> Vec<Value> {
         let distributions = self.distributions_of(source);
-        let settled = distributions.iter().flat_map(|distribution| {
-            self.variants
-                .iter()
-                .filter_map(|(_, values)| variant::settle(values, distribution).ok())
+        let sources = distributions.into_iter().map(|law| Source::Distribution(Box::new(law)));
+        let settled = sources.flat_map(|source| {
+            let outcomes = |(_, values): &(String, _)| Scope::new(self.parameters, values).outcomes(&source).ok();
+            self.variants.iter().filter_map(outcomes).flatten().collect::<Vec<_>>()
         });
-        let values = settled.flat_map(|distribution| {
+        let values = settled.flat_map(|(distribution, _)| {
             let example = distribution.example();
             distribution.support().unwrap_or_default().into_iter().chain([example])
         });

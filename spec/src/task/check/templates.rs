@@ -3,12 +3,11 @@
 use indexmap::IndexMap;
 use serde_json::Value as Json;
 
+use super::super::scope::Scope;
 use super::super::template::{Hole, Opening, Source, Template, openings};
-use super::super::variant;
 use super::Check;
 use crate::describe::{describe, pointer_of};
-use crate::distribution::{Distribution, Number};
-
+use crate::distribution::Distribution;
 use crate::error::Problem;
 use crate::value::{Value, with_whole_numbers};
 use crate::world::{Model, Object, WorldDraft};
@@ -106,25 +105,9 @@ impl Check<'_> {
 
     /// The texts that a source can give in a variant of these values.
     fn texts_in(&self, values: &IndexMap<String, Value>, source: &Source) -> Vec<String> {
-        let drawn = |law: &Distribution<Number>| {
-            let law = variant::settle(values, law).ok();
-            texts(
-                law.map(|law| law.support().unwrap_or_else(|| vec![law.example()]))
-                    .unwrap_or_default(),
-            )
-        };
-        match source {
-            Source::Distribution(law) => drawn(law),
-            Source::Param(reference) => match values.get(&reference.param) {
-                Some(Value::Distribution(law)) => drawn(law),
-                Some(value) => texts(value.at(reference.index).into_iter().collect()),
-                None => {
-                    let parameter = self.parameters.get(&reference.param);
-                    let source = parameter.and_then(|parameter| parameter.distribution.as_ref());
-                    source.map(|source| self.texts_in(values, source)).unwrap_or_default()
-                }
-            },
-        }
+        let outcomes = Scope::new(self.parameters, values).outcomes(source).unwrap_or_default();
+        let drawn = |(law, _): &(Distribution, f64)| law.support().unwrap_or_else(|| vec![law.example()]);
+        texts(outcomes.iter().flat_map(drawn).collect())
     }
 
     /// A template: each hole checked, and the rest read with an example in each hole.
@@ -148,20 +131,29 @@ impl Check<'_> {
             };
             if self.is_unsound(&hole.source) {
                 is_known = false;
-            } else if self.is_json(&hole.source, hole.kind) {
-                let candidates = self.json_candidates(&pointer, &hole);
-                if let (Some(value), Some(place)) = (candidates.first(), example.pointer_mut(&opening.0)) {
-                    *place = hole.written(value);
-                    holes.push((hole, candidates));
+                continue;
+            }
+            let is_case = matches!(hole.source, Source::Case(_));
+            let mut sound = !is_case || self.cases(&pointer, &hole.source);
+            let mut candidates = Vec::new();
+            for (place, leaf) in hole.source.leaves() {
+                let pointer = format!("{pointer}{place}");
+                if self.is_json(leaf, hole.kind) {
+                    candidates.extend(self.json_candidates(&pointer, leaf, &hole));
+                } else if self.source(&pointer, leaf, hole.kind) {
+                    let own = self.candidates(leaf, hole.kind);
+                    sound &= self.in_range(&pointer, &own, hole.range);
+                    candidates.extend(own);
+                } else {
+                    sound = false;
                 }
-            } else if self.source(&pointer, &hole.source, hole.kind) {
-                let candidates = self.candidates(&hole.source, hole.kind);
-                if self.in_range(&pointer, &candidates, hole.range)
-                    && let (Some(value), Some(place)) = (candidates.first(), example.pointer_mut(&opening.0))
-                {
-                    *place = hole.written(value);
-                    holes.push((hole, candidates));
-                }
+            }
+            if sound
+                && (!is_case || self.has_outcomes(&pointer, &hole.source))
+                && let (Some(value), Some(place)) = (candidates.first(), example.pointer_mut(&opening.0))
+            {
+                *place = hole.written(value);
+                holes.push((hole, candidates));
             }
         }
         if self.problems.len() > before || !is_known {

@@ -1,0 +1,61 @@
+//! [`Case`]: a look-up, which says what stands at a place by the value of a parameter. Making it is `task/scope.rs`'s job.
+
+use std::borrow::Cow;
+
+use indexmap::IndexMap;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::{Deserialize, Serialize};
+
+use super::reference::{Number, ParamRef};
+
+/// What stands at a place, by the value of a parameter: `{ "case": { "param": "cue" }, "of": { "red": 50 }, "else": 0 }`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, bound(deserialize = "T: Deserialize<'de>"))]
+pub struct Case<T> {
+    /// The parameter by whose value it chooses, of any role.
+    pub case: ParamRef,
+    /// What it comes to, by the values of the parameter as texts: words, names of choices or colours, numbers, `true`, `false`.
+    pub of: IndexMap<String, T>,
+    /// What it comes to at all other values; nothing where every value has a case.
+    #[serde(rename = "else", default, skip_serializing_if = "Option::is_none")]
+    pub otherwise: Option<T>,
+}
+
+impl<T> Case<T> {
+    /// The cases with their keys in the document, the last of them `else`.
+    pub(crate) fn entries(&self) -> impl Iterator<Item = (String, &T)> {
+        let of = self
+            .of
+            .iter()
+            .map(|(key, case)| (format!("of/{}", crate::describe::escape(key)), case));
+        of.chain(self.otherwise.iter().map(|case| ("else".to_owned(), case)))
+    }
+}
+
+impl JsonSchema for Case<Number> {
+    fn schema_name() -> Cow<'static, str> {
+        "NumberCase".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let number = generator.subschema_for::<Number>();
+        schema(generator, "A number by the value of a parameter.", &number)
+    }
+}
+
+/// The schema of a look-up whose cases have a schema.
+pub(crate) fn schema(generator: &mut SchemaGenerator, description: &str, case: &Schema) -> Schema {
+    let parameter = generator.subschema_for::<ParamRef>();
+    json_schema!({
+        "description": description,
+        "type": "object",
+        "properties": {
+            "case": parameter,
+            "of": { "type": "object", "additionalProperties": case, "minProperties": 1, "maxProperties": 1000 },
+            "else": case
+        },
+        "required": ["case", "of"],
+        "additionalProperties": false,
+        "examples": [{ "case": { "param": "cue" }, "of": { "red": 50, "blue": -50 }, "else": 0 }]
+    })
+}

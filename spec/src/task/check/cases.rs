@@ -1,0 +1,210 @@
+//! Look-ups: whether what they read is known and can be listed, every value has a case, and none reads itself.
+
+use std::collections::BTreeSet;
+
+use super::super::parameter::{Parameter, Role};
+use super::super::scope::{Scope, Unsettled};
+use super::super::template::Source;
+use super::Check;
+use crate::describe::escape;
+use crate::distribution::{Case, Distribution, Number, ParamRef};
+use crate::error::{Problem, first_of};
+use crate::value::{ParameterType, Value};
+
+/// The longest range of whole numbers whose values are listed.
+const MOST_WHOLES: f64 = 1000.0;
+
+impl Check<'_> {
+    /// Reports randomized parameters whose look-ups read each other in a circle, and takes them for unsound, with all that
+    /// read them.
+    pub(super) fn cycles(&mut self) {
+        let reads = |name: &str| -> Vec<String> {
+            let parameter = self.parameters.get(name);
+            let names = parameter.and_then(|parameter| parameter.distribution.as_ref()).map(Source::names);
+            names.unwrap_or_default()
+        };
+        let (mut cyclic, mut done) = (Vec::new(), BTreeSet::new());
+        for start in self.parameters.keys() {
+            // A way of names, each with what it still has to be followed to.
+            let mut way = vec![(start.clone(), reads(start))];
+            while let Some((_, next)) = way.last_mut() {
+                let Some(name) = next.pop() else {
+                    done.extend(way.pop().map(|(name, _)| name));
+                    continue;
+                };
+                if let Some(first) = way.iter().position(|(known, _)| *known == name) {
+                    let names: Vec<&str> = way[first..].iter().map(|(name, _)| name.as_str()).collect();
+                    let shown = format!("a cycle: {} reads {name}", names.join(" reads "));
+                    let pointer = format!("/parameters/{}/distribution", escape(&name));
+                    let problem = Problem::new("spec/case-cycle", pointer, shown, "look-ups that do not read themselves");
+                    cyclic.push((way[first..].iter().map(|(name, _)| name.clone()).collect::<Vec<_>>(), problem));
+                } else if !done.contains(&name) {
+                    let further = reads(&name);
+                    way.push((name, further));
+                }
+            }
+        }
+        if cyclic.is_empty() {
+            return;
+        }
+        for (names, problem) in cyclic {
+            self.unsound.parameters.extend(names);
+            self.report(problem);
+        }
+        let spoilt = |check: &Self, parameter: &Parameter| {
+            let source = parameter.distribution.as_ref();
+            source.is_some_and(|source| source.names().iter().any(|name| check.unsound.parameters.contains(name)))
+        };
+        for _ in 0..self.parameters.len() {
+            let names = self.parameters.iter().filter(|(_, parameter)| spoilt(self, parameter));
+            let names: Vec<String> = names.map(|(name, _)| name.clone()).collect();
+            self.unsound.parameters.extend(names);
+        }
+    }
+
+    /// Whether every look-up of a source reads what it can, and has a case for each of its values.
+    pub(super) fn cases(&mut self, pointer: &str, source: &Source) -> bool {
+        let before = self.problems.len();
+        for (place, case) in source.cases() {
+            self.case(&format!("{pointer}{place}"), case);
+        }
+        self.problems.len() == before
+    }
+
+    /// Whether what a look-up makes of draws can be gone through in every variant.
+    pub(super) fn has_outcomes(&mut self, pointer: &str, source: &Source) -> bool {
+        let fault = self.variants.iter().find_map(|(name, values)| {
+            match Scope::new(self.parameters, values).outcomes(source) {
+                Err(Unsettled::NoCase(found, expected)) => Some((format!("{found} in variant {name:?}"), expected)),
+                Ok(_) | Err(_) => None,
+            }
+        });
+        let Some((found, expected)) = fault else { return true };
+        self.report(Problem::new("spec/case", pointer, found, expected));
+        false
+    }
+
+    /// A look-up of numbers in a distribution or margin.
+    pub(super) fn number_case(&mut self, pointer: &str, case: &Case<Number>) {
+        self.case(pointer, case);
+        for (_, number) in case.entries() {
+            match number {
+                Number::Literal(_) => {}
+                Number::Param(reference) => self.number_reference(pointer, reference),
+                Number::Case(inner) => self.number_case(pointer, inner),
+            }
+        }
+    }
+
+    /// Reports look-ups that read what is drawn, where that is too late.
+    pub(super) fn reads_no_draw(&mut self, pointer: &str, references: &[&ParamRef]) {
+        let is_drawn = |reference: &&&ParamRef| {
+            let parameter = self.parameters.get(&reference.param);
+            parameter.is_some_and(|parameter| parameter.role == Role::Randomized)
+        };
+        if let Some(drawn) = references.iter().find(is_drawn) {
+            let found = format!("the randomized parameter {:?}", drawn.param);
+            self.report(Problem::new("spec/role", pointer, found, "a fixed or variant parameter"));
+        }
+    }
+
+    /// A distribution that is the value of a parameter: its look-ups read nothing that is drawn.
+    pub(super) fn settled_distribution(&mut self, pointer: &str, distribution: &Distribution<Number>) {
+        if self.distribution(pointer, distribution) {
+            let numbers = distribution.numbers();
+            let references: Vec<&ParamRef> = numbers.iter().flat_map(Number::references).collect();
+            self.reads_no_draw(pointer, &references);
+        }
+    }
+
+    fn case<T>(&mut self, pointer: &str, case: &Case<T>) {
+        let name = &case.case.param;
+        let at = format!("{pointer}/case");
+        let Some(parameter) = self.parameters.get(name) else {
+            return self.unknown_parameter(&at, name);
+        };
+        if case.case.index.is_some() {
+            let found = format!("one number of {name:?}");
+            return self.report(Problem::new("spec/index", at, found, "a whole parameter"));
+        }
+        let values = self.listed(parameter);
+        if values.is_none() && parameter.role == Role::Randomized {
+            let found = format!("the parameter {name:?}, whose values cannot be listed");
+            let expected = "one that is drawn from a list: choice, bernoulli, integer_uniform or a look-up";
+            return self.report(Problem::new("spec/case", at, found, expected));
+        }
+        let word = |value: &Value| parameter.name_of(value).map_or_else(|| value.to_string(), str::to_owned);
+        let words: Vec<String> = values.iter().flatten().map(word).collect();
+        let mut met = Vec::new();
+        for key in case.of.keys() {
+            let value = parameter.at_key(key);
+            let is_known = |value: &Value| values.as_ref().is_none_or(|values| values.contains(value));
+            match value.filter(is_known) {
+                Some(value) => met.push(value),
+                None => {
+                    let expected = if words.is_empty() {
+                        format!("a {}", parameter.kind.name())
+                    } else {
+                        format!("a value of {name:?}, one of {}", first_of(&words))
+                    };
+                    let pointer = format!("{pointer}/of/{}", escape(key));
+                    self.report(Problem::new("spec/case", pointer, format!("{key:?}"), expected).suggest(key, &words));
+                }
+            }
+        }
+        let missing: Vec<&String> = values
+            .iter()
+            .flatten()
+            .zip(&words)
+            .filter(|(value, _)| !met.contains(value))
+            .map(|(_, word)| word)
+            .collect();
+        if case.otherwise.is_none() && (values.is_none() || !missing.is_empty()) {
+            let found = if values.is_none() {
+                format!("no \"else\" for {name:?}, which may have any value between")
+            } else {
+                format!("no case for {}", first_of(&missing))
+            };
+            let expected = format!("a case for every value of {name:?}, or \"else\"");
+            self.report(Problem::new("spec/case", pointer, found, expected));
+        }
+    }
+
+    /// Every value that a parameter can have, each once; `None` where they cannot be listed.
+    fn listed(&self, parameter: &Parameter) -> Option<Vec<Value>> {
+        let mut all: Vec<Value> = Vec::new();
+        match (&parameter.choices, parameter.range, &parameter.distribution) {
+            (_, _, Some(source)) => {
+                for law in self.distributions_of(source) {
+                    let law = Source::Distribution(Box::new(law));
+                    for (_, values) in &self.variants {
+                        for (law, _) in Scope::new(self.parameters, values).outcomes(&law).ok()? {
+                            all.extend(law.atoms()?.into_iter().map(|(value, _)| value));
+                        }
+                    }
+                }
+                for (_, leaf) in source.leaves() {
+                    if let Source::Param(reference) = leaf {
+                        let other = self.parameters.get(&reference.param)?;
+                        if other.kind != ParameterType::Distribution {
+                            all.extend(self.listed(other)?);
+                        }
+                    }
+                }
+            }
+            (Some(choices), _, _) => all.extend(choices.iter().cloned()),
+            (None, Some([low, high]), _) if parameter.kind == ParameterType::Integer && high - low < MOST_WHOLES => {
+                all.extend((low as i64..=high as i64).map(Value::Integer));
+            }
+            (None, Some(_), _) => return None,
+            (None, None, None) => all.extend(parameter.value.clone()),
+        }
+        let mut listed = Vec::new();
+        for value in all.iter().filter_map(|value| parameter.typed(value)) {
+            if !listed.contains(&value) {
+                listed.push(value);
+            }
+        }
+        Some(listed)
+    }
+}

@@ -1,0 +1,213 @@
+//! [`Scope`]: the values that are known of a task's parameters, and what sources and their look-ups come to among them.
+
+use indexmap::IndexMap;
+
+use super::parameter::{Parameter, Role};
+use super::template::Source;
+use super::variant::Resolved;
+use crate::distribution::{Case, Distribution, Number};
+use crate::error::first_of;
+use crate::value::{ParameterType, Value};
+
+/// The most ways in which the draws that a look-up reads can fall out.
+const MOST_WAYS: usize = 4096;
+
+/// The values that are known of a task's parameters: those of a variant, and of what is drawn as far as it is known.
+#[derive(Clone, Copy)]
+pub(crate) struct Scope<'a> {
+    pub(crate) parameters: &'a IndexMap<String, Parameter>,
+    pub(crate) values: &'a IndexMap<String, Value>,
+    pub(crate) drawn: &'a [(&'a str, Value)],
+}
+
+/// Why a source comes to nothing.
+#[derive(Debug)]
+pub(crate) enum Unsettled {
+    /// A look-up reads this randomized parameter, whose value is not known.
+    Drawn(String),
+    /// A look-up has no case for a value: what was found and expected.
+    NoCase(String, String),
+    /// What look-ups read cannot be gone through, or a reference names no number.
+    Unknown,
+}
+
+impl<'a> Scope<'a> {
+    pub(crate) fn new(parameters: &'a IndexMap<String, Parameter>, values: &'a IndexMap<String, Value>) -> Self {
+        let drawn = &[];
+        Self {
+            parameters,
+            values,
+            drawn,
+        }
+    }
+
+    fn value(&self, name: &str) -> Option<&Value> {
+        let drawn = self.drawn.iter().find(|(known, _)| *known == name);
+        drawn.map(|(_, value)| value).or_else(|| self.values.get(name))
+    }
+
+    fn choose<'c, T>(&self, case: &'c Case<T>) -> Result<&'c T, Unsettled> {
+        let name = &case.case.param;
+        let parameter = self.parameters.get(name).ok_or(Unsettled::Unknown)?;
+        let value = self.value(name).ok_or_else(|| match parameter.role {
+            Role::Randomized => Unsettled::Drawn(name.clone()),
+            Role::Fixed | Role::Variant => Unsettled::Unknown,
+        })?;
+        let of_value = case
+            .of
+            .iter()
+            .find(|(key, _)| parameter.at_key(key).as_ref() == Some(value));
+        of_value.map(|(_, case)| case).or(case.otherwise.as_ref()).ok_or_else(|| {
+            let keys: Vec<&String> = case.of.keys().collect();
+            Unsettled::NoCase(
+                format!("{name} = {value}"),
+                format!("a value with a case, one of {}", first_of(&keys)),
+            )
+        })
+    }
+
+    /// The number that a literal, a reference or a look-up stands for.
+    pub(crate) fn number(&self, number: &Number) -> Result<f64, Unsettled> {
+        match number {
+            Number::Literal(number) => Ok(*number),
+            Number::Param(reference) => {
+                let value = self.values.get(&reference.param).ok_or(Unsettled::Unknown)?;
+                let number = value.at(reference.index).and_then(|value| value.as_number());
+                number.ok_or(Unsettled::Unknown)
+            }
+            Number::Case(case) => self.number(self.choose(case)?),
+        }
+    }
+
+    /// A distribution with every number settled.
+    pub(crate) fn settle(&self, distribution: &Distribution<Number>) -> Result<Distribution, Unsettled> {
+        distribution.try_map(&mut |number| self.number(number))
+    }
+
+    /// What a source comes to.
+    pub(crate) fn resolve(&self, source: &Source) -> Result<Resolved, Unsettled> {
+        match source {
+            Source::Case(case) => self.resolve(self.choose(case)?),
+            Source::Value(value) => Ok(Resolved::Value(value.clone())),
+            Source::Distribution(distribution) => self.settle(distribution).map(Resolved::Draw),
+            Source::Param(reference) => match self.values.get(&reference.param) {
+                None => Ok(Resolved::Randomized(reference.clone())),
+                Some(Value::Distribution(distribution)) => self.settle(distribution).map(Resolved::Draw),
+                Some(value) => value.at(reference.index).map(Resolved::Value).ok_or(Unsettled::Unknown),
+            },
+        }
+    }
+
+    /// What a source draws, all draws that its look-ups read gone through: distributions, each once, with their
+    /// probabilities.
+    pub(crate) fn outcomes(&self, source: &Source) -> Result<Vec<(Distribution, f64)>, Unsettled> {
+        let mut found = Vec::new();
+        self.spread(source, 1.0, &mut 0, &mut found)?;
+        Ok(found)
+    }
+
+    fn spread(
+        &self,
+        source: &Source,
+        weight: f64,
+        ways: &mut usize,
+        found: &mut Vec<(Distribution, f64)>,
+    ) -> Result<(), Unsettled> {
+        let distribution_of = |name: &str| {
+            let parameter = self.parameters.get(name).ok_or(Unsettled::Unknown)?;
+            Ok((parameter, parameter.distribution.as_ref().ok_or(Unsettled::Unknown)?))
+        };
+        let mut unsettled = match self.resolve(source) {
+            Ok(Resolved::Randomized(reference)) => {
+                return self.spread(distribution_of(&reference.param)?.1, weight, ways, found);
+            }
+            Ok(Resolved::Value(value)) => return add(Distribution::Constant { value }, weight, ways, found),
+            Ok(Resolved::Draw(distribution)) => return add(distribution, weight, ways, found),
+            Err(Unsettled::Drawn(name)) => name,
+            Err(other) => return Err(other),
+        };
+        // What it reads may itself be a look-up: the first draw on the way comes first.
+        for _ in 0..self.parameters.len() {
+            let (parameter, own) = distribution_of(&unsettled)?;
+            let atoms = match self.resolve(own) {
+                Err(Unsettled::Drawn(earlier)) => {
+                    unsettled = earlier;
+                    continue;
+                }
+                Err(other) => return Err(other),
+                Ok(Resolved::Value(value)) => vec![(value, 1.0)],
+                Ok(Resolved::Draw(distribution)) => distribution.atoms().ok_or(Unsettled::Unknown)?,
+                Ok(Resolved::Randomized(_)) => return Err(Unsettled::Unknown),
+            };
+            for (value, probability) in atoms {
+                let mut drawn = self.drawn.to_vec();
+                drawn.push((&unsettled, parameter.typed(&value).ok_or(Unsettled::Unknown)?));
+                let deeper = Scope { drawn: &drawn, ..*self };
+                deeper.spread(source, weight * probability, ways, found)?;
+            }
+            return Ok(());
+        }
+        Err(Unsettled::Unknown)
+    }
+}
+
+fn add(
+    distribution: Distribution,
+    weight: f64,
+    ways: &mut usize,
+    found: &mut Vec<(Distribution, f64)>,
+) -> Result<(), Unsettled> {
+    *ways += 1;
+    match found.iter_mut().find(|(known, _)| *known == distribution) {
+        Some((_, known)) => *known += weight,
+        None => found.push((distribution, weight)),
+    }
+    if *ways > MOST_WAYS {
+        let expected = format!("at most {MOST_WAYS} ways");
+        let found = format!("draws that fall out in more than {MOST_WAYS} ways");
+        return Err(Unsettled::NoCase(found, expected));
+    }
+    Ok(())
+}
+
+/// One distribution for all outcomes: a list where all are lists, else a mixture.
+pub(crate) fn mixed(mut outcomes: Vec<(Distribution, f64)>) -> Distribution {
+    if outcomes.len() == 1 {
+        return outcomes.remove(0).0;
+    }
+    let lists: Option<Vec<_>> = outcomes.iter().map(|(law, weight)| Some((law.atoms()?, *weight))).collect();
+    let Some(lists) = lists else {
+        let (parts, weights) = outcomes.into_iter().unzip();
+        let weights = Some(weights);
+        return Distribution::Mixture { parts, weights };
+    };
+    let mut all: Vec<(Value, f64)> = Vec::new();
+    for (value, weight) in lists
+        .into_iter()
+        .flat_map(|(atoms, weight)| atoms.into_iter().map(move |(value, own)| (value, own * weight)))
+    {
+        match all.iter_mut().find(|(known, _)| *known == value) {
+            Some((_, known)) => *known += weight,
+            None => all.push((value, weight)),
+        }
+    }
+    let (values, weights) = all.into_iter().unzip();
+    let weights = Some(weights);
+    Distribution::Choice { values, weights }
+}
+
+impl Parameter {
+    /// The value that a key of a look-up over this parameter stands for.
+    pub(crate) fn at_key(&self, key: &str) -> Option<Value> {
+        match self.kind {
+            ParameterType::Boolean | ParameterType::Integer | ParameterType::Number => {
+                serde_json::from_str::<Value>(key).ok()?.cast(self.kind)
+            }
+            ParameterType::String | ParameterType::Color => Value::Text(key.to_owned()).cast(self.kind),
+            _ => {
+                let choices = self.choices.as_ref()?;
+                choices.named(&Value::Text(key.to_owned()))?.cast(self.kind)
+            }
+        }
+    }
+}
