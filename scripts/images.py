@@ -23,6 +23,7 @@ WORLDS = [
     "maze",
     "four_rooms",
     "t_maze",
+    "cue_t_maze",
     "key_corridor",
     "locked_rooms",
     "switches",

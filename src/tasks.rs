@@ -21,7 +21,8 @@ pub const BUILT_IN: [(&str, &str); 6] = [
 ];
 
 /// The example worlds, which are tasks, too, and found by name as well. The files are `examples/worlds/`.
-pub const WORLDS: [(&str, &str); 10] = [
+pub const WORLDS: [(&str, &str); 11] = [
+    ("cue_t_maze", include_str!("../examples/worlds/cue_t_maze.json")),
     ("foraging", include_str!("../examples/worlds/foraging.json")),
     ("four_rooms", include_str!("../examples/worlds/four_rooms.json")),
     ("hunt", include_str!("../examples/worlds/hunt.json")),

@@ -66,6 +66,11 @@ fn maps_of_letters_are_solved() {
 }
 
 #[test]
+fn cues_that_are_drawn_are_minded() {
+    check("cue_t_maze");
+}
+
+#[test]
 fn keys_of_rooms_are_fetched_in_their_order() {
     check("locked_rooms");
 }

@@ -40,7 +40,9 @@ impl Drawn {
     /// The distribution in a world in which the randomized parameters have these values.
     pub(crate) fn law(&self, values: &[Value]) -> Cow<'_, Distribution> {
         let look_up = self.look_up.as_ref();
-        look_up.map_or(Cow::Borrowed(&self.distribution), |look_up| Cow::Owned(look_up.law(values)))
+        look_up.map_or(Cow::Borrowed(&self.distribution), |look_up| {
+            Cow::Owned(look_up.law(values))
+        })
     }
 }
 
@@ -101,9 +103,8 @@ impl Randomized {
         } else {
             None
         };
-        let value = covered.unwrap_or_else(|| {
-            draw(&self.drawn.law(known), &mut self.drawn.stream.at(index, 0, attempt)).into_owned()
-        });
+        let value = covered
+            .unwrap_or_else(|| draw(&self.drawn.law(known), &mut self.drawn.stream.at(index, 0, attempt)).into_owned());
         value
             .cast(self.kind)
             .expect("loading the task checked what the distribution yields")
@@ -230,7 +231,11 @@ fn order(parameters: &[Randomized]) -> Vec<usize> {
         if order.contains(&number) {
             return;
         }
-        let reads = parameters[number].drawn.look_up.iter().flat_map(|look_up| &look_up.reads);
+        let reads = parameters[number]
+            .drawn
+            .look_up
+            .iter()
+            .flat_map(|look_up| &look_up.reads);
         for (_, read) in reads {
             visit(*read, parameters, order);
         }

@@ -1,6 +1,7 @@
 //! All integration tests of this crate, as one program: it is linked once.
 
 mod at_distance;
+mod cases;
 mod cells;
 mod colors;
 mod doors;

@@ -16,7 +16,7 @@ fn sampler(placement: &str, count: u32, more: &str) -> (Sampler, Distribution) {
     let variant = task.variant("default").expect("it is always there");
     let law = variant.settle(match &task.groups()[0].spec.placement {
         driftworld_spec::Source::Distribution(distribution) => distribution,
-        driftworld_spec::Source::Param(_) => panic!("the placements here are written out"),
+        _ => panic!("the placements here are written out"),
     });
     (Sampler::new(&variant, 7), law)
 }

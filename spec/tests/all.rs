@@ -3,6 +3,7 @@
 mod advice;
 mod all_at_once;
 mod any_text;
+mod cases;
 mod codes;
 mod distributions;
 mod documents;

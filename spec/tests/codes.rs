@@ -82,6 +82,12 @@ fn cases() -> Vec<SpecError> {
         parameter(
             r#"{ "role": "variant", "type": "number", "affects": ["S"], "range": [0, 1], "default": 0, "compare": { "measure": "oklab" } }"#,
         ),
+        task(&format!(
+            r#"{number}, "world": {{ "max_steps": {{ "case": {{ "param": "p" }}, "of": {{ "1": 100 }} }} }}"#
+        )),
+        parameter(
+            r#"{ "role": "randomized", "type": "number", "affects": ["S"], "distribution": { "case": { "param": "p" }, "of": { "1": 1 }, "else": 2 } }"#,
+        ),
         Scenario::from_json("s.json", r#"{ "name": "s", "blocks": [] }"#).expect_err("a scenario has blocks"),
         world(r#"{ "version": 9 }"#),
         Scenario::from_json(

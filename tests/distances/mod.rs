@@ -10,5 +10,6 @@ mod findings;
 mod findings_of_worlds;
 mod laws_by_parameters;
 mod laws_by_worlds;
+mod look_ups;
 mod matched_by_hand;
 mod measures;

@@ -123,7 +123,9 @@ impl Distribution<f64> {
             Self::Bernoulli { p } => vec![(Value::Boolean(false), 1.0 - p), (Value::Boolean(true), *p)],
             Self::IntegerUniform { low, high } if high - low < 1000.0 => {
                 let count = high - low + 1.0;
-                (*low as i64..=*high as i64).map(|whole| (Value::Integer(whole), 1.0 / count)).collect()
+                (*low as i64..=*high as i64)
+                    .map(|whole| (Value::Integer(whole), 1.0 / count))
+                    .collect()
             }
             Self::Mixture { parts, weights } => {
                 let mut all = Vec::new();

@@ -46,9 +46,9 @@ use crate::document::Document;
 use crate::error::{Listed, Problem, SpecError};
 use crate::limits::{MAX_TASK_DEPTH, MAX_VALUES};
 use crate::value::Value;
-use scope::{Scope, Unsettled};
 use crate::version;
 use crate::world::{Object, WorldDraft};
+use scope::{Scope, Unsettled};
 
 /// A task: what its worlds have in common, and exactly what varies between them.
 ///
@@ -330,9 +330,9 @@ impl TaskSpec {
             match scope.outcomes(source) {
                 Ok(outcomes) => {
                     let fault = outcomes.iter().find_map(|(distribution, _)| distribution.fault());
-                    problems.extend(fault.map(|(found, expected)| {
-                        Problem::new("spec/distribution", pointer(), found, expected)
-                    }));
+                    problems.extend(
+                        fault.map(|(found, expected)| Problem::new("spec/distribution", pointer(), found, expected)),
+                    );
                 }
                 Err(Unsettled::NoCase(found, expected)) => {
                     problems.push(Problem::new("spec/case", pointer(), found, expected));

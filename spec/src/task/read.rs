@@ -64,7 +64,12 @@ impl TaskSpec {
             in_worlds.extend(names_in(&other.value));
             let read = names_in(&(&other.distribution, &other.choices, &other.default));
             // What a look-up makes of another draw is more than how it is distributed by itself.
-            let is_drawn = |name: &String| document.parameters.get(name).is_some_and(|own| own.role == Role::Randomized);
+            let is_drawn = |name: &String| {
+                document
+                    .parameters
+                    .get(name)
+                    .is_some_and(|own| own.role == Role::Randomized)
+            };
             if other.distribution.is_some() && read.iter().any(is_drawn) {
                 in_worlds.extend(read.iter().cloned());
             }

@@ -57,13 +57,16 @@ impl<'a> Scope<'a> {
             .of
             .iter()
             .find(|(key, _)| parameter.at_key(key).as_ref() == Some(value));
-        of_value.map(|(_, case)| case).or(case.otherwise.as_ref()).ok_or_else(|| {
-            let keys: Vec<&String> = case.of.keys().collect();
-            Unsettled::NoCase(
-                format!("{name} = {value}"),
-                format!("a value with a case, one of {}", first_of(&keys)),
-            )
-        })
+        of_value
+            .map(|(_, case)| case)
+            .or(case.otherwise.as_ref())
+            .ok_or_else(|| {
+                let keys: Vec<&String> = case.of.keys().collect();
+                Unsettled::NoCase(
+                    format!("{name} = {value}"),
+                    format!("a value with a case, one of {}", first_of(&keys)),
+                )
+            })
     }
 
     /// The number that a literal, a reference or a look-up stands for.
@@ -175,7 +178,10 @@ pub(crate) fn mixed(mut outcomes: Vec<(Distribution, f64)>) -> Distribution {
     if outcomes.len() == 1 {
         return outcomes.remove(0).0;
     }
-    let lists: Option<Vec<_>> = outcomes.iter().map(|(law, weight)| Some((law.atoms()?, *weight))).collect();
+    let lists: Option<Vec<_>> = outcomes
+        .iter()
+        .map(|(law, weight)| Some((law.atoms()?, *weight)))
+        .collect();
     let Some(lists) = lists else {
         let (parts, weights) = outcomes.into_iter().unzip();
         let weights = Some(weights);

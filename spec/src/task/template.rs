@@ -36,7 +36,8 @@ impl JsonSchema for Case<Source> {
     }
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let description = "What stands here by the value of a parameter: cases are values, parameters, distributions or look-ups.";
+        let description =
+            "What stands here by the value of a parameter: cases are values, parameters, distributions or look-ups.";
         case::schema(generator, description, &Schema::from(true))
     }
 }

@@ -20,7 +20,9 @@ impl Check<'_> {
     pub(super) fn cycles(&mut self) {
         let reads = |name: &str| -> Vec<String> {
             let parameter = self.parameters.get(name);
-            let names = parameter.and_then(|parameter| parameter.distribution.as_ref()).map(Source::names);
+            let names = parameter
+                .and_then(|parameter| parameter.distribution.as_ref())
+                .map(Source::names);
             names.unwrap_or_default()
         };
         let (mut cyclic, mut done) = (Vec::new(), BTreeSet::new());
@@ -36,8 +38,16 @@ impl Check<'_> {
                     let names: Vec<&str> = way[first..].iter().map(|(name, _)| name.as_str()).collect();
                     let shown = format!("a cycle: {} reads {name}", names.join(" reads "));
                     let pointer = format!("/parameters/{}/distribution", escape(&name));
-                    let problem = Problem::new("spec/case-cycle", pointer, shown, "look-ups that do not read themselves");
-                    cyclic.push((way[first..].iter().map(|(name, _)| name.clone()).collect::<Vec<_>>(), problem));
+                    let problem = Problem::new(
+                        "spec/case-cycle",
+                        pointer,
+                        shown,
+                        "look-ups that do not read themselves",
+                    );
+                    cyclic.push((
+                        way[first..].iter().map(|(name, _)| name.clone()).collect::<Vec<_>>(),
+                        problem,
+                    ));
                 } else if !done.contains(&name) {
                     let further = reads(&name);
                     way.push((name, further));
@@ -53,7 +63,12 @@ impl Check<'_> {
         }
         let spoilt = |check: &Self, parameter: &Parameter| {
             let source = parameter.distribution.as_ref();
-            source.is_some_and(|source| source.names().iter().any(|name| check.unsound.parameters.contains(name)))
+            source.is_some_and(|source| {
+                source
+                    .names()
+                    .iter()
+                    .any(|name| check.unsound.parameters.contains(name))
+            })
         };
         for _ in 0..self.parameters.len() {
             let names = self.parameters.iter().filter(|(_, parameter)| spoilt(self, parameter));
@@ -104,7 +119,12 @@ impl Check<'_> {
         };
         if let Some(drawn) = references.iter().find(is_drawn) {
             let found = format!("the randomized parameter {:?}", drawn.param);
-            self.report(Problem::new("spec/role", pointer, found, "a fixed or variant parameter"));
+            self.report(Problem::new(
+                "spec/role",
+                pointer,
+                found,
+                "a fixed or variant parameter",
+            ));
         }
     }
 
@@ -133,7 +153,11 @@ impl Check<'_> {
             let expected = "one that is drawn from a list: choice, bernoulli, integer_uniform or a look-up";
             return self.report(Problem::new("spec/case", at, found, expected));
         }
-        let word = |value: &Value| parameter.name_of(value).map_or_else(|| value.to_string(), str::to_owned);
+        let word = |value: &Value| {
+            parameter
+                .name_of(value)
+                .map_or_else(|| value.to_string(), str::to_owned)
+        };
         let words: Vec<String> = values.iter().flatten().map(word).collect();
         let mut met = Vec::new();
         for key in case.of.keys() {

@@ -263,7 +263,10 @@ impl Check<'_> {
     fn number(&mut self, pointer: &str, number: &Number, [low, high]: [f64; 2]) {
         let before = self.problems.len();
         let references = number.references();
-        if references.iter().any(|reference| self.unsound.parameters.contains(&reference.param)) {
+        if references
+            .iter()
+            .any(|reference| self.unsound.parameters.contains(&reference.param))
+        {
             return;
         }
         match number {

@@ -1,8 +1,8 @@
 //! Where values come from: whether references are known, yield the wanted type, and stay in range.
 
 use super::super::parameter::{Domain, Parameter, Role};
-use super::super::template::Source;
 use super::super::scope::{Scope, Unsettled};
+use super::super::template::Source;
 use super::Check;
 use crate::describe::plain_number;
 use crate::distribution::{Distribution, Number, ParamRef};
