@@ -10,6 +10,7 @@ import sys
 import threading
 import time
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -113,7 +114,14 @@ def test_a_killed_run_ends_with_the_same_digests(tiny: Path, tmp_path: Path) -> 
     assert {row["learner"]: row["seeds"] for row in table.rows()} == {"ewc": 1, "clear": 1}
     (run,) = table.runs["ewc"]
     assert run.sampled.values.shape == run.greedy.values.shape == (4, 3)
-    assert [len(curve) > 0 for curve in run.sampled.curves] == [True] * 3 and "| `ewc` | 1 |" in table.markdown()
+    assert [len(curve) > 0 for curve in run.sampled.curves] == [True] * 3
+    page, figure = killed / "page.md", killed / "images/figure.svg"
+    figure.parent.mkdir()
+    assert main(["table", str(killed / "tiny"), "--sequence", str(tiny), "-o", str(page), "--figure", str(figure)]) == 0
+    assert "| `ewc` | 1 |" in page.read_text(encoding="utf-8") and "![](images/figure.svg)" in page.read_text(encoding="utf-8")
+    svg = ElementTree.fromstring(figure.read_text(encoding="utf-8"))
+    lines = [path.attrib["d"] for path in svg.iter("{http://www.w3.org/2000/svg}path") if path.attrib["class"] == "mean"]
+    assert len(lines) == 2 and f"{120 * (1 - run.sampled.values[-1].mean()):.1f}" in {line.split()[-1] for line in lines}
 
 
 @pytest.mark.learners

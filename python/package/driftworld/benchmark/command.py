@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 from pathlib import Path
 from typing import Any
 
 from driftworld._files import write_whole
+from driftworld.benchmark.figure import figure
 from driftworld.benchmark.runner import Cell, learners_by_name, run_cells
 from driftworld.benchmark.sequence import Sequence
 from driftworld.benchmark.table import Results
@@ -79,6 +81,7 @@ def _parser() -> argparse.ArgumentParser:
     table = command("table", _table, "Make the table of a sequence from the logs.")
     table.add_argument("results", type=Path, help="a folder of cells, such as results/mixed")
     table.add_argument("-o", "--output", type=Path, metavar="FILE", help="Markdown to write; printed if not given")
+    table.add_argument("--figure", type=Path, metavar="FILE", help="SVG to write beside it: what each learner can do after each task")
     table.add_argument("--sequence", help="its name or file, if the folder is called otherwise")
     checked = command("check", _check, "Compare worlds and frames of a sequence with those that it was frozen with.")
     checked.add_argument("sequence", nargs="?", help="its name or file; all that come with Driftworld if not given")
@@ -134,7 +137,12 @@ def _run(parsed: argparse.Namespace) -> None:
 
 
 def _table(parsed: argparse.Namespace) -> None:
-    page = Results(Sequence.load(parsed.sequence or parsed.results.resolve().name), parsed.results).markdown()
+    results = Results(Sequence.load(parsed.sequence or parsed.results.resolve().name), parsed.results)
+    link = None
+    if parsed.figure is not None:
+        write_whole(parsed.figure, figure(results).encode())
+        link = Path(os.path.relpath(parsed.figure, (parsed.output or Path("page")).parent)).as_posix()
+    page = results.markdown(link)
     if parsed.output is None:
         print(page, end="")
     else:

@@ -123,9 +123,14 @@ class Results:
             rows.append(row)
         return sorted(rows, key=lambda row: -row["performance"][0])
 
-    def markdown(self) -> str:
-        """A page: the table, each task of each learner, and what it does not show."""
-        return "\n".join([*_head(self.sequence), "", *self._table(), "", *self._tasks(), "", *_FOOT.splitlines(), ""])
+    def markdown(self, figure: str | None = None) -> str:
+        """A page: the table, a figure if there is a link to one, each task of each learner, and what it does not show."""
+        shown = ["", f"![]({figure})", "", _FIGURE] if figure else []
+        runs = [run for runs in self.runs.values() for run in runs]
+        hours = sum(run.report["seconds"] for run in runs) / 3600
+        made = f"Made from the logs of {len(runs)} lifetimes, {hours:.1f} hours of learning on one core: `driftworld benchmark table`."
+        parts = [*_head(self.sequence), "", *self._table(), *shown, "", *self._tasks(), "", *_FOOT.splitlines(), "", made, ""]
+        return "\n".join(parts)
 
     def _table(self) -> list[str]:
         lines = [
@@ -181,5 +186,8 @@ interquartile mean over seeds, with the 95 % interval of the bootstrap in bracke
   was left to gain (Continual World's measure, from learning episodes weighted by their length, one number a seed).
 - *processor s*: of acting while learning and of learning, on one core. *MB*: all that the learner keeps."""
 
-_FOOT = """What it does not show: one sequence in one order, one network, one budget. Seeds vary worlds and learners together. Strengths
-were tuned in validation worlds of the same tasks with one seed. Two learners whose intervals overlap are not told apart."""
+_FIGURE = """Mean of all tasks after each task, actions sampled: bold the interquartile mean, thin each seed, grey `finetuning`."""
+
+_FOOT = """What it does not show: one sequence in one order, one network, one budget. Seeds vary worlds and learners together, and few
+seeds make wide intervals: two learners whose intervals overlap are not told apart. Tasks are not told apart in what a
+learner sees, so that where two contradict each other no policy can do both."""

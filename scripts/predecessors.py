@@ -1,0 +1,90 @@
+"""Which tasks of a sequence can be learned after which: each after each other one, by fine-tuning.
+
+A task after which a learner is at the random agent's rewards, or at the planner's, tells no learners apart. Each is
+evaluated in 100 worlds. What is finished is not run again; the table is printed:
+
+    python scripts/predecessors.py SEQUENCE RESULTS [--seed S] [--jobs N]
+"""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import json
+import tempfile
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from multiprocessing import get_context
+from pathlib import Path
+
+from driftworld.benchmark import Sequence
+from driftworld.benchmark.runner import Cell, make_learner
+from driftworld.curricula import Curriculum
+from driftworld.logs import read_log
+
+#: In which a task is evaluated.
+WORLDS = 100
+
+
+def measure(sequence: Sequence, results: Path, seed: int, before: str | None) -> None:
+    """Writes what each task comes to after the one before it; or all from nothing."""
+    import torch
+
+    torch.set_num_threads(1)
+    file = results / f"{seed}-{before or 'nothing'}.json"
+    found = json.loads(file.read_text()) if file.is_file() else {}
+    with tempfile.TemporaryDirectory() as place:
+        trained = Path(place) / "before.pt"
+        for task in sequence.tasks:
+            if task == before or task in found:
+                continue
+            if before is not None and not trained.is_file():
+                learner = live(sequence, seed, [before], Path(place) / "before")
+                learner.save(trained)
+            log = Path(place) / "after"
+            live(sequence, seed, [before, task] if before else [task], log, trained if before else None)
+            columns = read_log(log).columns
+            name = task.replace("_", "").replace("#", "_")
+            rewards = columns["reward"][(columns["block_type"] == "test") & (columns["task_name"] == name)].astype(float)
+            found[task] = round(float(sequence.scaled(task, rewards.mean())), 4)
+            for each in (log, log.with_name("after.agent")):
+                if each.exists():
+                    each.rename(each.with_name(f"{each.name}-{len(found)}"))
+            file.write_text(json.dumps(found, indent=1) + "\n")
+
+
+def live(sequence: Sequence, seed: int, tasks: list[str], log: Path, begin: Path | None = None):
+    """Learns the last of the tasks; the others only choose its worlds."""
+    short = dataclasses.replace(sequence, tasks=tasks)
+    scenario = short.curriculum(seed).scenario
+    learning = [block for block in scenario["blocks"] if block["type"] == "learning"][-1]
+    [evaluation] = [block for block in scenario["blocks"] if block["type"] == "evaluation"][-1:]
+    learner = make_learner(Cell(sequence.name, "finetuning", seed), short, "sampled")
+    if begin is not None:
+        learner.load(begin)
+    curriculum = Curriculum.from_dict({**scenario, "form": "custom", "blocks": [learning, evaluation]})
+    curriculum.run_vector(learner, log, num_envs=sequence.num_envs, num_threads=1, **sequence.options)
+    return learner
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("sequence")
+    parser.add_argument("results", type=Path)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--jobs", type=int, default=1)
+    given = parser.parse_args()
+    sequence = dataclasses.replace(Sequence.load(given.sequence), evaluations=WORLDS)
+    given.results.mkdir(parents=True, exist_ok=True)
+    tasks = list(dict.fromkeys(sequence.tasks))
+    with ProcessPoolExecutor(given.jobs, mp_context=get_context("spawn"), max_tasks_per_child=1) as pool:
+        list(pool.map(partial(measure, sequence, given.results, given.seed), [None, *tasks]))
+    print("| after | " + " | ".join(f"`{task}`" for task in tasks) + " |\n|---|" + "--:|" * len(tasks))
+    for before in [None, *tasks]:
+        found = json.loads((given.results / f"{given.seed}-{before or 'nothing'}.json").read_text(encoding="utf-8"))
+        cells = [f"{100 * found[task]:.0f}" if task in found else "" for task in tasks]
+        print(f"| {f'`{before}`' if before else 'nothing'} | " + " | ".join(cells) + " |")
+
+
+if __name__ == "__main__":
+    main()
