@@ -2,8 +2,9 @@
 
     python scripts/scale_of_sequence.py mixed target/release/driftworld
 
-0 is what drawing rows of the table of actions at random earns, 1 what the planner earns when it holds each action for as many time
-steps as the learners do: 500 worlds each, that no lifetime has.
+0 is what drawing rows of the table of actions at random earns, 1 what the planner earns, which knows the map and acts in every
+time step: 500 worlds each, that no lifetime has. A planner that holds its actions as long as the learners do is no ceiling: they
+got 113 % of it in moving_object#fast.
 """
 
 from __future__ import annotations
@@ -11,8 +12,6 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-import tempfile
-from pathlib import Path
 
 import driftworld
 import numpy as np
@@ -33,20 +32,10 @@ def random(task: str, sequence: Sequence) -> float:
     return float(earned.mean())
 
 
-def planner(task: str, sequence: Sequence, command: str) -> float:
-    """Mean reward of the planner, whose actions the task itself holds."""
-    spec, _, variant = task.partition("#")
-    document = driftworld.TaskSpec.load(spec).to_dict()
-    agent, held = document["world"].setdefault("agent_params", {}), sequence.options["frame_skip"]
-    if isinstance(agent.get("frame_skip"), dict):
-        document["variants"][variant][agent["frame_skip"]["param"]] = held
-    else:
-        agent["frame_skip"] = held
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / f"{spec}.json"
-        path.write_text(json.dumps(document), encoding="utf-8")
-        words = [command, "scales", f"{path}#{variant}", "--worlds", str(WORLDS), "--seed", str(SEED), "--json"]
-        said = json.loads(subprocess.run(words, check=True, capture_output=True, text=True).stdout)
+def planner(task: str, command: str) -> float:
+    """Mean reward of the planner."""
+    words = [command, "scales", task, "--worlds", str(WORLDS), "--seed", str(SEED), "--json"]
+    said = json.loads(subprocess.run(words, check=True, capture_output=True, text=True).stdout)
     (scale,) = said["scales"].values()
     return float(scale["ceiling"])
 
@@ -55,7 +44,7 @@ def main() -> None:
     """Prints both."""
     sequence, command = Sequence.load(sys.argv[1]), sys.argv[2]
     tasks = list(dict.fromkeys(sequence.tasks))
-    scale = {task: [round(random(task, sequence), 2), round(planner(task, sequence, command), 2)] for task in tasks}
+    scale = {task: [round(random(task, sequence), 2), round(planner(task, command), 2)] for task in tasks}
     print(json.dumps({"scale": scale, "frozen": {task: sequence.prints(task) for task in tasks}}, indent=1))
 
 

@@ -189,6 +189,13 @@ def test_model_that_remembers_evaluations_is_refused() -> None:
         plan.run(agent, **OPTIONS)
 
 
+def test_nothing_is_left_among_temporary_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    plan = curriculum(2)
+    plan.run_vector(agent_of("PPO", plan, 2), num_envs=2, **OPTIONS)
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_label_in_the_observation_reaches_the_model() -> None:
     options = {**OPTIONS, "modalities": ["rgb"]}
     plan = curriculum(4, evaluate=1, task_label="observation")

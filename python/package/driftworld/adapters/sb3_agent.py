@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 import torch
 from numpy.typing import NDArray
+from stable_baselines3.common.logger import Logger
 from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 from stable_baselines3.common.on_policy_algorithm import OnPolicyAlgorithm
 from stable_baselines3.common.preprocessing import maybe_transpose
@@ -70,6 +71,9 @@ class Agent:
         self.policy = policy or ("sampled" if kind is OnPolicyAlgorithm else "greedy")
         if self.policy not in ("sampled", "greedy"):
             raise ValueError(f"policy: found {policy!r}, expected sampled or greedy")
+        if not model.verbose and model.tensorboard_log is None and not model._custom_logger:
+            # Stable-Baselines3's own logger makes a folder for temporary files, which nobody removes, even if it writes nothing.
+            model.set_logger(Logger(folder=None, output_formats=[]))
         model._setup_learn(total_timesteps or 0)
         model.policy.set_training_mode(False)
         self._collector = kinds[kind](model, total_timesteps)

@@ -32,7 +32,7 @@ class Sequence:
         evaluations: Worlds of each task after each task.
         num_envs: Environments that learn at the same time.
         options: Of the environments.
-        scale: For each task the rewards that count 0 and 1: a random agent's and the planner's, acting as rarely as the learners do.
+        scale: For each task the rewards that count 0 and 1: a random agent's that acts as rarely as the learners do, and the planner's.
         learners: Arguments of learners, by name, where they are not the defaults.
         frozen: For each task a hash of its first worlds, and of its first frames.
     """
