@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 
 use driftworld_metrics::{
-    BlockSubtype, BlockType, LogWarning, LogWriter, LoggerInfo, Record, Row, ScenarioInfo, ScenarioType, Timestamp,
+    BlockSubtype, BlockType, ExpStatus, LogWarning, LogWriter, LoggerInfo, Record, Row, ScenarioInfo, ScenarioType, Timestamp,
     read_log,
 };
 use proptest::prelude::*;
@@ -129,6 +129,25 @@ fn an_interrupted_log_is_continued_where_it_stopped() {
     writer.write(&record(3, 7, BlockType::Test)).unwrap();
     let log = read_log(base.path()).unwrap();
     assert_eq!(log.rows.exp_nums(), [5, 6, 7]);
+}
+
+#[test]
+fn rows_of_an_experience_are_in_one_block_of_a_number() {
+    let base = tempfile::tempdir().unwrap();
+    let begun = Record {
+        exp_status: ExpStatus::Incomplete,
+        ..record(4, 8, BlockType::Train)
+    };
+    create(base.path()).write(&begun).unwrap();
+    let mut writer = LogWriter::resume(base.path()).unwrap();
+    assert_eq!(
+        writer.write(&record(4, 8, BlockType::Test)).unwrap_err().to_string(),
+        "record of experience 8, block_type: found test, expected train, as in the row of this experience before it"
+    );
+    writer.write(&record(4, 8, BlockType::Train)).unwrap();
+    // Another experience may be of another type.
+    writer.write(&record(4, 9, BlockType::Test)).unwrap();
+    assert_eq!(read_log(base.path()).unwrap().rows.exp_nums(), [8, 8, 9]);
 }
 
 #[test]

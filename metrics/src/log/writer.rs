@@ -16,7 +16,7 @@ use crate::log::BlockType;
 /// Writes records to a log directory, each flushed to the operating system as soon as it is written.
 ///
 /// The rules of the format are kept record by record: block and experience numbers never decrease, every record has the
-/// same metrics, a worker completes an experience once. Opens one file at a time, and asks the disk to have it when it
+/// same metrics, a worker completes an experience once, and in blocks of one number a worker's rows of it have one type. Opens one file at a time, and asks the disk to have it when it
 /// turns to the next: a machine that loses its power loses rows of the last block at most. Two writers on one directory
 /// would spoil it, so that the second is refused where the system can tell.
 ///
@@ -43,6 +43,8 @@ pub(super) struct Progress {
     last_exp_num: u64,
     /// Workers that completed the last experience.
     completed_by: BTreeSet<String>,
+    /// In which block each worker has rows of the last experience.
+    begun_in: BTreeMap<String, (u64, BlockType)>,
 }
 
 impl LogWriter {
@@ -255,6 +257,16 @@ impl Progress {
             let expected = "no row after the complete one: give the next experience a new number".to_owned();
             return Err(bad_record(record, "exp_num", found, expected));
         }
+        let begun = self.begun_in.get(&record.worker_id).filter(|_| record.exp_num == self.last_exp_num);
+        // Else nothing would say which of the two folders comes first.
+        if let Some((block_num, block_type)) = begun
+            && *block_num == record.block_num
+            && *block_type != record.block_type
+        {
+            let found = record.block_type.to_string();
+            let expected = format!("{block_type}, as in the row of this experience before it");
+            return Err(bad_record(record, "block_type", found, expected));
+        }
         Ok(())
     }
 
@@ -262,7 +274,10 @@ impl Progress {
     pub(super) fn advance(&mut self, record: &Record, columns: Vec<String>) {
         if record.exp_num != self.last_exp_num {
             self.completed_by.clear();
+            self.begun_in.clear();
         }
+        let worker = record.worker_id.clone();
+        self.begun_in.insert(worker, (record.block_num, record.block_type));
         if record.exp_status == ExpStatus::Complete {
             self.completed_by.insert(record.worker_id.clone());
         }

@@ -60,6 +60,7 @@ pub(crate) fn any_log() -> impl Strategy<Value = Vec<Record>> {
     rows.prop_map(|rows| {
         let (mut block_num, mut exp_num) = (0, 0);
         let mut completed: BTreeMap<u64, Vec<String>> = BTreeMap::new();
+        let mut types = BTreeMap::new();
         let numbered = rows
             .into_iter()
             .enumerate()
@@ -73,6 +74,8 @@ pub(crate) fn any_log() -> impl Strategy<Value = Vec<Record>> {
                     exp_num += 1;
                 }
                 (record.block_num, record.exp_num, record.timestamp) = (block_num, exp_num, stamp(index as i64));
+                let place = (exp_num, block_num, record.worker_id.clone());
+                record.block_type = *types.entry(place).or_insert(record.block_type);
                 if complete {
                     completed.entry(exp_num).or_default().push(record.worker_id.clone());
                 } else {
