@@ -285,6 +285,18 @@ pub enum EnvError {
         /// What could stand there.
         expected: String,
     },
+    /// A file that is not a network by which an agent could act.
+    #[error("{file}: {place}: found {found}, expected {expected}", file = one_line(file), place = one_line(place), found = one_line(found), expected = one_line(expected))]
+    BadNetwork {
+        /// What the file is called, usually its path.
+        file: String,
+        /// Where in it: a tensor, or a key of its metadata.
+        place: String,
+        /// What is there.
+        found: String,
+        /// What could be there.
+        expected: String,
+    },
     /// The name of a renderer that there is not.
     #[error("renderer: found {found:?}, expected cpu, gpu or auto")]
     NoSuchRenderer {
@@ -396,6 +408,12 @@ mod tests {
                 line: 3,
                 found: "\"zero\"".to_owned(),
                 expected: "how many steps, 1 to 100000".to_owned(),
+            },
+            EnvError::BadNetwork {
+                file: "net.safetensors".to_owned(),
+                place: "__metadata__, policy".to_owned(),
+                found: "\"best\"".to_owned(),
+                expected: "sampled or greedy".to_owned(),
             },
             EnvError::NoSuchRenderer {
                 found: "GPU".to_owned(),

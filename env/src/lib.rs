@@ -30,7 +30,7 @@ mod wall_tops;
 pub use abstraction::{
     Abstraction, MAX_ABSTRACT_STATES, MAX_MACRO_SECONDS, NUM_HEADINGS, NUM_MACRO_ACTIONS, StateGrid, WorldAbstraction,
 };
-pub use agents::{Agent, Label, OnRailsAgent, RandomAgent, SarsaAgent, ScriptedAgent, StillAgent};
+pub use agents::{Agent, Label, NetworkAgent, OnRailsAgent, RandomAgent, SarsaAgent, ScriptedAgent, StillAgent};
 pub use assets::{
     Asset, Catalogue, ColliderShape, FIRST_LIBRARY_CLASS, Library, LibraryModel, MAX_LIBRARY_MODELS, MAX_MODEL_LEVELS,
     MAX_MODEL_PARTS, MAX_MODEL_REACH, MAX_MODEL_TRIANGLES, MAX_MODEL_VERTICES, MAX_NAME_BYTES, Mesh, Paint, Part,

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use crate::env::{Agent, OnRailsAgent, RandomAgent, SarsaAgent, ScriptedAgent, StillAgent};
-use crate::spec::nearest;
+use crate::env::{Agent, NetworkAgent, OnRailsAgent, RandomAgent, SarsaAgent, ScriptedAgent, StillAgent};
+use crate::spec::{MAX_BYTES, nearest};
 use driftworld_text::ShownPath;
 
 use crate::checksum::checksum;
@@ -23,11 +23,13 @@ pub(crate) enum AgentArg {
     Sarsa,
     /// Follows the script in this file.
     Scripted(PathBuf),
+    /// Acts by the network in this file.
+    Net(PathBuf),
 }
 
 impl AgentArg {
     /// What the help says of the argument.
-    pub(crate) const HELP: &'static str = "The agent: random, still, onrails (the planner: knows the map and visits what pays), sarsa (a small learner), or scripted:FILE";
+    pub(crate) const HELP: &'static str = "The agent: random, still, onrails (the planner: knows the map and visits what pays), sarsa (a small learner), scripted:FILE (a script), or net:FILE (a network that a learner in Python has exported)";
 
     /// What logs call the agent.
     pub(crate) fn name(&self) -> String {
@@ -37,12 +39,13 @@ impl AgentArg {
             Self::Onrails => "onrails".to_owned(),
             Self::Sarsa => "sarsa".to_owned(),
             Self::Scripted(path) => format!("scripted:{}", path.shown()),
+            Self::Net(path) => format!("net:{}", path.shown()),
         }
     }
 
     /// The agent before its first step.
     pub(crate) fn agent(&self) -> Result<NamedAgent, Failure> {
-        let (agent, script): (Box<dyn Agent>, _) = match self {
+        let (agent, file): (Box<dyn Agent>, _) = match self {
             Self::Random => (Box::new(RandomAgent::new(0)), None),
             Self::Still => (Box::new(StillAgent), None),
             Self::Onrails => (Box::new(OnRailsAgent::new()), None),
@@ -50,14 +53,19 @@ impl AgentArg {
             Self::Scripted(path) => {
                 let text = documents::text(path)?;
                 let agent = ScriptedAgent::parse(&path.display().to_string(), &text)?;
-                (Box::new(agent), Some(checksum(text.as_bytes())))
+                (Box::new(agent), Some(("script", checksum(text.as_bytes()))))
+            }
+            Self::Net(path) => {
+                let bytes = driftworld_files::read(path, MAX_BYTES as u64)?;
+                let agent = NetworkAgent::parse(&path.display().to_string(), &bytes)?;
+                (Box::new(agent), Some(("network", checksum(&bytes))))
             }
         };
         let (name, policy) = (self.name(), (*self == Self::Sarsa).then_some(SarsaAgent::POLICY));
         Ok(NamedAgent {
             name,
             agent,
-            script,
+            file,
             policy,
         })
     }
@@ -68,8 +76,8 @@ pub(crate) struct NamedAgent {
     /// What logs call it.
     pub(crate) name: String,
     pub(crate) agent: Box<dyn Agent>,
-    /// The checksum of its script, if it follows one.
-    pub(crate) script: Option<String>,
+    /// What its file is, if it acts by one, and the checksum of that.
+    file: Option<(&'static str, String)>,
     /// How it chooses its actions, if it learns.
     pub(crate) policy: Option<&'static str>,
 }
@@ -77,9 +85,8 @@ pub(crate) struct NamedAgent {
 impl NamedAgent {
     /// What a log depends on of the agent, for a plan to note.
     pub(crate) fn fingerprints(&self) -> impl Iterator<Item = (&'static str, &str)> {
-        [("script", self.script.as_deref()), ("policy", self.policy)]
-            .into_iter()
-            .filter_map(|(what, fingerprint)| Some((what, fingerprint?)))
+        let file = self.file.as_ref().map(|(what, checksum)| (*what, checksum.as_str()));
+        file.into_iter().chain(self.policy.map(|policy| ("policy", policy)))
     }
 }
 
@@ -89,20 +96,21 @@ impl FromStr for AgentArg {
     fn from_str(text: &str) -> Result<Self, String> {
         match text.split_once(':') {
             Some(("scripted", file)) if !file.is_empty() => Ok(Self::Scripted(file.into())),
+            Some(("net", file)) if !file.is_empty() => Ok(Self::Net(file.into())),
             None if text == "random" => Ok(Self::Random),
             None if text == "still" => Ok(Self::Still),
             // What tables call it.
             None if ["onrails", "planner", "expert"].contains(&text) => Ok(Self::Onrails),
             None if text == "sarsa" => Ok(Self::Sarsa),
             _ => {
-                let near = nearest(text, ["random", "still", "onrails", "sarsa", "scripted"]);
+                let near = nearest(text, ["random", "still", "onrails", "sarsa", "scripted", "net"]);
                 let near = match near.as_deref() {
-                    Some("scripted") => "; did you mean \"scripted:FILE\"?".to_owned(),
+                    Some(near @ ("scripted" | "net")) => format!("; did you mean \"{near}:FILE\"?"),
                     Some(near) => format!("; did you mean {near:?}?"),
                     None => String::new(),
                 };
                 Err(format!(
-                    "found {text:?}, expected random, still, onrails, sarsa or scripted:FILE{near}"
+                    "found {text:?}, expected random, still, onrails, sarsa, scripted:FILE or net:FILE{near}"
                 ))
             }
         }
@@ -121,21 +129,23 @@ mod tests {
         assert_eq!("planner".parse(), Ok(AgentArg::Onrails));
         assert_eq!("sarsa".parse(), Ok(AgentArg::Sarsa));
         assert_eq!("scripted:a:b.txt".parse(), Ok(AgentArg::Scripted("a:b.txt".into())));
+        assert_eq!("net:a:b.txt".parse(), Ok(AgentArg::Net("a:b.txt".into())));
         assert_eq!(AgentArg::Scripted("a.txt".into()).name(), "scripted:a.txt");
     }
 
     #[test]
     fn a_misspelt_agent_is_told_the_agents_there_are() {
         let said = |text: &str| text.parse::<AgentArg>().expect_err("there is no such agent");
-        let expected = "expected random, still, onrails, sarsa or scripted:FILE; did you mean";
+        let expected = "expected random, still, onrails, sarsa, scripted:FILE or net:FILE; did you mean";
         assert_eq!(said("onrail"), format!("found \"onrail\", {expected} \"onrails\"?"));
         assert_eq!(
             said("scripted"),
             format!("found \"scripted\", {expected} \"scripted:FILE\"?")
         );
+        assert_eq!(said("net"), format!("found \"net\", {expected} \"net:FILE\"?"));
         assert_eq!(
             said("bot"),
-            "found \"bot\", expected random, still, onrails, sarsa or scripted:FILE"
+            "found \"bot\", expected random, still, onrails, sarsa, scripted:FILE or net:FILE"
         );
     }
 }

@@ -1,4 +1,5 @@
-//! Agents that come with the environment: one acts at random, one knows the map, one follows a script, one learns.
+//! Agents that come with the environment: one acts at random, one knows the map, one follows a script, one
+//! learns, one acts by a trained network.
 
 mod agent;
 mod errands;
@@ -6,6 +7,7 @@ mod flood;
 mod grid;
 mod marks;
 mod nearest;
+mod network;
 mod occupancy;
 mod on_rails;
 mod rails_policy;
@@ -19,6 +21,7 @@ mod steering;
 mod still;
 
 pub use agent::{Agent, Label};
+pub use network::NetworkAgent;
 pub use on_rails::OnRailsAgent;
 pub(crate) use rails_policy::RailsPolicy;
 pub use random::RandomAgent;

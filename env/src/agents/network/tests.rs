@@ -1,0 +1,165 @@
+//! The network against torch, what its agent does with it, and files that are refused.
+
+use std::sync::Arc;
+
+use driftworld_spec::{ActionSpace, World};
+
+use super::{Agent, NetworkAgent, Trained, file};
+use crate::sim::{Action, Environment};
+
+/// Three actions held for five time steps, images of 16 × 16 pixels; `scripts/golden_network.py` wrote it.
+const NETWORK: &[u8] = include_bytes!("../../../tests/golden/network.safetensors");
+
+fn trained() -> Trained {
+    file::read("golden", NETWORK).expect("a learner wrote it")
+}
+
+fn agent(edit: impl FnOnce(&mut Trained)) -> NetworkAgent {
+    let mut trained = trained();
+    edit(&mut trained);
+    NetworkAgent::of(Arc::new(trained))
+}
+
+/// The actions of some steps; the world stands in the arena's middle and has one thing to see.
+fn actions(agent: &mut dyn Agent, seed: u64, edit: impl FnOnce(&mut driftworld_spec::WorldDraft)) -> Vec<Action> {
+    let world = World::default().edit(|world| {
+        world.objects.push(driftworld_spec::Object::new("tree", [2.0, 9.0]));
+        edit(world);
+    });
+    let mut environment = Environment::new(world.expect("a sound world"));
+    agent.begin(seed);
+    let step = |_| {
+        let action = agent.act(&environment);
+        environment.step(action).expect("an action of the world");
+        action
+    };
+    (0..40).map(step).collect()
+}
+
+#[test]
+fn log_probabilities_are_those_of_torch() {
+    let rows: Vec<Vec<f64>> =
+        serde_json::from_str(include_str!("../../../tests/golden/network.json")).expect("rows of numbers");
+    let network = trained().network;
+    assert_eq!(rows.len(), 4);
+    for (number, expected) in rows.iter().enumerate() {
+        let image: Vec<u8> = (0..16 * 16 * 3)
+            .map(|k| ((k * (7 + 2 * number) + k / 5) % 256) as u8)
+            .collect();
+        let found = network.log_policy(&image);
+        assert_eq!(found.len(), expected.len());
+        for (found, expected) in found.iter().zip(expected) {
+            assert!(
+                (found - expected).abs() < 1e-5,
+                "image {number}: {found}, expected {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn image_is_that_of_an_environment_of_its_size() {
+    let world = World::default().edit(|world| {
+        world.objects.push(driftworld_spec::Object::new("tree", [2.0, 9.0]));
+        world.agent_params.observation_size = 16;
+        world.agent_params.supersampling = 2;
+    });
+    let mut environment = Environment::new(world.expect("a sound world"));
+    let mut agent = agent(|_| {});
+    agent.look(&environment);
+    assert_eq!(agent.image, environment.observe().rgb);
+}
+
+#[test]
+fn action_is_held_as_in_training_and_interacts_in_its_first_time_step() {
+    let always = |trained: &mut Trained| trained.actions = vec![[4.0, 9.0, 1.0]; 3];
+    let first = Action::Continuous([4.0, 9.0, 1.0]);
+    let later = Action::Continuous([4.0, 9.0, 0.0]);
+    for (of_world, held) in [(1, 5), (2, 3), (5, 1), (7, 1)] {
+        let done = actions(&mut agent(always), 0, |world| world.agent_params.frame_skip = of_world);
+        for (step, action) in done.into_iter().enumerate() {
+            let expected = if step % held == 0 { first } else { later };
+            assert_eq!(action, expected, "step {step} of {of_world} time steps");
+        }
+    }
+    let unsaid = |trained: &mut Trained| (trained.actions, trained.frame_skip) = (vec![[4.0, 9.0, 1.0]; 3], None);
+    assert_eq!(actions(&mut agent(unsaid), 0, |_| {}), vec![first; 40]);
+}
+
+#[test]
+fn table_of_the_world_gives_the_nearest_row() {
+    let always = |trained: &mut Trained| trained.actions = vec![[4.0, 9.0, 0.0]; 3];
+    let table = vec![[0.0, 90.0, 0.0], [5.0, 0.0, 0.0], [-5.0, 0.0, 0.0]];
+    let done = actions(&mut agent(always), 0, |world| {
+        world.agent_params.actions = ActionSpace::Discrete(table);
+    });
+    assert_eq!(done, vec![Action::Discrete(1); 40]);
+}
+
+#[test]
+fn sampling_depends_on_the_seed_of_the_episode_alone() {
+    let sampled = |trained: &mut Trained| trained.is_greedy = false;
+    let mut used = agent(sampled);
+    let first = actions(&mut used, 3, |_| {});
+    assert_ne!(first, actions(&mut used, 4, |_| {}));
+    assert_eq!(first, actions(&mut used, 3, |_| {}));
+    assert!(!used.learns());
+    let mut copy = used.frozen().expect("it can be copied");
+    assert_eq!(first, actions(copy.as_mut(), 3, |_| {}));
+    let mut greedy = agent(|_| {});
+    assert_eq!(actions(&mut greedy, 3, |_| {}), actions(&mut greedy, 4, |_| {}));
+}
+
+/// The file with a word of its header replaced by one as long, or by others with spaces left out elsewhere.
+fn changed(from: &str, to: &str) -> Vec<u8> {
+    let length = u64::from_le_bytes(*NETWORK.first_chunk().expect("eight bytes")) as usize;
+    let (header, data) = NETWORK[8..].split_at(length);
+    let header = std::str::from_utf8(header).expect("JSON");
+    assert!(header.contains(from), "{from}");
+    let header = header.replacen(from, to, 1);
+    [&(header.len() as u64).to_le_bytes(), header.as_bytes(), data].concat()
+}
+
+fn refusal(bytes: &[u8]) -> String {
+    let refused = NetworkAgent::parse("a.safetensors", bytes).map(|_| "taken".to_owned());
+    refused.unwrap_or_else(|error| error.to_string())
+}
+
+#[test]
+fn bad_files_are_refused_with_where_and_what() {
+    let mut lines = vec![
+        refusal(b""),
+        refusal(b"PK\x03\x04 and so on, as torch.save writes"),
+        refusal(&[&2_u64.to_le_bytes()[..], b"{]"].concat()),
+        refusal(&[&2_u64.to_le_bytes()[..], b"{}"].concat()),
+        refusal(&NETWORK[..NETWORK.len() - 100]),
+    ];
+    let mut infinite = NETWORK.to_vec();
+    let last = infinite.len();
+    // The last tensors are those of the value, which is not read: 9 numbers.
+    infinite[last - 40..last - 36].copy_from_slice(&f32::NAN.to_le_bytes());
+    lines.push(refusal(&infinite));
+    for (from, to) in [
+        ("\"patch\"", "\"gru\""),
+        ("\"architecture\": \"patch\", ", ""),
+        ("\"size\": \"16\"", "\"size\": 16"),
+        ("\"size\": \"16\"", "\"size\": \"12\""),
+        ("\"size\": \"16\"", "\"size\": \"100000\""),
+        ("\"size\": \"16\"", "\"size\": \"24\""),
+        ("[3.0, 90.0, 0.0]", "[3.0, 90.0]"),
+        ("[3.0, 90.0, 0.0], ", ""),
+        ("\"greedy\"", "\"best\""),
+        ("\"frame_skip\": \"5\"", "\"frame_skip\": \"0\""),
+        ("trunk.large.weight", "trunk.huge.weight"),
+        ("\"F32\"", "\"F16\""),
+        ("[4, 48]", "[48, 4]"),
+        ("[0, 768]", "[0, 764]"),
+        ("[0, 768]", "[768, 0]"),
+        ("\"shape\": [4]", "\"shape\": [18446744073709551615]"),
+        ("\"shape\": [4]", "\"shape\": [0]"),
+        ("\"shape\": [4]", "\"shape\": 4"),
+    ] {
+        lines.push(refusal(&changed(from, to)));
+    }
+    insta::assert_snapshot!(lines.join("\n"));
+}
