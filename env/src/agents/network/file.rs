@@ -91,8 +91,8 @@ impl<'a> File<'a> {
         let length = u64::from_le_bytes(*length);
         let most = MAX_NETWORK_HEADER.min(rest.len() as u64);
         if length > most {
-            let found = format!("{length} bytes, expected at most {most}");
-            return Err(file.bad("length of the header", found, kind));
+            let expected = format!("at most {most}, in {kind}");
+            return Err(file.bad("length of the header", format!("{length} bytes"), expected));
         }
         let (header, data) = rest.split_at(length as usize);
         file.data = data;
