@@ -97,6 +97,7 @@ fn limits_of_what_is_read_are_on_the_page() {
         "metrics/src/log/json_file.rs",
         "metrics/src/log/data_file.rs",
         "metrics/src/log/table.rs",
+        "env/src/agents/network/file.rs",
         "env/src/assets/library/mod.rs",
         "env/src/assets/import/limits.rs",
         "src/matrix_file.rs",

@@ -59,6 +59,7 @@ fn command_lines() -> Vec<Vec<&'static str>> {
         "scales SPECIAL --worlds 2",
         "metrics log --scales SPECIAL",
         "run scenario.json --agent scripted:SPECIAL -o out",
+        "run scenario.json --agent net:SPECIAL -o out",
         "run scenario.json --agent random --assets SPECIAL -o out",
         "run names_task.json --agent random -o out",
         "run names_world.json --agent random -o out",

@@ -292,17 +292,31 @@ fn learn(network: &mut Network, variant: &Variant, seed: u64, decisions: usize, 
             let (log_policy, values) = network.look(&images)?;
             let actions = draw(&log_policy, rng);
             envs.step(&actions.iter().map(|row| Action::Discrete(*row)).collect::<Vec<_>>())?;
-            let (now, last) = (
-                envs.outputs(),
-                envs.final_outputs().ok_or("same-step resets keep last images")?,
-            );
-            let last_values = network.look(&patched(&last.images.rgb))?.1;
+            let now = envs.outputs();
+            let is_cut_off = |env: &usize| now.truncated[*env] && !now.terminated[*env];
+            let cut_off: Vec<usize> = (0..NUM_ENVS).filter(is_cut_off).collect();
+            let last = &envs
+                .final_outputs()
+                .ok_or("same-step resets keep last images")?
+                .images
+                .rgb;
+            let images_of = |env: &usize| patched(&last[env * IMAGE..(env + 1) * IMAGE]);
+            let last: Vec<u8> = cut_off.iter().flat_map(images_of).collect();
+            let mut last_values = if last.is_empty() {
+                Vec::new()
+            } else {
+                network.look(&last)?.1
+            }
+            .into_iter();
             for env in 0..NUM_ENVS {
                 returns[env] += now.rewards[env];
                 rollout.rewards.push((now.rewards[env] * REWARD_SCALE) as f32);
                 let is_over = now.terminated[env] || now.truncated[env];
-                let value = if now.terminated[env] { 0.0 } else { last_values[env] };
-                rollout.last_values.push(is_over.then_some(value));
+                rollout.last_values.push(match (now.terminated[env], is_over) {
+                    (true, _) => Some(0.0),
+                    (_, true) => last_values.next(),
+                    _ => None,
+                });
                 if is_over {
                     ended.push(std::mem::take(&mut returns[env]));
                 }
