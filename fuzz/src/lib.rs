@@ -12,6 +12,7 @@ mod library;
 mod log;
 mod maps;
 mod matrix;
+mod network;
 mod protocol;
 mod recording;
 mod refusal;
@@ -30,7 +31,7 @@ pub struct Target {
 }
 
 /// Every target, in the order of the alphabet.
-pub const TARGETS: [Target; 13] = [
+pub const TARGETS: [Target; 14] = [
     target("agent_script", agent_script::check),
     target("episode", episode::check),
     target("gltf", gltf::check),
@@ -38,6 +39,7 @@ pub const TARGETS: [Target; 13] = [
     target("log", log::check),
     target("maps", maps::check),
     target("matrix", matrix::check),
+    target("network", network::check),
     target("protocol", protocol::check),
     target("recording", recording::check),
     target("scenario", scenario::check),

@@ -137,6 +137,7 @@ targets! {
     log: 512,
     maps: 512,
     matrix: 256,
+    network: 256,
     protocol: 256,
     recording: 256,
     scenario: 256,

@@ -1,0 +1,24 @@
+//! Files of networks, by which an agent acts in a small world.
+
+use driftworld_env::{Agent, Environment, NetworkAgent};
+use driftworld_spec::World;
+
+use crate::refusal;
+
+/// Steps that are played.
+const STEPS: usize = 2;
+
+/// A network that is taken chooses actions that can be carried out.
+pub(crate) fn check(bytes: &[u8]) {
+    let mut agent = match NetworkAgent::parse("a.safetensors", bytes) {
+        Ok(agent) => agent,
+        Err(error) => return refusal::message(&error.to_string()),
+    };
+    let mut environment = Environment::new(World::default());
+    agent.begin(1);
+    for _ in 0..STEPS {
+        let action = agent.act(&environment);
+        let step = environment.step(action).expect("a table of finite numbers");
+        assert!(step.reward.is_finite());
+    }
+}
