@@ -255,14 +255,14 @@ impl Rollout {
         advantages
     }
 
+    fn image(&self, step: usize) -> &[u8] {
+        &self.images[step * IMAGE..(step + 1) * IMAGE]
+    }
+
     /// PPO's loss of some steps: the clipped surrogate (eq. 7), half the squared error of values, and entropy.
     fn loss(&self, network: &Network, advantages: &[f32], part: &[usize]) -> Result<Tensor> {
         let column = |of: &dyn Fn(usize) -> f32| Tensor::from_iter(part.iter().map(|k| of(*k)), &Device::Cpu);
-        let images: Vec<u8> = part
-            .iter()
-            .flat_map(|k| &self.images[k * IMAGE..(k + 1) * IMAGE])
-            .copied()
-            .collect();
+        let images: Vec<u8> = part.iter().flat_map(|k| self.image(*k)).copied().collect();
         let (log_policy, values) = network.forward(&images)?;
         let actions = Tensor::from_iter(part.iter().map(|k| self.actions[*k] as u32), &Device::Cpu)?;
         let before = column(&|k| self.log_policy[k * ACTIONS.len() + self.actions[k]])?;
@@ -293,33 +293,20 @@ fn learn(network: &mut Network, variant: &Variant, seed: u64, decisions: usize, 
             let actions = draw(&log_policy, rng);
             envs.step(&actions.iter().map(|row| Action::Discrete(*row)).collect::<Vec<_>>())?;
             let now = envs.outputs();
-            let is_cut_off = |env: &usize| now.truncated[*env] && !now.terminated[*env];
-            let cut_off: Vec<usize> = (0..NUM_ENVS).filter(is_cut_off).collect();
-            let last = &envs
-                .final_outputs()
-                .ok_or("same-step resets keep last images")?
-                .images
-                .rgb;
-            let images_of = |env: &usize| patched(&last[env * IMAGE..(env + 1) * IMAGE]);
-            let last: Vec<u8> = cut_off.iter().flat_map(images_of).collect();
-            let mut last_values = if last.is_empty() {
-                Vec::new()
-            } else {
-                network.look(&last)?.1
-            }
-            .into_iter();
+            let last = envs.final_outputs().ok_or("same-step resets keep last images")?;
             for env in 0..NUM_ENVS {
                 returns[env] += now.rewards[env];
                 rollout.rewards.push((now.rewards[env] * REWARD_SCALE) as f32);
-                let is_over = now.terminated[env] || now.truncated[env];
-                rollout.last_values.push(match (now.terminated[env], is_over) {
+                let image = &last.images.rgb[env * IMAGE..(env + 1) * IMAGE];
+                let last_value = match (now.terminated[env], now.truncated[env]) {
                     (true, _) => Some(0.0),
-                    (_, true) => last_values.next(),
+                    (_, true) => Some(network.look(&patched(image))?.1[0]),
                     _ => None,
-                });
-                if is_over {
+                };
+                if last_value.is_some() {
                     ended.push(std::mem::take(&mut returns[env]));
                 }
+                rollout.last_values.push(last_value);
             }
             rollout.images.extend(images);
             rollout.actions.extend(actions);
@@ -340,10 +327,9 @@ fn learn(network: &mut Network, variant: &Variant, seed: u64, decisions: usize, 
         }
         if (update + 1) % 10 == 0 || update + 1 == num_updates {
             let done = (update + 1) * ROLLOUT * NUM_ENVS;
-            let seconds = began.elapsed().as_secs_f64();
+            let (seconds, reward) = (began.elapsed().as_secs_f64(), mean(&ended));
             println!(
-                "{done:>7} decisions, {seconds:>4.0} s: reward {:7.1} of {} episodes",
-                mean(&ended),
+                "{done:>7} decisions, {seconds:>4.0} s: reward {reward:7.1}, {} episodes",
                 ended.len()
             );
             ended.clear();
@@ -408,9 +394,7 @@ fn main() -> Result<()> {
     println!("find_objects#{name}: random {floor:.1}, planner {ceiling:.1}");
     learn(&mut network, &variant, seed, decisions, &mut rng)?;
     let found = evaluate(&network, &variant)?;
-    println!(
-        "reward {found:.4}: {:.0} % of the way from random to planner",
-        100.0 * (found - floor) / (ceiling - floor)
-    );
+    let share = 100.0 * (found - floor) / (ceiling - floor);
+    println!("reward {found:.4}: {share:.0} % of the way from random to planner");
     path.map_or(Ok(()), |path| network.export(&path))
 }
