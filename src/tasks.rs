@@ -20,19 +20,22 @@ pub const BUILT_IN: [(&str, &str); 6] = [
     ("blue_red_green", include_str!("../examples/tasks/blue_red_green.json")),
 ];
 
-/// The example worlds, which are tasks, too, and found by name as well. The files are `examples/worlds/`.
-pub const WORLDS: [(&str, &str); 11] = [
-    ("cue_t_maze", include_str!("../examples/worlds/cue_t_maze.json")),
-    ("foraging", include_str!("../examples/worlds/foraging.json")),
-    ("four_rooms", include_str!("../examples/worlds/four_rooms.json")),
-    ("hunt", include_str!("../examples/worlds/hunt.json")),
-    ("key_corridor", include_str!("../examples/worlds/key_corridor.json")),
-    ("lava_crossing", include_str!("../examples/worlds/lava_crossing.json")),
-    ("locked_rooms", include_str!("../examples/worlds/locked_rooms.json")),
-    ("maze", include_str!("../examples/worlds/maze.json")),
-    ("put_next", include_str!("../examples/worlds/put_next.json")),
-    ("switches", include_str!("../examples/worlds/switches.json")),
-    ("t_maze", include_str!("../examples/worlds/t_maze.json")),
+macro_rules! family {
+    ($name:literal) => {
+        ($name, include_str!(concat!("../examples/worlds/", $name, ".json")))
+    };
+}
+
+/// A group of tasks: what they ask for, and each with its name and text.
+pub type Group = (&'static str, &'static [(&'static str, &'static str)]);
+
+/// More tasks, by what they ask for. The files are `examples/worlds/`.
+pub const FAMILIES: [Group; 5] = [
+    ("navigation", &[family!("four_rooms"), family!("maze"), family!("t_maze")]),
+    ("doors and keys", &[family!("key_corridor"), family!("locked_rooms"), family!("switches")]),
+    ("things", &[family!("foraging"), family!("put_next")]),
+    ("hazards", &[family!("hunt"), family!("lava_crossing")]),
+    ("memory", &[family!("cue_t_maze")]),
 ];
 
 /// Why no task is found by its name.
@@ -144,15 +147,20 @@ pub fn built_in_names() -> Vec<&'static str> {
     BUILT_IN.iter().map(|(name, _)| *name).collect()
 }
 
-/// The text of the task or example world of this name.
+/// All that come with Driftworld, by what they ask for.
+pub fn groups() -> impl Iterator<Item = Group> {
+    std::iter::once(("the paper's", &BUILT_IN[..])).chain(FAMILIES)
+}
+
+/// The text of the task of this name.
 pub fn text_by_name(name: &str) -> Option<&'static str> {
-    let mut known = BUILT_IN.iter().chain(&WORLDS);
+    let mut known = groups().flat_map(|(_, tasks)| tasks);
     known.find(|(known, _)| *known == name).map(|(_, text)| *text)
 }
 
 /// All names that tasks are found by.
 fn names() -> impl Iterator<Item = &'static str> {
-    BUILT_IN.iter().chain(&WORLDS).map(|(name, _)| *name)
+    groups().flat_map(|(_, tasks)| tasks).map(|(name, _)| *name)
 }
 
 /// A name cut into task and variant: `find_objects#red` is `("find_objects", Some("red"))`.

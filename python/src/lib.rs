@@ -51,7 +51,7 @@ mod native {
         recordings::{PyRecording, png, read_recording},
         scores::{PyScores, report},
         supply::PyStream,
-        task::{PyTask, built_in_names},
+        task::{PyTask, built_in_names, task_groups},
         variant::{PyVariant, load_variant, load_variants, variant_again},
     };
 

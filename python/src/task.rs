@@ -158,6 +158,13 @@ pub(crate) fn built_in_names() -> Vec<&'static str> {
     tasks::built_in_names()
 }
 
+/// All tasks that come with Driftworld: each group, and the names of its tasks.
+#[pyfunction]
+pub(crate) fn task_groups() -> Vec<(&'static str, Vec<&'static str>)> {
+    let names = |tasks: &[(&'static str, &str)]| tasks.iter().map(|(name, _)| *name).collect();
+    tasks::groups().map(|(group, tasks)| (group, names(tasks))).collect()
+}
+
 /// A name, or a path of any of Python's kinds.
 fn name_of(name_or_path: &Bound<'_, PyAny>) -> PyResult<String> {
     let path = name_or_path

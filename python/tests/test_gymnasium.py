@@ -57,15 +57,17 @@ def run_python(program: str, **environment: str) -> subprocess.CompletedProcess[
     )
 
 
-def test_every_built_in_task_has_an_id_of_its_own() -> None:
+def test_every_task_has_an_id_of_its_own() -> None:
     named = {
         gym.spec(env_id).kwargs["task"]: env_id
         for env_id in gym.registry
         if env_id.startswith("driftworld/") and "task" in gym.spec(env_id).kwargs
     }
-    assert sorted(named) == sorted(driftworld.built_in_tasks()) == sorted(TASKS.values())
+    all_tasks = [task for tasks in driftworld.task_groups().values() for task in tasks]
+    assert sorted(named) == sorted(all_tasks) and sorted(driftworld.built_in_tasks()) == sorted(TASKS.values())
     for task, env_id in named.items():
-        assert env_id == f"driftworld/{task.title().replace('_', '')}-v0" and TASKS[env_id] == task
+        assert env_id == f"driftworld/{task.title().replace('_', '')}-v0"
+    driftworld.validate("key_corridor")
 
 
 @pytest.mark.parametrize(

@@ -54,17 +54,21 @@ impl Tasks {
 const LISTED: usize = 6;
 
 fn list(as_json: bool) -> Result<(), Failure> {
+    if as_json {
+        let mut list = Vec::new();
+        for (group, names) in tasks::groups() {
+            for (name, _) in names {
+                let task = tasks::task(name)?;
+                let (description, variants) = (task.description(), task.variant_names());
+                list.push(json!({ "task": name, "group": group, "description": description, "variants": variants }));
+            }
+        }
+        return output::json(&list);
+    }
     let tasks = tasks::built_in_names()
         .into_iter()
         .map(tasks::task)
         .collect::<Result<Vec<_>, _>>()?;
-    if as_json {
-        let list: Vec<_> = tasks
-            .iter()
-            .map(|task| json!({ "task": task.name(), "description": task.description(), "variants": task.variant_names() }))
-            .collect();
-        return output::json(&list);
-    }
     let rows = tasks.iter().map(|task| {
         let names = task.variant_names();
         [
@@ -74,8 +78,11 @@ fn list(as_json: bool) -> Result<(), Failure> {
         ]
     });
     output::line(table(["task", "what it is", "variants"], rows.collect(), &[]))?;
-    let worlds = tasks::WORLDS.map(|(name, _)| name).join(", ");
-    output::line(format!("\nThe example worlds are found by name, too: {worlds}."))?;
+    let rows = tasks::FAMILIES.map(|(group, tasks)| {
+        let names: Vec<&str> = tasks.iter().map(|(name, _)| *name).collect();
+        [group.to_owned(), names.join(", ")]
+    });
+    output::line(format!("\n{}", table(["more", "tasks"], rows.into(), &[])))?;
     output::line("\n`driftworld tasks show TASK` says what varies in one, and what each of its variants changes.")
 }
 
@@ -89,7 +96,12 @@ fn show(task: &Arc<TaskSpec>, own: Option<&str>, as_json: bool) -> Result<(), Fa
             .iter()
             .map(|variant| (variant.name().to_owned(), json!(variant.values())))
             .collect();
-        return output::json(&json!({ "task": task.name(), "parameters": task.parameters(), "variants": values }));
+        let described = |variant: &Variant| Some((variant.name().to_owned(), json!(task.variant_description(variant.name())?)));
+        let descriptions: serde_json::Map<_, _> = variants.iter().filter_map(described).collect();
+        return output::json(&json!({
+            "task": task.name(), "description": task.description(), "parameters": task.parameters(), "variants": values,
+            "descriptions": descriptions,
+        }));
     }
     output::line(format!("{}: {}", task.name(), printable(task.description())))?;
     for requirement in task.requirements() {

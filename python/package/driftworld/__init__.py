@@ -25,7 +25,7 @@ from driftworld.lifetimes import Agent, Summary, Transition
 from driftworld.logs import Log, LogWriter, read_log, validate_log
 from driftworld.recordings import Recording, replay
 from driftworld.scores import Metrics, metrics, report
-from driftworld.specs import Drift, TaskSpec, Variant, built_in_tasks, validate, variant, variants
+from driftworld.specs import Drift, TaskSpec, Variant, built_in_tasks, task_groups, validate, variant, variants
 from driftworld.vector_lifetimes import VectorAgent, VectorTransition
 
 __version__: str = _native.__version__
@@ -70,6 +70,7 @@ __all__ = [
     "report",
     "segmentation_classes",
     "spread_seeds",
+    "task_groups",
     "validate",
     "validate_log",
     "variant",

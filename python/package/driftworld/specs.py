@@ -18,12 +18,17 @@ from driftworld._html import note, table
 from driftworld._literals import DocumentKind
 from driftworld._native import Drift, TaskSpec, Variant
 
-__all__ = ["Drift", "TaskSpec", "Variant", "built_in_tasks", "validate", "variant", "variants"]
+__all__ = ["Drift", "TaskSpec", "Variant", "built_in_tasks", "task_groups", "validate", "variant", "variants"]
 
 
 def built_in_tasks() -> list[str]:
-    """The names of the tasks that come with the package."""
+    """The names of the six tasks of the paper, whose variants the guides use."""
     return _native.built_in_names()
+
+
+def task_groups() -> dict[str, list[str]]:
+    """The names of all tasks that come with the package, by what they ask for. Each has an id, such as ``driftworld/KeyCorridor-v0``."""
+    return dict(_native.task_groups())
 
 
 def variant(name: str | os.PathLike[str]) -> Variant:
@@ -163,12 +168,13 @@ def document_text(document: str | os.PathLike[str] | Mapping[str, Any]) -> tuple
         found = type(document).__name__
         raise TypeError(f"document: found {found}, expected a path, JSON text or a dictionary")
     name = os.fspath(document)
-    if name in built_in_tasks():
+    known = [task for tasks in task_groups().values() for task in tasks]
+    if name in known:
         return f"{name}.json", TaskSpec.load(name).to_json()
     try:
         return name, read_text(name)
     except FileNotFoundError as error:
-        expected = f"the path of a document, JSON text, a dictionary, or one of {', '.join(built_in_tasks())}"
+        expected = f"the path of a document, JSON text, a dictionary, or one of {', '.join(known)}"
         raise FileNotFoundError(f"document: found no file {name!r}, expected {expected}") from error
 
 

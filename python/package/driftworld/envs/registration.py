@@ -6,14 +6,16 @@ from typing import Any
 
 import gymnasium
 
-#: Each id and the options that it stands for.
+from driftworld import _native
+
+
+def _camel(name: str) -> str:
+    return "".join(word.capitalize() for word in name.split("_"))
+
+
+#: Each id and the options that it stands for: one for each task that comes with the package, and two for any task or world.
 ENV_IDS: dict[str, dict[str, Any]] = {
-    "driftworld/FindObjects-v0": {"task": "find_objects"},
-    "driftworld/GetToGoal-v0": {"task": "get_to_goal"},
-    "driftworld/SelectObject-v0": {"task": "select_object"},
-    "driftworld/MovingObject-v0": {"task": "moving_object"},
-    "driftworld/ScavengerHunt-v0": {"task": "scavenger_hunt"},
-    "driftworld/BlueRedGreen-v0": {"task": "blue_red_green"},
+    **{f"driftworld/{_camel(task)}-v0": {"task": task} for _, tasks in _native.task_groups() for task in tasks},
     "driftworld/Task-v0": {},
     "driftworld/World-v0": {},
 }
