@@ -46,12 +46,13 @@ impl JsonSchema for Case<Number> {
 /// The schema of a look-up whose cases have a schema.
 pub(crate) fn schema(generator: &mut SchemaGenerator, description: &str, case: &Schema) -> Schema {
     let parameter = generator.subschema_for::<ParamRef>();
+    let of = "The cases, by the values of the parameter as texts: words, names of choices or colours, numbers, `true`, `false`.";
     json_schema!({
         "description": description,
         "type": "object",
         "properties": {
             "case": parameter,
-            "of": { "type": "object", "additionalProperties": case, "minProperties": 1, "maxProperties": 1000 },
+            "of": { "description": of, "type": "object", "additionalProperties": case, "minProperties": 1, "maxProperties": 1000 },
             "else": case
         },
         "required": ["case", "of"],
