@@ -31,11 +31,57 @@ pub type Group = (&'static str, &'static [(&'static str, &'static str)]);
 
 /// More tasks, by what they ask for. The files are `examples/worlds/`.
 pub const FAMILIES: [Group; 5] = [
-    ("navigation", &[family!("four_rooms"), family!("maze"), family!("t_maze")]),
-    ("doors and keys", &[family!("key_corridor"), family!("locked_rooms"), family!("switches")]),
-    ("things", &[family!("foraging"), family!("put_next")]),
-    ("hazards", &[family!("hunt"), family!("lava_crossing")]),
-    ("memory", &[family!("cue_t_maze")]),
+    (
+        "navigation",
+        &[
+            family!("hallway"),
+            family!("one_room"),
+            family!("three_rooms"),
+            family!("four_rooms"),
+            family!("multi_room"),
+            family!("maze"),
+            family!("way_home"),
+            family!("t_maze"),
+            family!("y_maze"),
+            family!("wall_gap"),
+            family!("sidewalk"),
+            family!("obstacle_course"),
+        ],
+    ),
+    (
+        "doors and keys",
+        &[
+            family!("unlock"),
+            family!("unlock_pickup"),
+            family!("door_key"),
+            family!("key_corridor"),
+            family!("locked_rooms"),
+            family!("red_blue_doors"),
+            family!("switches"),
+        ],
+    ),
+    (
+        "things",
+        &[
+            family!("collect_health"),
+            family!("foraging"),
+            family!("put_next"),
+        ],
+    ),
+    (
+        "hazards",
+        &[
+            family!("dynamic_obstacles"),
+            family!("hunt"),
+            family!("lava_crossing"),
+        ],
+    ),
+    (
+        "memory",
+        &[
+            family!("cue_t_maze"),
+        ],
+    ),
 ];
 
 /// Why no task is found by its name.

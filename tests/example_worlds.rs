@@ -1,10 +1,11 @@
-//! The example worlds: each is a sound task, its pages show it, and the agent on rails comes to the end that it asks for.
+//! The families: each is a sound task with a page and a film of its own, and the agent on rails comes to the end that it asks for.
 
 use std::path::Path;
 
 use driftworld::env::{Agent, Environment, OnRailsAgent};
 use driftworld::generator::Sampler;
 use driftworld::spec::TaskSpec;
+use driftworld::tasks;
 
 /// Worlds of each variant that are run.
 const WORLDS: u64 = 4;
@@ -12,20 +13,23 @@ const WORLDS: u64 = 4;
 /// The folder of the project.
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
-fn check(name: &str) {
-    let path = format!("{ROOT}/examples/worlds/{name}.json");
-    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
-    let task = TaskSpec::from_json(name, &text).unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(task.name(), name);
-    let page = std::fs::read_to_string(format!("{ROOT}/docs/worlds.md")).expect("the page can be read");
-    assert!(
-        page.contains(&format!("examples/worlds/{name}.json")),
-        "{name} is on the page"
-    );
-    assert!(
-        Path::new(&format!("{ROOT}/docs/images/world-{name}.png")).exists(),
-        "{name} has a picture"
-    );
+fn check(group: &str) {
+    let (_, families) = tasks::groups()
+        .find(|(known, _)| *known == group)
+        .unwrap_or_else(|| panic!("there is a group {group}"));
+    for (name, text) in families {
+        let task = TaskSpec::from_json(name, text).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(task.name(), *name);
+        for file in [format!("families/{name}.md"), format!("images/families/{name}.gif")] {
+            let path = format!("{ROOT}/docs/{file}");
+            assert!(Path::new(&path).exists(), "{path}: scripts/families.py makes it");
+        }
+        assert_eq!(unsolved(&task), Vec::<String>::new());
+    }
+}
+
+/// The worlds in which the agent on rails does not succeed.
+fn unsolved(task: &TaskSpec) -> Vec<String> {
     let mut unsolved = Vec::new();
     for variant in task.variant_names() {
         let variant = task.variant(variant).unwrap_or_else(|error| panic!("{error}"));
@@ -47,60 +51,51 @@ fn check(name: &str) {
             }
         }
     }
-    assert!(unsolved.is_empty(), "not solved: {}", unsolved.join("; "));
+    unsolved
 }
 
 #[test]
-fn mazes_are_solved() {
-    check("maze");
+fn ways_are_found() {
+    check("navigation");
 }
 
 #[test]
-fn rooms_are_solved() {
-    check("four_rooms");
+fn doors_are_opened_with_their_keys_and_switches() {
+    check("doors and keys");
 }
 
 #[test]
-fn maps_of_letters_are_solved() {
-    check("t_maze");
+fn things_are_found_and_carried() {
+    check("things");
+}
+
+#[test]
+fn hazards_are_avoided() {
+    check("hazards");
 }
 
 #[test]
 fn cues_that_are_drawn_are_minded() {
-    check("cue_t_maze");
+    check("memory");
 }
 
+/// A folder of documents that nobody finds by name would be dead.
 #[test]
-fn keys_of_rooms_are_fetched_in_their_order() {
-    check("locked_rooms");
-}
-
-#[test]
-fn keys_are_fetched_for_doors() {
-    check("key_corridor");
-}
-
-#[test]
-fn switches_open_gates() {
-    check("switches");
-}
-
-#[test]
-fn zones_that_end_the_episode_are_avoided() {
-    check("lava_crossing");
-}
-
-#[test]
-fn energy_lasts_as_long_as_there_is_fruit() {
-    check("foraging");
-}
-
-#[test]
-fn what_runs_away_is_caught() {
-    check("hunt");
-}
-
-#[test]
-fn things_are_carried_to_their_place() {
-    check("put_next");
+fn every_file_of_the_folder_is_a_family() {
+    let mut named: Vec<String> = tasks::FAMILIES
+        .iter()
+        .flat_map(|(_, families)| families.iter().map(|(name, _)| format!("{name}.json")))
+        .collect();
+    let files = std::fs::read_dir(format!("{ROOT}/examples/worlds")).expect("the folder can be read");
+    let mut found: Vec<String> = files
+        .map(|file| {
+            file.expect("the folder can be read")
+                .file_name()
+                .into_string()
+                .expect("names are text")
+        })
+        .collect();
+    named.sort();
+    found.sort();
+    assert_eq!(named, found);
 }
