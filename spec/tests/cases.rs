@@ -77,3 +77,31 @@ fn a_value_between_the_cases_is_refused_when_a_variant_takes_it() {
     let said = between("purple").expect_err("there is no case for it").to_string();
     assert!(said.contains("tint = purple") && said.contains("red, blue"), "{said}");
 }
+
+#[test]
+fn a_margin_without_a_case_is_refused_when_a_variant_takes_it() {
+    let apart = r#"{ "case": { "param": "tint" }, "of": { "red": 1, "blue": 2 } }"#;
+    let group = |margins: &str| {
+        let cubes =
+            r#""count": 1, "object": { "class": "cube" }, "placement": { "disc": { "center": [0, 0], "radius": 9 } }"#;
+        format!(
+            r#""name": "t", "parameters": {{ {PARAMETERS} }},
+               "groups": [{{ "name": "a", {cubes} }}, {{ "name": "b", {cubes}, {margins} }}]"#
+        )
+    };
+    for margins in [
+        format!(r#""separation": {apart}"#),
+        format!(r#""keep_out": {{ "groups": {{ "a": {apart} }} }}"#),
+        format!(r#""facing": {{ "point": [0, {apart}] }}"#),
+    ] {
+        let task = TaskSpec::from_json("t.json", &format!("{{ {} }}", group(&margins)));
+        let task = task.unwrap_or_else(|error| panic!("{error}"));
+        let variant = task.variant("default").expect("it is always there");
+        let said = variant.with("between", [("tint".to_owned(), Value::Text("purple".into()))]);
+        assert!(
+            said.expect_err("there is no case")
+                .to_string()
+                .contains("tint = purple")
+        );
+    }
+}

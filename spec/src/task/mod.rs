@@ -365,16 +365,32 @@ impl TaskSpec {
             }
         }
         for (index, group) in self.groups.iter().enumerate() {
-            let margins = [
-                ("separation", &group.spec.separation),
-                ("keep_out/walls", &group.spec.keep_out.walls),
-                ("keep_out/agent", &group.spec.keep_out.agent),
+            let anything = f64::MIN..=f64::MAX;
+            let mut numbers = vec![
+                ("separation", &group.spec.separation, 0.0..=300.0),
+                ("keep_out/walls", &group.spec.keep_out.walls, 0.0..=300.0),
+                ("keep_out/agent", &group.spec.keep_out.agent, 0.0..=300.0),
             ];
-            for (key, number) in margins {
-                let metres = scope.number(number).unwrap_or(0.0);
-                if !(0.0..=300.0).contains(&metres) {
-                    let pointer = format!("/groups/{index}/{key}");
-                    problems.push(Problem::new("spec/range", pointer, format!("{metres} m"), "0 to 300 m"));
+            let keep_groups = group.keep_groups.iter();
+            numbers.extend(keep_groups.map(|(_, number)| ("keep_out/groups", number, anything.clone())));
+            if let Some(Facing::Point(point)) = &group.spec.facing {
+                numbers.extend(point.iter().map(|number| ("facing", number, anything.clone())));
+            }
+            for (key, number, range) in numbers {
+                let pointer = || format!("/groups/{index}/{key}");
+                match scope.number(number) {
+                    Ok(metres) if !range.contains(&metres) => {
+                        problems.push(Problem::new(
+                            "spec/range",
+                            pointer(),
+                            format!("{metres} m"),
+                            "0 to 300 m",
+                        ));
+                    }
+                    Err(Unsettled::NoCase(found, expected)) => {
+                        problems.push(Problem::new("spec/case", pointer(), found, expected));
+                    }
+                    _ => {}
                 }
             }
         }
