@@ -29,7 +29,7 @@ struct Tensor {
 }
 
 /// A file under reading.
-struct File<'a> {
+struct Safetensors<'a> {
     name: &'a str,
     metadata: BTreeMap<String, String>,
     tensors: BTreeMap<String, Value>,
@@ -37,7 +37,7 @@ struct File<'a> {
 }
 
 pub(super) fn read(name: &str, bytes: &[u8]) -> Result<Trained, EnvError> {
-    let file = File::open(name, bytes)?;
+    let file = Safetensors::parse(name, bytes)?;
     file.expect_word("architecture", &["patch"])?;
     let side = file.number("size", MAX_NETWORK_SIDE)? as usize;
     if !side.is_multiple_of(2 * PATCH) {
@@ -75,9 +75,9 @@ pub(super) fn read(name: &str, bytes: &[u8]) -> Result<Trained, EnvError> {
     })
 }
 
-impl<'a> File<'a> {
+impl<'a> Safetensors<'a> {
     /// Reads the header.
-    fn open(name: &'a str, bytes: &'a [u8]) -> Result<Self, EnvError> {
+    fn parse(name: &'a str, bytes: &'a [u8]) -> Result<Self, EnvError> {
         let mut file = Self {
             name,
             metadata: BTreeMap::new(),
