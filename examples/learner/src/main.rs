@@ -44,19 +44,15 @@ const ENTROPY: f64 = 0.03;
 const REWARD_SCALE: f64 = 0.01;
 const MAX_GRADIENT: f64 = 0.5;
 
-/// The world as the learner sees it and acts in it.
-fn adapted(world: World) -> Result<World> {
+/// A world as the learner sees it, with a table of actions or others; each action is held.
+fn world(variant: &Variant, seed: u64, index: u64, actions: ActionSpace) -> Result<World> {
+    let world = driftworld_generator::sample(variant, seed, index)?;
     Ok(world.edit(|world| {
         let agent = &mut world.agent_params;
-        agent.actions = ActionSpace::Discrete(ACTIONS.to_vec());
-        (agent.interact, agent.frame_skip) = (false, FRAME_SKIP);
+        (agent.actions, agent.interact, agent.frame_skip) = (actions, false, FRAME_SKIP);
         (agent.observation_size, agent.observation_width) = (SIDE as u32, None);
         agent.modalities = vec![Modality::Rgb];
     })?)
-}
-
-fn world(variant: &Variant, seed: u64, index: u64) -> Result<World> {
-    adapted(driftworld_generator::sample(variant, seed, index)?)
 }
 
 /// Environments whose episodes are worlds 0, 64, 128 …, 1, 65 … of a seed.
@@ -64,7 +60,7 @@ fn environments(variant: &Variant, seed: u64) -> Result<Batch> {
     let variant = variant.clone();
     let source: WorldSource = Arc::new(move |episode| {
         let index = episode.index * NUM_ENVS as u64 + episode.env as u64;
-        world(&variant, seed, index).map_err(|error| error.to_string())
+        world(&variant, seed, index, ActionSpace::Discrete(ACTIONS.to_vec())).map_err(|error| error.to_string())
     });
     let options = BatchOptions {
         // The last image of an episode that ran out of time is needed.
@@ -325,7 +321,7 @@ fn learn(network: &mut Network, variant: &Variant, seed: u64, decisions: usize, 
                 network.step(&rollout.loss(network, &advantages, part)?, rate)?;
             }
         }
-        if (update + 1) % 10 == 0 || update + 1 == num_updates {
+        if update % 10 == 9 && !ended.is_empty() {
             let done = (update + 1) * ROLLOUT * NUM_ENVS;
             let (seconds, reward) = (began.elapsed().as_secs_f64(), mean(&ended));
             println!(
@@ -355,10 +351,10 @@ fn evaluate(network: &Network, variant: &Variant) -> Result<f64> {
     Ok(mean(&returns))
 }
 
-/// What the planner, which knows the map, earns there with the same actions.
+/// What the planner earns there, which knows the map, goes at any speed and turns at any rate, and holds its actions as long.
 fn ceiling(variant: &Variant) -> Result<f64> {
     let episode = |index| -> Result<f64> {
-        let mut environment = Environment::new(world(variant, TEST_SEED, index)?);
+        let mut environment = Environment::new(world(variant, TEST_SEED, index, ActionSpace::Continuous)?);
         let mut agent = OnRailsAgent::new();
         agent.begin(0);
         while !environment.ended() {
