@@ -30,7 +30,7 @@ macro_rules! family {
 pub type Group = (&'static str, &'static [(&'static str, &'static str)]);
 
 /// More tasks, by what they ask for. The files are `examples/worlds/`.
-pub const FAMILIES: [Group; 5] = [
+pub const FAMILIES: [Group; 7] = [
     (
         "navigation",
         &[
@@ -40,6 +40,7 @@ pub const FAMILIES: [Group; 5] = [
             family!("four_rooms"),
             family!("multi_room"),
             family!("maze"),
+            family!("nav_maze"),
             family!("way_home"),
             family!("t_maze"),
             family!("y_maze"),
@@ -74,12 +75,34 @@ pub const FAMILIES: [Group; 5] = [
             family!("dynamic_obstacles"),
             family!("hunt"),
             family!("lava_crossing"),
+            family!("thin_ice"),
         ],
     ),
     (
         "memory",
         &[
             family!("cue_t_maze"),
+            family!("hidden_goal"),
+            family!("match_to_sample"),
+            family!("water_maze"),
+        ],
+    ),
+    (
+        "choice",
+        &[
+            family!("k_armed"),
+            family!("contextual_bandit"),
+            family!("delayed_reward"),
+            family!("reversal"),
+        ],
+    ),
+    (
+        "conflicts",
+        &[
+            family!("color_pays"),
+            family!("side_pays"),
+            family!("mirrored"),
+            family!("safe_zone"),
         ],
     ),
 ];

@@ -79,6 +79,16 @@ fn cues_that_are_drawn_are_minded() {
     check("memory");
 }
 
+#[test]
+fn what_pays_is_chosen() {
+    check("choice");
+}
+
+#[test]
+fn what_is_best_turns() {
+    check("conflicts");
+}
+
 /// A folder of documents that nobody finds by name would be dead.
 #[test]
 fn every_file_of_the_folder_is_a_family() {
