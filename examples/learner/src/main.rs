@@ -158,7 +158,8 @@ impl Network {
         let [first, second] = [0.9_f64, 0.999].map(|decay| 1.0 - decay.powi(self.steps));
         for layer in &mut self.layers {
             for (var, [mean, square]) in layer.parameters.iter().zip(&mut layer.moments) {
-                let gradient = (of(var)? * scale)?;
+                // Detached, else the moments would keep what every gradient was computed from.
+                let gradient = (of(var)? * scale)?.detach();
                 *mean = ((&*mean * 0.9)? + (&gradient * 0.1)?)?;
                 *square = ((&*square * 0.999)? + (gradient.sqr()? * 0.001)?)?;
                 let deviation = ((&*square / second)?.sqrt()? + 1e-5)?;
