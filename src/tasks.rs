@@ -67,6 +67,12 @@ pub const FAMILIES: [Group; 7] = [
             family!("collect_health"),
             family!("foraging"),
             family!("put_next"),
+            family!("pickup"),
+            family!("fetch"),
+            family!("go_to_object"),
+            family!("go_to_door"),
+            family!("sort_by_color"),
+            family!("push_box"),
         ],
     ),
     (

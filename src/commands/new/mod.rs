@@ -81,11 +81,8 @@ impl New {
 impl Export {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let (task, _) = tasks::split(&self.task);
-        let Some(built_in) = tasks::BUILT_IN
-            .into_iter()
-            .chain(tasks::WORLDS)
-            .find(|(name, _)| *name == task)
-        else {
+        let mut known = tasks::groups().flat_map(|(_, tasks)| tasks);
+        let Some(&built_in) = known.find(|(name, _)| *name == task) else {
             let names = tasks::built_in_names();
             let near = did_you_mean(task, names.iter().copied());
             let names = names.join(", ");
@@ -131,7 +128,8 @@ mod tests {
 
     #[test]
     fn the_scaffold_and_every_built_in_task_can_be_had_under_another_name() {
-        for task in tasks::BUILT_IN.into_iter().chain([SCAFFOLD]) {
+        let all = tasks::groups().flat_map(|(_, tasks)| tasks);
+        for task in all.copied().chain([SCAFFOLD]) {
             let text = renamed(task, "mine").expect("it is valid");
             let task = TaskSpec::from_json("mine", &text).expect("it is valid");
             assert_eq!(task.name(), "mine");
