@@ -74,14 +74,14 @@ def families(command: str) -> dict[str, dict[str, Any]]:
     return {task["task"]: task for task in said(command, "tasks")}
 
 
-def measure(command: str, name: str) -> dict[str, Any]:
-    """The variants of a family."""
+def measure(command: str, name: str, variants: list[str]) -> dict[str, Any]:
+    """The variants of a family, in its order."""
     scales = said(command, "scales", name, "--worlds", str(WORLDS))["scales"]
     by_name = {scale["variant"].partition("#")[2]: scale for scale in scales.values()}
     elements = {each["variant"]: each for each in said(command, "elements", name)["variants"]}
-    first = next(iter(by_name))
-    found = {}
-    for variant, scale in by_name.items():
+    first, found = variants[0], {}
+    for variant in variants:
+        scale = by_name[variant]
         own = elements.get(variant, {"measured": [], "verdict": "sound"})
         far = 0.0 if variant == first else said(command, "distance", f"{name}#{first}", f"{name}#{variant}", "--worlds", "20")["total"]
         found[variant] = {
@@ -106,6 +106,7 @@ def film(command: str, name: str, variant: str) -> None:
 
 def page(name: str, task: dict[str, Any], measured: dict[str, Any], told: dict[str, str]) -> str:
     """The page of a family."""
+    folder = "tasks" if task["group"] == "the paper's" else "worlds"
     elsewhere = f"\n\nKnown elsewhere as: {ELSEWHERE[name]}." if name in ELSEWHERE else ""
     lines = [
         f"# {name}", "", task["description"] + elsewhere, "", f"![The planner in {name}](../images/families/{name}.gif)", "",
@@ -119,7 +120,7 @@ def page(name: str, task: dict[str, Any], measured: dict[str, Any], told: dict[s
     lines += [
         "", "*differs in*: the elements in which the variant differs from the first, found by experiment. *distance*: from the first.",
         f"*random*, *planner*: mean reward in {WORLDS} worlds. *succeeds*: how often the planner does.", "",
-        "```sh", f"driftworld tasks show {name}", "```", "",
+        f"All parameters: `driftworld tasks show {name}`. Its document: [{name}.json](../../examples/{folder}/{name}.json).", "",
     ]  # fmt: skip
     return "\n".join(lines)
 
@@ -142,6 +143,11 @@ def pages(command: str) -> None:
     for group, rows in listed.items():
         parts += [f"## {group.capitalize()}", "", "| family | what is to be done | variants | random | planner |", "|---|---|--:|--:|--:|", *rows, ""]
     (ROOT / "docs/families.md").write_text("\n".join(parts), encoding="utf-8")
+    summary = ROOT / "docs/SUMMARY.md"
+    lines = [line for line in summary.read_text(encoding="utf-8").splitlines() if "](families/" not in line]
+    place = lines.index("- [The families](families.md)") + 1
+    lines[place:place] = [f"  - [{name}](families/{name}.md)" for name in tasks]
+    summary.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def main() -> None:
@@ -156,7 +162,7 @@ def main() -> None:
         if what == "film":
             film(command, name, tasks[name]["variants"][0])
             continue
-        measured[name] = measure(command, name)
+        measured[name] = measure(command, name, tasks[name]["variants"])
         ordered = {each: measured[each] for each in tasks if each in measured}
         MEASURED.write_text(json.dumps(ordered, indent=1) + "\n", encoding="utf-8")
 

@@ -90,6 +90,7 @@ pub const FAMILIES: [Group; 7] = [
             family!("cue_t_maze"),
             family!("hidden_goal"),
             family!("match_to_sample"),
+            family!("sequence_recall"),
             family!("water_maze"),
         ],
     ),

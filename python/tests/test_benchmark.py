@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import tarfile
 import threading
 import time
 from pathlib import Path
@@ -87,6 +88,28 @@ def test_a_claim_is_one_process_s_and_anybody_s_when_it_is_left(tmp_path: Path, 
 def test_what_is_wrong_is_said(words: list[str], expected: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(words) == 1
     assert expected in capsys.readouterr().err
+
+
+ROOT = Path(__file__).parents[2]
+
+
+def test_the_page_of_results_is_made_from_the_logs(tmp_path: Path) -> None:
+    results = ROOT / "examples/benchmark/mixed"
+    page, figure = tmp_path / "results.md", tmp_path / "images/results.svg"
+    figure.parent.mkdir()
+    assert main(["table", str(results), "-o", str(page), "--figure", str(figure)]) == 0
+    assert page.read_text(encoding="utf-8") == (ROOT / "docs/results.md").read_text(encoding="utf-8")
+    assert figure.read_text(encoding="utf-8") == (ROOT / "docs/images/results.svg").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("learner", ["finetuning", "packnet"])
+def test_logs_of_the_table_are_those_of_their_report(learner: str, tmp_path: Path) -> None:
+    cell = ROOT / "examples/benchmark/mixed" / learner / "0"
+    with tarfile.open(cell / "logs.tar.xz") as tar:
+        tar.extractall(tmp_path, filter="data")
+    logs = [tmp_path / "sampled", *sorted(tmp_path.glob("greedy-*"))]
+    report = json.loads((cell / "report.json").read_text(encoding="utf-8"))
+    assert running.digest(logs) == report["digest"]
 
 
 @pytest.mark.learners

@@ -207,13 +207,18 @@ def _live(cell: Cell, folder: Path) -> None:
     _finish(cell, sequence, folder, logs, learner.report() | {"weights": learner.digest(), "wall_seconds": round(time.time() - began, 1)})
 
 
-def _finish(cell: Cell, sequence: Sequence, folder: Path, logs: list[Path], report: dict[str, Any]) -> None:
-    """Packs the logs, writes the report, and then lets the rest go."""
+def digest(logs: Iterable[Path]) -> str:
+    """SHA-256 of all that logs say, but for the time stamps: equal where two runs were equal to the bit."""
     print = hashlib.sha256()
     for log in logs:
         columns = read_log(log).columns
         for name in sorted(set(columns) - {"timestamp"}):
             print.update(f"{log.name} {name} {columns[name].tolist()!r}".encode())
+    return print.hexdigest()
+
+
+def _finish(cell: Cell, sequence: Sequence, folder: Path, logs: list[Path], report: dict[str, Any]) -> None:
+    """Packs the logs, writes the report, and then lets the rest go."""
     packed = io.BytesIO()
     with tarfile.open(fileobj=packed, mode="w:xz", format=tarfile.USTAR_FORMAT) as tar:
         for log in logs:
@@ -226,7 +231,7 @@ def _finish(cell: Cell, sequence: Sequence, folder: Path, logs: list[Path], repo
     said = {
         "sequence": sequence.name, "split": cell.split, "label": cell.label, "arguments": dict(cell.arguments), **report,
         "peak_bytes": 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, "machine": platform.machine(),
-        "digest": print.hexdigest(),
+        "digest": digest(logs),
     }  # fmt: skip
     write_whole(folder / "report.json", (json.dumps(said, indent=1) + "\n").encode())
     shutil.rmtree(folder / "work")
