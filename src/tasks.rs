@@ -82,6 +82,7 @@ pub const FAMILIES: [Group; 7] = [
             family!("hunt"),
             family!("lava_crossing"),
             family!("thin_ice"),
+            family!("stealth"),
         ],
     ),
     (
@@ -101,6 +102,7 @@ pub const FAMILIES: [Group; 7] = [
             family!("contextual_bandit"),
             family!("delayed_reward"),
             family!("reversal"),
+            family!("sign_reading"),
         ],
     ),
     (
