@@ -1,6 +1,7 @@
 //! The families: each is a sound task with a page and a film of its own, and the agent on rails comes to the end that it asks for.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use driftworld::env::{Agent, Environment, OnRailsAgent};
 use driftworld::generator::Sampler;
@@ -29,7 +30,7 @@ fn check(group: &str) {
 }
 
 /// The worlds in which the agent on rails does not succeed.
-fn unsolved(task: &TaskSpec) -> Vec<String> {
+fn unsolved(task: &Arc<TaskSpec>) -> Vec<String> {
     let mut unsolved = Vec::new();
     for variant in task.variant_names() {
         let variant = task.variant(variant).unwrap_or_else(|error| panic!("{error}"));
