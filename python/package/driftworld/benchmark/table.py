@@ -118,7 +118,7 @@ class Results:
         for label, runs in self.runs.items():
             row: dict[str, Any] = {"learner": label, "seeds": len(runs)}
             for name, measure in measures.items():
-                values = [value for run in runs if (value := measure(run)) is not None]
+                values = [value for run in runs if (value := measure(run)) is not None and not np.isnan(value)]
                 row[name] = (interquartile_mean(values), *interval(values)) if values else None
             rows.append(row)
         return sorted(rows, key=lambda row: -row["performance"][0])
