@@ -371,7 +371,7 @@ fn mean(numbers: &[f64]) -> f64 {
 }
 
 fn main() -> Result<()> {
-    let (mut decisions, mut seed, mut name, mut path) = (150_000, 0, "red".to_owned(), None);
+    let (mut decisions, mut seed, mut name, mut path) = (250_000, 0, "red".to_owned(), None);
     let mut words = std::env::args().skip(1);
     while let Some(option) = words.next() {
         let value = words.next().ok_or(format!("{option}: found no value, expected one"))?;
