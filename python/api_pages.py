@@ -43,6 +43,7 @@ LAYOUT: dict[str, tuple[str, str, dict[str, list[str]]]] = {
                 "Variant",
                 "Drift",
                 "built_in_tasks",
+                "task_groups",
                 "variant",
                 "variants",
                 "validate",
