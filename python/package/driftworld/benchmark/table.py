@@ -163,7 +163,9 @@ def _cell(value: tuple[float, float, float] | None) -> str:
     if value is None:
         return "–"
     mean, low, high = (100 * number for number in value)
-    return f"{mean:.0f} ({low:.0f} to {high:.0f})".replace("-0 ", "0 ")
+    # One seed has no interval.
+    shown = f"{mean:.0f}" if low == high == mean else f"{mean:.0f} ({low:.0f} to {high:.0f})"
+    return shown.replace("-0 ", "0 ")
 
 
 def _head(sequence: Sequence) -> list[str]:
