@@ -20,9 +20,10 @@ pub const BUILT_IN: [(&str, &str); 6] = [
     ("blue_red_green", include_str!("../examples/tasks/blue_red_green.json")),
 ];
 
-macro_rules! family {
-    ($name:literal) => {
-        ($name, include_str!(concat!("../examples/worlds/", $name, ".json")))
+/// The tasks of these names, with their texts.
+macro_rules! families {
+    ($($name:literal)*) => {
+        &[$(($name, include_str!(concat!("../examples/worlds/", $name, ".json")))),*]
     };
 }
 
@@ -30,90 +31,23 @@ macro_rules! family {
 pub type Group = (&'static str, &'static [(&'static str, &'static str)]);
 
 /// More tasks, by what they ask for. The files are `examples/worlds/`.
+#[rustfmt::skip]
 pub const FAMILIES: [Group; 7] = [
-    (
-        "navigation",
-        &[
-            family!("hallway"),
-            family!("one_room"),
-            family!("three_rooms"),
-            family!("four_rooms"),
-            family!("multi_room"),
-            family!("maze"),
-            family!("nav_maze"),
-            family!("way_home"),
-            family!("t_maze"),
-            family!("y_maze"),
-            family!("wall_gap"),
-            family!("sidewalk"),
-            family!("obstacle_course"),
-        ],
-    ),
-    (
-        "doors and keys",
-        &[
-            family!("unlock"),
-            family!("unlock_pickup"),
-            family!("door_key"),
-            family!("key_corridor"),
-            family!("locked_rooms"),
-            family!("red_blue_doors"),
-            family!("switches"),
-        ],
-    ),
-    (
-        "things",
-        &[
-            family!("collect_health"),
-            family!("foraging"),
-            family!("put_next"),
-            family!("pickup"),
-            family!("fetch"),
-            family!("go_to_object"),
-            family!("go_to_door"),
-            family!("sort_by_color"),
-            family!("push_box"),
-        ],
-    ),
-    (
-        "hazards",
-        &[
-            family!("dynamic_obstacles"),
-            family!("hunt"),
-            family!("lava_crossing"),
-            family!("thin_ice"),
-            family!("stealth"),
-        ],
-    ),
-    (
-        "memory",
-        &[
-            family!("cue_t_maze"),
-            family!("hidden_goal"),
-            family!("match_to_sample"),
-            family!("sequence_recall"),
-            family!("water_maze"),
-        ],
-    ),
-    (
-        "choice",
-        &[
-            family!("k_armed"),
-            family!("contextual_bandit"),
-            family!("delayed_reward"),
-            family!("reversal"),
-            family!("sign_reading"),
-        ],
-    ),
-    (
-        "conflicts",
-        &[
-            family!("color_pays"),
-            family!("side_pays"),
-            family!("mirrored"),
-            family!("safe_zone"),
-        ],
-    ),
+    ("navigation", families![
+        "hallway" "one_room" "three_rooms" "four_rooms" "multi_room" "maze" "nav_maze" "way_home" "t_maze" "y_maze"
+        "wall_gap" "sidewalk" "obstacle_course"
+    ]),
+    ("doors and keys", families![
+        "unlock" "unlock_pickup" "door_key" "key_corridor" "locked_rooms" "red_blue_doors" "switches"
+    ]),
+    ("things", families![
+        "collect_health" "foraging" "put_next" "pickup" "fetch" "go_to_object" "go_to_door" "sort_by_color"
+        "push_box"
+    ]),
+    ("hazards", families!["dynamic_obstacles" "hunt" "lava_crossing" "thin_ice" "stealth"]),
+    ("memory", families!["cue_t_maze" "hidden_goal" "match_to_sample" "sequence_recall" "water_maze"]),
+    ("choice", families!["k_armed" "contextual_bandit" "delayed_reward" "reversal" "sign_reading"]),
+    ("conflicts", families!["color_pays" "side_pays" "mirrored" "safe_zone"]),
 ];
 
 /// Why no task is found by its name.

@@ -8,8 +8,8 @@ use std::fs;
 use std::path::Path;
 
 use driftworld_metrics::{
-    BlockSubtype, BlockType, ExpStatus, LogWarning, LogWriter, LoggerInfo, Record, Row, ScenarioInfo, ScenarioType, Timestamp,
-    read_log,
+    BlockSubtype, BlockType, ExpStatus, LogWarning, LogWriter, LoggerInfo, Record, Row, ScenarioInfo, ScenarioType,
+    Timestamp, read_log,
 };
 use proptest::prelude::*;
 

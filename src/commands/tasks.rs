@@ -96,7 +96,12 @@ fn show(task: &Arc<TaskSpec>, own: Option<&str>, as_json: bool) -> Result<(), Fa
             .iter()
             .map(|variant| (variant.name().to_owned(), json!(variant.values())))
             .collect();
-        let described = |variant: &Variant| Some((variant.name().to_owned(), json!(task.variant_description(variant.name())?)));
+        let described = |variant: &Variant| {
+            Some((
+                variant.name().to_owned(),
+                json!(task.variant_description(variant.name())?),
+            ))
+        };
         let descriptions: serde_json::Map<_, _> = variants.iter().filter_map(described).collect();
         return output::json(&json!({
             "task": task.name(), "description": task.description(), "parameters": task.parameters(), "variants": values,

@@ -257,7 +257,10 @@ impl Progress {
             let expected = "no row after the complete one: give the next experience a new number".to_owned();
             return Err(bad_record(record, "exp_num", found, expected));
         }
-        let begun = self.begun_in.get(&record.worker_id).filter(|_| record.exp_num == self.last_exp_num);
+        let begun = self
+            .begun_in
+            .get(&record.worker_id)
+            .filter(|_| record.exp_num == self.last_exp_num);
         // Else nothing would say which of the two folders comes first.
         if let Some((block_num, block_type)) = begun
             && *block_num == record.block_num
