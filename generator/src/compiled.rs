@@ -33,7 +33,7 @@ pub(crate) struct Drawn {
     /// The distribution; where look-ups read what is drawn, over all that this can be.
     pub(crate) distribution: Distribution,
     pub(crate) stream: Stream,
-    look_up: Option<LookUp>,
+    look_up: Option<Box<LookUp>>,
 }
 
 impl Drawn {
@@ -355,17 +355,17 @@ impl Compiler<'_> {
     }
 
     /// The look-ups of a source, if they read what is drawn.
-    fn look_up(&self, source: &Source) -> Option<LookUp> {
+    fn look_up(&self, source: &Source) -> Option<Box<LookUp>> {
         if self.variant.resolve_with(source, &[]).is_some() {
             return None;
         }
         let number = |name: String| Some((self.randomized.iter().position(|known| *known == name)?, name));
         let reads = source.names().into_iter().filter_map(number);
-        Some(LookUp {
+        Some(Box::new(LookUp {
             variant: self.variant.clone(),
             source: source.clone(),
             reads: reads.map(|(number, name)| (name, number)).collect(),
-        })
+        }))
     }
 
     /// Fills holes that a fixed or variant parameter settles; leaves the rest for each draw.

@@ -13,7 +13,8 @@ use super::reference::{Number, ParamRef};
 #[serde(deny_unknown_fields, bound(deserialize = "T: Deserialize<'de>"))]
 pub struct Case<T> {
     /// The parameter by whose value it chooses, of any role.
-    pub case: ParamRef,
+    #[serde(rename = "case")]
+    pub by: ParamRef,
     /// What it comes to, by the values of the parameter as texts: words, names of choices or colours, numbers, `true`, `false`.
     pub of: IndexMap<String, T>,
     /// What it comes to at all other values; nothing where every value has a case.

@@ -39,7 +39,7 @@ impl Number {
             Self::Param(reference) => vec![reference],
             Self::Case(case) => {
                 let cases = case.entries().flat_map(|(_, number)| number.references());
-                std::iter::once(&case.case).chain(cases).collect()
+                std::iter::once(&case.by).chain(cases).collect()
             }
         }
     }
@@ -73,7 +73,7 @@ impl std::fmt::Display for Number {
         match self {
             Self::Literal(number) => write!(f, "{number}"),
             Self::Param(reference) => write!(f, "{reference}"),
-            Self::Case(case) => write!(f, "a number by {}", case.case),
+            Self::Case(case) => write!(f, "a number by {}", case.by),
         }
     }
 }

@@ -47,7 +47,7 @@ impl<'a> Scope<'a> {
     }
 
     fn choose<'c, T>(&self, case: &'c Case<T>) -> Result<&'c T, Unsettled> {
-        let name = &case.case.param;
+        let name = &case.by.param;
         let parameter = self.parameters.get(name).ok_or(Unsettled::Unknown)?;
         let value = self.value(name).ok_or_else(|| match parameter.role {
             Role::Randomized => Unsettled::Drawn(name.clone()),

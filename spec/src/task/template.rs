@@ -82,7 +82,7 @@ impl Source {
 
     /// The parameters that it names, look-ups and numbers included.
     pub fn names(&self) -> Vec<String> {
-        let mut names: Vec<String> = self.cases().iter().map(|(_, case)| case.case.param.clone()).collect();
+        let mut names: Vec<String> = self.cases().iter().map(|(_, case)| case.by.param.clone()).collect();
         for (_, leaf) in self.leaves() {
             match leaf {
                 Self::Param(reference) => names.push(reference.param.clone()),

@@ -138,12 +138,12 @@ impl Check<'_> {
     }
 
     fn case<T>(&mut self, pointer: &str, case: &Case<T>) {
-        let name = &case.case.param;
+        let name = &case.by.param;
         let at = format!("{pointer}/case");
         let Some(parameter) = self.parameters.get(name) else {
             return self.unknown_parameter(&at, name);
         };
-        if case.case.index.is_some() {
+        if case.by.index.is_some() {
             let found = format!("one number of {name:?}");
             return self.report(Problem::new("spec/index", at, found, "a whole parameter"));
         }
@@ -163,17 +163,16 @@ impl Check<'_> {
         for key in case.of.keys() {
             let value = parameter.at_key(key);
             let is_known = |value: &Value| values.as_ref().is_none_or(|values| values.contains(value));
-            match value.filter(is_known) {
-                Some(value) => met.push(value),
-                None => {
-                    let expected = if words.is_empty() {
-                        format!("a {}", parameter.kind.name())
-                    } else {
-                        format!("a value of {name:?}, one of {}", first_of(&words))
-                    };
-                    let pointer = format!("{pointer}/of/{}", escape(key));
-                    self.report(Problem::new("spec/case", pointer, format!("{key:?}"), expected).suggest(key, &words));
-                }
+            if let Some(value) = value.filter(is_known) {
+                met.push(value);
+            } else {
+                let expected = if words.is_empty() {
+                    format!("a {}", parameter.kind.name())
+                } else {
+                    format!("a value of {name:?}, one of {}", first_of(&words))
+                };
+                let pointer = format!("{pointer}/of/{}", escape(key));
+                self.report(Problem::new("spec/case", pointer, format!("{key:?}"), expected).suggest(key, &words));
             }
         }
         let missing: Vec<&String> = values
