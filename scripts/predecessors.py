@@ -41,15 +41,11 @@ def measure(sequence: Sequence, results: Path, seed: int, before: str | None) ->
             if before is not None and not trained.is_file():
                 learner = live(sequence, seed, [before], Path(place) / "before")
                 learner.save(trained)
-            log = Path(place) / "after"
+            log = Path(place) / sequence.logged(task)
             live(sequence, seed, [before, task] if before else [task], log, trained if before else None)
             columns = read_log(log).columns
-            name = task.replace("_", "").replace("#", "_")
-            rewards = columns["reward"][(columns["block_type"] == "test") & (columns["task_name"] == name)].astype(float)
+            rewards = columns["reward"][(columns["block_type"] == "test") & (columns["task_name"] == sequence.logged(task))].astype(float)
             found[task] = round(float(sequence.scaled(task, rewards.mean())), 4)
-            for each in (log, log.with_name("after.agent")):
-                if each.exists():
-                    each.rename(each.with_name(f"{each.name}-{len(found)}"))
             file.write_text(json.dumps(found, indent=1) + "\n")
 
 

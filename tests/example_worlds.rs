@@ -90,6 +90,34 @@ fn what_is_best_turns() {
     check("conflicts");
 }
 
+/// Those that the guide to worlds shows.
+const IN_THE_GUIDE: [&str; 11] = [
+    "maze",
+    "four_rooms",
+    "t_maze",
+    "cue_t_maze",
+    "locked_rooms",
+    "key_corridor",
+    "switches",
+    "lava_crossing",
+    "foraging",
+    "hunt",
+    "put_next",
+];
+
+#[test]
+fn the_guide_shows_its_worlds() {
+    let page = std::fs::read_to_string(format!("{ROOT}/docs/worlds.md")).expect("the page can be read");
+    for name in IN_THE_GUIDE {
+        assert!(
+            page.contains(&format!("examples/worlds/{name}.json")),
+            "{name} is on the page"
+        );
+        let picture = format!("{ROOT}/docs/images/world-{name}.png");
+        assert!(Path::new(&picture).exists(), "{name} has a picture");
+    }
+}
+
 /// A folder of documents that nobody finds by name would be dead.
 #[test]
 fn every_file_of_the_folder_is_a_family() {

@@ -29,6 +29,7 @@ pub use channels::{Channel, ChannelChance, ChannelSpread, Channels};
 pub use moments::Moments;
 pub use planar::{Order, Spread};
 pub use reference::{Number, ParamRef};
+pub(crate) use support::MOST_ATOMS;
 pub use turn::Turns;
 
 use crate::value::Value;

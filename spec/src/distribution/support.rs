@@ -3,6 +3,9 @@
 use super::Distribution;
 use crate::value::{ParameterType, Value};
 
+/// The most values that are listed of a distribution or a parameter.
+pub(crate) const MOST_ATOMS: usize = 1000;
+
 impl<N> Distribution<N> {
     /// Whether all it draws can stand where this type is wanted.
     pub fn yields(&self, kind: ParameterType) -> bool {
@@ -107,7 +110,7 @@ impl Distribution<f64> {
         }
     }
 
-    /// The values that it can draw with their probabilities, where it draws from a list of at most 1,000.
+    /// The values that it can draw with their probabilities, where it draws from a list of at most [`MOST_ATOMS`].
     pub(crate) fn atoms(&self) -> Option<Vec<(Value, f64)>> {
         let shares = |count: usize, weights: &Option<Vec<f64>>| {
             let weights = weights.clone().unwrap_or_else(|| vec![1.0; count]);
@@ -121,7 +124,7 @@ impl Distribution<f64> {
                 values.iter().cloned().zip(shares).collect()
             }
             Self::Bernoulli { p } => vec![(Value::Boolean(false), 1.0 - p), (Value::Boolean(true), *p)],
-            Self::IntegerUniform { low, high } if high - low < 1000.0 => {
+            Self::IntegerUniform { low, high } if high - low < MOST_ATOMS as f64 => {
                 let count = high - low + 1.0;
                 (*low as i64..=*high as i64)
                     .map(|whole| (Value::Integer(whole), 1.0 / count))
@@ -136,7 +139,7 @@ impl Distribution<f64> {
             }
             _ => return None,
         };
-        (atoms.len() <= 1000).then_some(atoms)
+        (atoms.len() <= MOST_ATOMS).then_some(atoms)
     }
 
     /// Some value it can draw, to try a template with.

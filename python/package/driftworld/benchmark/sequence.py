@@ -86,6 +86,11 @@ class Sequence:
             lifetime += [{"type": "learning", "regimes": [regime]}, evaluation]
         return Curriculum.from_dict({**designed.scenario, "blocks": lifetime})
 
+    @staticmethod
+    def logged(task: str) -> str:
+        """What logs call a task."""
+        return task.replace("_", "").replace("#", "_")
+
     def scaled(self, task: str, reward: Any) -> Any:
         """Rewards of a task, 0 at the random agent's and 1 at the planner's."""
         low, high = self.scale[task]

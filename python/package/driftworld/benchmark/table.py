@@ -60,7 +60,7 @@ def _of_log(log: Path, sequence: Sequence) -> tuple[list[Floats], list[Floats], 
     """A row of the matrix for each block of evaluation; rewards and lengths of episodes for each block of learning."""
     columns = read_log(log).columns
     blocks, rewards = columns["block_num"], columns["reward"].astype(float)
-    names = [task.replace("_", "").replace("#", "_") for task in sequence.tasks]
+    names = [sequence.logged(task) for task in sequence.tasks]
     evaluated, learned, steps = [], [], []
     for block in np.unique(blocks):
         here = blocks == block

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ import numpy as np
 import torch
 from torch import nn
 
+from driftworld.learners.export import write_network
 from driftworld.learners.networks import PatchNetwork
 
 
@@ -171,6 +173,22 @@ class Learner:
     def load(self, path: Path) -> None:
         """Reads what :meth:`save` wrote: tensors and plain values, no code."""
         self.load_state_dict(torch.load(path, weights_only=True))
+
+    def export(
+        self, path: str | PathLike[str], *, actions: Sequence[Sequence[float]], frame_skip: int | None = None, interact: bool = True
+    ) -> None:  # fmt: skip
+        """Writes the network in the format safetensors, for ``--agent net:FILE`` of the command.
+
+        Args:
+            path: The file to write.
+            actions: The table of actions that it was trained with.
+            frame_skip: The time steps for which each was held; one step of the world if ``None``.
+            interact: Whether it could interact.
+
+        Raises:
+            ValueError: If it acts by more than a :class:`PatchNetwork`, or the table has not ``num_actions`` rows of three numbers.
+        """
+        write_network(self, path, actions, frame_skip, interact)
 
     def digest(self) -> str:
         """SHA-256 of :meth:`state_dict` without the seconds: equal where two learners are equal to the bit."""

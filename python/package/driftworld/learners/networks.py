@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import struct
-from collections.abc import Mapping
-
 import torch
 from torch import nn
 
@@ -122,17 +118,3 @@ class RecurrentNetwork(nn.Module):
         # The heads see the image itself, too: what needs no memory is learned as fast as without one.
         seen = torch.stack(states) + features
         return torch.log_softmax(self.policy(seen), dim=-1), self.value(seen).squeeze(-1), state
-
-
-def safetensors(tensors: Mapping[str, torch.Tensor], metadata: Mapping[str, str]) -> bytes:
-    """Tensors of float32 in the format safetensors: eight bytes with the length of a JSON header, the header, and numbers."""
-    header: dict[str, object] = {"__metadata__": dict(metadata)}
-    parts, end = [], 0
-    for name, tensor in tensors.items():
-        parts.append(tensor.detach().contiguous().numpy().astype("<f4").tobytes())
-        begin, end = end, end + len(parts[-1])
-        header[name] = {"dtype": "F32", "shape": list(tensor.shape), "data_offsets": [begin, end]}
-    text = json.dumps(header).encode()
-    # Numbers begin at a multiple of eight bytes.
-    text += b" " * (-len(text) % 8)
-    return struct.pack("<Q", len(text)) + text + b"".join(parts)

@@ -7,12 +7,9 @@ of their own, so that looking more often changes nothing that is learned.
 
 from __future__ import annotations
 
-import json
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
-from os import PathLike
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,9 +17,7 @@ import torch
 from numpy.typing import NDArray
 from torch import nn
 
-from driftworld._files import write_whole
 from driftworld.learners.learner import Learner
-from driftworld.learners.networks import PatchNetwork, safetensors
 from driftworld.learners.rollout import Rollout, gae
 from driftworld.vector_lifetimes import VectorTransition
 
@@ -242,28 +237,3 @@ class PPO(Learner):
         self.optimizer.load_state_dict(state["optimizer"])
         vars(self.rollout).update({name: rows.clone() for name, rows in state["rollout"].items()})
         self.time = state["time"]
-
-    def export(
-        self, path: str | PathLike[str], *, actions: Sequence[Sequence[float]], frame_skip: int | None = None, interact: bool = True
-    ) -> None:  # fmt: skip
-        """Writes the network in the format safetensors, for ``--agent net:FILE`` of the command.
-
-        Args:
-            path: The file to write.
-            actions: The table of actions that it was trained with.
-            frame_skip: The time steps for which each was held; one step of the world if ``None``.
-            interact: Whether it could interact.
-
-        Raises:
-            ValueError: If it acts by more than a :class:`PatchNetwork`, or the table has not ``num_actions`` rows of three numbers.
-        """
-        if type(self).look is not PPO.look or type(self.network) is not PatchNetwork:
-            raise ValueError(f"{self.name}: found a learner with a memory, masks or a network of its own, expected a PatchNetwork alone")
-        table = [[float(number) for number in row] for row in actions]
-        if len(table) != self.num_actions or any(len(row) != 3 for row in table):
-            raise ValueError(f"actions: found {actions!r}, expected a table of {self.num_actions} rows of three numbers")
-        table = table if interact else [[speed, turn, 0.0] for speed, turn, _ in table]
-        metadata = {"format": "pt", "architecture": "patch", "size": self.size, "actions": json.dumps(table), "policy": self.policy}
-        metadata |= {"learner": self.name, "decisions": self.decisions} | ({"frame_skip": frame_skip} if frame_skip else {})
-        content = safetensors(self.network.state_dict(), {name: str(value) for name, value in metadata.items()})
-        write_whole(Path(path), content)

@@ -7,12 +7,9 @@ use super::super::scope::{Scope, Unsettled};
 use super::super::template::Source;
 use super::Check;
 use crate::describe::escape;
-use crate::distribution::{Case, Distribution, Number, ParamRef};
+use crate::distribution::{Case, Distribution, MOST_ATOMS, Number, ParamRef};
 use crate::error::{Problem, first_of};
 use crate::value::{ParameterType, Value};
-
-/// The longest range of whole numbers whose values are listed.
-const MOST_WHOLES: f64 = 1000.0;
 
 impl Check<'_> {
     /// Reports randomized parameters whose look-ups read each other in a circle, and takes them for unsound, with all that
@@ -216,7 +213,9 @@ impl Check<'_> {
                 }
             }
             (Some(choices), _, _) => all.extend(choices.iter().cloned()),
-            (None, Some([low, high]), _) if parameter.kind == ParameterType::Integer && high - low < MOST_WHOLES => {
+            (None, Some([low, high]), _)
+                if parameter.kind == ParameterType::Integer && high - low < MOST_ATOMS as f64 =>
+            {
                 all.extend((low as i64..=high as i64).map(Value::Integer));
             }
             (None, Some(_), _) => return None,
