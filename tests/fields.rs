@@ -136,6 +136,7 @@ fn other_whole(pointer: &str, now: &Json) -> Json {
         "/environment_params/zones/*/disc" => json!({ "center": [9.0, -9.0], "radius": 1.0 }),
         "/agent_params/energy" => json!({ "start": 7.0, "per_second": -2.0 }),
         "/agent_params/modalities" => json!(["rgb", "instance"]),
+        "/agent_params/instruction" => json!([0.5, 0.25]),
         "/agent_params/state_features" => json!(["heading", "counts"]),
         "/environment_params/layout/maze" => json!({ "cells": [3, 5], "seed": 9 }),
         "/environment_params/layout/rooms" => json!({ "grid": [3, 1], "seed": 9 }),

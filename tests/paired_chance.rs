@@ -81,6 +81,7 @@ const VERDICTS: &[(&str, Verdict)] = &[
     ("/agent_params/field_of_view", Idle),
     ("/agent_params/modalities", Idle),
     ("/agent_params/state_features", Idle),
+    ("/agent_params/instruction", Idle),
     ("/agent_params/actions", Moves),
     ("/agent_params/interact", Moves),
     ("/agent_params/energy", Ends),

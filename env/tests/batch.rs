@@ -232,6 +232,15 @@ fn worlds_of_a_batch_make_the_same_images() {
         panic!("the images differ");
     };
     assert!(error.to_string().contains("25 × 25"), "{error}");
+    let source: WorldSource = Arc::new(|episode| {
+        let mut world = draft(episode);
+        world.agent_params.instruction = vec![1.0; episode.env];
+        Ok(world.check().expect("the world is sound"))
+    });
+    let Err(error) = Batch::new(2, source, BatchOptions::default()) else {
+        panic!("the instructions differ");
+    };
+    assert!(error.to_string().contains("instructions of 1 numbers"), "{error}");
     assert!(Batch::new(0, self::source(), BatchOptions::default()).is_err());
 }
 

@@ -80,6 +80,7 @@ fn world(action_model: ActionModel, frame_skip: u32) -> World {
         StateFeature::LastEvent,
         StateFeature::StepsLeft,
     ];
+    agent.instruction = vec![0.25, 1.0];
     world.rules.order_penalty = -1.0;
     world.rules.shaping = Some(Shaping {
         toward: None,
@@ -342,4 +343,18 @@ fn a_world_whose_progress_is_a_seed_alone_is_at_its_start() {
     assert_eq!(live(as_its_own), live(touched()));
     assert_eq!(live(seeded('a')).0, live(touched()).0);
     assert_ne!(live(seeded('a')).1, live(seeded('b')).1);
+}
+
+#[test]
+fn an_instruction_is_the_end_of_the_state_vector() {
+    let world = world(ActionModel::ByVelocity, 1);
+    let mut environment = start(world.clone());
+    for _ in 0..3 {
+        let state = environment.state_vector();
+        assert_eq!(state.len(), world.agent_params.state_len());
+        assert_eq!(state[state.len() - 2..], [0.25, 1.0]);
+        environment
+            .step(Action::Continuous([0.0; 3]))
+            .expect("the episode runs");
+    }
 }

@@ -34,6 +34,7 @@ impl WorldOverrides {
         }
         if self.stateless {
             agent.state_features = StateFeature::CLASSIC.to_vec();
+            agent.instruction.clear();
         }
         if let Some([height, width]) = self.size {
             agent.observation_size = height;
@@ -154,6 +155,7 @@ fn layout(world: &World, reach: &Reach) -> Json {
         "width": width,
         "modalities": agent.modalities,
         "state_features": agent.state_features,
+        "instruction": agent.instruction.len(),
         "state_len": agent.state_len(),
         "max_steps": world.step_limit().unwrap_or(0),
         "seconds_per_step": agent.time_step * f64::from(agent.frame_skip.max(1)),

@@ -192,3 +192,20 @@ def test_what_a_state_holds_does_not_matter_where_it_is_not_shown() -> None:
     with pytest.raises(ValueError, match="found state_features"):
         envs = DriftworldVectorEnv("find_objects#red", 2, modalities=["rgb", "state"], size=16)
         envs.reset(options={"variants": [foraging] * 2})
+
+
+def test_an_instruction_ends_the_state_and_says_what_is_drawn() -> None:
+    env = DriftworldEnv("fetch#four", modalities=["rgb", "state"], size=16)
+    colors = {"red": (1, 0, 0), "blue": (0, 0, 1), "gold": (1, 215 / 255, 0), "limegreen": (50 / 255, 205 / 255, 50 / 255)}
+    told = set()
+    for seed in range(12):
+        observation, _ = env.reset(seed=seed)
+        instruction = observation["state"][-4:]
+        assert sorted(instruction) == [0, 0, 0, 1]
+        assert env.observation_space.contains(observation)
+        pays = next(each for each in env.unwrapped.state()["objects"] if each.get("reward", 0) > 0)
+        assert tuple(pays["color"]) == list(colors.values())[int(instruction.argmax())]
+        told.add(int(instruction.argmax()))
+    assert len(told) > 1
+    with pytest.raises(ValueError, match="found instruction 0, expected 4"):
+        env.reset(options={"variant": TaskSpec.load("pickup").variant("four")})

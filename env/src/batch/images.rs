@@ -20,6 +20,8 @@ pub struct ImageLayout {
     pub modalities: Vec<Modality>,
     /// What the state vectors beside them hold.
     pub state_features: Vec<StateFeature>,
+    /// Numbers of the instruction after these.
+    pub instruction: usize,
 }
 
 impl ImageLayout {
@@ -32,6 +34,7 @@ impl ImageLayout {
             supersampling: agent.supersampling,
             modalities: agent.modalities.clone(),
             state_features: agent.state_features.clone(),
+            instruction: agent.instruction.len(),
         }
     }
 
@@ -42,6 +45,7 @@ impl ImageLayout {
             && self.supersampling == agent.supersampling
             && agent.modalities.iter().all(|asked| self.modalities.contains(asked))
             && self.state_features == agent.state_features
+            && self.instruction == agent.instruction.len()
         {
             return Ok(());
         }
@@ -87,6 +91,9 @@ impl std::fmt::Display for ImageLayout {
             write!(f, "{comma} {modality:?}")?;
         }
         f.write_str(if self.modalities.is_empty() { " nothing" } else { "" })?;
+        if self.instruction > 0 {
+            write!(f, ", instructions of {} numbers", self.instruction)?;
+        }
         if self.state_features == StateFeature::CLASSIC {
             return Ok(());
         }

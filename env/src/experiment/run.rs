@@ -143,7 +143,10 @@ impl<'a> Run<'a> {
         if found.differs(Element::Phi) {
             return Ok(());
         }
-        let features = |environment: &Environment| environment.world().agent_params.state_features.clone();
+        let features = |environment: &Environment| {
+            let agent = &environment.world().agent_params;
+            (agent.state_features.clone(), agent.instruction.len())
+        };
         let mut unlike = None;
         if features(&self.lead) == features(&self.follow) {
             let (own, other) = (self.lead.state_vector(), self.follow.state_vector());

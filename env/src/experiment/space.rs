@@ -170,4 +170,8 @@ pub(super) fn observations_unlike(a: &World, b: &World, is_chosen: bool) -> Opti
                 &other.state_features,
             )
         })
+        .or_else(|| {
+            let lengths = [own.instruction.len(), other.instruction.len()];
+            Unlike::of("how many numbers the instruction has", &lengths[0], &lengths[1])
+        })
 }

@@ -14,6 +14,7 @@ fn world() -> WorldDraft {
     world.environment_params.map_size = [30.0, 30.0];
     world.rules.reward_per_second = -1.0;
     world.max_steps = 60;
+    world.agent_params.instruction = vec![0.0, 0.0];
     for (tag, class, at, reward) in [
         ("cubes", "geometric", [0.0, 8.0], 10.0),
         ("cubes", "geometric", [6.0, -4.0], 10.0),
@@ -268,12 +269,14 @@ fn how_it_looks_belongs_to_the_emission() {
     });
     check(&[Element::Phi], |world| world.environment_params.light_intensity = 0.4);
     check(&[Element::Phi], |world| world.agent_params.field_of_view = 80.0);
+    check(&[Element::Phi], |world| world.agent_params.instruction = vec![1.0, 0.0]);
 }
 
 #[test]
 fn the_form_of_observations_belongs_to_their_space() {
     check(&[Element::O], |world| world.agent_params.observation_size = 32);
     check(&[Element::O], |world| world.agent_params.state_features.truncate(1));
+    check(&[Element::O], |world| world.agent_params.instruction.push(0.0));
     check(&[Element::O], |world| {
         world.agent_params.modalities = vec![Modality::Rgb];
     });

@@ -8,7 +8,7 @@ use super::termination::pays_now;
 use super::zones::Zones;
 
 impl Environment {
-    /// The numbers of the features that the world asks for, in its order: by default position, heading, velocity.
+    /// The numbers of the features that the world asks for, in its order, by default position, heading, velocity; then its instruction.
     pub fn state_vector(&self) -> Vec<f32> {
         let mut state = vec![0.0; self.world.agent_params.state_len()];
         self.fill_state(&mut state);
@@ -42,6 +42,9 @@ impl Environment {
             let (own, others) = rest.split_at_mut(length);
             own.copy_from_slice(&numbers[..length]);
             rest = others;
+        }
+        for (place, number) in rest.iter_mut().zip(&self.world.agent_params.instruction) {
+            *place = *number as f32;
         }
     }
 }

@@ -66,6 +66,11 @@ fields! {
         #[serde(skip_serializing_if = "is_classic")]
         #[schemars(length(max = 20))]
         pub state_features: Vec<StateFeature> = StateFeature::CLASSIC.to_vec() => Field::ours(Leaves(CameraAndWeather)),
+        /// Numbers that tell the agent what to do, after the features in the state vector: say 1 for the colour that is wanted,
+        /// 0 for the others.
+        #[serde(skip_serializing_if = "is_default")]
+        #[schemars(length(max = 64), inner(range(min = -1e6, max = 1e6)))]
+        pub instruction: Vec<f64> = Vec::new() => Field::ours(Leaves(CameraAndWeather)),
         /// How actions are given.
         pub actions: ActionSpace = ActionSpace::Continuous => Field::ours(Leaves(SpaceOfActions)),
         /// Whether the agent can interact: without, the third number of an action by velocity is ignored, and the default table of
@@ -151,7 +156,8 @@ impl AgentParams {
 
     /// How many numbers the state vector holds.
     pub fn state_len(&self) -> usize {
-        self.state_features.iter().map(|feature| feature.num_values()).sum()
+        let features = self.state_features.iter().map(|feature| feature.num_values());
+        features.sum::<usize>() + self.instruction.len()
     }
 }
 

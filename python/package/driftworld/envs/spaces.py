@@ -34,6 +34,9 @@ _FEATURES: dict[str, list[tuple[float, float]]] = {
     "zone": [(0.0, 1000.0), (-_REWARD, _REWARD)],
 }
 
+#: What each number of an instruction lies in.
+_INSTRUCTION = (-1e6, 1e6)
+
 
 def observation_space(options: Options, layout: dict[str, Any], num_labels: int) -> spaces.Space[Any]:
     """The space of one observation: a ``Dict``, or the ``Box`` of its one modality."""
@@ -49,7 +52,8 @@ def observation_space(options: Options, layout: dict[str, Any], num_labels: int)
 def _box(kind: str, options: Options, layout: dict[str, Any]) -> spaces.Box:
     shape = (layout["height"], layout["width"], 3 if kind == "rgb" else 1)
     if kind == "state":
-        bounds = np.array([pair for name in layout["state_features"] for pair in _FEATURES[name]], dtype=np.float32)
+        pairs = [pair for name in layout["state_features"] for pair in _FEATURES[name]]
+        bounds = np.array(pairs + layout["instruction"] * [_INSTRUCTION], dtype=np.float32)
         bounds = bounds.reshape(-1, 2)
         return spaces.Box(bounds[:, 0], bounds[:, 1], dtype=np.float32)
     if kind == "depth" and options.depth == "float32":
