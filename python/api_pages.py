@@ -32,6 +32,7 @@ LAYOUT: dict[str, tuple[str, str, dict[str, list[str]]]] = {
                 "segmentation_classes",
             ],
             "driftworld.check": ["check", "Report", "Finding"],
+            "driftworld.miniworld": ["MiniWorldEnv", "Actions", "names", "task"],
         },
     ),
     "tasks": (

@@ -7,6 +7,7 @@ from typing import Any
 import gymnasium
 
 from driftworld import _native
+from driftworld.miniworld import names
 
 
 def _camel(name: str) -> str:
@@ -21,14 +22,21 @@ ENV_IDS: dict[str, dict[str, Any]] = {
 }
 
 
+#: MiniWorld's ids, and the names that they stand for.
+MINIWORLD_IDS: dict[str, dict[str, Any]] = {f"driftworld/MiniWorld-{name}-v0": {"name": name} for name in names()}
+
+
 def register_envs() -> None:
     """Registers every id that is not registered yet; ``import driftworld`` does it."""
+    # Entry points are strings, so that specs can be written down.
     for env_id, options in ENV_IDS.items():
         if env_id not in gymnasium.registry:
-            # Entry points are strings, so that specs can be written down.
             gymnasium.register(
                 id=env_id,
                 entry_point="driftworld.envs:DriftworldEnv",
                 vector_entry_point="driftworld.envs:DriftworldVectorEnv",
                 kwargs=options,
             )
+    for env_id, options in MINIWORLD_IDS.items():
+        if env_id not in gymnasium.registry:
+            gymnasium.register(id=env_id, entry_point="driftworld.miniworld:MiniWorldEnv", kwargs=options)

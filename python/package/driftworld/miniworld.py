@@ -1,0 +1,212 @@
+"""MiniWorld's published environments, as ids such as ``driftworld/MiniWorld-Hallway-v0``: its actions, pictures, rewards and limits
+over worlds of our families.
+
+What each is, is data: ``miniworld.json`` has, by MiniWorld's names, the ``task`` of ours and its ``variant``, what is ``laid`` over
+the task's document (a value for each JSON pointer, null to take something away), the limit of ``steps`` (0 for none), how many of
+MiniWorld's ``actions`` there are, what ``pays``, and whether a step is a ``fast`` one. ``like`` takes all from another name.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass, field, replace
+from enum import IntEnum
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from gymnasium import spaces
+
+from driftworld._native import TaskSpec
+from driftworld.envs.single import DriftworldEnv
+
+__all__ = ["Actions", "MiniWorldEnv", "names", "task"]
+
+
+class Actions(IntEnum):
+    """MiniWorld's actions by its numbers. The space of an environment has the first 3, 4, 5 or all of them; steps take any."""
+
+    turn_left = 0
+    turn_right = 1
+    move_forward = 2
+    move_back = 3
+    pickup = 4
+    drop = 5
+    toggle = 6
+    done = 7
+
+
+#: Seconds, metres per second and degrees per second of a step, by whether it is a fast one: 0.15 m or 15°, and 0.7 m or 45°.
+_STEPS = {False: (0.2, 0.75, 75.0), True: (0.5, 1.4, 90.0)}
+#: What a state says, in this order: three numbers of what is carried, the energy, and the share of the steps that are left.
+_FEATURES = ["carrying", "energy", "steps_left"]
+
+
+@dataclass(frozen=True)
+class _Published:
+    """An environment of MiniWorld's: an entry of ``miniworld.json``."""
+
+    task: str
+    steps: int
+    actions: int
+    pays: Literal["success", "pickups", "health", "sign", "nothing"]
+    variant: str | None = None
+    fast: bool = False
+    laid: dict[str, Any] = field(default_factory=dict)
+
+    def rows(self) -> list[list[float]]:
+        """All of MiniWorld's actions as rows of ours: speed, turn rate, and whether to interact."""
+        _, speed, turn = _STEPS[self.fast]
+        handles = [0.0, 0.0, float(self.actions > Actions.pickup)]
+        still = [0.0, 0.0, 0.0]
+        return [[0.0, -turn, 0.0], [0.0, turn, 0.0], [speed, 0.0, 0.0], [-speed, 0.0, 0.0], handles, handles, still, still]
+
+
+def _published() -> dict[str, _Published]:
+    found: dict[str, _Published] = {}
+    for name, entry in json.loads(Path(__file__).with_suffix(".json").read_text(encoding="utf-8")).items():
+        like = found.get(entry.pop("like", ""))
+        laid = {**(like.laid if like else {}), **entry.pop("laid", {})}
+        found[name] = replace(like, laid=laid, **entry) if like else _Published(laid=laid, **entry)
+    return found
+
+
+_PUBLISHED = _published()
+
+
+def names() -> list[str]:
+    """MiniWorld's names, such as ``"Hallway"``; ``driftworld/MiniWorld-Hallway-v0`` is the id."""
+    return list(_PUBLISHED)
+
+
+def task(name: str) -> TaskSpec:
+    """The task spec whose worlds stand for an environment of MiniWorld's: one of our families, with MiniWorld's sizes.
+
+    Args:
+        name: Such as ``"Hallway"``.
+
+    Raises:
+        ValueError: If MiniWorld has no such environment.
+    """
+    if name not in _PUBLISHED:
+        raise ValueError(f"name: found {name!r}, expected one of {', '.join(_PUBLISHED)}")
+    published = _PUBLISHED[name]
+    document = TaskSpec.load(published.task).to_dict()
+    document["name"] = f"miniworld_{name.lower()}"
+    agent = {"agent_height": 1.5, "time_step": _STEPS[published.fast][0], "state_features": _FEATURES}
+    document["world"]["agent_params"].update(agent)
+    for pointer, value in published.laid.items():
+        _lay(document, pointer, value)
+    return TaskSpec.from_dict(document, f"MiniWorld-{name}")
+
+
+def _lay(document: Any, pointer: str, value: Any) -> None:
+    """Puts a value where a pointer says, be it behind the last of a list; None takes away what is there."""
+    *way, last = pointer.split("/")[1:]
+    for key in way:
+        document = document[int(key) if isinstance(document, list) else key]
+    if isinstance(document, list):
+        document[int(last) : int(last) + 1] = [value]
+    elif value is None:
+        del document[last]
+    else:
+        document[last] = value
+
+
+class MiniWorldEnv(DriftworldEnv):
+    """An environment of MiniWorld's, by its name: its spaces, what its steps do and pay, and when its episodes end.
+
+    Args:
+        name: Such as ``"Hallway"``.
+        obs_width: Pixels of an observation from left to right.
+        obs_height: Pixels from top to bottom.
+        variant: A variant of the family, such as ``"dusk"``, in place of the one that stands for MiniWorld's.
+        render_mode: ``"rgb_array"``, ``"human"`` or ``None``.
+        view: What is rendered: what the ``"agent"`` sees, or the world from the ``"top"``.
+        window_width: Pixels of a rendered picture from left to right.
+        window_height: Pixels from top to bottom.
+
+    Attributes:
+        actions: MiniWorld's names of its actions.
+        max_episode_steps: Steps after which an episode is truncated; infinite for none.
+
+    Raises:
+        ValueError: If MiniWorld has no such environment, or for a value that an option does not know.
+        TaskError: If the family has no such variant.
+    """
+
+    actions = Actions
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        obs_width: int = 80,
+        obs_height: int = 60,
+        variant: str | None = None,
+        render_mode: Literal["human", "rgb_array"] | None = None,
+        view: Literal["agent", "top"] = "agent",
+        window_width: int = 800,
+        window_height: int = 600,
+    ) -> None:
+        if view not in ("agent", "top"):
+            raise ValueError(f"view: found {view!r}, expected agent or top")
+        spec = task(name)
+        self._published = _PUBLISHED[name]
+        super().__init__(
+            spec,
+            variant=variant or self._published.variant,
+            modalities=["rgb", "state"],
+            size=(obs_height, obs_width),
+            actions=self._published.rows(),
+            max_steps=self._published.steps,
+            render_mode=render_mode,
+            render_size=(window_height, window_width),
+            camera="above" if view == "top" else "agent",
+        )
+        self.max_episode_steps = self._published.steps or math.inf
+        self._carries, self._steps = False, 0
+        self.action_space = spaces.Discrete(self._published.actions)
+        image: spaces.Space[Any] = spaces.Box(0, 255, (obs_height, obs_width, 3), np.uint8)
+        is_sign = self._published.pays == "sign"
+        self.observation_space = spaces.Dict({"obs": image, "goal": spaces.Discrete(2)}) if is_sign else image
+
+    @property
+    def step_count(self) -> int:
+        """Steps since the episode began; without a limit, since the last reset."""
+        return self._steps
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        """Begins an episode, as :meth:`driftworld.DriftworldEnv.reset` does."""
+        seen, info = super().reset(seed=seed, options=options)
+        return self._shown(seen), info
+
+    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        """Lets the agent act once, as :meth:`driftworld.DriftworldEnv.step` does, and pays as MiniWorld does."""
+        # Ours is one action for both, and MiniWorld's does nothing here.
+        if action == (Actions.pickup if self._carries else Actions.drop):
+            action = Actions.done
+        seen, _, terminated, truncated, info = super().step(action)
+        shown = self._shown(seen)
+        # In MiniWorld a success in the last step ends an episode in both ways.
+        truncated = truncated or self.step_count >= self.max_episode_steps
+        pays, reward = self._published.pays, 0.0
+        if pays == "success" and info["is_success"]:
+            reward = 1.0 - 0.2 * self.step_count / self.max_episode_steps
+        elif pays == "pickups":
+            reward = float(sum(event["destroyed"] for event in info["events"]))
+        elif pays == "health":
+            info["health"] = float(seen["state"][3])
+            reward = -100.0 if terminated else 2.0
+        elif pays == "sign":
+            reward = (1.0 if info["is_success"] else -1.0) if terminated else 0.0
+            terminated = terminated or action == Actions.move_back
+        return shown, reward, terminated, truncated, info
+
+    def _shown(self, seen: dict[str, Any]) -> Any:
+        """What an agent of MiniWorld's is shown; what the rules need to know is noted."""
+        state, limit = seen["state"], self._published.steps
+        self._carries = bool(state[0] > 0)
+        self._steps = round((1.0 - float(state[4])) * limit) if limit else self._members.batch.episode_steps(0)
+        return {"obs": seen["rgb"], "goal": 0} if self._published.pays == "sign" else seen["rgb"]
