@@ -82,7 +82,10 @@ def test_a_claim_is_one_process_s_and_anybody_s_when_it_is_left(tmp_path: Path, 
         (["run", "smok", "--learner", "ewc"], "found 'smok', expected a file or one of"),
         (["run", "smoke", "--learner", "ewc", "--jobs", "0"], "--jobs: found 0, expected at least 1"),
         (["run", "smoke", "--learner", "ewc", "--seed", "-1"], "expected --seed from 0, --seeds from 1"),
-        (["table", "nowhere", "--sequence", "smoke"], "nowhere: found no finished cell, expected LEARNER/SEED/report.json"),
+        (["table", "nowhere", "--sequence", "smoke"], "nowhere: found no such folder, expected one of cells, such as results/mixed"),
+        (["table", "."], "expected --sequence with its name or file"),
+        (["table", ".", "--sequence", "smoke"], ".: found no finished cell, expected LEARNER/SEED/report.json"),
+        (["run", "smoke", "--learner", "ewc", "--set", "strength=1", "--set", "strength=2"], "--set: found strength=1, strength=2, expected each name once"),
     ],
 )
 def test_what_is_wrong_is_said(words: list[str], expected: str, capsys: pytest.CaptureFixture[str]) -> None:
@@ -148,12 +151,24 @@ def test_a_killed_run_ends_with_the_same_digests(tiny: Path, tmp_path: Path) -> 
 
 
 @pytest.mark.learners
-def test_a_learner_of_one_s_own_is_one_file(tiny: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_learner_of_one_s_own_is_one_file(
+    tiny: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.chdir(tmp_path)
     assert main(["new", "my_learner"]) == 0
-    assert main(["run", str(tiny), "--learner", "my_learner.py:MyLearner", "--set", "strength=0.1", "-o", "results"]) == 0
+    run = ["run", str(tiny), "--learner", "my_learner.py:MyLearner", "-o", "results"]
+    for dry in ([], ["--dry-run"]):
+        assert main([*run, "--set", "strenght=0.1", *dry]) == 1
+        assert "unexpected keyword argument 'strenght'" in capsys.readouterr().err
+    assert not Path("results").exists()
+    assert main([*run, "--set", "strength=0.1"]) == 0
     report = json.loads(Path("results/tiny/mylearner-strength=0.1/0/report.json").read_text(encoding="utf-8"))
     assert report["learner"] == "my_learner" and report["method_bytes"] > 0
+    assert report["made_with"]["strength"] == 0.1 and report["made_with"]["entropy"] == 0.05
+    capsys.readouterr()
+    Path("my_learner.py").write_text(Path("my_learner.py").read_text(encoding="utf-8") + "# Another one.\n", encoding="utf-8")
+    assert main([*run, "--set", "strength=0.1"]) == 1
+    assert "found a finished cell of my_learner.py as it was" in capsys.readouterr().err
     assert main(["new", "my_learner"]) == 1
 
 

@@ -53,7 +53,7 @@ const BY_HAND: &[(&str, usize, &str)] = &[
     ("docs/first-hour.md", 1, "how the command is installed"),
     (
         "docs/how-to/learners.md",
-        3,
+        4,
         "minutes: the stage `learners` runs a smaller one, and an exported network",
     ),
     ("docs/l2explorer.md", 5, "the stage `unity`, with the published clients"),

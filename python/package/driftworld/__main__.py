@@ -16,7 +16,10 @@ def main() -> int:
         return command.main(sys.argv[2:])
     # As in the program itself: an interrupt ends it, unless a subcommand asks to be told.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    return _native.main(["driftworld", *sys.argv[1:]])
+    code = _native.main(["driftworld", *sys.argv[1:]])
+    if sys.argv[1:] in (["-h"], ["--help"], ["help"]):
+        print("\nIn Python also:\n  benchmark        Compare continual learners in frozen sequences of tasks")
+    return code
 
 
 if __name__ == "__main__":

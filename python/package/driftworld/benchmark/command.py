@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import os
 import sys
@@ -11,7 +12,7 @@ from typing import Any
 
 from driftworld._files import write_whole
 from driftworld.benchmark.figure import figure
-from driftworld.benchmark.runner import Cell, learners_by_name, run_cells
+from driftworld.benchmark.runner import STALE, Cell, learners_by_name, make_learner, run_cells
 from driftworld.benchmark.sequence import Sequence
 from driftworld.benchmark.table import Results
 
@@ -24,11 +25,11 @@ from driftworld.learners import PPO
 
 
 class MyLearner(PPO):
-    """PPO with all weights held near those it began with (L2-init, arXiv:2308.11958)."""
+    """PPO with all weights held near those it began with (L2-init, arXiv:2308.11958; its λ is half of this strength)."""
 
     name = "my_learner"
 
-    def __init__(self, num_actions, num_envs, *, strength=0.01, **options):
+    def __init__(self, num_actions, num_envs, *, strength=0.0001, **options):
         super().__init__(num_actions, num_envs, **options)
         self.strength = strength
         self.initial = {name: weight.detach().clone() for name, weight in self.network.named_parameters()}
@@ -72,7 +73,7 @@ def _parser() -> argparse.ArgumentParser:
     running.add_argument("--all", action="store_true", help="all learners of driftworld.learners that the sequence names")
     running.add_argument("--seed", action="append", type=int, default=[], metavar="S", help="a seed; repeatable")
     running.add_argument("--seeds", type=int, metavar="N", help="the seeds 0 to N - 1 [default: 1]")
-    running.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="an argument of the learner; repeatable")
+    running.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="an argument of the learner, for another row of its own; repeatable for another argument")
     running.add_argument("--split", choices=["test", "validation"], default="test", help="validation: worlds to tune in")
     running.add_argument("-o", "--output", type=Path, default=Path("results"), metavar="DIR", help="where machines may run cells together [default: results]")
     running.add_argument("--jobs", type=int, default=1, metavar="N", help="processes, one core each [default: 1]")
@@ -110,6 +111,9 @@ def _cells(parsed: argparse.Namespace) -> list[Cell]:
         raise ValueError("found a seed or a number of seeds below its least, expected --seed from 0, --seeds from 1")
     if parsed.jobs < 1:
         raise ValueError(f"--jobs: found {parsed.jobs}, expected at least 1")
+    words = [each.partition("=")[0] for each in parsed.set]
+    if len(set(words)) < len(words):
+        raise ValueError(f"--set: found {', '.join(parsed.set)}, expected each name once; run the command once for each value")
     given = tuple((name, _value(text)) for name, _, text in (each.partition("=") for each in parsed.set))
     return [Cell(parsed.sequence, name, seed, parsed.split, given) for seed in seeds for name in dict.fromkeys(learners)]
 
@@ -126,18 +130,35 @@ def _run(parsed: argparse.Namespace) -> None:
     left = [cell for cell in cells if not (cell.folder(parsed.output) / "report.json").is_file()]
     decisions = sequence.decisions * len(sequence.tasks)
     hours = len(left) * decisions * _SECONDS / 3600
-    print(f"{len(cells)} cells of {decisions:,} decisions, {len(cells) - len(left)} finished; about {hours:.1f} core hours and {len(left) * _BYTES / 1e6:.0f} MB to come")
+    # What no learner can be made of is said before anything runs. A plan needs no torch.
+    with contextlib.suppress(ImportError) if parsed.dry_run else contextlib.nullcontext():
+        for cell in {cell.learner: cell for cell in cells}.values():
+            make_learner(cell, sequence, "sampled")
+    print(
+        f"{len(cells)} {'cell' if len(cells) == 1 else 'cells'} of {decisions:,} decisions, {len(cells) - len(left)} finished; about "
+        f"{hours:.2g} core hours and {len(left) * _BYTES / 1e6:.2g} MB to come",
+        flush=True,
+    )
     if parsed.dry_run:
         for cell in left:
             print(f"  {cell.folder(parsed.output)}")
         return
-    for cell, report in zip(cells, run_cells(cells, parsed.output, parsed.jobs, parsed.ray), strict=True):
-        told = "another process is running it" if report is None else f"{report['seconds']:.0f} s of learning, digest {report['digest'][:12]}"
-        print(f"  {cell.folder(parsed.output)}: {told}")
+
+    def told(cell: Cell, report: dict[str, Any] | None) -> None:
+        running = f"another process is running it, or was killed in the last {STALE:.0f} seconds: run this again then"
+        print(f"  {cell.folder(parsed.output)}: ", end="")
+        print(running if report is None else f"{report['seconds']:.0f} s of learning, digest {report['digest'][:12]}", flush=True)
+
+    run_cells(cells, parsed.output, parsed.jobs, parsed.ray, told)
 
 
 def _table(parsed: argparse.Namespace) -> None:
-    results = Results(Sequence.load(parsed.sequence or parsed.results.resolve().name), parsed.results)
+    if not parsed.results.is_dir():
+        raise ValueError(f"{parsed.results}: found no such folder, expected one of cells, such as results/mixed")
+    name = parsed.results.resolve().name.removesuffix("-validation")
+    if parsed.sequence is None and name not in Sequence.names():
+        raise ValueError(f"{parsed.results}: found no sequence called {name!r}, expected --sequence with its name or file")
+    results = Results(Sequence.load(parsed.sequence or name), parsed.results)
     link = None
     if parsed.figure is not None:
         write_whole(parsed.figure, figure(results).encode())

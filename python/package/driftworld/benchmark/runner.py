@@ -22,7 +22,7 @@ import tarfile
 import threading
 import time
 import uuid
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
@@ -76,7 +76,7 @@ class Cell:
         folder = self.folder(results)
         report = folder / "report.json"
         if report.is_file():
-            return _read(report)
+            return self._finished(report)
         folder.mkdir(parents=True, exist_ok=True)
         with _claim(folder / "claim") as is_ours:
             if not is_ours:
@@ -84,6 +84,23 @@ class Cell:
             if not report.is_file():
                 _live(self, folder)
         return _read(report)
+
+    def source(self) -> dict[str, str] | None:
+        """Name and SHA-256 of the file of a learner that does not come with Driftworld."""
+        if ":" not in self.learner:
+            return None
+        path = Path(self.learner.rpartition(":")[0])
+        return {"file": path.name, "sha256": hashlib.sha256(path.read_bytes()).hexdigest()}
+
+    def _finished(self, report: Path) -> dict[str, Any]:
+        """What is there already, if this cell would be the same."""
+        found, own = _read(report), self.source()
+        if own is not None and found.get("source", own) != own:
+            raise ValueError(
+                f"{report.parent}: found a finished cell of {found['source']['file']} as it was (SHA-256 {found['source']['sha256'][:12]}), expected "
+                f"of {self.learner} as it is ({own['sha256'][:12]}); give another folder with -o, or delete this one"
+            )
+        return found
 
 
 def _read(file: Path) -> dict[str, Any]:
@@ -163,17 +180,34 @@ def make_learner(cell: Cell, sequence: Sequence, policy: str) -> Any:
     """The learner of a cell as it is before it learns."""
     from driftworld.learners import Settings
 
-    made = learner_class(cell.learner)
-    arguments = {**sequence.learners.get("all", {}), **sequence.learners.get(cell.learner, {}), **dict(cell.arguments)}
+    made, arguments = learner_class(cell.learner), arguments_of(cell, sequence)
     names = {each.name for each in dataclasses.fields(Settings)}
     settings = Settings(**{name: arguments.pop(name) for name in list(arguments) if name in names})
     # Methods that have to know it in advance get the length of the lifetime.
     known = {"max_tasks": len(sequence.tasks), "task_decisions": sequence.decisions}
     told = {name: value for name, value in known.items() if name in inspect.signature(made).parameters}
-    return made(
-        len(sequence.options["actions"]), sequence.num_envs, seed=cell.seed, size=sequence.options["size"], policy=policy,
-        settings=settings, **{**told, **arguments},
-    )  # fmt: skip
+    try:
+        return made(
+            len(sequence.options["actions"]), sequence.num_envs, seed=cell.seed, size=sequence.options["size"], policy=policy,
+            settings=settings, **{**told, **arguments},
+        )  # fmt: skip
+    except TypeError as error:
+        if "unexpected keyword argument" not in str(error):
+            raise
+        raise ValueError(f"{cell.learner}: {error}; expected arguments of the class, or of Settings: {', '.join(sorted(names))}") from error
+
+
+def arguments_of(cell: Cell, sequence: Sequence) -> dict[str, Any]:
+    """What the learner of a cell is made with: the settings of PPO and its own arguments, defaults included."""
+    from driftworld.learners import Settings
+
+    own = {
+        name: each.default
+        for name, each in inspect.signature(learner_class(cell.learner)).parameters.items()
+        if isinstance(each.default, (int, float, str)) and name not in ("seed", "size", "policy")
+    }
+    given = {**sequence.learners.get("all", {}), **sequence.learners.get(cell.learner, {}), **dict(cell.arguments)}
+    return {**dataclasses.asdict(Settings()), **own, **given}
 
 
 def _live(cell: Cell, folder: Path) -> None:
@@ -229,7 +263,8 @@ def _finish(cell: Cell, sequence: Sequence, folder: Path, logs: list[Path], repo
                     tar.addfile(entry, opened)
     write_whole(folder / "logs.tar.xz", packed.getvalue())
     said = {
-        "sequence": sequence.name, "split": cell.split, "label": cell.label, "arguments": dict(cell.arguments), **report,
+        "sequence": sequence.name, "split": cell.split, "label": cell.label, "arguments": dict(cell.arguments),
+        "made_with": arguments_of(cell, sequence), **({"source": source} if (source := cell.source()) else {}), **report,
         "peak_bytes": 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, "machine": platform.machine(),
         "digest": digest(logs),
     }  # fmt: skip
@@ -237,7 +272,10 @@ def _finish(cell: Cell, sequence: Sequence, folder: Path, logs: list[Path], repo
     shutil.rmtree(folder / "work")
 
 
-def run_cells(cells: Iterable[Cell], results: str | os.PathLike[str], jobs: int = 1, ray: str | None = None) -> list[dict[str, Any] | None]:
+def run_cells(
+    cells: Iterable[Cell], results: str | os.PathLike[str], jobs: int = 1, ray: str | None = None,
+    watch: Callable[[Cell, dict[str, Any] | None], None] | None = None,
+) -> list[dict[str, Any] | None]:  # fmt: skip
     """Runs cells, several at a time; each once, whoever else runs them in the same folder. Finished ones are not run again.
 
     Args:
@@ -245,18 +283,31 @@ def run_cells(cells: Iterable[Cell], results: str | os.PathLike[str], jobs: int 
         results: The folder, which several machines may share.
         jobs: Processes here.
         ray: The address of a Ray cluster whose nodes share the folder: they run the cells in place of processes here.
+        watch: Called with each cell and its report, in order, as soon as both are there.
 
     Returns:
         The reports, in order; ``None`` for those that somebody else is running.
+
+    Raises:
+        ValueError: If a finished cell is another file's.
     """
     cells, folder = list(cells), Path(results).absolute()
+    found: list[dict[str, Any] | None] = []
+
+    def note(reports: Iterable[dict[str, Any] | None]) -> list[dict[str, Any] | None]:
+        for cell, report in zip(cells, reports, strict=True):
+            found.append(report)
+            if watch is not None:
+                watch(cell, report)
+        return found
+
     if ray is not None:
-        return _run_by_ray(cells, folder, ray)
+        return note(_run_by_ray(cells, folder, ray))
     if jobs == 1:
-        return [cell.run(folder) for cell in cells]
+        return note(cell.run(folder) for cell in cells)
     # Each in a process of its own: what one leaves behind is no other's.
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), max_tasks_per_child=1) as pool:
-        return list(pool.map(partial(Cell.run, results=folder), cells))
+        return note(pool.map(partial(Cell.run, results=folder), cells))
 
 
 def _run_by_ray(cells: list[Cell], folder: Path, address: str) -> list[dict[str, Any] | None]:

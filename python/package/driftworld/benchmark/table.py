@@ -120,6 +120,8 @@ class Results:
             for name, measure in measures.items():
                 values = [value for run in runs if (value := measure(run)) is not None and not np.isnan(value)]
                 row[name] = (interquartile_mean(values), *interval(values)) if values else None
+                if name == "forward":
+                    row["pairs"] = len(values)
             rows.append(row)
         return sorted(rows, key=lambda row: -row["performance"][0])
 
@@ -139,6 +141,8 @@ class Results:
         ]
         for row in self.rows():
             cells = [_cell(row[name]) for name in ("performance", "greedy", "learned", "share", "forgetting", "forward", "backward")]
+            if row["forward"] is not None and row["pairs"] < row["seeds"]:
+                cells[5] += f", {row['pairs']} seeds"
             own = [f"{row['seconds'][0]:.0f}", f"{row['memory'][0] / 1e6:.1f}"]
             lines.append("| " + " | ".join([f"`{row['learner']}`", str(row["seeds"]), *cells, *own]) + " |")
         return lines
@@ -162,10 +166,9 @@ class Results:
 def _cell(value: tuple[float, float, float] | None) -> str:
     if value is None:
         return "–"
-    mean, low, high = (100 * number for number in value)
+    mean, low, high = (round(100 * number) for number in value)
     # One seed has no interval.
-    shown = f"{mean:.0f}" if low == high == mean else f"{mean:.0f} ({low:.0f} to {high:.0f})"
-    return shown.replace("-0 ", "0 ")
+    return f"{mean}" if value[0] == value[1] == value[2] else f"{mean} ({low} to {high})"
 
 
 def _head(sequence: Sequence) -> list[str]:
