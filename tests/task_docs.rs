@@ -201,6 +201,11 @@ fn curricula() -> String {
         "interaction",
         "drift",
         "across_tasks",
+        "families_abrupt",
+        "families_gradual",
+        "families_drifting",
+        "families_modality",
+        "families_interaction",
     ] {
         let path = format!("{ROOT}/examples/curricula/{name}.json");
         let document = std::fs::read_to_string(path).expect("the curricula are committed");
