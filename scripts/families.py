@@ -1,8 +1,11 @@
 """Measures the families of tasks, and writes a page of each: docs/families/NAME.md with its film, and docs/families.md, the list.
 
     python scripts/families.py target/release/driftworld measure [NAME]...    into examples/families.json
-    python scripts/families.py target/release/driftworld film [NAME]...       into docs/images/families/
-    python scripts/families.py target/release/driftworld pages                from these
+    python scripts/families.py target/release/driftworld film [NAME]...       into docs/images/families/, with a picture of all variants
+    python scripts/families.py target/release/driftworld sheet                docs/images/families.png, all families in one picture
+    python scripts/families.py target/release/driftworld pages                from these and examples/families_learned.json
+
+scripts/learn_families.py makes the last one. Pictures need Pillow.
 
 Of each variant: what a random agent and the planner earn in 100 worlds, how often the planner succeeds, which elements differ from
 the first variant in 32 pairs of worlds, and how far it is from it.
@@ -17,9 +20,9 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).parents[1]
-MEASURED = ROOT / "examples/families.json"
-PAGES, FILMS = ROOT / "docs/families", ROOT / "docs/images/families"
-WORLDS = 100
+MEASURED, LEARNED = ROOT / "examples/families.json", ROOT / "examples/families_learned.json"
+FILMS = ROOT / "docs/images/families"
+WORLDS = 1000
 MOST_BYTES = 160_000
 
 #: What others call it.
@@ -54,7 +57,7 @@ ELSEWHERE = {
     "sequence_recall": "Simon",
     "sidewalk": "MiniWorld-Sidewalk",
     "sign_reading": "MiniWorld-Sign",
-    "t_maze": "MiniWorld-TMaze",
+    "t_maze": "the T-maze of psychology",
     "thin_ice": "FrozenLake",
     "three_rooms": "MiniWorld-ThreeRooms",
     "unlock": "MiniGrid-Unlock",
@@ -62,7 +65,16 @@ ELSEWHERE = {
     "wall_gap": "MiniWorld-WallGap",
     "water_maze": "the Morris water maze, DMLab's watermaze",
     "way_home": "ViZDoom's my_way_home",
-    "y_maze": "MiniWorld-YMaze",
+    "y_maze": "MiniWorld-YMaze, MiniWorld-TMaze",
+}
+
+
+#: Why the planner does not succeed in 99 % of the worlds.
+REASONS = {
+    "find_objects#penalty": "The cubes cost, so that it is best to touch none: nobody succeeds.",
+    "find_objects#long_held": "Each action is held for half a second, in which the planner passes cubes by.",
+    "find_objects#slow": "Its time does not always suffice.",
+    "moving_object#stings": "The balls cost, so that it is best to touch none: nobody succeeds.",
 }
 
 
@@ -98,18 +110,73 @@ def measure(command: str, name: str, variants: list[str]) -> dict[str, Any]:
     return found
 
 
-def film(command: str, name: str, variant: str) -> None:
-    """The planner in a world of the first variant, in at most 160 kB."""
+def film(command: str, name: str, variants: list[str]) -> None:
+    """The planner in a world of the first variant, in at most 160 kB, and all variants in one picture, the first 16 of many."""
+    variant = variants[0]
     FILMS.mkdir(parents=True, exist_ok=True)
     path = FILMS / f"{name}.gif"
     for every in (1, 2, 3, 4, 6, 8, 12):
         words = ["film", f"{name}#{variant}", "--size", "112", "--seed", "1", "--every", str(every), "-o", str(path)]
         subprocess.run([command, *words], check=True, capture_output=True)
         if path.stat().st_size <= MOST_BYTES:
-            return
+            break
+    sheet(command, [f"{name}#{each}" for each in variants[:16]], FILMS / f"{name}.png", 4)
 
 
-def page(name: str, task: dict[str, Any], measured: dict[str, Any], told: dict[str, str]) -> str:
+def sheet(command: str, variants: list[str], path: Path, columns: int) -> None:
+    """Variants in one picture of few colours."""
+    from PIL import Image
+
+    words = ["sheet", *variants, "--size", "84", "--columns", str(columns), "-o", str(path)]
+    subprocess.run([command, *words], check=True, capture_output=True)
+    with Image.open(path) as drawn:
+        drawn.convert("RGB").quantize(128).save(path, optimize=True)
+
+
+def curve(name: str, runs: dict[str, list[dict[str, Any]]], scale: dict[str, float]) -> str:
+    """An SVG of what learners earn while they learn: bold the mean of the seeds, thin each; grey the random agent and the planner."""
+    width, height, left = 300, 120, 50
+    shown = [each for seeds in runs.values() for run in seeds for each in run["curve"]] + [scale["random"], scale["planner"]]
+    low, high = min(shown), max(shown)
+
+    def y(value: float) -> float:
+        return round(height * (high - value) / (high - low), 1)
+
+    parts = []
+    for which in ("random", "planner"):
+        parts.append(f'<path stroke="#999" stroke-dasharray="4" d="M0 {y(scale[which])}H{width}"/>')
+        parts.append(f'<text x="-4" y="{y(scale[which]) + 4}" text-anchor="end">{which}</text>')
+    for learner, color in zip(runs, ("#0b5394", "#b45f06"), strict=False):
+        seeds = [run["curve"] for run in runs[learner]]
+        for line, stroke in [*((each, 0.8) for each in seeds), ([sum(each) / len(each) for each in zip(*seeds, strict=True)], 2.5)]:
+            points = " ".join(f"{width * (k + 0.5) / len(line):.0f} {y(value)}" for k, value in enumerate(line))
+            parts.append(f'<path stroke="{color}" stroke-width="{stroke}" d="M{points}"/>')
+        label = learner.replace("recurrent_ppo", "recurrent PPO").replace("ppo", "PPO")
+        parts.append(f'<text x="{width + 4}" y="{y(line[-1]) + 4}" style="fill:{color}">{label}</text>')
+    size = f'width="{left + width + 100}" height="{height + 30}" viewBox="{-left} -8 {left + width + 100} {height + 30}"'
+    style = "svg{background:#fff}text{font:12px sans-serif;fill:#333}path{fill:none}"
+    foot = f'<text x="{width}" y="{height + 18}" text-anchor="end">100,000 decisions</text>'
+    title = f"<title>Mean reward while {name} is learned</title>"
+    return f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{title}<style>{style}</style>{"".join(parts)}{foot}</svg>\n'
+
+
+def share(reward: float, scale: dict[str, float]) -> float:
+    """Where a reward lies from the random agent's to the planner's, in per cent."""
+    return 100 * (reward - scale["random"]) / (scale["planner"] - scale["random"])
+
+
+def learned_of(runs: dict[str, list[dict[str, Any]]], scale: dict[str, float]) -> str:
+    """What each learner came to, in a sentence each."""
+    told = {"ppo": "PPO", "recurrent_ppo": "Recurrent PPO"}
+    lines = []
+    for learner, seeds in runs.items():
+        each = ", ".join(f"{share(run['reward'], scale):.0f}" for run in seeds)
+        success = ", ".join(f"{100 * run['success']:.0f}" for run in seeds)
+        lines.append(f"- {told[learner]}: {each} % of the way from random to the planner; success in {success} % of 100 worlds")
+    return "\n".join(lines)
+
+
+def page(name: str, task: dict[str, Any], measured: dict[str, Any], told: dict[str, str], runs: dict[str, Any]) -> str:
     """The page of a family."""
     folder = "tasks" if task["group"] == "the paper's" else "worlds"
     elsewhere = f"\n\nKnown elsewhere as: {ELSEWHERE[name]}." if name in ELSEWHERE else ""
@@ -125,34 +192,53 @@ def page(name: str, task: dict[str, Any], measured: dict[str, Any], told: dict[s
     lines += [
         "", "*differs in*: the elements in which the variant differs from the first, found by experiment. *distance*: from the first.",
         f"*random*, *planner*: mean reward in {WORLDS} worlds. *succeeds*: how often the planner does.", "",
+        *(f"`{each}`: {REASONS[f'{name}#{each}']}\n" for each in measured if f"{name}#{each}" in REASONS),
+        f"![Variants of {name}](../images/families/{name}.png)", "",
+    ]  # fmt: skip
+    if runs:
+        first = next(iter(measured))
+        lines += [
+            f"![Learning curves of {name}](../images/families/{name}.svg)", "",
+            f"Mean reward while `{first}` is learned: `python scripts/learn_families.py {name}`. Afterwards, each seed, actions sampled:", "",
+            learned_of(runs, measured[first]), "",
+        ]  # fmt: skip
+    lines += [
         f"All parameters: `driftworld tasks show {name}`. Its document: [{name}.json](../../examples/{folder}/{name}.json).", "",
     ]  # fmt: skip
     return "\n".join(lines)
 
 
-def pages(command: str) -> None:
-    """Writes all pages and their list."""
+def pages(command: str, docs: Path = ROOT / "docs") -> None:
+    """Writes all pages, their curves and their list."""
     measured, tasks = json.loads(MEASURED.read_text(encoding="utf-8")), families(command)
-    PAGES.mkdir(exist_ok=True)
+    learned = json.loads(LEARNED.read_text(encoding="utf-8"))
+    for folder in ("families", "images/families"):
+        (docs / folder).mkdir(parents=True, exist_ok=True)
     listed: dict[str, list[str]] = {}
     for name, task in tasks.items():
         told = said(command, "tasks", "show", name)["descriptions"]
-        (PAGES / f"{name}.md").write_text(page(name, task, measured[name], told), encoding="utf-8")
+        runs = learned.get(name, {})
+        (docs / f"families/{name}.md").write_text(page(name, task, measured[name], told, runs), encoding="utf-8")
         first = next(iter(measured[name].values()))
-        row = f"| [`{name}`](families/{name}.md) | {task['description']} | {len(measured[name])} | {first['random']:g} | {first['planner']:g} |"
+        if runs:
+            (docs / f"images/families/{name}.svg").write_text(curve(name, runs, first), encoding="utf-8")
+        came_to = [sum(share(run["reward"], first) for run in seeds) / len(seeds) for seeds in runs.values()]
+        row = f"| [`{name}`](families/{name}.md) | {task['description']} | {len(measured[name])} | {first['random']:g} | {first['planner']:g} "
+        row += f"| {', '.join(f'{each:.0f}' for each in came_to)} |"
         listed.setdefault(task["group"], []).append(row)
     parts = [
         "# The families", "", "Every task that comes with Driftworld, by name in each command, in Python, and as a Gymnasium id",
-        "(`driftworld/KeyCorridor-v0`). Rewards are those of the first variant.", "",
+        "(`driftworld/KeyCorridor-v0`). Rewards are those of the first variant. *PPO*: what it comes to in 100,000 decisions of 32 × 32 pixels,",
+        "in per cent of the way from random to the planner, the mean of three seeds; in families of memory then recurrent PPO, too.", "",
+        "![The first variant of each family](images/families.png)", "",
     ]  # fmt: skip
     for group, rows in listed.items():
-        parts += [f"## {group.capitalize()}", "", "| family | what is to be done | variants | random | planner |", "|---|---|--:|--:|--:|", *rows, ""]
-    (ROOT / "docs/families.md").write_text("\n".join(parts), encoding="utf-8")
-    summary = ROOT / "docs/SUMMARY.md"
-    lines = [line for line in summary.read_text(encoding="utf-8").splitlines() if "](families/" not in line]
+        parts += [f"## {group.capitalize()}", "", "| family | what is to be done | variants | random | planner | PPO |", "|---|---|--:|--:|--:|--:|", *rows, ""]
+    (docs / "families.md").write_text("\n".join(parts), encoding="utf-8")
+    lines = [line for line in (ROOT / "docs/SUMMARY.md").read_text(encoding="utf-8").splitlines() if "](families/" not in line]
     place = lines.index("- [The families](families.md)") + 1
     lines[place:place] = [f"  - [{name}](families/{name}.md)" for name in tasks]
-    summary.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    (docs / "SUMMARY.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def main() -> None:
@@ -162,10 +248,13 @@ def main() -> None:
     if what == "pages":
         pages(command)
         return
+    if what == "sheet":
+        sheet(command, [f"{name}#{task['variants'][0]}" for name, task in tasks.items()], ROOT / "docs/images/families.png", 5)
+        return
     measured = json.loads(MEASURED.read_text(encoding="utf-8")) if MEASURED.is_file() else {}
     for name in names or tasks:
         if what == "film":
-            film(command, name, tasks[name]["variants"][0])
+            film(command, name, tasks[name]["variants"])
             continue
         measured[name] = measure(command, name, tasks[name]["variants"])
         ordered = {each: measured[each] for each in tasks if each in measured}

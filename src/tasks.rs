@@ -32,7 +32,7 @@ pub type Group = (&'static str, &'static [(&'static str, &'static str)]);
 
 /// More tasks, by what they ask for. The files are `examples/worlds/`.
 #[rustfmt::skip]
-pub const FAMILIES: [Group; 7] = [
+pub const FAMILIES: [Group; 8] = [
     ("navigation", families![
         "hallway" "one_room" "three_rooms" "four_rooms" "multi_room" "maze" "nav_maze" "way_home" "t_maze" "y_maze"
         "wall_gap" "sidewalk" "obstacle_course"
@@ -48,6 +48,7 @@ pub const FAMILIES: [Group; 7] = [
     ("memory", families!["cue_t_maze" "hidden_goal" "match_to_sample" "sequence_recall" "water_maze"]),
     ("choice", families!["k_armed" "contextual_bandit" "delayed_reward" "reversal" "sign_reading"]),
     ("conflicts", families!["color_pays" "side_pays" "mirrored" "safe_zone"]),
+    ("levels", families!["expedition" "hand_made"]),
 ];
 
 /// Why no task is found by its name.

@@ -90,6 +90,11 @@ fn what_is_best_turns() {
     check("conflicts");
 }
 
+#[test]
+fn levels_are_passed() {
+    check("levels");
+}
+
 /// Those that the guide to worlds shows.
 const IN_THE_GUIDE: [&str; 11] = [
     "maze",

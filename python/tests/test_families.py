@@ -1,0 +1,57 @@
+"""The pages of the families are what scripts/families.py makes of the measurements, and these hold in a few worlds."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import driftworld
+import pytest
+from driftworld import _native
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture
+def families(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    """The script, with the command in this process."""
+    spec = importlib.util.spec_from_file_location("families", ROOT / "scripts/families.py")
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+
+    def said(_: str, *words: str) -> Any:
+        assert _native.main(["driftworld", *words, "--json"]) in (0, 1)
+        return json.loads(capfd.readouterr().out)
+
+    monkeypatch.setattr(module, "said", said)
+    return module
+
+
+def test_pages_are_made_from_the_measurements(families: ModuleType, tmp_path: Path) -> None:
+    families.pages("driftworld", tmp_path)
+    made = sorted(path.relative_to(tmp_path) for path in tmp_path.rglob("*.*"))
+    assert len(made) > 100
+    for path in made:
+        assert (tmp_path / path).read_text(encoding="utf-8") == (ROOT / "docs" / path).read_text(encoding="utf-8"), path
+
+
+def test_every_variant_is_measured() -> None:
+    measured = json.loads((ROOT / "examples/families.json").read_text(encoding="utf-8"))
+    assert list(measured) == [name for names in driftworld.task_groups().values() for name in names]
+    for name, variants in measured.items():
+        assert list(variants) == driftworld.TaskSpec.load(name).variant_names, name
+
+
+@pytest.mark.parametrize("name", ["pickup", "thin_ice", "color_pays", "unlock"])
+def test_what_was_measured_of_a_family_is_measured_again(families: ModuleType, name: str) -> None:
+    measured = json.loads((ROOT / "examples/families.json").read_text(encoding="utf-8"))[name]
+    first = next(iter(measured))
+    scales = families.said("driftworld", "scales", f"{name}#{first}", "--worlds", str(families.WORLDS))["scales"]
+    (scale,) = scales.values()
+    assert round(scale["agents"]["random"]["mean"], 2) == measured[first]["random"]
+    assert round(scale["agents"]["onrails"]["mean"], 2) == measured[first]["planner"]
+    assert scale["agents"]["onrails"]["success"] == measured[first]["success"]
