@@ -34,7 +34,7 @@ def families(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch)
 def test_pages_are_made_from_the_measurements(families: ModuleType, tmp_path: Path) -> None:
     families.pages("driftworld", tmp_path)
     made = sorted(path.relative_to(tmp_path) for path in tmp_path.rglob("*.*"))
-    assert len(made) > 100
+    assert len(made) > 80
     for path in made:
         assert (tmp_path / path).read_text(encoding="utf-8") == (ROOT / "docs" / path).read_text(encoding="utf-8"), path
 
@@ -43,7 +43,7 @@ def test_every_variant_is_measured() -> None:
     measured = json.loads((ROOT / "examples/families.json").read_text(encoding="utf-8"))
     assert list(measured) == [name for names in driftworld.task_groups().values() for name in names]
     for name, variants in measured.items():
-        assert list(variants) == driftworld.TaskSpec.load(name).variant_names, name
+        assert list(variants) == driftworld.TaskSpec.load(name).variant_names(), name
 
 
 @pytest.mark.parametrize("name", ["pickup", "thin_ice", "color_pays", "unlock"])
