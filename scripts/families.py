@@ -229,7 +229,7 @@ def pages(command: str, docs: Path = ROOT / "docs") -> None:
     parts = [
         "# The families", "", "Every task that comes with Driftworld, by name in each command, in Python, and as a Gymnasium id",
         "(`driftworld/KeyCorridor-v0`). Rewards are those of the first variant. *PPO*: what it comes to in 100,000 decisions of 32 × 32 pixels,",
-        "in per cent of the way from random to the planner, the mean of three seeds; in families of memory then recurrent PPO, too.", "",
+        "in per cent of the way from random to the planner, the mean of the seeds on its page; in families of memory then recurrent PPO, too.", "",
         "![The first variant of each family](images/families.png)", "",
     ]  # fmt: skip
     for group, rows in listed.items():
