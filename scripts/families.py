@@ -135,7 +135,7 @@ def sheet(command: str, variants: list[str], path: Path, columns: int) -> None:
 
 def curve(name: str, runs: dict[str, list[dict[str, Any]]], scale: dict[str, float]) -> str:
     """An SVG of what learners earn while they learn: bold the mean of the seeds, thin each; grey the random agent and the planner."""
-    width, height, left = 300, 120, 50
+    width, height, left = 300, 120, 60
     shown = [each for seeds in runs.values() for run in seeds for each in run["curve"]] + [scale["random"], scale["planner"]]
     low, high = min(shown), max(shown)
 
