@@ -194,5 +194,6 @@ step. A number is the interquartile mean over seeds, with the 95 % interval of t
 _FIGURE = """Mean of all tasks after each task, actions sampled: bold the interquartile mean, thin each seed, grey `finetuning`."""
 
 _FOOT = """What it does not show: one sequence in one order, one network, one budget. Seeds vary worlds and learners together, and few
-seeds make wide intervals: two learners whose intervals overlap are not told apart. Tasks are not told apart in what a
-learner sees, so that where two contradict each other no policy can do both."""
+seeds make wide intervals: two learners whose intervals overlap are not told apart. Observations do
+not say which task it is, so that contradictions can only be told by their surroundings. `packnet` is told, in evaluations
+too, and some others when a task begins (`borders` in `report.json`): rows with and without are not one contest."""
