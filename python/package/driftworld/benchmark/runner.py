@@ -220,19 +220,33 @@ def _live(cell: Cell, folder: Path) -> None:
     kept.mkdir(parents=True, exist_ok=True)
     curriculum = sequence.curriculum(cell.seed, cell.split)
     learner = make_learner(cell, sequence, "sampled")
-    save = learner.save
+    save, load = learner.save, learner.load
 
-    def save_and_keep(path: Path) -> None:
+    def keep(path: Path) -> None:
         """Keeps what the learner is after each task, by how many decisions it has learned from."""
-        save(path)
         shutil.copyfile(path, work / "unfinished")
         (work / "unfinished").rename(kept / f"{learner.decisions:012d}.pt")
 
-    learner.save = save_and_keep
+    def save_and_keep(path: Path) -> None:
+        save(path)
+        keep(path)
+
+    def load_and_keep(path: Path) -> None:
+        """A run that was killed between saving and keeping is loaded from what it saved, and saves that no more."""
+        load(path)
+        keep(path)
+
+    learner.save, learner.load = save_and_keep, load_and_keep
     run = {"num_envs": sequence.num_envs, "num_threads": 1, **sequence.options}
     curriculum.run_vector(learner, work / "sampled", **run)
     evaluations = [block for block in curriculum.scenario["blocks"] if block["type"] == "evaluation"]
-    for number, (block, save_of) in enumerate(zip(evaluations[1:], sorted(kept.iterdir()), strict=True), start=1):
+    saves = sorted(kept.iterdir())
+    if len(saves) < len(evaluations) - 1:
+        # Killed between a block's last row and its save: what the learner was then cannot be had any more.
+        shutil.rmtree(work)
+        _live(cell, folder)
+        return
+    for number, (block, save_of) in enumerate(zip(evaluations[1:], saves, strict=True), start=1):
         greedy = make_learner(cell, sequence, "greedy")
         greedy.load(save_of)
         alone = Curriculum.from_dict({**curriculum.scenario, "form": "custom", "blocks": [block]})
