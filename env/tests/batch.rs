@@ -240,7 +240,7 @@ fn worlds_of_a_batch_make_the_same_images() {
     let Err(error) = Batch::new(2, source, BatchOptions::default()) else {
         panic!("the instructions differ");
     };
-    assert!(error.to_string().contains("instructions of 1 numbers"), "{error}");
+    assert!(error.to_string().contains("instructions of length 1"), "{error}");
     assert!(Batch::new(0, self::source(), BatchOptions::default()).is_err());
 }
 

@@ -155,7 +155,7 @@ fn layout(world: &World, reach: &Reach) -> Json {
         "width": width,
         "modalities": agent.modalities,
         "state_features": agent.state_features,
-        "instruction": agent.instruction.len(),
+        "instruction_len": agent.instruction.len(),
         "state_len": agent.state_len(),
         "max_steps": world.step_limit().unwrap_or(0),
         "seconds_per_step": agent.time_step * f64::from(agent.frame_skip.max(1)),

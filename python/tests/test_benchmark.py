@@ -151,6 +151,25 @@ def test_a_killed_run_ends_with_the_same_digests(tiny: Path, tmp_path: Path) -> 
 
 
 @pytest.mark.learners
+def test_a_cell_that_lost_a_learner_in_a_kill_runs_again_to_the_same_digest(tiny: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    cell = Cell(str(tiny), "finetuning", 0)
+    (whole,) = run_cells([cell], tmp_path / "whole")
+
+    def kill(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr(running, "_finish", kill)
+        with pytest.raises(KeyboardInterrupt):
+            run_cells([cell], tmp_path / "killed")
+    lost = sorted((tmp_path / "killed").rglob("kept/*.pt"))
+    assert len(lost) == 3
+    lost[1].unlink()
+    (again,) = run_cells([cell], tmp_path / "killed")
+    assert whole is not None and again is not None and whole["digest"] == again["digest"]
+
+
+@pytest.mark.learners
 def test_a_learner_of_one_s_own_is_one_file(
     tiny: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -207,5 +207,5 @@ def test_an_instruction_ends_the_state_and_says_what_is_drawn() -> None:
         assert tuple(pays["color"]) == list(colors.values())[int(instruction.argmax())]
         told.add(int(instruction.argmax()))
     assert len(told) > 1
-    with pytest.raises(ValueError, match="found instruction 0, expected 4"):
+    with pytest.raises(ValueError, match="found instruction_len 0, expected 4"):
         env.reset(options={"variant": TaskSpec.load("thin_ice").variant("lake")})

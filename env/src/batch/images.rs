@@ -21,7 +21,7 @@ pub struct ImageLayout {
     /// What the state vectors beside them hold.
     pub state_features: Vec<StateFeature>,
     /// Numbers of the instruction after these.
-    pub instruction: usize,
+    pub instruction_len: usize,
 }
 
 impl ImageLayout {
@@ -34,7 +34,7 @@ impl ImageLayout {
             supersampling: agent.supersampling,
             modalities: agent.modalities.clone(),
             state_features: agent.state_features.clone(),
-            instruction: agent.instruction.len(),
+            instruction_len: agent.instruction.len(),
         }
     }
 
@@ -45,7 +45,7 @@ impl ImageLayout {
             && self.supersampling == agent.supersampling
             && agent.modalities.iter().all(|asked| self.modalities.contains(asked))
             && self.state_features == agent.state_features
-            && self.instruction == agent.instruction.len()
+            && self.instruction_len == agent.instruction.len()
         {
             return Ok(());
         }
@@ -91,8 +91,8 @@ impl std::fmt::Display for ImageLayout {
             write!(f, "{comma} {modality:?}")?;
         }
         f.write_str(if self.modalities.is_empty() { " nothing" } else { "" })?;
-        if self.instruction > 0 {
-            write!(f, ", instructions of {} numbers", self.instruction)?;
+        if self.instruction_len > 0 {
+            write!(f, ", instructions of length {}", self.instruction_len)?;
         }
         if self.state_features == StateFeature::CLASSIC {
             return Ok(());

@@ -143,12 +143,9 @@ impl<'a> Run<'a> {
         if found.differs(Element::Phi) {
             return Ok(());
         }
-        let features = |environment: &Environment| {
-            let agent = &environment.world().agent_params;
-            (agent.state_features.clone(), agent.instruction.len())
-        };
+        let [lead, follow] = [&self.lead, &self.follow].map(|environment| &environment.world().agent_params);
         let mut unlike = None;
-        if features(&self.lead) == features(&self.follow) {
+        if lead.state_features == follow.state_features && lead.instruction.len() == follow.instruction.len() {
             let (own, other) = (self.lead.state_vector(), self.follow.state_vector());
             unlike = Unlike::of("the state vector", &own, &other);
         }

@@ -171,7 +171,10 @@ pub(super) fn observations_unlike(a: &World, b: &World, is_chosen: bool) -> Opti
             )
         })
         .or_else(|| {
-            let lengths = [own.instruction.len(), other.instruction.len()];
-            Unlike::of("how many numbers the instruction has", &lengths[0], &lengths[1])
+            Unlike::of(
+                "the length of the instruction",
+                &own.instruction.len(),
+                &other.instruction.len(),
+            )
         })
 }

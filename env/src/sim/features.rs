@@ -8,7 +8,8 @@ use super::termination::pays_now;
 use super::zones::Zones;
 
 impl Environment {
-    /// The numbers of the features that the world asks for, in its order, by default position, heading, velocity; then its instruction.
+    /// The numbers of the features that the world asks for, in its order; then its instruction. By default these are position,
+    /// heading and velocity.
     pub fn state_vector(&self) -> Vec<f32> {
         let mut state = vec![0.0; self.world.agent_params.state_len()];
         self.fill_state(&mut state);

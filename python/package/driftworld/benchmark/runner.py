@@ -180,16 +180,13 @@ def make_learner(cell: Cell, sequence: Sequence, policy: str) -> Any:
     """The learner of a cell as it is before it learns."""
     from driftworld.learners import Settings
 
-    made, arguments = learner_class(cell.learner), arguments_of(cell, sequence)
+    arguments = arguments_of(cell, sequence)
     names = {each.name for each in dataclasses.fields(Settings)}
     settings = Settings(**{name: arguments.pop(name) for name in list(arguments) if name in names})
-    # Methods that have to know it in advance get the length of the lifetime.
-    known = {"max_tasks": len(sequence.tasks), "task_decisions": sequence.decisions}
-    told = {name: value for name, value in known.items() if name in inspect.signature(made).parameters}
     try:
-        return made(
+        return learner_class(cell.learner)(
             len(sequence.options["actions"]), sequence.num_envs, seed=cell.seed, size=sequence.options["size"], policy=policy,
-            settings=settings, **{**told, **arguments},
+            settings=settings, **arguments,
         )  # fmt: skip
     except TypeError as error:
         if "unexpected keyword argument" not in str(error):
@@ -201,11 +198,15 @@ def arguments_of(cell: Cell, sequence: Sequence) -> dict[str, Any]:
     """What the learner of a cell is made with: the settings of PPO and its own arguments, defaults included."""
     from driftworld.learners import Settings
 
+    parameters = inspect.signature(learner_class(cell.learner)).parameters
     own = {
         name: each.default
-        for name, each in inspect.signature(learner_class(cell.learner)).parameters.items()
+        for name, each in parameters.items()
         if isinstance(each.default, (int, float, str)) and name not in ("seed", "size", "policy")
     }
+    # Methods that have to know it in advance get the length of the lifetime.
+    length = {"max_tasks": len(sequence.tasks), "task_decisions": sequence.decisions}
+    own |= {name: value for name, value in length.items() if name in parameters}
     given = {**sequence.learners.get("all", {}), **sequence.learners.get(cell.learner, {}), **dict(cell.arguments)}
     return {**dataclasses.asdict(Settings()), **own, **given}
 
@@ -220,29 +221,21 @@ def _live(cell: Cell, folder: Path) -> None:
     kept.mkdir(parents=True, exist_ok=True)
     curriculum = sequence.curriculum(cell.seed, cell.split)
     learner = make_learner(cell, sequence, "sampled")
-    save, load = learner.save, learner.load
+    save = learner.save
 
-    def keep(path: Path) -> None:
+    def save_and_keep(path: Path) -> None:
         """Keeps what the learner is after each task, by how many decisions it has learned from."""
+        save(path)
         shutil.copyfile(path, work / "unfinished")
         (work / "unfinished").rename(kept / f"{learner.decisions:012d}.pt")
 
-    def save_and_keep(path: Path) -> None:
-        save(path)
-        keep(path)
-
-    def load_and_keep(path: Path) -> None:
-        """A run that was killed between saving and keeping is loaded from what it saved, and saves that no more."""
-        load(path)
-        keep(path)
-
-    learner.save, learner.load = save_and_keep, load_and_keep
+    learner.save = save_and_keep
     run = {"num_envs": sequence.num_envs, "num_threads": 1, **sequence.options}
     curriculum.run_vector(learner, work / "sampled", **run)
     evaluations = [block for block in curriculum.scenario["blocks"] if block["type"] == "evaluation"]
     saves = sorted(kept.iterdir())
     if len(saves) < len(evaluations) - 1:
-        # Killed between a block's last row and its save: what the learner was then cannot be had any more.
+        # A kill between a block's last row and its save lost the learner of that moment.
         shutil.rmtree(work)
         _live(cell, folder)
         return

@@ -116,12 +116,10 @@ class Results:
         }  # fmt: skip
         rows = []
         for label, runs in self.runs.items():
-            row: dict[str, Any] = {"learner": label, "seeds": len(runs)}
+            row: dict[str, Any] = {"learner": label, "seeds": len(runs), "pairs": sum(run.report["seed"] in alone for run in runs)}
             for name, measure in measures.items():
                 values = [value for run in runs if (value := measure(run)) is not None and not np.isnan(value)]
                 row[name] = (interquartile_mean(values), *interval(values)) if values else None
-                if name == "forward":
-                    row["pairs"] = len(values)
             rows.append(row)
         return sorted(rows, key=lambda row: -row["performance"][0])
 
@@ -195,5 +193,5 @@ _FIGURE = """Mean of all tasks after each task, actions sampled: bold the interq
 
 _FOOT = """What it does not show: one sequence in one order, one network, one budget. Seeds vary worlds and learners together, and few
 seeds make wide intervals: two learners whose intervals overlap are not told apart. Observations do
-not say which task it is, so that contradictions can only be told by their surroundings. `packnet` is told, in evaluations
-too, and some others when a task begins (`borders` in `report.json`): rows with and without are not one contest."""
+not say which task it is: only surroundings tell tasks apart that contradict each other. `packnet` knows the task, in
+evaluations too, and some others know when a task begins (`borders` in `report.json`): compare rows of one kind."""

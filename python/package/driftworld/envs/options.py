@@ -267,9 +267,9 @@ def expect_same_spaces(ours: dict[str, Any], theirs: dict[str, Any], modalities:
     Raises:
         ValueError: That says what differs.
     """
-    for key in ("height", "width", "state_features", "instruction"):
+    for key in ("height", "width", "state_features", "instruction_len"):
         if ours[key] != theirs[key]:
-            advice = "make" if key in ("state_features", "instruction") else "give option size, or make"
+            advice = "make" if key in ("state_features", "instruction_len") else "give option size, or make"
             raise ValueError(
                 f"variant: found {key} {theirs[key]}, expected {ours[key]} as the environment was made with; {advice} an environment "
                 "of its own"

@@ -53,7 +53,7 @@ def _box(kind: str, options: Options, layout: dict[str, Any]) -> spaces.Box:
     shape = (layout["height"], layout["width"], 3 if kind == "rgb" else 1)
     if kind == "state":
         pairs = [pair for name in layout["state_features"] for pair in _FEATURES[name]]
-        bounds = np.array(pairs + layout["instruction"] * [_INSTRUCTION], dtype=np.float32)
+        bounds = np.array(pairs + layout["instruction_len"] * [_INSTRUCTION], dtype=np.float32)
         bounds = bounds.reshape(-1, 2)
         return spaces.Box(bounds[:, 0], bounds[:, 1], dtype=np.float32)
     if kind == "depth" and options.depth == "float32":
