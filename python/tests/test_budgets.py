@@ -75,6 +75,17 @@ def test_a_budget_leaves_the_experiences_that_it_should(tmp_path: Path, num_envs
         assert budget <= sum(learned) < budget + num_envs * max(learned)
 
 
+@pytest.mark.parametrize("budget", range(21, 105, 12))
+@pytest.mark.parametrize("num_envs", [2, 3])
+def test_all_that_is_learned_from_is_in_the_log(tmp_path: Path, num_envs: int, budget: int) -> None:
+    """Also where all environments end in one step."""
+    curriculum = Curriculum.from_dict(scenario({"lava": budget, "middle": budget}))
+    agents = Many(num_envs, Stroller)
+    assert curriculum.run_vector(agents, tmp_path / "log", num_envs=num_envs, **SMALL).finished
+    columns = read_log(tmp_path / "log").columns
+    assert agents.steps == columns["episode_step_count"][columns["block_type"] == "train"].astype(int).sum()
+
+
 def test_one_environment_of_many_is_a_single_one(tmp_path: Path) -> None:
     curriculum = Curriculum.from_dict(scenario({"lava": 50, "middle": 33}))
     curriculum.run(Pupil(), tmp_path / "one", **SMALL)

@@ -155,15 +155,15 @@ class VectorRollout(Rollout):
         self, number: int, world: _native.Stream, time: tuple[float, int, float]
     ) -> tuple[float, bool, int, float, bool, str | None]:
         """One experience, which may have run while earlier ones were asked for: as :meth:`driftworld.lifetimes.Rollout.experience`."""
-        if number not in self._over and number not in self._running:
-            # The first of a block; or one that is run once more: from here on, so that batches are what they were.
+        now = self._experience(number)
+        # One behind the next is run once more: from here on, so that batches are what they were.
+        if now.block != self._block or (number < self._next and not (number in self._over or number in self._running)):
             self._abandon()
-            now = self._experience(number)
             self._next, self._block, self._learning = number, now.block, now.learning
         while number not in self._over:
             self._step()
         reward, success, steps, truncated, ended_by = self._over.pop(number)
-        self._frozenness.expect_same(self._experience(number), self._traces.pop(number, None))
+        self._frozenness.expect_same(now, self._traces.pop(number, None))
         return reward, success, steps, self._seconds(steps, time), truncated, ended_by
 
     def _step(self) -> None:
