@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from pathlib import Path
 from typing import Any
@@ -73,6 +74,12 @@ def test_interquartile_mean_and_interval_are_rliables(case: dict[str, Any]) -> N
 def test_interval_of_a_list_is_that_of_one_column() -> None:
     values = np.random.default_rng(0).random(9)
     assert interval(values) == interval(values[:, None])
+
+
+def test_interval_of_five_seeds_is_that_of_all_draws_of_five() -> None:
+    values = [0.1, 0.2, 0.35, 0.8, 0.9]
+    means = [interquartile_mean(drawn) for drawn in itertools.product(values, repeat=5)]
+    assert interval(values) == near(tuple(np.quantile(means, [0.025, 0.975])))
 
 
 def test_a_lifetime_that_never_changes_has_no_forgetting_and_no_transfer() -> None:

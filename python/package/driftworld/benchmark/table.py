@@ -179,7 +179,8 @@ _HEAD = """# Learners compared in the sequence `{sequence.name}`
 
 {sequence.about} {sequence.decisions:,} decisions a task; after each task every task is evaluated in {sequence.evaluations} worlds that nobody
 learns in. Numbers are per cent of the way from a random agent (0) to the planner (100), which knows the map and acts in every time
-step. A number is the interquartile mean over seeds, with the 95 % interval of the bootstrap in brackets.
+step. A number is the interquartile mean over seeds of what each has over all tasks, with the 95 % interval of the bootstrap over
+seeds in brackets.
 
 - *performance*: all tasks at the end, actions sampled from the policy: the number that counts. *greedy*: the same by the
   likeliest actions.
