@@ -14,7 +14,7 @@ one() { # LEARNER NAME=VALUE…
 one finetuning entropy=0.01 entropy=0.03 entropy=0.06
 one ewc strength=0.001 strength=0.01 strength=0.1 strength=1
 one online_ewc strength=0.001 strength=0.01 strength=0.1 strength=1
-one clear policy_cloning=0.01 policy_cloning=0.03 policy_cloning=0.1
-one l2 strength=0.001 strength=0.01 strength=0.1
-one packnet retraining=0.25 retraining=0.4 retraining=0.6
-one shrink_and_perturb shrink=0.4 shrink=0.6 shrink=0.8
+one clear policy_cloning=0.003 policy_cloning=0.01 policy_cloning=0.03 policy_cloning=0.1
+one l2 strength=0.0001 strength=0.001 strength=0.01 strength=0.1
+one packnet retraining=0.08 retraining=0.15 retraining=0.25 retraining=0.4 retraining=0.6
+one shrink_and_perturb shrink=0.4 shrink=0.6 shrink=0.8 shrink=0.9
