@@ -105,6 +105,13 @@ def test_the_page_of_results_is_made_from_the_logs(tmp_path: Path) -> None:
     assert figure.read_text(encoding="utf-8") == (ROOT / "docs/images/results.svg").read_text(encoding="utf-8")
 
 
+def test_all_that_learners_of_the_table_learned_from_is_in_their_logs() -> None:
+    for name in ("mixed", "memory"):
+        for runs in Results(Sequence.load(name), ROOT / "examples/benchmark" / name).runs.values():
+            for run in runs:
+                assert sum(int(steps.sum()) for steps in run.sampled.steps) == run.report["decisions"], run.folder
+
+
 @pytest.mark.parametrize("learner", ["finetuning", "packnet"])
 def test_logs_of_the_table_are_those_of_their_report(learner: str, tmp_path: Path) -> None:
     cell = ROOT / "examples/benchmark/mixed" / learner / "0"

@@ -110,10 +110,11 @@ impl Environment {
         self.pip(workspace, &[&found[..], &[wheels, "driftworld"]].concat())
     }
 
-    /// Runs tests of the package on the installed wheel, without a display.
+    /// Runs tests of the package on the installed wheel, without a display, a file on each core.
     fn pytest(&self, workspace: &Workspace, arguments: &[&str]) -> Result {
-        let mut pytest = self.python(workspace, &["-m", "pytest", "--quiet"]);
+        let mut pytest = self.python(workspace, &["-m", "pytest", "--quiet", "--dist", "loadfile"]);
         pytest
+            .args(["--numprocesses", "auto"])
             .args(arguments)
             .current_dir(workspace.root.join("python"))
             .env("SDL_VIDEODRIVER", "dummy");
