@@ -72,7 +72,7 @@ IMAGES: dict[str, list[str]] = {
         )
     ],
     "curriculum-map.png": ["sheet --scenario examples/curricula/map.json --size 150 -o {}"],
-    "task-blue_red_green.png": ["sheet blue_red_green --size 150 -o {}"],
+    "task-blue_red_green.png": [f"sheet {of('blue_red_green', 'a b c d')} --size 150 -o {{}}"],
     "looks.png": [
         (
             f"sheet {of('find_objects', 'huddle dusk')} examples/worlds/four_rooms.json#nine examples/worlds/key_corridor.json#closed"
