@@ -94,7 +94,8 @@ def _parser() -> argparse.ArgumentParser:
 def _list(_: argparse.Namespace) -> None:
     for name in Sequence.names():
         sequence = Sequence.load(name)
-        print(f"{name}: {len(sequence.tasks)} tasks, {sequence.decisions:,} decisions each. {sequence.about}")
+        tasks = "1 task" if len(sequence.tasks) == 1 else f"{len(sequence.tasks)} tasks"
+        print(f"{name}: {tasks}, {sequence.decisions:,} decisions each. {sequence.about}")
     try:
         print(f"learners: {', '.join(sorted(learners_by_name()))}")
     except ImportError as error:
