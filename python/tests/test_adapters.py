@@ -29,7 +29,9 @@ PACKAGES = {
 def test_a_missing_library_is_named_with_what_to_install(
     name: str, package: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setitem(sys.modules, package, None)
+    # Also its parts, which other tests may have imported.
+    for part in [package, *(each for each in sys.modules if each.startswith(f"{package}."))]:
+        monkeypatch.setitem(sys.modules, part, None)
     monkeypatch.delitem(sys.modules, f"driftworld.adapters.{name}", raising=False)
     with pytest.raises(ImportError, match=f"found no {package}, expected version .*pip install"):
         importlib.import_module(f"driftworld.adapters.{name}")
