@@ -110,11 +110,10 @@ impl Environment {
         self.pip(workspace, &[&found[..], &[wheels, "driftworld"]].concat())
     }
 
-    /// Runs tests of the package on the installed wheel, without a display, a file on each core.
+    /// Runs tests of the package on the installed wheel, without a display.
     fn pytest(&self, workspace: &Workspace, arguments: &[&str]) -> Result {
-        let mut pytest = self.python(workspace, &["-m", "pytest", "--quiet", "--dist", "loadfile"]);
+        let mut pytest = self.python(workspace, &["-m", "pytest", "--quiet"]);
         pytest
-            .args(["--numprocesses", "auto"])
             .args(arguments)
             .current_dir(workspace.root.join("python"))
             .env("SDL_VIDEODRIVER", "dummy");
@@ -165,7 +164,9 @@ pub(crate) fn package(workspace: &Workspace) -> Result<Outcome> {
         run(check)?;
     }
     tests.install_driftworld(workspace)?;
-    tests.pytest(workspace, &["-m", "not learners"])?;
+    // A file on each core. Learners take all of them by themselves.
+    let cores = ["--numprocesses", "auto", "--dist", "loadfile", "-m", "not learners"];
+    tests.pytest(workspace, &cores)?;
     tests.pip(
         workspace,
         &[
@@ -175,7 +176,7 @@ pub(crate) fn package(workspace: &Workspace) -> Result<Outcome> {
             "python/tests/requirements-oldest.txt",
         ],
     )?;
-    tests.pytest(workspace, &[&["-m", "not learners"], &ANY_GYMNASIUM[..]].concat())?;
+    tests.pytest(workspace, &[&cores, &ANY_GYMNASIUM[..]].concat())?;
     Ok(Outcome::Passed("with the newest and the oldest Gymnasium".into()))
 }
 
