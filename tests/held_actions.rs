@@ -102,7 +102,7 @@ fn held_variants_differ_from_the_first_in_the_transitions_alone() {
             compared += 1;
         }
     }
-    assert_eq!(compared, 6);
+    assert_eq!(compared, 7);
 }
 
 #[test]
