@@ -7,7 +7,7 @@
 
 scripts/learn_families.py makes the last one. Pictures need Pillow.
 
-Of each variant: what a random agent and the planner earn in 100 worlds, how often the planner succeeds, which elements differ from
+Of each variant: what a random agent and the planner earn in 1,000 worlds, how often the planner succeeds, which elements differ from
 the first variant in 32 pairs of worlds, and how far it is from it.
 """
 

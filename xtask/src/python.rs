@@ -164,7 +164,7 @@ pub(crate) fn package(workspace: &Workspace) -> Result<Outcome> {
         run(check)?;
     }
     tests.install_driftworld(workspace)?;
-    // A file on each core. Learners take all of them by themselves.
+    // A file on each core; not so the learners' tests, which start processes of their own.
     let cores = ["--numprocesses", "auto", "--dist", "loadfile", "-m", "not learners"];
     tests.pytest(workspace, &cores)?;
     tests.pip(

@@ -156,7 +156,7 @@ class VectorRollout(Rollout):
     ) -> tuple[float, bool, int, float, bool, str | None]:
         """One experience, which may have run while earlier ones were asked for: as :meth:`driftworld.lifetimes.Rollout.experience`."""
         now = self._experience(number)
-        # One behind the next is run once more: from here on, so that batches are what they were.
+        # An earlier one that is neither under way nor over is run once more, with all behind it, so that batches are what they were.
         if now.block != self._block or (number < self._next and not (number in self._over or number in self._running)):
             self._abandon()
             self._next, self._block, self._learning = number, now.block, now.learning
