@@ -59,7 +59,8 @@ pub use options::{
 pub use repeats::{
     Aggregate, BootstrapOptions, Estimate, FEW_RUNS, Improvement, Interval, MAX_POWER_LIFETIMES, MAX_RESAMPLES,
     MAX_RUNS, MAX_SCORES, MAX_SCORES_DRAWN, MAX_STRATA, POWER_LEVEL, POWER_WANTED, Resampling, ScoreTable,
-    StratumImprovement, estimate, lifetimes_for, probability_of_improvement, smallest_effect, welch_power,
+    StratumImprovement, estimate, lifetimes_for, probability_of_improvement, smallest_effect, student_reach,
+    welch_power,
 };
 pub use results::{
     AGREEING_PART, AsLogged, BesideExpert, ComparedMetric, CurvePoint, Direction, EvaluationCell, EvaluationCurve,

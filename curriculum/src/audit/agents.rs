@@ -22,7 +22,7 @@ fn reward(skill: f64, meeting: &Meeting, keys: &[u64]) -> f64 {
 }
 
 /// A number that the keys decide, normally distributed over keys: the sum of 16 even ones, scaled.
-fn normal(what: &str, keys: &[u64]) -> f64 {
+pub(super) fn normal(what: &str, keys: &[u64]) -> f64 {
     let mut hash = Sha256::new();
     hash.update(what.as_bytes());
     for key in keys {

@@ -8,7 +8,9 @@ mod simulation;
 
 use std::path::Path;
 
-use driftworld_metrics::{LifetimeMetrics, Log, MaintenanceMethod, Options, Reading, SteLog, TransferMethod, score};
+use driftworld_metrics::{
+    LifetimeMetrics, Log, MaintenanceMethod, Options, Reading, SteLog, TransferMethod, score, student_reach,
+};
 use driftworld_spec::Scenario;
 use serde::Serialize;
 
@@ -54,7 +56,11 @@ const FALSE_POSITIVES: f64 = 0.05;
 /// How unlikely a count must be before an audit calls it wrong: several metrics are counted in each audit.
 const SURPRISE: f64 = 0.001;
 
-/// By how much a ratio of which the true value is 1 may be off, beside its standard error.
+/// How sure an audit must be that a mean ratio is off: three standard errors where there are many lifetimes, more where few say
+/// how large these errors are.
+const CONFIDENCE: f64 = 0.9973;
+
+/// By how much a ratio of which the true value is 1 may be off, beside what its standard error explains.
 const RATIO_SLACK: f64 = 0.02;
 
 /// Lets five simulated agents run a scenario, of which the true scores are known, and says what its protocol makes of them.
@@ -151,10 +157,10 @@ impl Room<'_> {
 
     fn by_number(&self) -> Result<AuditRow, CurriculumError> {
         let ratios = self.beside_experts("ste_rel_perf", |run, number| Box::new(by_number(run, number)))?;
-        let (found, passed) = match mean_and_error(&ratios) {
-            Some((mean, error)) => {
-                let text = format!("{mean:.3} ± {error:.3} (standard error, {} lifetimes)", ratios.len());
-                (text, Some(mean <= 1.0 + 3.0 * error + RATIO_SLACK))
+        let (found, passed) = match Ratio::of(&ratios) {
+            Some(ratio) => {
+                let text = format!("{ratio} (standard error, {} lifetimes)", ratios.len());
+                (text, Some(ratio.mean <= 1.0 + ratio.slack()))
             }
             None => (self.no_experts(), None),
         };
@@ -172,12 +178,11 @@ impl Room<'_> {
         let mut passed = None;
         for metric in ["ste_rel_perf", "sample_efficiency"] {
             let ratios = self.beside_experts(metric, |run, number| Box::new(own_expert(run, number, pace)))?;
-            let Some((mean, error)) = mean_and_error(&ratios) else {
+            let Some(ratio) = Ratio::of(&ratios) else {
                 continue;
             };
-            found.push(format!("{metric} {mean:.3} ± {error:.3}"));
-            let is_one = (mean - 1.0).abs() <= 3.0 * error + RATIO_SLACK;
-            passed = Some(passed.unwrap_or(true) && is_one);
+            found.push(format!("{metric} {ratio}"));
+            passed = Some(passed.unwrap_or(true) && (ratio.mean - 1.0).abs() <= ratio.slack());
         }
         Ok(AuditRow {
             agent: "its own expert",
@@ -283,14 +288,36 @@ fn readings(scores: &LifetimeMetrics) -> Vec<(String, Reading)> {
     scores.null_bands.keys().filter_map(reading).collect()
 }
 
-fn mean_and_error(values: &[f64]) -> Option<(f64, f64)> {
-    if values.len() < 2 {
-        return None;
+/// What lifetimes say of a ratio.
+struct Ratio {
+    mean: f64,
+    error: f64,
+    freedom: f64,
+}
+
+impl Ratio {
+    fn of(values: &[f64]) -> Option<Self> {
+        if values.len() < 2 {
+            return None;
+        }
+        let count = values.len() as f64;
+        let freedom = count - 1.0;
+        let mean = values.iter().sum::<f64>() / count;
+        let squares = values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>();
+        let error = (squares / freedom / count).sqrt();
+        Some(Self { mean, error, freedom })
     }
-    let count = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    let squares = values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>();
-    Some((mean, (squares / (count - 1.0) / count).sqrt()))
+
+    /// How far the mean may be from the true value.
+    fn slack(&self) -> f64 {
+        student_reach(CONFIDENCE, self.freedom) * self.error + RATIO_SLACK
+    }
+}
+
+impl std::fmt::Display for Ratio {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{:.3} ± {:.3}", self.mean, self.error)
+    }
 }
 
 /// The probability of at least `least` hits in `tries` tries of which each hits with `probability`.
@@ -312,7 +339,28 @@ fn remove(folder: &Path) {
 
 #[cfg(test)]
 mod tests {
+    use super::agents::normal;
     use super::*;
+
+    #[test]
+    fn what_is_1_is_rarely_called_off_however_few_lifetimes_there_are() {
+        const TRIES: u64 = 1000;
+        for lifetimes in [2, 3, 5, 20] {
+            // Lifetimes that differ so much that the slack for small differences matters little.
+            let drawn = |id| (0..lifetimes).map(move |place| 1.0 + 10.0 * normal("ratio", &[lifetimes, id, place]));
+            let is_off = |id: &u64| {
+                let ratio = Ratio::of(&drawn(*id).collect::<Vec<_>>()).unwrap();
+                (ratio.mean - 1.0).abs() > ratio.slack()
+            };
+            let off = (0..TRIES).filter(is_off).count() as f64 / TRIES as f64;
+            // Four standard errors of a share of 0.0027 around it.
+            assert!(off < 0.0093, "{lifetimes} lifetimes: {off}");
+        }
+        // With 20 lifetimes, what is off by twice their standard deviation is found.
+        let off: Vec<f64> = (0..20).map(|place| 3.0 + normal("off", &[place])).collect();
+        let ratio = Ratio::of(&off).unwrap();
+        assert!(ratio.mean - 1.0 > ratio.slack(), "{ratio}");
+    }
 
     #[test]
     fn tails_are_those_of_the_binomial() {

@@ -3,7 +3,7 @@
 //! Not here: intervals of many draws, see `bootstrap`.
 
 use super::Interval;
-use super::student;
+use super::student::student_reach;
 
 /// From this number of runs on, intervals are made by the bootstrap alone.
 pub const FEW_RUNS: usize = 10;
@@ -44,7 +44,7 @@ pub(super) fn t_interval(value: f64, agents: &[LeftOut], confidence: f64) -> Opt
     } else {
         1.0
     };
-    let reach = student::reach(confidence, freedom) * variance.sqrt();
+    let reach = student_reach(confidence, freedom) * variance.sqrt();
     Some(Interval {
         low: value - reach,
         high: value + reach,

@@ -24,3 +24,4 @@ pub use improvement::{Improvement, StratumImprovement, probability_of_improvemen
 pub use jackknife::FEW_RUNS;
 pub use power::{MAX_POWER_LIFETIMES, POWER_LEVEL, POWER_WANTED, lifetimes_for, smallest_effect, welch_power};
 pub use score_table::{MAX_RUNS, MAX_SCORES, MAX_STRATA, ScoreTable};
+pub use student::student_reach;

@@ -3,7 +3,7 @@
 //!
 //! Not here: the test of agents that were run, see `improvement`.
 
-use super::student::reach;
+use super::student::student_reach;
 
 /// The chance of calling equal agents different, in a test of two sides.
 pub const POWER_LEVEL: f64 = 0.05;
@@ -129,7 +129,8 @@ impl Quantiles {
         let (most, least) = (nums[0] + nums[1] - 2.0, nums[0].min(nums[1]) - 1.0);
         let (first, last) = (1.0 / most, 1.0 / least);
         let step = (last - first) / NUM_QUANTILES as f64;
-        let values = (0..=NUM_QUANTILES).map(|place| reach(1.0 - POWER_LEVEL, 1.0 / (first + step * place as f64)));
+        let values =
+            (0..=NUM_QUANTILES).map(|place| student_reach(1.0 - POWER_LEVEL, 1.0 / (first + step * place as f64)));
         Self {
             first,
             step,

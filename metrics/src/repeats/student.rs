@@ -3,8 +3,9 @@
 //! Not here: the standard errors, see `jackknife`.
 
 /// Where Student's t with so many degrees of freedom, above 0 and not necessarily whole, lies with this chance between minus and plus
-/// the result. `confidence`: between 0 and 1.
-pub(super) fn reach(confidence: f64, freedom: f64) -> f64 {
+/// the result: how many standard errors an interval of few values reaches. `confidence`: between 0 and 1.
+#[must_use]
+pub fn student_reach(confidence: f64, freedom: f64) -> f64 {
     let outside = |t: f64| incomplete_beta(freedom / (freedom + t * t), freedom / 2.0);
     let wanted = 1.0 - confidence;
     let (mut low, mut high) = (0.0, 1.0);
@@ -72,7 +73,7 @@ mod tests {
     fn it_reaches_as_far_as_the_tables_say() {
         // scipy.stats.t.ppf((1 + confidence) / 2, freedom).
         let check = |confidence: f64, freedom: f64, expected: f64| {
-            let found = reach(confidence, freedom);
+            let found = student_reach(confidence, freedom);
             assert!((found / expected - 1.0).abs() < 1e-9, "{confidence} {freedom}: {found}");
         };
         check(0.95, 1.0, 12.706_204_736_174_694);
