@@ -7,7 +7,8 @@
 Runs a fixed set of commands and keeps the SHA-256 of everything each one prints or writes. `compare` exits with 1 and
 names the commands whose bytes differ. A command that the newer build refuses with "removed in 0.3" is listed apart.
 `--only GROUP` runs one group: worlds, distances, frames, logs, scores or tools. `--full` compares 20 worlds by every
-measure; without it the slow measures get 2. Logs of others are scored too if the folder that DRIFTWORLD_REFERENCE
+measure; without it the slow measures get 2. `--variants N` takes the first N variants of each task in place of 20: with
+2 it runs for some minutes, with 20 for an hour. Logs of others are scored too if the folder that DRIFTWORLD_REFERENCE
 names (default ../shared/reference) is there.
 """
 
@@ -46,19 +47,19 @@ SLOW_MEASURES = ["pictures", "pictures:whole", "pictures:structure", "dynamics",
 MODALITIES = ["rgb", "depth", "segmentation"]
 
 
-def variants(binary: str) -> list[str]:
-    """The first 20 variants of each built-in task and all of the example worlds."""
+def variants(binary: str, most: int) -> list[str]:
+    """The first `most` variants of each built-in task and of each example world."""
     found = []
     for task in [*BUILT_IN, *(str(ROOT / "examples/worlds" / f"{name}.json") for name in WORLDS)]:
         shown = json.loads(
             subprocess.run([binary, "tasks", "show", task, "--json"], capture_output=True, check=True).stdout
         )
-        names = list(shown["variants"])[:20]
+        names = list(shown["variants"])[:most]
         found += [f"{task}#{name}" for name in names]
     return found
 
 
-def commands(binary: str, full: bool) -> list[tuple[str, str, list[list[str]]]]:
+def commands(binary: str, most: int, full: bool) -> list[tuple[str, str, list[list[str]]]]:
     """What is run: (group, name, commands that run one after the other in one empty folder)."""
     jobs = []
 
@@ -66,7 +67,7 @@ def commands(binary: str, full: bool) -> list[tuple[str, str, list[list[str]]]]:
         jobs.append((group, name.replace(str(ROOT) + "/", ""), list(steps)))
 
     first_of = {}
-    for variant in variants(binary):
+    for variant in variants(binary, most):
         task = variant.split("#")[0]
         first = first_of.setdefault(task, variant)
         add("worlds", variant, ["sample", variant, "--count", "20", "--seed", "7", "--jsonl"])
@@ -191,10 +192,11 @@ def main() -> int:
     parser.add_argument("binary", type=pathlib.Path)
     parser.add_argument("file", type=pathlib.Path)
     parser.add_argument("--only", metavar="GROUP")
+    parser.add_argument("--variants", type=int, default=20, metavar="N")
     parser.add_argument("--full", action="store_true")
     given = parser.parse_args()
     binary = str(given.binary.resolve())
-    jobs = [job for job in commands(binary, given.full) if given.only in (None, job[0])]
+    jobs = [job for job in commands(binary, given.variants, given.full) if given.only in (None, job[0])]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         results = pool.map(lambda job: digests(binary, job[2]), jobs)
         found = {f"{group}: {name}": result for (group, name, _), result in zip(jobs, results)}
