@@ -46,14 +46,7 @@ impl<'a> Picture<'a> {
                 });
             }
         }
-        let expected = height * width * 3;
-        if rgb.len() != expected {
-            return Err(SimilarityError::Shape {
-                of: "bytes of a picture",
-                found: rgb.len(),
-                expected,
-            });
-        }
+        SimilarityError::check_length("bytes of a picture", rgb.len(), height * width * 3)?;
         Ok(Self { rgb, height, width })
     }
 

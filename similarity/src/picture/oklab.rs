@@ -61,13 +61,7 @@ pub fn picture_oklab(a: Picture, b: Picture) -> Result<f64, SimilarityError> {
 pub fn picture_oklab_sums(a: Picture, b: Picture, marked: &[bool]) -> Result<[(f64, usize); 2], SimilarityError> {
     a.lies_on(b)?;
     let (from, to) = (a.rgb.as_chunks::<3>().0, b.rgb.as_chunks::<3>().0);
-    if marked.len() != from.len() {
-        return Err(SimilarityError::Shape {
-            of: "marks of pixels",
-            found: marked.len(),
-            expected: from.len(),
-        });
-    }
+    SimilarityError::check_length("marks of pixels", marked.len(), from.len())?;
     let (mut before, mut after) = (Last::default(), Last::default());
     let mut sums = [(0.0, 0); 2];
     for ((from, to), is_marked) in from.iter().zip(to).zip(marked) {

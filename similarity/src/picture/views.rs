@@ -62,13 +62,7 @@ impl PictureMeasure {
 /// # Ok::<(), driftworld_similarity::SimilarityError>(())
 /// ```
 pub fn views_distance(a: &[Picture], b: &[Picture], measure: PictureMeasure) -> Result<f64, SimilarityError> {
-    if a.len() != b.len() {
-        return Err(SimilarityError::Shape {
-            of: "pictures of the second set",
-            found: b.len(),
-            expected: a.len(),
-        });
-    }
+    SimilarityError::check_length("pictures of the second set", b.len(), a.len())?;
     if a.is_empty() {
         return Err(SimilarityError::NoPictures);
     }

@@ -37,19 +37,8 @@ impl CostTable {
     /// finite, is not 0 between a choice and itself, or is not the same there and back.
     pub fn new(names: Vec<String>, costs: &[f64]) -> Result<Self, SimilarityError> {
         let count = names.len();
-        if count > MAX_CHOICES {
-            return Err(SimilarityError::TooMany {
-                found: count,
-                limit: MAX_CHOICES,
-            });
-        }
-        if costs.len() != count * count {
-            return Err(SimilarityError::Shape {
-                of: "cost table",
-                found: costs.len(),
-                expected: count * count,
-            });
-        }
+        SimilarityError::check_count(count, MAX_CHOICES)?;
+        SimilarityError::check_length("cost table", costs.len(), count * count)?;
         check(&names, costs)?;
         let properties = properties(count, costs);
         let mut choices = BTreeMap::new();
