@@ -23,14 +23,8 @@ pub(super) struct Parts(pub(super) Vec<Part>);
 impl Sink for Parts {
     fn add(&mut self, comparison: Comparison, raw: f64, normalised: f64) {
         self.0.push(Part {
-            name: comparison.name().to_owned(),
-            element: comparison.element(),
-            measure: comparison.unit(),
-            method: None,
-            raw,
             normalised,
-            weight: 1.0,
-            share: 0.0,
+            ..Part::of(comparison.name(), comparison.element(), comparison.unit(), raw)
         });
     }
 }

@@ -148,14 +148,10 @@ impl VariantMeasure {
                 return Err(SimilarityError::NotADistance { a, b, found: raw });
             }
             parts.extend(compared.affects.iter().map(|element| Part {
-                name: name.clone(),
-                element: *element,
-                measure,
                 method,
-                raw,
                 normalised,
                 weight: compared.weight,
-                share: 0.0,
+                ..Part::of(name, *element, measure, raw)
             }));
         }
         Ok(Distance::new(parts, &self.weights))

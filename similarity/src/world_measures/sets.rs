@@ -29,14 +29,8 @@ pub fn world_sets_measure_distance(
     }
     let mean = sum / count as f64;
     let part = Part {
-        name: measure.kind().to_owned(),
-        element: measure.element(),
-        measure: measure.label(),
         method: Some(Method::Samples { count }),
-        raw: mean,
-        normalised: mean,
-        weight: 1.0,
-        share: 0.0,
+        ..Part::of(measure.kind(), measure.element(), measure.label(), mean)
     };
     Ok(Distance::new(vec![part], weights))
 }
