@@ -3,7 +3,7 @@
 use driftworld_spec::Distribution;
 
 use super::gap::Power;
-use super::law::{Law, rising};
+use super::law::{self, Law, rising};
 use super::measured::Measured;
 
 /// Widest stretch, in degrees, over which a curved cumulative function is taken as straight at first; then over half of it.
@@ -32,12 +32,7 @@ pub fn circular_wasserstein_1(a: &Distribution, b: &Distribution) -> Option<Meas
         return Some(Measured::closed(0.0));
     }
     if p.is_flat() && q.is_flat() {
-        let value = around(&stretches(&p, &q, None));
-        return Some(if p.parts.is_empty() && q.parts.is_empty() {
-            Measured::atoms(value)
-        } else {
-            Measured::closed(value)
-        });
+        return Some(law::exact(&p, &q, around(&stretches(&p, &q, None))));
     }
     let [coarse, fine] = [COARSE, COARSE / 2.0].map(|widest| around(&stretches(&p, &q, Some(widest))));
     // Half the width leaves a quarter of the error, so a third of the difference is what is left.

@@ -2,7 +2,7 @@
 
 use driftworld_spec::{Color, Distribution, Moments};
 
-use super::measured::{Measured, Method};
+use super::measured::Measured;
 use super::scatter::chosen;
 use super::values;
 use super::wasserstein_2::wasserstein_2;
@@ -45,16 +45,9 @@ pub fn color_wasserstein_2(a: &Distribution, b: &Distribution, measure: ColorMea
         for (a, b) in a.iter().zip(&b) {
             let channel = wasserstein_2(a, b)?;
             square += channel.value * channel.value;
-            if let Method::Quadrature { tolerance: error } = channel.method {
-                tolerance += error;
-            }
+            tolerance += channel.tolerance();
         }
-        let value = square.sqrt();
-        return Some(if tolerance > 0.0 {
-            Measured::quadrature(value, tolerance)
-        } else {
-            Measured::closed(value)
-        });
+        return Some(Measured::within(square.sqrt(), tolerance));
     }
     paired(a, b, measure, |way| way * way).map(Measured::root)
 }
@@ -136,6 +129,7 @@ fn color(distribution: &Distribution, [u, v, w]: [f64; 3]) -> Option<Color> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::distribution::Method;
     use proptest::prelude::*;
 
     fn law(text: &str) -> Distribution {

@@ -1,6 +1,6 @@
 //! Integrals of the difference of two cumulative functions. What they stand for is said by the measures.
 
-use super::law::{Law, rising};
+use super::law::{self, Law, rising};
 use super::measured::Measured;
 use super::quadrature::{Node, integrate, split_at_signs};
 
@@ -34,10 +34,7 @@ impl Power {
 
 /// The integral of F − G over the line: exact where both are made of straight lines and steps, otherwise by quadrature.
 pub(super) fn integral(a: &Law, b: &Law, power: Power) -> Measured {
-    let mut knots = a.knots();
-    knots.extend(b.knots());
-    knots.extend(a.atoms.iter().chain(&b.atoms).map(|atom| atom.0));
-    let knots = rising(knots);
+    let knots = rising(a.knots_and_atoms().chain(b.knots_and_atoms()).collect());
     let (mut steps_a, mut steps_b) = (Steps::new(a), Steps::new(b));
     let flat = a.is_flat() && b.is_flat();
     let (mut sum, mut tolerance) = (0.0, 0.0);
@@ -70,10 +67,8 @@ pub(super) fn integral(a: &Law, b: &Law, power: Power) -> Measured {
             tolerance += error;
         }
     }
-    if a.parts.is_empty() && b.parts.is_empty() {
-        Measured::atoms(sum)
-    } else if flat {
-        Measured::closed(sum)
+    if flat {
+        law::exact(a, b, sum)
     } else {
         Measured::quadrature(sum, tolerance.max(1e-12 * sum))
     }

@@ -28,9 +28,6 @@ pub fn hellinger(a: &Distribution, b: &Distribution) -> Option<Measured> {
         let log = if a == b { 0.0 } else { log.min(0.0) };
         return Some(Measured::closed((-libm::expm1(log)).sqrt()));
     }
-    if a == b {
-        return overlap::sum(a, b, |_, _| 0.0).map(|_| Measured::closed(0.0));
-    }
     let half_square = |p: f64, q: f64| {
         let gap = libm::exp(p / 2.0) - libm::exp(q / 2.0);
         gap * gap / 2.0

@@ -33,9 +33,6 @@ pub fn jensen_shannon(a: &Distribution, b: &Distribution) -> Option<Measured> {
 ///
 /// Source: Lin 1991, "Divergence measures based on the Shannon entropy".
 pub fn jensen_shannon_divergence(a: &Distribution, b: &Distribution) -> Option<Measured> {
-    if a == b {
-        return overlap::sum(a, b, |_, _| 0.0).map(|_| Measured::closed(0.0));
-    }
     Some(overlap::sum(a, b, term)?.times(1.0 / LN_2).clamped(0.0, 1.0))
 }
 

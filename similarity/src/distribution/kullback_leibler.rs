@@ -31,9 +31,6 @@ pub fn kullback_leibler(a: &Distribution, b: &Distribution) -> Option<Measured> 
     if let Some(nats) = closed(a, b) {
         return Some(Measured::closed(if a == b { 0.0 } else { nats.max(0.0) }));
     }
-    if a == b {
-        return overlap::sum(a, b, |_, _| 0.0).map(|_| Measured::closed(0.0));
-    }
     if let Some((p, q)) = law::both(a, b) {
         let around = draws_headings(a) || draws_headings(b);
         if !around && !is_within(&p, &q) {

@@ -4,6 +4,7 @@
 
 use driftworld_spec::Distribution;
 
+use super::measured::Measured;
 use super::part::Part;
 use super::quadrature::Node;
 use super::values::share;
@@ -50,6 +51,15 @@ pub(super) fn both(a: &Distribution, b: &Distribution) -> Option<(Law, Law)> {
         Some((Law::of_headings(a)?, Law::of_headings(b)?))
     } else {
         Some((Law::of(a)?, Law::of(b)?))
+    }
+}
+
+/// What was reckoned without an error from two laws: over single values if neither has densities.
+pub(super) fn exact(a: &Law, b: &Law, value: f64) -> Measured {
+    if a.parts.is_empty() && b.parts.is_empty() {
+        Measured::atoms(value)
+    } else {
+        Measured::closed(value)
     }
 }
 
@@ -255,6 +265,11 @@ impl Law {
     /// The places at which densities and cumulative functions change their form, in no order.
     pub(super) fn knots(&self) -> Vec<f64> {
         self.parts.iter().flat_map(Part::knots).collect()
+    }
+
+    /// The knots and the single numbers, in no order.
+    pub(super) fn knots_and_atoms(&self) -> impl Iterator<Item = f64> {
+        self.knots().into_iter().chain(self.atoms.iter().map(|atom| atom.0))
     }
 }
 

@@ -64,6 +64,23 @@ impl Measured {
         Self { value, method }
     }
 
+    /// By a formula, of numbers that are off by so much together: by quadrature unless that is 0.
+    pub(crate) fn within(value: f64, tolerance: f64) -> Self {
+        if tolerance > 0.0 {
+            Self::quadrature(value, tolerance)
+        } else {
+            Self::closed(value)
+        }
+    }
+
+    /// The error of a quadrature; 0 of all else.
+    pub(crate) fn tolerance(self) -> f64 {
+        match self.method {
+            Method::Quadrature { tolerance } => tolerance,
+            _ => 0.0,
+        }
+    }
+
     /// The same with the value between these ends.
     pub(crate) fn clamped(self, low: f64, high: f64) -> Self {
         let value = self.value.clamp(low, high);

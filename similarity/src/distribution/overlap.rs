@@ -9,14 +9,19 @@ use super::values;
 
 /// Σ term(ln p, ln q) over single values and ∫ term(ln f, ln g) dx over densities, on the circle where either draws headings.
 ///
-/// The term must be homogeneous: term of c p and c q is c times that of p and q. `None` if one draws what the other cannot,
+/// The term must be homogeneous: term of c p and c q is c times that of p and q, and 0 where they are equal. `None` if one draws what the other cannot,
 /// such as words and numbers, or points with a density.
 pub(super) fn sum(a: &Distribution, b: &Distribution, term: impl Fn(f64, f64) -> f64) -> Option<Measured> {
+    let equal = (a == b).then(|| Measured::closed(0.0));
     if let Some((p, q)) = law::both(a, b) {
         let circle = draws_headings(a) || draws_headings(b);
-        return Some(over_numbers(&p, &q, circle, term));
+        return equal.or_else(|| Some(over_numbers(&p, &q, circle, term)));
     }
-    let pairs = values::side_by_side(&values::probabilities(a)?, &values::probabilities(b)?);
+    let (p, q) = (values::probabilities(a)?, values::probabilities(b)?);
+    if equal.is_some() {
+        return equal;
+    }
+    let pairs = values::side_by_side(&p, &q);
     Some(Measured::atoms(
         pairs.into_iter().map(|[p, q]| term(libm::log(p), libm::log(q))).sum(),
     ))
@@ -36,10 +41,8 @@ fn over_numbers(a: &Law, b: &Law, circle: bool, term: impl Fn(f64, f64) -> f64) 
         sum += value;
         tolerance += error;
     }
-    if a.parts.is_empty() && b.parts.is_empty() {
-        Measured::atoms(sum)
-    } else if tolerance == 0.0 {
-        Measured::closed(sum)
+    if tolerance == 0.0 {
+        law::exact(a, b, sum)
     } else {
         Measured::quadrature(sum, f64::max(tolerance, 1e-12))
     }

@@ -5,6 +5,7 @@ use driftworld_spec::{Distribution, Order};
 
 use super::measured::Measured;
 use super::planar_transport::{planar_wasserstein_1, planar_wasserstein_2};
+use super::values::grid_centres;
 
 /// The most objects of which each one's place is compared where places are taken in turn.
 const MOST_IN_TURN: usize = 10_000;
@@ -95,18 +96,7 @@ fn places_in_turn(distribution: &Distribution) -> Option<Vec<[f64; 2]>> {
             rows,
             order: Order::Turn,
             ..
-        } => {
-            let (columns, rows) = (*columns as usize, *rows as usize);
-            let center = |axis: usize, cell: usize, cells: usize| {
-                low[axis] + (high[axis] - low[axis]) * (cell as f64 + 0.5) / cells as f64
-            };
-            let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
-            Some(
-                cells
-                    .map(|(column, row)| [center(0, column, columns), center(1, row, rows)])
-                    .collect(),
-            )
-        }
+        } => Some(grid_centres(*low, *high, [*columns, *rows]).collect()),
         _ => None,
     }
 }

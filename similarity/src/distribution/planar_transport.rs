@@ -2,7 +2,7 @@
 
 use driftworld_spec::{Distribution, Value};
 
-use super::measured::{Measured, Method};
+use super::measured::Measured;
 use super::planar::bures_wasserstein;
 use super::quadrature::integrate;
 use super::scatter::scatter;
@@ -73,14 +73,7 @@ pub fn planar_wasserstein_2(a: &Distribution, b: &Distribution) -> Option<Measur
     if let (Some([a_x, a_y]), Some([b_x, b_y])) = (axes(a), axes(b)) {
         let (x, y) = (wasserstein_2(&a_x, &b_x)?, wasserstein_2(&a_y, &b_y)?);
         let value = libm::hypot(x.value, y.value);
-        let error = |found: Measured| match found.method {
-            Method::Quadrature { tolerance } => tolerance,
-            _ => 0.0,
-        };
-        return Some(match error(x) + error(y) {
-            0.0 => Measured::closed(value),
-            tolerance => Measured::quadrature(value, tolerance),
-        });
+        return Some(Measured::within(value, x.tolerance() + y.tolerance()));
     }
     if let (Some(x), Some(y)) = (Radii::of(a), Radii::of(b)) {
         let apart = [0, 1].map(|axis| (of_a.mean[axis] - of_b.mean[axis]).powi(2));
@@ -237,6 +230,7 @@ fn paired(a: &Distribution, b: &Distribution, cost: impl Fn([f64; 2], [f64; 2]) 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::distribution::Method;
     use Distribution::{Annulus, Box, Disc, Gaussian, Grid, Points};
     use driftworld_spec::{Order, Spread};
 

@@ -2,7 +2,7 @@
 
 use driftworld_spec::Distribution;
 
-use super::measured::{Measured, Method};
+use super::measured::Measured;
 use super::wasserstein_1::wasserstein_1;
 
 /// How much of the whole moves between shares drawn by two Dirichlet distributions, share by share: half the sum over the
@@ -40,9 +40,7 @@ pub fn shares_wasserstein_1(a: &Distribution, b: &Distribution) -> Option<Measur
     for index in 0..of_a.len() {
         let found = wasserstein_1(&share(of_a, index), &share(of_b, index))?;
         sum += found.value;
-        if let Method::Quadrature { tolerance } = found.method {
-            error += tolerance;
-        }
+        error += found.tolerance();
     }
     Some(Measured::quadrature(sum / 2.0, error / 2.0))
 }

@@ -62,15 +62,9 @@ fn add(found: &mut Vec<(Value, f64)>, scale: f64, distribution: &Distribution) -
             jitter,
             ..
         } if jitter.unwrap_or(0.0) == 0.0 && columns * rows <= MOST_VALUES => {
-            let (columns, rows) = (*columns as u32, *rows as u32);
-            let along = |axis: usize, cell: u32, count: u32| {
-                low[axis] + (high[axis] - low[axis]) * (f64::from(cell) + 0.5) / f64::from(count)
-            };
-            let each = scale / (f64::from(columns) * f64::from(rows));
-            for cell in 0..columns * rows {
-                let point = [along(0, cell % columns, columns), along(1, cell / columns, rows)];
-                found.push((Value::Point(point), each));
-            }
+            let each = scale / (columns * rows);
+            let centres = grid_centres(*low, *high, [*columns, *rows]);
+            found.extend(centres.map(|point| (Value::Point(point), each)));
         }
         Distribution::Mixture { parts, weights } => {
             for (k, part) in parts.iter().enumerate() {
@@ -80,6 +74,14 @@ fn add(found: &mut Vec<(Value, f64)>, scale: f64, distribution: &Distribution) -
         _ => return None,
     }
     Some(())
+}
+
+/// The centres of the cells of a grid, row by row from the south-west.
+pub(super) fn grid_centres(low: [f64; 2], high: [f64; 2], cells: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {
+    let along =
+        move |axis: usize, cell: u32| low[axis] + (high[axis] - low[axis]) * (f64::from(cell) + 0.5) / cells[axis];
+    let [columns, rows] = cells.map(|count| count as u32);
+    (0..rows).flat_map(move |row| (0..columns).map(move |column| [along(0, column), along(1, row)]))
 }
 
 /// Probabilities of the same value side by side, 0 where one cannot draw it; both lists are in order.

@@ -3,7 +3,7 @@
 use driftworld_spec::Distribution;
 
 use super::gap::Power;
-use super::law::{Law, draws_headings, rising};
+use super::law::{self, Law, draws_headings, rising};
 use super::measured::Measured;
 use super::quadrature::integrate;
 use super::shape::Shape;
@@ -45,10 +45,8 @@ pub fn wasserstein_2(a: &Distribution, b: &Distribution) -> Option<Measured> {
     Some(if miss_p + miss_q > 0.0 {
         // A number is at most half a unit from where it was put.
         Measured::quadrature(square.max(0.0).sqrt(), 2.0 * (miss_p + miss_q))
-    } else if p.parts.is_empty() && q.parts.is_empty() {
-        Measured::atoms(square).root()
     } else {
-        Measured::closed(square).root()
+        law::exact(&p, &q, square).root()
     })
 }
 
@@ -77,9 +75,7 @@ type Piece = (f64, f64, f64);
 
 /// The quantile function of a law of flat parts and single numbers.
 fn pieces(law: &Law) -> Vec<Piece> {
-    let mut knots = law.knots();
-    knots.extend(law.atoms.iter().map(|atom| atom.0));
-    let knots = rising(knots);
+    let knots = rising(law.knots_and_atoms().collect());
     let mut pieces = Vec::with_capacity(2 * knots.len());
     let mut atoms = law.atoms.iter().peekable();
     let mut before: Option<(f64, f64)> = None;
@@ -125,9 +121,7 @@ fn over_quantiles(a: &Distribution, p: &Law, b: &Distribution, q: &Law) -> Optio
     let mut chances = vec![0.0, 1.0];
     for law in [p, q] {
         let (mut atoms, mut steps) = (law.atoms.iter().peekable(), 0.0);
-        let mut knots = law.knots();
-        knots.extend(law.atoms.iter().map(|atom| atom.0));
-        for x in rising(knots) {
+        for x in rising(law.knots_and_atoms().collect()) {
             let below = law.cumulative_of_parts(x);
             chances.push(below + steps);
             while let Some(atom) = atoms.next_if(|atom| atom.0 <= x) {
