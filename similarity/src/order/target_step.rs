@@ -1,9 +1,7 @@
 //! Paths whose every step is close to a wanted one. Short paths are in `two_opt.rs`, those of small steps in `gradual.rs`.
 
-use super::exact::{MAX_EXACT, best_path};
 use super::items::Items;
-use super::two_opt::from_the_lower_end;
-use super::{local_search, nearest};
+use super::two_opt::cheapest;
 use crate::SimilarityError;
 
 /// How many times the path is shaken, for each item.
@@ -16,12 +14,5 @@ pub(super) fn order(items: &Items, wanted: Option<f64>) -> Result<Vec<usize>, Si
         let found = wanted.map_or_else(|| "none".to_owned(), |step| step.to_string());
         return Err(SimilarityError::BadTargetStep { found });
     };
-    let n = items.len();
-    let cost = |a: usize, b: usize| (items.gap(a, b) - step).abs();
-    if n <= MAX_EXACT {
-        return Ok(best_path(n, &cost, items.ends));
-    }
-    let walk = nearest::walk(n, &cost, items.ends);
-    let path = local_search::improve(walk, &cost, items.ends, SHAKES_PER_ITEM * n);
-    Ok(from_the_lower_end(path, items))
+    Ok(cheapest(items, &|a, b| (items.gap(a, b) - step).abs(), SHAKES_PER_ITEM))
 }

@@ -1,5 +1,6 @@
 //! Short paths of many items: the nearest walk made better step by step. The steps are in `local_search.rs`.
 
+use super::exact::{MAX_EXACT, best_path};
 use super::items::Items;
 use super::{local_search, nearest};
 
@@ -7,9 +8,21 @@ use super::{local_search, nearest};
 const SHAKES_PER_ITEM: usize = 8;
 
 pub(super) fn order(items: &Items) -> Vec<usize> {
-    let cost = |a: usize, b: usize| items.gap(a, b);
-    let walk = nearest::walk(items.len(), &cost, items.ends);
-    let path = local_search::improve(walk, &cost, items.ends, SHAKES_PER_ITEM * items.len());
+    search(items, &|a, b| items.gap(a, b), SHAKES_PER_ITEM)
+}
+
+/// The cheapest path: exact for few items, beyond the cheapest that a search finds, shaken so many times for each item.
+pub(super) fn cheapest(items: &Items, cost: &(impl Fn(usize, usize) -> f64 + Sync), shakes: usize) -> Vec<usize> {
+    if items.len() <= MAX_EXACT {
+        best_path(items.len(), cost, items.ends)
+    } else {
+        search(items, cost, shakes)
+    }
+}
+
+fn search(items: &Items, cost: &(impl Fn(usize, usize) -> f64 + Sync), shakes: usize) -> Vec<usize> {
+    let walk = nearest::walk(items.len(), cost, items.ends);
+    let path = local_search::improve(walk, cost, items.ends, shakes * items.len());
     from_the_lower_end(path, items)
 }
 
