@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use driftworld_spec::{CellKind, Distribution, Layout, Plan, Turns};
+use strum::VariantArray;
 
 use crate::cells::{Cells, FreePlace, Spot};
 use crate::clearance::FreeSpace;
@@ -77,7 +78,7 @@ pub(crate) struct Request<'a> {
 }
 
 /// A condition that a place can break.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, strum::VariantArray)]
 enum Condition {
     Wall,
     Agent,
@@ -88,15 +89,6 @@ enum Condition {
 }
 
 impl Condition {
-    const ALL: [Self; 6] = [
-        Self::Wall,
-        Self::Agent,
-        Self::Neighbour,
-        Self::Own,
-        Self::Group,
-        Self::Doorway,
-    ];
-
     fn broken(self) -> &'static str {
         match self {
             Self::Wall => "too near to a wall or outside the arena",
@@ -311,59 +303,38 @@ impl<'a> PlacementContext<'a> {
     /// The first condition that a place breaks.
     fn miss(&self, place: [f64; 2], own_distance: f64, request: &Request) -> Option<Miss> {
         let margins = request.margins;
+        let miss = |condition, wants: f64, has: Option<f64>| has.map(|has| Miss { condition, has, wants });
         let wall = self.free_space.clearance(place, margins.walls);
-        if wall.is_nan() || wall < margins.walls {
-            return Some(Miss {
-                condition: Condition::Wall,
-                has: wall,
-                wants: margins.walls,
-            });
-        }
-        let agent = distance(place, self.agent);
-        if agent < margins.agent {
-            return Some(Miss {
-                condition: Condition::Agent,
-                has: agent,
-                wants: margins.agent,
-            });
-        }
-        if let Some(has) = self.everything.within(place, margins.separation) {
-            return Some(Miss {
-                condition: Condition::Neighbour,
-                has,
-                wants: margins.separation,
-            });
-        }
-        if let Some(has) = self.groups[request.group].within(place, own_distance) {
-            return Some(Miss {
-                condition: Condition::Own,
-                has,
-                wants: own_distance,
-            });
-        }
-        let of_group = margins.groups.iter().find_map(|(group, wants)| {
-            let has = self.groups[*group].within(place, *wants)?;
-            Some(Miss {
-                condition: Condition::Group,
-                has,
-                wants: *wants,
+        let is_at_wall = wall.is_nan() || wall < margins.walls;
+        let agent = || Some(distance(place, self.agent)).filter(|agent| *agent < margins.agent);
+        let everything = || self.everything.within(place, margins.separation);
+        let own = || self.groups[request.group].within(place, own_distance);
+        let of_group =
+            |group: usize, wants: f64| miss(Condition::Group, wants, self.groups[group].within(place, wants));
+        miss(Condition::Wall, margins.walls, is_at_wall.then_some(wall))
+            .or_else(|| miss(Condition::Agent, margins.agent, agent()))
+            .or_else(|| miss(Condition::Neighbour, margins.separation, everything()))
+            .or_else(|| miss(Condition::Own, own_distance, own()))
+            .or_else(|| {
+                margins
+                    .groups
+                    .iter()
+                    .find_map(|(group, wants)| of_group(*group, *wants))
             })
-        });
-        of_group.or_else(|| {
-            let has = self.doorways.within(place, request.mouth)?;
-            Some(Miss {
-                condition: Condition::Doorway,
-                has,
-                wants: request.mouth,
+            .or_else(|| {
+                miss(
+                    Condition::Doorway,
+                    request.mouth,
+                    self.doorways.within(place, request.mouth),
+                )
             })
-        })
     }
 }
 
 /// What the places that were tried lacked.
 #[derive(Default)]
 struct Tried {
-    failed: [u32; Condition::ALL.len()],
+    failed: [u32; Condition::VARIANTS.len()],
     closest: Option<Miss>,
 }
 
@@ -384,14 +355,16 @@ fn distance([ax, ay]: [f64; 2], [bx, by]: [f64; 2]) -> f64 {
     ((ax - bx) * (ax - bx) + (ay - by) * (ay - by)).sqrt()
 }
 
-fn reason(failed: [u32; Condition::ALL.len()], closest: Option<Miss>) -> String {
+fn reason(failed: [u32; Condition::VARIANTS.len()], closest: Option<Miss>) -> String {
     let count = |condition: Condition| failed[condition as usize];
-    let worst = Condition::ALL
-        .into_iter()
+    let worst = Condition::VARIANTS
+        .iter()
+        .copied()
         .max_by_key(|condition| count(*condition))
         .unwrap_or(Condition::Wall);
-    let counts: Vec<String> = Condition::ALL
-        .into_iter()
+    let counts: Vec<String> = Condition::VARIANTS
+        .iter()
+        .copied()
         .filter(|condition| count(*condition) > 0)
         .map(|condition| {
             let were = if count(condition) == 1 { "was" } else { "were" };
