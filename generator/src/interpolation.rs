@@ -24,7 +24,7 @@ pub(crate) fn interpolate(
         )),
         (Value::Distribution(from), Value::Distribution(to)) => {
             between_distributions(&a.settle(from), &b.settle(to), t)
-                .map(|between| Value::Distribution(Box::new(literal(&between))))
+                .map(|between| Value::Distribution(Box::new(map(&between, Number::Literal))))
         }
         (Value::Layout(from), Value::Layout(to)) => Some(Value::Layout(Box::new(from.toward(to, t)))),
         _ if listed => None,
@@ -44,15 +44,6 @@ pub(crate) fn interpolate(
             Some(Value::Integer(straight(*from as f64, *to as f64).round() as i64))
         }
         _ => None,
-    }
-}
-
-/// A distribution as documents have it.
-fn literal(distribution: &Distribution) -> Distribution<Number> {
-    let mapped: Result<_, std::convert::Infallible> = distribution.try_map(&mut |number| Ok(Number::Literal(*number)));
-    match mapped {
-        Ok(literal) => literal,
-        Err(never) => match never {},
     }
 }
 
@@ -196,7 +187,7 @@ fn colored(between: Distribution, from: &Distribution, to: &Distribution, t: f64
     }
 }
 
-fn map(distribution: &Distribution, mut f: impl FnMut(f64) -> f64) -> Distribution {
+fn map<T>(distribution: &Distribution, mut f: impl FnMut(f64) -> T) -> Distribution<T> {
     let mapped: Result<_, std::convert::Infallible> = distribution.try_map(&mut |number| Ok(f(*number)));
     match mapped {
         Ok(mapped) => mapped,
