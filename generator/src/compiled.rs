@@ -152,6 +152,14 @@ pub(crate) struct Address {
     pub(crate) attempt: u32,
 }
 
+impl Address {
+    /// Of the first attempt.
+    pub(crate) fn first(index: u64, object: u64) -> Self {
+        let attempt = 0;
+        Self { index, object, attempt }
+    }
+}
+
 impl Fill {
     /// Hands over the value at an address.
     pub(crate) fn with<R>(&self, at: Address, values: &[Value], take: impl FnOnce(&Value) -> R) -> R {

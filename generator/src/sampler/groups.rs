@@ -46,15 +46,7 @@ impl Sampler {
         };
         let mut turns = asked.num_turns().map(Turns::new);
         for turn in 0..u64::from(count) {
-            let mut object = self.fill(
-                &group.object,
-                Address {
-                    index,
-                    object: first + turn,
-                    attempt: 0,
-                },
-                draft.values,
-            )?;
+            let mut object = self.fill(&group.object, Address::first(index, first + turn), draft.values)?;
             if let Some(seeds) = &group.seeds {
                 object.seed = object.seed.or_else(|| Some(seeds.seed(first + turn)));
             }
@@ -127,14 +119,7 @@ pub(super) struct Draft<'a, 'g> {
 fn count_of(group: &Group, first: u64, draft: &Draft<'_, '_>) -> u32 {
     match &group.count {
         GroupCount::Fixed(count) => *count,
-        GroupCount::Drawn(fill) => {
-            let address = Address {
-                index: draft.index,
-                object: first,
-                attempt: 0,
-            };
-            fill.with(address, draft.values, whole)
-        }
+        GroupCount::Drawn(fill) => fill.with(Address::first(draft.index, first), draft.values, whole),
     }
 }
 

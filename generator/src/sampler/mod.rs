@@ -116,21 +116,14 @@ impl Sampler {
         let layout = &mut self.compiled.world.base.environment_params.layout;
         layout.take_if(|layout| is_open(layout));
         let is_drawn = layout.as_ref().is_some_and(Layout::is_drawn);
+        let mut holes = self.compiled.world.holes.iter().map(|(hole, _)| &hole.pointer);
         let varies = is_drawn
-            || self
-                .compiled
-                .world
-                .holes
-                .iter()
-                .any(|(hole, _)| shapes.iter().any(|shape| hole.pointer.starts_with(shape.as_str())));
+            || holes
+                .clone()
+                .any(|pointer| shapes.iter().any(|shape| pointer.starts_with(shape.as_str())));
         self.start_varies = varies
             || matches!(self.compiled.start, Some(Start::Cells(_)))
-            || self
-                .compiled
-                .world
-                .holes
-                .iter()
-                .any(|(hole, _)| hole.pointer.starts_with("/agent_params/coordinates"));
+            || holes.any(|pointer| pointer.starts_with("/agent_params/coordinates"));
         if !varies {
             if let Some(maps) = &self.maps {
                 maps.apply(&mut self.compiled.world.base);
@@ -203,6 +196,11 @@ impl Sampler {
         unreachable!("callers begin below the last attempt, which returns")
     }
 
+    /// The free space of all worlds, or a world's own.
+    fn free_space_of<'a>(&'a self, own: Option<&'a FreeSpace>) -> &'a FreeSpace {
+        self.free_space.as_ref().or(own).expect("one of the two is there")
+    }
+
     /// The world but for its objects, with its free space where that is its own. The agent's start lies in free space: a
     /// start that is drawn is drawn again, together with the parameters, until it is.
     fn empty_world(&self, index: u64) -> Result<(WorldDraft, Vec<Value>, Option<FreeSpace>), GeneratorError> {
@@ -231,11 +229,7 @@ impl Sampler {
                 }
                 own_free_space = Some(FreeSpace::new(&world));
             }
-            let free_space = self
-                .free_space
-                .as_ref()
-                .or(own_free_space.as_ref())
-                .expect("one of the two is there");
+            let free_space = self.free_space_of(own_free_space.as_ref());
             self.start_in_cell(&mut world, free_space, index, attempt)?;
             let start = world.agent_params.coordinates;
             let radius = world.agent_params.agent_width / 2.0;
@@ -265,23 +259,11 @@ impl Sampler {
     pub fn world(&self, index: u64) -> Result<World, GeneratorError> {
         let (mut world, values, own_free_space) = self.empty_world(index)?;
         world.seed = Some(self.seeds.seed(index));
-        let free_space = self
-            .free_space
-            .as_ref()
-            .or(own_free_space.as_ref())
-            .expect("one of the two is there");
+        let free_space = self.free_space_of(own_free_space.as_ref());
         let mut context = PlacementContext::new(free_space, world.agent_params.coordinates, self.compiled.groups.len());
         world.objects.reserve_exact(self.compiled.room);
         for (number, fixture) in self.compiled.fixtures.iter().enumerate() {
-            let object = self.fill(
-                fixture,
-                Address {
-                    index,
-                    object: number as u64,
-                    attempt: 0,
-                },
-                &values,
-            )?;
+            let object = self.fill(fixture, Address::first(index, number as u64), &values)?;
             context.occupy(object.coordinates);
             world.objects.push(object);
         }
@@ -289,16 +271,16 @@ impl Sampler {
         for door in &doors {
             context.occupy(door.coordinates);
         }
+        let mut draft = Draft {
+            index,
+            values: &values,
+            context: &mut context,
+            world: &mut world,
+        };
         // For each group, where its objects stand in the world's list.
         let mut ranges = Vec::with_capacity(self.compiled.groups.len());
         for (number, group) in self.compiled.groups.iter().enumerate() {
-            let first = world.objects.len();
-            let mut draft = Draft {
-                index,
-                values: &values,
-                context: &mut context,
-                world: &mut world,
-            };
+            let first = draft.world.objects.len();
             match group.around {
                 None => self.place(number, group, Anchor::ORIGIN, 0, &mut draft)?,
                 Some(middle) => {
@@ -314,15 +296,9 @@ impl Sampler {
                     }
                 }
             }
-            ranges.push(first..world.objects.len());
+            ranges.push(first..draft.world.objects.len());
         }
         if !doors.is_empty() {
-            let mut draft = Draft {
-                index,
-                values: &values,
-                context: &mut context,
-                world: &mut world,
-            };
             let keys = self.keys(&doors, &mut draft)?;
             world.objects.extend(doors.into_iter().chain(keys));
             self.check_count(world.objects.len(), index)?;
