@@ -2,7 +2,7 @@
 
 use super::grid::{Grid, GridShape};
 use crate::SimilarityError;
-use crate::transport::{Units, solve, taken};
+use crate::transport::{Units, cheapest_moves};
 
 /// Least work that turns one grid into the other: mass times metres, between the centres of cells (Wasserstein-1 with the
 /// Euclidean distance).
@@ -40,23 +40,13 @@ fn least_work(shape: GridShape, mut units: Units) -> Result<f64, SimilarityError
         *a -= stays;
         *b -= stays;
     }
-    let (from, to) = (taken(&units.from)?, taken(&units.to)?);
-    if from.is_empty() {
-        return Ok(0.0);
-    }
     let columns = shape.columns();
     let apart = |a: usize, b: usize| {
         let (x, y) = ((a % columns).abs_diff(b % columns), (a / columns).abs_diff(b / columns));
         ((x * x + y * y) as f64).sqrt() * shape.cell()
     };
-    let costs: Vec<f64> = from
-        .iter()
-        .flat_map(|&a| to.iter().map(move |&b| apart(a, b)))
-        .collect();
-    let pick = |units: &[i64], cells: &[usize]| cells.iter().map(|&cell| units[cell]).collect::<Vec<i64>>();
-    let moves = solve(&pick(&units.from, &from), &pick(&units.to, &to), &costs);
-    let work = moves
-        .iter()
-        .map(|&(source, sink, flow)| flow as f64 * costs[source * to.len() + sink]);
-    Ok(work.sum::<f64>() * units.unit)
+    let moves = cheapest_moves(&units.from, &units.to, apart)?.into_iter();
+    let work = moves.map(|(from, to, flow)| flow as f64 * apart(from, to));
+    // Not −0 without any moves.
+    Ok(work.fold(0.0, |sum, work| sum + work) * units.unit)
 }

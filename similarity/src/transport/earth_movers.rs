@@ -1,9 +1,7 @@
 //! Earth mover's distance between two sets of points, each of equal weight. For sets that count missing points, see OSPA in
 //! `occupancy/`; for masses on grids, `occupancy/earth_movers.rs`.
 
-use super::exact::taken;
-use super::network_simplex::solve;
-use super::points;
+use super::exact::{MAX_TRANSPORTED, cheapest_moves};
 use crate::{Assignment, SimilarityError};
 
 /// Mean way in metres from the points of one set to those of the other, when they are paired as cheaply as possible
@@ -28,28 +26,40 @@ use crate::{Assignment, SimilarityError};
 /// ```
 /// Source: Rubner, Tomasi and Guibas 2000; same numbers as `ot.emd2` (POT 0.9), see `tests/oracle/transport.json`.
 pub fn earth_movers_distance(a: &[[f64; 2]], b: &[[f64; 2]]) -> Result<f64, SimilarityError> {
-    points::check(a, b)?;
-    // As many units at each point of one set as the other has points: whole numbers, and the same sum.
-    let (from, to) = (vec![b.len() as i64; a.len()], vec![a.len() as i64; b.len()]);
-    taken(&from)?;
-    taken(&to)?;
+    check(a, b)?;
     if a.is_empty() {
         return Ok(0.0);
     }
     let apart = |p: &[f64; 2], q: &[f64; 2]| ((p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2)).sqrt();
-    let mut costs = Vec::with_capacity(a.len() * b.len());
-    for p in a {
-        costs.extend(b.iter().map(|q| apart(p, q)));
-    }
     if a.len() == b.len() {
+        SimilarityError::check_count(a.len(), MAX_TRANSPORTED)?;
+        let costs: Vec<f64> = a.iter().flat_map(|p| b.iter().map(|q| apart(p, q))).collect();
         return Ok(Assignment::new().solve(&costs, a.len(), b.len())? / a.len() as f64);
     }
-    let moves = solve(&from, &to, &costs);
-    let total: f64 = moves
-        .iter()
-        .map(|&(p, q, units)| units as f64 * costs[p * b.len() + q])
-        .sum();
+    // As many units at each point of one set as the other has points: whole numbers, and the same sum.
+    let (from, to) = (vec![b.len() as i64; a.len()], vec![a.len() as i64; b.len()]);
+    let moves = cheapest_moves(&from, &to, |p, q| apart(&a[p], &b[q]))?.into_iter();
+    let total: f64 = moves.map(|(p, q, units)| units as f64 * apart(&a[p], &b[q])).sum();
     Ok(total / (a.len() * b.len()) as f64)
+}
+
+/// Refuses coordinates whose squares could not be added up, and an empty set beside one that is not.
+fn check(a: &[[f64; 2]], b: &[[f64; 2]]) -> Result<(), SimilarityError> {
+    for (side, points) in [("a", a), ("b", b)] {
+        for (index, point) in points.iter().enumerate() {
+            for &found in point {
+                if !(-1e100..=1e100).contains(&found) {
+                    return Err(SimilarityError::BadPoint { side, index, found });
+                }
+            }
+        }
+    }
+    if a.is_empty() == b.is_empty() {
+        return Ok(());
+    }
+    let weight = |points: &[[f64; 2]]| if points.is_empty() { 0.0 } else { 1.0 };
+    let (from, to) = (weight(a), weight(b));
+    Err(SimilarityError::UnequalMasses { from, to })
 }
 
 #[cfg(test)]

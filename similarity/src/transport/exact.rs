@@ -38,29 +38,39 @@ pub const MAX_TRANSPORTED: usize = 4096;
 pub fn optimal_transport(from: &[f64], to: &[f64], costs: &[f64]) -> Result<TransportPlan, SimilarityError> {
     check_costs(from.len(), to.len(), costs)?;
     let units = Units::of(from, to)?;
-    let (origins, destinations) = (taken(&units.from)?, taken(&units.to)?);
+    let cost = |from: usize, destination: usize| costs[from * to.len() + destination];
+    let moves = cheapest_moves(&units.from, &units.to, cost)?.into_iter();
+    let moves: Vec<Move> = moves
+        .map(|(from, to, flow)| Move {
+            from,
+            to,
+            mass: flow as f64 * units.unit,
+        })
+        .collect();
+    let cost = moves.iter().map(|step| step.mass * cost(step.from, step.to));
+    // Not −0 without any moves.
+    let cost = cost.fold(0.0, |sum, cost| sum + cost);
+    Ok(TransportPlan { cost, moves })
+}
+
+/// Moves units from where there are some to where some belong, at the least cost: origin, destination and units of all that moves,
+/// in order. Both sides have as many units.
+pub(crate) fn cheapest_moves(
+    from: &[i64],
+    to: &[i64],
+    cost: impl Fn(usize, usize) -> f64,
+) -> Result<Vec<(usize, usize, i64)>, SimilarityError> {
+    let (origins, destinations) = (taken(from)?, taken(to)?);
     if origins.is_empty() {
-        let moves = Vec::new();
-        return Ok(TransportPlan { cost: 0.0, moves });
+        return Ok(Vec::new());
     }
     let pick = |units: &[i64], places: &[usize]| places.iter().map(|&place| units[place]).collect::<Vec<i64>>();
-    let row = |origin: usize| {
-        let row = &costs[origin * to.len()..][..to.len()];
-        destinations.iter().map(move |&destination| row[destination])
-    };
-    let among: Vec<f64> = origins.iter().copied().flat_map(row).collect();
-    let found = solve(&pick(&units.from, &origins), &pick(&units.to, &destinations), &among);
-    let moves = found.into_iter().map(|(source, sink, flow)| Move {
-        from: origins[source],
-        to: destinations[sink],
-        mass: flow as f64 * units.unit,
-    });
-    let moves: Vec<Move> = moves.collect();
-    let costs = moves
-        .iter()
-        .map(|step| step.mass * costs[step.from * to.len() + step.to]);
-    let cost = costs.sum();
-    Ok(TransportPlan { cost, moves })
+    let row = |&origin: &usize| destinations.iter().map(move |&destination| (origin, destination));
+    let costs: Vec<f64> = origins.iter().flat_map(row).map(|(from, to)| cost(from, to)).collect();
+    let found = solve(&pick(from, &origins), &pick(to, &destinations), &costs).into_iter();
+    Ok(found
+        .map(|(source, sink, units)| (origins[source], destinations[sink], units))
+        .collect())
 }
 
 /// Refuses a table of the wrong size, and costs that cannot be added up.
@@ -77,7 +87,7 @@ pub(crate) fn check_costs(rows: usize, columns: usize, costs: &[f64]) -> Result<
 }
 
 /// Where something is, if that is not at too many places.
-pub(crate) fn taken(units: &[i64]) -> Result<Vec<usize>, SimilarityError> {
+fn taken(units: &[i64]) -> Result<Vec<usize>, SimilarityError> {
     let places: Vec<usize> = (0..units.len()).filter(|&place| units[place] > 0).collect();
     SimilarityError::check_count(places.len(), MAX_TRANSPORTED)?;
     Ok(places)

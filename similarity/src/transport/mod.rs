@@ -6,7 +6,6 @@ mod exact;
 mod masses;
 mod network_simplex;
 mod plan;
-mod points;
 mod spanning_tree;
 mod start;
 
@@ -14,6 +13,5 @@ pub use earth_movers::earth_movers_distance;
 pub use exact::{MAX_TRANSPORTED, optimal_transport};
 pub use plan::{Move, TransportPlan};
 
-pub(crate) use exact::{check_costs, taken};
+pub(crate) use exact::{cheapest_moves, check_costs};
 pub(crate) use masses::{Units, sum as sum_of_masses};
-pub(crate) use network_simplex::solve;

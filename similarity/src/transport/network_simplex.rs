@@ -15,7 +15,7 @@ const ROUND: usize = 64;
 /// Network simplex over a short list of arcs: block search (as LEMON has it, Király and Kovács 2012) finds those that enter. When
 /// none of the list would, all arcs are priced, and those that would lower the cost join the list, until there is none: the
 /// prices then prove that the plan is best.
-pub(crate) fn solve(sources: &[i64], sinks: &[i64], costs: &[f64]) -> Vec<(usize, usize, i64)> {
+pub(super) fn solve(sources: &[i64], sinks: &[i64], costs: &[f64]) -> Vec<(usize, usize, i64)> {
     let mut moves: Vec<_> = cheapest_tree(sources, sinks, costs).arcs().collect();
     moves.retain(|(.., units)| *units > 0);
     moves.sort_unstable();
