@@ -86,19 +86,16 @@ impl LeafReader {
                 }
                 return;
             }
+            Json::Array(list) if !list.is_empty() && list.iter().all(Json::is_string) => {
+                let mut words: Vec<u32> = list.iter().map(|word| self.number(word.to_string())).collect();
+                words.sort_unstable();
+                words.dedup();
+                Leaf::WordSet(words)
+            }
+            Json::Array(list) if !list.is_empty() && list.iter().all(is_thing) => {
+                Leaf::Things(list.iter().map(|thing| self.leaves_of(thing)).collect())
+            }
             Json::Array(list) => {
-                if !list.is_empty() && list.iter().all(Json::is_string) {
-                    let mut words: Vec<u32> = list.iter().map(|word| self.number(word.to_string())).collect();
-                    words.sort_unstable();
-                    words.dedup();
-                    all.push((self.number(path.clone()), Leaf::WordSet(words)));
-                    return;
-                }
-                if !list.is_empty() && list.iter().all(is_thing) {
-                    let things = list.iter().map(|thing| self.leaves_of(thing)).collect();
-                    all.push((self.number(path.clone()), Leaf::Things(things)));
-                    return;
-                }
                 let are_points = list.iter().all(|child| point(child).is_some());
                 for (index, child) in list.iter().enumerate() {
                     path.push('/');
