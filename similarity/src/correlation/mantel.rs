@@ -103,17 +103,17 @@ pub fn mantel(
     let correlation = method.of(&here, &values)?;
     let table = Table::new(distances, pairs, method);
     let ways = Relabellings::new(table.items, relabellings, seed);
-    let tally = table.tally(ways, correlation);
+    let [far, low, high] = table.tally(ways, correlation);
     // What was found is among all relabellings; to drawn ones it is added.
     let itself = u64::from(!ways.is_all());
-    let share = |as_strong: u64| (as_strong + itself) as f64 / (ways.count() + itself) as f64;
+    let share = |as_strong: u64| (as_strong + itself) as f64 / (ways.count + itself) as f64;
     Ok(MantelTest {
         method,
         correlation,
-        p_two_sided: share(tally.far),
-        p_less: share(tally.low),
-        p_greater: share(tally.high),
-        relabellings: ways.count(),
+        p_two_sided: share(far),
+        p_less: share(low),
+        p_greater: share(high),
+        relabellings: ways.count,
         exact: ways.is_all(),
         items: table.items,
         pairs: pairs.len(),
@@ -158,32 +158,15 @@ fn check(distances: &DistanceMatrix, pairs: &[PairValue], relabellings: u64) -> 
     Ok(())
 }
 
-/// How many relabellings go together at least as well as what was found.
-#[derive(Clone, Copy, Default)]
-struct Tally {
-    far: u64,
-    low: u64,
-    high: u64,
-}
-
-impl Tally {
-    fn of(correlation: Option<f64>, found: f64) -> Self {
-        let counts = |as_strong: bool| u64::from(correlation.is_none() || as_strong);
-        let here = correlation.unwrap_or_default();
-        Self {
-            far: counts(here.abs() >= found.abs() - AS_STRONG),
-            low: counts(here <= found + AS_STRONG),
-            high: counts(here >= found - AS_STRONG),
-        }
-    }
-
-    fn plus(self, other: Self) -> Self {
-        Self {
-            far: self.far + other.far,
-            low: self.low + other.low,
-            high: self.high + other.high,
-        }
-    }
+/// Whether a relabelling goes together at least as well as what was found: as far from 0, as low, as high.
+fn as_strong(correlation: Option<f64>, found: f64) -> [u64; 3] {
+    let here = correlation.unwrap_or_default();
+    let as_strong = [
+        here.abs() >= found.abs() - AS_STRONG,
+        here <= found + AS_STRONG,
+        here >= found - AS_STRONG,
+    ];
+    as_strong.map(|as_strong| u64::from(correlation.is_none() || as_strong))
 }
 
 /// What is the same under every relabelling: items numbered from 0, their distances, and the values to compare with.
@@ -226,17 +209,18 @@ impl Table {
         }
     }
 
-    fn tally(&self, ways: Relabellings, found: f64) -> Tally {
-        (0..ways.count())
+    /// How many relabellings are as strong as what was found, in each of the three respects.
+    fn tally(&self, ways: Relabellings, found: f64) -> [u64; 3] {
+        (0..ways.count)
             .into_par_iter()
             .map_init(
                 || vec![0; self.items],
                 |labels, number| {
                     ways.write(number, labels);
-                    Tally::of(self.correlation(labels), found)
+                    as_strong(self.correlation(labels), found)
                 },
             )
-            .reduce(Tally::default, Tally::plus)
+            .reduce(|| [0; 3], |a, b| [0, 1, 2].map(|k| a[k] + b[k]))
     }
 
     /// The correlation where each item has the distances of another; nothing where these are all equal.

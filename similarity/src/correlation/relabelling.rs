@@ -5,39 +5,25 @@ use crate::split_mix::SplitMix64;
 /// The ways in which `items` can change labels that a test goes through; each is found by its number alone, so that any thread
 /// may take any of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Relabellings {
-    /// Each of them once.
-    All {
-        /// `items!`.
-        count: u64,
-    },
-    /// Some at random, with repetitions.
-    Drawn {
-        /// How many.
-        count: u64,
-        /// What they are drawn from.
-        seed: u64,
-    },
+pub(super) struct Relabellings {
+    pub(super) count: u64,
+    /// What they are drawn from, with repetitions; `None` for all, each of them once.
+    seed: Option<u64>,
 }
 
 impl Relabellings {
     /// All of them where there are at most `most`, otherwise `most` of them.
     pub(super) fn new(items: usize, most: u64, seed: u64) -> Self {
         let all = (1..=items as u64).try_fold(1_u64, u64::checked_mul);
-        match all.filter(|all| *all <= most) {
-            Some(count) => Self::All { count },
-            None => Self::Drawn { count: most, seed },
-        }
-    }
-
-    pub(super) fn count(self) -> u64 {
-        match self {
-            Self::All { count } | Self::Drawn { count, .. } => count,
+        let few = all.filter(|all| *all <= most);
+        Self {
+            count: few.unwrap_or(most),
+            seed: few.is_none().then_some(seed),
         }
     }
 
     pub(super) fn is_all(self) -> bool {
-        matches!(self, Self::All { .. })
+        self.seed.is_none()
     }
 
     /// Puts relabelling `number` into `labels`, which holds one place for each item.
@@ -45,22 +31,14 @@ impl Relabellings {
         for (k, label) in labels.iter_mut().enumerate() {
             *label = k;
         }
-        match self {
-            Self::All { .. } => {
-                // The digits of the number in the factorial number system choose who changes places.
-                let mut rest = number;
-                for last in (1..labels.len()).rev() {
-                    let choices = last as u64 + 1;
-                    labels.swap(last, (rest % choices) as usize);
-                    rest /= choices;
-                }
-            }
-            Self::Drawn { seed, .. } => {
-                let mut rng = SplitMix64::keyed(seed, number);
-                for last in (1..labels.len()).rev() {
-                    labels.swap(last, rng.unbiased_below(last as u64 + 1) as usize);
-                }
-            }
+        let mut rng = self.seed.map(|seed| SplitMix64::keyed(seed, number));
+        // The digits of the number in the factorial number system choose who changes places where nothing is drawn.
+        let mut rest = number;
+        for last in (1..labels.len()).rev() {
+            let choices = last as u64 + 1;
+            let chosen = rng.as_mut().map_or(rest % choices, |rng| rng.unbiased_below(choices));
+            labels.swap(last, chosen as usize);
+            rest /= choices;
         }
     }
 }
@@ -73,7 +51,7 @@ mod tests {
     fn counts(relabellings: Relabellings, items: usize) -> BTreeMap<Vec<usize>, u32> {
         let mut counts = BTreeMap::new();
         let mut labels = vec![0; items];
-        for number in 0..relabellings.count() {
+        for number in 0..relabellings.count {
             relabellings.write(number, &mut labels);
             *counts.entry(labels.clone()).or_default() += 1;
         }
@@ -86,19 +64,26 @@ mod tests {
             let all = Relabellings::new(items, 720, 1);
             assert!(all.is_all());
             let counts = counts(all, items);
-            assert_eq!(counts.len() as u64, all.count());
+            assert_eq!(counts.len() as u64, all.count);
             assert!(counts.values().all(|count| *count == 1));
         }
         assert_eq!(
             Relabellings::new(7, 720, 1),
-            Relabellings::Drawn { count: 720, seed: 1 }
+            Relabellings {
+                count: 720,
+                seed: Some(1)
+            }
         );
         assert!(!Relabellings::new(30, u64::MAX, 1).is_all(), "30! does not fit");
     }
 
     #[test]
     fn drawn_ones_are_as_likely_as_each_other_and_depend_on_the_seed() {
-        let counts_of = |seed| counts(Relabellings::Drawn { count: 24_000, seed }, 4);
+        let drawn = |seed| Relabellings {
+            count: 24_000,
+            seed: Some(seed),
+        };
+        let counts_of = |seed| counts(drawn(seed), 4);
         let found = counts_of(7);
         let chi_squared: f64 = found
             .values()
