@@ -47,17 +47,7 @@ impl Method {
 
     /// Whether the method looks for the best path from an item that is asked for as the first.
     pub fn seeks_from_a_first(self) -> bool {
-        match self {
-            Self::Nearest
-            | Self::Exact
-            | Self::TwoOpt
-            | Self::Abrupt
-            | Self::Farthest
-            | Self::TargetStep
-            | Self::Gradual
-            | Self::Outward => true,
-            Self::Random | Self::Given => false,
-        }
+        !matches!(self, Self::Random | Self::Given)
     }
 
     /// The word by which the command line calls it.
