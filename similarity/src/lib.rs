@@ -58,4 +58,4 @@ pub use occupancy::{
 pub use order::{MAX_EXACT, Method, NUM_RANDOM_ORDERS, OrderOptions, Ordering, order, share_of_shorter_orders};
 pub use reward::{RewardSamples, SampledReward, world_rewards_distance};
 pub use transport::{MAX_TRANSPORTED, Move, TransportPlan, earth_movers_distance, optimal_transport};
-pub use world_measures::{ObjectsMeasure, OccupancyMeasure, Placements, WorldMeasure, world_sets_measure_distance};
+pub use world_measures::{Placements, WorldMeasure, world_sets_measure_distance};

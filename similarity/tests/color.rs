@@ -77,8 +77,7 @@ fn distances_of_srgb_colors_are_those_of_the_oracles() {
             let found = measure.between(a, b);
             assert!(
                 (found - expected).abs() < tolerance,
-                "{} of {a:?} to {b:?}: {found}, expected {expected}",
-                measure.name()
+                "{measure:?} of {a:?} to {b:?}: {found}, expected {expected}"
             );
         }
     }

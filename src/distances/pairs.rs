@@ -3,9 +3,7 @@
 use driftworld_env::{Catalogue, ExpertRun, Expertise, WorldAbstraction};
 use driftworld_similarity::distribution::Method;
 use driftworld_similarity::picture::PictureMeasure;
-use driftworld_similarity::{
-    ColorMeasure, Distance, ObjectsMeasure, OccupancyMeasure, Part, Weights, WorldMeasure, world_rewards_distance,
-};
+use driftworld_similarity::{Distance, Part, Weights, WorldMeasure, world_rewards_distance};
 use driftworld_spec::{By, Element, World};
 use rayon::prelude::*;
 
@@ -20,14 +18,7 @@ pub(super) type Values = Vec<f64>;
 /// The measure of two worlds that has this name, if it is one of `similarity`'s.
 pub(super) fn world_measure(by: By) -> Option<WorldMeasure> {
     let measure = by.name().split_once(':').map(|(_, measure)| measure);
-    Some(match by.subject() {
-        "occupancy" => {
-            WorldMeasure::Occupancy(measure.map_or(Some(OccupancyMeasure::default()), OccupancyMeasure::from_name)?)
-        }
-        "objects" => WorldMeasure::Objects(measure.map_or(Some(ObjectsMeasure::default()), ObjectsMeasure::from_name)?),
-        "colors" => WorldMeasure::Colors(measure.map_or(Some(ColorMeasure::default()), ColorMeasure::from_name)?),
-        _ => return None,
-    })
+    WorldMeasure::from_name(by.subject(), measure)
 }
 
 /// What the numbers of a measure count for, under which name and in which unit; none where they are of the whole process.

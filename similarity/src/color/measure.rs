@@ -18,12 +18,11 @@ use crate::{MetricProperties, Oklab};
 /// use driftworld_similarity::ColorMeasure;
 /// use driftworld_spec::Color;
 /// let named = |name| Color::from_name(name).unwrap();
-/// let far = ColorMeasure::Ciede2000.normalised(named("blue"), named("yellow"));
-/// let near = ColorMeasure::Ciede2000.normalised(named("blue"), named("navy"));
-/// assert!(near < far && far <= 1.0);
+/// let far = ColorMeasure::Ciede2000.between(named("blue"), named("yellow"));
+/// let near = ColorMeasure::Ciede2000.between(named("blue"), named("navy"));
+/// assert!(near < far && far <= ColorMeasure::Ciede2000.diameter());
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, strum::EnumString, strum::IntoStaticStr, strum::VariantArray)]
-#[strum(serialize_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::VariantArray)]
 pub enum ColorMeasure {
     /// [`srgb_distance`]: the L2Explorer paper's.
     Srgb,
@@ -32,7 +31,6 @@ pub enum ColorMeasure {
     /// [`ciede2000`]. Not a metric.
     Ciede2000,
     /// [`Color::distance`]: the default, a metric that follows the eye.
-    #[default]
     Oklab,
     /// [`hyab`].
     Hyab,
@@ -42,24 +40,9 @@ impl ColorMeasure {
     /// All of them.
     pub const ALL: &[Self] = Self::VARIANTS;
 
-    /// Its name in tables and on the command line.
-    pub fn name(self) -> &'static str {
-        self.into()
-    }
-
-    /// The measure of this name, if there is one.
-    pub fn from_name(name: &str) -> Option<Self> {
-        name.parse().ok()
-    }
-
     /// How far two colours are apart, in the measure's own numbers.
     pub fn between(self, a: Color, b: Color) -> f64 {
         self.between_prepared(self.prepare(a), self.prepare(b))
-    }
-
-    /// How far two colours are apart as a share of [`ColorMeasure::diameter`], in `0..=1`.
-    pub fn normalised(self, a: Color, b: Color) -> f64 {
-        (self.between(a, b) / self.diameter()).min(1.0)
     }
 
     /// How far the two sRGB colours that are farthest apart are apart; rounded up in the last place.
@@ -128,20 +111,8 @@ mod tests {
             ),
         ] {
             let share = measure.between(a, b) / measure.diameter();
-            assert!(
-                (1.0 - 1e-7..=1.0 + 1e-12).contains(&share),
-                "{}: {share}",
-                measure.name()
-            );
+            assert!((1.0 - 1e-7..=1.0 + 1e-12).contains(&share), "{measure:?}: {share}");
         }
-    }
-
-    #[test]
-    fn names_are_read_back() {
-        for &measure in ColorMeasure::ALL {
-            assert_eq!(ColorMeasure::from_name(measure.name()), Some(measure));
-        }
-        assert_eq!(ColorMeasure::from_name("rgb"), None);
     }
 
     #[test]
@@ -162,16 +133,16 @@ mod tests {
         #[test]
         fn they_are_what_they_say(a in color(), b in color(), c in color()) {
             for &measure in ColorMeasure::ALL {
-                let d = |a, b| measure.normalised(a, b);
+                let d = |a, b| (measure.between(a, b) / measure.diameter()).min(1.0);
                 prop_assert_eq!(d(a, a), 0.0);
                 prop_assert!((d(a, b) - d(b, a)).abs() < 1e-9);
                 prop_assert!((0.0..=1.0).contains(&d(a, b)));
-                prop_assert!(measure.between(a, b) <= measure.diameter() * (1.0 + 1e-12), "{}", measure.name());
+                prop_assert!(measure.between(a, b) <= measure.diameter() * (1.0 + 1e-12), "{measure:?}");
                 if a != b {
                     prop_assert!(d(a, b) > 0.0);
                 }
                 if measure.properties().is_metric() {
-                    prop_assert!(d(a, c) <= d(a, b) + d(b, c) + 1e-12, "{}", measure.name());
+                    prop_assert!(d(a, c) <= d(a, b) + d(b, c) + 1e-12, "{measure:?}");
                 }
             }
         }

@@ -3,9 +3,13 @@
 use driftworld_spec::{Element, World};
 
 use super::colors;
-use super::objects::ObjectsMeasure;
-use super::occupancy::{OccupancyMeasure, raster};
-use crate::{ColorMeasure, MetricProperties, Raster, SimilarityError};
+use super::objects::{counts_of, places_apart};
+use super::occupancy::{earth_movers, of_taken, raster};
+use crate::scalar::counts_distance;
+use crate::{
+    ColorMeasure, MetricProperties, Raster, SimilarityError, grid_chamfer_distance, grid_hausdorff_distance,
+    grid_jaccard_distance,
+};
 
 /// One measure of how far apart two worlds are, where [`world_distance`](crate::world_distance) adds up all that they
 /// differ in.
@@ -14,9 +18,15 @@ use crate::{ColorMeasure, MetricProperties, Raster, SimilarityError};
 /// world and itself, and as far there as back, to the last bit. Two worlds without objects are 0 apart; what one
 /// without and one with objects are stands with each measure.
 ///
+/// Measures of *occupancy* say how far apart two worlds are by where things stand, each class for itself. Both worlds
+/// become grids of square cells that cover both arenas, so that the pair alone decides; what stands outside of both is
+/// not seen. A cell is 1 m wide, or 2, 4, 8 m and so on where those of all classes would be more than
+/// [`MAX_CELLS`](crate::MAX_CELLS). The *diameter* is the way between the centres of the outermost cells. Measures of
+/// *objects* take each as a class and a place. The case of a class does not matter.
+///
 /// # Example
 /// ```
-/// use driftworld_similarity::{ColorMeasure, ObjectsMeasure, OccupancyMeasure, WorldMeasure};
+/// use driftworld_similarity::{ColorMeasure, WorldMeasure};
 /// use driftworld_spec::{Color, Object, World};
 /// let world = |x: f64, color: &str| {
 ///     let tree = Object { color: Color::from_name(color), ..Object::new("tree", [x, 0.0]) };
@@ -25,17 +35,33 @@ use crate::{ColorMeasure, MetricProperties, Raster, SimilarityError};
 /// let (a, b) = (world(0.2, "black")?, world(4.9, "white")?);
 /// let between = |measure: WorldMeasure| measure.between(&a, &b);
 /// // From the centre of a cell of 1 m to that of another.
-/// assert_eq!(between(WorldMeasure::Occupancy(OccupancyMeasure::EarthMovers))?, 4.0);
-/// assert_eq!(between(WorldMeasure::Objects(ObjectsMeasure::Ospa))?, 4.7);
+/// assert_eq!(between(WorldMeasure::EarthMovers)?, 4.0);
+/// assert_eq!(between(WorldMeasure::Ospa)?, 4.7);
 /// assert!((between(WorldMeasure::Colors(ColorMeasure::Oklab))? - 1.0).abs() < 1e-6);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WorldMeasure {
-    /// By the cells that objects stand in.
-    Occupancy(OccupancyMeasure),
-    /// By which objects there are.
-    Objects(ObjectsMeasure),
+    /// Of occupancy, [`grid_earth_movers_distance`](crate::grid_earth_movers_distance): the mean way in metres from where a
+    /// class stands here to where it stands there, however many there are; exact. Classes are added up. A class that only
+    /// one world has counts the diameter, so an empty world and another are that many diameters apart. In `0..=` diameter ·
+    /// classes.
+    EarthMovers,
+    /// Of occupancy, [`grid_jaccard_distance`]: the share of taken cells that are not taken in both, in `0..=1`. From an
+    /// empty world to another: 1.
+    Jaccard,
+    /// Of occupancy, [`grid_hausdorff_distance`]: the largest way in metres from a taken cell to the nearest that the class
+    /// takes in the other world, in `0..=` diameter; the diameter where a class is in one world only.
+    Hausdorff,
+    /// Of occupancy, [`grid_chamfer_distance`]: the mean of such ways. From an empty world to another: the diameter.
+    Chamfer,
+    /// Of objects, [`ospa`](crate::ospa) with a cut-off of 10 m: the mean way, in metres in `0..=10`, from an object to its
+    /// counterpart of the same class. An object without one counts 10 m, as does one that is farther away. Of an empty
+    /// world and any other it is 10.
+    Ospa,
+    /// Of objects, [`counts_distance`]: the share of objects without a counterpart of their class, wherever they stand, in
+    /// `0..=1`. Of an empty world and any other it is 1.
+    Counts,
     /// By the colours of the objects that have one, wherever they stand: the mean way of those that go together best,
     /// as a share of the way between the two colours that are farthest apart, in `0..=1`. A colour without a
     /// counterpart counts 1, so worlds without and with colours are 1 apart. Objects that look as their model does are
@@ -44,46 +70,41 @@ pub enum WorldMeasure {
 }
 
 impl WorldMeasure {
-    /// All of them, those of a kind together, with its default among them.
+    /// All of them, those of a kind together.
     pub fn all() -> impl Iterator<Item = Self> {
-        let occupancy = OccupancyMeasure::ALL.iter().map(|own| Self::Occupancy(*own));
-        let objects = ObjectsMeasure::ALL.iter().map(|own| Self::Objects(*own));
-        let colors = ColorMeasure::ALL.iter().map(|own| Self::Colors(*own));
-        occupancy.chain(objects).chain(colors)
+        use WorldMeasure::{Chamfer, Counts, EarthMovers, Hausdorff, Jaccard, Ospa};
+        let others = [EarthMovers, Jaccard, Hausdorff, Chamfer, Ospa, Counts];
+        others
+            .into_iter()
+            .chain(ColorMeasure::ALL.iter().map(|own| Self::Colors(*own)))
+    }
+
+    /// The measure of a kind that has this name, or the one that is meant without a name, if there is one.
+    pub fn from_name(kind: &str, name: Option<&str>) -> Option<Self> {
+        let usual = [Self::EarthMovers, Self::Ospa, Self::Colors(ColorMeasure::Oklab)];
+        let is_meant = |own: &Self| name.map_or(usual.contains(own), |name| own.name() == name);
+        Self::all().find(|own| own.kind() == kind && is_meant(own))
     }
 
     /// What it looks at: "occupancy", "objects" or "colors".
     pub fn kind(self) -> &'static str {
         match self {
-            Self::Occupancy(_) => "occupancy",
-            Self::Objects(_) => "objects",
+            Self::EarthMovers | Self::Jaccard | Self::Hausdorff | Self::Chamfer => "occupancy",
+            Self::Ospa | Self::Counts => "objects",
             Self::Colors(_) => "colors",
         }
     }
 
-    /// Its name among those of its kind, in documents and on the command line.
+    /// Its name among those of its kind, in documents and on the command line: the first word of its label.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Occupancy(own) => own.name(),
-            Self::Objects(own) => own.name(),
-            Self::Colors(own) => own.name(),
-        }
-    }
-
-    /// What its number is in.
-    pub fn unit(self) -> &'static str {
-        match self {
-            Self::Occupancy(own) => own.unit(),
-            Self::Objects(own) => own.unit(),
-            Self::Colors(_) => "share of the farthest colours",
-        }
+        self.label().split(' ').next().unwrap_or_default()
     }
 
     /// The element of the decision process that it is about: the state, or the observation for colours.
     pub fn element(self) -> Element {
         match self {
-            Self::Occupancy(_) | Self::Objects(_) => Element::S,
             Self::Colors(_) => Element::O,
+            _ => Element::S,
         }
     }
 
@@ -91,10 +112,9 @@ impl WorldMeasure {
     /// metric, for each sees but a part of a world.
     pub fn properties(self) -> MetricProperties {
         match self {
-            Self::Occupancy(own) => own.properties(),
-            Self::Objects(own) => own.properties(),
-            Self::Colors(own) if own.properties().keeps_triangles() => MetricProperties::Pseudometric,
-            Self::Colors(_) => MetricProperties::Distance,
+            Self::Chamfer => MetricProperties::Distance,
+            Self::Colors(own) if !own.properties().keeps_triangles() => MetricProperties::Distance,
+            _ => MetricProperties::Pseudometric,
         }
     }
 
@@ -103,7 +123,7 @@ impl WorldMeasure {
     /// detour may be shorter.
     pub fn properties_among<'a>(self, worlds: impl IntoIterator<Item = &'a World>) -> MetricProperties {
         let worlds: Vec<&World> = worlds.into_iter().collect();
-        let (Self::Occupancy(_), Some(first)) = (self, worlds.first()) else {
+        let Some(first) = worlds.first().filter(|_| self.kind() == "occupancy") else {
             return self.properties();
         };
         let arena = |world: &World| world.environment_params.arena_size();
@@ -116,7 +136,7 @@ impl WorldMeasure {
         }
     }
 
-    /// How far apart two worlds are, in [`WorldMeasure::unit`]. Some microseconds to some milliseconds.
+    /// How far apart two worlds are, in the unit of [`WorldMeasure::label`]. Some microseconds to some milliseconds.
     ///
     /// # Errors
     /// [`SimilarityError::TooMany`] for more than [`MAX_ASSIGNED`](crate::MAX_ASSIGNED) objects (`ospa`, colours), or
@@ -124,8 +144,12 @@ impl WorldMeasure {
     /// mover's distance).
     pub fn between(self, a: &World, b: &World) -> Result<f64, SimilarityError> {
         match self {
-            Self::Occupancy(own) => own.between(a, b),
-            Self::Objects(own) => own.between(a, b),
+            Self::EarthMovers => earth_movers(a, b),
+            Self::Jaccard => of_taken(a, b, grid_jaccard_distance),
+            Self::Hausdorff => of_taken(a, b, grid_hausdorff_distance),
+            Self::Chamfer => of_taken(a, b, grid_chamfer_distance),
+            Self::Ospa => places_apart(a, b),
+            Self::Counts => Ok(counts_distance(&counts_of(a), &counts_of(b))),
             Self::Colors(own) => colors::between(a, b, own),
         }
     }
@@ -133,8 +157,12 @@ impl WorldMeasure {
     /// The name and the unit, for a part of a distance.
     pub fn label(self) -> &'static str {
         match self {
-            Self::Occupancy(own) => own.label(),
-            Self::Objects(own) => own.label(),
+            Self::EarthMovers => "earth_movers in metres",
+            Self::Jaccard => "jaccard in shares of taken cells",
+            Self::Hausdorff => "hausdorff in metres",
+            Self::Chamfer => "chamfer in metres",
+            Self::Ospa => "ospa in metres",
+            Self::Counts => "counts in shares of objects",
             Self::Colors(ColorMeasure::Srgb) => "srgb / farthest colours",
             Self::Colors(ColorMeasure::Cie76) => "cie76 / farthest colours",
             Self::Colors(ColorMeasure::Ciede2000) => "ciede2000 / farthest colours",

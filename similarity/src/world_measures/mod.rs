@@ -10,8 +10,6 @@ mod placements;
 mod sets;
 
 pub use measure::WorldMeasure;
-pub use objects::ObjectsMeasure;
-pub use occupancy::OccupancyMeasure;
 pub use placements::Placements;
 pub use sets::world_sets_measure_distance;
 

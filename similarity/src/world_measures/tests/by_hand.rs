@@ -113,7 +113,7 @@ proptest! {
         // With up to 3 of a class the pairings are few.
         let few = |things: &[Thing]| things[..things.len().min(3)].to_vec();
         let (a, b) = (few(&a), few(&b));
-        let found = of_occupancy(OccupancyMeasure::EarthMovers, &a, &b);
+        let found = between(WorldMeasure::EarthMovers, &a, &b);
         assert_near("earth_movers", found, over_classes(&a, &b, earth_movers));
     }
 
@@ -122,17 +122,17 @@ proptest! {
         let (left, right) = (taken(&a), taken(&b));
         let (common, all) = (left.intersection(&right).count() as f64, left.union(&right).count() as f64);
         let share = if all == 0.0 { 0.0 } else { (all - common) / all };
-        assert_near("jaccard", of_occupancy(OccupancyMeasure::Jaccard, &a, &b), share);
+        assert_near("jaccard", between(WorldMeasure::Jaccard, &a, &b), share);
     }
 
     #[test]
     fn ways_to_the_nearest_are_found_by_looking_at_all(a in things(), b in things()) {
-        use OccupancyMeasure::{Chamfer, Hausdorff};
+        use WorldMeasure::{Chamfer, Hausdorff};
         let (there, back) = (ways(&a, &b), ways(&b, &a));
         let most = there.iter().chain(&back).copied().fold(0.0, f64::max);
-        assert_near("hausdorff", of_occupancy(Hausdorff, &a, &b), most);
+        assert_near("hausdorff", between(Hausdorff, &a, &b), most);
         let mean = |ways: &[f64]| ways.iter().sum::<f64>() / ways.len().max(1) as f64;
-        assert_near("chamfer", of_occupancy(Chamfer, &a, &b), f64::midpoint(mean(&there), mean(&back)));
+        assert_near("chamfer", between(Chamfer, &a, &b), f64::midpoint(mean(&there), mean(&back)));
     }
 
     #[test]
@@ -143,19 +143,20 @@ proptest! {
             if a.0.to_lowercase() == b.0.to_lowercase() { way.min(10.0) } else { 10.0 }
         };
         let ospa = (least_sum(&a, &b, &cost) + 10.0 * a.len().abs_diff(b.len()) as f64) / larger;
-        assert_near("ospa", between(WorldMeasure::Objects(ObjectsMeasure::Ospa), &a, &b), ospa);
+        assert_near("ospa", between(WorldMeasure::Ospa, &a, &b), ospa);
         let count = |things: &[Thing], class: &str| things.iter().filter(|thing| thing.0.to_lowercase() == class).count();
         let pairs = CLASSES.map(|class| (count(&a, class), count(&b, class)));
         let apart: usize = pairs.iter().map(|(a, b)| a.abs_diff(*b)).sum();
         let most: usize = pairs.iter().map(|(a, b)| a.max(b)).sum();
         let counts = apart as f64 / most.max(1) as f64;
-        assert_near("counts", between(WorldMeasure::Objects(ObjectsMeasure::Counts), &a, &b), counts);
+        assert_near("counts", between(WorldMeasure::Counts, &a, &b), counts);
         let colors = |things: &[Thing]| things.iter().filter_map(|thing| thing.2).collect::<Vec<_>>();
         let (left, right) = (colors(&a), colors(&b));
         for measure in ColorMeasure::ALL {
-            let sum = least_sum(&left, &right, &|a, b| measure.normalised(*a, *b));
+            let sum = least_sum(&left, &right, &|a, b| (measure.between(*a, *b) / measure.diameter()).min(1.0));
             let expected = (sum + left.len().abs_diff(right.len()) as f64) / left.len().max(right.len()).max(1) as f64;
-            assert_near(measure.name(), between(WorldMeasure::Colors(*measure), &a, &b), expected);
+            let measure = WorldMeasure::Colors(*measure);
+            assert_near(measure.name(), between(measure, &a, &b), expected);
         }
     }
 }
