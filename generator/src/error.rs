@@ -1,5 +1,7 @@
 //! What can keep a world from being drawn.
 
+use std::fmt::{Display, Formatter, Result};
+
 use driftworld_spec::SpecError;
 
 /// Everything that can go wrong in this crate.
@@ -9,16 +11,12 @@ use driftworld_spec::SpecError;
 pub enum GeneratorError {
     /// A draw fell outside what its place in the world allows.
     #[error(
-        "{variant}, seed {seed}, index {index} ({place}): drew {found}, expected a number in {low}..{high}; use a \
-         bounded distribution, such as truncated_normal"
+        "{world} ({place}): drew {found}, expected a number in {low}..{high}; use a bounded distribution, such as \
+         truncated_normal"
     )]
     OutOfRange {
-        /// The variant.
-        variant: String,
-        /// The seed.
-        seed: u64,
-        /// The world's number.
-        index: u64,
+        /// The world.
+        world: WorldId,
         /// Where the value was to go: a pointer into the spec.
         place: String,
         /// What was drawn.
@@ -30,17 +28,12 @@ pub enum GeneratorError {
     },
     /// An object found no place within the tries it has.
     #[error(
-        "{variant}, seed {seed}, index {index}: group {group:?}, object {object} of {count}: found no free place in \
-         {}; {reason}",
+        "{world}: group {group:?}, object {object} of {count}: found no free place in {}; {reason}",
         tried(*tries)
     )]
     NoPlace {
-        /// The variant.
-        variant: String,
-        /// The seed.
-        seed: u64,
-        /// The world's number.
-        index: u64,
+        /// The world.
+        world: WorldId,
         /// The group.
         group: String,
         /// The object's number within the group, from 1.
@@ -54,47 +47,35 @@ pub enum GeneratorError {
     },
     /// The agent starts outside the arena or in a region that cannot be entered.
     #[error(
-        "{variant}, seed {seed}, index {index}: found the agent's start at {start:?} in {}, expected free space \
-         inside the arena; move agent_params.coordinates, or widen their distribution; in mazes, rooms and texts \
-         {{ \"cells\": {{}} }} is any free cell",
+        "{world}: found the agent's start at {start:?} in {}, expected free space inside the arena; move \
+         agent_params.coordinates, or widen their distribution; in mazes, rooms and texts {{ \"cells\": {{}} }} is any \
+         free cell",
         tried(*tries)
     )]
     NoStart {
-        /// The variant.
-        variant: String,
-        /// The seed.
-        seed: u64,
-        /// The world's number.
-        index: u64,
+        /// The world.
+        world: WorldId,
         /// The last start that was tried, in metres.
         start: [f64; 2],
         /// How many were tried.
         tries: u32,
     },
     /// The layout has no cell in which the agent can start.
-    #[error("{variant}, seed {seed}, index {index}: found no cell for the agent's start: {reason}")]
+    #[error("{world}: found no cell for the agent's start: {reason}")]
     NoStartCell {
-        /// The variant.
-        variant: String,
-        /// The seed.
-        seed: u64,
-        /// The world's number.
-        index: u64,
+        /// The world.
+        world: WorldId,
         /// What was asked, and how many cells there are.
         reason: String,
     },
     /// A condition that the task states holds in none of the tries.
     #[error(
-        "{variant}, seed {seed}, index {index}: found no values in {tries} tries for which {requirement:?} holds, as \
-         \"require\" states; the last were {values}; widen the distributions, or relax the requirement"
+        "{world}: found no values in {tries} tries for which {requirement:?} holds, as \"require\" states; the last were \
+         {values}; widen the distributions, or relax the requirement"
     )]
     Requirement {
-        /// The variant.
-        variant: String,
-        /// The seed.
-        seed: u64,
-        /// The world's number.
-        index: u64,
+        /// The world.
+        world: WorldId,
         /// The condition.
         requirement: String,
         /// The last values that it was tried with.
@@ -103,28 +84,20 @@ pub enum GeneratorError {
         tries: u32,
     },
     /// The groups together have more objects than a world holds.
-    #[error("{variant}, seed {seed}, index {index}: found {found} objects, expected at most {limit}; lower the counts")]
+    #[error("{world}: found {found} objects, expected at most {limit}; lower the counts")]
     TooMany {
-        /// The variant.
-        variant: String,
-        /// The seed.
-        seed: u64,
-        /// The world's number.
-        index: u64,
+        /// The world.
+        world: WorldId,
         /// How many objects were drawn.
         found: usize,
         /// How many a world holds.
         limit: usize,
     },
     /// Values were drawn that a world cannot have at once, as large pictures with much supersampling.
-    #[error("{variant}, seed {seed}, index {index}: drew values that do not go together: {source}")]
+    #[error("{world}: drew values that do not go together: {source}")]
     Clash {
-        /// The variant.
-        variant: String,
-        /// The seed.
-        seed: u64,
-        /// The world's number.
-        index: u64,
+        /// The world.
+        world: WorldId,
         /// What is wrong with the world.
         source: SpecError,
     },
@@ -195,6 +168,24 @@ fn tried(tries: u32) -> String {
     }
 }
 
+/// A world: what it is drawn from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WorldId {
+    /// The variant, as `task#variant`.
+    pub variant: String,
+    /// The seed.
+    pub seed: u64,
+    /// The number of the world under the seed.
+    pub index: u64,
+}
+
+impl Display for WorldId {
+    fn fmt(&self, f: &mut Formatter) -> Result {
+        let Self { variant, seed, index } = self;
+        write!(f, "{variant}, seed {seed}, index {index}")
+    }
+}
+
 impl GeneratorError {
     /// The stable name of this kind of error.
     pub fn code(&self) -> &'static str {
@@ -210,20 +201,21 @@ mod tests {
 
     #[test]
     fn every_error_has_its_message() {
+        let world = || WorldId {
+            variant: "t#v".into(),
+            seed: 1,
+            index: 2,
+        };
         let errors = [
             GeneratorError::OutOfRange {
-                variant: "t#v".into(),
-                seed: 1,
-                index: 2,
+                world: world(),
                 place: "world/rules/step_reward".into(),
                 found: 7.5,
                 low: 0.0,
                 high: 1.0,
             },
             GeneratorError::NoPlace {
-                variant: "t#v".into(),
-                seed: 1,
-                index: 2,
+                world: world(),
                 group: "trees".into(),
                 object: 3,
                 count: 4,
@@ -231,37 +223,27 @@ mod tests {
                 reason: "lower the count".into(),
             },
             GeneratorError::NoStart {
-                variant: "t#v".into(),
-                seed: 1,
-                index: 2,
+                world: world(),
                 start: [0.0, 0.5],
                 tries: 1,
             },
             GeneratorError::NoStartCell {
-                variant: "t#v".into(),
-                seed: 1,
-                index: 2,
+                world: world(),
                 reason: "of 16 cells, 0 are dead ends".into(),
             },
             GeneratorError::Requirement {
-                variant: "t#v".into(),
-                seed: 1,
-                index: 2,
+                world: world(),
                 requirement: "low < high".into(),
                 values: "low = 3, high = 2".into(),
                 tries: 1000,
             },
             GeneratorError::TooMany {
-                variant: "t#v".into(),
-                seed: 1,
-                index: 2,
+                world: world(),
                 found: 100_001,
                 limit: 100_000,
             },
             GeneratorError::Clash {
-                variant: "t#v".into(),
-                seed: 1,
-                index: 2,
+                world: world(),
                 source: SpecError::Values {
                     variant: "t#v".into(),
                     problems: Vec::new(),

@@ -18,7 +18,7 @@ use driftworld_spec::{Variant, World};
 
 pub use at_distance::{Found, Subject, at_distance};
 pub use drift::{Drift, Switch, drift};
-pub use error::GeneratorError;
+pub use error::{GeneratorError, WorldId};
 pub use sampler::Sampler;
 pub use sequence::Sequence;
 

@@ -1,6 +1,7 @@
 //! Every error of curricula with its message and its code.
 
 use super::*;
+use driftworld_generator::WorldId;
 use std::collections::BTreeSet;
 use strum::VariantNames;
 
@@ -121,9 +122,11 @@ fn every_error_has_its_message() {
             variant: "t#v..w".into(),
             progress: 0.25,
             source: GeneratorError::TooMany {
-                variant: "t#v".into(),
-                seed: 1,
-                index: 2,
+                world: WorldId {
+                    variant: "t#v".into(),
+                    seed: 1,
+                    index: 2,
+                },
                 found: 9,
                 limit: 8,
             },

@@ -75,9 +75,7 @@ impl Sampler {
             let mut rng = self.doors.at(draft.index, 2 + number as u64, 0);
             let free = &order.cells[..reached];
             let coordinates = free_place(plan, free, draft, &mut rng).ok_or_else(|| GeneratorError::NoPlace {
-                variant: self.variant.id(),
-                seed: self.seed,
-                index: draft.index,
+                world: self.id(draft.index),
                 group: "keys of the layout's doors".to_owned(),
                 object: keys.len() as u32 + 1,
                 count: doors.len() as u32,

@@ -26,9 +26,7 @@ impl Sampler {
         let found = draft.world.objects.len().saturating_add(count as usize);
         self.check_count(found, index)?;
         let failed = |turn: u64, (tries, reason): (u32, String)| GeneratorError::NoPlace {
-            variant: self.variant.id(),
-            seed: self.seed,
-            index,
+            world: self.id(index),
             group: group.name.clone(),
             object: turn as u32 + 1,
             count,

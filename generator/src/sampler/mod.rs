@@ -9,12 +9,12 @@ use std::sync::Arc;
 use driftworld_spec::maps::MapLibrary;
 use driftworld_spec::{Layout, MAX_OBJECTS, ParameterType, Requirement, Value, Variant, World, WorldDraft};
 
-use crate::GeneratorError;
 use crate::clearance::FreeSpace;
 use crate::compiled::{Address, Compiled, Filled, Start};
 use crate::placement::{Anchor, PlacementContext};
 use crate::sequence::Sequence;
 use crate::stream::Stream;
+use crate::{GeneratorError, WorldId};
 use doors::stands_in_door;
 use groups::Draft;
 
@@ -182,9 +182,7 @@ impl Sampler {
                 None => return Ok((values, attempt)),
                 Some(requirement) if attempt + 1 == ATTEMPTS => {
                     return Err(GeneratorError::Requirement {
-                        variant: self.variant.id(),
-                        seed: self.seed,
-                        index,
+                        world: self.id(index),
                         requirement: requirement.text().to_owned(),
                         values: requirement.describe(value_of),
                         tries: ATTEMPTS,
@@ -238,14 +236,8 @@ impl Sampler {
             }
             let tries = attempt + 1;
             if !self.start_varies || tries == ATTEMPTS {
-                let variant = self.variant.id();
-                return Err(GeneratorError::NoStart {
-                    variant,
-                    seed: self.seed,
-                    index,
-                    start,
-                    tries,
-                });
+                let world = self.id(index);
+                return Err(GeneratorError::NoStart { world, start, tries });
             }
             first = tries;
         }
@@ -307,9 +299,7 @@ impl Sampler {
         world
             .check_in_range_with(free_space.plan.clone())
             .map_err(|source| GeneratorError::Clash {
-                variant: self.variant.id(),
-                seed: self.seed,
-                index,
+                world: self.id(index),
                 source,
             })
     }
@@ -348,15 +338,22 @@ impl Sampler {
         Ok(target)
     }
 
+    /// Which world this is, for errors.
+    fn id(&self, index: u64) -> WorldId {
+        WorldId {
+            variant: self.variant.id(),
+            seed: self.seed,
+            index,
+        }
+    }
+
     /// An error for more objects than a world may have.
     fn check_count(&self, found: usize, index: u64) -> Result<(), GeneratorError> {
         if found <= MAX_OBJECTS {
             return Ok(());
         }
         Err(GeneratorError::TooMany {
-            variant: self.variant.id(),
-            seed: self.seed,
-            index,
+            world: self.id(index),
             found,
             limit: MAX_OBJECTS,
         })
@@ -364,9 +361,7 @@ impl Sampler {
 
     fn out_of_range(&self, index: u64, place: &str, found: [f64; 2], [low, high]: [f64; 2]) -> GeneratorError {
         GeneratorError::OutOfRange {
-            variant: self.variant.id(),
-            seed: self.seed,
-            index,
+            world: self.id(index),
             place: place.to_owned(),
             found: found
                 .into_iter()

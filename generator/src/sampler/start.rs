@@ -58,9 +58,7 @@ impl Sampler {
                 cells.take(&mut rng, is_free).map_err(|(_, reason)| reason)
             })
             .map_err(|reason| GeneratorError::NoStartCell {
-                variant: self.variant.id(),
-                seed: self.seed,
-                index,
+                world: self.id(index),
                 reason,
             })?;
         world.agent_params.coordinates = found.place;
