@@ -1,6 +1,6 @@
 //! What kind of thing each part of a condition is, and where parts of unlike kinds meet. Values have no part in it.
 
-use super::{Binary, Expression, Function, Node, Term, Unary};
+use super::{Binary, Expression, Made, Node, Operator, Term, Unary};
 use crate::Color;
 use crate::error::nearest;
 use crate::task::parameter::{Parameter, Role};
@@ -105,23 +105,20 @@ impl<F: Fn(&str) -> Option<Kind>> Check<'_, F> {
                 self.all(&[inner], "not", "a condition after not", |kind| *kind == Kind::Truth)?;
                 Ok(Some(Kind::Truth))
             }
-            Node::Binary(operator, a, b) => self.binary(*operator, a, b).map(Some),
-            Node::Call(Function::Distance, nodes) => {
+            Node::Binary(operator, a, b) => self.binary(operator, a, b).map(Some),
+            Node::Call((name, _, made), nodes) => {
                 let nodes: Vec<&Node> = nodes.iter().collect();
-                let expected = "two colours, such as distance(good, 'red')";
-                self.all(&nodes, "distance", expected, Kind::is_color)?;
-                Ok(Some(Kind::Number))
-            }
-            Node::Call(function, nodes) => {
-                let nodes: Vec<&Node> = nodes.iter().collect();
-                let name = match function {
-                    Function::Min => "min",
-                    Function::Max => "max",
-                    _ => "abs",
-                };
-                self.all(&nodes, name, &format!("numbers in {name}"), |kind| {
-                    *kind == Kind::Number
-                })?;
+                match made {
+                    Made::Distance => {
+                        let expected = "two colours, such as distance(good, 'red')";
+                        self.all(&nodes, name, expected, Kind::is_color)?;
+                    }
+                    Made::OfNumbers(_) => {
+                        self.all(&nodes, name, &format!("numbers in {name}"), |kind| {
+                            *kind == Kind::Number
+                        })?;
+                    }
+                }
                 Ok(Some(Kind::Number))
             }
         }
@@ -154,36 +151,22 @@ impl<F: Fn(&str) -> Option<Kind>> Check<'_, F> {
         }
     }
 
-    fn binary(&self, operator: Binary, a: &Node, b: &Node) -> Result<Kind, Misfit> {
-        let symbol = super::BINARY
-            .iter()
-            .find(|entry| entry.1 == operator)
-            .map_or("", |entry| entry.0);
-        let numbers = || {
-            let expected = format!("numbers on both sides of {symbol}");
-            self.all(&[a, b], symbol, &expected, |kind| *kind == Kind::Number)
+    fn binary(&self, (symbol, _, operator): &Binary, a: &Node, b: &Node) -> Result<Kind, Misfit> {
+        let both_are = |wanted: &Kind, word: &str| {
+            let expected = format!("{word} on both sides of {symbol}");
+            self.all(&[a, b], symbol, &expected, |kind| kind == wanted)
         };
         match operator {
-            Binary::Or | Binary::And => {
-                let expected = format!("conditions on both sides of {symbol}");
-                self.all(&[a, b], symbol, &expected, |kind| *kind == Kind::Truth)?;
-                Ok(Kind::Truth)
-            }
-            Binary::Plus | Binary::Minus | Binary::Times | Binary::Over | Binary::Remainder => {
-                numbers()?;
-                Ok(Kind::Number)
-            }
-            Binary::Less | Binary::LessOrEqual | Binary::Greater | Binary::GreaterOrEqual => {
-                numbers()?;
-                Ok(Kind::Truth)
-            }
-            Binary::Equal | Binary::NotEqual => {
+            Operator::Join(_) => both_are(&Kind::Truth, "conditions")?,
+            Operator::Compare(_) => both_are(&Kind::Number, "numbers")?,
+            Operator::Calculate(_) => return both_are(&Kind::Number, "numbers").map(|()| Kind::Number),
+            Operator::Equal(_) => {
                 if let (Some(first), Some(second)) = (self.kind(a)?, self.kind(b)?) {
                     self.alike((a, &first), (b, &second), symbol)?;
                 }
-                Ok(Kind::Truth)
             }
         }
+        Ok(Kind::Truth)
     }
 
     /// Whether two things can be equal: things of one kind, a colour and the name of one, a text and one that it can be.

@@ -51,8 +51,8 @@ enum Node {
     /// The value of a name, or the number at a place of it.
     Name(usize, Option<usize>),
     Unary(Unary, Box<Node>),
-    Binary(Binary, Box<Node>, Box<Node>),
-    Call(Function, Vec<Node>),
+    Binary(&'static Binary, Box<Node>, Box<Node>),
+    Call(&'static Function, Vec<Node>),
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -61,47 +61,64 @@ enum Unary {
     Not,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Binary {
-    Or,
-    And,
-    Less,
-    LessOrEqual,
-    Greater,
-    GreaterOrEqual,
-    Equal,
-    NotEqual,
-    Plus,
-    Minus,
-    Times,
-    Over,
-    Remainder,
+/// What an operator between two parts does.
+#[derive(Clone, Copy, Debug)]
+enum Operator {
+    /// Joins conditions.
+    Join(fn(bool, bool) -> bool),
+    /// Compares numbers.
+    Compare(fn(f64, f64) -> bool),
+    /// Whether two things of one kind are equal, or are not.
+    Equal(bool),
+    /// Calculates.
+    Calculate(fn(f64, f64) -> f64),
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Function {
-    Min,
-    Max,
-    Abs,
-    /// Of two colours.
+/// The symbol of an operator, how tightly it binds, and what it does.
+type Binary = (&'static str, u8, Operator);
+
+/// The operators.
+static BINARY: [Binary; 13] = [
+    ("or", 1, Operator::Join(|a, b| a || b)),
+    ("and", 2, Operator::Join(|a, b| a && b)),
+    ("<", COMPARISON, Operator::Compare(|a, b| a < b)),
+    ("<=", COMPARISON, Operator::Compare(|a, b| a <= b)),
+    (">", COMPARISON, Operator::Compare(|a, b| a > b)),
+    (">=", COMPARISON, Operator::Compare(|a, b| a >= b)),
+    ("==", COMPARISON, Operator::Equal(true)),
+    ("!=", COMPARISON, Operator::Equal(false)),
+    ("+", 5, Operator::Calculate(|a, b| a + b)),
+    ("-", 5, Operator::Calculate(|a, b| a - b)),
+    ("*", 6, Operator::Calculate(|a, b| a * b)),
+    ("/", 6, Operator::Calculate(|a, b| a / b)),
+    ("%", 6, Operator::Calculate(|a, b| a % b)),
+];
+
+/// What a function makes of its values.
+#[derive(Clone, Copy, Debug)]
+enum Made {
+    OfNumbers(fn(&[f64]) -> f64),
+    /// How far two colours are apart.
     Distance,
 }
 
-/// The operators with their symbols and how tightly they bind.
-const BINARY: [(&str, Binary, u8); 13] = [
-    ("or", Binary::Or, 1),
-    ("and", Binary::And, 2),
-    ("<", Binary::Less, 4),
-    ("<=", Binary::LessOrEqual, 4),
-    (">", Binary::Greater, 4),
-    (">=", Binary::GreaterOrEqual, 4),
-    ("==", Binary::Equal, 4),
-    ("!=", Binary::NotEqual, 4),
-    ("+", Binary::Plus, 5),
-    ("-", Binary::Minus, 5),
-    ("*", Binary::Times, 6),
-    ("/", Binary::Over, 6),
-    ("%", Binary::Remainder, 6),
+/// The name of a function, how many values it takes where that is not any number of them, in words too, and what it makes of them.
+type Function = (&'static str, Option<(usize, &'static str)>, Made);
+
+/// The functions.
+static FUNCTIONS: [Function; 4] = [
+    (
+        "min",
+        None,
+        Made::OfNumbers(|all| all.iter().copied().fold(f64::INFINITY, f64::min)),
+    ),
+    (
+        "max",
+        None,
+        Made::OfNumbers(|all| all.iter().copied().fold(f64::NEG_INFINITY, f64::max)),
+    ),
+    ("abs", Some((1, "one value")), Made::OfNumbers(|all| all[0].abs())),
+    ("distance", Some((2, "two colours")), Made::Distance),
 ];
 
 /// How tightly `not` binds: looser than a comparison.
@@ -157,82 +174,49 @@ impl Node {
                 (Unary::Not, Term::Truth(truth)) => Some(Term::Truth(!truth)),
                 _ => None,
             },
-            Self::Binary(operator, a, b) => operator.apply(&a.evaluate(values)?, &b.evaluate(values)?),
-            Self::Call(Function::Distance, nodes) => {
+            Self::Binary((_, _, operator), a, b) => operator.apply(&a.evaluate(values)?, &b.evaluate(values)?),
+            Self::Call((_, _, Made::Distance), nodes) => {
                 let color = |node: &Self| node.evaluate(values)?.color();
                 let (a, b) = (color(nodes.first()?)?, color(nodes.get(1)?)?);
                 Some(Term::Number(a.distance(b)))
             }
-            Self::Call(function, nodes) => {
+            Self::Call((_, _, Made::OfNumbers(of)), nodes) => {
                 let number = |node: &Self| match node.evaluate(values)? {
                     Term::Number(number) => Some(number),
                     _ => None,
                 };
                 let numbers = nodes.iter().map(number).collect::<Option<Vec<f64>>>()?;
-                Some(Term::Number(match function {
-                    Function::Min => numbers.into_iter().fold(f64::INFINITY, f64::min),
-                    Function::Max => numbers.into_iter().fold(f64::NEG_INFINITY, f64::max),
-                    Function::Abs => numbers.first()?.abs(),
-                    Function::Distance => return None,
-                }))
+                Some(Term::Number(of(&numbers)))
             }
         }
     }
 }
 
-impl Binary {
+impl Operator {
     fn apply(self, a: &Term, b: &Term) -> Option<Term> {
-        match (a, b) {
-            (Term::Number(a), Term::Number(b)) => Some(match self {
-                Self::Less => Term::Truth(a < b),
-                Self::LessOrEqual => Term::Truth(a <= b),
-                Self::Greater => Term::Truth(a > b),
-                Self::GreaterOrEqual => Term::Truth(a >= b),
-                Self::Equal => Term::Truth(a == b),
-                Self::NotEqual => Term::Truth(a != b),
-                Self::Plus => Term::Number(a + b),
-                Self::Minus => Term::Number(a - b),
-                Self::Times => Term::Number(a * b),
-                Self::Over => Term::Number(a / b),
-                Self::Remainder => Term::Number(a % b),
-                Self::Or | Self::And => return None,
-            }),
-            (Term::Truth(a), Term::Truth(b)) => Some(Term::Truth(match self {
-                Self::Or => *a || *b,
-                Self::And => *a && *b,
-                Self::Equal => a == b,
-                Self::NotEqual => a != b,
-                _ => return None,
-            })),
-            (Term::Text(a), Term::Text(b)) => Some(Term::Truth(match self {
-                Self::Equal => a == b,
-                Self::NotEqual => a != b,
-                _ => return None,
-            })),
-            (Term::Color(_), _) | (_, Term::Color(_)) => {
-                let (a, b) = (a.color()?, b.color()?);
-                Some(Term::Truth(match self {
-                    Self::Equal => a == b,
-                    Self::NotEqual => a != b,
-                    _ => return None,
-                }))
+        Some(match (self, a, b) {
+            (Self::Join(of), Term::Truth(a), Term::Truth(b)) => Term::Truth(of(*a, *b)),
+            (Self::Compare(of), Term::Number(a), Term::Number(b)) => Term::Truth(of(*a, *b)),
+            (Self::Calculate(of), Term::Number(a), Term::Number(b)) => Term::Number(of(*a, *b)),
+            (Self::Equal(wanted), Term::Color(_), _) | (Self::Equal(wanted), _, Term::Color(_)) => {
+                Term::Truth((a.color()? == b.color()?) == wanted)
             }
-            _ => None,
-        }
+            (Self::Equal(wanted), Term::Number(_), Term::Number(_))
+            | (Self::Equal(wanted), Term::Truth(_), Term::Truth(_))
+            | (Self::Equal(wanted), Term::Text(_), Term::Text(_)) => Term::Truth((a == b) == wanted),
+            _ => return None,
+        })
     }
 }
 
-/// The operator that a token is, and how tightly it binds.
-fn binary(token: &Token) -> Option<(Binary, u8)> {
+/// The operator that a token is.
+fn binary(token: &Token) -> Option<&'static Binary> {
     let symbol = match token {
         Token::Symbol(symbol) => *symbol,
         Token::Word(word) => word.as_str(),
         _ => return None,
     };
-    BINARY
-        .iter()
-        .find(|entry| entry.0 == symbol)
-        .map(|entry| (entry.1, entry.2))
+    BINARY.iter().find(|(known, ..)| *known == symbol)
 }
 
 struct Parser {
@@ -267,7 +251,7 @@ impl Parser {
             return Err(format!("at most {MAX_DEPTH} brackets or signs inside each other"));
         }
         let mut left = self.operand(depth)?;
-        while let Some((operator, binding)) = binary(self.peek().1) {
+        while let Some(operator @ &(_, binding, _)) = binary(self.peek().1) {
             if binding <= floor {
                 if binding == COMPARISON && floor == COMPARISON {
                     let (at, token) = self.peek();
@@ -336,16 +320,10 @@ impl Parser {
     }
 
     fn call(&mut self, at: usize, word: &str, depth: usize) -> Result<Node, String> {
-        let function = match word {
-            "min" => Function::Min,
-            "max" => Function::Max,
-            "abs" => Function::Abs,
-            "distance" => Function::Distance,
-            other => {
-                return Err(format!(
-                    "one of min, max, abs, distance at character {at}, found the function {other:?}"
-                ));
-            }
+        let Some(function @ (name, arity, _)) = FUNCTIONS.iter().find(|(name, ..)| *name == word) else {
+            return Err(format!(
+                "one of min, max, abs, distance at character {at}, found the function {word:?}"
+            ));
         };
         self.expect("(")?;
         let mut nodes = vec![self.expression(0, depth + 1)?];
@@ -354,13 +332,9 @@ impl Parser {
             nodes.push(self.expression(0, depth + 1)?);
         }
         self.expect(")")?;
-        match (function, nodes.len()) {
-            (Function::Abs, found) if found != 1 => Err(format!("one value for abs at character {at}, found {found}")),
-            (Function::Distance, found) if found != 2 => {
-                Err(format!("two colours for distance at character {at}, found {found}"))
-            }
-            _ => Ok(()),
-        }?;
+        if let Some((_, wanted)) = arity.filter(|(count, _)| *count != nodes.len()) {
+            return Err(format!("{wanted} for {name} at character {at}, found {}", nodes.len()));
+        }
         Ok(Node::Call(function, nodes))
     }
 }
