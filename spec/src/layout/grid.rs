@@ -15,11 +15,10 @@ pub(super) enum Side {
 
 /// What is between each cell and those to its east and north.
 pub(super) struct Grid {
-    pub(super) columns: usize,
-    pub(super) rows: usize,
-    /// For each cell, row by row from the south-west.
-    pub(super) east: Vec<Side>,
-    pub(super) north: Vec<Side>,
+    /// Columns and rows.
+    pub(super) lattice: [usize; 2],
+    /// What is to the east and to the north of each cell, row by row from the south-west.
+    pub(super) sides: [Vec<Side>; 2],
 }
 
 /// How a grid stands in the arena.
@@ -34,45 +33,36 @@ pub(super) struct Scale {
     pub(super) height: Option<f64>,
 }
 
-/// A side between two cells: that to the east or to the north of a cell.
-pub(super) type SideOf = (usize, bool);
+/// A side between two cells: that to the east (0) or to the north (1) of a cell.
+pub(super) type SideOf = (usize, usize);
 
 impl Grid {
     /// All sides are of one kind.
-    pub(super) fn new([columns, rows]: [usize; 2], side: Side) -> Self {
+    pub(super) fn new(lattice: [usize; 2], side: Side) -> Self {
+        let sides = vec![side; lattice[0] * lattice[1]];
         Self {
-            columns,
-            rows,
-            east: vec![side; columns * rows],
-            north: vec![side; columns * rows],
-        }
-    }
-
-    pub(super) fn side(&mut self, (cell, to_the_north): SideOf) -> &mut Side {
-        if to_the_north {
-            &mut self.north[cell]
-        } else {
-            &mut self.east[cell]
+            lattice,
+            sides: [sides.clone(), sides],
         }
     }
 
     /// The cells beside a cell, each with the side between.
     pub(super) fn beside(&self, cell: usize) -> impl Iterator<Item = (usize, SideOf)> + use<> {
-        let (columns, rows) = (self.columns, self.rows);
+        let [columns, rows] = self.lattice;
         let (column, row) = (cell % columns, cell / columns);
-        let east = (column + 1 < columns).then(|| (cell + 1, (cell, false)));
-        let north = (row + 1 < rows).then(|| (cell + columns, (cell, true)));
-        let west = (column > 0).then(|| (cell - 1, (cell - 1, false)));
-        let south = (row > 0).then(|| (cell - columns, (cell - columns, true)));
+        let east = (column + 1 < columns).then(|| (cell + 1, (cell, 0)));
+        let north = (row + 1 < rows).then(|| (cell + columns, (cell, 1)));
+        let west = (column > 0).then(|| (cell - 1, (cell - 1, 0)));
+        let south = (row > 0).then(|| (cell - columns, (cell - columns, 1)));
         [east, north, west, south].into_iter().flatten()
     }
 
     /// Every side between two cells.
     pub(super) fn sides(&self) -> impl Iterator<Item = SideOf> + use<> {
-        let (columns, rows) = (self.columns, self.rows);
+        let [columns, rows] = self.lattice;
         (0..columns * rows).flat_map(move |cell| {
-            let east = (cell % columns + 1 < columns).then_some((cell, false));
-            let north = (cell / columns + 1 < rows).then_some((cell, true));
+            let east = (cell % columns + 1 < columns).then_some((cell, 0));
+            let north = (cell / columns + 1 < rows).then_some((cell, 1));
             east.into_iter().chain(north)
         })
     }
@@ -80,7 +70,7 @@ impl Grid {
     /// Opens sides so that all cells hang together by one way each (a spanning tree, depth first). Each opened side
     /// becomes `as_what`; hands back the sides in the order of opening.
     pub(super) fn open_tree(&mut self, as_what: Side, draws: &mut Draws) -> Vec<SideOf> {
-        let count = self.columns * self.rows;
+        let count = self.sides[0].len();
         let mut seen = vec![false; count];
         let mut opened = Vec::with_capacity(count - 1);
         let mut stack = Vec::with_capacity(count);
@@ -88,7 +78,7 @@ impl Grid {
         seen[first] = true;
         stack.push(first);
         while let Some(&cell) = stack.last() {
-            let mut fresh = [(0, (0, false)); 4];
+            let mut fresh = [(0, (0, 0)); 4];
             let mut number = 0;
             for found in self.beside(cell).filter(|(next, _)| !seen[*next]) {
                 fresh[number] = found;
@@ -98,9 +88,9 @@ impl Grid {
                 stack.pop();
                 continue;
             }
-            let (next, side) = fresh[if number == 1 { 0 } else { draws.below(number) }];
-            *self.side(side) = as_what;
-            opened.push(side);
+            let (next, (cell, axis)) = fresh[if number == 1 { 0 } else { draws.below(number) }];
+            self.sides[axis][cell] = as_what;
+            opened.push((cell, axis));
             seen[next] = true;
             stack.push(next);
         }
@@ -113,38 +103,37 @@ impl Grid {
             return;
         }
         let mut sides: Vec<SideOf> = self.sides().collect();
-        sides.retain(|side| *self.side(*side) != Side::Open);
+        sides.retain(|(cell, axis)| self.sides[*axis][*cell] != Side::Open);
         Draws::new(seed, Purpose::Standing).shuffle(&mut sides);
         let stand = share_of(share, sides.len());
-        for side in sides.drain(stand..) {
-            *self.side(side) = Side::Open;
+        for (cell, axis) in sides.drain(stand..) {
+            self.sides[axis][cell] = Side::Open;
         }
     }
 
     /// The bits of the sides by which each cell can be left.
     fn ways_out(&self) -> Vec<u8> {
-        let mut ways = vec![0; self.columns * self.rows];
-        for row in 0..self.rows {
-            for column in 0..self.columns {
-                let cell = row * self.columns + column;
-                if column + 1 < self.columns && self.east[cell] != Side::Wall {
-                    ways[cell] |= EAST;
-                    ways[cell + 1] |= WEST;
-                }
-                if row + 1 < self.rows && self.north[cell] != Side::Wall {
-                    ways[cell] |= NORTH;
-                    ways[cell + self.columns] |= SOUTH;
-                }
-            }
+        let mut ways = vec![0; self.sides[0].len()];
+        for (cell, axis) in self
+            .sides()
+            .filter(|(cell, axis)| self.sides[*axis][*cell] != Side::Wall)
+        {
+            ways[cell] |= [EAST, NORTH][axis];
+            ways[cell + self.strides()[axis]] |= [WEST, SOUTH][axis];
         }
         ways
+    }
+
+    /// How far a cell's number is from those of the cells to its east and north.
+    fn strides(&self) -> [usize; 2] {
+        [1, self.lattice[0]]
     }
 
     /// The plan of the grid; `room_of` says which room a cell, by column and row, belongs to.
     pub(super) fn plan(&self, scale: &Scale, seed: u64, room_of: impl Fn([usize; 2]) -> u32) -> Plan {
         let ways = self.ways_out();
-        let place = |cell: usize| [cell % self.columns, cell / self.columns];
-        let mut plan = Plan::of_cells(scale.size, [self.columns, self.rows], seed, |cell, center| {
+        let place = |cell: usize| [cell % self.lattice[0], cell / self.lattice[0]];
+        let mut plan = Plan::of_cells(scale.size, self.lattice, seed, |cell, center| {
             Some(PlanCell {
                 center,
                 room: room_of(place(cell)),
@@ -153,22 +142,13 @@ impl Grid {
             })
         });
         plan.corridor = plan.cell[0].min(plan.cell[1]) - scale.wall;
-        if self.east.iter().chain(&self.north).any(|side| *side == Side::Doorway) {
+        if self.sides.iter().flatten().any(|side| *side == Side::Doorway) {
             plan.corridor = plan.corridor.min(scale.doorway);
         }
-        let (half, side) = (plan.size.map(|side| side / 2.0), plan.cell);
+        let (half, side, strides) = (plan.size.map(|side| side / 2.0), plan.cell, self.strides());
         // Lines from south to north, then from west to east.
         for (across, along) in [(0, 1), (1, 0)] {
-            let to_the_north = across == 1;
-            let [lines, length] = [[self.columns, self.rows][across] - 1, [self.columns, self.rows][along]];
-            let cell_of = |line: usize, at: usize| {
-                if to_the_north {
-                    line * self.columns + at
-                } else {
-                    at * self.columns + line
-                }
-            };
-            for line in 0..lines {
+            for line in 0..self.lattice[across] - 1 {
                 let middle = (line + 1) as f64 * side[across] - half[across];
                 let metres = |at: usize| at as f64 * side[along] - half[along];
                 let mut run = Run {
@@ -179,13 +159,9 @@ impl Grid {
                     start: None,
                     walls: &mut plan.walls,
                 };
-                for at in 0..length {
-                    let cell = cell_of(line, at);
-                    match if to_the_north {
-                        self.north[cell]
-                    } else {
-                        self.east[cell]
-                    } {
+                for at in 0..self.lattice[along] {
+                    let cell = line * strides[across] + at * strides[along];
+                    match self.sides[across][cell] {
                         Side::Open => run.stop(metres(at) + scale.wall / 2.0),
                         Side::Wall => run.go(metres(at) - scale.wall / 2.0),
                         Side::Doorway => {
@@ -193,14 +169,10 @@ impl Grid {
                             run.go(metres(at) - scale.wall / 2.0);
                             run.stop(center - scale.doorway / 2.0);
                             run.go(center + scale.doorway / 2.0);
-                            let beyond = if to_the_north { cell + self.columns } else { cell + 1 };
+                            let beyond = cell + strides[across];
                             plan.doorways.push(Doorway {
-                                center: if to_the_north {
-                                    [center, middle]
-                                } else {
-                                    [middle, center]
-                                },
-                                heading: if to_the_north { 0.0 } else { 90.0 },
+                                center: point(across, middle, center),
+                                heading: [90.0, 0.0][across],
                                 width: scale.doorway,
                                 depth: scale.wall,
                                 rooms: [cell, beyond].map(|cell| room_of(place(cell))),
@@ -213,6 +185,11 @@ impl Grid {
         }
         plan
     }
+}
+
+/// The point at these places across and along a line; `across` is the axis across it.
+fn point(across: usize, on_it: f64, along: f64) -> [f64; 2] {
+    if across == 0 { [on_it, along] } else { [along, on_it] }
 }
 
 /// A straight wall that is being drawn out along a line.
@@ -235,13 +212,7 @@ impl Run<'_> {
     fn stop(&mut self, to: f64) {
         let Some(from) = self.start.take() else { return };
         let (to, half) = (to.min(self.end), self.scale.wall / 2.0);
-        let corner = |along: f64, across: f64| {
-            if self.across == 0 {
-                [self.middle + across, along]
-            } else {
-                [along, self.middle + across]
-            }
-        };
+        let corner = |along: f64, across: f64| point(self.across, self.middle + across, along);
         let mut polygon = vec![
             corner(from, -half),
             corner(to, -half),

@@ -62,11 +62,11 @@ impl Maze {
         if self.braid <= 0.0 {
             return;
         }
-        let closed = |grid: &mut Grid, cell: usize| -> ([SideOf; 4], usize, usize) {
-            let (mut closed, mut number, mut open) = ([(0, false); 4], 0, 0);
-            for (_, side) in grid.beside(cell) {
-                if *grid.side(side) == Side::Wall {
-                    closed[number] = side;
+        let closed = |grid: &Grid, cell: usize| -> ([SideOf; 4], usize, usize) {
+            let (mut closed, mut number, mut open) = ([(0, 0); 4], 0, 0);
+            for (_, (cell, axis)) in grid.beside(cell) {
+                if grid.sides[axis][cell] == Side::Wall {
+                    closed[number] = (cell, axis);
                     number += 1;
                 } else {
                     open += 1;
@@ -75,7 +75,7 @@ impl Maze {
             (closed, number, open)
         };
         let mut draws = Draws::new(seed, Purpose::Loops);
-        let mut ends: Vec<usize> = (0..grid.columns * grid.rows)
+        let mut ends: Vec<usize> = (0..grid.sides[0].len())
             .filter(|cell| closed(grid, *cell).2 == 1)
             .collect();
         draws.shuffle(&mut ends);
@@ -84,7 +84,8 @@ impl Maze {
             // The number is drawn for each, so that which walls fall does not depend on the share.
             let choice = draws.below(number.max(1));
             if open == 1 && number > 0 {
-                *grid.side(sides[choice]) = Side::Open;
+                let (cell, axis) = sides[choice];
+                grid.sides[axis][cell] = Side::Open;
             }
         }
     }

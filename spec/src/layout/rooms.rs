@@ -87,23 +87,15 @@ impl Rooms {
         let mut grid = Grid::new(lattice, Side::Open);
         let mut draws = Draws::new(seed, Purpose::Doorways);
         // Where the doorway of a wall is does not depend on which walls have one.
-        for (room, to_the_north) in joined.sides() {
-            let [column, row] = [room % joined.columns, room / joined.columns];
-            let has_doorway = if to_the_north {
-                joined.north[room]
-            } else {
-                joined.east[room]
-            } == Side::Doorway;
-            let along = cells[usize::from(!to_the_north)];
+        for (room, axis) in joined.sides() {
+            let [column, row] = [room % joined.lattice[0], room / joined.lattice[0]];
+            let has_doorway = joined.sides[axis][room] == Side::Doorway;
+            let along = cells[1 - axis];
             let doorway = draws.below(along);
             for at in 0..along {
-                let [x, y] = if to_the_north {
-                    [at, cells[1] - 1]
-                } else {
-                    [cells[0] - 1, at]
-                };
+                let [x, y] = [[cells[0] - 1, at], [at, cells[1] - 1]][axis];
                 let cell = (row * cells[1] + y) * lattice[0] + column * cells[0] + x;
-                *grid.side((cell, to_the_north)) = if has_doorway && at == doorway {
+                grid.sides[axis][cell] = if has_doorway && at == doorway {
                     Side::Doorway
                 } else {
                     Side::Wall
@@ -128,10 +120,10 @@ impl Rooms {
         let mut joined = Grid::new(self.grid.map(|count| count as usize), Side::Wall);
         joined.open_tree(Side::Doorway, &mut Draws::new(seed, Purpose::Tree));
         let mut others: Vec<SideOf> = joined.sides().collect();
-        others.retain(|side| *joined.side(*side) == Side::Wall);
+        others.retain(|(cell, axis)| joined.sides[*axis][*cell] == Side::Wall);
         Draws::new(seed, Purpose::Loops).shuffle(&mut others);
-        for side in &others[..share_of(self.loops, others.len())] {
-            *joined.side(*side) = Side::Doorway;
+        for (cell, axis) in &others[..share_of(self.loops, others.len())] {
+            joined.sides[*axis][*cell] = Side::Doorway;
         }
         joined
     }
