@@ -5,6 +5,7 @@
 
 mod classes;
 mod color;
+mod defaults;
 mod describe;
 mod distribution;
 mod document;

@@ -53,13 +53,3 @@ pub enum CellRoom {
     /// The room in which the agent starts.
     SameAsAgent,
 }
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
-pub(super) fn is_any(kind: &CellKind) -> bool {
-    *kind == CellKind::Any
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
-pub(super) fn is_false(truth: &bool) -> bool {
-    !*truth
-}

@@ -148,11 +148,6 @@ pub enum ChannelChance {
     Shared,
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
-pub(super) fn is_apart(sampling: &ChannelChance) -> bool {
-    *sampling == ChannelChance::Apart
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -32,6 +32,7 @@ pub use reference::{Number, ParamRef};
 pub(crate) use support::MOST_ATOMS;
 pub use turn::Turns;
 
+use crate::defaults::is_default;
 use crate::value::Value;
 
 /// How values scatter. `N` is [`Number`] in a spec, where numbers may be references, and `f64` once a variant has settled them.
@@ -257,7 +258,7 @@ pub enum Distribution<N = f64> {
         #[schemars(length(min = 1, max = 100_000))]
         values: Vec<[N; 2]>,
         /// Whether the points are taken in turn, round and round, or drawn.
-        #[serde(default, skip_serializing_if = "planar::is_default")]
+        #[serde(default, skip_serializing_if = "is_default")]
         order: Order,
     },
     /// The centres of the cells of a grid, taken in turn from the south-west, row by row, or drawn.
@@ -277,7 +278,7 @@ pub enum Distribution<N = f64> {
         #[schemars(extend("minimum" = 0, "maximum" = 1))]
         jitter: Option<N>,
         /// Whether the cells are taken in turn, round and round, or drawn.
-        #[serde(default, skip_serializing_if = "planar::is_default")]
+        #[serde(default, skip_serializing_if = "is_default")]
         order: Order,
     },
     /// Every point of a rectangle alike, but for keeping its distance from the group's own points: Poisson-disc sampling.
@@ -294,14 +295,14 @@ pub enum Distribution<N = f64> {
     /// `walk`, for the agent's start.
     Cells {
         /// By how many sides they can be left; any if absent.
-        #[serde(default, skip_serializing_if = "cells::is_any")]
+        #[serde(default, skip_serializing_if = "is_default")]
         kind: CellKind,
         /// Those that one of these letters of a text stands for; any if absent. Letters for floor count if the legend names them.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(length(min = 1, max = 100))]
         letter: Option<String>,
         /// Those whose letters the legend gives to the group.
-        #[serde(default, skip_serializing_if = "cells::is_false")]
+        #[serde(default, skip_serializing_if = "is_default")]
         of_group: bool,
         /// Those of the room in which the agent starts, or of the others; of all rooms if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
@@ -322,7 +323,7 @@ pub enum Distribution<N = f64> {
         /// The corner opposite; each channel lies between those of the two, whichever is greater.
         to: Channels<N>,
         /// Whether each channel has chance of its own, which fills the box, or all have the same, which goes along the line.
-        #[serde(default, skip_serializing_if = "channels::is_apart")]
+        #[serde(default, skip_serializing_if = "is_default")]
         channels: ChannelChance,
     },
     /// Colours around a colour: each channel is normal, given that it falls in 0..1.
@@ -347,7 +348,7 @@ pub enum Distribution<N = f64> {
         #[serde(skip_serializing_if = "Option::is_none")]
         high: Option<Channels<N>>,
         /// Whether each channel has noise of its own, or all have the same, which makes lighter and darker shades.
-        #[serde(default, skip_serializing_if = "channels::is_apart")]
+        #[serde(default, skip_serializing_if = "is_default")]
         channels: ChannelChance,
     },
     /// Colours by hue, saturation and value, each drawn alike between its ends.

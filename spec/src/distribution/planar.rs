@@ -31,11 +31,6 @@ pub enum Order {
     Random,
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
-pub(super) fn is_default(order: &Order) -> bool {
-    *order == Order::default()
-}
-
 impl Moments<2> {
     fn round(mean: [f64; 2], variance: f64) -> Self {
         Self {

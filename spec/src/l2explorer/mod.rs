@@ -71,7 +71,7 @@ static PARTS: LazyLock<Parts> = LazyLock::new(|| {
         agent: Part::of(&AgentParams::default(), of("AgentParams"), &["pickup_range"]),
         image: Part::of(&ImageParams::default(), of("ImageParams"), &[]),
         rules: Part::of(&Rules::default(), of("Rules"), &[]),
-        object: Part::of(&Object::new("", [0.0, 0.0]), of("Object"), old_of_objects),
+        object: Part::of(&Object::default(), of("Object"), old_of_objects),
     }
 });
 

@@ -5,6 +5,7 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::defaults::{is_default, is_one, one};
 use crate::value::Value;
 
 /// A drift from a regime's variant to another: of the same task, or, where whole variants switch, of any.
@@ -140,19 +141,6 @@ impl RegimeDrift {
         let share = f64::from(experience.min(last)) / f64::from(last);
         self.from * (1.0 - share) + self.until * share
     }
-}
-
-fn one() -> f64 {
-    1.0
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
-fn is_one(value: &f64) -> bool {
-    *value == 1.0
-}
-
-fn is_default<T: Default + PartialEq>(value: &T) -> bool {
-    *value == T::default()
 }
 
 #[cfg(test)]

@@ -15,6 +15,7 @@ pub use drift::{DriftSchedule, DriftSwitch, RegimeDrift};
 pub use proof::{ProvenVariant, ScenarioProof};
 pub use regime::Regime;
 
+use crate::defaults::is_default;
 use crate::document::Document;
 use crate::error::SpecError;
 use crate::limits::MAX_SCENARIO_VALUES;
@@ -58,7 +59,7 @@ pub struct Scenario {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub difficulty: Option<ScenarioDifficulty>,
     /// Whether the learner is told which task it is in; by default it is not.
-    #[serde(default, skip_serializing_if = "TaskLabel::is_none")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub task_label: TaskLabel,
     /// That its variants differ in one element only, as an experiment saw it; of scenarios that probe an element.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -133,13 +134,6 @@ pub enum TaskLabel {
     Observation,
 }
 
-impl TaskLabel {
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
-    fn is_none(&self) -> bool {
-        *self == Self::None
-    }
-}
-
 /// A block: the agent either learns, or is frozen and evaluated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -151,10 +145,10 @@ pub struct Block {
     #[serde(rename = "type")]
     pub kind: BlockKind,
     /// Whether it belongs to the time before deployment, whose blocks come before all others.
-    #[serde(default, skip_serializing_if = "Phase::is_deployment")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub phase: Phase,
     /// In which order its experiences are run; one regime after the other if absent.
-    #[serde(default, skip_serializing_if = "BlockMix::is_in_order")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub mix: BlockMix,
     /// Stretches of experiences of one variant each.
     #[schemars(length(min = 1, max = 100_000))]
@@ -171,13 +165,6 @@ pub enum BlockMix {
     /// All regimes among each other, in an order drawn by the seed of the first: joint training. Within a regime too, the
     /// worlds come in that order.
     Shuffled,
-}
-
-impl BlockMix {
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
-    fn is_in_order(&self) -> bool {
-        *self == Self::InOrder
-    }
 }
 
 /// Whether the agent may learn in a block.
@@ -199,13 +186,6 @@ pub enum Phase {
     /// The lifetime itself.
     #[default]
     Deployment,
-}
-
-impl Phase {
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
-    fn is_deployment(&self) -> bool {
-        *self == Self::Deployment
-    }
 }
 
 impl Block {

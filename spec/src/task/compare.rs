@@ -13,27 +13,22 @@ use crate::value::{ParameterType, Value};
 
 /// How two values of a parameter are compared, and how much that counts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[serde(default, deny_unknown_fields)]
 #[schemars(extend("examples" = [
     { "weight": 2, "measure": "log_ratio" },
     { "costs": [[0, 0.2, 1], [0.2, 0, 1], [1, 1, 0]] },
 ]))]
 pub struct Compare {
     /// What the parameter weighs among those that touch the same element; 1 if absent, 0 leaves it out.
-    #[serde(default = "one")]
     #[schemars(range(min = 0.0, max = 1e6))]
     pub weight: f64,
     /// The measure; that of the parameter's type if absent.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub measure: Option<MeasureName>,
     /// For choices: how far each is from each, a row for every choice in their order; divided by the largest when it counts.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 1, max = 1000))]
     pub costs: Option<Vec<Vec<f64>>>,
-}
-
-pub(super) fn one() -> f64 {
-    1.0
 }
 
 impl Default for Compare {

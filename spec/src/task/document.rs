@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
 
 use super::{By, ElementWeights, Group, Parameter, VariantSpec};
+use crate::defaults::is_default;
 use crate::schema::document::DocumentSchema;
 
 /// A task spec as its document has it, before anything but the schema has been checked.
@@ -53,7 +54,7 @@ pub(crate) struct TaskDocument {
     #[schemars(length(max = 100), inner(length(min = 1, max = 500)))]
     pub(crate) require: Vec<String>,
     /// What each element of the decision process weighs when variants are compared; 1 where nothing is said.
-    #[serde(default, skip_serializing_if = "ElementWeights::is_default")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub(crate) element_weights: ElementWeights,
     /// What variants are compared by where nobody says: parameters if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -5,27 +5,27 @@ use serde::{Deserialize, Serialize};
 
 /// What each element of the decision process weighs in a task's distances; 1 where nothing is said.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[serde(default, deny_unknown_fields)]
 #[schemars(extend("examples" = [{ "R": 2, "O": 0.5 }]))]
 pub struct ElementWeights {
     /// The states.
-    #[serde(rename = "S", default = "super::compare::one")]
+    #[serde(rename = "S")]
     #[schemars(range(min = 0.0, max = 1e6))]
     pub state: f64,
     /// The actions.
-    #[serde(rename = "A", default = "super::compare::one")]
+    #[serde(rename = "A")]
     #[schemars(range(min = 0.0, max = 1e6))]
     pub action: f64,
     /// The transitions.
-    #[serde(rename = "T", default = "super::compare::one")]
+    #[serde(rename = "T")]
     #[schemars(range(min = 0.0, max = 1e6))]
     pub transition: f64,
     /// The rewards.
-    #[serde(rename = "R", default = "super::compare::one")]
+    #[serde(rename = "R")]
     #[schemars(range(min = 0.0, max = 1e6))]
     pub reward: f64,
     /// The observations.
-    #[serde(rename = "O", default = "super::compare::one")]
+    #[serde(rename = "O")]
     #[schemars(range(min = 0.0, max = 1e6))]
     pub observation: f64,
 }
@@ -46,9 +46,5 @@ impl ElementWeights {
     /// In the order of [`Element::ALL`](crate::Element::ALL).
     pub fn to_array(self) -> [f64; 5] {
         [self.state, self.action, self.transition, self.reward, self.observation]
-    }
-
-    pub(crate) fn is_default(&self) -> bool {
-        *self == Self::default()
     }
 }

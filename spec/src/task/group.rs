@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
 
 use super::template::Source;
+use crate::defaults::is_default;
 use crate::distribution::{Distribution, Number};
 
 /// A group of objects: how many, what each is, and where they stand.
@@ -37,7 +38,7 @@ pub struct Group {
     #[schemars(length(min = 1, max = 100))]
     pub around: Option<String>,
     /// With `around`: whether the placement turns with the heading of the object in its middle.
-    #[serde(default, skip_serializing_if = "is_false")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub turned: bool,
     /// Where the objects look, in place of their template's `heading`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -105,11 +106,6 @@ fn distances(schema: &mut schemars::Schema) {
             distance.insert(key.to_owned(), limit.into());
         }
     }
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
-fn is_false(value: &bool) -> bool {
-    !*value
 }
 
 fn at_letters() -> Source {

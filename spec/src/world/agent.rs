@@ -4,8 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::StateFeature;
-use super::defaults::{is_classic, is_default, is_one, is_true};
 use super::fields::{Field, FieldPlace, Place, fields, word};
+use crate::defaults::{is_default, is_one, is_true};
 use crate::value::{ParameterType, Value};
 
 fields! {
@@ -112,6 +112,10 @@ fields! {
         #[schemars(range(min = 0.0, max = 1e9))]
         pub most: f64 = 100.0 => Field::ours(AsPart),
     }
+}
+
+fn is_classic(features: &[StateFeature]) -> bool {
+    features == StateFeature::CLASSIC
 }
 
 impl AgentParams {

@@ -3,9 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::defaults::is_default;
 use super::fields::{fields, word};
 use super::{AgentParams, EnvironmentParams, MAX_SEED, Object, Progress, Rules};
+use crate::defaults::is_default;
 use crate::version::WORLD_VERSION;
 
 fields! {

@@ -5,10 +5,10 @@ use std::fmt;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::defaults::is_default;
 use super::fields::{Field, FieldPlace, Place, fields};
 use super::looks::LooksForm;
 use super::{Looks, Zone};
+use crate::defaults::is_default;
 use crate::layout::{Layout, Plan};
 use crate::value::{ParameterType, Value};
 use crate::{Color, maps};

@@ -10,9 +10,9 @@ use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value as Json;
 
-use super::defaults::{is_default, is_one, one};
 use super::fields::{fields, word};
 use crate::Color;
+use crate::defaults::{is_default, is_one, one};
 use crate::layout::Layout;
 
 /// How a world is drawn.

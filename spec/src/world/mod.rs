@@ -2,7 +2,6 @@
 
 mod agent;
 mod check;
-mod defaults;
 mod draft;
 mod environment;
 mod features;

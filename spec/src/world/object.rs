@@ -5,10 +5,10 @@ use std::borrow::Cow;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::defaults::{half, is_default, is_one, one, yes};
 use super::fields::{Place, fields, word};
 use super::{Door, MAX_SEED, Portable, Surface, Switch};
 use crate::Color;
+use crate::defaults::{half, is_default, is_one, one, yes};
 use crate::value::{ParameterType, Value};
 
 /// What can be written on a sign.
@@ -27,129 +27,129 @@ fields! {
     pub struct Object {
         /// Kind of asset: `geometric`, `tree`, `barrel`, …; commands refuse classes and models that are not known.
         #[schemars(length(min = 1, max = 100))]
-        pub class: String => Field::original(Measured(&[Unmatched, Rewards, UnmatchedLooks])),
+        pub class: String = String::new() => Field::original(Measured(&[Unmatched, Rewards, UnmatchedLooks])),
         /// Which asset of the class: its name, such as `sphere` or `fox`, or its number from "1".
         #[serde(default)]
-        pub model: Model => Field::original(Leaves(ModelsOfObjects)),
+        pub model: Model = Model::default() => Field::original(Leaves(ModelsOfObjects)),
         /// The model of the class whose body it has, whatever it looks like: the shape that is bumped into, and the height from which
         /// its range is measured. That of its own model if absent.
         #[serde(default, skip_serializing_if = "Option::is_none")]
-        pub body_model: Option<Model> => Field::ours(Leaves(Bodies)),
+        pub body_model: Option<Model> = None => Field::ours(Leaves(Bodies)),
         /// What a sign says, in block letters on its front: capital letters, digits, spaces and `! ? < > + -`. Only the class `sign`
         /// shows it.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(length(max = 8), regex(pattern = TEXT_PATTERN))]
-        pub text: Option<String> => Field::ours(Leaves(ModelsOfObjects)),
+        pub text: Option<String> = None => Field::ours(Leaves(ModelsOfObjects)),
         /// Position on the ground in metres.
         #[schemars(inner(range(min = -300.0, max = 300.0)))]
-        pub coordinates: [f64; 2] => Field::original(Measured(&[PlacesOfObjects])).unit("m"),
+        pub coordinates: [f64; 2] = [0.0; 2] => Field::original(Measured(&[PlacesOfObjects])).unit("m"),
         /// Where the object faces, in degrees: 0 is +y, growing clockwise.
         #[serde(default)]
         #[schemars(range(min = 0.0, max = 360.0))]
-        pub heading: f64 => Field::ours(Measured(&[HeadingsOfObjects])).heading(),
+        pub heading: f64 = 0.0 => Field::ours(Measured(&[HeadingsOfObjects])).heading(),
         /// Factor on the asset's natural size.
         #[serde(default = "one")]
         #[schemars(range(min = 0.01, max = 100.0))]
-        pub scale: f64 => Field::ours(Measured(&[SizesOfObjects])),
+        pub scale: f64 = 1.0 => Field::ours(Measured(&[SizesOfObjects])),
         /// Main colour; the asset's own colours if absent.
         #[serde(default, skip_serializing_if = "Option::is_none")]
-        pub color: Option<Color> => Field::original(Measured(&[ColorsOfObjects])),
+        pub color: Option<Color> = None => Field::original(Measured(&[ColorsOfObjects])),
         /// What covers it, where the world's looks are natural: a pattern at its own size in metres, whatever the object's `scale`.
         #[serde(default, skip_serializing_if = "is_default")]
-        pub surface: Surface => Field::ours(Leaves(ModelsOfObjects)),
+        pub surface: Surface = Surface::Plain => Field::ours(Leaves(ModelsOfObjects)),
         /// Whether the agent is stopped by it.
         #[serde(default = "yes")]
-        pub solid: bool => Field::ours(Leaves(Bodies)),
+        pub solid: bool = true => Field::ours(Leaves(Bodies)),
         /// Makes it a body that the agent pushes along the ground; absent for one that stands fast. Only solid objects that do not
         /// move by themselves are pushed.
         #[serde(default, skip_serializing_if = "Option::is_none")]
-        pub pushable: Option<Pushable> => Field::ours(Leaves(Bodies)),
+        pub pushable: Option<Pushable> = None => Field::ours(Leaves(Bodies)),
         /// What one triggering is worth.
         #[serde(default)]
         #[schemars(range(min = -1e9, max = 1e9))]
-        pub reward: f64 => Field::original(Measured(&[Rewards])),
+        pub reward: f64 = 0.0 => Field::original(Measured(&[Rewards])),
         /// Probability that triggering pays at all (a bandit arm), 0..1.
         #[serde(default = "one", skip_serializing_if = "is_one")]
         #[schemars(range(min = 0.0, max = 1.0))]
-        pub reward_probability: f64 => Field::ours(Measured(&[RewardProbabilities])),
+        pub reward_probability: f64 = 1.0 => Field::ours(Measured(&[RewardProbabilities])),
         /// Stimuli of which each triggering pays `reward`.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         #[schemars(length(max = 3))]
-        pub reward_stimulus: Vec<Stimulus> => Field::original(Leaves(PaidFor)),
+        pub reward_stimulus: Vec<Stimulus> = Vec::new() => Field::original(Leaves(PaidFor)),
         /// Stimuli that pay `reward` once, after which the object's reward is 0.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         #[schemars(length(max = 3))]
-        pub reward_once_stimulus: Vec<Stimulus> => Field::original(Leaves(PaidFor)),
+        pub reward_once_stimulus: Vec<Stimulus> = Vec::new() => Field::original(Leaves(PaidFor)),
         /// Stimuli that destroy the object.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         #[schemars(length(max = 3))]
-        pub destroy_stimulus: Vec<Stimulus> => Field::original(Leaves(Bodies)),
+        pub destroy_stimulus: Vec<Stimulus> = Vec::new() => Field::original(Leaves(Bodies)),
         /// Distance from centre to centre in metres below which `AgentInRange` holds.
         #[serde(default, skip_serializing_if = "is_default")]
         #[schemars(range(min = 0.0, max = 1000.0))]
-        pub range_stimulus_distance: f64 => Field::original(Leaves(PaidFor)).unit("m"),
+        pub range_stimulus_distance: f64 = 0.0 => Field::original(Leaves(PaidFor)).unit("m"),
         /// How the object moves by itself.
         #[serde(default)]
-        pub motion_model: MotionModel => Field::original(Leaves(Motion)),
+        pub motion_model: MotionModel = MotionModel::Stationary => Field::original(Leaves(Motion)),
         /// Speed of the object's own motion in metres per second.
         #[serde(default, skip_serializing_if = "is_default")]
         #[schemars(range(min = 0.0, max = 100.0))]
-        pub speed: f64 => Field::ours(Leaves(Motion)).unit("m/s"),
+        pub speed: f64 = 0.0 => Field::ours(Leaves(Motion)).unit("m/s"),
         /// Largest turn of the object's own motion in degrees per second; at once if absent.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0.0, max = 3600.0))]
-        pub turn_rate: Option<f64> => Field::ours(Leaves(Motion)).unit("degrees/s"),
+        pub turn_rate: Option<f64> = None => Field::ours(Leaves(Motion)).unit("degrees/s"),
         /// How far a predator or prey sees the agent in metres, from centre to centre; everywhere if absent.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0.0, max = 1000.0))]
-        pub sight_range: Option<f64> => Field::ours(Leaves(Motion)).unit("m"),
+        pub sight_range: Option<f64> = None => Field::ours(Leaves(Motion)).unit("m"),
         /// Points in metres that the object walks along, in order, then back to the first.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         #[schemars(length(max = 1000), inner(inner(range(min = -1e4, max = 1e4))))]
-        pub waypoints: Vec<[f64; 2]> => Field::ours(Leaves(Motion)).unit("m"),
+        pub waypoints: Vec<[f64; 2]> = Vec::new() => Field::ours(Leaves(Motion)).unit("m"),
         /// Place in a scavenger sequence, from 1: it pays only when all lower places have been collected.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 1, max = 100_000))]
-        pub order: Option<u32> => Field::ours(Leaves(PaidFor)),
+        pub order: Option<u32> = None => Field::ours(Leaves(PaidFor)),
         /// How the object comes back after it was destroyed.
         #[serde(default, skip_serializing_if = "Option::is_none")]
-        pub respawn: Option<Respawn> => Field::ours(Leaves(Bodies)),
+        pub respawn: Option<Respawn> = None => Field::ours(Leaves(Bodies)),
         /// The seed of its own random numbers, whatever else is in the world and in which order. Sampled objects
         /// have one of their group's name and their number in it; without it the place where it starts decides. Objects
         /// that share one are distinguished by their order.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0, max = MAX_SEED))]
-        pub seed: Option<u64> => Field::ours(Not("two worlds that differ in their seeds alone are two runs of one world")),
+        pub seed: Option<u64> = None => Field::ours(Not("two worlds that differ in their seeds alone are two runs of one world")),
         /// A free word that rules and logs refer to; the name of the group for sampled objects.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(length(min = 1, max = 100))]
-        pub tag: Option<String> => Field::ours(Not("it is a name: what rules make of it is compared")),
+        pub tag: Option<String> = None => Field::ours(Not("it is a name: what rules make of it is compared")),
         /// A name that no other object of the world has.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(length(min = 1, max = 100))]
-        pub unique_name: Option<String> => Field::original(Not("it is a name"))
+        pub unique_name: Option<String> = None => Field::original(Not("it is a name"))
                 .fixed("no two objects of a world may have the same; objects are named together by their tag"),
         /// Makes it a door.
         #[serde(default, skip_serializing_if = "Option::is_none")]
-        pub door: Option<Door> => Field::ours(Leaves(Bodies)),
+        pub door: Option<Door> = None => Field::ours(Leaves(Bodies)),
         /// Makes it a switch of doors.
         #[serde(default, skip_serializing_if = "Option::is_none")]
-        pub switch: Option<Switch> => Field::ours(Leaves(Bodies)),
+        pub switch: Option<Switch> = None => Field::ours(Leaves(Bodies)),
         /// Makes it a thing that the agent can carry, such as a key.
         #[serde(default, skip_serializing_if = "Option::is_none")]
-        pub portable: Option<Portable> => Field::ours(Leaves(Bodies)),
+        pub portable: Option<Portable> = None => Field::ours(Leaves(Bodies)),
         /// Energy that the agent gains when a triggering pays its reward, be that 0, or destroys it; once for what pays once.
         #[serde(default, skip_serializing_if = "is_default")]
         #[schemars(range(min = -1e9, max = 1e9))]
-        pub energy: f64 => Field::ours(Leaves(Bodies)),
+        pub energy: f64 = 0.0 => Field::ours(Leaves(Bodies)),
         /// How often `AgentInRange` holds: when the agent comes into range, or at every time step in it. An agent that starts within
         /// range comes into it in the first time step.
         #[serde(default, skip_serializing_if = "is_default")]
-        pub range_trigger: Trigger => Field::ours(Leaves(PaidFor)),
+        pub range_trigger: Trigger = Trigger::Edge => Field::ours(Leaves(PaidFor)),
         /// How often `AgentCollide` holds: when the bodies meet, or at every time step in which they touch. An agent that starts in
         /// touch meets it in the first time step.
         #[serde(default, skip_serializing_if = "is_default")]
-        pub contact_trigger: Trigger => Field::ours(Leaves(PaidFor)),
+        pub contact_trigger: Trigger = Trigger::Edge => Field::ours(Leaves(PaidFor)),
     }
 }
 
@@ -158,38 +158,8 @@ impl Object {
     pub fn new(class: impl Into<String>, coordinates: [f64; 2]) -> Self {
         Self {
             class: class.into(),
-            model: Model::default(),
-            body_model: None,
-            text: None,
             coordinates,
-            heading: 0.0,
-            scale: 1.0,
-            color: None,
-            surface: Surface::Plain,
-            solid: true,
-            pushable: None,
-            reward: 0.0,
-            reward_probability: 1.0,
-            reward_stimulus: Vec::new(),
-            reward_once_stimulus: Vec::new(),
-            destroy_stimulus: Vec::new(),
-            range_stimulus_distance: 0.0,
-            motion_model: MotionModel::Stationary,
-            speed: 0.0,
-            turn_rate: None,
-            sight_range: None,
-            waypoints: Vec::new(),
-            order: None,
-            respawn: None,
-            seed: None,
-            tag: None,
-            unique_name: None,
-            door: None,
-            switch: None,
-            portable: None,
-            energy: 0.0,
-            range_trigger: Trigger::Edge,
-            contact_trigger: Trigger::Edge,
+            ..Self::default()
         }
     }
 

@@ -5,8 +5,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::WorldDraft;
-use super::defaults::{is_default, is_true};
 use super::fields::Place;
+use crate::defaults::{is_default, is_true};
 use crate::error::Problem;
 
 /// The course of a running world; absent at its start.

@@ -4,8 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Object;
-use super::defaults::{is_default, is_one, is_two, one, two};
 use super::fields::{Field, FieldPlace, Place, fields};
+use crate::defaults::{is_default, is_one, is_two, one, two};
 use crate::value::{ParameterType, Value};
 
 fields! {

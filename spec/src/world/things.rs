@@ -5,8 +5,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Stimulus;
-use super::defaults::is_default;
 use super::fields::{fields, word};
+use crate::defaults::is_default;
 
 /// What a person does with a handle.
 fn by_interaction() -> Vec<Stimulus> {
@@ -23,7 +23,7 @@ fields! {
     /// It never closes on who stands in it: it closes in the first time step in which nobody does, unless it is opened
     /// again meanwhile. The last order counts.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-    #[serde(deny_unknown_fields)]
+    #[serde(default, deny_unknown_fields)]
     #[schemars(extend("examples" = [
         { "key": "red_key" },
         { "opens_on": ["AgentCollide"], "closes_after": 5 },
@@ -31,29 +31,29 @@ fields! {
     ]))]
     pub struct Door {
         /// Stimuli that open it; none for a door that only a switch or its clock opens.
-        #[serde(default = "by_interaction", skip_serializing_if = "is_by_interaction")]
+        #[serde(skip_serializing_if = "is_by_interaction")]
         #[schemars(length(max = 3))]
-        pub opens_on: Vec<Stimulus> => Field::ours(AsPart),
+        pub opens_on: Vec<Stimulus> = by_interaction() => Field::ours(AsPart),
         /// Stimuli that close it when it is open.
-        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        #[serde(skip_serializing_if = "Vec::is_empty")]
         #[schemars(length(max = 3))]
-        pub closes_on: Vec<Stimulus> => Field::ours(AsPart),
+        pub closes_on: Vec<Stimulus> = Vec::new() => Field::ours(AsPart),
         /// Tag of the things that unlock it: `opens_on` opens it only if the agent carries one. Once unlocked it stays so. Not
         /// locked if absent.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(length(min = 1, max = 100))]
-        pub key: Option<String> => Field::ours(AsPart),
+        pub key: Option<String> = None => Field::ours(AsPart),
         /// Whether it is open at the start.
-        #[serde(default, skip_serializing_if = "is_default")]
-        pub open: bool => Field::ours(AsPart),
+        #[serde(skip_serializing_if = "is_default")]
+        pub open: bool = false => Field::ours(AsPart),
         /// Seconds from its opening until it closes by itself; never if absent.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0.0, max = 1e6))]
-        pub closes_after: Option<f64> => Field::ours(AsPart).unit("s"),
+        pub closes_after: Option<f64> = None => Field::ours(AsPart).unit("s"),
         /// Seconds of one round of its clock: half of it as at the start, half of it the other way. No clock if absent.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0.001, max = 1e6))]
-        pub period: Option<f64> => Field::ours(AsPart).unit("s"),
+        pub period: Option<f64> = None => Field::ours(AsPart).unit("s"),
     }
 }
 
@@ -84,16 +84,16 @@ fields! {
     ///
     /// What is carried has no body and is no target until it is put down.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-    #[serde(deny_unknown_fields)]
+    #[serde(default, deny_unknown_fields)]
     #[schemars(extend("examples" = [{}, { "on": ["AgentCollide"], "consumed": true }]))]
     pub struct Portable {
         /// Stimuli that pick it up, if the agent carries fewer than its `carry_limit`.
-        #[serde(default = "by_interaction", skip_serializing_if = "is_by_interaction")]
+        #[serde(skip_serializing_if = "is_by_interaction")]
         #[schemars(length(max = 3))]
-        pub on: Vec<Stimulus> => Field::ours(AsPart),
+        pub on: Vec<Stimulus> = by_interaction() => Field::ours(AsPart),
         /// Whether it is gone once it has unlocked a door.
-        #[serde(default, skip_serializing_if = "is_default")]
-        pub consumed: bool => Field::ours(AsPart),
+        #[serde(skip_serializing_if = "is_default")]
+        pub consumed: bool = false => Field::ours(AsPart),
     }
 }
 
@@ -112,19 +112,6 @@ pub enum SwitchAction {
 
 word!(SwitchAction);
 
-impl Default for Door {
-    fn default() -> Self {
-        Self {
-            opens_on: by_interaction(),
-            closes_on: Vec::new(),
-            key: None,
-            open: false,
-            closes_after: None,
-            period: None,
-        }
-    }
-}
-
 impl Switch {
     /// A switch that an interaction sets off, and that opens and closes the doors of this tag.
     pub fn of(target: impl Into<String>) -> Self {
@@ -132,15 +119,6 @@ impl Switch {
             on: by_interaction(),
             target: target.into(),
             action: SwitchAction::Toggle,
-        }
-    }
-}
-
-impl Default for Portable {
-    fn default() -> Self {
-        Self {
-            on: by_interaction(),
-            consumed: false,
         }
     }
 }

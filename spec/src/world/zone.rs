@@ -5,10 +5,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::WorldDraft;
-use super::defaults::{is_default, is_one, is_true, one, yes};
 use super::environment::{EnvironmentParams, encloses};
 use super::fields::{fields, word};
 use crate::Color;
+use crate::defaults::{is_default, is_one, is_true};
 use crate::error::Problem;
 
 fields! {
@@ -19,50 +19,50 @@ fields! {
     /// time step, success comes before failure; an end comes before a teleport; of several teleports the first in the list counts.
     /// No zone is jumped over: who crosses one within a time step has entered it.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-    #[serde(deny_unknown_fields)]
+    #[serde(default, deny_unknown_fields)]
     #[schemars(extend("examples" = [
         { "disc": { "center": [5, 0], "radius": 3 }, "name": "lava", "ends": "failure", "color": "orangered" },
         { "polygon": [[0, 0], [8, 0], [8, 4]], "reward_per_second": -1, "speed_factor": 0.5 },
     ]))]
     pub struct Zone {
         /// Its ground, if that is a disc.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        pub disc: Option<Disc> => Field::ours(Measured(&[Zones, ZonePay, ZoneLooks])),
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub disc: Option<Disc> = None => Field::ours(Measured(&[Zones, ZonePay, ZoneLooks])),
         /// Its ground, if that is a polygon: corners in metres, in order; the last joins the first.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(length(min = 3, max = 1000), inner(inner(range(min = -1e4, max = 1e4))))]
-        pub polygon: Option<Vec<[f64; 2]>> => Field::ours(Measured(&[Zones, ZonePay, ZoneLooks])).unit("m"),
+        pub polygon: Option<Vec<[f64; 2]>> = None => Field::ours(Measured(&[Zones, ZonePay, ZoneLooks])).unit("m"),
         /// A free word that logs and people refer to.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(length(min = 1, max = 100))]
-        pub name: Option<String> => Field::ours(Not("it is a name")),
+        pub name: Option<String> = None => Field::ours(Not("it is a name")),
         /// Paid for every second in it, in each time step at whose end the agent is in it.
-        #[serde(default, skip_serializing_if = "is_default")]
+        #[serde(skip_serializing_if = "is_default")]
         #[schemars(range(min = -1e9, max = 1e9))]
-        pub reward_per_second: f64 => Field::ours(Measured(&[ZonePay])),
+        pub reward_per_second: f64 = 0.0 => Field::ours(Measured(&[ZonePay])),
         /// Paid whenever the agent enters it, by its own motion or by a teleport.
-        #[serde(default, skip_serializing_if = "is_default")]
+        #[serde(skip_serializing_if = "is_default")]
         #[schemars(range(min = -1e9, max = 1e9))]
-        pub reward_on_entering: f64 => Field::ours(Measured(&[ZonePay])),
+        pub reward_on_entering: f64 = 0.0 => Field::ours(Measured(&[ZonePay])),
         /// Factor on how fast the agent goes, by where it is at the beginning of a time step. Factors of zones that overlap multiply,
         /// to at most 100.
-        #[serde(default = "one", skip_serializing_if = "is_one")]
+        #[serde(skip_serializing_if = "is_one")]
         #[schemars(range(min = 0.0, max = 100.0))]
-        pub speed_factor: f64 => Field::ours(Measured(&[Zones])),
+        pub speed_factor: f64 = 1.0 => Field::ours(Measured(&[Zones])),
         /// How the episode ends when the agent enters it; it goes on if absent.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        pub ends: Option<ZoneEnd> => Field::ours(Measured(&[ZonePay])),
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub ends: Option<ZoneEnd> = None => Field::ours(Measured(&[ZonePay])),
         /// Where the agent that enters it is put at the end of the time step, in metres; at rest, and beside what stands there.
         /// What it enters by that neither moves it on nor back.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(inner(inner(range(min = -300.0, max = 300.0))))]
-        pub teleport: Option<[f64; 2]> => Field::ours(Measured(&[Zones])).unit("m"),
+        pub teleport: Option<[f64; 2]> = None => Field::ours(Measured(&[Zones])).unit("m"),
         /// Colour of its ground; if absent, that of what it does, as `docs/worlds.md` lists them.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        pub color: Option<Color> => Field::ours(Measured(&[ZoneLooks])),
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub color: Option<Color> = None => Field::ours(Measured(&[ZoneLooks])),
         /// Whether its ground has its colour.
-        #[serde(default = "yes", skip_serializing_if = "is_true")]
-        pub visible: bool => Field::ours(Measured(&[ZoneLooks])),
+        #[serde(skip_serializing_if = "is_true")]
+        pub visible: bool = true => Field::ours(Measured(&[ZoneLooks])),
     }
 }
 
@@ -101,15 +101,7 @@ impl Zone {
     pub fn disc(center: [f64; 2], radius: f64) -> Self {
         Self {
             disc: Some(Disc { center, radius }),
-            polygon: None,
-            name: None,
-            reward_per_second: 0.0,
-            reward_on_entering: 0.0,
-            speed_factor: 1.0,
-            ends: None,
-            teleport: None,
-            color: None,
-            visible: true,
+            ..Self::default()
         }
     }
 
@@ -125,9 +117,8 @@ impl Zone {
     /// A zone of these corners that does nothing; all else is at its default.
     pub fn polygon(corners: Vec<[f64; 2]>) -> Self {
         Self {
-            disc: None,
             polygon: Some(corners),
-            ..Self::disc([0.0; 2], 1.0)
+            ..Self::default()
         }
     }
 
