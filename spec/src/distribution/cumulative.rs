@@ -3,6 +3,7 @@
 use super::moments::ends;
 use super::special::{beta_below, normal_cdf};
 use super::{Distribution, discrete, von_mises};
+use crate::value::Value;
 
 impl Distribution<f64> {
     /// Probability that it draws a number up to `x`; false counts as 0 and true as 1.
@@ -14,15 +15,8 @@ impl Distribution<f64> {
         Some(match self {
             Self::Constant { value } => step(x >= value.as_number()?),
             Self::Choice { values, weights } => {
-                let weight = |k: usize| weights.as_ref().map_or(1.0, |weights| weights[k]);
-                let (mut below, mut total) = (0.0, 0.0);
-                for (k, value) in values.iter().enumerate() {
-                    total += weight(k);
-                    if value.as_number()? <= x {
-                        below += weight(k);
-                    }
-                }
-                below / total
+                let reached = |value: &Value| Some(step(value.as_number()? <= x));
+                mean_of(values.iter().map(reached), weights.as_deref())?
             }
             Self::Uniform { low, high } => ((x - low) / (high - low)).clamp(0.0, 1.0),
             Self::IntegerUniform { low, high } => ((x.floor() - low + 1.0) / (high - low + 1.0)).clamp(0.0, 1.0),
@@ -70,18 +64,21 @@ impl Distribution<f64> {
             Self::Binomial { n, p } => discrete::binomial_cdf(x, *n, *p),
             Self::Poisson { mean } => discrete::poisson_cdf(x, *mean),
             Self::Geometric { p } => discrete::geometric_cdf(x, *p),
-            Self::Mixture { parts, weights } => {
-                let (mut sum, mut total) = (0.0, 0.0);
-                for (k, part) in parts.iter().enumerate() {
-                    let weight = weights.as_ref().map_or(1.0, |weights| weights[k]);
-                    sum += weight * part.cdf(x)?;
-                    total += weight;
-                }
-                sum / total
-            }
+            Self::Mixture { parts, weights } => mean_of(parts.iter().map(|part| part.cdf(x)), weights.as_deref())?,
             _ => return None,
         })
     }
+}
+
+/// The mean of the probabilities of parts, by weight where there are weights.
+fn mean_of(parts: impl Iterator<Item = Option<f64>>, weights: Option<&[f64]>) -> Option<f64> {
+    let (mut sum, mut total) = (0.0, 0.0);
+    for (k, part) in parts.enumerate() {
+        let weight = weights.map_or(1.0, |weights| weights[k]);
+        sum += weight * part?;
+        total += weight;
+    }
+    Some(sum / total)
 }
 
 fn step(reached: bool) -> f64 {

@@ -1,5 +1,7 @@
 //! What is wrong with a distribution's numbers. References and types are checked in `task/check.rs`.
 
+use std::ops::RangeInclusive;
+
 use super::{ChannelSpread, Channels, Distribution, Spread};
 
 /// What was found, and what was expected.
@@ -69,26 +71,14 @@ impl Distribution<f64> {
                     "noise of at least 0 and low not above high",
                 )
             }
-            Self::VonMises { kappa, .. } => unless(
-                (0.0..=1e4).contains(kappa),
-                format!("kappa {kappa}"),
-                "a concentration in 0..10000",
-            ),
-            Self::Bernoulli { p } => unless((0.0..=1.0).contains(p), format!("p {p}"), "a probability in 0..1"),
+            Self::VonMises { kappa, .. } => outside(0.0..=1e4, "kappa", *kappa, "a concentration in 0..10000"),
+            Self::Bernoulli { p } => outside(0.0..=1.0, "p", *p, "a probability in 0..1"),
             Self::Binomial { n, p } => {
                 let fine = (0.0..=1.0).contains(p) && n.fract() == 0.0 && (0.0..=100_000.0).contains(n);
                 unless(fine, format!("n {n} and p {p}"), "a whole n in 0..100000 and p in 0..1")
             }
-            Self::Poisson { mean } => unless(
-                (0.0..=1e5).contains(mean),
-                format!("mean {mean}"),
-                "a mean in 0..100000",
-            ),
-            Self::Geometric { p } => unless(
-                (1e-9..=1.0).contains(p),
-                format!("p {p}"),
-                "a probability in 0.000000001..1",
-            ),
+            Self::Poisson { mean } => outside(0.0..=1e5, "mean", *mean, "a mean in 0..100000"),
+            Self::Geometric { p } => outside(1e-9..=1.0, "p", *p, "a probability in 0.000000001..1"),
             Self::Dirichlet { alpha } => {
                 let fine = alpha.iter().all(|shape| (1e-3..=1e6).contains(shape));
                 unless(fine, format!("alpha {alpha:?}"), "shapes in 0.001..1000000")
@@ -201,28 +191,14 @@ impl Distribution<f64> {
                     format!("a walk of {least} to {most} m"),
                     "two distances in 0..1000000 m, the first not above the second",
                 );
-                let jitter = jitter.unwrap_or(0.0);
-                far.or_else(|| {
-                    unless(
-                        (0.0..=1.0).contains(&jitter),
-                        format!("a jitter of {jitter}"),
-                        "a share in 0..1",
-                    )
-                })
+                far.or_else(|| outside(0.0..=1.0, "a jitter of", jitter.unwrap_or(0.0), "a share in 0..1"))
             }
-            Self::PoissonDisc { low, high, distance } => rectangle(low, high).or_else(|| {
-                unless(
-                    (1e-9..=600.0).contains(distance),
-                    format!("distance {distance}"),
-                    "a distance above 0, at most 600 m",
-                )
-            }),
+            Self::PoissonDisc { low, high, distance } => rectangle(low, high)
+                .or_else(|| outside(1e-9..=600.0, "distance", *distance, "a distance above 0, at most 600 m")),
             _ => None,
         }
     }
-}
 
-impl Distribution<f64> {
     /// Numbers of a place that lie beyond any arena, where squares would overflow.
     fn far_fault(&self) -> Fault {
         let mut far = None;
@@ -239,6 +215,11 @@ impl Distribution<f64> {
 
 fn unless(fine: bool, found: String, expected: &'static str) -> Fault {
     (!fine).then_some((found, expected))
+}
+
+/// The fault of a number that lies outside its limits.
+fn outside(limits: RangeInclusive<f64>, name: &str, number: f64, expected: &'static str) -> Fault {
+    unless(limits.contains(&number), format!("{name} {number}"), expected)
 }
 
 fn weights_fault(count: usize, weights: Option<&[f64]>) -> Fault {

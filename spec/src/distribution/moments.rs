@@ -123,19 +123,11 @@ fn square(x: f64) -> f64 {
 
 /// Mean and variance of a mixture of parts with their own.
 fn weighted(parts: &[(f64, f64)], weights: Option<&[f64]>) -> (f64, f64) {
-    let weight = |k: usize| weights.map_or(1.0, |weights| weights[k]);
-    let total: f64 = (0..parts.len()).map(weight).sum();
-    let mean = parts
+    let parts = parts
         .iter()
-        .enumerate()
-        .map(|(k, part)| weight(k) * part.0)
-        .sum::<f64>()
-        / total;
-    let within = parts
-        .iter()
-        .enumerate()
-        .map(|(k, part)| weight(k) * (part.1 + square(part.0 - mean)));
-    (mean, within.sum::<f64>() / total)
+        .map(|(mean, variance)| Moments::of([*mean], |_, _| *variance));
+    let Moments { mean, covariance } = Moments::mixed(&parts.collect::<Vec<_>>(), weights);
+    (mean[0], covariance[0][0])
 }
 
 fn truncated(mean: f64, std: f64, low: f64, high: f64) -> (f64, f64) {
