@@ -1,5 +1,7 @@
 //! Values, numbers and places as messages show them.
 
+use std::fmt::Write;
+
 use serde_json::Value;
 
 /// A value in the few words that a message has room for.
@@ -48,6 +50,15 @@ pub(crate) fn plain_number(number: f64) -> String {
     } else {
         number.to_string()
     }
+}
+
+/// Bytes as hexadecimal letters, two for each.
+pub(crate) fn hexadecimal(bytes: &[u8]) -> String {
+    let letters = String::with_capacity(2 * bytes.len());
+    bytes.iter().fold(letters, |mut letters, byte| {
+        write!(letters, "{byte:02x}").expect("writing to a String does not fail");
+        letters
+    })
 }
 
 pub(crate) use driftworld_text::json::escape;

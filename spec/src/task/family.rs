@@ -86,22 +86,24 @@ pub(crate) type Variants = IndexMap<String, Declared>;
 /// One axis of a family: a parameter and the values that it takes in turn.
 type Axis<'a> = (&'a String, Vec<Value>);
 
+/// What is found and expected of a task of so many variants, where those or their values are more than can be looked through.
+fn too_many(variants: usize, parameters: usize) -> Option<(String, String)> {
+    if variants > MAX_VARIANTS {
+        return Some((format!("{variants} variants"), format!("at most {MAX_VARIANTS} in all")));
+    }
+    (variants.saturating_mul(parameters) > MAX_VARIANT_VALUES).then(|| {
+        let found = format!("{variants} variants of {parameters} parameters");
+        (found, format!("at most {MAX_VARIANT_VALUES} values in all"))
+    })
+}
+
 /// Whether a document has no more variants, and no more values of them, than can be looked through.
 pub(crate) fn fits(document: &TaskDocument) -> Result<(), Vec<Problem>> {
-    let (variants, parameters) = (document.variants.len(), document.parameters.len());
-    let refused = |found: String, expected: String| {
-        Err(vec![
-            Problem::new("spec/length", "/variants", found, expected).advise("split the task"),
-        ])
-    };
-    if variants > MAX_VARIANTS {
-        return refused(format!("{variants} variants"), format!("at most {MAX_VARIANTS} in all"));
-    }
-    if variants.saturating_mul(parameters) > MAX_VARIANT_VALUES {
-        let found = format!("{variants} variants of {parameters} parameters");
-        return refused(found, format!("at most {MAX_VARIANT_VALUES} values in all"));
-    }
-    Ok(())
+    let too_many = too_many(document.variants.len(), document.parameters.len());
+    too_many.map_or(Ok(()), |(found, expected)| {
+        let problem = Problem::new("spec/length", "/variants", found, expected);
+        Err(vec![problem.advise("split the task")])
+    })
 }
 
 /// Unfolds the families of a document.
@@ -113,17 +115,16 @@ pub(crate) fn unfold(
     let mut problems = Vec::new();
     for (name, spec) in document {
         let pointer = format!("/variants/{}", escape(name));
-        let axes = match axes_of(parameters, spec, &pointer) {
-            Ok(axes) => axes,
+        let family = axes_of(parameters, spec, &pointer).and_then(|axes| {
+            Ok((
+                pattern_of(spec, &axes, &pointer).map_err(|problem| vec![problem])?,
+                axes,
+            ))
+        });
+        let (pattern, axes) = match family {
+            Ok(family) => family,
             Err(found) => {
                 problems.extend(found);
-                continue;
-            }
-        };
-        let pattern = match pattern_of(spec, &axes, &pointer) {
-            Ok(pattern) => pattern,
-            Err(problem) => {
-                problems.push(problem);
                 continue;
             }
         };
@@ -131,15 +132,7 @@ pub(crate) fn unfold(
             .iter()
             .fold(1_usize, |size, axis| size.saturating_mul(axis.1.len()));
         let all = variants.len().saturating_add(size);
-        let (found, expected) = if all > MAX_VARIANTS {
-            (format!("{all} variants"), format!("at most {MAX_VARIANTS} in all"))
-        } else if all * parameters.len() > MAX_VARIANT_VALUES {
-            let found = format!("{all} variants of {} parameters", parameters.len());
-            (found, format!("at most {MAX_VARIANT_VALUES} values in all"))
-        } else {
-            (String::new(), String::new())
-        };
-        if !found.is_empty() {
+        if let Some((found, expected)) = too_many(all, parameters.len()) {
             problems.push(Problem::new("spec/length", pointer, found, expected));
             continue;
         }
@@ -172,6 +165,14 @@ pub(crate) fn unfold(
     (variants, problems)
 }
 
+/// A number of a sweep as a value of its parameter.
+fn value_of(parameter: Option<&Parameter>, number: f64) -> Value {
+    match parameter {
+        Some(known) if known.kind == ParameterType::Integer => Value::Integer(number.round() as i64),
+        _ => Value::Number(number),
+    }
+}
+
 /// The axes of a family, or what is wrong with them.
 fn axes_of<'a>(
     parameters: &IndexMap<String, Parameter>,
@@ -185,33 +186,15 @@ fn axes_of<'a>(
     }
     for (name, sweep) in &spec.sweep {
         let at = format!("{pointer}/sweep/{}", escape(name));
-        let whole = parameters
-            .get(name)
-            .is_some_and(|parameter| parameter.kind == ParameterType::Integer);
-        match sweep.values() {
-            None => {
-                let found = format!("a logarithmic sweep from {} to {}", sweep.from, sweep.to);
-                problems.push(Problem::new(
-                    "spec/value",
-                    at,
-                    found,
-                    "both ends above 0, or linear spacing",
-                ));
-            }
-            Some(values) => {
-                let mut values: Vec<Value> = values
-                    .into_iter()
-                    .map(|value| {
-                        if whole {
-                            Value::Integer(value.round() as i64)
-                        } else {
-                            Value::Number(value)
-                        }
-                    })
-                    .collect();
-                values.dedup();
-                axes.push((name, values));
-            }
+        if let Some(values) = sweep.values() {
+            let values = values.into_iter().map(|value| value_of(parameters.get(name), value));
+            let mut values: Vec<Value> = values.collect();
+            values.dedup();
+            axes.push((name, values));
+        } else {
+            let found = format!("a logarithmic sweep from {} to {}", sweep.from, sweep.to);
+            let expected = "both ends above 0, or linear spacing";
+            problems.push(Problem::new("spec/value", at, found, expected));
         }
     }
     for (index, (name, _)) in axes.iter().enumerate() {
@@ -386,22 +369,13 @@ pub(crate) fn problems(
             found.push(Problem::new("spec/type", at, found_type, "a number, an integer or a heading").advise(advice));
             continue;
         }
+        if known.is_none() {
+            // It is none that a variant can set: once is enough.
+            found.extend(problems_of(&at, parameter, &Value::Number(sweep.from)));
+            continue;
+        }
         for (end, key) in [(sweep.from, "from"), (sweep.to, "to")] {
-            let value = match known {
-                Some(known) if known.kind == ParameterType::Integer => Value::Integer(end.round() as i64),
-                _ => Value::Number(end),
-            };
-            let place = if known.is_some() {
-                format!("{at}/{key}")
-            } else {
-                at.clone()
-            };
-            let problems = problems_of(&place, parameter, &value);
-            let unknown = known.is_none() && !problems.is_empty();
-            found.extend(problems);
-            if unknown {
-                break;
-            }
+            found.extend(problems_of(&format!("{at}/{key}"), parameter, &value_of(known, end)));
         }
     }
     found

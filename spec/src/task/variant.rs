@@ -1,6 +1,5 @@
 //! One variant of a task: every fixed and variant parameter has its value. Drawing the randomized ones is the generator's job.
 
-use std::fmt::Write;
 use std::sync::Arc;
 
 use indexmap::IndexMap;
@@ -11,8 +10,10 @@ use super::parameter::{Parameter, Role};
 use super::require::Requirement;
 use super::scope::{self, Scope, Unsettled};
 use super::template::Source;
+use super::variant_spec::variant_parameters;
+use crate::describe::hexadecimal;
 use crate::distribution::{Distribution, Number, ParamRef};
-use crate::error::{Problem, SpecError, first_of};
+use crate::error::{Problem, SpecError};
 use crate::value::Value;
 
 /// The name of the variant in which every parameter has its default, unless the task declares one of this name.
@@ -72,12 +73,7 @@ impl Variant {
         let values = self.values.iter().map(|(name, value)| (name, value.to_json()));
         let values: Vec<(&String, serde_json::Value)> = values.collect();
         let whole = serde_json::json!({ "task": self.task.canonical(), "variant": self.name, "values": values });
-        Sha256::digest(whole.to_string())
-            .iter()
-            .fold(String::with_capacity(64), |mut hash, byte| {
-                write!(hash, "{byte:02x}").expect("writing to a String does not fail");
-                hash
-            })
+        hexadecimal(&Sha256::digest(whole.to_string()))
     }
 
     /// The task that it is a variant of.
@@ -209,12 +205,7 @@ fn accepted(parameters: &IndexMap<String, Parameter>, name: &str, value: &Value)
         .get(name)
         .filter(|parameter| parameter.role == Role::Variant)
         .ok_or_else(|| {
-            let known: Vec<&String> = parameters
-                .iter()
-                .filter(|(_, p)| p.role == Role::Variant)
-                .map(|(name, _)| name)
-                .collect();
-            let expected = format!("a variant parameter, one of {}", first_of(&known));
+            let (known, expected) = variant_parameters(parameters);
             Problem::new(
                 "spec/unknown-parameter",
                 format!("/{name}"),

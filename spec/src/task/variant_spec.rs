@@ -193,14 +193,19 @@ pub(crate) fn problems(
     problems
 }
 
+/// The names of the parameters that variants set, and what is expected where another stands.
+pub(super) fn variant_parameters(parameters: &IndexMap<String, Parameter>) -> (Vec<&String>, String) {
+    let settable = parameters
+        .iter()
+        .filter(|(_, parameter)| parameter.role == Role::Variant);
+    let known: Vec<&String> = settable.map(|(name, _)| name).collect();
+    let expected = format!("a variant parameter, one of {}", first_of(&known));
+    (known, expected)
+}
+
 fn problems_of(parameters: &IndexMap<String, Parameter>, pointer: &str, name: &str, value: &Value) -> Vec<Problem> {
     let Some(parameter) = parameters.get(name) else {
-        let known: Vec<&String> = parameters
-            .iter()
-            .filter(|(_, p)| p.role == Role::Variant)
-            .map(|(name, _)| name)
-            .collect();
-        let expected = format!("a variant parameter, one of {}", first_of(&known));
+        let (known, expected) = variant_parameters(parameters);
         let found = format!("the unknown parameter {name:?}");
         let near = nearest(name, &known).or_else(|| nearest(name, RESERVED));
         return vec![Problem {

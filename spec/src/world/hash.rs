@@ -1,11 +1,10 @@
 //! The names of a world: by all of its content, and by where things stand in it, which is what the chance of a world without a
 //! `seed` grows from.
 
-use std::fmt::Write;
-
 use sha2::{Digest, Sha256};
 
 use super::World;
+use crate::describe::hexadecimal;
 
 impl World {
     /// The world's name by its content: the SHA-256 of [`World::to_json`] in hexadecimal, 64 characters.
@@ -53,16 +52,6 @@ impl World {
         take(&mut places.into_iter());
         hexadecimal(&hash.finalize())
     }
-}
-
-/// Bytes as hexadecimal letters, two for each.
-fn hexadecimal(bytes: &[u8]) -> String {
-    bytes
-        .iter()
-        .fold(String::with_capacity(2 * bytes.len()), |mut letters, byte| {
-            write!(letters, "{byte:02x}").expect("writing to a String does not fail");
-            letters
-        })
 }
 
 /// The bits of a number; 0 has one form.
