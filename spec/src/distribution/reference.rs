@@ -33,13 +33,13 @@ impl Distribution<Number> {
 
 impl Number {
     /// The parameters that it names, look-ups included.
-    pub(crate) fn references(&self) -> Vec<&ParamRef> {
+    pub(crate) fn names(&self) -> Vec<&str> {
         match self {
             Self::Literal(_) => Vec::new(),
-            Self::Param(reference) => vec![reference],
+            Self::Param(reference) => vec![&reference.param],
             Self::Case(case) => {
-                let cases = case.entries().flat_map(|(_, number)| number.references());
-                std::iter::once(&case.by).chain(cases).collect()
+                let cases = case.entries().flat_map(|(_, number)| number.names());
+                std::iter::once(case.by.param.as_str()).chain(cases).collect()
             }
         }
     }

@@ -358,13 +358,31 @@ impl Parameter {
 
     /// How many numbers a vector has: as many as the first of its value, default and choices.
     pub fn vector_length(&self) -> Option<usize> {
-        let first = self
-            .value
-            .iter()
-            .chain(&self.default)
-            .chain(self.choices.iter().flatten())
-            .next()?;
-        first.as_vector().map(<[f64]>::len)
+        self.declared().next()?.as_vector().map(<[f64]>::len)
+    }
+
+    /// Its value, its default and its choices, as it declares them.
+    fn declared(&self) -> impl Iterator<Item = &Value> {
+        let alone = self.value.iter().chain(&self.default);
+        alone.chain(self.choices.iter().flatten())
+    }
+
+    /// Its choices, its value and its default, each with the keys that lead to it.
+    pub(super) fn entries(&self) -> impl Iterator<Item = (String, &Value)> {
+        let choices = self.choices.iter().flat_map(Choices::entries);
+        let alone = [("value", &self.value), ("default", &self.default)].into_iter();
+        let alone = alone.filter_map(|(key, value)| Some((key.to_owned(), value.as_ref()?)));
+        choices
+            .map(|(key, choice)| (format!("choices/{key}"), choice))
+            .chain(alone)
+    }
+
+    /// The distributions that it declares to be, or that it may be.
+    pub(super) fn distributions(&self) -> impl Iterator<Item = &Distribution<Number>> {
+        self.declared().filter_map(|value| match value {
+            Value::Distribution(distribution) => Some(&**distribution),
+            _ => None,
+        })
     }
 
     /// What the schema cannot say about one parameter alone.
@@ -373,14 +391,6 @@ impl Parameter {
         let at = |key: &str| format!("{pointer}/{key}");
         let mut problems = Vec::new();
         let kind = self.kind.name();
-        if let Some(value) = self.value.as_ref().filter(|value| value.cast(self.kind).is_none()) {
-            problems.push(Problem::new(
-                "spec/type",
-                at("value"),
-                value.to_string(),
-                format!("a value of type {kind}"),
-            ));
-        }
         let lengths = |value: &Value| {
             self.kind != ParameterType::Vector || value.as_vector().map(<[f64]>::len) == self.vector_length()
         };
@@ -394,25 +404,15 @@ impl Parameter {
             let found = format!("names for choices of type {kind}");
             problems.push(Problem::new("spec/type", at("choices"), found, "a list of values"));
         }
-        let choices = self.choices.iter().flat_map(Choices::entries);
-        for (key, choice) in choices.filter(|(_, choice)| choice.cast(self.kind).is_none() || !lengths(choice)) {
-            let pointer = at(&format!("choices/{key}"));
-            problems.push(Problem::new(
-                "spec/type",
-                pointer,
-                choice.to_string(),
-                format!("a value of type {kind}"),
-            ));
-        }
-        let choices = self.choices.iter().flat_map(Choices::entries);
-        let choices = choices.map(|(key, choice)| (at(&format!("choices/{key}")), choice));
-        for (pointer, value) in choices.chain(self.value.iter().map(|value| (at("value"), value))) {
-            if let (ParameterType::Layout, Some(Value::Layout(layout))) = (self.kind, value.cast(self.kind)) {
-                problems.extend(
-                    layouts::beyond_schema(&layout)
-                        .into_iter()
-                        .map(|problem| problem.within(&pointer)),
-                );
+        for (key, value) in self.entries().filter(|(key, _)| key != "default") {
+            let typed = value.cast(self.kind);
+            if typed.is_none() || !lengths(value) {
+                let expected = format!("a value of type {kind}");
+                problems.push(Problem::new("spec/type", at(&key), value.to_string(), expected));
+            }
+            if let (ParameterType::Layout, Some(Value::Layout(layout))) = (self.kind, typed) {
+                let found = layouts::beyond_schema(&layout).into_iter();
+                problems.extend(found.map(|problem| problem.within(&at(&key))));
             }
         }
         problems.extend(self.range_problem(&at("range")));
@@ -434,38 +434,22 @@ impl Parameter {
         let [low, high] = self.range?;
         let kind = self.kind.name();
         if self.choices.is_some() {
-            return Some(Problem::new(
-                "spec/value",
-                pointer,
-                "a range beside choices",
-                "one of the two",
-            ));
+            let found = "a range beside choices";
+            return Some(Problem::new("spec/value", pointer, found, "one of the two"));
         }
         if !self.kind.is_numeric() {
             let advice = "list the values under \"choices\" instead";
             let problem = Problem::new("spec/type", pointer, format!("a range for a {kind}"), "choices");
             return Some(problem.advise(advice));
         }
+        let is_broken = low.fract() != 0.0 || high.fract() != 0.0;
+        let expected = match self.kind {
+            _ if low >= high => "the low end below the high end",
+            ParameterType::Integer if is_broken => "whole numbers at both ends",
+            ParameterType::Heading if high - low > 360.0 => "an arc of at most 360 degrees",
+            _ => return None,
+        };
         let found = format!("low {low} and high {high}");
-        if low >= high {
-            return Some(Problem::new(
-                "spec/range",
-                pointer,
-                found,
-                "the low end below the high end",
-            ));
-        }
-        if self.kind == ParameterType::Integer && (low.fract() != 0.0 || high.fract() != 0.0) {
-            return Some(Problem::new("spec/range", pointer, found, "whole numbers at both ends"));
-        }
-        if self.kind == ParameterType::Heading && high - low > 360.0 {
-            return Some(Problem::new(
-                "spec/range",
-                pointer,
-                found,
-                "an arc of at most 360 degrees",
-            ));
-        }
-        None
+        Some(Problem::new("spec/range", pointer, found, expected))
     }
 }

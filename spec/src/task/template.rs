@@ -88,8 +88,7 @@ impl Source {
                 Self::Param(reference) => names.push(reference.param.clone()),
                 Self::Distribution(distribution) => {
                     let numbers = distribution.numbers();
-                    let references = numbers.iter().flat_map(Number::references);
-                    names.extend(references.map(|reference| reference.param.clone()));
+                    names.extend(numbers.iter().flat_map(Number::names).map(str::to_owned));
                 }
                 Self::Case(_) | Self::Value(_) => {}
             }
@@ -99,6 +98,7 @@ impl Source {
 }
 
 /// A place to be filled, and with what.
+#[derive(Clone, Debug)]
 pub struct Hole<T> {
     /// JSON pointer from the template.
     pub pointer: String,
@@ -113,23 +113,6 @@ pub struct Hole<T> {
     /// The way to it in a `T`.
     steps: Vec<usize>,
     set: Setter<T>,
-}
-
-impl<T> Clone for Hole<T> {
-    fn clone(&self) -> Self {
-        Self {
-            pointer: self.pointer.clone(),
-            source: self.source.clone(),
-            steps: self.steps.clone(),
-            ..*self
-        }
-    }
-}
-
-impl<T> std::fmt::Debug for Hole<T> {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        write!(f, "Hole({} ← {:?})", self.pointer, self.source)
-    }
 }
 
 impl<T> Hole<T> {

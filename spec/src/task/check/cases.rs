@@ -7,7 +7,7 @@ use super::super::scope::{Scope, Unsettled};
 use super::super::template::Source;
 use super::Check;
 use crate::describe::escape;
-use crate::distribution::{Case, Distribution, MOST_ATOMS, Number, ParamRef};
+use crate::distribution::{Case, Distribution, MOST_ATOMS, Number};
 use crate::error::{Problem, first_of};
 use crate::value::{ParameterType, Value};
 
@@ -108,14 +108,15 @@ impl Check<'_> {
         }
     }
 
-    /// Reports look-ups that read what is drawn, where that is too late.
-    pub(super) fn reads_no_draw(&mut self, pointer: &str, references: &[&ParamRef]) {
-        let is_drawn = |reference: &&&ParamRef| {
-            let parameter = self.parameters.get(&reference.param);
+    /// Whether none of these parameters is drawn, where that is too late.
+    pub(super) fn reads_no_draw(&mut self, pointer: &str, names: &[impl AsRef<str>]) -> bool {
+        let is_drawn = |name: &&str| {
+            let parameter = self.parameters.get(*name);
             parameter.is_some_and(|parameter| parameter.role == Role::Randomized)
         };
-        if let Some(drawn) = references.iter().find(is_drawn) {
-            let found = format!("the randomized parameter {:?}", drawn.param);
+        let drawn = names.iter().map(AsRef::as_ref).find(is_drawn);
+        if let Some(drawn) = drawn {
+            let found = format!("the randomized parameter {drawn:?}");
             self.report(Problem::new(
                 "spec/role",
                 pointer,
@@ -123,14 +124,15 @@ impl Check<'_> {
                 "a fixed or variant parameter",
             ));
         }
+        drawn.is_none()
     }
 
     /// A distribution that is the value of a parameter: its look-ups read nothing that is drawn.
     pub(super) fn settled_distribution(&mut self, pointer: &str, distribution: &Distribution<Number>) {
         if self.distribution(pointer, distribution) {
             let numbers = distribution.numbers();
-            let references: Vec<&ParamRef> = numbers.iter().flat_map(Number::references).collect();
-            self.reads_no_draw(pointer, &references);
+            let names: Vec<&str> = numbers.iter().flat_map(Number::names).collect();
+            self.reads_no_draw(pointer, &names);
         }
     }
 

@@ -262,18 +262,15 @@ impl Check<'_> {
     /// A number in metres, or a reference to one, that lies in a range in every variant.
     fn number(&mut self, pointer: &str, number: &Number, [low, high]: [f64; 2]) {
         let before = self.problems.len();
-        let references = number.references();
-        if references
-            .iter()
-            .any(|reference| self.unsound.parameters.contains(&reference.param))
-        {
+        let names = number.names();
+        if names.iter().any(|name| self.unsound.parameters.contains(*name)) {
             return;
         }
         match number {
             Number::Param(reference) => self.number_reference(pointer, reference),
             Number::Case(case) => {
                 self.number_case(pointer, case);
-                self.reads_no_draw(pointer, &references);
+                self.reads_no_draw(pointer, &names);
             }
             Number::Literal(_) => {}
         }

@@ -1,7 +1,6 @@
 //! Values that only the schema of the place where they stand can judge: parameters of type JSON, and draws from lists with
 //! objects, lists or `null` in them.
 
-use super::super::choices::Choices;
 use super::super::layouts;
 use super::super::template::{Hole, Source};
 use super::Check;
@@ -81,16 +80,12 @@ impl Check<'_> {
                     return found;
                 };
                 let pointer = format!("/parameters/{}", escape(&reference.param));
-                let choices = parameter.choices.iter().flat_map(Choices::entries);
-                let choices = choices.map(|(key, choice)| (format!("{pointer}/choices/{key}"), choice));
-                let alone = [("value", &parameter.value), ("default", &parameter.default)];
-                let alone = alone
-                    .into_iter()
-                    .filter_map(|(key, value)| Some((format!("{pointer}/{key}"), value.as_ref()?)))
-                    // A name stands for a choice.
-                    .filter(|(_, value)| parameter.choices.iter().all(|choices| choices.named(value).is_none()));
-                for (pointer, value) in choices.chain(alone) {
+                for (key, value) in parameter.entries() {
+                    let pointer = format!("{pointer}/{key}");
+                    let is_choice = key.starts_with("choices/");
                     match value {
+                        // A name stands for a choice.
+                        _ if !is_choice && parameter.choices.iter().any(|choices| choices.named(value).is_some()) => {}
                         Value::Distribution(own) if parameter.kind == ParameterType::Distribution => {
                             listed(own, &pointer, &mut found);
                         }

@@ -1,7 +1,6 @@
 //! From a task's document to a checked task: references, types and ranges that the schema cannot see.
 
 mod cases;
-mod drawn;
 mod groups;
 mod json;
 pub(super) mod partial;
@@ -13,7 +12,6 @@ use std::sync::OnceLock;
 
 use indexmap::IndexMap;
 
-use super::choices::Choices;
 use super::expression::Kind;
 use super::family::{self, Variants};
 use super::parameter::{Parameter, Role};
@@ -95,12 +93,28 @@ pub(super) fn compile(
         read_conditions,
         readers: OnceLock::new(),
     };
-    fail_on(drawn::compared_by_draws(&task))?;
+    fail_on(compared_by_draws(&task))?;
     Ok(task)
 }
 
 fn fail_on(problems: Vec<Problem>) -> Result<(), Vec<Problem>> {
     if problems.is_empty() { Ok(()) } else { Err(problems) }
+}
+
+/// Parameters that only draws read are compared by what is drawn: a measure of their own would not be used.
+fn compared_by_draws(task: &TaskSpec) -> Vec<Problem> {
+    let compared = task.parameters().iter().filter(|(_, own)| own.compare.is_some());
+    let problem = |(name, parameter): (&String, &Parameter)| {
+        let readers = task.readers(name);
+        (parameter.role == Role::Variant && readers.are_draws_alone()).then(|| {
+            let draws = readers.draws.join(", ");
+            let found = format!("a measure of a parameter that only the draw of {draws} reads");
+            let expected = "\"compare\" at the drawn parameter, by whose distribution variants are compared";
+            let pointer = format!("/parameters/{}/compare", escape(name));
+            Problem::new("spec/compare", pointer, found, expected)
+        })
+    };
+    compared.filter_map(problem).collect()
 }
 
 /// Names that a schema takes and the grammar does not; those of a family's variants are checked where it is unfolded.
@@ -194,8 +208,8 @@ impl<'a> Check<'a> {
     /// Whether a distribution has a number of a parameter that something is wrong with.
     fn has_unsound(&self, distribution: &Distribution<Number>) -> bool {
         let numbers = distribution.numbers();
-        let mut references = numbers.iter().flat_map(Number::references);
-        references.any(|reference| self.unsound.parameters.contains(&reference.param))
+        let mut names = numbers.iter().flat_map(Number::names);
+        names.any(|name| self.unsound.parameters.contains(name))
     }
 
     fn report(&mut self, problem: Problem) {
@@ -209,21 +223,11 @@ impl<'a> Check<'a> {
                 continue;
             }
             let pointer = format!("/parameters/{}", escape(name));
-            let mut own: Vec<(String, &Value)> = Vec::new();
-            own.extend(parameter.value.iter().map(|value| (format!("{pointer}/value"), value)));
-            own.extend(
-                parameter
-                    .default
-                    .iter()
-                    .map(|value| (format!("{pointer}/default"), value)),
-            );
-            let choices = parameter.choices.iter().flat_map(Choices::entries);
-            own.extend(choices.map(|(key, value)| (format!("{pointer}/choices/{key}"), value)));
-            for (pointer, value) in own {
+            for (key, value) in parameter.entries() {
                 if let (ParameterType::Distribution, Value::Distribution(distribution)) = (parameter.kind, value)
                     && !self.has_unsound(distribution)
                 {
-                    self.settled_distribution(&pointer, distribution);
+                    self.settled_distribution(&format!("{pointer}/{key}"), distribution);
                 }
             }
             if let Some(source) = &parameter.distribution {
@@ -280,13 +284,10 @@ impl<'a> Check<'a> {
         let mut requirements = Vec::new();
         for (index, text) in texts.iter().enumerate() {
             let pointer = format!("/require/{index}");
-            match Requirement::parse(text) {
-                Err(expected) => self.report(Problem::new("spec/requirement", pointer, format!("{text:?}"), expected)),
-                Ok(requirement) => {
-                    if self.requirement(&pointer, &requirement) {
-                        requirements.push(requirement);
-                    }
-                }
+            if let Some(requirement) = self.parsed(&pointer, text)
+                && self.requirement(&pointer, &requirement)
+            {
+                requirements.push(requirement);
             }
         }
         requirements
@@ -298,31 +299,21 @@ impl<'a> Check<'a> {
         for (name, parameter) in self.parameters {
             let Some(text) = &parameter.read_if else { continue };
             let pointer = format!("/parameters/{}/read_if", escape(name));
-            let condition = match Requirement::parse(text) {
-                Ok(condition) => condition,
-                Err(expected) => {
-                    self.report(Problem::new("spec/requirement", pointer, format!("{text:?}"), expected));
-                    continue;
-                }
-            };
-            let is_drawn = |name: &&String| {
-                self.parameters
-                    .get(*name)
-                    .is_some_and(|other| other.role == Role::Randomized)
-            };
-            if let Some(drawn) = condition.names().iter().find(is_drawn) {
-                let found = format!("the randomized parameter {drawn:?}");
-                self.report(Problem::new(
-                    "spec/role",
-                    pointer,
-                    found,
-                    "a fixed or variant parameter",
-                ));
-            } else if self.requirement(&pointer, &condition) {
+            if let Some(condition) = self.parsed(&pointer, text)
+                && self.reads_no_draw(&pointer, condition.names())
+                && self.requirement(&pointer, &condition)
+            {
                 conditions.insert(name.clone(), condition);
             }
         }
         conditions
+    }
+
+    /// A condition, if it can be read.
+    fn parsed(&mut self, pointer: &str, text: &str) -> Option<Requirement> {
+        let parsed = Requirement::parse(text);
+        let problem = |expected| Problem::new("spec/requirement", pointer, format!("{text:?}"), expected);
+        parsed.map_err(|expected| self.report(problem(expected))).ok()
     }
 
     /// Whether a requirement speaks of parameters that it can compare, and is true or false for them.

@@ -81,39 +81,39 @@ impl Rest {
                 self.put("/variants", name, json!({}))
             }
             ["groups", index, ..] => {
-                let pointer = format!("/groups/{index}");
-                let name = self.json.pointer(&format!("{pointer}/name")).and_then(Json::as_str);
+                let name = self
+                    .json
+                    .pointer(&format!("/groups/{index}/name"))
+                    .and_then(Json::as_str);
                 let name = name
                     .filter(|name| !name.is_empty() && name.len() <= 100)
                     .unwrap_or("refused");
                 let group = json!({ "name": name, "count": 0, "object": { "class": "geometric" },
                     "placement": { "disc": { "center": [0, 0], "radius": 1 } } });
-                *self.json.pointer_mut(&pointer)? = group;
-                self.silent.push(pointer);
-                Some(())
+                self.replace(format!("/groups/{index}"), group)
             }
             ["world", "objects", index, ..] => {
-                let pointer = format!("/world/objects/{index}");
-                *self.json.pointer_mut(&pointer)? = json!({ "class": "geometric", "coordinates": [0, 0] });
-                self.silent.push(pointer);
-                Some(())
+                let object = json!({ "class": "geometric", "coordinates": [0, 0] });
+                self.replace(format!("/world/objects/{index}"), object)
             }
             ["world", key, ..] => {
                 self.silent.push(format!("/world/{}", escape(key)));
                 self.remove("/world", key);
                 Some(())
             }
-            ["require", index, ..] => {
-                let pointer = format!("/require/{index}");
-                *self.json.pointer_mut(&pointer)? = json!("true");
-                self.silent.push(pointer);
-                Some(())
-            }
+            ["require", index, ..] => self.replace(format!("/require/{index}"), json!("true")),
             [key, ..] => {
                 self.remove("", key);
                 Some(())
             }
         }
+    }
+
+    /// Puts something sound where something was refused, of which nothing more is said.
+    fn replace(&mut self, pointer: String, sound: Json) -> Option<()> {
+        *self.json.pointer_mut(&pointer)? = sound;
+        self.silent.push(pointer);
+        Some(())
     }
 
     fn remove(&mut self, parent: &str, key: &str) {

@@ -230,19 +230,10 @@ impl Check<'_> {
             Source::Value(value) => vec![Distribution::Constant { value: value.clone() }],
             Source::Distribution(distribution) => vec![(**distribution).clone()],
             Source::Param(reference) => {
-                let Some(parameter) = self.parameters.get(&reference.param) else {
-                    return Vec::new();
-                };
-                let values = parameter
-                    .value
-                    .iter()
-                    .chain(&parameter.default)
-                    .chain(parameter.choices.iter().flatten());
-                let own = values.filter_map(|value| match value {
-                    Value::Distribution(distribution) => Some((**distribution).clone()),
-                    _ => None,
-                });
-                own.collect()
+                let parameter = self.parameters.get(&reference.param).into_iter();
+                parameter
+                    .flat_map(|parameter| parameter.distributions().cloned())
+                    .collect()
             }
         }
     }
