@@ -21,7 +21,7 @@ pub(crate) struct Document<'a> {
 impl<'a> Document<'a> {
     /// Parses a text of at most `most` values: refuses what is not JSON, and keys that stand twice in one object.
     pub(crate) fn parse(name: &'a str, text: &'a str, most: usize) -> Result<Self, SpecError> {
-        let (document, repeated) = Self::parse_with_repeats(name, text, most)?;
+        let (document, repeated) = Self::parse_leniently(name, text, most)?;
         let twice = |pointer: String| {
             let found = format!("the key {:?} twice", json::last_key(&pointer));
             Problem::new(
@@ -38,10 +38,6 @@ impl<'a> Document<'a> {
     /// Parses a text as most programs do: of keys that stand twice in one object the last counts. Hands back the
     /// pointers of those that do, the first of them.
     pub(crate) fn parse_leniently(name: &'a str, text: &'a str, most: usize) -> Result<(Self, Vec<String>), SpecError> {
-        Self::parse_with_repeats(name, text, most)
-    }
-
-    fn parse_with_repeats(name: &'a str, text: &'a str, most: usize) -> Result<(Self, Vec<String>), SpecError> {
         let text = without_mark(text);
         if text.len() > MAX_BYTES {
             return Err(SpecError::TooLarge {

@@ -147,6 +147,15 @@ impl EnvironmentParams {
             count: walls.len(),
         })
     }
+
+    /// Where a place is that nobody comes to: outside the arena, or inside which wall; `None` on free ground.
+    pub(super) fn out_of_reach(&self, at: [f64; 2], plan: Option<&Plan>) -> Option<String> {
+        if self.contains(at) {
+            return Some(format!("inside {}", self.enclosure(at, plan)?));
+        }
+        let [width, depth] = self.arena_size();
+        Some(format!("outside the {width} × {depth} m arena"))
+    }
 }
 
 /// Whether a point lies within a polygon, by the even-odd rule.

@@ -249,54 +249,32 @@ pub(super) fn problems(world: &WorldDraft) -> Vec<Problem> {
     let Some(progress) = &world.progress else {
         return Vec::new();
     };
-    let (found, expected) = (progress.objects.len(), world.objects.len());
+    let (found, count) = (progress.objects.len(), world.objects.len());
     let mut problems = Vec::new();
-    if found != expected {
-        problems.push(Problem::new(
-            "spec/progress",
-            "/progress/objects",
-            format!("the progress of {found} objects"),
-            format!("one for each of {expected} objects"),
-        ));
+    if found != count {
+        let found = format!("the progress of {found} objects");
+        problems.push(wrong("objects", found, format!("one for each of {count} objects")));
     }
-    for (index, (object, progress)) in world.objects.iter().zip(&progress.objects).enumerate() {
-        if progress.present && progress.returns_at.is_some() {
-            problems.push(Problem::new(
-                "spec/progress",
-                format!("/progress/objects/{index}/returns_at"),
-                "the return of an object that is there",
-                "none, or present false",
-            ));
+    for (index, (object, own)) in world.objects.iter().zip(&progress.objects).enumerate() {
+        let at = |key: &str| format!("objects/{index}{key}");
+        if own.present && own.returns_at.is_some() {
+            let found = "the return of an object that is there";
+            problems.push(wrong(&at("/returns_at"), found, "none, or present false"));
         }
-        if progress.waypoint as usize >= object.waypoints.len().max(1) {
-            problems.push(Problem::new(
-                "spec/progress",
-                format!("/progress/objects/{index}/waypoint"),
-                format!("waypoint {}", progress.waypoint),
-                format!("one of {} waypoints, counted from 0", object.waypoints.len()),
-            ));
+        if own.waypoint > 0 {
+            let waypoints = object.waypoints.len();
+            problems.extend(beyond(&at("/waypoint"), "waypoint", [own.waypoint], waypoints));
+        }
+        if object.door.is_none() && (own.open.is_some() || own.unlocked || own.closes_at.is_some()) {
+            problems.push(wrong(&at(""), "the progress of a door", "none, for it is not a door"));
         }
     }
     let zones = world.environment_params.zones.len();
-    if let Some(index) = progress.zones.iter().find(|index| **index as usize >= zones) {
-        problems.push(Problem::new(
-            "spec/progress",
-            "/progress/zones",
-            format!("zone {index}"),
-            format!("one of {zones} zones, counted from 0"),
-        ));
-    }
-    problems.extend(carried_problems(world, progress));
+    problems.extend(beyond("zones", "zone", progress.zones.iter().copied(), zones));
     let rails = progress.rails.iter();
     let named = rails.flat_map(|rails| rails.target.iter().chain(&rails.avoided).chain(&rails.given_up));
-    if let Some(index) = named.copied().find(|index| *index as usize >= expected) {
-        problems.push(Problem::new(
-            "spec/progress",
-            "/progress/rails",
-            format!("object {index}"),
-            format!("one of {expected} objects, counted from 0"),
-        ));
-    }
+    problems.extend(beyond("rails", "object", named.copied(), count));
+    problems.extend(carried_problems(world, progress));
     problems
 }
 
@@ -307,40 +285,31 @@ fn carried_problems(world: &WorldDraft, progress: &Progress) -> Vec<Problem> {
     let is_carried = |index: u32| {
         let index = index as usize;
         let is_portable = world.objects.get(index).is_some_and(|object| object.portable.is_some());
-        is_portable
-            && progress
-                .objects
-                .get(index)
-                .is_some_and(|own| !own.present && own.returns_at.is_none())
+        let is_away = |own: &ObjectProgress| !own.present && own.returns_at.is_none();
+        is_portable && progress.objects.get(index).is_some_and(is_away)
     };
-    let mut place = 0..carried.len();
-    if let Some(place) = place.find(|&place| !is_carried(carried[place]) || carried[..place].contains(&carried[place]))
+    let mut places = carried.iter().enumerate();
+    if let Some((place, thing)) =
+        places.find(|(place, thing)| !is_carried(**thing) || carried[..*place].contains(thing))
     {
-        problems.push(Problem::new(
-            "spec/progress",
-            format!("/progress/carried/{place}"),
-            format!("object {}", carried[place]),
-            "a portable object, once, that is not present and does not return",
-        ));
+        let expected = "a portable object, once, that is not present and does not return";
+        problems.push(wrong(&format!("carried/{place}"), format!("object {thing}"), expected));
     }
     let limit = world.agent_params.carry_limit;
     if carried.len() > limit as usize {
-        problems.push(Problem::new(
-            "spec/progress",
-            "/progress/carried",
-            format!("{} things", carried.len()),
-            format!("at most {limit}, the agent's carry_limit"),
-        ));
-    }
-    for (index, (object, own)) in world.objects.iter().zip(&progress.objects).enumerate() {
-        if object.door.is_none() && (own.open.is_some() || own.unlocked || own.closes_at.is_some()) {
-            problems.push(Problem::new(
-                "spec/progress",
-                format!("/progress/objects/{index}"),
-                "the progress of a door",
-                "none, for it is not a door",
-            ));
-        }
+        let expected = format!("at most {limit}, the agent's carry_limit");
+        problems.push(wrong("carried", format!("{} things", carried.len()), expected));
     }
     problems
+}
+
+fn wrong(place: &str, found: impl Into<String>, expected: impl Into<String>) -> Problem {
+    Problem::new("spec/progress", format!("/progress/{place}"), found, expected)
+}
+
+/// What is wrong with the first of some numbers, counted from 0, that is beyond as many as there are.
+fn beyond(place: &str, what: &str, numbers: impl IntoIterator<Item = u32>, count: usize) -> Option<Problem> {
+    let number = numbers.into_iter().find(|number| *number as usize >= count)?;
+    let expected = format!("one of {count} {what}s, counted from 0");
+    Some(wrong(place, format!("{what} {number}"), expected))
 }

@@ -56,7 +56,10 @@ impl World {
             remarks.push(pointer, format!("the polygon {fault}; it is kept as it stands"));
         }
         let start = self.agent_params.coordinates;
-        if let Some(place) = self.place_out_of_reach(start).filter(|_| self.progress.is_none()) {
+        if let Some(place) = arena
+            .out_of_reach(start, self.plan())
+            .filter(|_| self.progress.is_none())
+        {
             remarks.push(
                 "/agent_params/coordinates".to_owned(),
                 format!("the agent starts {place}"),
@@ -156,21 +159,11 @@ impl World {
 
     /// Where an object stands that nobody comes to: outside the arena, or inside which wall; `None` on free ground.
     pub(crate) fn out_of_reach(&self, object: &Object) -> Option<String> {
-        let place = self.place_out_of_reach(object.coordinates)?;
+        let place = self.environment_params.out_of_reach(object.coordinates, self.plan())?;
         let ([x, y], class) = (object.coordinates, &object.class);
         Some(format!(
             "the {class} stands at ({x:.1}, {y:.1}), {place}; it is kept, out of reach"
         ))
-    }
-
-    /// Where a place is that nobody comes to: outside the arena, or inside which wall; `None` on free ground.
-    fn place_out_of_reach(&self, at: [f64; 2]) -> Option<String> {
-        let arena = &self.environment_params;
-        if arena.contains(at) {
-            return Some(format!("inside {}", self.enclosure(at)?));
-        }
-        let [width, depth] = arena.arena_size();
-        Some(format!("outside the {width} × {depth} m arena"))
     }
 }
 

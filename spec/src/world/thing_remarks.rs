@@ -27,19 +27,10 @@ pub(super) fn thing_remarks(world: &World) -> Vec<(String, String)> {
             found.extend(unheard(world, object, &portable.on).map(|text| (at("portable/on"), text)));
         }
     }
-    let conditions = |key: &'static str| {
-        let rules = &world.rules;
-        let list = if key == "success" {
-            &rules.success
-        } else {
-            &rules.failure
-        };
-        list.iter()
-            .enumerate()
-            .map(move |(place, condition)| (format!("/rules/{key}/{place}"), condition))
-    };
-    for (pointer, condition) in conditions("success").chain(conditions("failure")) {
-        found.extend(ending(world, condition).map(|text| (pointer, text)));
+    for (key, conditions) in [("success", &world.rules.success), ("failure", &world.rules.failure)] {
+        for (place, condition) in conditions.iter().enumerate() {
+            found.extend(ending(world, condition).map(|text| (format!("/rules/{key}/{place}"), text)));
+        }
     }
     found
 }

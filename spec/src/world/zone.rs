@@ -214,20 +214,10 @@ pub(super) fn problems(world: &WorldDraft) -> Vec<Problem> {
             problems.push(Problem::new("spec/zone", pointer.clone(), found, "one of the two").advise(advice));
         }
         let Some([x, y]) = zone.teleport else { continue };
-        let [width, depth] = arena.arena_size();
-        let found = if arena.contains([x, y]) {
-            let enclosure = arena.enclosure([x, y], plan.as_deref());
-            enclosure.map(|enclosure| format!("({x}, {y}), inside {enclosure}"))
-        } else {
-            Some(format!("({x}, {y}), outside the {width} × {depth} m arena"))
-        };
-        if let Some(found) = found {
-            problems.push(Problem::new(
-                "spec/zone",
-                format!("{pointer}/teleport"),
-                found,
-                "a place on free ground",
-            ));
+        if let Some(place) = arena.out_of_reach([x, y], plan.as_deref()) {
+            let found = format!("({x}, {y}), {place}");
+            let pointer = format!("{pointer}/teleport");
+            problems.push(Problem::new("spec/zone", pointer, found, "a place on free ground"));
         }
     }
     problems
