@@ -107,12 +107,11 @@ impl Classes {
 
     fn advise(&self, problem: Problem, near: Option<String>) -> Problem {
         let near = near.map(|near| format!("did you mean {near:?}?"));
-        match (near, &self.advice) {
-            (Some(near), Some(advice)) => problem.advise(format!("{near} Otherwise {advice}")),
-            (Some(near), None) => problem.advise(near),
-            (None, Some(advice)) => problem.advise(advice.clone()),
-            (None, None) => problem,
+        let advice: Vec<String> = near.into_iter().chain(self.advice.clone()).collect();
+        if advice.is_empty() {
+            return problem;
         }
+        problem.advise(advice.join(" Otherwise "))
     }
 }
 

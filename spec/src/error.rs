@@ -255,11 +255,7 @@ pub(crate) fn cut(text: &str) -> String {
 
 /// Names as a message lists them: the first of them, and how many more there are.
 pub(crate) fn first_of<S: AsRef<str>>(known: &[S]) -> String {
-    let first: Vec<&str> = known.iter().take(SHOWN).map(AsRef::as_ref).collect();
-    match known.len() - first.len() {
-        0 => first.join(", "),
-        more => format!("{} and {more} more", first.join(", ")),
-    }
+    driftworld_text::first_of(known, SHOWN)
 }
 
 /// The end of a message about a misspelt word, `; did you mean "red"?`; empty where no known word is near.

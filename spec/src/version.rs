@@ -69,6 +69,9 @@ impl Format {
     }
 }
 
+/// The margins of version 1 of the task spec, and what version 2 calls them in `keep_out`.
+pub(crate) const OLD_MARGINS: [(&str, &str); 2] = [("wall_margin", "walls"), ("agent_margin", "agent")];
+
 /// Version 1 had `wall_margin` and `agent_margin` beside each other; version 2 has `keep_out`, which also names groups.
 fn margins_to_keep_out(task: &mut Map<String, Json>) {
     let groups = task
@@ -77,7 +80,7 @@ fn margins_to_keep_out(task: &mut Map<String, Json>) {
         .into_iter()
         .flatten();
     for group in groups.filter_map(Json::as_object_mut) {
-        for (old, new) in [("wall_margin", "walls"), ("agent_margin", "agent")] {
+        for (old, new) in OLD_MARGINS {
             if let Some(margin) = group.shift_remove(old) {
                 let keep_out = group.entry("keep_out").or_insert_with(|| json!({}));
                 if let Some(keep_out) = keep_out.as_object_mut() {

@@ -95,7 +95,7 @@ impl<'a> Document<'a> {
                 .map_or_else(|| "nothing".to_owned(), describe);
             let expected = error.into_inner().to_string();
             let problem = Problem::new("spec/value", pointer, found, expected);
-            self.error(vec![problem].into())
+            self.error(vec![problem])
         })
     }
 
@@ -109,8 +109,9 @@ impl<'a> Document<'a> {
         }
     }
 
-    fn error(&self, found: Listed) -> SpecError {
-        let Listed { mut problems, more } = found;
+    /// The error of problems, after finding the place of each.
+    pub(crate) fn error(&self, found: impl Into<Listed>) -> SpecError {
+        let Listed { mut problems, more } = found.into();
         let more = more || problems.len() > MAX_PROBLEMS;
         // The first ones of a text are found among some more: of a hundred thousand not each is looked up.
         problems.truncate(8 * MAX_PROBLEMS);
@@ -118,15 +119,12 @@ impl<'a> Document<'a> {
             pointer: &problem.pointer,
             at_key: matches!(problem.code, "spec/unknown-key" | "spec/name"),
         });
-        let places = self.found(&wanted.collect::<Vec<_>>());
+        let offsets = json::offsets(self.text, &wanted.collect::<Vec<_>>());
+        let places = lines_and_columns(self.text, &offsets);
         for (problem, place) in problems.iter_mut().zip(places) {
             (problem.line, problem.column) = place;
         }
         SpecError::of_document(self.name, Listed { problems, more })
-    }
-
-    fn found(&self, wanted: &[Wanted]) -> Vec<(usize, usize)> {
-        lines_and_columns(self.text, &json::offsets(self.text, wanted))
     }
 }
 

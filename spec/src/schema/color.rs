@@ -49,13 +49,8 @@ fn from_hex(text: &str) -> Option<[f64; 3]> {
     if !digits.chars().all(|c| c.is_ascii_hexdigit()) {
         return None;
     }
-    let byte = |start: usize, length: usize| u8::from_str_radix(&digits[start..start + length], 16).ok();
-    let bytes = match digits.len() {
-        3 => [byte(0, 1)? * 17, byte(1, 1)? * 17, byte(2, 1)? * 17],
-        6 => [byte(0, 2)?, byte(2, 2)?, byte(4, 2)?],
-        _ => return None,
-    };
-    Some(bytes.map(|byte| f64::from(byte) / 255.0))
+    let color: palette::Srgb<u8> = digits.parse().ok()?;
+    Some([color.red, color.green, color.blue].map(|byte| f64::from(byte) / 255.0))
 }
 
 fn triple(color: [f64; 3]) -> String {

@@ -3,14 +3,15 @@
 use std::collections::BTreeMap;
 
 use jsonschema::ValidationError;
-use jsonschema::error::{TypeKind, ValidationErrorKind};
+use jsonschema::error::ValidationErrorKind;
 use serde_json::Value;
 
 use super::advice;
 use super::part;
-use super::wording::{code_of, either, expected, words_of};
+use super::wording::{code_of, either, expected, types, words_of};
 use crate::describe::{describe, escape};
 use crate::error::{MAX_PROBLEMS, Problem};
+use crate::version;
 use crate::world::TEXT_PATTERN;
 
 /// A problem, and how sure it is that nothing narrower can be said.
@@ -139,12 +140,8 @@ impl Explainer<'_> {
         let advice = match error.kind() {
             ValidationErrorKind::Type { kind } => {
                 let words = words_of(self.schema, &self.parent(error)["items"]);
-                advice::for_word_of_list(value, &words).or_else(|| {
-                    advice::for_types(value, |name| match kind {
-                        TypeKind::Single(kind) => kind.to_string() == name,
-                        TypeKind::Multiple(kinds) => kinds.iter().any(|kind| kind.to_string() == name),
-                    })
-                })
+                advice::for_word_of_list(value, &words)
+                    .or_else(|| advice::for_types(value, |name| types(kind).iter().any(|kind| kind == name)))
             }
             ValidationErrorKind::Pattern { pattern } if pattern == TEXT_PATTERN => in_capitals(value),
             ValidationErrorKind::Pattern { .. } => renamed(value),
@@ -269,14 +266,10 @@ fn unknown_key(pointer: &str, key: &str, known: &[String]) -> Problem {
         expected,
     );
     // Keys of version 1 of the task spec, in one that says it is of version 2.
-    match key {
-        "wall_margin" if known.iter().any(|key| key == "keep_out") => {
-            problem.advise("write \"keep_out\": { \"walls\": … }")
-        }
-        "agent_margin" if known.iter().any(|key| key == "keep_out") => {
-            problem.advise("write \"keep_out\": { \"agent\": … }")
-        }
-        _ => problem.suggest(key, known),
+    let known_now = version::OLD_MARGINS.iter().find(|(old, _)| *old == key);
+    match known_now.filter(|_| known.iter().any(|key| key == "keep_out")) {
+        Some((_, new)) => problem.advise(format!("write \"keep_out\": {{ {new:?}: … }}")),
+        None => problem.suggest(key, known),
     }
 }
 

@@ -5,7 +5,7 @@ use jsonschema::error::ValidationErrorKind;
 use serde_json::{Map, Value};
 
 use super::explain::{Explainer, Finding, missing_key};
-use super::wording::{article, both, either, list, object, words_of};
+use super::wording::{article, both, either, list, object, quoted, words_of};
 use super::{advice, color};
 use crate::describe::describe;
 use crate::error::{Problem, nearest};
@@ -274,20 +274,17 @@ fn meant_object<'f, 'a, 'e>(
         .keys()
         .filter_map(|key| Some((key.as_str(), tagged(key)?)))
         .collect();
-    // A key of a plain object can also be the tag of another form, as `grid` is.
-    let plain = |key: &str| {
-        let plain = forms
+    let structs = || {
+        forms
             .iter()
-            .filter(|form| form.has_type("object") && form.tag().is_none());
-        let mut plain = plain.filter(|form| form.properties().is_some_and(|known| known.contains_key(key)));
-        plain.next()
+            .filter(|form| form.has_type("object") && form.tag().is_none())
     };
+    // A key of a plain object can also be the tag of another form, as `grid` is.
+    let plain = |key: &str| structs().find(|form| form.properties().is_some_and(|known| known.contains_key(key)));
     match &present[..] {
         [(key, form)] => Ok(Some(plain(key).unwrap_or(form))),
         [] => {
-            let mut structs = forms
-                .iter()
-                .filter(|form| form.has_type("object") && form.tag().is_none());
+            let mut structs = structs();
             Ok(structs.next().filter(|_| structs.next().is_none()))
         }
         several => {
@@ -324,17 +321,10 @@ fn none_of(own: &str, value: &Value, forms: &[Form]) -> Finding {
         labels.retain(|(rank, _)| *rank != 1);
     }
     let expected = if labels.is_empty() && words.len() > 1 {
-        format!(
-            "one of {}",
-            words
-                .iter()
-                .map(|word| format!("{word:?}"))
-                .collect::<Vec<_>>()
-                .join(", ")
-        )
+        format!("one of {}", quoted(&words).join(", "))
     } else {
-        let words = words.iter().map(|word| format!("{word:?}"));
-        either(words.chain(labels.iter().map(|(_, label)| label.clone())).collect())
+        let labels = labels.iter().map(|(_, label)| label.clone());
+        either(quoted(&words).into_iter().chain(labels).collect())
     };
     let families: Vec<&str> = forms
         .iter()

@@ -1,6 +1,6 @@
 //! How messages word what a schema asks for: types, limits, patterns. Which error is worth a message is decided in `explain.rs`.
 
-use driftworld_text::{IDENTIFIER_PATTERN, NAME_PATTERN};
+use driftworld_text::{IDENTIFIER_PATTERN, NAME_PATTERN, counted};
 use jsonschema::ValidationError;
 use jsonschema::error::{TypeKind, ValidationErrorKind};
 use serde_json::Value;
@@ -23,26 +23,14 @@ pub(super) fn code_of(kind: &ValidationErrorKind) -> &'static str {
 /// What an error says was expected; `schema` is the part of the schema, `root`, that holds the keyword at fault.
 pub(super) fn expected(error: &ValidationError, root: &Value, schema: &Value) -> String {
     match error.kind() {
-        ValidationErrorKind::Type {
-            kind: TypeKind::Single(kind),
-        } if kind.to_string() == "array" => list(root, schema),
-        ValidationErrorKind::Type {
-            kind: TypeKind::Single(kind),
-        } if kind.to_string() == "object" => object(schema),
-        ValidationErrorKind::Type {
-            kind: TypeKind::Single(kind),
-        } => article(&kind.to_string()),
-        ValidationErrorKind::Type {
-            kind: TypeKind::Multiple(kinds),
-        } => {
+        ValidationErrorKind::Type { kind } => {
             // Null stands for an absent key, which nobody who wrote a value wants to hear of.
-            let kinds = kinds.iter().map(|kind| kind.to_string()).filter(|kind| kind != "null");
-            let word = |kind: String| {
-                if kind == "array" {
-                    list(root, schema)
-                } else {
-                    article(&kind)
-                }
+            let is_one = matches!(kind, TypeKind::Single(_));
+            let kinds = types(kind).into_iter().filter(|kind| is_one || kind != "null");
+            let word = |kind: String| match kind.as_str() {
+                "array" => list(root, schema),
+                "object" if is_one => object(schema),
+                kind => article(kind),
             };
             either(kinds.map(word).collect())
         }
@@ -53,14 +41,14 @@ pub(super) fn expected(error: &ValidationError, root: &Value, schema: &Value) ->
         ValidationErrorKind::MinItems { limit } | ValidationErrorKind::MaxItems { limit }
             if schema.get("minItems") == schema.get("maxItems") =>
         {
-            format!("exactly {}", counted(*limit, "value"))
+            format!("exactly {}", counted(*limit as usize, "value"))
         }
-        ValidationErrorKind::MinItems { limit } => format!("at least {}", counted(*limit, "value")),
-        ValidationErrorKind::MaxItems { limit } => format!("at most {}", counted(*limit, "value")),
-        ValidationErrorKind::MinLength { limit } => format!("at least {}", counted(*limit, "character")),
-        ValidationErrorKind::MaxLength { limit } => format!("at most {}", counted(*limit, "character")),
-        ValidationErrorKind::MinProperties { limit } => format!("at least {}", counted(*limit, "key")),
-        ValidationErrorKind::MaxProperties { limit } => format!("at most {}", counted(*limit, "key")),
+        ValidationErrorKind::MinItems { limit } => format!("at least {}", counted(*limit as usize, "value")),
+        ValidationErrorKind::MaxItems { limit } => format!("at most {}", counted(*limit as usize, "value")),
+        ValidationErrorKind::MinLength { limit } => format!("at least {}", counted(*limit as usize, "character")),
+        ValidationErrorKind::MaxLength { limit } => format!("at most {}", counted(*limit as usize, "character")),
+        ValidationErrorKind::MinProperties { limit } => format!("at least {}", counted(*limit as usize, "key")),
+        ValidationErrorKind::MaxProperties { limit } => format!("at most {}", counted(*limit as usize, "key")),
         ValidationErrorKind::MultipleOf { multiple_of } if (multiple_of - 1.0).abs() < f64::EPSILON => {
             article("integer")
         }
@@ -68,6 +56,14 @@ pub(super) fn expected(error: &ValidationError, root: &Value, schema: &Value) ->
         ValidationErrorKind::Constant { expected_value } => expected_value.to_string(),
         ValidationErrorKind::UniqueItems => "no value twice".to_owned(),
         _ => error.to_string(),
+    }
+}
+
+/// The types of JSON Schema that may stand somewhere.
+pub(super) fn types(kind: &TypeKind) -> Vec<String> {
+    match kind {
+        TypeKind::Single(kind) => vec![kind.to_string()],
+        TypeKind::Multiple(kinds) => kinds.iter().map(|kind| kind.to_string()).collect(),
     }
 }
 
@@ -86,10 +82,6 @@ fn plain(limit: &Value) -> String {
     limit
         .as_f64()
         .map_or_else(|| limit.to_string(), |number| number.to_string())
-}
-
-fn counted(number: u64, what: &str) -> String {
-    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
 }
 
 /// A type of JSON Schema as people call it.
@@ -127,8 +119,7 @@ pub(super) fn list(root: &Value, schema: &Value) -> String {
     let words = words_of(root, items);
     match items["type"].as_str() {
         _ if !words.is_empty() => {
-            let words: Vec<String> = words.iter().map(|word| format!("{word:?}")).collect();
-            format!("a list of words ({})", words.join(", "))
+            format!("a list of words ({})", quoted(&words).join(", "))
         }
         Some("number" | "integer") if schema["minItems"] == 2 && schema["maxItems"] == 2 => {
             "a list of two numbers".to_owned()
@@ -153,18 +144,23 @@ pub(super) fn object(schema: &Value) -> String {
 }
 
 /// «a, b or c».
-pub(super) fn either(mut words: Vec<String>) -> String {
-    match words.pop() {
-        Some(last) if !words.is_empty() => format!("{} or {last}", words.join(", ")),
-        last => last.unwrap_or_default(),
-    }
+pub(super) fn either(words: Vec<String>) -> String {
+    joined(words, "or")
 }
 
 /// «"a" and "b"».
 pub(super) fn both(words: &[&str]) -> String {
-    let mut words: Vec<String> = words.iter().map(|word| format!("{word:?}")).collect();
+    joined(quoted(words), "and")
+}
+
+/// Words in quotes.
+pub(super) fn quoted(words: &[&str]) -> Vec<String> {
+    words.iter().map(|word| format!("{word:?}")).collect()
+}
+
+fn joined(mut words: Vec<String>, last_by: &str) -> String {
     match words.pop() {
-        Some(last) if !words.is_empty() => format!("{} and {last}", words.join(", ")),
+        Some(last) if !words.is_empty() => format!("{} {last_by} {last}", words.join(", ")),
         last => last.unwrap_or_default(),
     }
 }

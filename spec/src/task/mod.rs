@@ -138,13 +138,8 @@ impl TaskSpec {
             document.fail_on(Listed { problems, more })?;
         }
         let spec: TaskDocument = document.deserialize()?;
-        match check::compile(spec, classes, check::Unsound::default()) {
-            Ok(task) => Ok(Arc::new(task)),
-            Err(problems) => {
-                document.fail_on(problems)?;
-                unreachable!("a task that does not compile has problems")
-            }
-        }
+        let task = check::compile(spec, classes, check::Unsound::default());
+        task.map(Arc::new).map_err(|problems| document.error(problems))
     }
 
     /// Every object whose class or model is, or can be, none of these.

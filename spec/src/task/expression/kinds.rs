@@ -2,7 +2,7 @@
 
 use super::{Binary, Expression, Made, Node, Operator, Term, Unary};
 use crate::Color;
-use crate::error::nearest;
+use crate::error::{first_of, nearest};
 use crate::task::parameter::{Parameter, Role};
 use crate::value::{ParameterType, Value};
 
@@ -202,10 +202,8 @@ impl<F: Fn(&str) -> Option<Kind>> Check<'_, F> {
         let name = &self.names[*name];
         let meant = nearest(text, all.iter());
         let meant = meant.map_or_else(String::new, |near| format!(" (did you mean '{near}'?)"));
-        let quoted: Vec<String> = all.iter().take(20).map(|choice| format!("'{choice}'")).collect();
-        let more = all.len().checked_sub(20).filter(|more| *more > 0);
-        let more = more.map_or_else(String::new, |more| format!(" and {more} more"));
-        let expected = format!("one of the choices of {name}: {}{more}{meant}", quoted.join(", "));
+        let quoted: Vec<String> = all.iter().map(|choice| format!("'{choice}'")).collect();
+        let expected = format!("one of the choices of {name}: {}{meant}", first_of(&quoted));
         Err((format!("'{text}' beside {name}"), expected))
     }
 
