@@ -1,5 +1,6 @@
 //! What is wrong with a layout that the schema cannot say, and what is odd about one.
 
+use super::walls::present;
 use super::{Kind, Layout, LayoutWall, MAX_CELLS, MAX_LAYOUT_SIDE, Plan};
 use crate::error::Problem;
 
@@ -26,21 +27,19 @@ impl Layout {
             ("height", "text", self.height.is_some()),
             ("legend", "text", !self.legend.is_empty()),
         ];
-        {
-            for (key, ..) in keys.into_iter().filter(|(_, owner, stands)| *stands && owner != kind) {
-                let expected = "no such key beside ".to_owned() + kind;
-                let problem = Problem::new(
-                    "spec/layout-kind",
-                    format!("{POINTER}/{key}"),
-                    format!("{key:?}"),
-                    expected,
-                );
-                problems.push(problem.advise(match *kind {
-                    "maze" | "rooms" if key != "legend" => format!("write it into {kind:?}"),
-                    "walls" if key == "height" => "write it into each wall".to_owned(),
-                    _ => "remove it".to_owned(),
-                }));
-            }
+        for (key, ..) in keys.into_iter().filter(|(_, owner, stands)| *stands && owner != kind) {
+            let expected = "no such key beside ".to_owned() + kind;
+            let problem = Problem::new(
+                "spec/layout-kind",
+                format!("{POINTER}/{key}"),
+                format!("{key:?}"),
+                expected,
+            );
+            problems.push(problem.advise(match *kind {
+                "maze" | "rooms" if key != "legend" => format!("write it into {kind:?}"),
+                "walls" if key == "height" => "write it into each wall".to_owned(),
+                _ => "remove it".to_owned(),
+            }));
         }
         match self.kind() {
             Some(Kind::Maze(maze)) => {
@@ -84,18 +83,13 @@ impl Layout {
 
     /// The keys of the kinds that are there.
     fn kinds(&self) -> Vec<&'static str> {
-        let kinds = [
+        present([
             ("maze", self.maze.is_some()),
             ("rooms", self.rooms.is_some()),
             ("text", self.text.is_some()),
             ("predefined", self.predefined.is_some()),
             ("walls", self.walls.is_some()),
-        ];
-        kinds
-            .into_iter()
-            .filter(|(_, stands)| *stands)
-            .map(|(kind, _)| kind)
-            .collect()
+        ])
     }
 
     fn too_large(&self, key: &str) -> Option<Problem> {

@@ -68,11 +68,10 @@ impl Grid {
     }
 
     /// Opens sides so that all cells hang together by one way each (a spanning tree, depth first). Each opened side
-    /// becomes `as_what`; hands back the sides in the order of opening.
-    pub(super) fn open_tree(&mut self, as_what: Side, draws: &mut Draws) -> Vec<SideOf> {
+    /// becomes `as_what`.
+    pub(super) fn open_tree(&mut self, as_what: Side, draws: &mut Draws) {
         let count = self.sides[0].len();
         let mut seen = vec![false; count];
-        let mut opened = Vec::with_capacity(count - 1);
         let mut stack = Vec::with_capacity(count);
         let first = draws.below(count);
         seen[first] = true;
@@ -90,11 +89,9 @@ impl Grid {
             }
             let (next, (cell, axis)) = fresh[if number == 1 { 0 } else { draws.below(number) }];
             self.sides[axis][cell] = as_what;
-            opened.push((cell, axis));
             seen[next] = true;
             stack.push(next);
         }
-        opened
     }
 
     /// Takes walls away so that a share of them stands; those of a smaller share are among those of a larger one.

@@ -146,11 +146,7 @@ impl Layout {
 
     /// Whether it is drawn, and has no seed of its own.
     pub fn is_drawn(&self) -> bool {
-        match self.kind() {
-            Some(Kind::Maze(maze)) => maze.seed.is_none(),
-            Some(Kind::Rooms(rooms)) => rooms.seed.is_none(),
-            _ => false,
-        }
+        (self.maze.is_some() || self.rooms.is_some()) && self.seed().is_none()
     }
 
     /// The layout with this seed, if it is drawn and has none of its own.

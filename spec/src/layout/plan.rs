@@ -209,21 +209,21 @@ impl Plan {
     /// How many cells cannot be reached from the others: those outside the largest part that hangs together.
     pub fn cut_off(&self) -> usize {
         let mut seen = vec![false; self.cells.len()];
-        let mut largest = 0;
-        for first in 0..self.cells.len() {
-            if std::mem::replace(&mut seen[first], true) {
-                continue;
-            }
-            let (mut open, mut count) = (vec![first], 0);
-            while let Some(cell) = open.pop() {
-                count += 1;
-                open.extend(
-                    self.neighbours(cell)
-                        .filter(|next| !std::mem::replace(&mut seen[*next], true)),
-                );
-            }
-            largest = largest.max(count);
+        let parts = (0..self.cells.len()).map(|first| self.reach(first, &mut seen, |_, _| true));
+        self.cells.len() - parts.max().unwrap_or(0)
+    }
+
+    /// Marks the cells that are reached from one, itself included, by steps that may be taken; says how many are new.
+    pub(crate) fn reach(&self, from: usize, seen: &mut [bool], may_step: impl Fn(usize, usize) -> bool) -> usize {
+        if std::mem::replace(&mut seen[from], true) {
+            return 0;
         }
-        self.cells.len() - largest
+        let (mut open, mut count) = (vec![from], 0);
+        while let Some(cell) = open.pop() {
+            count += 1;
+            let steps = self.neighbours(cell).filter(|next| may_step(cell, *next));
+            open.extend(steps.filter(|next| !std::mem::replace(&mut seen[*next], true)));
+        }
+        count
     }
 }

@@ -68,19 +68,20 @@ fields! {
     }
 }
 
+/// Of some keys those that are there.
+pub(super) fn present<const N: usize>(keys: [(&'static str, bool); N]) -> Vec<&'static str> {
+    let present = keys.into_iter().filter(|(_, is_there)| *is_there);
+    present.map(|(key, _)| key).collect()
+}
+
 impl LayoutWall {
     /// Which forms it has, by their keys.
     pub(super) fn forms(&self) -> Vec<&'static str> {
-        let forms = [
+        present([
             ("from", self.from.is_some() || self.to.is_some()),
             ("circle", self.circle.is_some()),
             ("polygon", self.polygon.is_some()),
-        ];
-        forms
-            .into_iter()
-            .filter(|(_, has)| *has)
-            .map(|(form, _)| form)
-            .collect()
+        ])
     }
 
     /// Its corners, counterclockwise for a segment and a circle.

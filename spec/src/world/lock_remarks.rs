@@ -106,17 +106,9 @@ fn bar(plan: &Plan, place: [f64; 2]) -> Option<Bar> {
 /// For each cell whether it is reached from the first one without what is barred.
 fn reached(plan: &Plan, start: usize, bars: &BTreeSet<Bar>) -> Vec<bool> {
     let mut reached = vec![false; plan.cells.len()];
-    reached[start] = true;
-    let mut open = vec![start];
-    while let Some(cell) = open.pop() {
-        for next in plan.neighbours(cell) {
-            let is_barred =
-                bars.contains(&Bar::Cell(next)) || bars.contains(&Bar::Side(cell.min(next), cell.max(next)));
-            if !is_barred && !std::mem::replace(&mut reached[next], true) {
-                open.push(next);
-            }
-        }
-    }
+    plan.reach(start, &mut reached, |cell, next| {
+        !bars.contains(&Bar::Cell(next)) && !bars.contains(&Bar::Side(cell.min(next), cell.max(next)))
+    });
     reached
 }
 
