@@ -169,7 +169,7 @@ impl MeasureName {
                 of_numbers && always_positive(parameter),
                 "a variant parameter of type number or integer whose values are all above 0 for it",
             ),
-            Self::Srgb | Self::Cie76 | Self::Ciede2000 | Self::Oklab | Self::Hyab => (
+            _ if self.is_of_colors() => (
                 parameter.kind == ParameterType::Color || by_distribution,
                 "a parameter of type color, or one whose distributions draw colours, for it",
             ),
@@ -177,13 +177,7 @@ impl MeasureName {
                 parameter.kind == ParameterType::Layout,
                 "a variant parameter of type layout for it",
             ),
-            Self::Wasserstein1
-            | Self::Wasserstein2
-            | Self::TotalVariation
-            | Self::Hellinger
-            | Self::JensenShannon
-            | Self::Energy
-            | Self::BuresWasserstein => (
+            _ => (
                 by_distribution,
                 "a randomized parameter, or one of type distribution for it",
             ),
@@ -199,12 +193,7 @@ fn distributions(parameter: &Parameter) -> impl Iterator<Item = &Distribution<Nu
         Some(Source::Distribution(distribution)) => Some(&**distribution),
         Some(Source::Param(_) | Source::Case(_) | Source::Value(_)) | None => None,
     };
-    let values = parameter.value.iter().chain(&parameter.default);
-    let values = values.chain(parameter.choices.iter().flatten());
-    own.into_iter().chain(values.filter_map(|value| match value {
-        Value::Distribution(distribution) => Some(&**distribution),
-        _ => None,
-    }))
+    own.into_iter().chain(parameter.distributions())
 }
 
 /// What a distribution draws, as far as measures care.

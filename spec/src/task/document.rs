@@ -4,9 +4,9 @@ use std::sync::LazyLock;
 
 use driftworld_text::{IDENTIFIER_PATTERN, NAME_PATTERN};
 use indexmap::IndexMap;
-use schemars::JsonSchema;
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
-use serde_json::Value as Json;
+use serde_json::{Value as Json, json};
 
 use super::{By, ElementWeights, Group, Parameter, VariantSpec};
 use crate::defaults::is_default;
@@ -75,20 +75,18 @@ impl TaskDocument {
     }
 }
 
-fn parameters_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
-    let mut schema = generator.subschema_for::<IndexMap<String, Parameter>>();
-    schema.insert(
-        "propertyNames".to_owned(),
-        serde_json::json!({ "pattern": IDENTIFIER_PATTERN, "maxLength": 100 }),
-    );
-    schema
+fn parameters_schema(generator: &mut SchemaGenerator) -> Schema {
+    by_name::<Parameter>(generator, json!({ "pattern": IDENTIFIER_PATTERN, "maxLength": 100 }))
 }
 
-fn variants_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
-    let mut schema = generator.subschema_for::<IndexMap<String, VariantSpec>>();
-    schema.insert(
-        "propertyNames".to_owned(),
-        serde_json::json!({ "pattern": NAME_PATTERN, "minLength": 1, "maxLength": 100 }),
-    );
+fn variants_schema(generator: &mut SchemaGenerator) -> Schema {
+    let names = json!({ "pattern": NAME_PATTERN, "minLength": 1, "maxLength": 100 });
+    by_name::<VariantSpec>(generator, names)
+}
+
+/// The schema of things by their names, with that of the names.
+fn by_name<T: JsonSchema>(generator: &mut SchemaGenerator, names: Json) -> Schema {
+    let mut schema = generator.subschema_for::<IndexMap<String, T>>();
+    schema.insert("propertyNames".to_owned(), names);
     schema
 }

@@ -161,16 +161,21 @@ fn add(
     found: &mut Vec<(Distribution, f64)>,
 ) -> Result<(), Unsettled> {
     *ways += 1;
-    match found.iter_mut().find(|(known, _)| *known == distribution) {
-        Some((_, known)) => *known += weight,
-        None => found.push((distribution, weight)),
-    }
+    weigh(found, distribution, weight);
     if *ways > MOST_WAYS {
         let expected = format!("at most {MOST_WAYS} ways");
         let found = format!("draws that fall out in more than {MOST_WAYS} ways");
         return Err(Unsettled::NoCase(found, expected));
     }
     Ok(())
+}
+
+/// Adds a weight to what is listed, or lists it.
+fn weigh<T: PartialEq>(found: &mut Vec<(T, f64)>, new: T, weight: f64) {
+    match found.iter_mut().find(|(known, _)| *known == new) {
+        Some((_, known)) => *known += weight,
+        None => found.push((new, weight)),
+    }
 }
 
 /// One distribution for all outcomes: a list where all are lists, else a mixture.
@@ -192,10 +197,7 @@ pub(crate) fn mixed(mut outcomes: Vec<(Distribution, f64)>) -> Distribution {
         .into_iter()
         .flat_map(|(atoms, weight)| atoms.into_iter().map(move |(value, own)| (value, own * weight)))
     {
-        match all.iter_mut().find(|(known, _)| *known == value) {
-            Some((_, known)) => *known += weight,
-            None => all.push((value, weight)),
-        }
+        weigh(&mut all, value, weight);
     }
     let (values, weights) = all.into_iter().unzip();
     let weights = Some(weights);

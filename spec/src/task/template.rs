@@ -191,22 +191,8 @@ fn walk(json: &Json, pointer: &mut String, found: &mut Vec<Opening>) {
     }
 }
 
-impl Template<WorldDraft> {
-    /// The hole of a world's template at a pointer, if a world can vary there.
-    pub(crate) fn hole(opening: &Opening) -> Option<Hole<WorldDraft>> {
-        hole(opening, World::schema().json())
-    }
-}
-
-impl Template<Object> {
-    /// The hole of an object's template at a pointer, if an object can vary there.
-    pub(crate) fn hole(opening: &Opening) -> Option<Hole<Object>> {
-        hole(opening, &World::schema().json()["$defs"]["Object"])
-    }
-}
-
 /// The hole at a pointer into a `T`, whose schema this is.
-fn hole<T: Place>((pointer, source): &Opening, schema: &'static Json) -> Option<Hole<T>> {
+pub(crate) fn hole<T: Place>((pointer, source): &Opening, schema: &'static Json) -> Option<Hole<T>> {
     let words: Vec<&str> = pointer.split('/').skip(1).collect();
     let mut steps = Vec::new();
     let kind = T::find(&words, &mut steps)?;

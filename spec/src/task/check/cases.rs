@@ -15,15 +15,15 @@ impl Check<'_> {
     /// Reports randomized parameters whose look-ups read each other in a circle, and takes them for unsound, with all that
     /// read them.
     pub(super) fn cycles(&mut self) {
+        let parameters = self.parameters;
         let reads = |name: &str| -> Vec<String> {
-            let parameter = self.parameters.get(name);
-            let names = parameter
-                .and_then(|parameter| parameter.distribution.as_ref())
-                .map(Source::names);
-            names.unwrap_or_default()
+            let own = parameters
+                .get(name)
+                .and_then(|parameter| parameter.distribution.as_ref());
+            own.map(Source::names).unwrap_or_default()
         };
         let (mut cyclic, mut done) = (Vec::new(), BTreeSet::new());
-        for start in self.parameters.keys() {
+        for start in parameters.keys() {
             // A way of names, each with what it still has to be followed to.
             let mut way = vec![(start.clone(), reads(start))];
             while let Some((_, next)) = way.last_mut() {
@@ -32,19 +32,11 @@ impl Check<'_> {
                     continue;
                 };
                 if let Some(first) = way.iter().position(|(known, _)| *known == name) {
-                    let names: Vec<&str> = way[first..].iter().map(|(name, _)| name.as_str()).collect();
+                    let names: Vec<String> = way[first..].iter().map(|(name, _)| name.clone()).collect();
                     let shown = format!("a cycle: {} reads {name}", names.join(" reads "));
                     let pointer = format!("/parameters/{}/distribution", escape(&name));
-                    let problem = Problem::new(
-                        "spec/case-cycle",
-                        pointer,
-                        shown,
-                        "look-ups that do not read themselves",
-                    );
-                    cyclic.push((
-                        way[first..].iter().map(|(name, _)| name.clone()).collect::<Vec<_>>(),
-                        problem,
-                    ));
+                    let expected = "look-ups that do not read themselves";
+                    cyclic.push((names, Problem::new("spec/case-cycle", pointer, shown, expected)));
                 } else if !done.contains(&name) {
                     let further = reads(&name);
                     way.push((name, further));
@@ -58,18 +50,9 @@ impl Check<'_> {
             self.unsound.parameters.extend(names);
             self.report(problem);
         }
-        let spoilt = |check: &Self, parameter: &Parameter| {
-            let source = parameter.distribution.as_ref();
-            source.is_some_and(|source| {
-                source
-                    .names()
-                    .iter()
-                    .any(|name| check.unsound.parameters.contains(name))
-            })
-        };
-        for _ in 0..self.parameters.len() {
-            let names = self.parameters.iter().filter(|(_, parameter)| spoilt(self, parameter));
-            let names: Vec<String> = names.map(|(name, _)| name.clone()).collect();
+        for _ in 0..parameters.len() {
+            let is_spoilt = |name: &&String| reads(name).iter().any(|read| self.unsound.parameters.contains(read));
+            let names: Vec<String> = parameters.keys().filter(is_spoilt).cloned().collect();
             self.unsound.parameters.extend(names);
         }
     }

@@ -42,7 +42,7 @@ impl Check<'_> {
             .around
             .as_ref()
             .and_then(|name| self.earlier(&format!("{root}/around"), name, earlier));
-        self.facing(&root, group, earlier);
+        let facing_group = self.facing(&root, group, earlier);
         let keep_groups = self.keep_out(&root, group, earlier);
         if let Some(first) = earlier.iter().position(|other| other.name == group.name) {
             let found = format!("{:?}, which group {first} has too", group.name);
@@ -53,10 +53,6 @@ impl Check<'_> {
                 "a name of its own",
             ));
         }
-        let facing_group = match &group.facing {
-            Some(Facing::Group(name)) => earlier.iter().position(|other| other.name == *name),
-            _ => None,
-        };
         let (count, object) = (count?, object?);
         (self.problems.len() == before).then(|| PlacedGroup {
             spec: group.clone(),
@@ -209,37 +205,28 @@ impl Check<'_> {
         found
     }
 
-    fn facing(&mut self, root: &str, group: &Group, earlier: &[Group]) {
+    /// The number of the group that it faces.
+    fn facing(&mut self, root: &str, group: &Group, earlier: &[Group]) -> Option<usize> {
+        let wanted = "a group to be placed around";
+        if group.turned && group.around.is_none() {
+            let pointer = format!("{root}/turned");
+            self.report(Problem::new("spec/value", pointer, "true without around", wanted));
+        }
         let pointer = format!("{root}/facing");
         match &group.facing {
-            Some(Facing::Group(name)) => {
-                self.earlier(&pointer, name, earlier);
-            }
+            Some(Facing::Group(name)) => return self.earlier(&pointer, name, earlier),
             Some(Facing::Point(point)) => {
                 for number in point {
                     self.number(&pointer, number, [-300.0, 300.0]);
                 }
             }
             Some(Facing::Middle) if group.around.is_none() => {
-                let problem = Problem::new(
-                    "spec/value",
-                    pointer,
-                    "\"middle\" without around",
-                    "a group to be placed around",
-                );
+                let problem = Problem::new("spec/value", pointer, "\"middle\" without around", wanted);
                 self.report(problem.advise("name it under \"around\""));
             }
             _ => {}
         }
-        if group.turned && group.around.is_none() {
-            let pointer = format!("{root}/turned");
-            self.report(Problem::new(
-                "spec/value",
-                pointer,
-                "true without around",
-                "a group to be placed around",
-            ));
-        }
+        None
     }
 
     /// The margins, and the earlier groups that distance is kept from.

@@ -178,15 +178,11 @@ impl Check<'_> {
     }
 
     fn all_yield(&mut self, pointer: &str, source: &Source, kind: ParameterType) -> bool {
-        let odd = self
-            .distributions_of(source)
-            .into_iter()
-            .find(|distribution| !distribution.yields(kind));
-        if odd.is_none() && !self.stands_alone(pointer, source) {
-            return false;
+        let laws = self.distributions_of(source);
+        match laws.iter().find(|law| !law.yields(kind)) {
+            Some(odd) => self.type_matches(pointer, false, format!("the distribution {}", odd.name()), kind),
+            None => self.stands_alone(pointer, source),
         }
-        let found = odd.map(|distribution| format!("the distribution {}", distribution.name()));
-        found.is_none_or(|found| self.type_matches(pointer, false, found, kind))
     }
 
     /// Whether what a source draws looks at no objects before: places in turn, or kept apart, are for groups.

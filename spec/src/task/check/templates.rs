@@ -4,13 +4,13 @@ use indexmap::IndexMap;
 use serde_json::Value as Json;
 
 use super::super::scope::Scope;
-use super::super::template::{Hole, Opening, Source, Template, openings};
+use super::super::template::{Hole, Source, Template, hole, openings};
 use super::Check;
 use crate::describe::{describe, pointer_of};
 use crate::distribution::Distribution;
 use crate::error::Problem;
 use crate::value::{Value, with_whole_numbers};
-use crate::world::{Model, Object, WorldDraft};
+use crate::world::{Model, Object, Place, World, WorldDraft};
 
 /// The texts among some values.
 fn texts(values: Vec<Value>) -> Vec<String> {
@@ -39,7 +39,7 @@ impl Check<'_> {
         let fixtures = fixtures
             .map(|(index, object)| self.object(&format!("/world/objects/{index}"), object))
             .collect();
-        let world = self.template("/world", &json, Template::<WorldDraft>::hole);
+        let world = self.template::<WorldDraft>("/world", &json, World::schema().json());
         if let Some(world) = &world {
             for mut problem in world.base.problems() {
                 problem.pointer.insert_str(0, "/world");
@@ -50,7 +50,7 @@ impl Check<'_> {
     }
 
     pub(super) fn object(&mut self, pointer: &str, json: &Json) -> Option<Template<Object>> {
-        let template = self.template(pointer, json, Template::<Object>::hole)?;
+        let template = self.template(pointer, json, &World::schema().json()["$defs"]["Object"])?;
         self.known_class(pointer, &template);
         Some(template)
     }
@@ -58,10 +58,10 @@ impl Check<'_> {
     /// Whether the classes that an object can be of are known, and the models that it can have of them.
     fn known_class(&mut self, root: &str, template: &Template<Object>) {
         let Some(classes) = self.classes else { return };
-        let hole = |key: &str| template.holes.iter().find(|hole| hole.pointer == key);
+        let hole_at = |key: &str| template.holes.iter().find(|hole| hole.pointer == key);
         let texts = |hole: &Hole<Object>| texts(self.candidates(&hole.source, hole.kind));
         let pointer = format!("{root}/class");
-        let class_hole = hole("/class");
+        let class_hole = hole_at("/class");
         let all = class_hole.map_or_else(|| vec![template.base.class.clone()], texts);
         let mut found: Vec<Problem> = all
             .iter()
@@ -81,8 +81,8 @@ impl Check<'_> {
                     .flat_map(|class| models.iter().map(move |model| (class, model)));
                 of_class.find_map(|(class, model)| unknown(class, model))
             };
-            let models = hole(key).map_or_else(|| Vec::from_iter(base.map(|model| model.0.clone())), texts);
-            let (Some(class), Some(model)) = (class_hole, hole(key)) else {
+            let models = hole_at(key).map_or_else(|| Vec::from_iter(base.map(|model| model.0.clone())), texts);
+            let (Some(class), Some(model)) = (class_hole, hole_at(key)) else {
                 found.extend(of_any(&all, &models));
                 continue;
             };
@@ -111,19 +111,14 @@ impl Check<'_> {
     }
 
     /// A template: each hole checked, and the rest read with an example in each hole.
-    fn template<T: serde::de::DeserializeOwned + Clone>(
-        &mut self,
-        root: &str,
-        json: &Json,
-        hole_at: fn(&Opening) -> Option<Hole<T>>,
-    ) -> Option<Template<T>> {
+    fn template<T: Place + Clone>(&mut self, root: &str, json: &Json, schema: &'static Json) -> Option<Template<T>> {
         let before = self.problems.len();
         let mut example = json.clone();
         let mut holes = Vec::new();
         let mut is_known = true;
         for opening in openings(json) {
             let pointer = format!("{root}{}", opening.0);
-            let Some(hole) = hole_at(&opening) else {
+            let Some(hole) = hole(&opening, schema) else {
                 let found = "a parameter or distribution";
                 let expected = "a plain value; this place cannot vary";
                 self.report(Problem::new("spec/value", pointer, found, expected));
