@@ -73,7 +73,8 @@ impl Reader {
                     );
                 }
                 Some(name) => {
-                    if !is_own_name(word, name) {
+                    // Its own name, but for case and underscores, says nothing new.
+                    if !word.replace('_', "").eq_ignore_ascii_case(name) {
                         self.warn(
                             place_of(&place, index, items.len()),
                             format!("{found} is read as {name:?}"),
@@ -173,9 +174,4 @@ pub(super) fn stimulus(word: &str) -> Option<&'static str> {
         "inrange" | "range" => Some("AgentInRange"),
         _ => None,
     }
-}
-
-/// Whether a word is the stimulus's own name, but for case and underscores.
-fn is_own_name(word: &str, name: &str) -> bool {
-    word.replace('_', "").eq_ignore_ascii_case(name)
 }

@@ -157,17 +157,23 @@ impl Reader {
         };
         let mut world = self.entries("", map, &PARTS.world);
         self.mend("", &mut world, &PARTS.world);
-        if let Some(map) = self.part(&mut world, "environment_params") {
-            world.insert("environment_params".into(), Json::Object(self.environment(map)));
-        }
-        if let Some(map) = self.part(&mut world, "agent_params") {
-            world.insert("agent_params".into(), Json::Object(self.agent(map)));
-        }
-        if let Some(map) = self.part(&mut world, "image_params") {
-            let at = "/image_params";
-            let mut image = self.entries(at, map, &PARTS.image);
-            self.mend(at, &mut image, &PARTS.image);
-            world.insert("image_params".into(), Json::Object(image));
+        for (key, part) in [
+            ("environment_params", &PARTS.environment),
+            ("agent_params", &PARTS.agent),
+            ("image_params", &PARTS.image),
+        ] {
+            let Some(map) = self.part(&mut world, key) else {
+                continue;
+            };
+            let at = format!("/{key}");
+            let mut read = self.entries(&at, map, part);
+            match key {
+                "environment_params" => self.number(&at, &mut read, "wall_height"),
+                "agent_params" => self.agent(&at, &mut read),
+                _ => {}
+            }
+            self.mend(&at, &mut read, part);
+            world.insert(key.into(), Json::Object(read));
         }
         if let Some(Json::Object(map)) = world.get("rules").cloned() {
             let mut rules = self.keys("/rules", map, &PARTS.rules);
@@ -240,19 +246,10 @@ impl Reader {
         map
     }
 
-    fn environment(&mut self, map: Map<String, Json>) -> Map<String, Json> {
-        let at = "/environment_params";
-        let mut environment = self.entries(at, map, &PARTS.environment);
-        self.number(at, &mut environment, "wall_height");
-        self.mend(at, &mut environment, &PARTS.environment);
-        environment
-    }
-
-    fn agent(&mut self, map: Map<String, Json>) -> Map<String, Json> {
-        let at = "/agent_params";
-        let mut agent = self.entries(at, map, &PARTS.agent);
+    /// What the agent has beside the entries of every part.
+    fn agent(&mut self, at: &str, agent: &mut Map<String, Json>) {
         for key in ["modalities", "actions"] {
-            word(&mut agent, key);
+            word(agent, key);
         }
         if agent.shift_remove("pickup_range").is_some() {
             self.warn(
@@ -260,9 +257,7 @@ impl Reader {
                 "pickup_range is an old key; interacting reaches 1 m ahead, and it is left out",
             );
         }
-        self.heading(at, &mut agent);
-        self.mend(at, &mut agent, &PARTS.agent);
-        agent
+        self.heading(at, agent);
     }
 }
 
