@@ -5,21 +5,17 @@ use std::sync::Arc;
 
 use indexmap::IndexMap;
 
-use super::{BlockKind, DriftSwitch, Phase, Regime, Scenario};
+use super::{Block, BlockKind, DriftSwitch, Phase, Regime, Scenario};
 use crate::error::{MAX_PROBLEMS, Problem, SpecError, first_of};
 use crate::names;
 use crate::task::TaskSpec;
 use crate::value::Value;
 
-/// Each regime with the pointer to it.
-fn regimes(scenario: &Scenario) -> impl Iterator<Item = (String, &Regime)> {
+/// Each regime with its block and the pointer to it.
+fn regimes(scenario: &Scenario) -> impl Iterator<Item = (String, &Block, &Regime)> {
     scenario.blocks.iter().enumerate().flat_map(|(b, block)| {
-        let pointer = move |r: usize| format!("/blocks/{b}/regimes/{r}");
-        block
-            .regimes
-            .iter()
-            .enumerate()
-            .map(move |(r, regime)| (pointer(r), regime))
+        let regimes = block.regimes.iter().enumerate();
+        regimes.map(move |(r, regime)| (format!("/blocks/{b}/regimes/{r}"), block, regime))
     })
 }
 
@@ -96,7 +92,7 @@ pub(super) fn alone(scenario: &Scenario) -> Vec<Problem> {
     problems.extend(budgets(scenario));
     problems.extend(names::problem("/name", &scenario.name));
     let mut called: BTreeMap<(&str, &str), Made> = BTreeMap::new();
-    for (pointer, regime) in regimes(scenario) {
+    for (pointer, _, regime) in regimes(scenario) {
         // Other names are those of a task's, which has the grammar; a world file has no task.
         if regime.world.is_some() {
             problems.extend(names::problem(format!("{pointer}/task"), &regime.task));
@@ -135,16 +131,12 @@ pub(super) fn alone(scenario: &Scenario) -> Vec<Problem> {
             problems.push(problem.advise("between two tasks there is nothing: only whole variants can switch"));
             continue;
         }
-        let mut sound = true;
-        for made in made(&pointer, regime) {
+        let fault = made(&pointer, regime).find_map(|made| {
             let own = made.name.and_then(|name| names::problem(made.pointer_to_name(), name));
-            if let Some(problem) = made.unnamed().or(own) {
-                problems.push(problem);
-                sound = false;
-                break;
-            }
-        }
-        if !sound {
+            made.unnamed().or(own)
+        });
+        if let Some(fault) = fault {
+            problems.push(fault);
             continue;
         }
         for made in made(&pointer, regime) {
@@ -165,9 +157,8 @@ fn phases(scenario: &Scenario) -> Vec<Problem> {
         .blocks
         .iter()
         .position(|block| block.phase == Phase::Deployment);
-    let late = |(b, block): &(usize, &super::Block)| {
-        block.phase == Phase::PreDeployment && first.is_some_and(|first| first < *b)
-    };
+    let late =
+        |(b, block): &(usize, &Block)| block.phase == Phase::PreDeployment && first.is_some_and(|first| first < *b);
     let problem = |(b, _)| {
         let found = format!("a block before deployment after block {}", first.unwrap_or(0));
         let expected = "all blocks before deployment ahead of the others";
@@ -178,27 +169,20 @@ fn phases(scenario: &Scenario) -> Vec<Problem> {
 
 /// Budgets where the number of experiences has to be known: evaluations are compared, and a drift comes to its end with the last.
 fn budgets(scenario: &Scenario) -> impl Iterator<Item = Problem> {
-    let of_blocks = scenario
-        .blocks
-        .iter()
-        .flat_map(|block| block.regimes.iter().map(move |_| block.kind));
-    regimes(scenario)
-        .zip(of_blocks)
-        .filter_map(|((pointer, regime), kind)| {
-            let steps = regime
-                .steps
-                .filter(|_| kind == BlockKind::Evaluation || regime.drift.is_some())?;
-            let expected = "none in an evaluation or a drift";
-            let problem = Problem::new("spec/value", format!("{pointer}/steps"), steps.to_string(), expected);
-            Some(problem.advise("say with count how many experiences there are"))
-        })
+    regimes(scenario).filter_map(|(pointer, block, regime)| {
+        let is_fixed = block.kind == BlockKind::Evaluation || regime.drift.is_some();
+        let steps = regime.steps.filter(|_| is_fixed)?;
+        let expected = "none in an evaluation or a drift";
+        let problem = Problem::new("spec/value", format!("{pointer}/steps"), steps.to_string(), expected);
+        Some(problem.advise("say with count how many experiences there are"))
+    })
 }
 
 /// Everything in a scenario that the tasks it names do not allow. A task that cannot be found is asked for once.
 pub(super) fn against_tasks(scenario: &Scenario, mut find: impl FnMut(&str) -> Option<Arc<TaskSpec>>) -> Vec<Problem> {
     let mut tasks: BTreeMap<&str, Option<Arc<TaskSpec>>> = BTreeMap::new();
     let mut problems = Vec::new();
-    for (pointer, regime) in regimes(scenario).filter(|(_, regime)| regime.world.is_none()) {
+    for (pointer, _, regime) in regimes(scenario).filter(|(.., regime)| regime.world.is_none()) {
         let mut found = |name| tasks.entry(name).or_insert_with(|| find(name)).clone();
         let (task, end_task) = (found(&regime.task), found(regime.end_task()));
         // Each takes time: variants are looked up, and near names looked for.

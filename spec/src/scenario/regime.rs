@@ -13,7 +13,7 @@ use crate::task::{TaskSpec, Variant};
 use crate::value::Value;
 
 /// A stretch of experiences (episodes) of one variant, or of the way from it to another.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("examples" = [
     { "task": "find_objects", "variant": "red", "count": 100, "seed": 7, "first_index": 0 },
@@ -79,15 +79,8 @@ impl Regime {
         Self {
             task: task.into(),
             variant: variant.into(),
-            values: IndexMap::new(),
-            name: None,
             count,
-            steps: None,
-            seed: 0,
-            first_index: 0,
-            world: None,
-            max_steps: None,
-            drift: None,
+            ..Self::default()
         }
     }
 
