@@ -67,17 +67,6 @@ pub struct ParamRef {
     pub index: Option<usize>,
 }
 
-/// As people read it: 3.5, or `light`.
-impl std::fmt::Display for Number {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        match self {
-            Self::Literal(number) => write!(f, "{number}"),
-            Self::Param(reference) => write!(f, "{reference}"),
-            Self::Case(case) => write!(f, "a number by {}", case.by),
-        }
-    }
-}
-
 /// As people read it: `light`, or `shares[1]`.
 impl std::fmt::Display for ParamRef {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
