@@ -49,9 +49,7 @@ impl Remarks {
             self.more += 1;
         }
     }
-}
 
-impl Remarks {
     /// The remarks in the order of the text that they are about; `name` is what messages call it.
     pub(crate) fn in_text(self, name: &str, text: &str) -> Vec<Warning> {
         let pointers: Vec<&str> = self.first.iter().map(|(pointer, _)| pointer.as_str()).collect();

@@ -62,13 +62,8 @@ impl Distribution<f64> {
                 (colour, [end(low.as_ref(), 0.0), end(high.as_ref(), 1.0)])
             }
             Self::ColorHsv { .. } => {
-                let [hue, saturation, value] = self.hsv_ends()?;
-                let along = |[low, high]: [f64; 2], unit: f64| low + (high - low) * unit;
-                let (hue, saturation, value) = (
-                    along(hue, units[0]),
-                    along(saturation, units[1]),
-                    along(value, units[2]),
-                );
+                let ends = self.hsv_ends()?;
+                let [hue, saturation, value] = [0, 1, 2].map(|k| ends[k][0] + (ends[k][1] - ends[k][0]) * units[k]);
                 let colour = [0, 1, 2].map(|k| value - value * saturation * dip(k, hue));
                 (colour, [[0.0; 3], [1.0; 3]])
             }

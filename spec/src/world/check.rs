@@ -244,14 +244,13 @@ impl World {
             let expected = format!("a world of at most {MAX_OBJECTS}");
             more.push(Problem::new("spec/value", "", "one more object", expected));
         }
-        let name = object.unique_name.as_ref();
-        if let Some(first) = name.and_then(|_| self.objects.iter().position(|other| other.unique_name.as_ref() == name))
+        if let Some(name) = &object.unique_name
+            && let Some(first) = self
+                .objects
+                .iter()
+                .position(|other| other.unique_name.as_ref() == Some(name))
         {
-            more.push(name_taken(
-                "/unique_name".to_owned(),
-                name.map_or("", String::as_str),
-                first,
-            ));
+            more.push(name_taken("/unique_name".to_owned(), name, first));
         }
         check("object", &object, Object::schema(), more)?;
         self.draft.objects.push(object);
