@@ -117,6 +117,12 @@ pub(super) fn ends(low: Option<f64>, high: Option<f64>) -> (f64, f64) {
     (low, high.unwrap_or(1.0) - low)
 }
 
+/// A number cut off at limits.
+pub(super) fn cut(x: f64, low: Option<f64>, high: Option<f64>) -> f64 {
+    x.max(low.unwrap_or(f64::NEG_INFINITY))
+        .min(high.unwrap_or(f64::INFINITY))
+}
+
 fn square(x: f64) -> f64 {
     x * x
 }
@@ -151,10 +157,7 @@ fn truncated(mean: f64, std: f64, low: f64, high: f64) -> (f64, f64) {
 
 /// A uniform number around a value, cut off at limits: a flat part between two atoms.
 fn clipped(value: f64, noise: f64, low: Option<f64>, high: Option<f64>) -> (f64, f64) {
-    let cut = |x: f64| {
-        x.max(low.unwrap_or(f64::NEG_INFINITY))
-            .min(high.unwrap_or(f64::INFINITY))
-    };
+    let cut = |x: f64| cut(x, low, high);
     if noise == 0.0 {
         return (cut(value), 0.0);
     }

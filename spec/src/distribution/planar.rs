@@ -33,18 +33,13 @@ pub enum Order {
 
 impl Moments<2> {
     fn round(mean: [f64; 2], variance: f64) -> Self {
-        Self {
-            mean,
-            covariance: [[variance, 0.0], [0.0, variance]],
-        }
+        Self::of(mean, |i, j| if i == j { variance } else { 0.0 })
     }
 
     fn rectangle(low: [f64; 2], high: [f64; 2]) -> Self {
-        let [x, y] = [0, 1].map(|axis| (high[axis] - low[axis]) * (high[axis] - low[axis]) / 12.0);
-        Self {
-            mean: [0, 1].map(|axis| f64::midpoint(low[axis], high[axis])),
-            covariance: [[x, 0.0], [0.0, y]],
-        }
+        let mean = [0, 1].map(|axis| f64::midpoint(low[axis], high[axis]));
+        let variance = |axis: usize| (high[axis] - low[axis]) * (high[axis] - low[axis]) / 12.0;
+        Self::of(mean, |i, j| if i == j { variance(i) } else { 0.0 })
     }
 }
 
@@ -89,12 +84,9 @@ impl Distribution<f64> {
                 value: Value::Point(point),
             } => Moments::point(*point),
             Self::Choice { values, weights } => {
-                let at = |value: &Value| {
-                    if let Value::Point(point) = value {
-                        Some(*point)
-                    } else {
-                        None
-                    }
+                let at = |value: &Value| match value {
+                    Value::Point(point) => Some(*point),
+                    _ => None,
                 };
                 let values = values.iter().map(at).collect::<Option<Vec<_>>>()?;
                 points(&values, weights.as_deref())

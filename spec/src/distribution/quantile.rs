@@ -1,6 +1,6 @@
 //! The inverse of the cumulative function: worlds are drawn by it, so that variants under one seed share their chance.
 
-use super::moments::ends;
+use super::moments::{cut, ends};
 use super::special::{beta_quantile, normal_cdf, normal_quantile};
 use super::{Distribution, discrete, von_mises};
 use crate::value::{ParameterType, Value};
@@ -57,9 +57,7 @@ impl Distribution<f64> {
                 noise,
                 low,
                 high,
-            } => (value + noise * (2.0 * p - 1.0))
-                .max(low.unwrap_or(f64::NEG_INFINITY))
-                .min(high.unwrap_or(f64::INFINITY)),
+            } => cut(value + noise * (2.0 * p - 1.0), *low, *high),
             Self::VonMises { mean, kappa } => mean + von_mises::quantile(p, *kappa).to_degrees(),
             Self::Bernoulli { p: odds } => f64::from(u8::from(p > 1.0 - odds)),
             Self::Binomial { n, p: odds } => discrete::binomial_quantile(p, *n, *odds),

@@ -1,6 +1,7 @@
 //! Which values a distribution can draw, and of what type. How likely they are is said in `cumulative.rs`.
 
 use super::Distribution;
+use super::moments::cut;
 use crate::value::{ParameterType, Value};
 
 /// The most values that are listed of a distribution or a parameter.
@@ -65,13 +66,7 @@ impl Distribution<f64> {
                 noise,
                 low,
                 high,
-            } => {
-                let cut = |x: f64| {
-                    x.max(low.unwrap_or(f64::NEG_INFINITY))
-                        .min(high.unwrap_or(f64::INFINITY))
-                };
-                numbers(cut(value - noise), cut(value + noise))
-            }
+            } => numbers(cut(value - noise, *low, *high), cut(value + noise, *low, *high)),
             Self::VonMises { .. } => numbers(0.0, 360.0),
             Self::IntegerUniform { low, high } => counts(*low, *high),
             Self::Binomial { n, .. } => counts(0.0, *n),
