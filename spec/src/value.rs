@@ -143,11 +143,14 @@ impl Value {
 
     /// The whole number, if the value is one.
     pub fn as_integer(&self) -> Option<i64> {
-        if let Self::Integer(whole) = self {
-            Some(*whole)
-        } else {
-            None
-        }
+        let Self::Integer(whole) = self else { return None };
+        Some(*whole)
+    }
+
+    /// The text, if the value is one.
+    pub(crate) fn as_text(&self) -> Option<&str> {
+        let Self::Text(text) = self else { return None };
+        Some(text)
     }
 
     /// The numbers of a vector, or of a point or colour, which are read from JSON where a vector of their length is meant.

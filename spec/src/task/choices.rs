@@ -37,7 +37,7 @@ impl Choices {
 
     /// The value that a name stands for.
     pub(super) fn named(&self, name: &Value) -> Option<&Value> {
-        let Value::Text(name) = name else { return None };
+        let name = name.as_text()?;
         let place = self.names.iter().position(|known| known == name)?;
         self.values.get(place)
     }

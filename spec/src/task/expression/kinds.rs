@@ -23,11 +23,7 @@ impl Kind {
     pub(in crate::task) fn of(parameter: &Parameter) -> Option<Self> {
         let texts = || {
             let choices = parameter.choices.as_ref().filter(|_| parameter.role == Role::Variant)?;
-            let text = |choice: &Value| match choice {
-                Value::Text(text) => Some(text.clone()),
-                _ => None,
-            };
-            Some(choices.iter().filter_map(text).collect())
+            Some(choices.iter().filter_map(Value::as_text).map(str::to_owned).collect())
         };
         match parameter.kind {
             ParameterType::Number | ParameterType::Integer | ParameterType::Heading => Some(Self::Number),

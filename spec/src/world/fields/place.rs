@@ -264,8 +264,6 @@ fn truth(value: &Value) -> Option<bool> {
 }
 
 fn text(value: &Value) -> Option<String> {
-    match value {
-        Value::Text(text) if (1..=100).contains(&text.chars().count()) => Some(text.clone()),
-        _ => None,
-    }
+    let text = value.as_text().filter(|text| (1..=100).contains(&text.chars().count()));
+    text.map(str::to_owned)
 }
