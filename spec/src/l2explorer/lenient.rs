@@ -65,29 +65,22 @@ impl Reader {
         for (index, item) in items.iter().enumerate() {
             let word = item.as_str().unwrap_or_default();
             let found = describe(item);
+            let at = place_of(&place, index, items.len());
             match stimulus(word) {
                 Some(name) if names.contains(&name) => {
-                    self.warn(
-                        format!("{place}/{index}"),
-                        format!("{found} stands there already and is left out"),
-                    );
+                    let text = format!("{found} stands there already and is left out");
+                    self.warn(format!("{place}/{index}"), text);
                 }
                 Some(name) => {
                     // Its own name, but for case and underscores, says nothing new.
                     if !word.replace('_', "").eq_ignore_ascii_case(name) {
-                        self.warn(
-                            place_of(&place, index, items.len()),
-                            format!("{found} is read as {name:?}"),
-                        );
+                        self.warn(at, format!("{found} is read as {name:?}"));
                     }
                     names.push(name);
                 }
                 None => {
                     let expected = "expected AgentCollide, AgentInteract or AgentInRange; it is left out";
-                    self.warn(
-                        place_of(&place, index, items.len()),
-                        format!("found {found}, {expected}"),
-                    );
+                    self.warn(at, format!("found {found}, {expected}"));
                 }
             }
         }

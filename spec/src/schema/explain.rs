@@ -202,16 +202,15 @@ impl Explainer<'_> {
             Problem::new("spec/unknown-key", pointer, format!("the key {key:?}"), expected).advise(advice)
         };
         let condition = rule.strip_suffix("/then").and_then(|rule| {
-            self.schema
-                .pointer(rule)?
-                .pointer("/if/properties")?
-                .as_object()?
-                .keys()
-                .next()
+            let conditions = self.schema.pointer(&format!("{rule}/if/properties"))?;
+            conditions.as_object()?.keys().next()
         });
         let Some(condition) = condition else {
-            let beside = self.schema.pointer(rule).and_then(|rule| rule.pointer("/required/0"));
-            let beside = beside.and_then(Value::as_str).unwrap_or("what stands there");
+            let beside = self
+                .schema
+                .pointer(&format!("{rule}/required/0"))
+                .and_then(Value::as_str);
+            let beside = beside.unwrap_or("what stands there");
             return problem(
                 format!("no such key beside {beside:?}"),
                 "remove one of the two".to_owned(),

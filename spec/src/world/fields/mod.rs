@@ -80,43 +80,33 @@ impl Field {
         }
     }
 
-    pub(crate) const fn unit(self, unit: &'static str) -> Self {
-        Self {
-            unit: Some(unit),
-            ..self
-        }
+    pub(crate) const fn unit(mut self, unit: &'static str) -> Self {
+        self.unit = Some(unit);
+        self
     }
 
     /// Its numbers are headings in degrees.
-    pub(crate) const fn heading(self) -> Self {
-        Self {
-            is_heading: true,
-            ..self.unit("degrees")
-        }
+    pub(crate) const fn heading(mut self) -> Self {
+        self.is_heading = true;
+        self.unit("degrees")
     }
 
     /// No parameter can set it, for this reason.
-    pub(crate) const fn fixed(self, reason: &'static str) -> Self {
-        Self {
-            fixed: Some(reason),
-            ..self
-        }
+    pub(crate) const fn fixed(mut self, reason: &'static str) -> Self {
+        self.fixed = Some(reason);
+        self
     }
 
     /// The whole of it is a layout.
-    pub(crate) const fn layout(self) -> Self {
-        Self {
-            typed: Some(ParameterType::Layout),
-            ..self
-        }
+    pub(crate) const fn layout(mut self) -> Self {
+        self.typed = Some(ParameterType::Layout);
+        self
     }
 
     /// No parameter can set the whole of it, for this reason; what is in it takes some.
-    pub(crate) const fn in_parts(self, reason: &'static str) -> Self {
-        Self {
-            in_parts: Some(reason),
-            ..self
-        }
+    pub(crate) const fn in_parts(mut self, reason: &'static str) -> Self {
+        self.in_parts = Some(reason);
+        self
     }
 
     pub(crate) const fn named(self, key: &'static str) -> Self {
