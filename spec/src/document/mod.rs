@@ -79,24 +79,7 @@ impl<'a> Document<'a> {
 
     /// The typed value; a value that the schema lets pass and the type does not is a problem like any other.
     pub(crate) fn deserialize<T: DeserializeOwned>(&self) -> Result<T, SpecError> {
-        // The plain way is twice as fast as the one that knows where it fails.
-        if let Ok(typed) = T::deserialize(&self.value) {
-            return Ok(typed);
-        }
-        // JSON Schema takes 10.0 for the whole number that it is.
-        if let Ok(typed) = T::deserialize(&with_whole_numbers(self.value.clone())) {
-            return Ok(typed);
-        }
-        serde_path_to_error::deserialize(&self.value).map_err(|error| {
-            let pointer = pointer_of(error.path());
-            let found = self
-                .value
-                .pointer(&pointer)
-                .map_or_else(|| "nothing".to_owned(), describe);
-            let expected = error.into_inner().to_string();
-            let problem = Problem::new("spec/value", pointer, found, expected);
-            self.error(vec![problem])
-        })
+        typed(&self.value).map_err(|problem| self.error(vec![problem]))
     }
 
     /// Fails if there are any problems, after finding the place of each.
@@ -126,6 +109,23 @@ impl<'a> Document<'a> {
         }
         SpecError::of_document(self.name, Listed { problems, more })
     }
+}
+
+/// The typed value of JSON, or what of it is not of the type.
+pub(crate) fn typed<T: DeserializeOwned>(json: &Value) -> Result<T, Problem> {
+    // The plain way is twice as fast as the one that knows where it fails.
+    if let Ok(typed) = T::deserialize(json) {
+        return Ok(typed);
+    }
+    // JSON Schema takes 10.0 for the whole number that it is.
+    if let Ok(typed) = T::deserialize(&with_whole_numbers(json.clone())) {
+        return Ok(typed);
+    }
+    serde_path_to_error::deserialize(json).map_err(|error| {
+        let pointer = pointer_of(error.path());
+        let found = json.pointer(&pointer).map_or_else(|| "nothing".to_owned(), describe);
+        Problem::new("spec/value", pointer, found, error.into_inner().to_string())
+    })
 }
 
 /// Lines and columns of the values of pointers into a JSON text, or of their nearest parents that are there.

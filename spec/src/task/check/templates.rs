@@ -6,19 +6,15 @@ use serde_json::Value as Json;
 use super::super::scope::Scope;
 use super::super::template::{Hole, Source, Template, hole, openings};
 use super::Check;
-use crate::describe::{describe, pointer_of};
 use crate::distribution::Distribution;
+use crate::document::typed;
 use crate::error::Problem;
-use crate::value::{Value, with_whole_numbers};
+use crate::value::Value;
 use crate::world::{Model, Object, Place, World, WorldDraft};
 
 /// The texts among some values.
-fn texts(values: Vec<Value>) -> Vec<String> {
-    let text = |value| match value {
-        Value::Text(text) => Some(text),
-        _ => None,
-    };
-    values.into_iter().filter_map(text).collect()
+fn texts(values: &[Value]) -> Vec<String> {
+    values.iter().filter_map(Value::as_text).map(str::to_owned).collect()
 }
 
 impl Check<'_> {
@@ -59,7 +55,7 @@ impl Check<'_> {
     fn known_class(&mut self, root: &str, template: &Template<Object>) {
         let Some(classes) = self.classes else { return };
         let hole_at = |key: &str| template.holes.iter().find(|hole| hole.pointer == key);
-        let texts = |hole: &Hole<Object>| texts(self.candidates(&hole.source, hole.kind));
+        let texts = |hole: &Hole<Object>| texts(&self.candidates(&hole.source, hole.kind));
         let pointer = format!("{root}/class");
         let class_hole = hole_at("/class");
         let all = class_hole.map_or_else(|| vec![template.base.class.clone()], texts);
@@ -107,7 +103,7 @@ impl Check<'_> {
     fn texts_in(&self, values: &IndexMap<String, Value>, source: &Source) -> Vec<String> {
         let outcomes = Scope::new(self.parameters, values).outcomes(source).unwrap_or_default();
         let drawn = |(law, _): &(Distribution, f64)| law.support().unwrap_or_else(|| vec![law.example()]);
-        texts(outcomes.iter().flat_map(drawn).collect())
+        texts(&outcomes.iter().flat_map(drawn).collect::<Vec<_>>())
     }
 
     /// A template: each hole checked, and the rest read with an example in each hole.
@@ -154,21 +150,14 @@ impl Check<'_> {
         if self.problems.len() > before || !is_known {
             return None;
         }
-        let read = serde_path_to_error::deserialize(&example);
-        let base: T = match read.or_else(|error| T::deserialize(with_whole_numbers(example.clone())).map_err(|_| error))
-        {
+        let base: T = match typed(&example) {
             Ok(base) => base,
-            Err(error) => {
-                let pointer = format!("{root}{}", pointer_of(error.path()));
-                let found = example
-                    .pointer(&pointer_of(error.path()))
-                    .map_or_else(|| "nothing".to_owned(), describe);
-                let text = error.inner().to_string();
+            Err(mut problem) => {
                 // «invalid length 2, expected an array of length 3»: the first half is what was found.
-                let expected = text
-                    .split_once(", expected ")
-                    .map_or(text.as_str(), |(_, expected)| expected);
-                self.report(Problem::new("spec/value", pointer, found, expected));
+                let expected = problem.expected.split_once(", expected ");
+                let expected = expected.map(|(_, expected)| expected.to_owned());
+                problem.expected = expected.unwrap_or(problem.expected);
+                self.report(problem.within(root));
                 return None;
             }
         };
