@@ -286,11 +286,7 @@ impl Parameter {
         if let Some(alike) = alike {
             return vec![alike];
         }
-        let word = if let Value::Text(word) = value {
-            word.as_str()
-        } else {
-            ""
-        };
+        let word = value.as_text().unwrap_or_default();
         let choices: Vec<String> = self.choices.iter().flatten().map(ToString::to_string).collect();
         vec![Problem::new("spec/value", pointer, value.to_string(), expected).suggest(word, choices)]
     }
@@ -329,11 +325,7 @@ impl Parameter {
         if let Value::Layout(layout) = &typed {
             layout.check().map_err(|error| format!("a sound layout; {error}"))?;
         }
-        let length = |value: &Value| value.as_vector().map(<[f64]>::len);
-        if self.kind == ParameterType::Vector
-            && let Some(expected) = self.vector_length()
-            && length(&typed) != Some(expected)
-        {
+        if let Some(expected) = self.vector_length().filter(|_| !self.has_length_of(&typed)) {
             return Err(format!("a list of {expected} numbers"));
         }
         let Some([low, high]) = self.range else {
@@ -347,18 +339,26 @@ impl Parameter {
             (Value::Vector(numbers), _) => numbers.iter().all(|number| (low..=high).contains(number)),
             _ => typed.as_number().is_some_and(|number| (low..=high).contains(&number)),
         };
+        let what = if self.kind == ParameterType::Vector {
+            "numbers"
+        } else {
+            "a number"
+        };
         if inside {
             Ok(typed)
-        } else if self.kind == ParameterType::Vector {
-            Err(format!("numbers in {low}..{high}"))
         } else {
-            Err(format!("a number in {low}..{high}"))
+            Err(format!("{what} in {low}..{high}"))
         }
     }
 
     /// How many numbers a vector has: as many as the first of its value, default and choices.
     pub fn vector_length(&self) -> Option<usize> {
         self.declared().next()?.as_vector().map(<[f64]>::len)
+    }
+
+    /// Whether a value is as long as all are, where they are vectors.
+    fn has_length_of(&self, value: &Value) -> bool {
+        self.kind != ParameterType::Vector || value.as_vector().map(<[f64]>::len) == self.vector_length()
     }
 
     /// Its value, its default and its choices, as it declares them.
@@ -391,9 +391,6 @@ impl Parameter {
         let at = |key: &str| format!("{pointer}/{key}");
         let mut problems = Vec::new();
         let kind = self.kind.name();
-        let lengths = |value: &Value| {
-            self.kind != ParameterType::Vector || value.as_vector().map(<[f64]>::len) == self.vector_length()
-        };
         let has_names = self.choices.as_ref().is_some_and(|choices| !choices.names().is_empty());
         if has_names
             && !matches!(
@@ -406,7 +403,7 @@ impl Parameter {
         }
         for (key, value) in self.entries().filter(|(key, _)| key != "default") {
             let typed = value.cast(self.kind);
-            if typed.is_none() || !lengths(value) {
+            if typed.is_none() || !self.has_length_of(value) {
                 let expected = format!("a value of type {kind}");
                 problems.push(Problem::new("spec/type", at(&key), value.to_string(), expected));
             }

@@ -76,24 +76,21 @@ impl Check<'_> {
             self.has_outcomes(pointer, placement);
             return;
         }
-        if let Source::Param(reference) = placement
-            && let Some(parameter) = self.parameters.get(&reference.param)
-            && parameter.kind != ParameterType::Distribution
-        {
-            let found = format!("the parameter {reference} of type {}", parameter.kind.name());
-            return self.report(Problem::new(
-                "spec/type",
-                pointer,
-                found,
-                "a parameter of type distribution",
-            ));
-        }
         let sound = match placement {
-            Source::Param(reference) if !self.parameters.contains_key(&reference.param) => {
-                self.unknown_parameter(pointer, &reference.param);
-                false
-            }
-            Source::Param(_) | Source::Case(_) | Source::Value(_) => true,
+            Source::Param(reference) => match self.parameters.get(&reference.param) {
+                None => {
+                    self.unknown_parameter(pointer, &reference.param);
+                    false
+                }
+                Some(parameter) if parameter.kind != ParameterType::Distribution => {
+                    let found = format!("the parameter {reference} of type {}", parameter.kind.name());
+                    let expected = "a parameter of type distribution";
+                    self.report(Problem::new("spec/type", pointer, found, expected));
+                    false
+                }
+                Some(_) => true,
+            },
+            Source::Case(_) | Source::Value(_) => true,
             Source::Distribution(distribution) => self.distribution(pointer, distribution),
         };
         let odd = self

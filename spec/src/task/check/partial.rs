@@ -56,11 +56,13 @@ impl Rest {
         let words: Vec<String> = problem.pointer.split('/').skip(1).map(plain).collect();
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
         let is_stray = problem.code == "spec/unknown-key" && words.len() != 2;
+        // One that is refused spoils the variant that gives it to a parameter.
+        let is_value_of_variant = matches!(words[..], ["variants", _, _]);
         match words.as_slice() {
             // A key that is not there: of the top ones only the name has to be.
             [] | ["name"] => self.put("", "name", json!("task")),
             ["parameters" | "variants" | "groups" | "world"] => None,
-            [.., key] if is_stray && !is_value_of_variant(&words) => {
+            [.., key] if is_stray && !is_value_of_variant => {
                 let parent = problem.pointer.rsplit_once('/')?.0;
                 self.remove(parent, key);
                 Some(())
@@ -130,11 +132,6 @@ impl Rest {
             .insert(key.to_owned(), value);
         Some(())
     }
-}
-
-/// Whether the words of a pointer lead to a value that a variant gives a parameter: one that is refused spoils the variant.
-fn is_value_of_variant(words: &[&str]) -> bool {
-    matches!(words, ["variants", _, _])
 }
 
 /// A word of a pointer as it stands in the document.
