@@ -1,4 +1,4 @@
-//! What `require` compares, and the messages for what it cannot. The grammar is tested in `require.rs`.
+//! What `require` compares, and the messages for what it cannot. The grammar is tested in `task/expression/mod.rs`.
 
 use driftworld_spec::{TaskSpec, Value};
 use proptest::prelude::*;

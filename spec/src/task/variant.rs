@@ -6,8 +6,8 @@ use indexmap::IndexMap;
 use sha2::{Digest, Sha256};
 
 use super::TaskSpec;
+use super::expression::Requirement;
 use super::parameter::{Parameter, Role};
-use super::require::Requirement;
 use super::scope::{self, Scope, Unsettled};
 use super::template::Source;
 use super::variant_spec::variant_parameters;

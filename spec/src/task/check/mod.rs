@@ -12,10 +12,9 @@ use std::sync::OnceLock;
 
 use indexmap::IndexMap;
 
-use super::expression::Kind;
+use super::expression::{Kind, Requirement};
 use super::family::{self, Variants};
 use super::parameter::{Parameter, Role};
-use super::require::Requirement;
 use super::template::Source;
 use super::variant::{self, DEFAULT_VARIANT};
 use super::variant_spec;

@@ -1,6 +1,6 @@
 //! What kind of thing each part of a condition is, and where parts of unlike kinds meet. Values have no part in it.
 
-use super::{Binary, Expression, Made, Node, Operator, Term, Unary};
+use super::{Binary, Made, Node, Operator, Requirement, Term, Unary};
 use crate::Color;
 use crate::error::{first_of, nearest};
 use crate::task::parameter::{Parameter, Role};
@@ -59,7 +59,7 @@ impl Kind {
 /// What was found, and what was expected.
 pub(in crate::task) type Misfit = (String, String);
 
-impl Expression {
+impl Requirement {
     /// Where it does not come to true or false, or compares what cannot be compared. `kind_of`: what a name stands for; `None` passes.
     pub(in crate::task) fn misfit(&self, kind_of: impl Fn(&str) -> Option<Kind>) -> Option<Misfit> {
         let check = Check {
