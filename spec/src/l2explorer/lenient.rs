@@ -52,11 +52,7 @@ impl Reader {
             Json::Array(items) => items,
             Json::String(word) if !word.is_empty() => vec![json!(word)],
             other => {
-                let text = format!(
-                    "found {}, expected a list of stimuli; none is assumed",
-                    describe(&other)
-                );
-                self.warn(place, text);
+                self.warn_instead(place, &other, "a list of stimuli; none is assumed");
                 map.shift_remove(key);
                 return;
             }

@@ -113,11 +113,8 @@ impl Reader {
             // What is made of it takes its place.
             Json::Object(part) => Some(std::mem::take(part)),
             other => {
-                let text = format!(
-                    "found {}, expected an object; its defaults are assumed",
-                    describe(other)
-                );
-                self.warn(format!("/{key}"), text);
+                let other = other.take();
+                self.warn_instead(format!("/{key}"), &other, "an object; its defaults are assumed");
                 map.shift_remove(key);
                 None
             }

@@ -151,6 +151,11 @@ impl Reader {
             .push(as_spelled(pointer.into(), &self.spelled), text.into());
     }
 
+    /// Warns of something else than was expected: of that, and what is made of what was found.
+    pub(super) fn warn_instead(&mut self, pointer: impl Into<String>, found: &Json, expected: &str) {
+        self.warn(pointer, format!("found {}, expected {expected}", describe(found)));
+    }
+
     fn world(&mut self, json: Json) -> Json {
         let Json::Object(map) = json else {
             return json;
@@ -187,11 +192,7 @@ impl Reader {
                 world.insert("objects".into(), Json::Array(self.objects(objects)));
             }
             Some(other) => {
-                let text = format!(
-                    "found {}, expected a list of objects; none is assumed",
-                    describe(&other)
-                );
-                self.warn("/objects", text);
+                self.warn_instead("/objects", &other, "a list of objects; none is assumed");
                 world.shift_remove("objects");
             }
             None => {}

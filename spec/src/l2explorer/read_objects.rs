@@ -23,13 +23,7 @@ impl Reader {
         for (index, json) in objects.into_iter().enumerate() {
             let at = format!("/objects/{index}");
             let Json::Object(map) = json else {
-                self.warn(
-                    at,
-                    format!(
-                        "found {}, expected an object with a class; it is skipped",
-                        describe(&json)
-                    ),
-                );
+                self.warn_instead(at, &json, "an object with a class; it is skipped");
                 continue;
             };
             let class = map.iter().find(|(key, _)| key.eq_ignore_ascii_case("class"));
@@ -153,11 +147,8 @@ impl Reader {
             Some(other) => {
                 let is_meant = matches!(other.as_str(), Some(word) if word.eq_ignore_ascii_case("true"))
                     || other.as_f64().is_some_and(|number| number != 0.0);
-                let text = format!(
-                    "found {}, expected true or false; {is_meant} is assumed",
-                    describe(other)
-                );
-                self.warn(format!("{at}/collectible"), text);
+                let expected = format!("true or false; {is_meant} is assumed");
+                self.warn_instead(format!("{at}/collectible"), other, &expected);
                 is_meant
             }
             None => false,
