@@ -273,7 +273,13 @@ fn inline(schema: &Json, node: &Json) -> Json {
     }
     if let Some(properties) = copy.get_mut("properties").and_then(Json::as_object_mut) {
         for property in properties.values_mut() {
-            *property = inline(schema, &strip_default(property));
+            // A default that spells out a whole struct says nothing beside the defaults of its fields.
+            if let Some(map) = property.as_object_mut()
+                && map.get("default").is_some_and(Json::is_object)
+            {
+                map.remove("default");
+            }
+            *property = inline(schema, property);
         }
     }
     for forms in ["anyOf", "oneOf"] {
@@ -287,17 +293,6 @@ fn inline(schema: &Json, node: &Json) -> Json {
         *items = inline(schema, items);
     }
     copy
-}
-
-/// A default that spells out a whole struct says nothing beside the defaults of its fields.
-fn strip_default(property: &Json) -> Json {
-    let mut property = property.clone();
-    if property.get("default").is_some_and(Json::is_object)
-        && let Some(map) = property.as_object_mut()
-    {
-        map.remove("default");
-    }
-    property
 }
 
 /// Lets each of the places that a value can be set at also be a parameter or a distribution.

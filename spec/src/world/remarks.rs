@@ -43,12 +43,8 @@ impl World {
         let mut remarks = Remarks::default();
         let arena = &self.environment_params;
         let [width, depth] = arena.arena_size();
-        for (index, _) in arena
-            .zones
-            .iter()
-            .enumerate()
-            .filter(|(_, zone)| zone.is_outside(arena))
-        {
+        let zones = arena.zones.iter().enumerate();
+        for (index, _) in zones.filter(|(_, zone)| zone.is_outside(arena)) {
             let text = format!("the zone lies outside the {width} × {depth} m arena; it is kept, out of reach");
             remarks.push(format!("/environment_params/zones/{index}"), text);
         }
@@ -119,31 +115,27 @@ impl World {
     /// Polygons of walls and zones that enclose nothing or cross themselves.
     fn polygon_faults(&self) -> Vec<(String, &'static str)> {
         let arena = &self.environment_params;
-        let walls = arena.walls.iter().map(|wall| &wall.polygon).enumerate();
-        let walls = walls.map(|(index, corners)| (format!("/environment_params/walls/{index}/polygon"), corners));
-        let own = arena
-            .layout
-            .iter()
-            .flat_map(|layout| layout.walls.iter().flatten())
-            .enumerate();
-        let own = own.filter_map(|(index, wall)| {
-            Some((
-                format!("{}/walls/{index}/polygon", layout::POINTER),
-                wall.polygon.as_ref()?,
-            ))
-        });
-        let zones = arena.zones.iter().enumerate();
-        let zones = zones.filter_map(|(index, zone)| {
-            Some((
-                format!("/environment_params/zones/{index}/polygon"),
-                zone.polygon.as_ref()?,
-            ))
-        });
-        let mut left = MOST_PAIRS;
-        let faults = walls.chain(own).chain(zones);
+        let walls = arena.walls.iter().map(|wall| Some(&wall.polygon));
+        let own = arena.layout.iter().flat_map(|layout| layout.walls.iter().flatten());
+        let lists = [
+            ("/environment_params/walls", walls.collect::<Vec<_>>()),
+            (
+                "/environment_params/layout/walls",
+                own.map(|wall| wall.polygon.as_ref()).collect(),
+            ),
+            (
+                "/environment_params/zones",
+                arena.zones.iter().map(|zone| zone.polygon.as_ref()).collect(),
+            ),
+        ];
+        let (mut left, mut faults) = (MOST_PAIRS, Vec::new());
+        for (list, polygons) in lists {
+            for (index, corners) in polygons.into_iter().enumerate() {
+                let fault = corners.and_then(|corners| polygon_fault(corners, &mut left));
+                faults.extend(fault.map(|fault| (format!("{list}/{index}/polygon"), fault)));
+            }
+        }
         faults
-            .filter_map(|(pointer, corners)| Some((pointer, polygon_fault(corners, &mut left)?)))
-            .collect()
     }
 
     /// Whether the agent is to go to an object: it pays, or touching it or picking it up ends the episode well.
