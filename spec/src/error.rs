@@ -271,25 +271,18 @@ pub fn nearest<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S>) ->
     }
     let lower = word.to_lowercase();
     let letters = lower.chars().count();
-    known
-        .into_iter()
+    let near = known.into_iter().filter_map(|candidate| {
+        let name = candidate.as_ref();
+        let length = name.chars().count();
         // One that is much longer or shorter is far.
-        .filter(|candidate| {
-            let length = candidate.as_ref().chars().count();
-            candidate.as_ref().len() <= MAX_KEY_BYTES && length.abs_diff(letters) <= 2 + length / 4
-        })
-        .map(|candidate| {
-            (
-                strsim::damerau_levenshtein(&lower, &candidate.as_ref().to_lowercase()),
-                candidate,
-            )
-        })
-        .filter(|(distance, candidate)| {
-            let length = candidate.as_ref().chars().count();
-            *distance < length && *distance <= 1 + length / 4
-        })
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, candidate)| candidate.as_ref().to_owned())
+        if name.len() > MAX_KEY_BYTES || length.abs_diff(letters) > 2 + length / 4 {
+            return None;
+        }
+        let distance = strsim::damerau_levenshtein(&lower, &name.to_lowercase());
+        (distance < length && distance <= 1 + length / 4).then_some((distance, candidate))
+    });
+    let nearest = near.min_by_key(|(distance, _)| *distance);
+    nearest.map(|(_, candidate)| candidate.as_ref().to_owned())
 }
 
 #[cfg(test)]

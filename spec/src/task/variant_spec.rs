@@ -1,8 +1,6 @@
 //! [`VariantSpec`]: a variant as a document declares it, its values over those that it extends, and what is wrong with them. The
 //! variants of a checked task are in `variant.rs`, families in `family.rs`.
 
-use std::collections::BTreeSet;
-
 use driftworld_text::IDENTIFIER_PATTERN;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
@@ -88,22 +86,21 @@ pub(crate) fn values_of(
     variants: &Variants,
     name: &str,
 ) -> Result<IndexMap<String, Value>, Problem> {
-    let mut chain = Vec::new();
-    let mut seen = BTreeSet::new();
+    let mut chain: Vec<&str> = Vec::new();
     let mut next = variants.get(name).map(|variant| (name, variant));
     while let Some((name, variant)) = next {
-        if !seen.insert(name) {
-            return Err(cycle(chain[0], name, variants));
+        let pointer = |start: &str| format!("/variants/{}/extends", escape(&variants[start].origin));
+        if let Some(first) = chain.iter().position(|known| *known == name) {
+            let found = format!("a cycle: {} extends {name}", chain[first..].join(" extends "));
+            let expected = "a chain of extends that ends";
+            return Err(Problem::new("spec/extends-cycle", pointer(chain[0]), found, expected));
         }
         chain.push(name);
         if chain.len() > MAX_EXTENDED {
-            return Err(Problem::new(
-                "spec/length",
-                format!("/variants/{}/extends", escape(&variants[chain[0]].origin)),
-                format!("a chain of more than {MAX_EXTENDED} variants that extend each other"),
-                format!("at most {MAX_EXTENDED}"),
-            )
-            .advise("extend a variant further up"));
+            let found = format!("a chain of more than {MAX_EXTENDED} variants that extend each other");
+            let expected = format!("at most {MAX_EXTENDED}");
+            let problem = Problem::new("spec/length", pointer(chain[0]), found, expected);
+            return Err(problem.advise("extend a variant further up"));
         }
         next = match &variant.extends {
             None => None,
@@ -128,22 +125,6 @@ pub(crate) fn values_of(
         }
     }
     Ok(values)
-}
-
-fn cycle(start: &str, again: &str, variants: &Variants) -> Problem {
-    let mut path = vec![again];
-    let mut name = variants[again].extends.as_deref();
-    while let Some(next) = name.filter(|next| *next != again) {
-        path.push(next);
-        name = variants[next].extends.as_deref();
-    }
-    path.push(again);
-    Problem::new(
-        "spec/extends-cycle",
-        format!("/variants/{}/extends", escape(&variants[start].origin)),
-        format!("a cycle: {}", path.join(" extends ")),
-        "a chain of extends that ends",
-    )
 }
 
 fn unknown_parent(origin: &str, parent: &str, variants: &Variants) -> Problem {
