@@ -97,15 +97,11 @@ impl MeasureName {
     }
 
     /// What measures there are for what a distribution draws; `None` if this is one. `kind` is the parameter's type.
-    pub(super) fn misfit_of_draws<N>(
-        self,
-        distribution: &Distribution<N>,
-        kind: ParameterType,
-    ) -> Option<&'static str> {
+    pub(super) fn misfit_of_draws(self, drawn: &Distribution<Number>, kind: ParameterType) -> Option<&'static str> {
         let is_color = self.is_of_colors();
         let overlaps = matches!(self, Self::TotalVariation | Self::Hellinger | Self::JensenShannon);
         let moves = matches!(self, Self::Wasserstein1 | Self::Wasserstein2);
-        let (fits, those) = match Draws::of(distribution, kind) {
+        let (fits, those) = match Draws::of(drawn, kind) {
             _ if self == Self::SameOrNot => return None,
             Draws::Colors => (
                 is_color || moves,
@@ -209,7 +205,7 @@ enum Draws {
 }
 
 impl Draws {
-    fn of<N>(distribution: &Distribution<N>, kind: ParameterType) -> Self {
+    fn of(distribution: &Distribution<Number>, kind: ParameterType) -> Self {
         let is_word = |value: &Value| value.as_number().is_none();
         match distribution {
             _ if distribution.draws_colors() => Self::Colors,

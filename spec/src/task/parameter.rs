@@ -245,13 +245,17 @@ impl Parameter {
         choices.names().get(place).map(String::as_str)
     }
 
+    /// A value as messages show it: by its name, where choices have names.
+    pub(super) fn shown(&self, value: &Value) -> String {
+        self.name_of(value).map_or_else(|| value.to_string(), str::to_owned)
+    }
+
     /// The value with the parameter's type if it lies in the domain; else what was expected.
     pub(crate) fn accept(&self, value: &Value) -> Result<Value, String> {
         let typed = self.accept_typed(value)?;
         match self.domain() {
             Some(Domain::Choices(choices)) if !choices.contains(&typed) => {
-                let word = |choice: &Value| self.name_of(choice).map_or_else(|| choice.to_string(), str::to_owned);
-                let shown: Vec<String> = choices.iter().take(20).map(|choice| cut(&word(choice))).collect();
+                let shown: Vec<String> = choices.iter().take(20).map(|choice| cut(&self.shown(choice))).collect();
                 let more = match choices.len() - shown.len() {
                     0 => String::new(),
                     more => format!(" and {more} more"),

@@ -104,28 +104,22 @@ impl<'a> Scope<'a> {
     /// What a source draws, all draws that its look-ups read gone through: distributions, each once, with their
     /// probabilities.
     pub(crate) fn outcomes(&self, source: &Source) -> Result<Vec<(Distribution, f64)>, Unsettled> {
-        let mut found = Vec::new();
-        self.spread(source, 1.0, &mut 0, &mut found)?;
-        Ok(found)
+        let mut outcomes = Outcomes::default();
+        self.spread(source, 1.0, &mut outcomes)?;
+        Ok(outcomes.found)
     }
 
-    fn spread(
-        &self,
-        source: &Source,
-        weight: f64,
-        ways: &mut usize,
-        found: &mut Vec<(Distribution, f64)>,
-    ) -> Result<(), Unsettled> {
+    fn spread(&self, source: &Source, weight: f64, outcomes: &mut Outcomes) -> Result<(), Unsettled> {
         let distribution_of = |name: &str| {
             let parameter = self.parameters.get(name).ok_or(Unsettled::Unknown)?;
             Ok((parameter, parameter.distribution.as_ref().ok_or(Unsettled::Unknown)?))
         };
         let mut unsettled = match self.resolve(source) {
             Ok(Resolved::Randomized(reference)) => {
-                return self.spread(distribution_of(&reference.param)?.1, weight, ways, found);
+                return self.spread(distribution_of(&reference.param)?.1, weight, outcomes);
             }
-            Ok(Resolved::Value(value)) => return add(Distribution::Constant { value }, weight, ways, found),
-            Ok(Resolved::Draw(distribution)) => return add(distribution, weight, ways, found),
+            Ok(Resolved::Value(value)) => return outcomes.add(Distribution::Constant { value }, weight),
+            Ok(Resolved::Draw(distribution)) => return outcomes.add(distribution, weight),
             Err(Unsettled::Drawn(name)) => name,
             Err(other) => return Err(other),
         };
@@ -146,7 +140,7 @@ impl<'a> Scope<'a> {
                 let mut drawn = self.drawn.to_vec();
                 drawn.push((&unsettled, parameter.typed(&value).ok_or(Unsettled::Unknown)?));
                 let deeper = Scope { drawn: &drawn, ..*self };
-                deeper.spread(source, weight * probability, ways, found)?;
+                deeper.spread(source, weight * probability, outcomes)?;
             }
             return Ok(());
         }
@@ -154,20 +148,24 @@ impl<'a> Scope<'a> {
     }
 }
 
-fn add(
-    distribution: Distribution,
-    weight: f64,
-    ways: &mut usize,
-    found: &mut Vec<(Distribution, f64)>,
-) -> Result<(), Unsettled> {
-    *ways += 1;
-    weigh(found, distribution, weight);
-    if *ways > MOST_WAYS {
-        let expected = format!("at most {MOST_WAYS} ways");
-        let found = format!("draws that fall out in more than {MOST_WAYS} ways");
-        return Err(Unsettled::NoCase(found, expected));
+/// What a source was found to draw, each once with its probability, and in how many ways.
+#[derive(Default)]
+struct Outcomes {
+    found: Vec<(Distribution, f64)>,
+    ways: usize,
+}
+
+impl Outcomes {
+    fn add(&mut self, distribution: Distribution, weight: f64) -> Result<(), Unsettled> {
+        self.ways += 1;
+        weigh(&mut self.found, distribution, weight);
+        if self.ways > MOST_WAYS {
+            let expected = format!("at most {MOST_WAYS} ways");
+            let found = format!("draws that fall out in more than {MOST_WAYS} ways");
+            return Err(Unsettled::NoCase(found, expected));
+        }
+        Ok(())
     }
-    Ok(())
 }
 
 /// Adds a weight to what is listed, or lists it.

@@ -135,12 +135,7 @@ impl Check<'_> {
             let expected = "one that is drawn from a list: choice, bernoulli, integer_uniform or a look-up";
             return self.report(Problem::new("spec/case", at, found, expected));
         }
-        let word = |value: &Value| {
-            parameter
-                .name_of(value)
-                .map_or_else(|| value.to_string(), str::to_owned)
-        };
-        let words: Vec<String> = values.iter().flatten().map(word).collect();
+        let words: Vec<String> = values.iter().flatten().map(|value| parameter.shown(value)).collect();
         let mut met = Vec::new();
         for key in case.of.keys() {
             let value = parameter.at_key(key);
