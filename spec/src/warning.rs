@@ -42,9 +42,9 @@ pub(crate) struct Remarks {
 }
 
 impl Remarks {
-    pub(crate) fn push(&mut self, pointer: String, text: String) {
+    pub(crate) fn push(&mut self, pointer: impl Into<String>, text: impl Into<String>) {
         if self.first.len() < MAX_PROBLEMS {
-            self.first.push((pointer, text));
+            self.first.push((pointer.into(), text.into()));
         } else {
             self.more += 1;
         }

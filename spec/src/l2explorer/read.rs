@@ -147,8 +147,7 @@ pub(super) struct Reader {
 
 impl Reader {
     pub(super) fn warn(&mut self, pointer: impl Into<String>, text: impl Into<String>) {
-        self.warnings
-            .push(as_spelled(pointer.into(), &self.spelled), text.into());
+        self.warnings.push(as_spelled(pointer.into(), &self.spelled), text);
     }
 
     /// Warns of something else than was expected: of that, and what is made of what was found.

@@ -74,7 +74,7 @@ impl Reader {
     fn name(&mut self, found: Option<&Json>) -> String {
         let fits = |letter: char| letter.is_ascii_alphanumeric() || matches!(letter, '_' | '.' | '-');
         let Some(text) = found.and_then(Json::as_str).filter(|text| !text.is_empty()) else {
-            self.warn(
+            self.warnings.push(
                 "",
                 "without the key \"logging_base_dir\" the scenario is called \"scenario\"",
             );
@@ -97,7 +97,7 @@ impl Reader {
             name = format!("{}_", name.replace('.', "_"));
         }
         if name != text {
-            self.warn(
+            self.warnings.push(
                 "/logging_base_dir",
                 format!("{} is read as the name {name:?}", cut(&format!("{text:?}"))),
             );
@@ -223,12 +223,8 @@ impl Reader {
     fn unknown(&mut self, at: &str, map: &Map<String, Json>, known: &[&str]) {
         for key in map.keys().filter(|key| !known.contains(&key.as_str())) {
             let text = format!("the key {key:?} has no meaning here and is left out");
-            self.warn(format!("{at}/{}", escape(key)), text);
+            self.warnings.push(format!("{at}/{}", escape(key)), text);
         }
-    }
-
-    fn warn(&mut self, pointer: impl Into<String>, text: impl Into<String>) {
-        self.warnings.push(pointer.into(), text.into());
     }
 }
 

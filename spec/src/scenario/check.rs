@@ -214,10 +214,7 @@ fn placed(error: SpecError, pointer: &str, key: &str) -> Vec<Problem> {
         }
         SpecError::Values { problems, .. } => problems
             .into_iter()
-            .map(|problem| Problem {
-                pointer: format!("{pointer}/values{}", problem.pointer),
-                ..problem
-            })
+            .map(|problem| problem.within(&format!("{pointer}/values")))
             .collect(),
         other => vec![Problem::new(
             "spec/value",

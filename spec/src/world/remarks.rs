@@ -56,10 +56,7 @@ impl World {
             .out_of_reach(start, self.plan())
             .filter(|_| self.progress.is_none())
         {
-            remarks.push(
-                "/agent_params/coordinates".to_owned(),
-                format!("the agent starts {place}"),
-            );
+            remarks.push("/agent_params/coordinates", format!("the agent starts {place}"));
         }
         let failing = |place: [f64; 2]| {
             let mut zones = arena.zones.iter().enumerate();
@@ -67,16 +64,16 @@ impl World {
         };
         if let Some((zone, _)) = failing(start) {
             let text = format!("the agent starts in zone {zone}, which ends the episode as a failure");
-            remarks.push("/agent_params/coordinates".to_owned(), text);
+            remarks.push("/agent_params/coordinates", text);
         }
         if let Some(odd) = self.plan().and_then(Layout::remark) {
-            remarks.push(layout::POINTER.to_owned(), odd);
+            remarks.push(layout::POINTER, odd);
         }
         let lists = [("success", &self.rules.success), ("failure", &self.rules.failure)];
         for (list, conditions) in lists.into_iter().filter(|_| self.agent_params.energy.is_none()) {
             if let Some(index) = conditions.iter().position(|one| *one == EndCondition::OutOfEnergy) {
                 let text = "out_of_energy never holds: the agent has no energy to use; set \"energy\" of agent_params";
-                remarks.push(format!("/rules/{list}/{index}"), text.to_owned());
+                remarks.push(format!("/rules/{list}/{index}"), text);
             }
         }
         for (index, object) in self.objects.iter().enumerate() {

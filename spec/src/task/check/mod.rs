@@ -355,19 +355,14 @@ impl<'a> Check<'a> {
 
     /// Whether every declared variant meets the requirements that chance has no part in.
     fn variants_meet(&mut self, requirements: &[Requirement], variants: &Variants) {
-        let mut found = Vec::new();
         for (name, values) in self.variants.iter().filter(|(name, _)| variants.contains_key(name)) {
             if let Some((requirement, shown)) = variant::broken(requirements, values) {
                 let pointer = format!("/variants/{}", escape(&variants[name].origin));
-                let text = format!("{shown} in variant {name:?}");
-                found.push(Problem::new(
-                    "spec/requirement",
-                    pointer,
-                    text,
-                    format!("what \"require\" states: {requirement}"),
-                ));
+                let found = format!("{shown} in variant {name:?}");
+                let expected = format!("what \"require\" states: {requirement}");
+                self.problems
+                    .push(Problem::new("spec/requirement", pointer, found, expected));
             }
         }
-        self.problems.extend(found);
     }
 }

@@ -37,10 +37,8 @@ impl Check<'_> {
             .collect();
         let world = self.template::<WorldDraft>("/world", &json, World::schema().json());
         if let Some(world) = &world {
-            for mut problem in world.base.problems() {
-                problem.pointer.insert_str(0, "/world");
-                self.report(problem);
-            }
+            let found = world.base.problems().into_iter();
+            self.problems.extend(found.map(|problem| problem.within("/world")));
         }
         (world, fixtures)
     }
