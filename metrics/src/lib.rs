@@ -43,7 +43,7 @@ mod statistics;
 #[path = "../../tests/tier.rs"]
 mod tier;
 
-pub use error::MetricsError;
+pub use error::{LogLine, MetricsError};
 pub use lifetime::{Drift, Lifetime, MAX_REGIMES, Regime, SteLog, experts_serving, logged_word, read_ste_log};
 pub use log::{
     BlockSubtype, BlockType, Complexity, DEFAULT_WORKER, Delimiter, Difficulty, ExpStatus, KeptRows,

@@ -5,11 +5,15 @@
 use std::io;
 use std::path::PathBuf;
 
-use driftworld_metrics::MetricsError;
+use driftworld_metrics::{LogLine, MetricsError};
 use strum::VariantNames;
 
 fn path() -> PathBuf {
     PathBuf::from("run/w/0-train/data-log.tsv")
+}
+
+fn at(line: u64) -> LogLine {
+    LogLine { path: path(), line }
 }
 
 /// One of each, in the order of their declaration.
@@ -96,31 +100,27 @@ fn all() -> Vec<MetricsError> {
             expected: text("a, c"),
         },
         E::RaggedRow {
-            path: path(),
-            line: 3,
+            at: at(3),
             found: 2,
             expected: 9,
         },
         E::Cell {
-            path: path(),
-            line: 3,
+            at: at(3),
             column: text("reward"),
             found: text("\"x\""),
             expected: text("a number"),
         },
-        E::TornLastLine { path: path(), line: 3 },
-        E::CarriageReturns { path: path(), line: 1 },
-        E::OpenQuote { path: path(), line: 7 },
-        E::NotUtf8 { path: path(), line: 3 },
+        E::TornLastLine(at(3)),
+        E::CarriageReturns(at(1)),
+        E::OpenQuote(at(7)),
+        E::NotUtf8(at(3)),
         E::BlockOrder {
-            path: path(),
-            line: 3,
+            at: at(3),
             found: 0,
             expected: 1,
         },
         E::NumberFalls {
-            path: path(),
-            line: 7,
+            at: at(7),
             column: "exp_num",
             found: 2,
             expected: 3,
@@ -132,14 +132,12 @@ fn all() -> Vec<MetricsError> {
             first: "run/v/0-train/data-log.tsv".into(),
         },
         E::NotCompleted {
-            path: path(),
-            line: 7,
+            at: at(7),
             exp_num: 2,
             worker: text("w"),
         },
         E::RowAfterComplete {
-            path: path(),
-            line: 7,
+            at: at(7),
             exp_num: 2,
             worker: text("w"),
         },

@@ -7,16 +7,16 @@ impl MetricsError {
     pub fn line(&self) -> Option<u64> {
         match self {
             Self::Json { line, .. } => Some(*line as u64),
-            Self::RaggedRow { line, .. }
-            | Self::Cell { line, .. }
-            | Self::TornLastLine { line, .. }
-            | Self::CarriageReturns { line, .. }
-            | Self::OpenQuote { line, .. }
-            | Self::NotUtf8 { line, .. }
-            | Self::BlockOrder { line, .. }
-            | Self::NumberFalls { line, .. }
-            | Self::NotCompleted { line, .. }
-            | Self::RowAfterComplete { line, .. } => Some(*line),
+            Self::TornLastLine(at)
+            | Self::CarriageReturns(at)
+            | Self::OpenQuote(at)
+            | Self::NotUtf8(at)
+            | Self::RaggedRow { at, .. }
+            | Self::Cell { at, .. }
+            | Self::BlockOrder { at, .. }
+            | Self::NumberFalls { at, .. }
+            | Self::NotCompleted { at, .. }
+            | Self::RowAfterComplete { at, .. } => Some(at.line),
             _ => None,
         }
     }

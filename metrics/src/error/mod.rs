@@ -5,10 +5,26 @@
 
 mod code;
 
+use std::fmt;
 use std::io;
 use std::path::PathBuf;
 
 use driftworld_text::{ShownPath, counted, one_line};
+
+/// A line of a data file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LogLine {
+    /// The file.
+    pub path: PathBuf,
+    /// From 1; 0 where it is not known.
+    pub line: u64,
+}
+
+impl fmt::Display for LogLine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}", self.path.shown(), self.line)
+    }
+}
 
 /// Everything that can stop a log from being written or read, or metrics from being computed.
 ///
@@ -240,16 +256,10 @@ pub enum MetricsError {
     },
 
     /// A row has more or fewer cells than the header.
-    #[error(
-        "{}:{line}: found {found} cells, expected {expected} as in the header; \
-         is a tab or a quote missing?",
-        path.shown()
-    )]
+    #[error("{at}: found {found} cells, expected {expected} as in the header; is a tab or a quote missing?")]
     RaggedRow {
-        /// The data file.
-        path: PathBuf,
-        /// Line, from 1.
-        line: u64,
+        /// File and line.
+        at: LogLine,
         /// Cells in the row.
         found: usize,
         /// Cells in the header.
@@ -257,13 +267,11 @@ pub enum MetricsError {
     },
 
     /// A cell does not hold what its column asks for.
-    #[error("{}:{line}, column {column}: found {found}, expected \
-         {expected}", path.shown(), column = one_line(column), found = one_line(found), expected = one_line(expected))]
+    #[error("{at}, column {column}: found {found}, expected \
+         {expected}", column = one_line(column), found = one_line(found), expected = one_line(expected))]
     Cell {
-        /// The data file.
-        path: PathBuf,
-        /// Line, from 1.
-        line: u64,
+        /// File and line.
+        at: LogLine,
         /// Name of the column.
         column: String,
         /// What stands there, cut after 60 characters.
@@ -274,67 +282,37 @@ pub enum MetricsError {
 
     /// The last line of a data file has no line end: its writer was stopped in the middle of a row.
     #[error(
-        "{}:{line}: found a last line without a line end, expected complete rows; its writer was interrupted, or \
+        "{0}: found a last line without a line end, expected complete rows; its writer was interrupted, or \
          an editor left the line end out: add one if the line is whole; else delete the line, or continue the log, which \
-         deletes it (`driftworld run … --resume`, LogWriter::resume)",
-        path.shown()
+         deletes it (`driftworld run … --resume`, LogWriter::resume)"
     )]
-    TornLastLine {
-        /// The data file.
-        path: PathBuf,
-        /// Line, from 1.
-        line: u64,
-    },
+    TornLastLine(LogLine),
 
     /// Lines of a data file end with a carriage return alone.
     #[error(
-        "{}:{line}: found lines that end in a lone carriage return, expected LF or CRLF; save the file with such line \
-         ends",
-        path.shown()
+        "{0}: found lines that end in a lone carriage return, expected LF or CRLF; save the file with such line ends"
     )]
-    CarriageReturns {
-        /// The data file.
-        path: PathBuf,
-        /// Line, from 1.
-        line: u64,
-    },
+    CarriageReturns(LogLine),
 
     /// A quote was opened in a data file and never closed, so that it swallows the rows after it.
     #[error(
-        "{}:{line}: found a quote that opens a cell and is never closed, expected another at the end of the cell; the \
-         rows after it were read as part of the cell",
-        path.shown()
+        "{0}: found a quote that opens a cell and is never closed, expected another at the end of the cell; the \
+         rows after it were read as part of the cell"
     )]
-    OpenQuote {
-        /// The data file.
-        path: PathBuf,
-        /// Line in which the row begins, from 1.
-        line: u64,
-    },
+    OpenQuote(LogLine),
 
     /// A data file is not text.
-    #[error(
-        "{}:{line}: found bytes that are not UTF-8, expected text",
-        path.shown()
-    )]
-    NotUtf8 {
-        /// The data file.
-        path: PathBuf,
-        /// Line, from 1.
-        line: u64,
-    },
+    #[error("{0}: found bytes that are not UTF-8, expected text")]
+    NotUtf8(LogLine),
 
     /// Block numbers fall while experience numbers rise.
     #[error(
-        "{}:{line}, column block_num: found {found}, expected at least {expected}: \
-         in order of exp_num, block numbers never decrease",
-        path.shown()
+        "{at}, column block_num: found {found}, expected at least {expected}: \
+         in order of exp_num, block numbers never decrease"
     )]
     BlockOrder {
-        /// The data file.
-        path: PathBuf,
-        /// Line, from 1.
-        line: u64,
+        /// File and line.
+        at: LogLine,
         /// The block number there.
         found: u64,
         /// The largest block number of an earlier experience.
@@ -343,15 +321,11 @@ pub enum MetricsError {
 
     /// A number falls from one row of a data file to the next.
     #[error(
-        "{}:{line}, column {column}: found {found}, expected at least {expected} as in the row above: numbers never \
-         decrease",
-        path.shown()
+        "{at}, column {column}: found {found}, expected at least {expected} as in the row above: numbers never decrease"
     )]
     NumberFalls {
-        /// The data file.
-        path: PathBuf,
-        /// Line, from 1.
-        line: u64,
+        /// File and line.
+        at: LogLine,
         /// `block_num` or `exp_num`.
         column: &'static str,
         /// The number there.
@@ -379,15 +353,13 @@ pub enum MetricsError {
 
     /// An experience has no complete row, though its worker went on to the next.
     #[error(
-        "{}:{line}: found experience {exp_num} of {worker} without a complete row, expected exactly one: \
-         it is not scored", path.shown(),
+        "{at}: found experience {exp_num} of {worker} without a complete row, expected exactly one: \
+         it is not scored",
         worker = one_line(worker)
     )]
     NotCompleted {
-        /// The data file.
-        path: PathBuf,
-        /// Line of the experience's first row, from 1.
-        line: u64,
+        /// File and line of the experience's first row.
+        at: LogLine,
         /// Number of the experience.
         exp_num: u64,
         /// Its worker.
@@ -396,15 +368,13 @@ pub enum MetricsError {
 
     /// An experience goes on after its complete row.
     #[error(
-        "{}:{line}: found another row of experience {exp_num} of {worker} after its complete one, expected the \
-         complete row to be the last: give the next experience a new number", path.shown(),
+        "{at}: found another row of experience {exp_num} of {worker} after its complete one, expected the \
+         complete row to be the last: give the next experience a new number",
         worker = one_line(worker)
     )]
     RowAfterComplete {
-        /// The data file.
-        path: PathBuf,
-        /// Line, from 1.
-        line: u64,
+        /// File and line.
+        at: LogLine,
         /// Number of the experience.
         exp_num: u64,
         /// Its worker.

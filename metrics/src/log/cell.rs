@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::json_file::{MAX_JSON_VALUES, fault};
 use super::record::{TaskParams, is_worker_id};
-use crate::MetricsError;
+use crate::{LogLine, MetricsError};
 
 /// Longest piece of a cell that is quoted in a message, in characters.
 const SHOWN: usize = 60;
@@ -83,8 +83,10 @@ impl Cell<'_> {
     /// The error that says what stands here and what should.
     pub(super) fn error(self, expected: impl Into<String>) -> MetricsError {
         MetricsError::Cell {
-            path: self.path.to_owned(),
-            line: self.line,
+            at: LogLine {
+                path: self.path.to_owned(),
+                line: self.line,
+            },
             column: cut(self.column),
             found: shown(self.text),
             expected: expected.into(),

@@ -14,7 +14,7 @@ use super::header::Header;
 use super::regular_file;
 use super::table::Table;
 use super::whole_rows::{self, WholeRows};
-use crate::MetricsError;
+use crate::{LogLine, MetricsError};
 
 /// Largest data file that is read, in bytes.
 pub const MAX_FILE_BYTES: u64 = 1 << 30;
@@ -28,13 +28,13 @@ const PIECE: usize = 1 << 16;
 /// Adds every row to the table in the order of the file; returns the header.
 ///
 /// Faults of rows go to `faults`; those after which the file makes no sense are the error.
-pub(super) fn read(
-    path: &Path,
+pub(super) fn read<'a>(
+    path: &'a Path,
     metrics_columns: &[String],
-    table: &mut Table<'_>,
+    table: &mut Table<'a>,
     faults: &mut Faults,
 ) -> Result<Vec<String>, MetricsError> {
-    table.begin_file();
+    table.begin_file(path);
     let source = Source::open(path)?;
     let mut rows = csv::ReaderBuilder::new()
         .delimiter(b'\t')
@@ -60,7 +60,7 @@ pub(super) fn read(
         match next_row(&mut rows, &mut row, path) {
             Ok(true) => {}
             Ok(false) => break,
-            Err(fault @ MetricsError::NotUtf8 { .. }) => {
+            Err(fault @ MetricsError::NotUtf8(_)) => {
                 faults.add(fault)?;
                 continue;
             }
@@ -96,10 +96,10 @@ fn next_row(rows: &mut csv::Reader<impl Read>, row: &mut StringRecord, path: &Pa
 fn row_error(path: &Path, error: csv::Error) -> MetricsError {
     let line = error.position().map_or(0, csv::Position::line);
     match error.into_kind() {
-        ErrorKind::Utf8 { .. } => MetricsError::NotUtf8 {
+        ErrorKind::Utf8 { .. } => MetricsError::NotUtf8(LogLine {
             path: path.to_owned(),
             line,
-        },
+        }),
         ErrorKind::Io(source) => MetricsError::io(path, "read this file")(source),
         other => MetricsError::io(path, "read this file")(std::io::Error::other(format!("{other:?}"))),
     }

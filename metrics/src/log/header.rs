@@ -13,7 +13,7 @@ use super::faults::Faults;
 use super::record::{BlockSubtype, BlockType, ExpStatus};
 use super::rows::Cells;
 use super::table::{MAX_COLUMNS, Table};
-use crate::MetricsError;
+use crate::{LogLine, MetricsError};
 
 /// Where the columns of one file are.
 pub(super) struct Header<'a> {
@@ -102,12 +102,9 @@ impl<'a> Header<'a> {
     ) -> Result<(), MetricsError> {
         if row.len() != self.names.len() {
             let (found, expected) = (row.len(), self.names.len());
-            return faults.add(MetricsError::RaggedRow {
-                path: self.path.to_owned(),
-                line,
-                found,
-                expected,
-            });
+            let path = self.path.to_owned();
+            let at = LogLine { path, line };
+            return faults.add(MetricsError::RaggedRow { at, found, expected });
         }
         let cell = |index: usize| self.cell(row, line, index);
         if row.as_slice().len() > MAX_CELL_BYTES

@@ -37,18 +37,18 @@ impl LogWriter {
         let mut table = Table::new(dir, logger_info.metrics_columns(), Texts::Leave);
         let mut columns: Option<Vec<String>> = None;
         let mut known = BTreeMap::new();
-        for path in files {
-            let bytes = remove_torn_row(&path)?;
+        for path in &files {
+            let bytes = remove_torn_row(path)?;
             if bytes == 0 {
                 continue;
             }
             let before = table.rows.len();
-            let header = data_file::read(&path, logger_info.metrics_columns(), &mut table, &mut Faults::Stop)?;
+            let header = data_file::read(path, logger_info.metrics_columns(), &mut table, &mut Faults::Stop)?;
             let metrics = columns.get_or_insert_with(|| metrics_of(&header));
-            check_header(&path, &header, metrics)?;
+            check_header(path, &header, metrics)?;
             let inside = path.strip_prefix(dir).expect("the files were found inside the log");
             let rows = (table.rows.len() - before) as u64;
-            known.insert(inside.to_owned(), Written::found(&path, rows, bytes)?);
+            known.insert(inside.to_owned(), Written::found(path, rows, bytes)?);
         }
         let mut progress = Progress::default();
         for row in latest(&table.rows) {

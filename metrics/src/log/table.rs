@@ -3,13 +3,14 @@
 //! Not here: the columns when they are complete, see `rows`.
 
 use std::convert::Infallible;
+use std::ops::Range;
 use std::path::Path;
 
 use indexmap::IndexMap;
 
 use super::rows::{Cells, Rows};
 use super::shared_column::{Seen, SharedColumn};
-use crate::MetricsError;
+use crate::{LogLine, MetricsError};
 
 /// Most records that one log may hold.
 pub const MAX_RECORDS: usize = 10_000_000;
@@ -36,8 +37,8 @@ pub(super) struct Table<'a> {
     pub(super) rows: Rows,
     /// Line of each row in its file.
     lines: Vec<u32>,
-    /// For each file, its first row.
-    starts: Vec<usize>,
+    /// The files in their order, each with its first row.
+    files: Vec<(&'a Path, usize)>,
     pub(super) workers: Seen,
     pub(super) task_names: Seen,
     pub(super) task_params: Seen,
@@ -68,7 +69,7 @@ impl<'a> Table<'a> {
             texts,
             rows,
             lines: Vec::new(),
-            starts: Vec::new(),
+            files: Vec::new(),
             workers: Seen::default(),
             task_names: Seen::default(),
             task_params: Seen::default(),
@@ -79,8 +80,8 @@ impl<'a> Table<'a> {
     }
 
     /// Counts a file, in their order; its rows follow.
-    pub(super) fn begin_file(&mut self) {
-        self.starts.push(self.rows.len());
+    pub(super) fn begin_file(&mut self, path: &'a Path) {
+        self.files.push((path, self.rows.len()));
     }
 
     /// Numbers of the columns with these names that nobody declared, for the rows that follow.
@@ -136,15 +137,22 @@ impl<'a> Table<'a> {
     }
 
     /// File and line of a row, counted from 0 in the order of files and lines.
-    pub(super) fn place(&self, row: usize) -> (usize, u64) {
-        let file = self.starts.partition_point(|start| *start <= row).saturating_sub(1);
-        (file, u64::from(self.lines[row]))
+    pub(super) fn place(&self, row: usize) -> LogLine {
+        let file = self.files.partition_point(|(_, start)| *start <= row).saturating_sub(1);
+        LogLine {
+            path: self.files[file].0.to_owned(),
+            line: u64::from(self.lines[row]),
+        }
     }
 
-    /// The first row of a file, counted from 0, and the one after its last.
-    pub(super) fn rows_of_file(&self, file: usize) -> std::ops::Range<usize> {
-        let end = self.starts.get(file + 1).copied().unwrap_or(self.rows.len());
-        self.starts[file]..end
+    /// Each file with its rows, counted from 0.
+    pub(super) fn files(&self) -> impl Iterator<Item = (&'a Path, Range<usize>)> {
+        let starts = self.files.iter().map(|(_, start)| *start);
+        let ends = starts.skip(1).chain([self.rows.len()]);
+        self.files
+            .iter()
+            .zip(ends)
+            .map(|((path, start), end)| (*path, *start..end))
     }
 
     /// The columns that nobody declared find their place behind the others: those of numbers, and those of words where they
@@ -166,10 +174,6 @@ impl<'a> Table<'a> {
     /// Whether one of the limits for the log as a whole is reached.
     pub(super) fn is_full(&self) -> bool {
         self.rows.len() == MAX_RECORDS || self.others.len() > MAX_COLUMNS || self.num_cells > MAX_CELLS
-    }
-
-    pub(super) fn num_files(&self) -> usize {
-        self.starts.len()
     }
 
     fn count_cells(&mut self, more: u64) -> Result<(), MetricsError> {

@@ -109,17 +109,14 @@ impl Check {
         if files.is_empty() {
             return Err(MetricsError::NoDataFiles(dir.to_owned()));
         }
-        let mut table = self.read(
-            Table::new(dir, logger_info.metrics_columns(), texts),
-            &files,
-            &logger_info,
-        )?;
-        self.order_in_files(&table, &files)?;
-        self.folders(dir, &table, &files);
-        self.completions(&table, &files)?;
+        let mut table = Table::new(dir, logger_info.metrics_columns(), texts);
+        self.read(&mut table, &files, &logger_info)?;
+        self.order_in_files(&table)?;
+        self.folders(dir, &table);
+        self.completions(&table)?;
         self.metrics(&table, logger_info.metrics_columns());
         self.count(&table);
-        self.sort(&mut table, &files)?;
+        self.sort(&mut table)?;
         Ok((logger_info, scenario_info, table.rows))
     }
 
@@ -151,54 +148,45 @@ impl Check {
     /// Reads every file as far as it can be read.
     fn read<'d>(
         &mut self,
-        mut table: Table<'d>,
-        files: &[PathBuf],
+        table: &mut Table<'d>,
+        files: &'d [PathBuf],
         logger_info: &LoggerInfo,
-    ) -> Result<Table<'d>, MetricsError> {
-        let metrics = logger_info.metrics_columns();
-        let mut headers: Vec<(usize, Vec<String>)> = Vec::new();
-        for (file, path) in files.iter().enumerate() {
-            match data_file::read(path, metrics, &mut table, &mut self.faults) {
-                Ok(header) => headers.push((file, header)),
+    ) -> Result<(), MetricsError> {
+        let mut headers: Vec<(&Path, Vec<String>)> = Vec::new();
+        for path in files {
+            match data_file::read(path, logger_info.metrics_columns(), table, &mut self.faults) {
+                Ok(header) => headers.push((path, header)),
                 // The log as a whole is too large: there is no use in going on.
                 Err(error @ MetricsError::TooLarge { .. }) if table.is_full() => return Err(error),
                 Err(error) => self.faults.add(error)?,
             }
         }
-        self.headers(&headers, files, logger_info)?;
-        table.complete()?;
-        Ok(table)
+        self.headers(&headers, logger_info)?;
+        table.complete()
     }
 
     /// Every file has the columns of the first, and those of the log's version.
-    fn headers(
-        &mut self,
-        headers: &[(usize, Vec<String>)],
-        files: &[PathBuf],
-        logger_info: &LoggerInfo,
-    ) -> Result<(), MetricsError> {
+    fn headers(&mut self, headers: &[(&Path, Vec<String>)], logger_info: &LoggerInfo) -> Result<(), MetricsError> {
         let sorted = |names: &[String]| names.iter().cloned().collect::<BTreeSet<String>>();
         let Some((first, expected)) = headers.first() else {
             return Ok(());
         };
-        for (file, names) in &headers[1..] {
+        for (path, names) in &headers[1..] {
             if sorted(names) != sorted(expected) {
                 self.breach(MetricsError::ColumnsDiffer {
-                    path: files[*file].clone(),
+                    path: path.to_path_buf(),
                     found: listed(names),
                     expected: listed(expected),
-                    first: files[*first].clone(),
+                    first: first.to_path_buf(),
                 })?;
             }
         }
         let has_subtype = expected.iter().any(|name| name == columns::SINCE_1_1);
         let version = logger_info.log_format_version();
         if has_subtype == (version == "1.0") {
-            let path = files[*first].clone();
-            let version = version.to_owned();
             self.warnings.add(LogWarning::Version {
-                path,
-                version,
+                path: first.to_path_buf(),
+                version: version.to_owned(),
                 has_subtype,
             });
         }
@@ -206,18 +194,16 @@ impl Check {
     }
 
     /// Numbers never fall within a file; time stamps that do are warned about, once a file.
-    fn order_in_files(&mut self, table: &Table<'_>, files: &[PathBuf]) -> Result<(), MetricsError> {
+    fn order_in_files(&mut self, table: &Table<'_>) -> Result<(), MetricsError> {
         let rows = &table.rows;
-        for (file, path) in files.iter().enumerate().take(table.num_files()) {
+        for (_, mut range) in table.files() {
             let mut reported = false;
-            let mut range = table.rows_of_file(file);
             let Some(mut before) = range.next() else { continue };
             for row in range {
                 for (column, numbers) in [("block_num", rows.block_nums()), ("exp_num", rows.exp_nums())] {
                     if numbers[row] < numbers[before] {
                         self.breach(MetricsError::NumberFalls {
-                            path: path.clone(),
-                            line: table.place(row).1,
+                            at: table.place(row),
                             column,
                             found: numbers[row],
                             expected: numbers[before],
@@ -227,8 +213,7 @@ impl Check {
                 let stamps = rows.timestamps();
                 if stamps[row] < stamps[before] && !std::mem::replace(&mut reported, true) {
                     self.warnings.add(LogWarning::TimeRunsBack {
-                        path: path.clone(),
-                        line: table.place(row).1,
+                        at: table.place(row),
                         found: stamps[row],
                         before: stamps[before],
                     });
@@ -240,9 +225,9 @@ impl Check {
     }
 
     /// Rows lie where their writer puts them, in a folder for each worker and block; those that do not are warned about, once a file.
-    fn folders(&mut self, dir: &Path, table: &Table<'_>, files: &[PathBuf]) {
+    fn folders(&mut self, dir: &Path, table: &Table<'_>) {
         let rows = &table.rows;
-        for (file, path) in files.iter().enumerate().take(table.num_files()) {
+        for (path, mut range) in table.files() {
             let place = |row: usize| {
                 (
                     rows.workers().ids()[row],
@@ -257,14 +242,13 @@ impl Check {
             let folder = path.parent().and_then(|folder| folder.strip_prefix(dir).ok());
             let is_there = |row: usize| folder == Some(Path::new(&expected(row)));
             let mut last = None;
-            let stray = table.rows_of_file(file).find(|&row| {
+            let stray = range.find(|&row| {
                 // Paths are compared once for many rows.
                 last.replace(place(row)) != Some(place(row)) && !is_there(row)
             });
             if let Some(row) = stray {
                 self.warnings.add(LogWarning::OtherFolder {
-                    path: path.clone(),
-                    line: table.place(row).1,
+                    at: table.place(row),
                     expected: expected(row),
                 });
             }
@@ -272,9 +256,9 @@ impl Check {
     }
 
     /// Exactly one complete row for each experience of a worker, the last; its very last experience may be unfinished.
-    fn completions(&mut self, table: &Table<'_>, files: &[PathBuf]) -> Result<(), MetricsError> {
+    fn completions(&mut self, table: &Table<'_>) -> Result<(), MetricsError> {
         let rows = &table.rows;
-        self.missing(table, files);
+        self.missing(table);
         let key = |row: usize| (rows.workers().ids()[row], rows.exp_nums()[row]);
         let mut by_experience: Vec<u32> = (0..rows.len() as u32).collect();
         by_experience.sort_by_key(|&row| key(row as usize));
@@ -288,34 +272,21 @@ impl Check {
             let of_worker = |other: &&[u32]| key(other[0] as usize).0 == key(first).0;
             let is_last = !experiences.peek().is_some_and(of_worker);
             let is_complete = |&&row: &&u32| rows.exp_statuses()[row as usize] == ExpStatus::Complete;
-            let place = |row: usize| {
-                let (file, line) = table.place(row);
-                (files[file].clone(), line)
-            };
             let (exp_num, worker) = (rows.exp_nums()[first], rows.workers().of(first).clone());
             match experience.iter().position(|row| is_complete(&row)) {
                 None if is_last => {
-                    let (path, line) = place(first);
-                    self.warnings.add(LogWarning::Unfinished { path, line, exp_num });
+                    let at = table.place(first);
+                    self.warnings.add(LogWarning::Unfinished { at, exp_num });
                 }
                 None => {
-                    let (path, line) = place(first);
-                    self.breach(MetricsError::NotCompleted {
-                        path,
-                        line,
-                        exp_num,
-                        worker,
-                    })?;
+                    let at = table.place(first);
+                    self.breach(MetricsError::NotCompleted { at, exp_num, worker })?;
                 }
                 Some(end) => {
                     if let Some(&after) = experience.get(end + 1) {
-                        let (path, line) = place(after as usize);
-                        self.faults.add(MetricsError::RowAfterComplete {
-                            path,
-                            line,
-                            exp_num,
-                            worker,
-                        })?;
+                        let at = table.place(after as usize);
+                        self.faults
+                            .add(MetricsError::RowAfterComplete { at, exp_num, worker })?;
                     }
                 }
             }
@@ -324,7 +295,7 @@ impl Check {
     }
 
     /// Numbers of experiences go up one by one, over all workers; a log that lacks some is warned about once.
-    fn missing(&mut self, table: &Table<'_>, files: &[PathBuf]) {
+    fn missing(&mut self, table: &Table<'_>) {
         let numbers = table.rows.exp_nums();
         let mut rows: Vec<u32> = (0..numbers.len() as u32).collect();
         rows.sort_by_key(|&row| numbers[row as usize]);
@@ -334,12 +305,10 @@ impl Check {
         });
         let mut gaps = steps.filter(|(_, before, after)| after - before > 1);
         if let Some((row, before, after)) = gaps.next() {
-            let (file, line) = table.place(row);
             let lacking = |before: u64, after: u64| after - before - 1;
             let missing = gaps.map(|(_, before, after)| lacking(before, after)).sum::<u64>() + lacking(before, after);
             self.warnings.add(LogWarning::Missing {
-                path: files[file].clone(),
-                line,
+                at: table.place(row),
                 before,
                 after,
                 missing,
@@ -373,14 +342,12 @@ impl Check {
     }
 
     /// Sorts the rows by experience; block numbers must not fall then.
-    fn sort(&mut self, table: &mut Table<'_>, files: &[PathBuf]) -> Result<(), MetricsError> {
+    fn sort(&mut self, table: &mut Table<'_>) -> Result<(), MetricsError> {
         let order = table.rows.sort();
         let blocks = table.rows.block_nums();
         if let Some(row) = (1..blocks.len()).find(|&row| blocks[row] < blocks[row - 1]) {
-            let (file, line) = table.place(order.map_or(row, |order| order[row] as usize));
             self.faults.add(MetricsError::BlockOrder {
-                path: files[file].clone(),
-                line,
+                at: table.place(order.map_or(row, |order| order[row] as usize)),
                 found: blocks[row],
                 expected: blocks[row - 1],
             })?;

@@ -8,6 +8,7 @@ use driftworld_text::{ShownPath, one_line};
 
 use super::cell::shown;
 use super::timestamp::Timestamp;
+use crate::LogLine;
 
 /// Something about a log that is not as it should be, but does not keep it from being read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -41,44 +42,38 @@ pub enum LogWarning {
         has_subtype: bool,
     },
     /// A time stamp is earlier than the one in the row above.
-    #[error("{}:{line}, column timestamp: found {found}, expected at least {before} as in the row above; kept", path.shown())]
+    #[error("{at}, column timestamp: found {found}, expected at least {before} as in the row above; kept")]
     TimeRunsBack {
-        /// The data file.
-        path: PathBuf,
-        /// Line, from 1; the first such line of the file.
-        line: u64,
+        /// File and line; the first such line of the file.
+        at: LogLine,
         /// The time stamp.
         found: Timestamp,
         /// The one above.
         before: Timestamp,
     },
     /// A row lies in the folder of another worker or block; it is read as it says.
-    #[error("{}:{line}: found a row of another folder, expected it in {}; kept", path.shown(), one_line(expected))]
+    #[error("{at}: found a row of another folder, expected it in {}; kept", one_line(expected))]
     OtherFolder {
-        /// The data file.
-        path: PathBuf,
-        /// Line, from 1; the first such line of the file.
-        line: u64,
+        /// File and line; the first such line of the file.
+        at: LogLine,
         /// The folder it should lie in, as `WORKER/BLOCKNUM-BLOCKTYPE`.
         expected: String,
     },
     /// A worker's last experience has no complete row: the run was stopped, or goes on.
-    #[error("{}:{line}: found experience {exp_num} without a complete row, the last of its worker; ignored until it has one", path.shown())]
+    #[error(
+        "{at}: found experience {exp_num} without a complete row, the last of its worker; ignored until it has one"
+    )]
     Unfinished {
-        /// The data file.
-        path: PathBuf,
-        /// Line of the experience's first row, from 1.
-        line: u64,
+        /// File and line of the experience's first row.
+        at: LogLine,
         /// Number of the experience.
         exp_num: u64,
     },
     /// Experiences whose numbers no row has: rows may have been lost.
-    #[error("{}:{line}: found experience {after} after {before}, expected {}; numbers without a row: {missing}", path.shown(), before + 1)]
+    #[error("{at}: found experience {after} after {before}, expected {}; numbers without a row: {missing}", before + 1)]
     Missing {
-        /// The data file of the row behind the first gap.
-        path: PathBuf,
-        /// Its line, from 1.
-        line: u64,
+        /// File and line of the row behind the first gap.
+        at: LogLine,
         /// The number before the first gap.
         before: u64,
         /// The number behind it.

@@ -8,7 +8,7 @@
 use std::io::{self, BufRead};
 use std::path::Path;
 
-use crate::MetricsError;
+use crate::{LogLine, MetricsError};
 
 /// Tabs of a line that looks like a row: the fewest that a row of any version has.
 const TABS_OF_A_ROW: usize = 8;
@@ -31,13 +31,12 @@ impl WholeRows {
     /// What is wrong with what follows; the piece that was looked at begins at this line of its file.
     pub(super) fn fault(self, path: &Path, first_line: u64) -> MetricsError {
         let (path, line) = (path.to_owned(), first_line + self.lines);
-        if self.swallowed {
-            MetricsError::OpenQuote { path, line }
-        } else if self.returns {
-            MetricsError::CarriageReturns { path, line }
-        } else {
-            MetricsError::TornLastLine { path, line }
-        }
+        let wrong = match self {
+            Self { swallowed: true, .. } => MetricsError::OpenQuote,
+            Self { returns: true, .. } => MetricsError::CarriageReturns,
+            _ => MetricsError::TornLastLine,
+        };
+        wrong(LogLine { path, line })
     }
 }
 
