@@ -400,17 +400,16 @@ fn results_are_saved_under_the_references_names() {
     };
     let files = metrics.save(base.path().join("results"), "my run", &settings).unwrap();
     let name = |path: &std::path::Path| path.file_name().unwrap().to_string_lossy().into_owned();
-    let names = [name(&files.metrics), name(&files.regimes), name(&files.settings)];
+    let names: Vec<String> = files.iter().map(|file| name(file)).collect();
     assert_eq!(
         names,
         ["my_run_metrics.json", "my_run_regime.tsv", "my_run_settings.json"]
     );
-    let table = std::fs::read_to_string(files.regimes).unwrap();
+    let table = std::fs::read_to_string(&files[1]).unwrap();
     assert_eq!(table.lines().count(), 12);
     assert!(!table.contains("task_params"), "no regime differs in its parameters");
     assert_eq!(table, metrics.regime_tsv());
-    let settings: driftworld_metrics::Settings =
-        serde_json::from_slice(&std::fs::read(files.settings).unwrap()).unwrap();
+    let settings: driftworld_metrics::Settings = serde_json::from_slice(&std::fs::read(&files[2]).unwrap()).unwrap();
     assert_eq!(settings.options, Options::default());
     let error = metrics.save(base.path(), "../up", &settings).unwrap_err().to_string();
     assert_eq!(

@@ -98,14 +98,8 @@ impl Scores {
         };
         let several = name.unwrap_or(NAME_OF_SEVERAL);
         let mut files = match self.lifetimes.as_slice() {
-            [lifetime] if !self.recursive => {
-                let files = lifetime.save(folder, name.unwrap_or(&lifetime.run_id), &settings)?;
-                vec![files.metrics, files.regimes, files.settings]
-            }
-            lifetimes => {
-                let files = save_all(lifetimes, folder, several, &settings)?;
-                vec![files.lifetimes, files.metrics, files.regimes, files.settings]
-            }
+            [lifetime] if !self.recursive => lifetime.save(folder, name.unwrap_or(&lifetime.run_id), &settings)?,
+            lifetimes => save_all(lifetimes, folder, several, &settings)?,
         };
         if let Some(comparison) = &self.comparison {
             let file = folder.join(format!("{}_repeats.json", several.replace(' ', "_")));

@@ -5,9 +5,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use indexmap::IndexMap;
+use indexmap::IndexSet;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use super::{LifetimeMetrics, regimes_tsv};
 use crate::log::{line, write_json, write_whole};
@@ -23,51 +23,25 @@ pub struct Settings {
     pub options: Options,
 }
 
-/// Where results were saved.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct SavedFiles {
-    /// `NAME_metrics.json`: lifetime and tasks.
-    pub metrics: PathBuf,
-    /// `NAME_regime.tsv`: regimes.
-    pub regimes: PathBuf,
-    /// `NAME_settings.json`: the options.
-    pub settings: PathBuf,
-}
-
-/// Where the results of several lifetimes were saved.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct SavedTables {
-    /// `NAME.tsv`: a row per lifetime.
-    pub lifetimes: PathBuf,
-    /// `NAME.json`: a list of what `_metrics.json` holds of one.
-    pub metrics: PathBuf,
-    /// `NAME_regime.tsv`: the regimes of all.
-    pub regimes: PathBuf,
-    /// `NAME_settings.json`: the options.
-    pub settings: PathBuf,
-}
-
 impl LifetimeMetrics {
-    /// Saves the results in a directory, made if need be; files of that name are replaced. Spaces in `name` become
-    /// underscores.
+    /// Saves the results in a directory, made if need be: lifetime and tasks in `NAME_metrics.json`, regimes in `NAME_regime.tsv`
+    /// and the options in `NAME_settings.json`. Files of that name are replaced. Spaces in `name` become underscores. Gives the
+    /// files in this order.
     ///
     /// # Errors
     /// [`MetricsError::Io`]; [`MetricsError::BadOption`] for a name that is empty or has a `/` or `\`.
-    pub fn save(&self, dir: impl AsRef<Path>, name: &str, settings: &Settings) -> Result<SavedFiles, MetricsError> {
-        let place = Place::new(dir.as_ref(), name)?;
-        let files = SavedFiles {
-            metrics: place.file("_metrics.json"),
-            regimes: place.file("_regime.tsv"),
-            settings: place.file("_settings.json"),
-        };
-        write_json(&files.metrics, self)?;
-        write_whole(&files.regimes, self.regime_tsv().as_bytes())?;
-        write_json(&files.settings, settings)?;
-        Ok(files)
+    pub fn save(&self, dir: impl AsRef<Path>, name: &str, settings: &Settings) -> Result<Vec<PathBuf>, MetricsError> {
+        let mut saving = Saving::new(dir.as_ref(), name)?;
+        write_json(saving.file("_metrics.json"), self)?;
+        write_whole(saving.file("_regime.tsv"), self.regime_tsv().as_bytes())?;
+        write_json(saving.file("_settings.json"), settings)?;
+        Ok(saving.files)
     }
 }
 
-/// Saves the results of several lifetimes as tables, under the names that the reference gives them when it is recursive.
+/// Saves the results of several lifetimes, under the names that the reference gives them when it is recursive: a row per
+/// lifetime in `NAME.tsv`, a list of what `_metrics.json` holds of one in `NAME.json`, the regimes of all in `NAME_regime.tsv`
+/// and the options in `NAME_settings.json`. Gives the files in this order.
 ///
 /// # Errors
 /// As [`LifetimeMetrics::save`].
@@ -76,40 +50,36 @@ pub fn save_all(
     dir: impl AsRef<Path>,
     name: &str,
     settings: &Settings,
-) -> Result<SavedTables, MetricsError> {
-    let place = Place::new(dir.as_ref(), name)?;
-    let files = SavedTables {
-        lifetimes: place.file(".tsv"),
-        metrics: place.file(".json"),
-        regimes: place.file("_regime.tsv"),
-        settings: place.file("_settings.json"),
-    };
-    write_whole(&files.lifetimes, lifetimes_tsv(lifetimes).as_bytes())?;
-    write_json(&files.metrics, &lifetimes)?;
-    write_whole(&files.regimes, regimes_tsv(lifetimes).as_bytes())?;
-    write_json(&files.settings, settings)?;
-    Ok(files)
+) -> Result<Vec<PathBuf>, MetricsError> {
+    let mut saving = Saving::new(dir.as_ref(), name)?;
+    write_whole(saving.file(".tsv"), lifetimes_tsv(lifetimes).as_bytes())?;
+    write_json(saving.file(".json"), &lifetimes)?;
+    write_whole(saving.file("_regime.tsv"), regimes_tsv(lifetimes).as_bytes())?;
+    write_json(saving.file("_settings.json"), settings)?;
+    Ok(saving.files)
 }
 
-/// A directory and how files in it begin.
-struct Place<'a> {
+/// The files of one saving, all in one directory and beginning with one name.
+struct Saving<'a> {
     dir: &'a Path,
     name: String,
+    files: Vec<PathBuf>,
 }
 
-impl<'a> Place<'a> {
+impl<'a> Saving<'a> {
     fn new(dir: &'a Path, name: &str) -> Result<Self, MetricsError> {
         if name.is_empty() || name.contains(['/', '\\', '\0']) {
             let expected = "a file name without / and \\".to_owned();
             return Err(MetricsError::bad_option("output name", format!("{name:?}"), expected));
         }
         fs::create_dir_all(dir).map_err(MetricsError::io(dir, "make this directory"))?;
-        let name = name.replace(' ', "_");
-        Ok(Self { dir, name })
+        let (name, files) = (name.replace(' ', "_"), Vec::new());
+        Ok(Self { dir, name, files })
     }
 
-    fn file(&self, ending: &str) -> PathBuf {
-        self.dir.join(format!("{}{ending}", self.name))
+    fn file(&mut self, ending: &str) -> &Path {
+        self.files.push(self.dir.join(format!("{}{ending}", self.name)));
+        &self.files[self.files.len() - 1]
     }
 }
 
@@ -122,15 +92,12 @@ pub(super) fn lifetimes_tsv(lifetimes: &[LifetimeMetrics]) -> String {
         .iter()
         .map(|lifetime| serde_json::to_value(lifetime).expect("results always become JSON"));
     let rows: Vec<Value> = rows.collect();
-    let names = rows
-        .iter()
-        .filter_map(Value::as_object)
-        .flat_map(|row| row.keys().map(String::as_str));
-    let mut columns: IndexMap<&str, ()> = IndexMap::from([("run_id", ())]);
-    columns.extend(names.filter(|name| !LEFT_OUT.contains(name)).map(|name| (name, ())));
-    let mut text = line(columns.keys());
+    let names = rows.iter().filter_map(Value::as_object).flat_map(Map::keys);
+    let mut columns = IndexSet::from(["run_id"]);
+    columns.extend(names.map(String::as_str).filter(|name| !LEFT_OUT.contains(name)));
+    let mut text = line(&columns);
     for row in &rows {
-        text.extend(line(columns.keys().map(|name| cell(&row[name]))));
+        text.extend(line(columns.iter().map(|name| cell(&row[name]))));
     }
     String::from_utf8(text).expect("cells are text, and quoting adds only quotes")
 }

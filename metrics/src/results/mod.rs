@@ -23,7 +23,7 @@ pub(crate) use curves::curves;
 pub use curves::{CurvePoint, EvaluationCurve};
 pub use expert_fit::{BesideExpert, ExpertFit};
 pub(crate) use expert_fit::{agent_of, expert_fits, unlike_experts};
-pub use files::{SavedFiles, SavedTables, Settings, save_all};
+pub use files::{Settings, save_all};
 pub use headline::{Direction, Headline};
 pub(crate) use lifetime_metrics::parts;
 pub use lifetime_metrics::{LifetimeMetrics, Part, SummaryRow, WholeLifetime};
