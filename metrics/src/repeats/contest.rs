@@ -5,16 +5,15 @@
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::jackknife::{FEW_RUNS, LeftOut, t_interval};
+use super::jackknife::{FEW_RUNS, t_interval};
 use super::resample::draw_whole_runs;
 use super::{BootstrapOptions, Interval, Resampling, ScoreTable};
 
-/// Two agents in every stratum that both have.
+/// Two agents, A and B, in every stratum that both have.
 pub(super) struct Contests {
     strata: Vec<Contest>,
     /// How often each run of an agent was drawn, for draws of whole runs.
-    runs_of_a: Vec<u32>,
-    runs_of_b: Vec<u32>,
+    drawn: [Vec<u32>; 2],
 }
 
 impl Contests {
@@ -22,14 +21,24 @@ impl Contests {
     pub(super) fn new(a: &ScoreTable, b: &ScoreTable, strata: &[&str]) -> Self {
         Self {
             strata: strata.iter().map(|name| Contest::new(a, b, name)).collect(),
-            runs_of_a: vec![1; a.num_runs()],
-            runs_of_b: vec![1; b.num_runs()],
+            drawn: [a, b].map(|table| vec![1; table.num_runs()]),
         }
     }
 
-    /// How probably A wins in each stratum. Before anything is drawn every stratum has pairs.
-    pub(super) fn probabilities(&self) -> Vec<f64> {
-        self.strata.iter().filter_map(Contest::probability).collect()
+    /// How probably A wins in each stratum, and last in the mean of those with pairs. Before anything is drawn every stratum has pairs.
+    pub(super) fn probabilities(&self) -> Vec<Option<f64>> {
+        let mut values = Vec::new();
+        self.put_probabilities(&mut values);
+        values
+    }
+
+    /// The same in place of what the list held.
+    fn put_probabilities(&self, values: &mut Vec<Option<f64>>) {
+        values.clear();
+        values.extend(self.strata.iter().map(Contest::probability));
+        let known = values.iter().flatten();
+        let (num, sum) = (known.clone().count(), known.sum::<f64>());
+        values.push((num > 0).then(|| sum / num as f64));
     }
 
     /// Intervals of the strata, and last that of their mean. A stratum has none where drawing again gives nothing new, or where no
@@ -37,20 +46,13 @@ impl Contests {
     pub(super) fn intervals(&mut self, options: &BootstrapOptions) -> Vec<Option<Interval>> {
         let resamples = options.resamples as usize;
         let mut drawn = vec![Vec::with_capacity(resamples); self.strata.len() + 1];
-        let mut rng = options.rng();
+        let (mut values, mut rng) = (Vec::new(), options.rng());
+        // At worst six draws in ten leave no stratum: each agent draws a given run with a chance of 1 - 1/e or more.
         while drawn[self.strata.len()].len() < resamples {
             self.draw(options.resampling, &mut rng);
-            let (mut sum, mut num_strata) = (0.0, 0);
-            for (contest, drawn) in self.strata.iter().zip(&mut drawn) {
-                if let Some(probability) = contest.probability() {
-                    sum += probability;
-                    num_strata += 1;
-                    drawn.push(probability);
-                }
-            }
-            // At worst six draws in ten leave no stratum: each agent draws a given run with a chance of 1 - 1/e or more.
-            if num_strata > 0 {
-                drawn[self.strata.len()].push(sum / f64::from(num_strata));
+            self.put_probabilities(&mut values);
+            for (drawn, probability) in drawn.iter_mut().zip(&values) {
+                drawn.extend(*probability);
             }
         }
         let varies = self.strata.iter().map(Contest::varies).chain([true]);
@@ -64,30 +66,26 @@ impl Contests {
     /// Student's intervals of the strata, and last that of their mean, where an agent has few runs; within 0..=1. A stratum has none
     /// where an agent has one run in it.
     pub(super) fn t_intervals(&mut self, confidence: f64) -> Option<Vec<Option<Interval>>> {
-        if self.runs_of_a.len().min(self.runs_of_b.len()) >= FEW_RUNS {
+        if self.drawn.iter().all(|runs| runs.len() >= FEW_RUNS) {
             return None;
         }
         self.take_each_once();
-        let values = self.with_mean();
-        let mut left_out: Vec<[LeftOut; 2]> = values.iter().map(|_| [LeftOut(vec![]), LeftOut(vec![])]).collect();
-        for agent in 0..2 {
-            for run in 0..[&self.runs_of_a, &self.runs_of_b][agent].len() {
+        let values = self.probabilities();
+        let mut left_out = vec![[vec![], vec![]]; values.len()];
+        for agent in [0, 1] {
+            for run in 0..self.drawn[agent].len() {
                 self.take_each_once();
-                if agent == 0 {
-                    self.runs_of_a[run] = 0;
-                } else {
-                    self.runs_of_b[run] = 0;
-                }
+                self.drawn[agent][run] = 0;
                 self.take_runs();
-                for (place, value) in self.with_mean().into_iter().enumerate() {
+                for (place, value) in self.probabilities().into_iter().enumerate() {
                     // A run that has no score in a stratum says nothing of it.
-                    let scored = self.strata.get(place).is_none_or(|contest| contest.has(agent, run));
-                    left_out[place][agent].0.extend(value.filter(|_| scored));
+                    let scored = (self.strata.get(place)).is_none_or(|contest| contest.0[agent].has(run));
+                    left_out[place][agent].extend(value.filter(|_| scored));
                 }
             }
         }
         self.take_each_once();
-        let interval = |(value, left_out): (Option<f64>, &[LeftOut; 2])| {
+        let interval = |(value, left_out): (Option<f64>, &[Vec<f64>; 2])| {
             let found = t_interval(value?, left_out, confidence)?;
             let (low, high) = (found.low.max(0.0), found.high.min(1.0));
             Some(Interval { low, high })
@@ -95,49 +93,38 @@ impl Contests {
         Some(values.into_iter().zip(&left_out).map(interval).collect())
     }
 
-    /// How probably A wins in each stratum, and in the mean of those with pairs.
-    fn with_mean(&self) -> Vec<Option<f64>> {
-        let mut values: Vec<Option<f64>> = self.strata.iter().map(Contest::probability).collect();
-        let known: Vec<f64> = values.iter().flatten().copied().collect();
-        values.push((!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64));
-        values
-    }
-
     fn take_each_once(&mut self) {
-        self.runs_of_a.fill(1);
-        self.runs_of_b.fill(1);
+        self.drawn.iter_mut().for_each(|runs| runs.fill(1));
         self.take_runs();
     }
 
     fn take_runs(&mut self) {
-        for contest in &mut self.strata {
-            contest.a.take(&self.runs_of_a);
-            contest.b.take(&self.runs_of_b);
+        for Contest(sides) in &mut self.strata {
+            for (side, drawn) in sides.iter_mut().zip(&self.drawn) {
+                side.take(drawn);
+            }
         }
     }
 
     fn draw(&mut self, resampling: Resampling, rng: &mut ChaCha8Rng) {
         match resampling {
             Resampling::Strata => {
-                for contest in &mut self.strata {
-                    contest.a.draw(rng);
-                    contest.b.draw(rng);
+                for side in self.strata.iter_mut().flat_map(|Contest(sides)| sides) {
+                    side.draw(rng);
                 }
             }
             Resampling::Runs => {
-                draw_whole_runs(&mut self.runs_of_a, rng);
-                draw_whole_runs(&mut self.runs_of_b, rng);
+                for runs in &mut self.drawn {
+                    draw_whole_runs(runs, rng);
+                }
                 self.take_runs();
             }
         }
     }
 }
 
-/// The runs of both agents in one stratum, by rank.
-struct Contest {
-    a: Side,
-    b: Side,
-}
+/// The runs of A and of B in one stratum, by rank.
+struct Contest([Side; 2]);
 
 /// One agent's runs.
 struct Side {
@@ -155,30 +142,22 @@ impl Contest {
         let mut different: Vec<f64> = of_a.iter().chain(of_b).map(|(score, _)| *score).collect();
         different.sort_by(f64::total_cmp);
         different.dedup();
-        Self {
-            a: Side::new(of_a, &different),
-            b: Side::new(of_b, &different),
-        }
-    }
-
-    /// Whether a run of the first or second agent has a score.
-    fn has(&self, agent: usize, run: usize) -> bool {
-        let side = if agent == 0 { &self.a } else { &self.b };
-        side.runs.iter().any(|(_, scored)| *scored as usize == run)
+        Self([of_a, of_b].map(|runs| Side::new(runs, &different)))
     }
 
     fn varies(&self) -> bool {
-        self.a.runs.len() > 1 || self.b.runs.len() > 1
+        self.0.iter().any(|side| side.runs.len() > 1)
     }
 
     /// Share of pairs that A wins, ties counted half; `None` where there is no pair.
     fn probability(&self) -> Option<f64> {
+        let [a, b] = &self.0;
         let (mut halves, mut below) = (0, 0);
-        for (of_a, of_b) in self.a.counts.iter().zip(&self.b.counts) {
+        for (of_a, of_b) in a.counts.iter().zip(&b.counts) {
             halves += u64::from(*of_a) * (2 * below + u64::from(*of_b));
             below += u64::from(*of_b);
         }
-        let pairs = self.a.num_drawn * self.b.num_drawn;
+        let pairs = a.num_drawn * b.num_drawn;
         (pairs > 0).then(|| halves as f64 / (2 * pairs) as f64)
     }
 }
@@ -193,6 +172,11 @@ impl Side {
         };
         side.runs.iter().for_each(|(rank, _)| side.counts[*rank as usize] += 1);
         side
+    }
+
+    /// Whether a run has a score.
+    fn has(&self, run: usize) -> bool {
+        self.runs.iter().any(|(_, scored)| *scored as usize == run)
     }
 
     /// As many runs as there are, with replacement.
@@ -232,7 +216,7 @@ mod tests {
         let mut seen = [0_u32; 3];
         for _ in 0..400 {
             contests.draw(Resampling::Runs, &mut rng);
-            let [x, y] = contests.probabilities()[..] else {
+            let [Some(x), Some(y), _] = contests.probabilities()[..] else {
                 panic!("two strata")
             };
             assert_eq!(x, y);
@@ -248,7 +232,7 @@ mod tests {
         let b = ScoreTable::from_runs([("1", [("x", 1.0), ("y", 3.0)])]).unwrap();
         let mut contests = Contests::new(&a, &b, &["x", "y"]);
         for contest in &mut contests.strata {
-            contest.a.take(&[2, 0]);
+            contest.0[0].take(&[2, 0]);
         }
         let found: Vec<Option<f64>> = contests.strata.iter().map(Contest::probability).collect();
         assert_eq!(found, [Some(1.0), None]);

@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::jackknife::{FEW_RUNS, LeftOut, t_interval};
+use super::jackknife::{FEW_RUNS, t_interval};
 use super::resample::Resample;
 use super::{Aggregate, BootstrapOptions, ScoreTable};
 use crate::MetricsError;
@@ -65,7 +65,7 @@ pub fn estimate<const N: usize>(
             }
         }
         for (k, estimate) in estimates.iter_mut().enumerate() {
-            let values = LeftOut(left_out.iter().map(|values| values[k]).collect());
+            let values = left_out.iter().map(|values| values[k]).collect();
             estimate.t_interval = t_interval(estimate.value, &[values], options.confidence);
         }
     }

@@ -94,28 +94,23 @@ pub fn probability_of_improvement(
     let varies = a.varies(options.resampling) || b.varies(options.resampling);
     let intervals = varies.then(|| contests.intervals(options));
     let by_t = contests.t_intervals(options.confidence);
-    let estimate = |k: usize, value| Estimate {
-        value,
+    let estimate = |k: usize| Estimate {
+        value: values[k].expect("before anything is drawn every stratum has pairs"),
         interval: intervals.as_ref().and_then(|intervals| intervals[k]),
         t_interval: by_t.as_ref().and_then(|intervals| intervals[k]),
     };
     let shared_out = shared_out(a, b, &shared, options);
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
-    let strata = shared
-        .iter()
-        .zip(&values)
-        .enumerate()
-        .map(|(k, (name, value))| StratumImprovement {
-            stratum: (*name).to_owned(),
-            probability: estimate(k, *value),
-        });
+    let strata = shared.iter().enumerate().map(|(k, name)| StratumImprovement {
+        stratum: (*name).to_owned(),
+        probability: estimate(k),
+    });
     let missing = |from: &ScoreTable, other: &ScoreTable| {
         let alone = from.strata().filter(|name| other.scores(name).is_none());
         alone.map(str::to_owned).collect()
     };
     Ok(Improvement {
         strata: strata.collect(),
-        probability: estimate(shared.len(), mean),
+        probability: estimate(shared.len()),
         p_value: shared_out.map(|shared| shared.p_value),
         least_p_value: shared_out.map(|shared| shared.least),
         only_a: missing(a, b),

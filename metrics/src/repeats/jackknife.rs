@@ -8,31 +8,28 @@ use super::student::student_reach;
 /// From this number of runs on, intervals are made by the bootstrap alone.
 pub const FEW_RUNS: usize = 10;
 
-/// The values that a number takes when each run of one agent is left out in turn.
-pub(super) struct LeftOut(pub(super) Vec<f64>);
-
-impl LeftOut {
-    /// The jackknife's estimate of the variance, and its degrees of freedom. For a mean of runs that is the variance of the mean.
-    fn variance(&self) -> (f64, f64) {
-        let num = self.0.len() as f64;
-        // In ascending order, so that the order of runs is nothing.
-        let mut values = self.0.clone();
-        values.sort_by(f64::total_cmp);
-        let mean = values.iter().sum::<f64>() / num;
-        let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-        ((num - 1.0) / num * squares, num - 1.0)
-    }
+/// The jackknife's estimate of the variance, and its degrees of freedom, from the values that a number takes when each run of one
+/// agent is left out in turn. For a mean of runs that is the variance of the mean.
+fn variance(left_out: &[f64]) -> (f64, f64) {
+    let num = left_out.len() as f64;
+    // In ascending order, so that the order of runs is nothing.
+    let mut values = left_out.to_vec();
+    values.sort_by(f64::total_cmp);
+    let mean = values.iter().sum::<f64>() / num;
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    ((num - 1.0) / num * squares, num - 1.0)
 }
 
 /// The interval around a value whose runs are one agent's, or two agents' runs independent of each other; `None` where an agent has
-/// one run only, so that nothing is known of how it varies.
+/// one run only, so that nothing is known of how it varies. `left_out`: for each agent, the values that it takes when each of the
+/// agent's runs is left out in turn.
 ///
 /// The degrees of freedom of two agents are those of Welch and Satterthwaite.
-pub(super) fn t_interval(value: f64, agents: &[LeftOut], confidence: f64) -> Option<Interval> {
-    if agents.is_empty() || agents.iter().any(|agent| agent.0.len() < 2) {
+pub(super) fn t_interval(value: f64, left_out: &[Vec<f64>], confidence: f64) -> Option<Interval> {
+    if left_out.iter().any(|values| values.len() < 2) {
         return None;
     }
-    let variances: Vec<(f64, f64)> = agents.iter().map(LeftOut::variance).collect();
+    let variances: Vec<(f64, f64)> = left_out.iter().map(|values| variance(values)).collect();
     let variance: f64 = variances.iter().map(|(variance, _)| variance).sum();
     let shares: f64 = variances
         .iter()
@@ -59,7 +56,7 @@ mod tests {
     fn of_a_mean_it_is_the_textbooks_interval() {
         // scipy.stats.t.interval(0.95, 4, loc=3, scale=scipy.stats.sem([1, 2, 3, 4, 5])).
         let runs = [1.0, 2.0, 3.0, 4.0, 5.0];
-        let left_out = LeftOut(runs.iter().map(|run| (15.0 - run) / 4.0).collect());
+        let left_out = runs.iter().map(|run| (15.0 - run) / 4.0).collect();
         let found = t_interval(3.0, &[left_out], 0.95).unwrap();
         assert!((found.low - 1.036_756_838_522_439).abs() < 1e-9, "{found:?}");
         assert!((found.high - 4.963_243_161_477_561).abs() < 1e-9, "{found:?}");
@@ -67,8 +64,8 @@ mod tests {
 
     #[test]
     fn one_run_says_nothing_and_equal_runs_leave_nothing_open() {
-        assert_eq!(t_interval(1.0, &[LeftOut(vec![1.0])], 0.95), None);
-        let still = t_interval(1.0, &[LeftOut(vec![1.0; 3]), LeftOut(vec![1.0; 2])], 0.95).unwrap();
+        assert_eq!(t_interval(1.0, &[vec![1.0]], 0.95), None);
+        let still = t_interval(1.0, &[vec![1.0; 3], vec![1.0; 2]], 0.95).unwrap();
         assert_eq!((still.low, still.high), (1.0, 1.0));
     }
 }
