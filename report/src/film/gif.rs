@@ -1,4 +1,4 @@
-//! [`GifFilm`]: a film as a GIF. Each picture holds what changed since the one before, in colours of its own; which colours is said in
+//! The pictures of a film as a GIF. Each picture holds what changed since the one before, in colours of its own; which colours is said in
 //! `palette.rs`. A GIF is written by the crate `gif`.
 
 use std::io::Write;
@@ -6,39 +6,32 @@ use std::io::Write;
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
 
 use super::palette::Palette;
-use super::{Delays, expect_size};
 use crate::ReportError;
 use crate::picture::Picture;
 
 /// Colours of a picture; one more stands for what stays as it was.
 const COLORS: usize = 255;
 
-/// A film as a GIF.
-pub struct GifFilm<W: Write> {
+/// A GIF, picture by picture.
+pub(super) struct GifFrames<W: Write> {
     encoder: Encoder<W>,
-    size: [u32; 2],
-    delays: Delays,
     last: Option<Picture>,
 }
 
-impl<W: Write> GifFilm<W> {
+impl<W: Write> GifFrames<W> {
     pub(super) fn new(to: W, size: [u32; 2]) -> Result<Self, ReportError> {
         // Films have sides that fit.
         let [width, height] = size.map(|side| side as u16);
         let mut encoder = Encoder::new(to, width, height, &[])?;
         encoder.set_repeat(Repeat::Infinite)?;
-        Ok(Self {
-            encoder,
-            size,
-            delays: Delays::new(100.0),
-            last: None,
-        })
+        Ok(Self { encoder, last: None })
     }
 
-    pub(super) fn add(&mut self, picture: &Picture, seconds: f64) -> Result<(), ReportError> {
-        expect_size(picture, self.size)?;
+    /// Adds a picture of the film's size, shown for so many hundredths of a second.
+    pub(super) fn add(&mut self, picture: &Picture, delay: u16) -> Result<(), ReportError> {
         let last = self.last.as_ref();
-        let [left, top, right, bottom] = last.map_or([0, 0, self.size[0], self.size[1]], |last| changed(last, picture));
+        let [left, top, right, bottom] =
+            last.map_or([0, 0, picture.width, picture.height], |last| changed(last, picture));
         let at = |picture: &Picture, x: u32, y: u32| {
             let place = 3 * (y as usize * picture.width as usize + x as usize);
             [picture.rgb[place], picture.rgb[place + 1], picture.rgb[place + 2]]
@@ -61,7 +54,7 @@ impl<W: Write> GifFilm<W> {
         let mut table: Vec<u8> = colors.iter().flatten().copied().collect();
         table.extend([0; 3]);
         self.encoder.write_frame(&Frame {
-            delay: self.delays.next(seconds),
+            delay,
             dispose: DisposalMethod::Keep,
             transparent: Some(clear),
             left: left as u16,

@@ -1,14 +1,11 @@
 //! Films: pictures one after the other, as GIF or animated PNG. Which pictures, and files, are the callers'.
 
-mod apng;
 mod gif;
 mod palette;
 
 use std::io::Write;
 
-pub use apng::ApngFilm;
-pub use gif::GifFilm;
-
+use self::gif::GifFrames;
 use crate::ReportError;
 use crate::picture::Picture;
 
@@ -39,12 +36,21 @@ impl FilmKind {
     }
 }
 
+/// Parts of a second that times of an animated PNG are counted in.
+const APNG_UNITS: u16 = 1000;
+
 /// A film that is written, picture by picture.
-pub enum Film<W: Write> {
-    /// See [`FilmKind::Gif`].
-    Gif(GifFilm<W>),
-    /// See [`FilmKind::Apng`].
-    Apng(ApngFilm<W>),
+pub struct Film<W: Write> {
+    frames: Frames<W>,
+    size: [u32; 2],
+    delays: Delays,
+}
+
+/// Where pictures go, by the kind of film.
+enum Frames<W: Write> {
+    Gif(GifFrames<W>),
+    /// A PNG is written by the crate `png`.
+    Apng(png::Writer<W>),
 }
 
 impl<W: Write> Film<W> {
@@ -62,10 +68,19 @@ impl<W: Write> Film<W> {
             });
         }
         let size = [width, height];
-        Ok(match kind {
-            FilmKind::Gif => Self::Gif(GifFilm::new(to, size)?),
-            FilmKind::Apng => Self::Apng(ApngFilm::new(to, size, num_pictures)?),
-        })
+        let (frames, units_per_second) = match kind {
+            FilmKind::Gif => (Frames::Gif(GifFrames::new(to, size)?), 100.0),
+            FilmKind::Apng => {
+                let mut encoder = png::Encoder::new(to, width, height);
+                encoder.set_color(png::ColorType::Rgb);
+                encoder.set_depth(png::BitDepth::Eight);
+                encoder.set_animated(num_pictures, 0)?;
+                encoder.validate_sequence(true);
+                (Frames::Apng(encoder.write_header()?), APNG_UNITS.into())
+            }
+        };
+        let delays = Delays::new(units_per_second);
+        Ok(Self { frames, size, delays })
     }
 
     /// Adds a picture that is shown for so many seconds.
@@ -73,9 +88,14 @@ impl<W: Write> Film<W> {
     /// # Errors
     /// [`ReportError::FilmSize`] for a picture of another size; as [`Film::new`].
     pub fn add(&mut self, picture: &Picture, seconds: f64) -> Result<(), ReportError> {
-        match self {
-            Self::Gif(film) => film.add(picture, seconds),
-            Self::Apng(film) => film.add(picture, seconds),
+        expect_size(picture, self.size)?;
+        let delay = self.delays.next(seconds);
+        match &mut self.frames {
+            Frames::Gif(frames) => frames.add(picture, delay),
+            Frames::Apng(writer) => {
+                writer.set_frame_delay(delay, APNG_UNITS)?;
+                Ok(writer.write_image_data(&picture.rgb)?)
+            }
         }
     }
 
@@ -84,9 +104,9 @@ impl<W: Write> Film<W> {
     /// # Errors
     /// As [`Film::new`]; also where fewer pictures were added than it was to have.
     pub fn finish(self) -> Result<(), ReportError> {
-        match self {
-            Self::Gif(film) => film.finish(),
-            Self::Apng(film) => film.finish(),
+        match self.frames {
+            Frames::Gif(frames) => frames.finish(),
+            Frames::Apng(writer) => Ok(writer.finish()?),
         }
     }
 }
