@@ -4,11 +4,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::usable::{is_deployed, usable_rows};
+use super::usable::is_deployed;
 use super::worlds::{INDEX, seed_of};
 use super::{Lifetime, Regime};
 use crate::log::{ExpStatus, Log};
-use crate::{BlockType, MetricsError, Options};
+use crate::{BlockType, Options};
 
 /// What a task was learned from.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -28,8 +28,7 @@ impl Budget {
         let index = log.rows.metric(INDEX);
         let world = |row: &usize| {
             let index = index?[*row];
-            let seed = seed_of(&params.values()[params.ids()[*row] as usize]);
-            index.is_finite().then(|| (seed, index.to_bits()))
+            index.is_finite().then(|| (seed_of(params.of(*row)), index.to_bits()))
         };
         Self {
             learned: deployed.len(),
@@ -41,14 +40,10 @@ impl Budget {
     /// Of all that an expert learned.
     pub(crate) fn of_expert(log: &Log) -> Self {
         let learned = complete_learning(log);
-        let (deployed, before): (Vec<usize>, Vec<usize>) = learned.partition(|row| is_deployed_row(log, *row));
+        let (deployed, before): (Vec<usize>, Vec<usize>) =
+            learned.partition(|row| is_deployed(log.rows.task_params().of(*row)));
         Self::of(log, &deployed, before.len())
     }
-}
-
-fn is_deployed_row(log: &Log, row: usize) -> bool {
-    let params = log.rows.task_params();
-    is_deployed(&params.values()[params.ids()[row] as usize])
 }
 
 fn complete_learning(log: &Log) -> impl Iterator<Item = usize> {
@@ -57,36 +52,26 @@ fn complete_learning(log: &Log) -> impl Iterator<Item = usize> {
         .filter(|row| rows.exp_statuses()[*row] == ExpStatus::Complete && rows.block_types()[*row] == BlockType::Train)
 }
 
-/// What each task of a lifetime was learned from; rows of a drift count for the nearer end.
-///
-/// # Errors
-/// None for a lifetime that was prepared from this log under these options.
-pub(crate) fn budgets(
-    log: &Log,
-    lifetime: &Lifetime,
-    options: &Options,
-) -> Result<BTreeMap<String, Budget>, MetricsError> {
+/// What each task of a lifetime, which was prepared from this log under these options, was learned from; rows of a drift count for
+/// the nearer end.
+pub(crate) fn budgets(log: &Log, lifetime: &Lifetime, options: &Options) -> BTreeMap<String, Budget> {
     let mut learned: BTreeMap<&str, (Vec<usize>, usize)> = BTreeMap::new();
-    // Regimes are stretches of the rows that count, one after the other.
-    let usable = usable_rows(log, &log.run_id, &options.perf_measure)?;
-    let mut indices = usable.indices.iter();
-    for regime in lifetime.regimes() {
-        for (place, row) in indices.by_ref().take(regime.len()).enumerate() {
-            if regime.block_type == BlockType::Train {
-                learned.entry(present(regime, place)).or_default().0.push(*row);
-            }
+    let regimes = lifetime.regimes().iter();
+    for regime in regimes.filter(|regime| regime.block_type == BlockType::Train) {
+        for (place, row) in regime.rows.iter().enumerate() {
+            learned.entry(present(regime, place)).or_default().0.push(*row);
         }
     }
     let names = log.rows.task_names();
     let scored: Vec<String> = (names.values().iter())
         .map(|name| options.variant_mode.scored_name(name))
         .collect();
-    for row in complete_learning(log).filter(|row| !is_deployed_row(log, *row)) {
+    for row in complete_learning(log).filter(|row| !is_deployed(log.rows.task_params().of(*row))) {
         learned.entry(&scored[names.ids()[row] as usize]).or_default().1 += 1;
     }
     let budget =
         |(task, (deployed, before)): (&str, (Vec<usize>, usize))| (task.to_owned(), Budget::of(log, &deployed, before));
-    Ok(learned.into_iter().map(budget).collect())
+    learned.into_iter().map(budget).collect()
 }
 
 /// The task that is learned in a row of a regime: in a drift the nearer one.

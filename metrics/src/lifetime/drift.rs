@@ -32,7 +32,7 @@ impl Drift {
     /// are scored as one task.
     pub(super) fn of(rows: &Rows, stretch: &[usize], params: &TaskParams, options: &Options) -> Option<Self> {
         let first = *stretch.first()?;
-        let name = rows.task_names().values()[rows.task_names().ids()[first] as usize].to_lowercase();
+        let name = rows.task_names().of(first).to_lowercase();
         let (head, tail) = name.split_once('_')?;
         let [from, to] = ENDS.map(|key| params.get(key).and_then(|word| word.as_str()));
         let (from, to) = (from?, to?);

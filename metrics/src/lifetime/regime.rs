@@ -44,6 +44,8 @@ pub struct Regime {
     /// The tasks that it counts as learning of, for maintenance and transfer: its own, or in a drift those that it
     /// passes. Empty for an evaluation.
     pub learns: Vec<String>,
+    /// Its rows in the log.
+    pub(crate) rows: Vec<usize>,
     /// Experience number of each row, ascending.
     pub exp_nums: Vec<u64>,
     /// Steps of the environment up to the end of each row, over all rows of the lifetime that count; `None` where the log has no
@@ -78,6 +80,7 @@ impl Regime {
             list.retain(|_| has.next().is_some_and(|has| *has));
         }
         let has: Vec<bool> = self.raw.iter().map(|value| !value.is_nan()).collect();
+        keep(&mut self.rows, &has);
         keep(&mut self.exp_nums, &has);
         keep(&mut self.raw, &has);
         keep(&mut self.performance, &has);
@@ -122,7 +125,7 @@ pub(crate) fn form(run_id: &str, usable: &Usable<'_>, options: &Options) -> Resu
         );
         (block, task_of(row))
     };
-    let params_of = |row: usize| &rows.task_params().values()[rows.task_params().ids()[row] as usize];
+    let params_of = |row: usize| rows.task_params().of(row);
     let same_params = |a: usize, b: usize| match options.definitions {
         Definitions::Reference => true,
         Definitions::Published => {
@@ -152,6 +155,7 @@ pub(crate) fn form(run_id: &str, usable: &Usable<'_>, options: &Options) -> Resu
             drift: Drift::of(rows, stretch, params_of(first), options),
             learns: Vec::new(),
             task_params: params_of(first).clone(),
+            rows: stretch.to_vec(),
             exp_nums: stretch.iter().map(|&row| rows.exp_nums()[row]).collect(),
             steps: (steps.as_mut()).map(|steps| steps.by_ref().take(stretch.len()).collect()),
             raw: performance.clone(),

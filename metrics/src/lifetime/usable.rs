@@ -84,8 +84,7 @@ pub(super) fn unshuffled(rows: &Rows, indices: Vec<usize>) -> Vec<usize> {
             return rows_of_block.to_vec();
         }
         let mut tasks = IndexSet::new();
-        let name = |row: usize| &names.values()[names.ids()[row] as usize];
-        let number = |row: &usize| (tasks.insert_full(name(*row)).0, *row);
+        let number = |row: &usize| (tasks.insert_full(names.of(*row)).0, *row);
         let mut numbered: Vec<_> = rows_of_block.iter().map(number).collect();
         numbered.sort_unstable();
         numbered.into_iter().map(|(_, row)| row).collect()

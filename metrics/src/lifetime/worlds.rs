@@ -6,9 +6,8 @@ use std::collections::HashMap;
 
 use indexmap::IndexSet;
 
-use super::usable::usable_rows;
 use super::{Lifetime, Regime};
-use crate::{Log, MetricsError, Options, TaskParams};
+use crate::{Log, TaskParams};
 
 /// Column with the number of a row's world among those of its variant and seed.
 pub(super) const INDEX: &str = "world_index";
@@ -30,18 +29,10 @@ pub(super) fn seed_of(params: &TaskParams) -> String {
     params.get(SEED).map(ToString::to_string).unwrap_or_default()
 }
 
-/// The world of each row of each regime, in their order; `None` where the log does not say. `log` and `options` are those that the
-/// lifetime was prepared from.
-///
-/// # Errors
-/// Those of [`Lifetime::prepare`] that are about rows; none for a lifetime that was prepared.
-pub(crate) fn worlds(
-    log: &Log,
-    lifetime: &Lifetime,
-    options: &Options,
-) -> Result<Vec<Vec<Option<World>>>, MetricsError> {
-    let usable = usable_rows(log, &log.run_id, &options.perf_measure)?;
-    let rows = usable.rows;
+/// The world of each row of each regime, in their order; `None` where the log does not say. `log` is the one that the lifetime was
+/// prepared from.
+pub(crate) fn worlds(log: &Log, lifetime: &Lifetime) -> Vec<Vec<Option<World>>> {
+    let rows = &log.rows;
     let params = rows.task_params();
     let mut seeds: IndexSet<String> = IndexSet::new();
     let seeds: Vec<usize> = (params.values().iter())
@@ -62,8 +53,6 @@ pub(crate) fn worlds(
             number: *numbers.entry((seed, index.to_bits())).or_insert(next),
         })
     };
-    // Regimes are stretches of the rows that count, one after the other.
-    let mut indices = usable.indices.iter();
-    let of_regime = |regime: &Regime| indices.by_ref().take(regime.len()).map(|row| world(*row)).collect();
-    Ok(lifetime.regimes().iter().map(of_regime).collect())
+    let of_regime = |regime: &Regime| regime.rows.iter().map(|row| world(*row)).collect();
+    lifetime.regimes().iter().map(of_regime).collect()
 }

@@ -29,7 +29,7 @@ impl<T> SharedColumn<T> {
     }
 
     /// The value of a row; `row` counts from 0, below the number of rows.
-    pub(super) fn of(&self, row: usize) -> &T {
+    pub(crate) fn of(&self, row: usize) -> &T {
         &self.values[self.ids[row] as usize]
     }
 

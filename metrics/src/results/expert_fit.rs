@@ -6,7 +6,7 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
 use crate::lifetime::{Budget, Lifetime, budgets};
-use crate::{Log, MetricsError, Options, VariantMode};
+use crate::{Log, Options, VariantMode};
 
 /// One number of a lifetime and of an expert.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -38,15 +38,11 @@ pub struct ExpertFit {
 
 /// Every expert that each task is compared with. Where variants do not count, an expert is of one variant and the task
 /// of all: nothing is said.
-pub(crate) fn expert_fits(
-    log: &Log,
-    lifetime: &Lifetime,
-    options: &Options,
-) -> Result<IndexMap<String, Vec<ExpertFit>>, MetricsError> {
+pub(crate) fn expert_fits(log: &Log, lifetime: &Lifetime, options: &Options) -> IndexMap<String, Vec<ExpertFit>> {
     if options.variant_mode == VariantMode::Agnostic {
-        return Ok(IndexMap::new());
+        return IndexMap::new();
     }
-    let budgets = budgets(log, lifetime, options)?;
+    let budgets = budgets(log, lifetime, options);
     let nothing = Budget::default();
     let before = budgets.values().map(|own| own.before).sum();
     let agent = agent_of(log);
@@ -61,7 +57,7 @@ pub(crate) fn expert_fits(
         // A task that is only evaluated is not learned in the lifetime: there is nothing to compare.
         (!fits.is_empty() && own.learned > 0).then(|| (task.clone(), fits))
     };
-    Ok(lifetime.tasks().iter().filter_map(of_task).collect())
+    lifetime.tasks().iter().filter_map(of_task).collect()
 }
 
 /// Who learned, as a log says.
@@ -79,22 +75,10 @@ fn fit(
     let shared = worlds.map(|(own, expert)| own.intersection(expert).count());
     let found = ExpertFit {
         run: run.to_owned(),
-        agent: own_agent.zip(agent).map(|(lifetime, expert)| BesideExpert {
-            lifetime: lifetime.to_owned(),
-            expert: expert.to_owned(),
-        }),
-        learned: BesideExpert {
-            lifetime: own.learned,
-            expert: expert.learned,
-        },
-        before_deployment: BesideExpert {
-            lifetime: before,
-            expert: expert.before,
-        },
-        worlds: worlds.map(|(own, expert)| BesideExpert {
-            lifetime: own.len(),
-            expert: expert.len(),
-        }),
+        agent: (own_agent.zip(agent)).map(|(own, expert)| beside(own.to_owned(), expert.to_owned())),
+        learned: beside(own.learned, expert.learned),
+        before_deployment: beside(before, expert.before),
+        worlds: worlds.map(|(own, expert)| beside(own.len(), expert.len())),
         shared_worlds: shared,
         differences: Vec::new(),
     };
@@ -102,6 +86,10 @@ fn fit(
         differences: differences(&found),
         ..found
     }
+}
+
+fn beside<T>(lifetime: T, expert: T) -> BesideExpert<T> {
+    BesideExpert { lifetime, expert }
 }
 
 fn differences(fit: &ExpertFit) -> Vec<String> {

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::lifetime::{Lifetime, Regime, SteRun, World, worlds};
 use crate::preprocess::{anchors, given_range};
 use crate::statistics::mean;
-use crate::{Anchors, BlockType, Log, MetricsError, NormalizationMethod, Options, Unlabelled};
+use crate::{Anchors, BlockType, Log, NormalizationMethod, Options, Unlabelled};
 
 /// Part of its expert's level below which a task was never learned.
 pub const LEARNED_SHARE: f64 = 0.2;
@@ -119,12 +119,8 @@ impl Reached {
 }
 
 /// What each task came to, tasks in the lifetime's order; those without an evaluation have none in their list.
-pub(crate) fn reached(
-    log: &Log,
-    lifetime: &Lifetime,
-    options: &Options,
-) -> Result<IndexMap<String, Reached>, MetricsError> {
-    let worlds = worlds(log, lifetime, options)?;
+pub(crate) fn reached(log: &Log, lifetime: &Lifetime, options: &Options) -> IndexMap<String, Reached> {
+    let worlds = worlds(log, lifetime);
     let mut found = IndexMap::new();
     for task in lifetime.tasks() {
         let mut evaluations = Vec::new();
@@ -180,7 +176,7 @@ pub(crate) fn reached(
         reached.evaluations = evaluations;
         found.insert(task.clone(), reached);
     }
-    Ok(found)
+    found
 }
 
 /// The largest set of tasks that look alike, of those that the lifetime has all of.

@@ -11,7 +11,7 @@ use rand_chacha::ChaCha8Rng;
 use crate::lifetime::{Lifetime, Regime, World, mean_per_experience, worlds};
 use crate::results::Exchanged;
 use crate::statistics::mean;
-use crate::{BlockType, Log, MetricsError, Options};
+use crate::{BlockType, Log};
 
 /// The evaluations of a lifetime that count, their rows end to end.
 pub(super) struct Evaluations<'a> {
@@ -36,9 +36,9 @@ enum Place {
 }
 
 impl<'a> Evaluations<'a> {
-    /// Of the lifetime that was prepared from this log under these options.
-    pub(super) fn of(log: &Log, lifetime: &'a Lifetime, options: &Options) -> Result<Self, MetricsError> {
-        let worlds = worlds(log, lifetime, options)?;
+    /// Of the lifetime that was prepared from this log.
+    pub(super) fn of(log: &Log, lifetime: &'a Lifetime) -> Self {
+        let worlds = worlds(log, lifetime);
         let counts = |regime: &&Regime| regime.block_type == BlockType::Test && lifetime.is_assessed(regime);
         let assessed: Vec<&Regime> = lifetime.regimes().iter().filter(counts).collect();
         let mut regimes = Vec::new();
@@ -61,7 +61,7 @@ impl<'a> Evaluations<'a> {
             (true, true) => Exchanged::WorldsAndPositions,
             (false, _) => Exchanged::Positions,
         };
-        Ok(Self {
+        Self {
             bundles: bundles(groups, &regimes),
             is_one_row_each: (regimes.iter())
                 .map(|(regime, _)| regime.exp_nums.is_sorted_by(|a, b| a < b))
@@ -69,7 +69,7 @@ impl<'a> Evaluations<'a> {
             regimes,
             performance,
             exchanged,
-        })
+        }
     }
 
     /// Permutes the rows of each world, or of each place, among their evaluations.
@@ -156,7 +156,7 @@ mod tests {
     use rand_chacha::rand_core::SeedableRng;
 
     use super::*;
-    use crate::{LogWriter, LoggerInfo, NormalizationMethod, Record, ScenarioInfo, Timestamp, read_log};
+    use crate::{LogWriter, LoggerInfo, NormalizationMethod, Options, Record, ScenarioInfo, Timestamp, read_log};
 
     /// A block of one task: whether it is learning, and the world and reward of each row.
     type Block = (bool, &'static str, Vec<(Option<u8>, f64)>);
@@ -226,7 +226,7 @@ mod tests {
         fn permuting_keeps_what_was_earned_in_each_world(blocks in blocks(), seed in any::<u64>()) {
             let log = log_of(&blocks);
             let lifetime = Lifetime::prepare(&log, &[], &options()).expect("rows that count");
-            let mut evaluations = Evaluations::of(&log, &lifetime, &options()).expect("rows that count");
+            let mut evaluations = Evaluations::of(&log, &lifetime);
             let before = evaluations.performance.clone();
             let evaluated = blocks.iter().filter(|(learns, ..)| !learns).map(|(_, _, rows)| rows.len());
             // Blocks of one task one after the other are regimes of their own.
@@ -248,7 +248,7 @@ mod tests {
             let lifetime = Lifetime::prepare(&log, &[], &options()).expect("rows that count");
             let scores = crate::score(&log, &[], &options()).expect("scores");
             let mut term_perfs = vec![f64::NAN; lifetime.regimes().len()];
-            let evaluations = Evaluations::of(&log, &lifetime, &options()).expect("rows that count");
+            let evaluations = Evaluations::of(&log, &lifetime);
             evaluations.set_term_perfs(&mut term_perfs);
             for (regime, values) in lifetime.regimes().iter().zip(&scores.regimes) {
                 let number = values.values.number("term_perf").expect("every regime ends");

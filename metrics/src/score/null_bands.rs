@@ -10,7 +10,7 @@ use super::exchange::Evaluations;
 use super::{performance_maintenance, transfer};
 use crate::lifetime::{Lifetime, Regime, worlds};
 use crate::results::{NullBand, performance_error};
-use crate::{BlockType, Log, MetricsError, Options};
+use crate::{BlockType, Log, Options};
 
 /// How often the evaluations of a lifetime are permuted.
 pub const NULL_PERMUTATIONS: usize = 1000;
@@ -33,12 +33,7 @@ pub(super) struct NullBands {
 /// the rows of each world are permuted among the evaluations of their task, and every metric is computed of them anew. Performances
 /// are permuted as they are scored: scaling and clamping treat every row alike. Smoothing does not, so there are no bands
 /// where evaluations are smoothed.
-pub(super) fn null_bands(
-    log: &Log,
-    lifetime: &Lifetime,
-    options: &Options,
-    term_perfs: &[f64],
-) -> Result<NullBands, MetricsError> {
+pub(super) fn null_bands(log: &Log, lifetime: &Lifetime, options: &Options, term_perfs: &[f64]) -> NullBands {
     let mut statistics = performance_maintenance::statistics(lifetime, options);
     statistics.extend(transfer::statistics(lifetime, options));
     let mut found: Vec<_> = (statistics.into_iter())
@@ -51,9 +46,9 @@ pub(super) fn null_bands(
         })
         .collect();
     if options.smooth_eval_data || found.is_empty() {
-        return Ok(NullBands::default());
+        return NullBands::default();
     }
-    let mut evaluations = Evaluations::of(log, lifetime, options)?;
+    let mut evaluations = Evaluations::of(log, lifetime);
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);
     let mut permuted = term_perfs.to_vec();
     for _ in 0..NULL_PERMUTATIONS {
@@ -64,7 +59,7 @@ pub(super) fn null_bands(
         }
     }
     let exchanged = evaluations.exchanged;
-    let errors = errors(log, lifetime, options)?;
+    let errors = errors(log, lifetime);
     let mut bands = NullBands::default();
     for (value, statistic, drawn) in found {
         let finite: Vec<f64> = drawn.iter().copied().filter(|value| value.is_finite()).collect();
@@ -74,16 +69,16 @@ pub(super) fn null_bands(
             bands.drawn.insert(statistic.name.to_owned(), drawn);
         }
     }
-    Ok(bands)
+    bands
 }
 
 /// The standard error of each evaluation that counts, by its regime number, as far as it is known.
-fn errors(log: &Log, lifetime: &Lifetime, options: &Options) -> Result<Vec<(usize, Option<f64>)>, MetricsError> {
-    let worlds = worlds(log, lifetime, options)?;
+fn errors(log: &Log, lifetime: &Lifetime) -> Vec<(usize, Option<f64>)> {
+    let worlds = worlds(log, lifetime);
     let counts = |regime: &&Regime| regime.block_type == BlockType::Test && lifetime.is_assessed(regime);
     let evaluated = lifetime.regimes().iter().filter(counts);
     let error = |regime: &Regime| (regime.regime_num, performance_error(regime, &worlds[regime.regime_num]));
-    Ok(evaluated.map(error).collect())
+    evaluated.map(error).collect()
 }
 
 /// More evaluations than these take too long to vary one by one.

@@ -100,7 +100,7 @@ impl Scorer {
         let ties = decided_by_rounding(&assessment)?;
         let notes: Vec<String> = super::transfer::caution(&assessment).into_iter().collect();
         let contrasts = super::transfer::contrasts_not_asked_for(&assessment);
-        let null_bands = null_bands(log, lifetime, options, &assessment.term_perfs())?;
+        let null_bands = null_bands(log, lifetime, options, &assessment.term_perfs());
         let (regimes, tasks, found) = assessment.into_values();
         check_names(&found, "the lifetime", |name| TAKEN.contains(&name))?;
         for (task, values) in &tasks {
@@ -116,8 +116,8 @@ impl Scorer {
         };
         let regimes = lifetime.regimes().iter().zip(regimes);
         let (min, max) = extent(lifetime.regimes().iter());
-        let reached = reached(log, lifetime, options)?;
-        let expert_fits = expert_fits(log, lifetime, options)?;
+        let reached = reached(log, lifetime, options);
+        let expert_fits = expert_fits(log, lifetime, options);
         let mut cautions: Vec<String> = never_learned(&reached, &tasks, options).into_iter().collect();
         cautions.extend(unlike_experts(&expert_fits));
         cautions.extend(super::ste_relative_performance::caution(lifetime));
