@@ -52,12 +52,26 @@ pub fn estimate<const N: usize>(
     }
     options.check(table.num_scores())?;
     let of_all = |resample: &Resample| aggregates.map(|aggregate| aggregate.of(resample));
-    let estimates = estimate_each(table, N, options, |resample, values| {
-        values.copy_from_slice(&of_all(resample));
+    let mut resample = Resample::new(table);
+    let mut estimates = of_all(&resample).map(|value| Estimate {
+        value,
+        interval: None,
+        t_interval: None,
     });
-    let mut estimates: [Estimate; N] = std::array::from_fn(|k| estimates[k]);
+    if table.varies(options.resampling) {
+        let mut drawn = [(); N].map(|()| Vec::with_capacity(options.resamples as usize));
+        let mut rng = options.rng();
+        for _ in 0..options.resamples {
+            resample.draw(options.resampling, &mut rng);
+            for (drawn, value) in drawn.iter_mut().zip(of_all(&resample)) {
+                drawn.push(value);
+            }
+        }
+        for (estimate, drawn) in estimates.iter_mut().zip(&mut drawn) {
+            estimate.interval = Some(options.interval(drawn));
+        }
+    }
     if (2..FEW_RUNS).contains(&table.num_runs()) {
-        let mut resample = Resample::new(table);
         let mut left_out = Vec::new();
         for run in 0..table.num_runs() {
             if resample.leave_out(run) {
@@ -70,43 +84,6 @@ pub fn estimate<const N: usize>(
         }
     }
     Ok(estimates)
-}
-
-/// The estimates of several numbers that one function computes of a resample.
-pub(super) fn estimate_each(
-    table: &ScoreTable,
-    num_values: usize,
-    options: &BootstrapOptions,
-    mut of: impl FnMut(&Resample, &mut [f64]),
-) -> Vec<Estimate> {
-    let mut resample = Resample::new(table);
-    let mut values = vec![0.0; num_values];
-    of(&resample, &mut values);
-    let mut estimates: Vec<Estimate> = values
-        .iter()
-        .map(|value| Estimate {
-            value: *value,
-            interval: None,
-            t_interval: None,
-        })
-        .collect();
-    if !table.varies(options.resampling) {
-        return estimates;
-    }
-    let mut drawn = vec![Vec::with_capacity(options.resamples as usize); num_values];
-    let mut rng = options.rng();
-    for _ in 0..options.resamples {
-        resample.draw(options.resampling, &mut rng);
-        of(&resample, &mut values);
-        drawn
-            .iter_mut()
-            .zip(&values)
-            .for_each(|(drawn, value)| drawn.push(*value));
-    }
-    for (estimate, drawn) in estimates.iter_mut().zip(&mut drawn) {
-        estimate.interval = Some(options.interval(drawn));
-    }
-    estimates
 }
 
 /// From low to high. With the default options the bootstrap's holds the value that infinitely many runs would show in about 92 of 100
