@@ -6,7 +6,7 @@ use indexmap::IndexSet;
 
 use super::usable::usable_rows;
 use super::{Lifetime, Regime, SteLog, drift, regime, ste};
-use crate::log::{Log, Timestamp};
+use crate::log::Log;
 use crate::options::MAX_PERFORMANCE;
 use crate::preprocess;
 use crate::{BlockSubtype, MetricsError, Options};
@@ -34,7 +34,7 @@ impl Lifetime {
             regimes,
             experts,
             normalization_data_range: None,
-            runtime_secs: span_secs(stamps().min(), stamps().max()),
+            runtime_secs: (stamps().min().zip(stamps().max())).map_or(0.0, |(first, last)| last.seconds_since(first)),
         };
         lifetime.check_bounds("as logged")?;
         preprocess::smooth(&mut lifetime, options);
@@ -72,8 +72,4 @@ fn tasks_by_training(regimes: &[Regime]) -> Vec<String> {
         .collect::<IndexSet<_>>()
         .into_iter()
         .collect()
-}
-
-fn span_secs(first: Option<Timestamp>, last: Option<Timestamp>) -> f64 {
-    first.zip(last).map_or(0.0, |(first, last)| last.seconds_since(first))
 }

@@ -115,15 +115,17 @@ pub(crate) fn mean_per_experience(exp_nums: &[u64], performance: &[f64]) -> Vec<
 /// Cuts rows, which are in order of experience, into regimes.
 pub(crate) fn form(run_id: &str, usable: &Usable<'_>, options: &Options) -> Result<Vec<Regime>, MetricsError> {
     let rows = usable.rows;
-    let scored = ScoredTasks::new(rows.task_names().values(), options);
-    let task_of = |row: usize| scored.numbers[rows.task_names().ids()[row] as usize];
+    // The names under which tasks are scored, and which of them each logged name has.
+    let mut names = IndexSet::new();
+    let number = |name: &String| names.insert_full(options.variant_mode.scored_name(name)).0;
+    let scored: Vec<usize> = rows.task_names().values().iter().map(number).collect();
     let key = |row: usize| {
         let block = (
             rows.block_nums()[row],
             rows.block_types()[row],
             rows.block_subtypes()[row],
         );
-        (block, task_of(row))
+        (block, scored[rows.task_names().ids()[row] as usize])
     };
     let params_of = |row: usize| rows.task_params().of(row);
     let same_params = |a: usize, b: usize| match options.definitions {
@@ -151,7 +153,7 @@ pub(crate) fn form(run_id: &str, usable: &Usable<'_>, options: &Options) -> Resu
             block_num,
             block_type,
             block_subtype,
-            task_name: scored.names[task].clone(),
+            task_name: names[task].clone(),
             drift: Drift::of(rows, stretch, params_of(first), options),
             learns: Vec::new(),
             task_params: params_of(first).clone(),
@@ -181,21 +183,6 @@ fn cumulated_steps(usable: &Usable<'_>) -> Option<Vec<f64>> {
         sums[place] = sum;
     }
     Some(sums)
-}
-
-/// The names under which tasks are scored, and which of them each logged name has.
-struct ScoredTasks {
-    names: IndexSet<String>,
-    numbers: Vec<usize>,
-}
-
-impl ScoredTasks {
-    fn new(logged: &[String], options: &Options) -> Self {
-        let mut names = IndexSet::new();
-        let number = |name: &String| names.insert_full(options.variant_mode.scored_name(name)).0;
-        let numbers = logged.iter().map(number).collect();
-        Self { names, numbers }
-    }
 }
 
 #[cfg(test)]

@@ -37,29 +37,21 @@ impl SteLog {
             .filter(|((block_type, params), _)| **block_type == BlockType::Train && deployed[**params as usize])
             .map(|(_, task)| *task)
             .collect();
-        let mut names: IndexSet<String> = trained
+        let names: IndexSet<String> = trained
             .into_iter()
             .map(|task| VariantMode::Aware.scored_name(&tasks.values()[task as usize]))
             .collect();
-        match (names.len(), names.pop()) {
-            (1, Some(task_name)) => Ok(Self {
-                log: Arc::new(log),
-                task_name,
-                dir: None,
-            }),
-            (_, None) => Err(MetricsError::NotSingleTask {
-                run_id: log.run_id,
-                found: "no trained task".to_owned(),
-            }),
-            (_, Some(last)) => {
-                names.insert(last);
-                let found = names.into_iter().collect::<Vec<_>>().join(", ");
-                Err(MetricsError::NotSingleTask {
-                    run_id: log.run_id,
-                    found,
-                })
+        let names: Vec<String> = names.into_iter().collect();
+        let found = match names.as_slice() {
+            [task_name] => {
+                let (log, task_name, dir) = (Arc::new(log), task_name.clone(), None);
+                return Ok(Self { log, task_name, dir });
             }
-        }
+            [] => "no trained task".to_owned(),
+            names => names.join(", "),
+        };
+        let run_id = log.run_id;
+        Err(MetricsError::NotSingleTask { run_id, found })
     }
 
     /// What messages call the log: experts' logs often have one name, and lie in folders that tell them apart.
