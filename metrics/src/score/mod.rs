@@ -86,8 +86,10 @@ fn all_asked() -> Options {
 /// ```
 pub trait Metric: Send + Sync {
     /// The values by which a lifetime is known that this metric sets under these options, in order. Their names must be its
-    /// own.
-    fn headlines(&self, options: &Options) -> Vec<Headline>;
+    /// own. Without it, there are none.
+    fn headlines(&self, _options: &Options) -> Vec<Headline> {
+        Vec::new()
+    }
 
     /// Computes the metric.
     ///

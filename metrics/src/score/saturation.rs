@@ -4,17 +4,12 @@
 
 use super::{Assessment, Metric};
 use crate::preprocess::smoothed;
-use crate::results::Headline;
-use crate::{Definitions, MetricsError, Options, SmoothingMethod};
+use crate::{Definitions, MetricsError, SmoothingMethod};
 
 /// `saturation` and `exp_to_sat` of every regime.
 pub(super) struct Saturation;
 
 impl Metric for Saturation {
-    fn headlines(&self, _: &Options) -> Vec<Headline> {
-        Vec::new()
-    }
-
     fn judge(&self, assessment: &mut Assessment<'_>) -> Result<(), MetricsError> {
         for regime in assessment.lifetime().regimes() {
             let peak = peak(&regime.per_experience(), assessment);
@@ -56,27 +51,13 @@ pub(super) fn peak(per_experience: &[f64], assessment: &Assessment<'_>) -> Peak 
 
 /// The maximum, and the first place where it is reached but for this slack.
 fn first_maximum(values: &[f64], slack: f64) -> Peak {
-    let Peak { value, experiences } = very_first(values);
-    let reached = value - slack;
-    let first = values.iter().position(|value| *value >= reached);
+    let higher = |best: f64, value: f64| if value > best { value } else { best };
+    let value = values.iter().copied().reduce(higher).unwrap_or(0.0);
+    let reached = values.iter().position(|reached| *reached >= value - slack);
     Peak {
         value,
-        experiences: first.unwrap_or(experiences),
+        experiences: reached.unwrap_or(0),
     }
-}
-
-fn very_first(values: &[f64]) -> Peak {
-    let first = Peak {
-        value: values.first().copied().unwrap_or(0.0),
-        experiences: 0,
-    };
-    values.iter().enumerate().fold(first, |best, (experiences, &value)| {
-        if value > best.value {
-            Peak { value, experiences }
-        } else {
-            best
-        }
-    })
 }
 
 #[cfg(test)]

@@ -3,56 +3,39 @@
 //! Not here: the best it reached, see `saturation`.
 
 use super::{Assessment, Metric};
-use crate::results::Headline;
 use crate::statistics::mean;
-use crate::{BlockType, Definitions, MetricsError, Options};
+use crate::{BlockType, Definitions, MetricsError};
 
 /// `term_perf` and `exp_to_term_perf` of every regime.
 pub(super) struct TerminalPerformance;
 
 impl Metric for TerminalPerformance {
-    fn headlines(&self, _: &Options) -> Vec<Headline> {
-        Vec::new()
-    }
-
     fn judge(&self, assessment: &mut Assessment<'_>) -> Result<(), MetricsError> {
         for regime in assessment.lifetime().regimes() {
-            let end = end(
+            let (value, experiences) = end(
                 &regime.per_experience(),
                 regime.block_type,
                 assessment.options().definitions,
             );
-            assessment.set_regime(regime.regime_num, "term_perf", Some(end.value));
-            assessment.set_regime(regime.regime_num, "exp_to_term_perf", Some(end.experiences));
+            assessment.set_regime(regime.regime_num, "term_perf", Some(value));
+            assessment.set_regime(regime.regime_num, "exp_to_term_perf", Some(experiences));
         }
         Ok(())
     }
 }
 
-/// Performance at the end of a regime.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct End {
-    /// Mean over the end: the last tenth of a learning regime, the whole of an evaluation.
-    value: f64,
-    /// Experiences before the middle of the end.
-    experiences: usize,
-}
-
-/// The end of one performance per experience, at least one.
+/// The mean of the end of one performance per experience, at least one, and the experiences before the middle of the end.
 ///
 /// QUIRK: the end begins at the whole part of `(1 − 0.1) · n` as floating point has it. Under the published definitions
 /// it is the whole part of nine tenths. The two differ nowhere below a million experiences, which a test shows.
-fn end(per_experience: &[f64], block_type: BlockType, definitions: Definitions) -> End {
+fn end(per_experience: &[f64], block_type: BlockType, definitions: Definitions) -> (f64, usize) {
     let num = per_experience.len();
     let (begin, experiences) = match (block_type, definitions) {
         (BlockType::Test, _) => (0, num / 2),
         (BlockType::Train, Definitions::Reference) => reckoned_in_floating_point(num),
         (BlockType::Train, Definitions::Published) => reckoned_in_whole_numbers(num),
     };
-    End {
-        value: mean(&per_experience[begin..]).unwrap_or(0.0),
-        experiences,
-    }
+    (mean(&per_experience[begin..]).unwrap_or(0.0), experiences)
 }
 
 /// Both products are below `num` and not negative.
@@ -75,7 +58,7 @@ mod tests {
             let values: Vec<f64> = (0..num).map(f64::from).collect();
             for &definitions in Definitions::ALL {
                 let found = end(&values, block_type, definitions);
-                assert_eq!(found, End { value, experiences }, "{num} {block_type} {definitions}");
+                assert_eq!(found, (value, experiences), "{num} {block_type} {definitions}");
             }
         };
         check(1, BlockType::Train, 0.0, 0);
