@@ -3,6 +3,7 @@
 //! Not here: the values themselves, see `values`.
 
 use std::borrow::Cow;
+use std::cmp::Ordering;
 
 use serde::Serialize;
 
@@ -31,17 +32,17 @@ impl Direction {
         }
     }
 
+    /// Whether higher values are better.
+    pub(crate) fn is_higher(self) -> bool {
+        matches!(self, Self::Higher | Self::HigherThan(_))
+    }
+
     /// Whether a value is good or bad, by its side of no effect alone; unclear on neither.
     pub fn side(self, value: f64) -> Reading {
-        let (is_better, is_worse) = match self {
-            Self::HigherThan(neutral) => (value > neutral, value < neutral),
-            Self::LowerThan(neutral) => (value < neutral, value > neutral),
-            Self::Higher | Self::Lower => (false, false),
-        };
-        match (is_better, is_worse) {
-            (true, _) => Reading::Good,
-            (_, true) => Reading::Bad,
-            _ => Reading::Unclear,
+        match self.neutral().and_then(|neutral| value.partial_cmp(&neutral)) {
+            None | Some(Ordering::Equal) => Reading::Unclear,
+            Some(order) if order.is_gt() == self.is_higher() => Reading::Good,
+            Some(_) => Reading::Bad,
         }
     }
 }

@@ -111,15 +111,9 @@ impl NullBand {
             return Reading::Unclear;
         }
         let is_high = self.value > self.high;
-        let (higher_is_good, neutral) = match good {
-            Direction::Higher => (true, None),
-            Direction::Lower => (false, None),
-            Direction::HigherThan(neutral) => (true, Some(neutral)),
-            Direction::LowerThan(neutral) => (false, Some(neutral)),
-        };
-        match neutral {
+        match good.neutral() {
             Some(neutral) if self.value == neutral || (self.value > neutral) != is_high => Reading::Unclear,
-            _ if is_high == higher_is_good => Reading::Good,
+            _ if is_high == good.is_higher() => Reading::Good,
             _ => Reading::Bad,
         }
     }

@@ -4,7 +4,7 @@
 
 use serde::Serialize;
 
-use super::{Direction, Headline, LifetimeMetrics, NullBand, Part, Reading, disagreements};
+use super::{Headline, LifetimeMetrics, NullBand, Part, Reading, disagreements};
 use crate::MetricsError;
 use crate::repeats::{
     Aggregate, BootstrapOptions, Estimate, Improvement, ScoreTable, estimate, probability_of_improvement,
@@ -64,7 +64,7 @@ pub fn over_repeats(
 ) -> Result<Vec<RepeatedMetric>, MetricsError> {
     let mut found = Vec::new();
     for headline in headlines(lifetimes) {
-        let Some(table) = table(lifetimes, &headline, as_it_is)? else {
+        let Some(table) = table(lifetimes, &headline, |_, value| value)? else {
             continue;
         };
         let [iqm, mean, median] = estimate(&table, [Aggregate::Iqm, Aggregate::Mean, Aggregate::Median], options)?;
@@ -128,7 +128,7 @@ pub fn compare_agents(
         }
         let improvement = probability_of_improvement(&of_a, &of_b, options)?;
         let value = |lifetimes| {
-            let table = table(lifetimes, &headline, as_it_is)?;
+            let table = table(lifetimes, &headline, |_, value| value)?;
             let estimates = table.map(|table| estimate(&table, [Aggregate::Iqm], options));
             Ok::<_, MetricsError>(estimates.transpose()?.map(|[iqm]| iqm))
         };
@@ -174,17 +174,9 @@ fn table(
     ScoreTable::from_runs(runs).map(Some)
 }
 
-/// A value as it is.
-fn as_it_is(_: &Headline, value: f64) -> f64 {
-    value
-}
-
 /// A value, turned so that higher is better.
 fn higher_is_better(headline: &Headline, value: f64) -> f64 {
-    match headline.good {
-        Direction::Higher | Direction::HigherThan(_) => value,
-        Direction::Lower | Direction::LowerThan(_) => -value,
-    }
+    if headline.good.is_higher() { value } else { -value }
 }
 
 fn strata(lifetime: &LifetimeMetrics, name: &str) -> Vec<(String, f64)> {
@@ -204,6 +196,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
+    use crate::Direction;
 
     fn lifetime(run_id: &str, tasks: &serde_json::Value, whole: &serde_json::Value) -> LifetimeMetrics {
         let mut fields = json!({
