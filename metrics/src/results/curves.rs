@@ -52,54 +52,47 @@ pub struct EvaluationCurve {
 
 /// The curve of each task that is evaluated, in the lifetime's order; `reached` is of the same lifetime.
 pub(crate) fn curves(lifetime: &Lifetime, reached: &IndexMap<String, Reached>) -> IndexMap<String, EvaluationCurve> {
-    let timeline = Timeline::of(lifetime);
+    let courses = courses(lifetime);
     let of_task = |(task, reached): (&String, &Reached)| {
-        let evaluated = timeline.evaluated.get(task.as_str())?;
-        let curve = Curve::new(evaluated, reached)?;
-        let present = timeline.present.get(task.as_str()).map_or(&[][..], Vec::as_slice);
-        let begins = timeline.begins.get(task.as_str()).copied();
-        Some((task.clone(), curve.judged(present, begins, reached)))
+        let course = courses.get(task.as_str())?;
+        let curve = Curve::new(&course.evaluated, reached)?;
+        Some((task.clone(), curve.judged(course, reached)))
     };
     reached.iter().filter_map(of_task).collect()
 }
 
-/// When each task is evaluated and learned, by the number of learning experiences before.
+/// When a task is evaluated and learned, by the number of learning experiences before.
 #[derive(Default)]
-struct Timeline<'a> {
-    evaluated: HashMap<&'a str, Vec<usize>>,
-    /// The learning experiences in which a task is present.
-    present: HashMap<&'a str, Vec<usize>>,
-    /// Where the first learning of a task begins.
-    begins: HashMap<&'a str, usize>,
+struct Course {
+    evaluated: Vec<usize>,
+    /// The learning experiences in which it is present.
+    present: Vec<usize>,
+    /// Where its first learning begins.
+    begins: Option<usize>,
 }
 
-impl<'a> Timeline<'a> {
-    fn of(lifetime: &'a Lifetime) -> Self {
-        let mut found = Self::default();
-        let mut learned = 0;
-        for regime in lifetime.regimes() {
-            match regime.block_type {
-                BlockType::Test if lifetime.is_assessed(regime) => {
-                    found.evaluated.entry(&regime.task_name).or_default().push(learned);
+fn courses(lifetime: &Lifetime) -> HashMap<&str, Course> {
+    let mut found: HashMap<&str, Course> = HashMap::new();
+    let mut learned = 0;
+    for regime in lifetime.regimes() {
+        match regime.block_type {
+            BlockType::Test if lifetime.is_assessed(regime) => {
+                found.entry(&regime.task_name).or_default().evaluated.push(learned);
+            }
+            BlockType::Test => {}
+            BlockType::Train => {
+                for row in 0..regime.len() {
+                    let course = found.entry(present(regime, row)).or_default();
+                    course.present.push(learned + row);
                 }
-                BlockType::Test => {}
-                BlockType::Train => {
-                    for row in 0..regime.len() {
-                        found
-                            .present
-                            .entry(present(regime, row))
-                            .or_default()
-                            .push(learned + row);
-                    }
-                    for task in &regime.learns {
-                        found.begins.entry(task).or_insert(learned);
-                    }
-                    learned += regime.len();
+                for task in &regime.learns {
+                    found.entry(task).or_default().begins.get_or_insert(learned);
                 }
+                learned += regime.len();
             }
         }
-        found
     }
+    found
 }
 
 /// Points in ascending order, at least one, none above another.
@@ -125,11 +118,12 @@ impl Curve {
         (!points.is_empty()).then_some(Self(points))
     }
 
-    fn judged(self, present: &[usize], begins: Option<usize>, reached: &Reached) -> EvaluationCurve {
+    fn judged(self, course: &Course, reached: &Reached) -> EvaluationCurve {
         let regrets: Option<Vec<f64>> = reached.expert.map(|expert| {
             let expert = reached.score(expert).unwrap_or(expert);
             // In the middle of the experience.
-            present.iter().map(|row| expert - self.at(*row as f64 + 0.5)).collect()
+            let rows = course.present.iter();
+            rows.map(|row| expert - self.at(*row as f64 + 0.5)).collect()
         });
         let (forgetting, forgetting_error) = self.forgetting();
         EvaluationCurve {
@@ -137,9 +131,9 @@ impl Curve {
             area: self.area(),
             forgetting,
             forgetting_error,
-            lag: self.lag(begins),
+            lag: self.lag(course.begins),
             regret: regrets.and_then(|regrets| mean(&regrets)),
-            num_present: present.len(),
+            num_present: course.present.len(),
             points: self.0,
         }
     }
