@@ -30,6 +30,13 @@ pub(crate) fn sum(values: &[f64]) -> f64 {
         .fold(((a + b) + (c + d)) + ((e + f) + (g + h)), |sum, value| sum + value)
 }
 
+/// The variance of what the values are a sample of; `None` of fewer than two.
+pub(crate) fn variance(values: &[f64]) -> Option<f64> {
+    let center = mean(values)?;
+    let squares: f64 = values.iter().map(|value| (value - center) * (value - center)).sum();
+    (values.len() > 1).then(|| squares / (values.len() - 1) as f64)
+}
+
 /// The mean of those that are no NaN, infinite where one is; `None` when there is none.
 pub(crate) fn mean_of_known(values: &[f64]) -> Option<f64> {
     let known: Vec<f64> = values.iter().copied().filter(|value| !value.is_nan()).collect();

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::repeats::headlines;
 use super::{Headline, LifetimeMetrics};
 use crate::repeats::{lifetimes_for, smallest_effect, welch_power};
-use crate::statistics::mean;
+use crate::statistics::variance;
 
 /// What lifetimes can show of one metric, by Welch's t test of two sides at 5 %.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -40,7 +40,7 @@ pub fn metric_power(lifetimes: &[LifetimeMetrics], others: &[LifetimeMetrics], e
             let numbers = agent.iter().filter_map(|life| life.number(&headline.name));
             numbers.collect::<Vec<f64>>()
         });
-        let [a, b] = [deviation(&values[0])?, deviation(&values[1])?];
+        let [a, b] = [variance(&values[0])?.sqrt(), variance(&values[1])?.sqrt()];
         let (nums, deviations) = ([values[0].len(), values[1].len()], [a, b]);
         Some(MetricPower {
             deviations,
@@ -53,11 +53,4 @@ pub fn metric_power(lifetimes: &[LifetimeMetrics], others: &[LifetimeMetrics], e
         })
     };
     headlines(lifetimes).into_iter().filter_map(of_headline).collect()
-}
-
-/// Standard deviation of at least two values, by one less than their number.
-fn deviation(values: &[f64]) -> Option<f64> {
-    let center = mean(values)?;
-    let squares: f64 = values.iter().map(|value| (value - center) * (value - center)).sum();
-    (values.len() > 1).then(|| (squares / (values.len() - 1) as f64).sqrt())
 }

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::lifetime::{Lifetime, Regime, SteRun, World, worlds};
 use crate::preprocess::{anchors, given_range};
-use crate::statistics::mean;
+use crate::statistics::{mean, variance};
 use crate::{Anchors, BlockType, Log, NormalizationMethod, Options, Unlabelled};
 
 /// Part of its expert's level below which a task was never learned.
@@ -229,10 +229,7 @@ fn scaled_by(task: &str, lifetime: &Lifetime, options: &Options) -> ScaledBy {
 
 /// Of the mean of independent values; `None` for fewer than two.
 fn standard_error(values: &[f64]) -> Option<f64> {
-    let center = mean(values)?;
-    let num = values.len() as f64;
-    let squares: f64 = values.iter().map(|value| (value - center) * (value - center)).sum();
-    (values.len() > 1).then(|| (squares / (num - 1.0) / num).sqrt())
+    Some((variance(values)? / values.len() as f64).sqrt())
 }
 
 /// The level of one run of an expert, as it was logged.
