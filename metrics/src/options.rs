@@ -12,7 +12,12 @@ use crate::choice::choice;
 pub const MAX_WINDOW_LENGTH: usize = 10_000;
 
 /// Performances must stay below this magnitude, so that no sum or quotient of them overflows.
-pub(crate) const MAX_PERFORMANCE: f64 = 1e100;
+const MAX_PERFORMANCE: f64 = 1e100;
+
+/// Whether a number is below that in magnitude; NaN is not.
+pub(crate) fn is_bounded(value: f64) -> bool {
+    value.abs() < MAX_PERFORMANCE
+}
 
 choice! {
     /// Whether variants of a task (`find_red`, `find_blue`) are tasks of their own.
@@ -298,19 +303,17 @@ impl Options {
                 format!("1 to {MAX_WINDOW_LENGTH} experiences"),
             ));
         }
-        if let Some(noise) = self.noise {
-            let bounded = |value: f64| value.abs() < MAX_PERFORMANCE;
-            if !bounded(noise.mean) || !bounded(noise.std) || noise.std < 0.0 {
-                return Err(MetricsError::bad_option(
-                    "noise",
-                    format!("mean {:e}, standard deviation {:e}", noise.mean, noise.std),
-                    "two numbers below 1e100 in magnitude, the second not negative",
-                ));
-            }
+        if let Some(noise) = self.noise
+            && (!is_bounded(noise.mean) || !is_bounded(noise.std) || noise.std < 0.0)
+        {
+            return Err(MetricsError::bad_option(
+                "noise",
+                format!("mean {:e}, standard deviation {:e}", noise.mean, noise.std),
+                "two numbers below 1e100 in magnitude, the second not negative",
+            ));
         }
         for (task, anchors) in self.scales.iter().flatten() {
-            let bounded = |value: f64| value.abs() < MAX_PERFORMANCE;
-            if !bounded(anchors.floor) || !bounded(anchors.ceiling) {
+            if !is_bounded(anchors.floor) || !is_bounded(anchors.ceiling) {
                 return Err(MetricsError::bad_option(
                     "scales",
                     format!("{:e} to {:e} for task {task}", anchors.floor, anchors.ceiling),
@@ -319,8 +322,7 @@ impl Options {
             }
         }
         for (task, range) in self.data_range.iter().flatten() {
-            let bounded = range.min.abs() < MAX_PERFORMANCE && range.max.abs() < MAX_PERFORMANCE;
-            if !bounded || range.min > range.max {
+            if !is_bounded(range.min) || !is_bounded(range.max) || range.min > range.max {
                 return Err(MetricsError::bad_option(
                     "data_range",
                     format!("{:?} to {:?} for task {task}", range.min, range.max),

@@ -7,7 +7,7 @@ use indexmap::IndexSet;
 use super::usable::usable_rows;
 use super::{Lifetime, Regime, SteLog, drift, regime, ste};
 use crate::log::Log;
-use crate::options::MAX_PERFORMANCE;
+use crate::options::is_bounded;
 use crate::preprocess;
 use crate::{BlockSubtype, MetricsError, Options};
 
@@ -48,8 +48,7 @@ impl Lifetime {
     fn check_bounds(&mut self, after: &'static str) -> Result<(), MetricsError> {
         let run_id = self.run_id.clone();
         for regime in self.all_regimes_mut() {
-            let bounded = |value: f64| value.abs() < MAX_PERFORMANCE;
-            if let Some(&found) = regime.performance.iter().find(|value| !bounded(**value)) {
+            if let Some(&found) = regime.performance.iter().find(|value| !is_bounded(**value)) {
                 let task = regime.task_name.clone();
                 return Err(MetricsError::PerformanceOutOfRange {
                     run_id,

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::resample::Resample;
 use crate::MetricsError;
-use crate::options::MAX_PERFORMANCE;
+use crate::options::is_bounded;
 use crate::statistics::{mean, median};
 
 /// How the scores of all runs and strata become one number. Same numbers as rliable 1.2, see `tests/oracles/`.
@@ -33,9 +33,11 @@ pub enum Aggregate {
 impl Aggregate {
     pub(super) fn check(self) -> Result<(), MetricsError> {
         match self {
-            Self::OptimalityGap { gamma } if gamma.is_nan() || gamma.abs() >= MAX_PERFORMANCE => Err(
-                MetricsError::bad_option("gamma", format!("{gamma:e}"), "a number below 1e100 in magnitude"),
-            ),
+            Self::OptimalityGap { gamma } if !is_bounded(gamma) => Err(MetricsError::bad_option(
+                "gamma",
+                format!("{gamma:e}"),
+                "a number below 1e100 in magnitude",
+            )),
             _ => Ok(()),
         }
     }

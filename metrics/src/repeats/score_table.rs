@@ -6,7 +6,7 @@ use indexmap::{IndexMap, IndexSet};
 
 use super::Resampling;
 use crate::MetricsError;
-use crate::options::MAX_PERFORMANCE;
+use crate::options::is_bounded;
 
 /// Most runs in a table.
 pub const MAX_RUNS: usize = 10_000;
@@ -90,7 +90,7 @@ impl ScoreTable {
 
     fn push(&mut self, stratum: String, score: f64, run: &str, run_index: u32) -> Result<(), MetricsError> {
         let place = || format!("{stratum:?} of run {run:?}");
-        if score.is_nan() || score.abs() >= MAX_PERFORMANCE {
+        if !is_bounded(score) {
             return Err(wrong(
                 place(),
                 format!("{score:e}"),
