@@ -6,7 +6,7 @@ use std::io::{self, Write};
 
 use driftworld_text::Cells;
 
-use super::columns::delimited;
+use super::columns::{STANDARD, delimited};
 use super::record::ExpStatus;
 use super::rows::Row;
 use super::table::{MAX_CELLS, MAX_RECORDS};
@@ -15,20 +15,6 @@ use crate::MetricsError;
 
 /// Columns of the table that no log has.
 const ADDED: [&str; 2] = ["run_id", "regime_num"];
-
-/// The columns that every table has.
-const STANDARD: [&str; 10] = [
-    "block_num",
-    "regime_num",
-    "exp_num",
-    "worker_id",
-    "block_type",
-    "block_subtype",
-    "task_name",
-    "task_params",
-    "exp_status",
-    "timestamp",
-];
 
 /// Which rows of a log come into a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -119,7 +105,10 @@ impl LogTable {
             out.write_all(&delimited(delimiter, &line))
         };
         let has_run_id = self.logs.len() > 1;
-        let names = has_run_id.then_some(ADDED[0]).into_iter().chain(STANDARD);
+        let [run_id, regime_num] = ADDED;
+        let [block_num, others @ ..] = STANDARD;
+        let names = has_run_id.then_some(run_id).into_iter();
+        let names = names.chain([block_num, regime_num]).chain(others);
         write(
             names
                 .chain(self.own.iter().map(String::as_str))
