@@ -36,7 +36,10 @@ impl<'a> Header<'a> {
         table: &mut Table<'_>,
         faults: &mut Faults,
     ) -> Result<Self, MetricsError> {
-        check_num_columns(path, row.len())?;
+        if row.len() > MAX_COLUMNS {
+            let (found, limit) = (row.len() as u64, MAX_COLUMNS as u64);
+            return Err(MetricsError::too_large(path, "columns", found, limit));
+        }
         let names: Vec<String> = row.iter().map(str::to_owned).collect();
         if names.len() == 1 && names[0].contains([',', ';', ' ']) {
             return Err(MetricsError::NoTabs {
@@ -185,11 +188,4 @@ impl<'a> Header<'a> {
         };
         Ok(cells())
     }
-}
-
-fn check_num_columns(path: &Path, num: usize) -> Result<(), MetricsError> {
-    if num <= MAX_COLUMNS {
-        return Ok(());
-    }
-    Err(MetricsError::too_large(path, "columns", num as u64, MAX_COLUMNS as u64))
 }

@@ -31,7 +31,7 @@ impl LogFolder {
     /// Opens and locks a directory that is there.
     pub(super) fn lock(dir: &Path) -> Result<Self, MetricsError> {
         let place = std::path::absolute(dir).map_err(MetricsError::io(dir, "find this directory"))?;
-        let held = lock(dir)?;
+        let held = lock(dir, File::try_lock)?;
         let found = held.as_ref().map(File::metadata).transpose();
         let found = found.map_err(MetricsError::io(dir, "look at this directory"))?;
         Ok(Self {
@@ -137,16 +137,9 @@ impl LogFolder {
 ///
 /// It is the directory that is locked: it is there before any file of the log, and no file is put in its place. Only
 /// where locks are advice: elsewhere they would keep readers away, too.
-fn lock(dir: &Path) -> Result<Option<File>, MetricsError> {
-    lock_by(dir, File::try_lock)
-}
-
-/// Keeps writers away, but not others that only read.
-pub(super) fn lock_for_reading(dir: &Path) -> Result<Option<File>, MetricsError> {
-    lock_by(dir, File::try_lock_shared)
-}
-
-fn lock_by(dir: &Path, try_lock: fn(&File) -> Result<(), TryLockError>) -> Result<Option<File>, MetricsError> {
+///
+/// `try_lock`: [`File::try_lock`], or [`File::try_lock_shared`], which keeps writers away, but not others that only read.
+pub(super) fn lock(dir: &Path, try_lock: fn(&File) -> Result<(), TryLockError>) -> Result<Option<File>, MetricsError> {
     if !cfg!(unix) {
         return Ok(None);
     }

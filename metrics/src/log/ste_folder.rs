@@ -10,7 +10,7 @@ use super::{data_files, logger_info, scenario_info};
 use crate::MetricsError;
 
 /// What folders are called while they are filled or taken away. What a killed process leaves begins so, and is never read.
-const TEMPORARY: &str = ".storing-";
+pub(super) const TEMPORARY: &str = ".storing-";
 
 /// Whatever lies in a log's directory is read as a part of it.
 pub(super) fn check_outside(data_folder: &Path, log_dir: &Path) -> Result<(), MetricsError> {
@@ -76,17 +76,6 @@ pub(super) fn take_away(run: &Path, temporary: &ScratchFolder) -> Result<(), Met
     let above = grave.parent().unwrap_or(temporary.path());
     fs::create_dir_all(above).map_err(MetricsError::io(above, "make this directory"))?;
     fs::rename(run, &grave).map_err(MetricsError::io(run, "take away this directory"))
-}
-
-pub(super) fn temporary(data_folder: &Path) -> Result<ScratchFolder, MetricsError> {
-    ScratchFolder::new(TEMPORARY, data_folder).map_err(MetricsError::io(data_folder, "make a directory here"))
-}
-
-pub(super) fn remove(temporary: ScratchFolder) -> Result<(), MetricsError> {
-    let path = temporary.path().to_owned();
-    temporary
-        .close()
-        .map_err(MetricsError::io(path, "remove this directory"))
 }
 
 pub(super) fn is_run(dir: &Path) -> bool {

@@ -5,9 +5,10 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use driftworld_atomic_files::ScratchFolder;
+
 use super::ste_folder::{
-    check_outside, copy, directories, give_name, is_run, own_directory, refuse_pickles, remove, runs_of, take_away,
-    temporary,
+    TEMPORARY, check_outside, copy, directories, give_name, is_run, own_directory, refuse_pickles, runs_of, take_away,
 };
 use super::{data_files, folder_name, log_folder};
 use crate::MetricsError;
@@ -76,7 +77,7 @@ pub fn store_ste(
     let (data_folder, log_dir) = (data_folder.as_ref(), log_dir.as_ref());
     let files = data_files::find(log_dir)?;
     check_outside(data_folder, log_dir)?;
-    let lock = log_folder::lock_for_reading(log_dir)?;
+    let lock = log_folder::lock(log_dir, fs::File::try_lock_shared)?;
     let expert = read_ste_log(log_dir)?;
     let task_name = expert.task_name().to_owned();
     let task_dir = data_folder.join(folder_name::encoded(data_folder, &task_name)?);
@@ -85,7 +86,8 @@ pub fn store_ste(
 
     fs::create_dir_all(&task_dir).map_err(MetricsError::io(&task_dir, "make this directory"))?;
     own_directory(&task_dir)?;
-    let temporary = temporary(data_folder)?;
+    let temporary = ScratchFolder::new(TEMPORARY, data_folder);
+    let temporary = temporary.map_err(MetricsError::io(data_folder, "make a directory here"))?;
     let new = temporary.path().join("new");
     copy(log_dir, &files, &new)?;
     drop(lock);
@@ -99,7 +101,10 @@ pub fn store_ste(
             take_away(&other, &temporary)?;
         }
     }
-    remove(temporary)?;
+    let path = temporary.path().to_owned();
+    temporary
+        .close()
+        .map_err(MetricsError::io(path, "remove this directory"))?;
     Ok(StoredRun { task_name, dir })
 }
 
@@ -296,7 +301,7 @@ mod tests {
         });
         assert_eq!(find_ste(&data).unwrap()[0].runs.len(), 8);
         // Who reads a log does not keep others from reading, but writers.
-        let _reader = log_folder::lock_for_reading(&log).unwrap();
+        let _reader = log_folder::lock(&log, fs::File::try_lock_shared).unwrap();
         store_ste(&data, &log, SteStoreMode::Append).unwrap();
         #[cfg(unix)]
         assert_eq!(LogWriter::resume(&log).unwrap_err().code(), "metrics/in-use");
