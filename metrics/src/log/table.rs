@@ -48,11 +48,11 @@ pub(super) struct Table<'a> {
 }
 
 /// A column that nobody declared.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Other {
     numbers: Vec<f64>,
-    /// Whether no word stood in it so far.
-    is_number: bool,
+    /// Whether a word stood in it already.
+    has_words: bool,
     texts: SharedColumn<String>,
     seen: Seen,
 }
@@ -93,13 +93,7 @@ impl<'a> Table<'a> {
         for name in names {
             let entry = self.others.entry(name.to_owned());
             let number = entry.index();
-            let other = entry.or_insert_with(|| Other {
-                numbers: Vec::new(),
-                is_number: true,
-                texts: SharedColumn::default(),
-                seen: Seen::default(),
-            });
-            let missing = other.missing(self.rows.len(), self.texts);
+            let missing = entry.or_default().missing(self.rows.len(), self.texts);
             numbers.push(number);
             self.count_cells(missing)?;
             self.others[number].pad(self.rows.len(), self.texts);
@@ -162,7 +156,7 @@ impl<'a> Table<'a> {
         for (name, mut other) in std::mem::take(&mut self.others) {
             self.count_cells(other.missing(num_rows, self.texts))?;
             other.pad(num_rows, self.texts);
-            if other.is_number {
+            if !other.has_words {
                 self.rows.metrics.insert(name, other.numbers);
             } else if self.texts == Texts::Keep {
                 self.rows.texts.insert(name, other.texts);
@@ -193,7 +187,7 @@ impl Other {
     /// Cells that padding to so many rows would add.
     fn missing(&self, num_rows: usize, texts: Texts) -> u64 {
         let here = match texts {
-            _ if self.is_number => self.numbers.len(),
+            _ if !self.has_words => self.numbers.len(),
             Texts::Keep => self.texts.ids().len(),
             Texts::Leave => num_rows,
         };
@@ -201,7 +195,7 @@ impl Other {
     }
 
     fn pad(&mut self, num_rows: usize, texts: Texts) {
-        if self.is_number {
+        if !self.has_words {
             self.numbers.resize(num_rows, f64::NAN);
         }
         if texts == Texts::Keep {
@@ -212,11 +206,11 @@ impl Other {
     }
 
     fn push(&mut self, text: &str, texts: Texts) {
-        if self.is_number {
+        if !self.has_words {
             if let Some(number) = super::cell::number(text) {
                 self.numbers.push(number);
             } else {
-                self.is_number = false;
+                self.has_words = true;
                 self.numbers = Vec::new();
             }
         }
