@@ -31,7 +31,8 @@ use paper::{Area, Drawn, Paper};
 use scene::Scene;
 
 /// What can be drawn of a lifetime.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, strum::IntoStaticStr)]
+#[strum(serialize_all = "lowercase")]
 pub enum Figure {
     /// Raw values as points, with the smoothed curve.
     Raw,
@@ -40,6 +41,7 @@ pub enum Figure {
     /// Means of evaluations with 95 % intervals, a panel per task.
     Evaluation,
     /// The learning of each task, end to end, against its single-task expert.
+    #[strum(serialize = "ste")]
     Experts,
     /// The blocks of the lifetime, a row per task, and how far apart neighbours are.
     Timeline,
@@ -56,14 +58,8 @@ impl Figure {
     ];
 
     /// As in names of files, `NAME_raw.png`; those of the reference where it has the figure.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Raw => "raw",
-            Self::Learning => "learning",
-            Self::Evaluation => "evaluation",
-            Self::Experts => "ste",
-            Self::Timeline => "timeline",
-        }
+    pub fn name(self) -> &'static str {
+        self.into()
     }
 
     /// The figures that a word of the reference's option asks for: `all`, or one of `raw`, `lb`, `eb`, `ste`; `timeline` is ours.
@@ -244,15 +240,9 @@ fn vectors(
     (width, height): (i32, i32),
     draw: impl for<'b> FnOnce(&Area<SVGBackend<'b>>) -> Drawn<SVGBackend<'b>>,
 ) -> Result<String, ReportError> {
-    paper::load_font();
     let mut text = String::new();
     let dots = (Paper::dots(width) as u32, Paper::dots(height) as u32);
-    {
-        let area = SVGBackend::with_string(&mut text, dots).into_drawing_area();
-        draw(&area)
-            .and_then(|()| area.present())
-            .map_err(|error| failed(figure, error))?;
-    }
+    drawn(figure, SVGBackend::with_string(&mut text, dots), draw)?;
     Ok(compact(text).replacen(
         &format!("width=\"{}\" height=\"{}\"", dots.0, dots.1),
         &format!("width=\"{width}\" height=\"{height}\""),
@@ -266,22 +256,24 @@ fn pixels(
     (width, height): (i32, i32),
     draw: impl for<'b> FnOnce(&Area<Recorder<'b>>) -> Drawn<Recorder<'b>>,
 ) -> Result<Vec<u8>, ReportError> {
-    paper::load_font();
     let mut drawing = Drawing::blank(Paper::dots(width) as u32, Paper::dots(height) as u32);
-    {
-        let area = Recorder::onto(&mut drawing).into_drawing_area();
-        draw(&area)
-            .and_then(|()| area.present())
-            .map_err(|error| failed(figure, error))?;
-    }
+    drawn(figure, Recorder::onto(&mut drawing), draw)?;
     drawing.to_png()
 }
 
-fn failed(figure: &'static str, source: impl std::error::Error + Send + Sync + 'static) -> ReportError {
-    ReportError::Drawing {
+/// Draws with a backend, which a figure takes for its own.
+fn drawn<DB: DrawingBackend<ErrorType: 'static>>(
+    figure: &'static str,
+    backend: DB,
+    draw: impl FnOnce(&Area<DB>) -> Drawn<DB>,
+) -> Result<(), ReportError> {
+    paper::load_font();
+    let area = backend.into_drawing_area();
+    let drawn = draw(&area).and_then(|()| area.present());
+    drawn.map_err(|error| ReportError::Drawing {
         figure,
-        source: Box::new(source),
-    }
+        source: Box::new(error),
+    })
 }
 
 /// Without what the library writes although it changes nothing; texts hold no quotation marks, so that none can be hit.
