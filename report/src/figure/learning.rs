@@ -9,7 +9,7 @@ use plotters::prelude::*;
 
 use super::palette::{FAINT, Look, SHADE};
 use super::paper::{Area, Axes, Chart, Drawn, Paper, chart, curve, draw_mark};
-use super::scene::{MOST_TASKS, Scene, Stretch, roomy};
+use super::scene::{MOST_TASKS, Scene, Stretch, joined, roomy};
 use super::thinning;
 
 /// Columns of pixels between the axes, on wide and on narrow paper.
@@ -18,7 +18,7 @@ pub(super) const COLUMNS: [i32; 2] = [900, 300];
 const MOST_DOTTED: usize = 90;
 
 pub(super) fn height(scene: &Scene, paper: &Paper) -> i32 {
-    paper.head_height(&scene.entries_and_evaluation()) + if paper.is_narrow() { 260 } else { 340 }
+    paper.head_height(&scene.entries()) + if paper.is_narrow() { 260 } else { 340 }
 }
 
 /// Axes over the whole lifetime.
@@ -39,14 +39,15 @@ pub(super) fn shade<DB: DrawingBackend>(
     y: &Range<f64>,
     columns: i32,
 ) -> Drawn<DB> {
-    let shades = scene.evaluated(columns).into_iter();
+    let evaluated = scene.stretches.iter().filter(|stretch| !stretch.learns());
+    let shades = joined(evaluated, scene.gap(columns)).into_iter();
     let boxes = shades.map(|x| Rectangle::new([(x.start, y.start), (x.end, y.end)], SHADE.light.filled()));
     chart.draw_series(boxes)?;
     Ok(())
 }
 
 pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &Paper) -> Drawn<DB> {
-    let below = paper.head(area, &scene.entries_and_evaluation())?;
+    let below = paper.head(area, &scene.entries())?;
     let columns = COLUMNS[usize::from(paper.is_narrow())];
     let learned = scene.drawn(true, columns);
     let evaluated = scene.drawn(false, columns);

@@ -161,7 +161,7 @@ pub(super) fn line<DB: DrawingBackend>(area: &Area<DB>, ends: [(i32, i32); 2], s
 
 /// A task's mark in pixels of the area.
 pub(super) fn draw_mark<DB: DrawingBackend>(area: &Area<DB>, look: Look, (x, y): (i32, i32), r: i32) -> Drawn<DB> {
-    let style = look.color.filled();
+    let (style, far) = (look.color.filled(), r * 4 / 3);
     match look.mark {
         Mark::Disc => area.draw(&Circle::new((x, y), r, style)),
         Mark::Cross => {
@@ -169,17 +169,15 @@ pub(super) fn draw_mark<DB: DrawingBackend>(area: &Area<DB>, look: Look, (x, y):
             area.draw(&Rectangle::new([(x - long, y - thin), (x + long, y + thin)], style))?;
             area.draw(&Rectangle::new([(x - thin, y - long), (x + thin, y + long)], style))
         }
-        _ => area.draw(&Polygon::new(outline(look.mark, (x, y), r), style)),
-    }
-}
-
-/// The corners of a mark that has some.
-fn outline(mark: Mark, (x, y): (i32, i32), r: i32) -> Vec<(i32, i32)> {
-    let long = r * 4 / 3;
-    match mark {
-        Mark::Square => vec![(x - r, y - r), (x + r, y - r), (x + r, y + r), (x - r, y + r)],
-        Mark::Diamond => vec![(x - long, y), (x, y - long), (x + long, y), (x, y + long)],
-        _ => vec![(x - long, y + r), (x, y - long), (x + long, y + r)],
+        Mark::Square => area.draw(&Polygon::new(
+            [(x - r, y - r), (x + r, y - r), (x + r, y + r), (x - r, y + r)],
+            style,
+        )),
+        Mark::Diamond => area.draw(&Polygon::new(
+            [(x - far, y), (x, y - far), (x + far, y), (x, y + far)],
+            style,
+        )),
+        Mark::Triangle => area.draw(&Polygon::new([(x - far, y + r), (x, y - far), (x + far, y + r)], style)),
     }
 }
 

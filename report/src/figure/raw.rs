@@ -15,11 +15,11 @@ use crate::words::shown;
 const MOST_POINTS: [usize; 2] = [2400, 700];
 
 pub(super) fn height(scene: &Scene, paper: &Paper) -> i32 {
-    paper.head_height(&scene.entries_and_evaluation()) + if paper.is_narrow() { 240 } else { 320 }
+    paper.head_height(&scene.entries()) + if paper.is_narrow() { 240 } else { 320 }
 }
 
 pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &Paper) -> Drawn<DB> {
-    let below = paper.head(area, &scene.entries_and_evaluation())?;
+    let below = paper.head(area, &scene.entries())?;
     let values = scene
         .stretches
         .iter()

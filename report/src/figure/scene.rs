@@ -119,19 +119,13 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// The entries of the tasks, and the shade of evaluations where there are some.
-    pub(super) fn entries_and_evaluation(&self) -> Vec<Entry> {
-        let mut entries = self.entries();
-        if self.stretches.iter().any(|stretch| !stretch.learns()) {
-            entries.push(Entry::new("evaluation", Sample::Area(SHADE.light)));
-        }
-        entries
-    }
-
-    /// The names of the tasks that are drawn, and how many are not.
+    /// The names of the tasks that are drawn, how many are not, and the shade of evaluations where there are some.
     pub(super) fn entries(&self) -> Vec<Entry> {
         let mut entries: Vec<Entry> = self.names.iter().take(MOST_TASKS).enumerate().map(task_entry).collect();
         entries.extend(Entry::rest(self.names.len(), MOST_TASKS, ""));
+        if self.stretches.iter().any(|stretch| !stretch.learns()) {
+            entries.push(Entry::new("evaluation", Sample::Area(SHADE.light)));
+        }
         entries
     }
 
@@ -159,14 +153,6 @@ impl<'a> Scene<'a> {
             columns /= 2;
         }
         kept
-    }
-
-    /// Where the lifetime is evaluated, neighbours joined, and what is closer than a column too.
-    pub(super) fn evaluated(&self, columns: i32) -> Vec<Range<f64>> {
-        joined(
-            self.stretches.iter().filter(|stretch| !stretch.learns()),
-            self.gap(columns),
-        )
     }
 
     /// How wide a column is, but at least one experience: blocks that follow each other are one.
