@@ -1,11 +1,6 @@
 //! The picture of a curriculum: a row for each variant, a bar for each stretch of experiences.
 
-#![expect(
-    clippy::disallowed_methods,
-    reason = "ticks and arrows of a figure, rounded to what is drawn"
-)]
-
-use super::{Drawing, FAINT, INK, Level, Rgb, Side, WHITE, corner, middle, text_width, words};
+use super::{Drawing, FAINT, INK, Level, Rgb, Side, WHITE, corner, middle, round_step, text_width, words};
 use crate::figure::task_color;
 use driftworld_spec::{Block, BlockKind, Phase, Regime, Scenario};
 
@@ -171,14 +166,7 @@ fn id(regime: &Regime) -> String {
 
 /// Round numbers from 0 to the last experience, at most a dozen.
 fn ticks(total: f64) -> Vec<f64> {
-    let rough = total / 10.0;
-    let power = 10f64.powi(rough.log10().floor() as i32);
-    let step = [1.0, 2.0, 5.0, 10.0]
-        .map(|factor| factor * power)
-        .into_iter()
-        .find(|step| *step >= rough)
-        .unwrap_or(10.0 * power)
-        .max(1.0);
+    let step = round_step(total / 10.0).max(1.0);
     let count = (total / step).floor() as u32;
     (0..=count).map(|tick| f64::from(tick) * step).collect()
 }

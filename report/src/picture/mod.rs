@@ -36,3 +36,11 @@ fn words(text: impl Into<String>, at: (i32, i32), height: f64, color: Rgb) -> Te
 fn letters(height: f64) -> f32 {
     (height / 1.24) as f32
 }
+
+/// The least of 1, 2, 5 and 10 times a power of ten that is not below a number.
+#[expect(clippy::disallowed_methods, reason = "ticks of a figure, rounded to what is drawn")]
+fn round_step(least: f64) -> f64 {
+    let power = 10_f64.powf(least.log10().floor());
+    let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * power);
+    steps.into_iter().find(|step| *step >= least).unwrap_or(10.0 * power)
+}

@@ -5,7 +5,7 @@
     reason = "ticks and arrows of a figure, rounded to what is drawn"
 )]
 
-use super::{Drawing, FAINT, INK, Level, Rgb, Side, corner, letters, middle, text_width, words};
+use super::{Drawing, FAINT, INK, Level, Rgb, Side, corner, letters, middle, round_step, text_width, words};
 use crate::extent;
 
 /// A point with a name.
@@ -72,13 +72,7 @@ impl Axis {
         } else {
             (least - 0.5, least + 0.5)
         };
-        let raw = (most - least) / 5.0;
-        let power = 10_f64.powf(raw.log10().floor());
-        let step = power
-            * [1.0, 2.0, 5.0, 10.0]
-                .into_iter()
-                .find(|factor| power * factor >= raw)
-                .unwrap_or(10.0);
+        let step = round_step((most - least) / 5.0);
         let from = (least / step).floor() * step;
         let ticks = (((most - from) / step).ceil() as usize).max(1);
         Self { from, step, ticks }
