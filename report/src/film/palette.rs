@@ -4,7 +4,7 @@
 //! Source: Wan, Wong and Prusinkiewicz 1988, variance-based cuts, each at the mean.
 
 /// A few colours, and which of them stands for each of many.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Palette {
     colors: Vec<[u8; 3]>,
     /// Every colour with its place in the palette, rising.
@@ -38,10 +38,7 @@ impl Palette {
             }
         }
         if counted.is_empty() {
-            return Self {
-                colors: Vec::new(),
-                places: Vec::new(),
-            };
+            return Self::default();
         }
         let mut cells = vec![Cell::of(&counted, 0, counted.len())];
         while cells.len() < most {
