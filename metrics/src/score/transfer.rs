@@ -26,57 +26,63 @@ pub(super) struct Transfer;
 impl Metric for Transfer {
     fn headlines(&self, options: &Options) -> Vec<Headline> {
         let mut headlines = Vec::new();
-        let method = options.transfer_method;
-        if method.has_contrast() {
-            headlines.push(Headline::new(
-                "forward_transfer_contrast",
-                "does learning one task help others not learned yet? change over sum, from -1 to 1 if none is negative",
-                Direction::HigherThan(0.0),
-            ));
-            headlines.push(Headline::new(
-                "backward_transfer_contrast",
-                "does learning one task help others learned before? change over sum, from -1 to 1 if none is negative",
-                Direction::HigherThan(0.0),
-            ));
-        }
-        if method.has_ratio() {
-            headlines.push(Headline::new(
-                "forward_transfer_ratio",
-                "does learning one task help others not learned yet? after over before, if none is negative",
-                Direction::HigherThan(1.0),
-            ));
-            headlines.push(Headline::new(
-                "backward_transfer_ratio",
-                "does learning one task help others learned before? after over before, if none is negative",
-                Direction::HigherThan(1.0),
-            ));
+        for measure in asked_for(options) {
+            for (name, others) in measure.names.into_iter().zip(["not learned yet", "learned before"]) {
+                let explanation = format!("does learning one task help others {others}? {}", measure.explanation);
+                headlines.push(Headline::new(
+                    name,
+                    explanation,
+                    Direction::HigherThan(measure.no_effect),
+                ));
+            }
         }
         headlines
     }
 
     fn judge(&self, assessment: &mut Assessment<'_>) -> Result<(), MetricsError> {
-        let method = assessment.options().transfer_method;
         let term_perfs = assessment.term_perfs();
-        let (forward, backward) = gaps(assessment.lifetime(), assessment.options());
-        for (direction, gaps) in [("forward", &forward), ("backward", &backward)] {
-            for (measure, is_asked_for, compare) in [
-                ("ratio", method.has_ratio(), ratio as Compare),
-                ("contrast", method.has_contrast(), contrast),
-            ] {
-                if is_asked_for {
-                    let name = format!("{direction}_transfer_{measure}");
-                    set(assessment, &name, &pairs(gaps, &term_perfs, compare));
-                }
+        let gaps = gaps(assessment.lifetime(), assessment.options());
+        for measure in asked_for(assessment.options()) {
+            for (name, gaps) in measure.names.iter().zip(&gaps) {
+                set(assessment, name, &pairs(gaps, &term_perfs, measure.compare));
             }
         }
         Ok(())
     }
 }
 
+/// A way to compare what a task comes to before and after another was learned.
+struct Measure {
+    /// Of transfer forward and backward.
+    names: [&'static str; 2],
+    explanation: &'static str,
+    no_effect: f64,
+    compare: Compare,
+}
+
+const CONTRAST: Measure = Measure {
+    names: ["forward_transfer_contrast", "backward_transfer_contrast"],
+    explanation: "change over sum, from -1 to 1 if none is negative",
+    no_effect: 0.0,
+    compare: contrast,
+};
+
+const RATIO: Measure = Measure {
+    names: ["forward_transfer_ratio", "backward_transfer_ratio"],
+    explanation: "after over before, if none is negative",
+    no_effect: 1.0,
+    compare: ratio,
+};
+
+fn asked_for(options: &Options) -> impl Iterator<Item = Measure> + use<> {
+    let method = options.transfer_method;
+    let contrast = method.has_contrast().then_some(CONTRAST);
+    contrast.into_iter().chain(method.has_ratio().then_some(RATIO))
+}
+
 /// The lifetime's values as functions of terminal performances: contrasts always, ratios if they are asked for.
 pub(super) fn statistics<'a>(lifetime: &Lifetime, options: &'a Options) -> Vec<Statistic<'a>> {
-    let (forward, backward) = gaps(lifetime, options);
-    let (forward, backward) = (Rc::new(by_pair(&forward)), Rc::new(by_pair(&backward)));
+    let pairs = gaps(lifetime, options).map(|gaps| Rc::new(by_pair(&gaps)));
     let statistic = |name, pairs: &Rc<Vec<Vec<(usize, usize)>>>, compare: Compare| {
         let pairs = Rc::clone(pairs);
         Statistic::new(name, move |term_perfs| {
@@ -87,23 +93,17 @@ pub(super) fn statistics<'a>(lifetime: &Lifetime, options: &'a Options) -> Vec<S
             aggregate(pairs.iter().filter_map(first).collect(), options)
         })
     };
-    let mut found = vec![
-        statistic("forward_transfer_contrast", &forward, contrast),
-        statistic("backward_transfer_contrast", &backward, contrast),
-    ];
-    if options.transfer_method.has_ratio() {
-        found.push(statistic("forward_transfer_ratio", &forward, ratio));
-        found.push(statistic("backward_transfer_ratio", &backward, ratio));
-    }
-    found
+    let measures = [CONTRAST].into_iter();
+    let measures = measures.chain(options.transfer_method.has_ratio().then_some(RATIO));
+    let both = measures.map(|measure| [0, 1].map(|k| statistic(measure.names[k], &pairs[k], measure.compare)));
+    both.flatten().collect()
 }
 
 /// What a reader of ratios and contrasts must be told, where performances they were made of are negative.
 pub(super) fn caution(assessment: &Assessment<'_>) -> Option<String> {
     let term_perfs = assessment.term_perfs();
-    let (forward, backward) = gaps(assessment.lifetime(), assessment.options());
-    let gaps = forward.values().chain(backward.values());
-    let least = gaps
+    let gaps = gaps(assessment.lifetime(), assessment.options());
+    let least = (gaps.iter().flat_map(BTreeMap::values))
         .flat_map(|gap| [term_perfs[gap.before], term_perfs[gap.after]])
         .fold(f64::INFINITY, f64::min);
     (least < 0.0).then(|| {
@@ -116,10 +116,7 @@ pub(super) fn caution(assessment: &Assessment<'_>) -> Option<String> {
 
 /// Whether a metric is one of transfer.
 pub(super) fn is_transfer(name: &str) -> bool {
-    let measure = name
-        .strip_prefix("forward_transfer_")
-        .or(name.strip_prefix("backward_transfer_"));
-    matches!(measure, Some("contrast" | "ratio"))
+    CONTRAST.names.contains(&name) || RATIO.names.contains(&name)
 }
 
 /// The contrasts of each task where ratios alone are asked for: they are shown all the same.
@@ -128,17 +125,11 @@ pub(super) fn contrasts_not_asked_for(assessment: &Assessment<'_>) -> IndexMap<S
         return IndexMap::new();
     }
     let term_perfs = assessment.term_perfs();
-    let (forward, backward) = gaps(assessment.lifetime(), assessment.options());
-    let (forward, backward) = (
-        pairs(&forward, &term_perfs, contrast),
-        pairs(&backward, &term_perfs, contrast),
-    );
+    let gaps = gaps(assessment.lifetime(), assessment.options());
+    let contrasts = gaps.each_ref().map(|gaps| pairs(gaps, &term_perfs, contrast));
     let of_task = |task: &String| {
         let mut values = Values::default();
-        for (name, pairs) in [
-            ("forward_transfer_contrast", &forward),
-            ("backward_transfer_contrast", &backward),
-        ] {
+        for (name, pairs) in CONTRAST.names.into_iter().zip(&contrasts) {
             values.set(name, pairs.get(task.as_str()).cloned().unwrap_or_default());
         }
         (task.clone(), values)
@@ -173,7 +164,7 @@ type Gaps<'a> = BTreeMap<(usize, usize), Gap<'a>>;
 /// QUIRK: each later evaluation holds one value per direction. Where several tasks were learned since the evaluation
 /// before, all of them had a part in it, but the last pair in permutation order gets it: tasks in the order in which
 /// they first appear among the assessed regimes. Under the published definitions each of them gets it.
-fn gaps<'a>(lifetime: &'a Lifetime, options: &Options) -> (Gaps<'a>, Gaps<'a>) {
+fn gaps<'a>(lifetime: &'a Lifetime, options: &Options) -> [Gaps<'a>; 2] {
     let places = Places::of(lifetime);
     let (mut forward, mut backward) = (Gaps::new(), Gaps::new());
     for (index, (trained, learning)) in places.trained().enumerate() {
@@ -200,7 +191,7 @@ fn gaps<'a>(lifetime: &'a Lifetime, options: &Options) -> (Gaps<'a>, Gaps<'a>) {
             }
         }
     }
-    (forward, backward)
+    [forward, backward]
 }
 
 /// Index of the first place after `limit` in ascending places.
