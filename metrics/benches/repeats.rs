@@ -25,9 +25,8 @@ fn repeats(c: &mut Criterion) {
     group.bench_function("interquartile mean", |bench| {
         bench.iter(|| black_box(estimate(&a, [Aggregate::Iqm], &options).expect("the options are sound")));
     });
-    group.bench_function("mean, median, interquartile mean and optimality gap", |bench| {
-        let gap = Aggregate::OptimalityGap { gamma: 1.0 };
-        let all = [Aggregate::Mean, Aggregate::Median, Aggregate::Iqm, gap];
+    group.bench_function("mean, median and interquartile mean", |bench| {
+        let all = [Aggregate::Mean, Aggregate::Median, Aggregate::Iqm];
         bench.iter(|| black_box(estimate(&a, all, &options).expect("the options are sound")));
     });
     group.bench_function("probability of improvement", |bench| {

@@ -1,20 +1,15 @@
-//! One number for all runs and strata: mean, median, interquartile mean, optimality gap.
+//! One number for all runs and strata: mean, median, interquartile mean.
 //!
 //! Not here: how sure that number is, see `estimate`.
 
-use serde::{Deserialize, Serialize};
-
 use super::resample::Resample;
-use crate::MetricsError;
-use crate::options::is_bounded;
 use crate::statistics::{mean, median};
 
 /// How the scores of all runs and strata become one number. Same numbers as rliable 1.2, see `tests/oracles/`.
 ///
-/// Mean and median weigh strata alike. The interquartile mean and the optimality gap weigh scores alike, so that where runs
-/// lack scores, the strata that have more of them count for more.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+/// Mean and median weigh strata alike. The interquartile mean weighs scores alike, so that where runs lack scores, the strata that
+/// have more of them count for more.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Aggregate {
     /// Mean of the strata's means. One outlier moves it as far as it likes.
     Mean,
@@ -23,32 +18,15 @@ pub enum Aggregate {
     /// Mean of the middle half of all scores (interquartile mean): ⌊n/4⌋ are left out at either end. Recommended: it shrugs off
     /// outliers and still looks at every stratum.
     Iqm,
-    /// How far scores fall short of `gamma` in the mean, where those above count as `gamma`. Lower is better.
-    OptimalityGap {
-        /// The score that is good enough, in the unit of the scores; below 1e100 in magnitude.
-        gamma: f64,
-    },
 }
 
 impl Aggregate {
-    pub(super) fn check(self) -> Result<(), MetricsError> {
-        match self {
-            Self::OptimalityGap { gamma } if !is_bounded(gamma) => Err(MetricsError::bad_option(
-                "gamma",
-                format!("{gamma:e}"),
-                "a number below 1e100 in magnitude",
-            )),
-            _ => Ok(()),
-        }
-    }
-
     /// Its value for what was drawn.
     pub(super) fn of(self, resample: &Resample) -> f64 {
         let value = match self {
             Self::Mean => mean(&resample.stratum_means().collect::<Vec<_>>()),
             Self::Median => median(resample.stratum_means().collect()),
             Self::Iqm => Some(middle_mean(resample)),
-            Self::OptimalityGap { gamma } => Some(gamma - capped_mean(resample, gamma)),
         };
         value.expect("a table has a score, and a resample draws at least one")
     }
@@ -67,12 +45,6 @@ fn middle_mean(resample: &Resample) -> f64 {
         place = next;
     }
     sum / (end - first) as f64
-}
-
-fn capped_mean(resample: &Resample, gamma: f64) -> f64 {
-    let drawn = resample.scores.iter().zip(&resample.counts);
-    let sum: f64 = drawn.map(|(score, count)| score.min(gamma) * f64::from(*count)).sum();
-    sum / resample.num_drawn() as f64
 }
 
 #[cfg(test)]
@@ -107,12 +79,5 @@ mod tests {
         let resample = Resample::new(&ScoreTable::from_runs(runs).unwrap());
         assert_eq!(Aggregate::Mean.of(&resample), 4.0);
         assert_eq!(Aggregate::Median.of(&resample), 2.0);
-    }
-
-    #[test]
-    fn the_gap_counts_what_is_missing_and_no_surplus() {
-        check(&[0.5, 3.0], Aggregate::OptimalityGap { gamma: 1.0 }, 0.25);
-        check(&[2.0, 3.0], Aggregate::OptimalityGap { gamma: 1.0 }, 0.0);
-        assert!(Aggregate::OptimalityGap { gamma: f64::NAN }.check().is_err());
     }
 }

@@ -13,7 +13,6 @@ from pathlib import Path
 import numpy as np
 from rliable import library, metrics
 
-GAMMA = 0.8
 RESAMPLES = {"aggregates": 50_000, "improvement": 20_000}
 SEEDS = {"aggregates": 6, "improvement": 3}
 
@@ -24,7 +23,6 @@ def aggregates(scores):
             metrics.aggregate_mean(scores),
             metrics.aggregate_median(scores),
             metrics.aggregate_iqm(scores),
-            metrics.aggregate_optimality_gap(scores, GAMMA),
         ]
     )
 
@@ -83,7 +81,6 @@ made_with = ", ".join(f"{name} {version(name)}" for name in ["rliable", "arch", 
 text = json.dumps(
     {
         "made_with": made_with,
-        "gamma": GAMMA,
         "resamples": RESAMPLES,
         "seeds": SEEDS,
         "cases": cases,
