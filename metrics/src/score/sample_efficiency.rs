@@ -3,7 +3,7 @@
 //! Not here: the sum of what it gathers on the way, see `ste_relative_performance`.
 
 use super::saturation::{Peak, peak};
-use super::ste_relative_performance::{average_over_time, with_gaps};
+use super::ste_relative_performance::{expert_runs, with_gaps};
 use super::{Assessment, Metric};
 use crate::lifetime::{SteRun, mean_per_experience};
 use crate::results::{Direction, Headline};
@@ -99,7 +99,7 @@ fn of_task(assessment: &Assessment<'_>, task: &str) -> Efficiency {
         task_exp_to_sat: Some(saturated.experiences as f64),
         ..Efficiency::default()
     };
-    for performances in expert_performances(experts, options.ste_averaging_method) {
+    for performances in expert_runs(experts, options.ste_averaging_method, per_experience) {
         let expert = peak_of(&performances);
         let least = expert.value * LEAST_SATURATION - assessment.slack(&[expert.value]);
         efficiency.compare(saturated, expert, falls || saturated.value < least);
@@ -111,16 +111,10 @@ fn of_task(assessment: &Assessment<'_>, task: &str) -> Efficiency {
     efficiency
 }
 
-/// One performance per experience of each run, or of their average.
-fn expert_performances(experts: &[SteRun], averaging: SteAveragingMethod) -> Vec<Vec<f64>> {
-    let per_experience = |run: &SteRun| {
-        let (exp_nums, performance): (Vec<u64>, Vec<f64>) = run.training().unzip();
-        mean_per_experience(&exp_nums, &performance)
-    };
-    match averaging {
-        SteAveragingMethod::Time => average_over_time(experts).into_iter().collect(),
-        SteAveragingMethod::Metrics => experts.iter().map(per_experience).collect(),
-    }
+/// The performance of each experience of an expert's training.
+fn per_experience(run: &SteRun) -> Vec<f64> {
+    let (exp_nums, performance): (Vec<u64>, Vec<f64>) = run.training().unzip();
+    mean_per_experience(&exp_nums, &performance)
 }
 
 impl Efficiency {

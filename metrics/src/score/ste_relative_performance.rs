@@ -75,14 +75,7 @@ fn of_task(lifetime: &Lifetime, task: &str, averaging: SteAveragingMethod) -> Ve
     if learning.is_empty() {
         return Vec::new();
     }
-    let runs: Vec<Vec<f64>> = match averaging {
-        SteAveragingMethod::Metrics => lifetime
-            .experts_of(task)
-            .iter()
-            .map(SteRun::training_performance)
-            .collect(),
-        SteAveragingMethod::Time => average_over_time(lifetime.experts_of(task)).into_iter().collect(),
-    };
+    let runs = expert_runs(lifetime.experts_of(task), averaging, SteRun::training_performance);
     let relative = |run: Vec<f64>| {
         let num = run.len().min(learning.len());
         learning[..num].iter().sum::<f64>() / run[..num].iter().sum::<f64>()
@@ -96,8 +89,20 @@ pub(super) fn with_gaps(values: &[f64]) -> Vec<Option<f64>> {
     values.iter().map(finite).collect()
 }
 
+/// A list for each run of an expert, or for the average over time alone, as asked.
+pub(super) fn expert_runs(
+    experts: &[SteRun],
+    averaging: SteAveragingMethod,
+    of_run: fn(&SteRun) -> Vec<f64>,
+) -> Vec<Vec<f64>> {
+    match averaging {
+        SteAveragingMethod::Metrics => experts.iter().map(of_run).collect(),
+        SteAveragingMethod::Time => average_over_time(experts).into_iter().collect(),
+    }
+}
+
 /// The runs cut to the shortest and averaged step by step; `None` without runs.
-pub(super) fn average_over_time(runs: &[SteRun]) -> Option<Vec<f64>> {
+fn average_over_time(runs: &[SteRun]) -> Option<Vec<f64>> {
     let runs: Vec<Vec<f64>> = runs.iter().map(SteRun::training_performance).collect();
     let shortest = runs.iter().map(Vec::len).min()?;
     let mean_at = |index: usize| runs.iter().map(|run| run[index]).sum::<f64>() / runs.len() as f64;
