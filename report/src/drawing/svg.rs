@@ -1,7 +1,5 @@
 //! Drawings as SVG files.
 
-use std::fmt::Write;
-
 use base64::prelude::{BASE64_STANDARD, Engine as _};
 
 use super::{Drawing, Rgb, Shape, Side, TextLine};
@@ -21,78 +19,65 @@ pub(super) fn file(drawing: &Drawing) -> Result<String, ReportError> {
 }
 
 fn shapes(text: &mut String, drawing: &Drawing) -> Result<(), ReportError> {
-    // Writing to a string cannot fail.
     for shape in &drawing.shapes {
-        match shape {
-            Shape::Area { points, color, alpha } => {
-                let _ = writeln!(
-                    text,
-                    "<polygon points=\"{}\" fill=\"{}\"{}/>",
-                    places(points),
-                    hex(*color),
-                    opacity("fill", *alpha)
-                );
-            }
+        let element = match shape {
+            Shape::Area { points, color, alpha } => format!(
+                "<polygon points=\"{}\" fill=\"{}\"{}/>\n",
+                places(points),
+                hex(*color),
+                opacity("fill", *alpha)
+            ),
             Shape::Line {
                 points,
                 width,
                 color,
                 alpha,
                 dash,
-            } => {
-                let dash = dash.map_or(String::new(), |dash| format!(" stroke-dasharray=\"{}\"", short(dash)));
-                let _ = writeln!(
-                    text,
-                    "<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" \
-                     stroke-linejoin=\"round\"{dash}{}/>",
-                    places(points),
-                    hex(*color),
-                    short(*width),
-                    opacity("stroke", *alpha)
-                );
-            }
+            } => format!(
+                "<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\"{}{}/>\n",
+                places(points),
+                hex(*color),
+                short(*width),
+                dash.map_or(String::new(), |dash| format!(" stroke-dasharray=\"{}\"", short(dash))),
+                opacity("stroke", *alpha)
+            ),
             Shape::Disc {
                 middle: [x, y],
                 radius,
                 color,
                 alpha,
-            } => {
-                let _ = writeln!(
-                    text,
-                    "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"{}\"{}/>",
-                    short(*x),
-                    short(*y),
-                    short(*radius),
-                    hex(*color),
-                    opacity("fill", *alpha)
-                );
-            }
-            Shape::Text(words) => write_words(text, words),
+            } => format!(
+                "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"{}\"{}/>\n",
+                short(*x),
+                short(*y),
+                short(*radius),
+                hex(*color),
+                opacity("fill", *alpha)
+            ),
+            Shape::Text(words) => text_element(words),
             Shape::Inner { at: [x, y], drawing } => {
                 let (width, height) = (drawing.width, drawing.height);
-                let _ = writeln!(text, "<svg x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\">");
-                shapes(text, drawing)?;
-                text.push_str("</svg>\n");
+                let mut inner = format!("<svg x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\">\n");
+                shapes(&mut inner, drawing)?;
+                inner + "</svg>\n"
             }
-            Shape::Pixels(picture) => {
-                let _ = writeln!(
-                    text,
-                    "<image width=\"{}\" height=\"{}\" href=\"data:image/png;base64,{}\"/>",
-                    picture.width,
-                    picture.height,
-                    BASE64_STANDARD.encode(picture.to_png()?)
-                );
-            }
-        }
+            Shape::Pixels(picture) => format!(
+                "<image width=\"{}\" height=\"{}\" href=\"data:image/png;base64,{}\"/>\n",
+                picture.width,
+                picture.height,
+                BASE64_STANDARD.encode(picture.to_png()?)
+            ),
+        };
+        text.push_str(&element);
     }
     Ok(())
 }
 
 /// A text that takes the room that was measured, whatever font its reader has.
-fn write_words(text: &mut String, words: &TextLine) {
+fn text_element(words: &TextLine) -> String {
     let width = words.width();
     if width <= 0.0 {
-        return;
+        return String::new();
     }
     let [x, y] = [words.at[0], words.at[1] + words.offset()[1]];
     let anchor = match words.side {
@@ -116,30 +101,20 @@ fn write_words(text: &mut String, words: &TextLine) {
             short(0.22 * words.size)
         )
     });
-    let _ = writeln!(
-        text,
-        "<text x=\"{}\" y=\"{}\" font-size=\"{}\" fill=\"{}\" textLength=\"{}\" lengthAdjust=\"spacingAndGlyphs\"{anchor}{turn}{rim}>{}</text>",
+    format!(
+        "<text x=\"{}\" y=\"{}\" font-size=\"{}\" fill=\"{}\" textLength=\"{}\" lengthAdjust=\"spacingAndGlyphs\"{anchor}{turn}{rim}>{}</text>\n",
         short(x),
         short(y),
         short(words.size),
         hex(words.color),
         short(width),
         escaped(&words.text)
-    );
+    )
 }
 
 fn escaped(text: &str) -> String {
-    let mut safe = String::with_capacity(text.len());
-    for letter in text.chars() {
-        match letter {
-            '&' => safe.push_str("&amp;"),
-            '<' => safe.push_str("&lt;"),
-            '>' => safe.push_str("&gt;"),
-            '\u{fffe}' | '\u{ffff}' => safe.push('\u{fffd}'),
-            letter => safe.push(letter),
-        }
-    }
-    safe
+    let safe = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+    safe.replace(['\u{fffe}', '\u{ffff}'], "\u{fffd}")
 }
 
 fn places(points: &[[f32; 2]]) -> String {
