@@ -48,17 +48,11 @@ impl<'a> Evaluations<'a> {
             performance.extend_from_slice(&regime.performance);
             regimes.push((regime, first..performance.len()));
         }
-        let worlds: Vec<&[Option<World>]> = (regimes.iter())
-            .map(|(regime, _)| worlds[regime.regime_num].as_slice())
-            .collect();
         let groups = groups(&regimes, &worlds);
-        let by = |is: fn(&Place) -> bool| groups.keys().any(|(_, place)| is(place));
-        let exchanged = match (
-            by(|place| matches!(place, Place::World(_))),
-            by(|place| matches!(place, Place::Position(_))),
-        ) {
-            (true, false) => Exchanged::Worlds,
-            (true, true) => Exchanged::WorldsAndPositions,
+        let by_world = |(_, place): &(&str, Place)| matches!(place, Place::World(_));
+        let exchanged = match (groups.keys().any(by_world), groups.keys().all(by_world)) {
+            (true, true) => Exchanged::Worlds,
+            (true, false) => Exchanged::WorldsAndPositions,
             (false, _) => Exchanged::Positions,
         };
         Self {
@@ -104,20 +98,20 @@ impl<'a> Evaluations<'a> {
 /// does not say the world, by their place among such rows of their evaluation.
 fn groups<'a>(
     regimes: &[(&'a Regime, Range<usize>)],
-    worlds: &[&[Option<World>]],
+    worlds: &[Vec<Option<World>>],
 ) -> BTreeMap<(&'a str, Place), Vec<usize>> {
     let mut regimes_of: HashMap<(&str, World), (usize, bool)> = HashMap::new();
     for (number, (regime, _)) in regimes.iter().enumerate() {
-        for world in worlds[number].iter().flatten() {
+        for world in worlds[regime.regime_num].iter().flatten() {
             let (first, recurs) = regimes_of.entry((&regime.task_name, *world)).or_insert((number, false));
             *recurs |= *first != number;
         }
     }
     let mut groups: BTreeMap<(&str, Place), Vec<usize>> = BTreeMap::new();
-    for (number, (regime, rows)) in regimes.iter().enumerate() {
+    for (regime, rows) in regimes {
         let task = regime.task_name.as_str();
         let mut position = 0;
-        for (row, world) in rows.clone().zip(worlds[number]) {
+        for (row, world) in rows.clone().zip(&worlds[regime.regime_num]) {
             let recurring = world.filter(|world| regimes_of.get(&(task, *world)).is_some_and(|(_, recurs)| *recurs));
             let place = recurring.map_or(Place::Position(position), Place::World);
             position += usize::from(recurring.is_none());
