@@ -2,9 +2,10 @@
 //!
 //! Not here: what the run was about, see `scenario_info`.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::cell::cut;
@@ -54,17 +55,9 @@ impl LoggerInfo {
     /// Reads the file of a log directory. A file that does not say its version is of 1.0, which did not ask for it.
     pub(super) fn read(dir: &Path) -> Result<Self, MetricsError> {
         let object = json_file::read_object(&dir.join(FILE_NAME), EXPECTED_FILE)?;
-        let names = |list: &Vec<Value>| list.iter().map(|name| name.as_str().map(str::to_owned)).collect();
-        let columns: Option<Vec<String>> = object.get("metrics_columns").and_then(Value::as_array).and_then(names);
-        let metrics_columns = columns.ok_or_else(|| {
-            MetricsError::logger_info(
-                "metrics_columns",
-                object
-                    .get("metrics_columns")
-                    .map_or_else(|| "nothing".to_owned(), |found| cut(&found.to_string())),
-                EXPECTED_COLUMNS,
-            )
-        })?;
+        let columns = object.get("metrics_columns").ok_or_else(|| wrong_columns("nothing"))?;
+        let metrics_columns: Vec<String> =
+            Vec::deserialize(columns).map_err(|_| wrong_columns(&columns.to_string()))?;
         check_columns(&metrics_columns)?;
         let log_format_version = match object.get("log_format_version") {
             None => "1.0".to_owned(),
@@ -82,7 +75,6 @@ impl LoggerInfo {
 }
 
 fn check_columns(columns: &[String]) -> Result<(), MetricsError> {
-    // Before they are held against each other.
     if columns.len() > MAX_COLUMNS {
         return Err(MetricsError::logger_info(
             "metrics_columns",
@@ -90,18 +82,18 @@ fn check_columns(columns: &[String]) -> Result<(), MetricsError> {
             "at most 1000 names",
         ));
     }
-    let repeated = columns
-        .iter()
-        .enumerate()
-        .any(|(index, name)| columns[..index].contains(name));
+    let repeated = columns.iter().collect::<BTreeSet<_>>().len() < columns.len();
     let unusable = columns
         .iter()
         .any(|name| name.is_empty() || STANDARD.contains(&name.as_str()));
     if columns.is_empty() || repeated || unusable {
-        let found = cut(&format!("{columns:?}"));
-        return Err(MetricsError::logger_info("metrics_columns", found, EXPECTED_COLUMNS));
+        return Err(wrong_columns(&format!("{columns:?}")));
     }
     Ok(())
+}
+
+fn wrong_columns(found: &str) -> MetricsError {
+    MetricsError::logger_info("metrics_columns", cut(found), EXPECTED_COLUMNS)
 }
 
 #[cfg(test)]
