@@ -88,22 +88,13 @@ impl LogFolder {
     /// Refuses when an info file is gone that was there at the beginning, or has another length.
     pub(super) fn check_info_files(&self) -> Result<(), MetricsError> {
         for (name, length) in &self.info {
-            let path = || self.shown.join(name);
-            match self.length_of(name) {
-                Some(found) if found == *length => {}
-                Some(found) => {
-                    return Err(MetricsError::InfoFileChanged {
-                        path: path(),
-                        found,
-                        expected: *length,
-                    });
-                }
-                None => {
-                    return Err(MetricsError::missing_file(
-                        path(),
-                        "the info file that this log was begun with; put it back",
-                    ));
-                }
+            let (path, expected) = (self.shown.join(name), *length);
+            let Some(found) = self.length_of(name) else {
+                let expected = "the info file that this log was begun with; put it back";
+                return Err(MetricsError::missing_file(path, expected));
+            };
+            if found != expected {
+                return Err(MetricsError::InfoFileChanged { path, found, expected });
             }
         }
         Ok(())
