@@ -47,6 +47,11 @@ pub(super) fn draw(picture: &mut Picture, words: &TextLine) {
     if let Some(rim) = words.rim {
         let off = RIM * words.size;
         let slanted = off * 0.7;
+        let around = TextLine {
+            color: rim,
+            rim: None,
+            ..words.clone()
+        };
         for by in [
             [off, 0.0],
             [-off, 0.0],
@@ -58,15 +63,7 @@ pub(super) fn draw(picture: &mut Picture, words: &TextLine) {
             [-slanted, -slanted],
         ] {
             let at = [words.at[0] + by[0], words.at[1] + by[1]];
-            draw_once(
-                picture,
-                &TextLine {
-                    at,
-                    color: rim,
-                    rim: None,
-                    ..words.clone()
-                },
-            );
+            draw_once(picture, &TextLine { at, ..around.clone() });
         }
     }
     draw_once(picture, words);
