@@ -54,26 +54,20 @@ impl<'a> Header<'a> {
                 found: cut(&names.join(" ")),
             });
         }
-        let missing = |column: &str| MetricsError::MissingColumn {
+        let needed = (STANDARD.into_iter().filter(|column| *column != SINCE_1_1))
+            .chain(metrics_columns.iter().map(String::as_str));
+        let absent = needed.filter(|column| place(column).is_none());
+        let missing = absent.map(|column| MetricsError::MissingColumn {
             path: path.to_owned(),
             column: column.to_owned(),
             found: listed(&names),
-        };
-        let needed: Vec<&str> = (STANDARD.into_iter().filter(|column| *column != SINCE_1_1))
-            .chain(metrics_columns.iter().map(String::as_str))
-            .collect();
+        });
         let repeated = (0..names.len()).find(|&index| names[..index].contains(&names[index]));
-        let mut wrong: Vec<MetricsError> = Vec::new();
-        wrong.extend(repeated.map(|index| MetricsError::RepeatedColumn {
+        let repeated = repeated.map(|index| MetricsError::RepeatedColumn {
             path: path.to_owned(),
             column: cut(&names[index]),
-        }));
-        wrong.extend(
-            needed
-                .iter()
-                .filter(|column| place(column).is_none())
-                .map(|column| missing(column)),
-        );
+        });
+        let mut wrong: Vec<MetricsError> = repeated.into_iter().chain(missing).collect();
         if let Some(last) = wrong.pop() {
             for fault in wrong {
                 faults.add(fault)?;
