@@ -5,6 +5,7 @@
 use std::borrow::Cow;
 
 use indexmap::IndexMap;
+use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::rounding::ten_decimals;
@@ -107,31 +108,6 @@ fn readings_of_rows<'de, D: Deserializer<'de>>(rows: D) -> Result<IndexMap<Strin
     Ok(readings.collect())
 }
 
-/// What stands in the JSON, in order.
-#[derive(Serialize)]
-struct Document<'a> {
-    #[serde(flatten)]
-    lifetime: IndexMap<&'a str, Option<Value>>,
-    run_id: &'a str,
-    complexity: &'a str,
-    difficulty: &'a str,
-    scenario_type: &'a str,
-    metrics_column: &'a str,
-    #[serde(skip_serializing_if = "Definitions::is_reference")]
-    definitions: Definitions,
-    min: f64,
-    max: f64,
-    num_lx: usize,
-    num_ex: usize,
-    runtime: f64,
-    normalization_data_range: Option<&'a IndexMap<String, DataRange>>,
-    #[serde(skip_serializing_if = "IndexMap::is_empty")]
-    as_logged: &'a IndexMap<String, AsLogged>,
-    #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    notes: &'a [String],
-    task_metrics: &'a IndexMap<String, Values>,
-}
-
 impl Serialize for LifetimeMetrics {
     /// QUIRK: the values of the lifetime have ten decimals, as in the reference's file; those of tasks, and all under
     /// the published definitions, are not rounded.
@@ -150,25 +126,32 @@ impl Serialize for LifetimeMetrics {
             };
             lifetime.insert(name, Some(value));
         }
-        let document = Document {
-            lifetime,
-            run_id: &self.run_id,
-            complexity: &self.complexity,
-            difficulty: &self.difficulty,
-            scenario_type: &self.scenario_type,
-            metrics_column: &self.metrics_column,
-            definitions: self.definitions,
-            min: rounded(self.min),
-            max: rounded(self.max),
-            num_lx: self.num_lx,
-            num_ex: self.num_ex,
-            runtime: rounded(self.runtime),
-            normalization_data_range: self.normalization_data_range.as_ref(),
-            as_logged: &self.as_logged,
-            notes: &self.notes,
-            task_metrics: &self.task_metrics,
-        };
-        document.serialize(serializer)
+        let mut document = serializer.serialize_map(None)?;
+        for (name, value) in &lifetime {
+            document.serialize_entry(name, value)?;
+        }
+        document.serialize_entry("run_id", &self.run_id)?;
+        document.serialize_entry("complexity", &self.complexity)?;
+        document.serialize_entry("difficulty", &self.difficulty)?;
+        document.serialize_entry("scenario_type", &self.scenario_type)?;
+        document.serialize_entry("metrics_column", &self.metrics_column)?;
+        if !self.definitions.is_reference() {
+            document.serialize_entry("definitions", &self.definitions)?;
+        }
+        document.serialize_entry("min", &rounded(self.min))?;
+        document.serialize_entry("max", &rounded(self.max))?;
+        document.serialize_entry("num_lx", &self.num_lx)?;
+        document.serialize_entry("num_ex", &self.num_ex)?;
+        document.serialize_entry("runtime", &rounded(self.runtime))?;
+        document.serialize_entry("normalization_data_range", &self.normalization_data_range)?;
+        if !self.as_logged.is_empty() {
+            document.serialize_entry("as_logged", &self.as_logged)?;
+        }
+        if !self.notes.is_empty() {
+            document.serialize_entry("notes", &self.notes)?;
+        }
+        document.serialize_entry("task_metrics", &self.task_metrics)?;
+        document.end()
     }
 }
 
