@@ -79,9 +79,9 @@ impl Chapter {
                 figure { (wide) (narrow) figcaption { (says) } }
             })
         };
+        let asleep_blocks = asleep_blocks(lifetime);
         let blocks = format!(
-            "Each block of the lifetime from left to right.{} {}",
-            asleep_blocks(lifetime),
+            "Each block of the lifetime from left to right.{asleep_blocks} {}",
             super::calm(&options.distance_note)
         );
         let lines = when(options.figures.show_eval_lines, || ", joined by lines".to_owned());
@@ -90,7 +90,7 @@ impl Chapter {
         } else {
             "as logged, joined"
         };
-        let asleep = when(sleeps(lifetime), || {
+        let asleep = when(!asleep_blocks.is_empty(), || {
             " This lifetime has sleep phases: evaluations while awake are drawn, but do not count for maintenance, \
              transfer and evaluation performance."
                 .to_owned()
@@ -133,31 +133,25 @@ impl Chapter {
     }
 }
 
-fn sleeps(lifetime: &Lifetime) -> bool {
-    lifetime
-        .regimes()
-        .iter()
-        .any(|regime| regime.block_subtype == BlockSubtype::Sleep)
+/// How many blocks of learning or of evaluation there are, and how many of them are asleep.
+fn blocks_of(lifetime: &Lifetime, kind: BlockType) -> (usize, usize) {
+    let regimes = lifetime.regimes().iter();
+    let of_kind = regimes.filter(|regime| regime.block_type == kind);
+    of_kind.fold((0, 0), |(all, asleep), regime| {
+        (
+            all + 1,
+            asleep + usize::from(regime.block_subtype == BlockSubtype::Sleep),
+        )
+    })
 }
 
 /// How much of what is drawn is sleep, where there is any.
 fn asleep_blocks(lifetime: &Lifetime) -> String {
-    if !sleeps(lifetime) {
-        return String::new();
-    }
-    let asleep = |kind: BlockType| {
-        let regimes = lifetime.regimes().iter();
-        count(
-            regimes
-                .filter(|regime| regime.block_type == kind && regime.block_subtype == BlockSubtype::Sleep)
-                .count(),
-        )
-    };
-    format!(
-        " Sleep blocks are drawn like the others: {} of learning, {} of evaluation.",
-        asleep(BlockType::Train),
-        asleep(BlockType::Test)
-    )
+    let [learning, evaluation] = [BlockType::Train, BlockType::Test].map(|kind| blocks_of(lifetime, kind).1);
+    when(learning + evaluation > 0, || {
+        let (learning, evaluation) = (count(learning), count(evaluation));
+        format!(" Sleep blocks are drawn like the others: {learning} of learning, {evaluation} of evaluation.")
+    })
 }
 
 /// Why a figure is not there.
@@ -184,14 +178,9 @@ fn alternative(lifetime: &Lifetime, figure: Figure) -> String {
 
 /// How much was lived, and by what it is judged.
 fn facts(lifetime: &Lifetime, metrics: &LifetimeMetrics, said: &[(String, String)]) -> Markup {
-    let learned = || {
-        let regimes = lifetime.regimes().iter();
-        regimes.filter(|regime| regime.block_type == BlockType::Train)
-    };
-    let asleep = learned().filter(|regime| !regime.is_wake_training()).count();
-    let blocks = match asleep {
-        0 => count(learned().count()),
-        _ => format!("{} ({} asleep)", count(learned().count()), count(asleep)),
+    let blocks = match blocks_of(lifetime, BlockType::Train) {
+        (all, 0) => count(all),
+        (all, asleep) => format!("{} ({} asleep)", count(all), count(asleep)),
     };
     let mut facts: Vec<(String, String)> = said.iter().map(|(name, value)| (shown(name), shown(value))).collect();
     // How good the agent is comes first: the metrics, scaled by the lifetime's own range, do not say it.
