@@ -167,14 +167,19 @@ type Gaps<'a> = BTreeMap<(usize, usize), Gap<'a>>;
 fn gaps<'a>(lifetime: &'a Lifetime, options: &Options) -> [Gaps<'a>; 2] {
     let places = Places::of(lifetime);
     let (mut forward, mut backward) = (Gaps::new(), Gaps::new());
-    for (index, (trained, learning)) in places.trained().enumerate() {
+    for (index, (&trained, (learning, _))) in places.tasks.iter().enumerate() {
         let who = match options.definitions {
             Definitions::Reference => 0,
             Definitions::Published => index,
         };
-        for other in places.tasks.keys().copied().filter(|other| *other != trained) {
-            let (evaluated, first_learned) = places.evaluated_and_first_learned(other);
+        for (&other, (learned, evaluated)) in places.tasks.iter().filter(|(other, _)| **other != trained) {
+            // A task never learned counts as learned after everything.
+            let first_learned = learned.first().copied().unwrap_or(usize::MAX);
             for pair in evaluated.windows(2) {
+                // Where a drift began to learn the task in between, what changed was its own learning, and no transfer.
+                if pair[0] < first_learned && first_learned < pair[1] && places.drifts.contains(&first_learned) {
+                    continue;
+                }
                 let gap = || Gap {
                     trained,
                     other,
@@ -182,10 +187,10 @@ fn gaps<'a>(lifetime: &'a Lifetime, options: &Options) -> [Gaps<'a>; 2] {
                     after: pair[1],
                 };
                 let between = &learning[above(learning, pair[0])..above(learning, pair[1])];
-                if between.first().is_some_and(|place| *place < first_learned) && !places.drift_begins(other, pair) {
+                if between.first().is_some_and(|place| *place < first_learned) {
                     forward.insert((pair[1], who), gap());
                 }
-                if between.last().is_some_and(|place| *place > first_learned) && !places.drift_begins(other, pair) {
+                if between.last().is_some_and(|place| *place > first_learned) {
                     backward.insert((pair[1], who), gap());
                 }
             }
@@ -226,25 +231,6 @@ impl<'a> Places<'a> {
             }
         }
         Self { tasks, drifts }
-    }
-
-    /// Whether a task was learned for the first time between two evaluations, by a drift: then what changed there was
-    /// its own learning, and no transfer.
-    fn drift_begins(&self, task: &str, evaluations: &[usize]) -> bool {
-        let first = self.tasks[task].0.first();
-        first.is_some_and(|first| evaluations[0] < *first && *first < evaluations[1] && self.drifts.contains(first))
-    }
-
-    fn trained(&self) -> impl Iterator<Item = (&'a str, &[usize])> + use<'a, '_> {
-        self.tasks
-            .iter()
-            .map(|(name, (learning, _))| (*name, learning.as_slice()))
-    }
-
-    /// A task never learned counts as learned after everything.
-    fn evaluated_and_first_learned(&self, task: &str) -> (&[usize], usize) {
-        let (learning, evaluation) = &self.tasks[task];
-        (evaluation, learning.first().copied().unwrap_or(usize::MAX))
     }
 }
 
