@@ -21,7 +21,7 @@ pub struct Assessment<'a> {
     /// Values of the lifetime that a metric said to be no number; they are not made of the tasks' either.
     none: IndexSet<String>,
     /// Whether performances that differ by rounding alone count as equal.
-    resolves_ties: bool,
+    pub(super) resolves_ties: bool,
 }
 
 /// Part of a performance by which sums of the same numbers in another order may differ.
@@ -40,14 +40,6 @@ impl<'a> Assessment<'a> {
             whole: Values::default(),
             none: IndexSet::new(),
             resolves_ties: options.definitions == Definitions::Published,
-        }
-    }
-
-    /// Takes performances that differ by rounding alone for equal, whatever the definitions.
-    pub(super) fn resolving_ties(self) -> Self {
-        Self {
-            resolves_ties: true,
-            ..self
         }
     }
 

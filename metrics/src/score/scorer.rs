@@ -224,7 +224,8 @@ fn never_learned(
 /// What a reader must be told of numbers that another rounding of the same performances would change, each with what it is where
 /// performances within a billionth count as equal.
 fn decided_by_rounding(found: &Assessment<'_>) -> Result<Option<String>, MetricsError> {
-    let mut resolved = Assessment::new(found.log(), found.lifetime(), found.options()).resolving_ties();
+    let mut resolved = Assessment::new(found.log(), found.lifetime(), found.options());
+    resolved.resolves_ties = true;
     for metric in built_in() {
         metric.judge(&mut resolved)?;
     }
