@@ -2,6 +2,7 @@
 //!
 //! Not here: what lies in the folders, see `ste_store`.
 
+use std::fmt::Write;
 use std::path::Path;
 
 use crate::MetricsError;
@@ -21,9 +22,8 @@ pub(super) fn encoded(place: &Path, name: &str) -> Result<String, MetricsError> 
         if byte.is_ascii_alphanumeric() || byte == b'_' || byte == b'-' || inner_point {
             encoded.push(char::from(byte));
         } else {
-            const DIGITS: &[u8; 16] = b"0123456789ABCDEF";
-            let digit = |half: u8| char::from(DIGITS[usize::from(half)]);
-            encoded.extend(['%', digit(byte >> 4), digit(byte & 15)]);
+            // Writing to a string cannot fail.
+            let _ = write!(encoded, "%{byte:02X}");
         }
     }
     if encoded.is_empty() {
