@@ -116,19 +116,21 @@ impl Reading {
 }
 
 /// What a reader must be told where contrast and ratio of the same transfer read differently, given the reading of each
-/// metric: a sentence for forward transfer, one for backward transfer.
-pub(crate) fn disagreements(reading: impl Fn(&str) -> Option<Reading>) -> Vec<String> {
+/// metric: a sentence for forward transfer, one for backward transfer, each behind the name of the ratio.
+pub(crate) fn disagreements(reading: impl Fn(&str) -> Option<Reading>) -> Vec<(String, String)> {
     let of = |direction: &str| {
         let names = ["contrast", "ratio"].map(|measure| format!("{direction}_transfer_{measure}"));
         let [contrast, ratio] = [reading(&names[0])?, reading(&names[1])?];
         (contrast != ratio).then(|| {
-            format!(
+            let sentence = format!(
                 "{direction} transfer: the contrast says {:?}, the ratio {:?}; prefer the contrast, as a mean of \
                  ratios is above 1 even if nothing is transferred, and one pair of tasks that began near its minimum \
                  may decide it",
                 contrast.word(&names[0]),
                 ratio.word(&names[1])
-            )
+            );
+            let [_, name] = names;
+            (name, sentence)
         })
     };
     ["forward", "backward"].into_iter().filter_map(of).collect()
@@ -212,9 +214,10 @@ mod tests {
             "forward_transfer_ratio" | "backward_transfer_ratio" => Some(Reading::Good),
             _ => None,
         });
-        let [sentence] = found.as_slice() else {
+        let [(ratio, sentence)] = found.as_slice() else {
             panic!("{found:?}")
         };
+        assert_eq!(ratio, "forward_transfer_ratio");
         assert!(
             sentence.starts_with(
                 "forward transfer: the contrast says \"no clear effect\", the ratio \"helps\"; prefer the contrast"

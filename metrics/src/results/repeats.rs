@@ -89,15 +89,8 @@ pub fn over_repeats(
         });
     }
     let reading = |name: &str| found.iter().find(|row| row.headline.name == name)?.reading;
-    for sentence in disagreements(reading) {
-        let ratio = sentence
-            .split(' ')
-            .next()
-            .map(|direction| format!("{direction}_transfer_ratio"));
-        if let Some(row) = found
-            .iter_mut()
-            .find(|row| Some(&*row.headline.name) == ratio.as_deref())
-        {
+    for (ratio, sentence) in disagreements(reading) {
+        if let Some(row) = found.iter_mut().find(|row| row.headline.name == ratio) {
             let caution = row.caution.take().map(|caution| format!("{caution}; "));
             row.caution = Some(caution.unwrap_or_default() + &sentence);
         }

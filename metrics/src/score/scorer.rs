@@ -127,7 +127,8 @@ impl Scorer {
             let parts = parts(&tasks, &contrasts, name);
             parts.into_iter().map(|part| part.value).collect()
         });
-        cautions.extend(disagreements(|name| readings.get(name).copied()));
+        let disagreements = disagreements(|name| readings.get(name).copied());
+        cautions.extend(disagreements.into_iter().map(|(_, sentence)| sentence));
         let info = &log.scenario_info;
         Ok(LifetimeMetrics {
             lifetime: in_order(&found),
