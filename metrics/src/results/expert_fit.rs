@@ -5,7 +5,7 @@
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
-use crate::lifetime::{Budget, Lifetime, budgets};
+use crate::lifetime::{Budget, Lifetime, SteRun, budgets};
 use crate::{Log, Options, VariantMode};
 
 /// One number of a lifetime and of an expert.
@@ -49,11 +49,7 @@ pub(crate) fn expert_fits(log: &Log, lifetime: &Lifetime, options: &Options) -> 
     let of_task = |task: &String| {
         let own = budgets.get(task).unwrap_or(&nothing);
         let runs = lifetime.experts_of(task).iter();
-        let fits = runs.map(|run| {
-            let agents = [agent.as_deref(), run.agent.as_deref()];
-            fit(&run.name, agents, (own, before), &run.budget)
-        });
-        let fits: Vec<ExpertFit> = fits.collect();
+        let fits: Vec<ExpertFit> = runs.map(|run| fit(run, agent.as_ref(), own, before)).collect();
         // A task that is only evaluated is not learned in the lifetime: there is nothing to compare.
         (!fits.is_empty() && own.learned > 0).then(|| (task.clone(), fits))
     };
@@ -65,17 +61,13 @@ pub(crate) fn agent_of(log: &Log) -> Option<String> {
     Some(log.scenario_info.extra.get("agent")?.as_str()?.to_owned())
 }
 
-fn fit(
-    run: &str,
-    [own_agent, agent]: [Option<&str>; 2],
-    (own, before): (&Budget, usize),
-    expert: &Budget,
-) -> ExpertFit {
+fn fit(run: &SteRun, agent: Option<&String>, own: &Budget, before: usize) -> ExpertFit {
+    let expert = &run.budget;
     let worlds = own.worlds.as_ref().zip(expert.worlds.as_ref());
     let shared = worlds.map(|(own, expert)| own.intersection(expert).count());
     let found = ExpertFit {
-        run: run.to_owned(),
-        agent: (own_agent.zip(agent)).map(|(own, expert)| beside(own.to_owned(), expert.to_owned())),
+        run: run.name.clone(),
+        agent: (agent.cloned().zip(run.agent.clone())).map(|(own, expert)| beside(own, expert)),
         learned: beside(own.learned, expert.learned),
         before_deployment: beside(before, expert.before),
         worlds: worlds.map(|(own, expert)| beside(own.len(), expert.len())),
@@ -127,17 +119,14 @@ fn differences(fit: &ExpertFit) -> Vec<String> {
 
 /// A sentence for each expert that is not like for like.
 pub(crate) fn unlike_experts(fits: &IndexMap<String, Vec<ExpertFit>>) -> Vec<String> {
-    let all = fits
-        .iter()
-        .flat_map(|(task, fits)| fits.iter().map(move |fit| (task, fit)));
-    let unlike = all.filter(|(_, fit)| !fit.differences.is_empty());
-    unlike
-        .map(|(task, fit)| {
-            format!(
-                "the expert {} of {task} is not like for like: {}",
-                fit.run,
-                fit.differences.join("; ")
-            )
-        })
-        .collect()
+    let mut found = Vec::new();
+    for (task, fits) in fits {
+        for ExpertFit { run, differences, .. } in fits.iter().filter(|fit| !fit.differences.is_empty()) {
+            let differences = differences.join("; ");
+            found.push(format!(
+                "the expert {run} of {task} is not like for like: {differences}"
+            ));
+        }
+    }
+    found
 }
