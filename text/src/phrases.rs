@@ -34,6 +34,19 @@ pub fn first_of<S: AsRef<str>>(names: &[S], most: usize) -> String {
     }
 }
 
+/// A text as a message shows it: its first characters, at most so many.
+///
+/// ```
+/// # use driftworld_text::shortened;
+/// assert_eq!((shortened("äöü", 3), shortened("äöüß", 3)), ("äöü".to_owned(), "äöü…".to_owned()));
+/// ```
+pub fn shortened(text: &str, most: usize) -> String {
+    match text.char_indices().nth(most) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
 /// Words that are said in some cases alone.
 pub fn when(is_said: bool, words: impl FnOnce() -> String) -> String {
     if is_said { words() } else { String::new() }

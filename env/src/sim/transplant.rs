@@ -2,6 +2,7 @@
 //! saying what of their states differs. What follows from a difference is said by `experiment`.
 
 use driftworld_spec::{World, Zone};
+use driftworld_text::shortened;
 
 use super::action::{Action, Intent};
 use super::environment::Environment;
@@ -13,6 +14,9 @@ use super::walls::agent_obstacle;
 use crate::EnvError;
 use crate::render::Target;
 
+/// The most characters of how something is.
+const MOST_CHARACTERS: usize = 200;
+
 /// What differs, in words, and how it is in each of the two.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Unlike {
@@ -21,18 +25,9 @@ pub(crate) struct Unlike {
     pub(crate) other: String,
 }
 
-/// A text of at most 200 letters: lists of corners have no end.
-fn cut(text: &str) -> String {
-    const MOST: usize = 200;
-    match text.char_indices().nth(MOST) {
-        Some((end, _)) => format!("{}…", &text[..end]),
-        None => text.to_owned(),
-    }
-}
-
 impl Unlike {
     pub(crate) fn new(what: impl Into<String>, own: impl std::fmt::Debug, other: impl std::fmt::Debug) -> Self {
-        let (own, other) = (cut(&format!("{own:?}")), cut(&format!("{other:?}")));
+        let [own, other] = [format!("{own:?}"), format!("{other:?}")].map(|text| shortened(&text, MOST_CHARACTERS));
         Self {
             what: what.into(),
             own,

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use driftworld_text::shortened;
 use serde::Deserialize;
 use serde_json::Value;
 
@@ -194,12 +195,7 @@ impl<'a> Safetensors<'a> {
     }
 }
 
-/// A value as JSON, cut off where it is long.
+/// A value as a message shows it.
 fn shown(value: &Value) -> String {
-    let text = value.to_string();
-    if text.chars().count() <= 60 {
-        text
-    } else {
-        text.chars().take(60).chain(['…']).collect()
-    }
+    shortened(&value.to_string(), 60)
 }

@@ -3,12 +3,13 @@
 
 use std::fmt;
 
+use driftworld_text::{first_of, shortened};
 use gltf_json::Root;
 use serde::Deserialize;
 use serde::de::{Deserializer, IgnoredAny, MapAccess, Visitor};
 
 use super::limits::{MAX_IMPORT_DEPTH, MAX_IMPORT_NODES};
-use super::refusal::{at_most, refuse, shortened, shortened_to};
+use super::refusal::{at_most, quoted, refuse};
 use crate::EnvError;
 
 /// The most objects and lists: each may cost some hundred bytes of memory for two of text.
@@ -46,12 +47,12 @@ pub(super) fn parse(json: &str) -> Result<Root, EnvError> {
         let place = format!("line {}, column {}", error.line(), error.column());
         refuse(
             place,
-            format!("a fault: {}", shortened_to(MAX_WORDS, words)),
+            format!("a fault: {}", shortened(words, MAX_WORDS)),
             "glTF 2.0 JSON",
         )
     })?;
     if !root.asset.version.starts_with("2.") {
-        let found = format!("{:?}", shortened(&root.asset.version));
+        let found = quoted(&root.asset.version);
         return Err(refuse("/asset/version", found, "\"2.0\"; export as glTF 2.0"));
     }
     for (index, name) in root.extensions_required.iter().enumerate() {
@@ -62,7 +63,7 @@ pub(super) fn parse(json: &str) -> Result<Root, EnvError> {
             } else {
                 "an extension that can be left out; export without it"
             };
-            return Err(refuse(place, format!("{:?}", shortened(name)), expected));
+            return Err(refuse(place, quoted(name), expected));
         }
     }
     at_most(MAX_IMPORT_NODES, root.nodes.len(), "nodes", "/nodes")?;
@@ -150,33 +151,15 @@ pub(super) fn main_material(root: &Root, wanted: Option<&str>) -> Result<Option<
     let Some(name) = wanted else { return Ok(named("main")) };
     let found = named(name);
     if found.is_none() {
-        let names: Vec<String> = root
-            .materials
-            .iter()
-            .filter_map(|material| material.name.clone())
-            .collect();
+        let names = root.materials.iter().filter_map(|material| material.name.as_deref());
+        let names: Vec<String> = names.map(quoted).collect();
         let names = match names.len() {
             0 => "a file with named materials".to_owned(),
-            count => format!("one of {}", shortened_list(&names, count)),
+            _ => format!("one of {}", first_of(&names, 10)),
         };
         return Err(refuse("/materials", format!("none named {name:?}"), names));
     }
     Ok(found)
-}
-
-fn shortened_list(names: &[String], count: usize) -> String {
-    const SHOWN: usize = 10;
-    let shown: Vec<String> = names
-        .iter()
-        .take(SHOWN)
-        .map(|name| format!("{:?}", shortened(name)))
-        .collect();
-    let more = count.saturating_sub(SHOWN);
-    if more == 0 {
-        shown.join(", ")
-    } else {
-        format!("{} and {more} more", shown.join(", "))
-    }
 }
 
 #[cfg(test)]
@@ -201,9 +184,8 @@ mod tests {
     }
 
     #[test]
-    fn texts_are_shortened_between_letters() {
-        assert_eq!(shortened_to(3, "äöü"), "äöü");
-        assert_eq!(shortened_to(3, "äöüß"), "äöü…");
-        assert_eq!(shortened(&"é".repeat(100)).chars().count(), 61);
+    fn texts_are_quoted_no_longer_than_a_line() {
+        assert_eq!(quoted("é"), "\"é\"");
+        assert_eq!(quoted(&"é".repeat(100)).chars().count(), 2 + 61);
     }
 }

@@ -1,5 +1,7 @@
 //! What is said where a glTF file is refused.
 
+use driftworld_text::shortened;
+
 use crate::EnvError;
 
 /// What is found at a place of a file, and what was expected.
@@ -35,14 +37,6 @@ pub(super) fn one_of(length: usize) -> String {
 }
 
 /// A text of a file as it is quoted in a message: never more than a line of it.
-pub(super) fn shortened(text: &str) -> String {
-    shortened_to(60, text)
-}
-
-/// The first letters of a text, at most so many.
-pub(super) fn shortened_to(most: usize, text: &str) -> String {
-    match text.char_indices().nth(most) {
-        Some((end, _)) => format!("{}…", &text[..end]),
-        None => text.to_owned(),
-    }
+pub(super) fn quoted(text: &str) -> String {
+    format!("{:?}", shortened(text, 60))
 }

@@ -4,7 +4,7 @@
 use base64::Engine;
 
 use super::limits::MAX_IMPORT_BYTES;
-use super::refusal::{at_most, refuse, shortened};
+use super::refusal::{at_most, quoted, refuse};
 use crate::EnvError;
 
 /// Hands over a file that lies beside the glTF file, or says why it cannot. It is asked for relative paths that lead
@@ -18,7 +18,7 @@ pub(super) fn bytes(uri: &str, place: &str, read: &mut ReadBeside) -> Result<Vec
     } else {
         let path = path_inside(uri, place)?;
         read(&path).map_err(|reason| {
-            let found = format!("{:?}, which cannot be read: {reason}", shortened(&path));
+            let found = format!("{}, which cannot be read: {reason}", quoted(&path));
             refuse(place, found, "a file beside this one")
         })?
     };
@@ -28,8 +28,7 @@ pub(super) fn bytes(uri: &str, place: &str, read: &mut ReadBeside) -> Result<Vec
 
 fn embedded(uri: &str, place: &str) -> Result<Vec<u8>, EnvError> {
     let Some((_, text)) = uri.split_once(";base64,") else {
-        let found = format!("{:?}", shortened(uri));
-        return Err(refuse(place, found, "data:…;base64,…"));
+        return Err(refuse(place, quoted(uri), "data:…;base64,…"));
     };
     let engine = base64::engine::GeneralPurpose::new(
         &base64::alphabet::STANDARD,
@@ -41,10 +40,8 @@ fn embedded(uri: &str, place: &str) -> Result<Vec<u8>, EnvError> {
 
 /// A URI as a relative path that does not lead out of the folder.
 fn path_inside(uri: &str, place: &str) -> Result<String, EnvError> {
-    let outside = || {
-        let found = format!("{:?}", shortened(uri));
-        refuse(place, found, "the relative path of a file in the folder of this one")
-    };
+    let expected = "the relative path of a file in the folder of this one";
+    let outside = || refuse(place, quoted(uri), expected);
     let path = percent_decoded(uri).ok_or_else(outside)?;
     let leads_out = |part: &str| part == ".." || part.is_empty();
     let has_scheme = path.contains(':');
