@@ -23,9 +23,9 @@ pub struct Scene {
     /// Walls: the arena's own and regions that cannot be entered.
     pub walls: Vec<WallPanel>,
     arena_size: [f32; 2],
-    panels: Vec<PanelGroup>,
+    pub(crate) panels: Vec<PanelGroup>,
     /// The highest number of a class among its items.
-    highest_class: u16,
+    pub(crate) highest_class: u16,
     catalogue: Catalogue,
     /// Which looks its objects have.
     style: Style,
@@ -239,16 +239,6 @@ impl Scene {
     /// Side lengths of the arena along x and y in metres.
     pub fn arena_size(&self) -> [f32; 2] {
         self.arena_size
-    }
-
-    /// The walls as they are drawn: the arena's four, then one group for each region, then the zones on the ground.
-    pub(crate) fn panels(&self) -> &[PanelGroup] {
-        &self.panels
-    }
-
-    /// The highest number of a class that the scene's items are of; 0 without items.
-    pub(crate) fn highest_class(&self) -> u16 {
-        self.highest_class
     }
 
     fn add_walls(&mut self, world: &World) {

@@ -64,11 +64,6 @@ impl Route {
         open.min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(cell)
     }
 
-    /// Side of a cell in metres.
-    pub(super) fn side(&self) -> f32 {
-        self.occupancy.grid().side()
-    }
-
     /// A distance of the flood in metres.
     pub(super) fn metres(&self, distance: u32) -> f32 {
         distance as f32 / STRAIGHT as f32 * self.occupancy.grid().side()

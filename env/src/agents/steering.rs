@@ -96,7 +96,7 @@ pub(super) fn walk(goal: [f32; 2], sim: SimRef, route: &mut Route) -> [f64; 3] {
         1
     } else {
         // As far as a cell of open ground, however fine the cells are: how fast it walks does not depend on them.
-        (AHEAD_BESIDE_ZONES / route.side()).round().max(1.0) as usize
+        (AHEAD_BESIDE_ZONES / route.occupancy.grid().side()).round().max(1.0) as usize
     };
     let near = if costs { NEAR_BESIDE_ZONES } else { NEAR };
     let straight = distance(agent.position, goal);

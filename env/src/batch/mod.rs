@@ -228,7 +228,7 @@ impl Batch {
 
     /// Steps of the episode that an environment is in, as [`BatchOptions::max_episode_steps`] counts them.
     pub fn episode_steps(&self, env: usize) -> Option<u32> {
-        self.slots.get(env).map(Slot::steps)
+        self.slots.get(env).map(|slot| slot.steps)
     }
 
     /// Counts on from so many steps, for an episode that began elsewhere.

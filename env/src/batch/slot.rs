@@ -36,7 +36,7 @@ pub(super) struct Slot {
     /// Whether the next episode must begin before anything else happens.
     pub(super) is_over: bool,
     /// Steps of the episode that runs, and how many it may have.
-    steps: u32,
+    pub(super) steps: u32,
     limit: Option<NonZeroU32>,
     /// Takes the episode down, if that is wanted, and the episode before.
     recorder: Option<Recorder>,
@@ -105,10 +105,6 @@ impl Slot {
             env: self.env,
             index: self.current,
         }
-    }
-
-    pub(super) fn steps(&self) -> u32 {
-        self.steps
     }
 
     /// Counts on from so many steps; that may be the last.

@@ -204,7 +204,7 @@ impl CpuRenderer {
             return;
         }
         // Where class and category do not fit into a label together, pixels remember their item.
-        let fits = scene.highest_class() < 1 << (8 - CATEGORY_BITS);
+        let fits = scene.highest_class < 1 << (8 - CATEGORY_BITS);
         if target.instance.is_some() || (target.class.is_some() && !fits) {
             self.draw_with::<L, true>(lanes, scene, camera, target);
         } else {
@@ -242,7 +242,7 @@ impl CpuRenderer {
                     self.draw_item::<L, ITEMS>(lanes, item, index, visible, &view, &shader, scene);
                 }
                 Drawable::Panels(index) => {
-                    let group = &scene.panels()[index as usize];
+                    let group = &scene.panels[index as usize];
                     if self.hides && self.hidden.hides_panels(group, &view) {
                         continue;
                     }

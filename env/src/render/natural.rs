@@ -175,7 +175,7 @@ struct Picture<'a> {
 
 /// Whether a label has room for the classes of a scene's items: five bits.
 pub(super) fn labels_hold_classes(scene: &Scene) -> bool {
-    scene.highest_class() < CLASSES
+    scene.highest_class < CLASSES
 }
 
 impl CpuRenderer {
@@ -209,7 +209,7 @@ impl CpuRenderer {
             match visible.drawable {
                 Drawable::Item(index) => self.draw_natural_item::<L, ITEMS>(lanes, index, visible, &picture),
                 Drawable::Panels(index) => {
-                    let group = &scene.panels()[index as usize];
+                    let group = &scene.panels[index as usize];
                     if self.hides && self.hidden.hides_panels(group, &view) {
                         continue;
                     }
@@ -345,7 +345,7 @@ impl CpuRenderer {
                 }
                 Drawable::Panels(index) => {
                     let at = cast.placement(view, &Pose::WORLD);
-                    for block in &scene.panels()[index as usize].blocks {
+                    for block in &scene.panels[index as usize].blocks {
                         draw_block::<L, ITEMS, _>(lanes, &mut self.canvas, block, &at, &params);
                     }
                 }

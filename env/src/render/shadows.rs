@@ -122,7 +122,7 @@ pub(super) fn find(
     if looks.ceiling.is_some() {
         return;
     }
-    for (index, group) in (0..).zip(scene.panels()).skip(ARENA_WALLS) {
+    for (index, group) in (0..).zip(&scene.panels).skip(ARENA_WALLS) {
         if !group.edges.is_empty() {
             let [x, y, _] = group.middle;
             note(cast.ball([x, y], group.radius, group.height), Drawable::Panels(index));

@@ -45,7 +45,7 @@ pub(super) fn find(scene: &Scene, view: &View, walls_are_drawn: bool, found: &mu
             );
         }
     }
-    for (index, group) in scene.panels().iter().enumerate() {
+    for (index, group) in scene.panels.iter().enumerate() {
         if index >= ARENA_WALLS || !walls_are_drawn {
             note(group.middle, group.radius, Drawable::Panels(index as u32));
         }

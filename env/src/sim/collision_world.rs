@@ -328,7 +328,7 @@ impl CollisionWorld {
             // The tree's order depends on its past, which a world that was written down does not have.
             numbers.sort_unstable_by_key(|number| self.standing[*number as usize].rank);
         }
-        let corners = || numbers.iter().map(|number| self.whole[*number as usize].num_corners());
+        let corners = || numbers.iter().map(|number| self.whole[*number as usize].corners.len());
         let num_corners = is_whole.then(|| corners().sum());
         self.scratch.numbers = numbers;
         num_corners

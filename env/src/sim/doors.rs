@@ -122,13 +122,13 @@ fn is_stood_in(world: &World, state: &SimState, views: &mut Views, index: usize)
         let by_itself = object.motion_model != MotionModel::Stationary;
         object.door.is_none() && (by_itself || object.pushable.is_some() || object.portable.is_some())
     };
-    let corners = bodies.whole[own].corners();
+    let corners = &bodies.whole[own].corners;
     let side = |axis: usize, sign: f64| {
         let far = corners
             .iter()
             .map(|corner| corner[axis] * sign)
             .fold(f64::NEG_INFINITY, f64::max);
-        ((far + bodies.whole[own].rounding()) * sign) as f32
+        ((far + bodies.whole[own].rounding) * sign) as f32
     };
     let area = [-1.0, 1.0].map(|sign| [side(0, sign), side(1, sign)]);
     let is_stood_in = bodies.around(SOLID | GHOST, Some(handle), area).any(|other| {

@@ -116,7 +116,7 @@ impl Environment {
         // come.
         let resume = world.progress.is_some().then(|| ResumeState::out_of(&mut world));
         let mut views = Views::new(&world, catalogue);
-        let seed = Seed::of(&world, resume.as_ref().and_then(ResumeState::seed));
+        let seed = Seed::of(&world, resume.as_ref().and_then(|resume| resume.progress.seed.clone()));
         let mut identities = Identities::default();
         let mut state = SimState::new(&world, &seed, &mut identities);
         views.zones.resume(&[], &mut state);
@@ -128,7 +128,7 @@ impl Environment {
         }
         if let Some(resume) = resume.filter(ResumeState::has_begun) {
             resume.apply(&world, &mut state, &mut views);
-            if let (Some(policy), Some(progress)) = (&mut rails, resume.rails()) {
+            if let (Some(policy), Some(progress)) = (&mut rails, &resume.progress.rails) {
                 *policy = RailsPolicy::resumed(progress, &world, &views.scene);
             }
         }

@@ -15,9 +15,9 @@ pub(super) type Point = [f64; 2];
 #[derive(Clone, Debug, Default)]
 pub(super) struct Footprint {
     /// One for a disc, two for a wall of round ends; else more, counterclockwise, no two of them alike.
-    corners: SmallVec<[Point; 4]>,
+    pub(super) corners: SmallVec<[Point; 4]>,
     /// How far beyond its corners and edges it reaches, in metres.
-    rounding: f64,
+    pub(super) rounding: f64,
 }
 
 /// How near to its end a way counts as there, in metres.
@@ -80,21 +80,6 @@ impl Footprint {
     /// Its radius, if it is a disc.
     pub(super) fn as_disc(&self) -> Option<f64> {
         (self.corners.len() == 1).then_some(self.rounding)
-    }
-
-    /// How far beyond its corners and edges it reaches, in metres.
-    pub(super) fn rounding(&self) -> f64 {
-        self.rounding
-    }
-
-    /// Its corners, counterclockwise; the middle of a disc.
-    pub(super) fn corners(&self) -> &[Point] {
-        &self.corners
-    }
-
-    /// How many corners it has: what a question about it costs.
-    pub(super) fn num_corners(&self) -> usize {
-        self.corners.len()
     }
 
     /// How far it reaches from the origin, in metres.

@@ -64,7 +64,7 @@ impl CollisionWorld {
         let given = if body.as_disc().is_some() {
             0
         } else {
-            body.num_corners()
+            body.corners.len()
         };
         let num_corners = around.map(|corners| corners + given * self.scratch.numbers.len());
         let Some(num_corners) = num_corners.filter(|corners| given == 0 || budget.take(LOOKS_TO_TURN * corners)) else {

@@ -90,11 +90,11 @@ impl Outline {
         if let Some(radius) = self.whole.as_disc() {
             return SharedShape::ball(radius as f32);
         }
-        if let [from, to] = self.whole.corners() {
+        if let [from, to] = self.whole.corners.as_slice() {
             let half_length = (to[0] - from[0]) / 2.0;
-            return SharedShape::cuboid(half_length as f32, self.whole.rounding() as f32, TALL);
+            return SharedShape::cuboid(half_length as f32, self.whole.rounding as f32, TALL);
         }
-        let corners = self.whole.corners().iter();
+        let corners = self.whole.corners.iter();
         let corners: Vec<Vector> = corners
             .flat_map(|&[x, y]| [TALL, -TALL].map(|z| Vector::new(x as f32, y as f32, z)))
             .collect();

@@ -12,7 +12,7 @@ use super::views::Views;
 
 /// What a world that was written down says of its course, when the world itself has been taken back to its start.
 pub(super) struct ResumeState {
-    progress: Progress,
+    pub(super) progress: Progress,
     agent: ([f32; 2], f32),
     /// Where each object stands and faces, and what it is worth.
     objects: Vec<([f32; 2], f32, f64)>,
@@ -189,12 +189,6 @@ impl ResumeState {
         self.progress != only_seed
     }
 
-    /// The hash of the places of things at the start of the world, if random numbers depend on it and have been asked
-    /// for.
-    pub(super) fn seed(&self) -> Option<String> {
-        self.progress.seed.clone()
-    }
-
     /// Goes on from where a world had come when it was written down: the state and the views are at its start.
     pub(super) fn apply(&self, world: &World, state: &mut SimState, views: &mut Views) {
         let progress = &self.progress;
@@ -240,10 +234,5 @@ impl ResumeState {
             body.velocity = velocity.map(|speed| speed as f32);
             body.spin_deg = own.spin as f32;
         }
-    }
-
-    /// What a policy on rails was about to do, if that was written down.
-    pub(super) fn rails(&self) -> Option<&RailsProgress> {
-        self.progress.rails.as_ref()
     }
 }

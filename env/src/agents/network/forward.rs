@@ -65,10 +65,6 @@ pub(super) struct PatchNetwork {
 }
 
 impl PatchNetwork {
-    pub(super) fn side(&self) -> usize {
-        self.side
-    }
-
     /// Log-probabilities of the actions for an image `(side, side, 3)`, row 0 on top.
     pub(super) fn log_policy(&self, image: &[u8]) -> Vec<f64> {
         let (patches, line) = (self.side / PATCH, self.side * 3);

@@ -65,7 +65,7 @@ impl NetworkAgent {
 
     /// Draws what its camera shows.
     fn look(&mut self, environment: &Environment) {
-        let side = self.trained.network.side() as u32;
+        let side = self.trained.network.side as u32;
         self.image.resize((side * side * 3) as usize, 0);
         let mut target = Target {
             width: side,

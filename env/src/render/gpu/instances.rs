@@ -59,7 +59,7 @@ impl TileContents {
                 Drawable::Item(index) => {
                     self.add_item(&scene.items[index as usize], index, visible, &view, scene, labels);
                 }
-                Drawable::Panels(index) => self.add_panels(&scene.panels()[index as usize], &view, scene),
+                Drawable::Panels(index) => self.add_panels(&scene.panels[index as usize], &view, scene),
             }
         }
         self.visible = all_visible;

@@ -265,7 +265,7 @@ impl GpuRenderer {
 /// What must be drawn for a picture: everything at once, or colours apart if they are the mean of several points.
 fn jobs_for(index: usize, picture: &Picture<'_>) -> impl Iterator<Item = Job> + use<> {
     let target = &picture.target;
-    let fits = picture.scene.highest_class() < 1 << (8 - CATEGORY_BITS);
+    let fits = picture.scene.highest_class < 1 << (8 - CATEGORY_BITS);
     let labels = if fits { Labels::WithClass } else { Labels::CategoryOnly };
     let sampled = target.supersampling > 1 && target.rgb.is_some();
     let labelled = target.category.is_some() || (fits && target.class.is_some());
