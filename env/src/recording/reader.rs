@@ -65,12 +65,14 @@ impl<R: BufRead> RecordingReader<R> {
         };
         let expected = "the first line of a file of recordings, as run --record writes it";
         let Some(line) = this.line()? else {
-            return Err(this.wrong("an empty file", expected));
+            return Err(wrong(this.line, "an empty file", expected));
         };
-        let header: HeaderLine = serde_json::from_slice(&line).map_err(|_| this.wrong("another line", expected))?;
+        let header: HeaderLine =
+            serde_json::from_slice(&line).map_err(|_| wrong(this.line, "another line", expected))?;
         if header.recording_format != RECORDING_FORMAT {
             let expected = format!("format {RECORDING_FORMAT}; use the version of Driftworld that wrote it");
-            return Err(this.wrong(
+            return Err(wrong(
+                this.line,
                 format!(
                     "format {} of driftworld {:.40}",
                     header.recording_format, header.driftworld
@@ -89,17 +91,17 @@ impl<R: BufRead> RecordingReader<R> {
         loop {
             let place = self.mark();
             let Some(line) = self.line()? else { return Ok(None) };
-            let wrong = |this: &Self, error: &serde_json::Error| {
-                this.wrong(in_plain_words(error), "a line of a world or of an episode")
+            let no_line = |this: &Self, error: &serde_json::Error| {
+                wrong(this.line, in_plain_words(error), "a line of a world or of an episode")
             };
             if line.starts_with(b"{\"world_hash\":") {
-                let world: WorldLine = serde_json::from_slice(&line).map_err(|error| wrong(self, &error))?;
+                let world: WorldLine = serde_json::from_slice(&line).map_err(|error| no_line(self, &error))?;
                 let line = self.line;
                 // The last counts: it was written where one before could not be made out.
                 self.worlds.insert(world.world_hash, (line, world.world));
                 continue;
             }
-            let said: EpisodeLine = serde_json::from_slice(&line).map_err(|error| wrong(self, &error))?;
+            let said: EpisodeLine = serde_json::from_slice(&line).map_err(|error| no_line(self, &error))?;
             return Ok(Some(RecordedEpisode {
                 origin: said.origin.clone(),
                 steps: said.steps,
@@ -117,21 +119,13 @@ impl<R: BufRead> RecordingReader<R> {
     /// [`EnvError::Recording`] if its actions or its worlds cannot be read.
     pub fn recording(&self, episode: &RecordedEpisode) -> Result<Recording, EnvError> {
         let said = &episode.said;
-        let at = |line: u64, (found, expected): (String, String)| EnvError::Recording { line, found, expected };
+        let at_episode = |(found, expected): (String, String)| wrong(episode.line, found, expected);
         let world = self.world(episode.line, &said.world_hash)?;
-        check_said(said, &world).map_err(|error| at(episode.line, error))?;
-        let actions = said
-            .actions
-            .unpack(said.steps)
-            .map_err(|error| at(episode.line, error))?;
+        check_said(said, &world).map_err(at_episode)?;
+        let actions = said.actions.unpack(said.steps).map_err(at_episode)?;
         let ended_by = said.ended_by.as_deref().map(|word| {
             let known = EndedBy::ALL.into_iter().find(|known| known.word() == word);
-            known.ok_or_else(|| {
-                at(
-                    episode.line,
-                    (format!("ended_by {word:.40}"), "a word of this version".to_owned()),
-                )
-            })
+            known.ok_or_else(|| wrong(episode.line, format!("ended_by {word:.40}"), "a word of this version"))
         });
         let edits = said.edits.iter().map(|(step, hash)| {
             Ok(Edit {
@@ -160,7 +154,7 @@ impl<R: BufRead> RecordingReader<R> {
     {
         let by = place.offset.cast_signed() - self.offset.cast_signed();
         let turned = self.reader.seek_relative(by);
-        turned.map_err(|error| self.wrong(error.to_string(), "a file that can be read"))?;
+        turned.map_err(|error| wrong(self.line, error.to_string(), "a file that can be read"))?;
         (self.line, self.offset) = (place.line, place.offset);
         Ok(())
     }
@@ -188,25 +182,20 @@ impl<R: BufRead> RecordingReader<R> {
     }
 
     fn world(&self, line: u64, hash: &str) -> Result<World, EnvError> {
-        let missing = || EnvError::Recording {
-            line,
-            found: format!("world {hash:.16}, which has no line before it"),
-            expected: "its line: it is damaged, or gone".to_owned(),
+        let missing = || {
+            let found = format!("world {hash:.16}, which has no line before it");
+            wrong(line, found, "its line: it is damaged, or gone")
         };
         let (line, packed) = self.worlds.get(hash).ok_or_else(missing)?;
-        let wrong = |(found, expected): (String, String)| EnvError::Recording {
-            line: *line,
-            found,
-            expected,
-        };
-        let bytes = inflated(packed, MAX_BYTES as u64).map_err(wrong)?;
-        let text = String::from_utf8(bytes).map_err(|_| wrong(("bytes that are no text".into(), "a world".into())))?;
+        let at_world = |(found, expected): (String, String)| wrong(*line, found, expected);
+        let bytes = inflated(packed, MAX_BYTES as u64).map_err(at_world)?;
+        let text = String::from_utf8(bytes).map_err(|_| wrong(*line, "bytes that are no text", "a world"))?;
         let world = World::from_json("world", &text)
-            .map_err(|error| wrong((error.to_string(), "a world of this version".to_owned())))?;
+            .map_err(|error| wrong(*line, error.to_string(), "a world of this version"))?;
         let found = world.hash();
         if found != hash {
             let expected = format!("{hash:.64}: the world means something else in this version");
-            return Err(wrong((format!("the hash {found}"), expected)));
+            return Err(wrong(*line, format!("the hash {found}"), expected));
         }
         Ok(world)
     }
@@ -222,7 +211,7 @@ impl<R: BufRead> RecordingReader<R> {
         self.line += 1;
         match read {
             Err(error) if error.kind() != ErrorKind::UnexpectedEof => {
-                return Err(self.wrong(error.to_string(), "a file that can be read"));
+                return Err(wrong(self.line, error.to_string(), "a file that can be read"));
             }
             _ if line.is_empty() => return Ok(None),
             _ => {}
@@ -231,18 +220,18 @@ impl<R: BufRead> RecordingReader<R> {
         if line.pop() != Some(b'\n') {
             self.is_torn = true;
             let advice = "a line end: the writer was stopped in the midst of it; what stands before it is whole";
-            return Err(self.wrong("the end of the file", advice));
+            return Err(wrong(self.line, "the end of the file", advice));
         }
-        unsealed(&line).map_err(|(found, expected)| self.wrong(found, expected))?;
+        unsealed(&line).map_err(|(found, expected)| wrong(self.line, found, expected))?;
         Ok(Some(line))
     }
+}
 
-    fn wrong(&self, found: impl Into<String>, expected: impl Into<String>) -> EnvError {
-        EnvError::Recording {
-            line: self.line,
-            found: found.into(),
-            expected: expected.into(),
-        }
+fn wrong(line: u64, found: impl Into<String>, expected: impl Into<String>) -> EnvError {
+    EnvError::Recording {
+        line,
+        found: found.into(),
+        expected: expected.into(),
     }
 }
 
