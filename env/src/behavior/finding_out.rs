@@ -50,16 +50,17 @@ impl Expertise {
     /// # Ok::<(), driftworld_env::EnvError>(())
     /// ```
     pub fn finding_out(&self, homes: &[&World], abroad: &World) -> Result<ExpertRun, EnvError> {
-        if homes.is_empty() {
-            return self.at_home(abroad);
-        }
         let beliefs = homes.iter().map(|home| Belief::new(home, abroad, &self.catalogue));
         let mut beliefs: Vec<Belief> = beliefs.collect::<Result<_, _>>()?;
         let mut truth = Environment::with_catalogue(abroad.clone(), self.catalogue.clone());
         let (mut policy, mut run) = (RailsPolicy::default(), ExpertRun::default());
         let (mut step, mut foreseen) = (Step::default(), Step::default());
         while !truth.ended() && run.steps < self.steps.min(MAX_EXPERT_STEPS) {
-            let action = in_space(policy.steer(beliefs[0].at(&truth).sim()), truth.sim());
+            // Who believes something else does not know where zones are.
+            let action = match beliefs.first_mut() {
+                Some(belief) => in_space(policy.steer(belief.at(&truth).sim()), truth.sim()),
+                None => policy.act(truth.sim()),
+            };
             let mut agrees = vec![true; beliefs.len()];
             if beliefs.len() > 1 {
                 for belief in &mut beliefs {

@@ -8,10 +8,7 @@ mod tests;
 use driftworld_spec::World;
 
 use crate::EnvError;
-use crate::agents::{RailsPolicy, in_space};
 use crate::assets::Catalogue;
-use crate::sim::{Environment, Step};
-use belief::Belief;
 
 /// The most steps of an episode of an expert.
 pub const MAX_EXPERT_STEPS: u32 = 100_000;
@@ -49,9 +46,9 @@ impl Expertise {
     /// The expert of a world in its own world: [`OnRailsAgent`](crate::OnRailsAgent).
     ///
     /// # Errors
-    /// Those of [`Environment::step`].
+    /// Those of [`Environment::step`](crate::Environment::step).
     pub fn at_home(&self, world: &World) -> Result<ExpertRun, EnvError> {
-        self.live(world, None)
+        self.finding_out(&[], world)
     }
 
     /// The expert of the world `home` in the world `abroad`: it sees what is there and believes that it pays as at home.
@@ -66,7 +63,7 @@ impl Expertise {
     /// In a world that is `home` it does the same as [`at_home`](Self::at_home), to the bit.
     ///
     /// # Errors
-    /// Those of [`Environment::step`]; [`EnvError::BadWorld`] where the rules of one world cannot hold in the other.
+    /// Those of [`Environment::step`](crate::Environment::step); [`EnvError::BadWorld`] where the rules of one world cannot hold in the other.
     ///
     /// # Example
     /// ```
@@ -83,27 +80,6 @@ impl Expertise {
     /// # Ok::<(), driftworld_env::EnvError>(())
     /// ```
     pub fn abroad(&self, home: &World, abroad: &World) -> Result<ExpertRun, EnvError> {
-        let belief = Belief::new(home, abroad, &self.catalogue)?;
-        self.live(abroad, Some(belief))
-    }
-
-    fn live(&self, world: &World, mut belief: Option<Belief>) -> Result<ExpertRun, EnvError> {
-        let mut truth = Environment::with_catalogue(world.clone(), self.catalogue.clone());
-        let (mut policy, mut step, mut lived) = (RailsPolicy::default(), Step::default(), ExpertRun::default());
-        while !truth.ended() && lived.steps < self.steps.min(MAX_EXPERT_STEPS) {
-            // Who believes something else does not know where zones are.
-            let action = match &mut belief {
-                Some(belief) => in_space(policy.steer(belief.at(&truth).sim()), truth.sim()),
-                None => policy.act(truth.sim()),
-            };
-            truth.step_into(action, &mut step)?;
-            if let Some(belief) = &mut belief {
-                belief.note(&step);
-            }
-            lived.earned += step.reward;
-            lived.success |= step.success;
-            lived.steps += 1;
-        }
-        Ok(lived)
+        self.finding_out(&[home], abroad)
     }
 }
