@@ -1,9 +1,25 @@
-//! An agent that knows the map and tours what pays: the ceiling that a learner may come near. How it chooses is in
-//! `rails_policy.rs`.
+//! An agent that knows the map and tours what pays: the ceiling that a learner may come near. How it goes to one object is
+//! in `steering.rs`. A world on rails steers by it, too.
+
+use driftworld_spec::{Object, RailsProgress, Stimulus, World, Zone};
 
 use super::Agent;
-use super::rails_policy::RailsPolicy;
-use crate::sim::{Action, Environment};
+use super::errands::Errands;
+use super::nearest::Goal;
+use super::route::Route;
+use super::steering::{Purpose, Target, avoided, distance, fails, walk};
+use crate::ground;
+use crate::scene::Scene;
+use crate::sim::{Action, Environment, SimRef};
+
+/// Steps after which a target that was not reached is left for later.
+const PATIENCE: u32 = 150;
+
+/// Steps after which it looks again whether there is a way to anything.
+const IDLE: u32 = 20;
+
+/// How far from the edge of an object that will come back the agent waits for it, in metres.
+const ASIDE: f32 = 1.5;
 
 /// Tours all objects that pay, nearest first by the way around obstacles and surest first where rewards are uncertain,
 /// and then goes where the world's success lies.
@@ -11,7 +27,15 @@ use crate::sim::{Action, Environment};
 /// It reads the world's state, not its pictures.
 #[derive(Clone, Debug, Default)]
 pub struct OnRailsAgent {
-    policy: RailsPolicy,
+    target: Option<Target>,
+    steps_on_target: u32,
+    given_up: Vec<usize>,
+    /// Where the route leads while nothing but a zone is wanted.
+    zone_goal: Option<[f32; 2]>,
+    /// Leads to the target. Boxed: agents are moved about, and this is large.
+    route: Box<Route>,
+    /// Plans in worlds with doors and things, in place of the tour.
+    errands: Box<Errands>,
 }
 
 impl OnRailsAgent {
@@ -20,19 +44,222 @@ impl OnRailsAgent {
         Self::default()
     }
 
+    /// What it is about to do, to be written down.
+    pub(crate) fn progress(&self) -> RailsProgress {
+        let target = self.target.as_ref();
+        let errands = &self.errands;
+        if errands.target.is_some() || !errands.given_up.is_empty() {
+            return RailsProgress {
+                target: errands.target,
+                steps_on_target: errands.steps_on_target,
+                given_up: errands.given_up.clone(),
+                ..RailsProgress::default()
+            };
+        }
+        RailsProgress {
+            target: target.map(|target| target.object as u32),
+            goal: target.map_or([0.0; 2], |target| target.goal.map(f64::from)),
+            avoided: target.map_or_else(Vec::new, |target| target.avoided.clone()),
+            steps_on_target: self.steps_on_target,
+            given_up: self.given_up.iter().map(|index| *index as u32).collect(),
+        }
+    }
+
+    /// Goes on from what was written down. A checked world names none but its own objects.
+    pub(crate) fn resumed(progress: &RailsProgress, world: &World, scene: &Scene) -> Self {
+        let known = |index: &u32| (*index as usize) < world.objects.len();
+        if world.objects.iter().any(Object::is_used) {
+            let mut errands = Box::<Errands>::default();
+            errands.target = progress.target.filter(known);
+            errands.steps_on_target = progress.steps_on_target;
+            errands.given_up = progress.given_up.iter().copied().filter(known).collect();
+            return Self {
+                errands,
+                ..Self::default()
+            };
+        }
+        let mut route = Box::<Route>::default();
+        let target = progress.target.filter(known).map(|object| {
+            let goal = progress.goal.map(|metres| metres as f32);
+            let avoided: Vec<u32> = progress.avoided.iter().copied().filter(known).collect();
+            route.lead(world, scene, goal, &avoided);
+            Target {
+                object: object as usize,
+                goal,
+                avoided,
+            }
+        });
+        Self {
+            target,
+            steps_on_target: progress.steps_on_target,
+            given_up: progress.given_up.iter().map(|index| *index as usize).collect(),
+            zone_goal: None,
+            route,
+            errands: Box::default(),
+        }
+    }
+
     /// Whether nothing is worth going to.
-    pub(crate) fn is_done(environment: &Environment) -> bool {
-        RailsPolicy::is_done(environment.sim())
+    pub(crate) fn is_done(sim: SimRef) -> bool {
+        if sim.state.has_things {
+            return Errands::is_done(sim);
+        }
+        wanted(sim).is_empty()
+    }
+
+    fn choose(&mut self, sim: SimRef) {
+        let tiers = tiers(sim);
+        let given_up = self.given_up_of(sim);
+        if tiers.iter().flatten().all(|index| given_up.contains(*index)) {
+            self.given_up.clear();
+        }
+        (self.target, self.steps_on_target) = (None, 0);
+        for mut wanted in tiers {
+            self.target = self.nearest(sim, &wanted);
+            if self.target.is_some() {
+                return;
+            }
+            // There is no way to them.
+            let given_up = self.given_up_of(sim);
+            wanted.retain(|index| !given_up.contains(*index));
+            self.given_up.append(&mut wanted);
+        }
+    }
+
+    /// The nearest of these objects that was not given up; `None` where there is no way to any.
+    fn nearest(&mut self, sim: SimRef, wanted: &[usize]) -> Option<Target> {
+        let here = sim.agent().position;
+        let given_up = self.given_up_of(sim);
+        let (world, scene) = (sim.world, sim.scene());
+        let goals: Vec<Goal> = wanted
+            .iter()
+            .copied()
+            .filter(|index| !given_up.contains(*index))
+            .map(|index| Goal {
+                object: index as u32,
+                place: sim.objects()[index].position,
+                probability: world.objects[index].reward_probability.max(0.01) as f32,
+            })
+            .collect();
+        if goals.is_empty() {
+            return None;
+        }
+        let nearest = self.route.nearest(world, scene, here, &goals, &avoided(sim, None));
+        nearest.map(|number| Target::at(goals[number].object as usize, sim, &mut self.route))
+    }
+
+    fn given_up_of(&self, sim: SimRef) -> GivenUp {
+        let mut given_up = Vec::new();
+        if !self.given_up.is_empty() {
+            given_up.resize(sim.objects().len(), false);
+        }
+        // What was written down may name objects that the world does not have.
+        for index in &self.given_up {
+            if let Some(given_up) = given_up.get_mut(*index) {
+                *given_up = true;
+            }
+        }
+        GivenUp(given_up)
+    }
+
+    fn towards(&mut self, sim: SimRef) -> [f64; 3] {
+        let Some(target) = &self.target else {
+            if let Some(step) = self.towards_zone(sim) {
+                return step;
+            }
+            return if stands_in_the_way(sim) { back(sim) } else { [0.0; 3] };
+        };
+        let object = &sim.world.objects[target.object];
+        if reacts_to(object, Stimulus::AgentInteract) {
+            return target.towards(sim, Purpose::Interact, &mut self.route);
+        }
+        // A contact counts when it begins: what wants to be touched again is left first.
+        if sim.state.touches(target.object) && reacts_to(object, Stimulus::AgentCollide) {
+            return back(sim);
+        }
+        target.towards(sim, Purpose::Touch, &mut self.route)
+    }
+
+    /// The next step into the zone that is best to be in, and none once it is there; `None` without such a zone.
+    fn towards_zone(&mut self, sim: SimRef) -> Option<[f64; 3]> {
+        let here = sim.agent().position;
+        let zones = sim.world.environment_params.zones.iter();
+        let wanted = zones.filter(|zone| zone.is_wanted());
+        let goals = wanted.filter_map(|zone| Some((zone, ground::middle(zone)?.map(|metres| metres as f32))));
+        // What ends the episode well, then what pays most; of equals the nearest.
+        let value = |zone: &Zone| (zone.ends.is_some(), zone.reward_per_second, zone.reward_on_entering);
+        let (zone, goal) = goals.max_by(|(a, to_a), (b, to_b)| {
+            let (a, b) = (value(a), value(b));
+            let pay = a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.total_cmp(&b.2));
+            pay.then(distance(here, *to_b).total_cmp(&distance(here, *to_a)))
+        })?;
+        if zone.contains(here.map(f64::from)) {
+            return Some([0.0; 3]);
+        }
+        if self.zone_goal != Some(goal) {
+            self.route.lead(sim.world, sim.scene(), goal, &avoided(sim, None));
+            self.zone_goal = Some(goal);
+        }
+        Some(walk(goal, sim, &mut self.route))
+    }
+
+    /// What it does next, as speed, turn rate and interaction, whatever actions the world takes.
+    pub(crate) fn steer(&mut self, sim: SimRef) -> [f64; 3] {
+        let step = if sim.state.has_things {
+            self.errands.steer(sim)
+        } else {
+            self.tour(sim)
+        };
+        self.errands.shield().slowed(sim, step)
+    }
+
+    fn tour(&mut self, sim: SimRef) -> [f64; 3] {
+        self.steps_on_target = self.steps_on_target.saturating_add(1);
+        let given_up = self.given_up_of(sim);
+        let wanted = given_up.tier(tiers(sim));
+        let stale = self
+            .target
+            .as_ref()
+            .is_none_or(|target| !wanted.contains(&target.object));
+        if !stale && self.steps_on_target > PATIENCE {
+            self.given_up.extend(self.target.as_ref().map(|target| target.object));
+        }
+        // Where there is no way to anything, it looks again now and then.
+        let waits = self.target.is_none()
+            && self.steps_on_target < IDLE
+            && wanted.iter().all(|index| given_up.contains(*index));
+        if wanted.is_empty() {
+            self.target = None;
+        } else if (stale || self.steps_on_target > PATIENCE) && !waits {
+            self.choose(sim);
+        }
+        if self.target.is_some() {
+            self.zone_goal = None;
+        }
+        if let Some(target) = self.target.as_mut().filter(|target| target.is_astray(sim)) {
+            *target = Target::at(target.object, sim, &mut self.route);
+        }
+        self.towards(sim)
     }
 }
 
 impl Agent for OnRailsAgent {
     fn act(&mut self, environment: &Environment) -> Action {
-        self.policy.act(environment.sim())
+        let sim = environment.sim();
+        let step = self.steer(sim);
+        self.errands.shield().in_space(step, sim)
     }
 
+    // What the route knows of the ground it looks at again before it uses it.
     fn begin(&mut self, _seed: u64) {
-        self.policy.begin();
+        let route = std::mem::take(&mut self.route);
+        let mut errands = std::mem::take(&mut self.errands);
+        errands.begin();
+        *self = Self {
+            route,
+            errands,
+            ..Self::default()
+        };
     }
 
     fn learns(&self) -> bool {
@@ -42,4 +269,74 @@ impl Agent for OnRailsAgent {
     fn frozen(&self) -> Option<Box<dyn Agent + Send>> {
         Some(Box::new(self.clone()))
     }
+}
+
+/// For each object whether it was given up; empty where none was.
+struct GivenUp(Vec<bool>);
+
+impl GivenUp {
+    fn contains(&self, index: usize) -> bool {
+        self.0.get(index).is_some_and(|given_up| *given_up)
+    }
+
+    /// The tier that counts: the first of which not all is given up; all where nothing else is left.
+    fn tier(&self, mut tiers: [Vec<usize>; 3]) -> Vec<usize> {
+        let is_left = |index: &usize| !self.contains(*index);
+        match tiers.iter().position(|tier| tier.iter().any(is_left)) {
+            Some(number) => std::mem::take(&mut tiers[number]),
+            None => tiers.concat(),
+        }
+    }
+}
+
+/// The objects worth going to, by index: those that pay now, without those whose touch is a success as long as others pay; if
+/// nothing pays, those whose touch is a success.
+pub(super) fn wanted(sim: SimRef) -> Vec<usize> {
+    tiers(sim).into_iter().find(|tier| !tier.is_empty()).unwrap_or_default()
+}
+
+/// The objects worth going to, by index, those that come first before others: what pays and does not end the episode, what pays and
+/// ends it well, what ends it well. What touching fails is none.
+fn tiers(sim: SimRef) -> [Vec<usize>; 3] {
+    let world = sim.world;
+    let states = sim.objects();
+    // In a sequence only what comes first of what is left pays.
+    let left = world.objects.iter().zip(states).filter(|(_, state)| !state.collected);
+    let first = left.filter_map(|(object, _)| object.order).min();
+    let in_turn = |index: &usize| {
+        let order = world.objects[*index].order;
+        order.is_none_or(|own| first.is_none_or(|first| own <= first))
+    };
+    let pays =
+        |index: &usize| world.objects[*index].is_target() && states[*index].present && states[*index].reward > 0.0;
+    let is_safe = |index: &usize| !fails(world, &world.objects[*index]);
+    let ends = |index: &usize| {
+        let mut conditions = world.rules.success.iter();
+        conditions.any(|condition| condition.is_touch_of(&world.objects[*index]))
+    };
+    let paying = (0..states.len()).filter(pays).filter(in_turn).filter(is_safe);
+    let (last, before): (Vec<usize>, Vec<usize>) = paying.partition(ends);
+    let is_left = |index: &usize| states[*index].present && !last.contains(index);
+    let ending = (0..states.len()).filter(ends).filter(is_left).collect();
+    [before, last, ending]
+}
+
+/// Whether the agent stands where something that pays would come back.
+fn stands_in_the_way(sim: SimRef) -> bool {
+    let here = sim.agent().position;
+    let objects = sim.world.objects.iter().zip(sim.objects()).enumerate();
+    let mut gone =
+        objects.filter(|(_, (object, state))| !state.present && object.respawn.is_some() && object.is_target());
+    gone.any(|(index, (object, _))| {
+        let first_place = object.coordinates.map(|metres| metres as f32);
+        distance(here, first_place) < ASIDE + sim.body_radius(index)
+    })
+}
+
+fn back(sim: SimRef) -> [f64; 3] {
+    [-sim.world.agent_params.max_linear_speed / 2.0, 0.0, 0.0]
+}
+
+pub(super) fn reacts_to(object: &Object, stimulus: Stimulus) -> bool {
+    object.reward_stimulus.contains(&stimulus) || object.reward_once_stimulus.contains(&stimulus)
 }

@@ -97,7 +97,7 @@ impl ScriptedAgent {
         match self.commands[self.now].clone() {
             Command::Act { action, steps } => (self.steps < steps).then_some(action),
             Command::Tour { steps } => {
-                let goes_on = self.steps < steps && !OnRailsAgent::is_done(environment);
+                let goes_on = self.steps < steps && !OnRailsAgent::is_done(environment.sim());
                 goes_on.then(|| self.rails.act(environment))
             }
             Command::Go { name, until, steps } => {

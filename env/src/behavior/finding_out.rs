@@ -6,7 +6,7 @@ use driftworld_spec::World;
 use super::belief::Belief;
 use super::{ExpertRun, Expertise, MAX_EXPERT_STEPS};
 use crate::EnvError;
-use crate::agents::{RailsPolicy, in_space};
+use crate::agents::{Agent, OnRailsAgent, in_space};
 use crate::sim::{Environment, Step};
 
 /// Rewards that differ by no more than this are the same.
@@ -53,13 +53,13 @@ impl Expertise {
         let beliefs = homes.iter().map(|home| Belief::new(home, abroad, &self.catalogue));
         let mut beliefs: Vec<Belief> = beliefs.collect::<Result<_, _>>()?;
         let mut truth = Environment::with_catalogue(abroad.clone(), self.catalogue.clone());
-        let (mut policy, mut run) = (RailsPolicy::default(), ExpertRun::default());
+        let (mut expert, mut run) = (OnRailsAgent::new(), ExpertRun::default());
         let (mut step, mut foreseen) = (Step::default(), Step::default());
         while !truth.ended() && run.steps < self.steps.min(MAX_EXPERT_STEPS) {
             // Who believes something else does not know where zones are.
             let action = match beliefs.first_mut() {
-                Some(belief) => in_space(policy.steer(belief.at(&truth).sim()), truth.sim()),
-                None => policy.act(truth.sim()),
+                Some(belief) => in_space(expert.steer(belief.at(&truth).sim()), truth.sim()),
+                None => expert.act(&truth),
             };
             let mut agrees = vec![true; beliefs.len()];
             if beliefs.len() > 1 {
@@ -77,7 +77,7 @@ impl Expertise {
             }
             if agrees.contains(&true) {
                 if !agrees[0] {
-                    policy = RailsPolicy::default();
+                    expert = OnRailsAgent::new();
                 }
                 let mut kept = agrees.into_iter();
                 beliefs.retain(|_| kept.next() == Some(true));

@@ -17,7 +17,7 @@ use super::views::Views;
 use super::walls;
 use super::warning::Warning;
 use crate::EnvError;
-use crate::agents::RailsPolicy;
+use crate::agents::OnRailsAgent;
 use crate::assets::Catalogue;
 use crate::render::{Frame, Renderer, RendererKind};
 use crate::scene::Scene;
@@ -45,7 +45,7 @@ pub struct Environment {
     pub(super) state: SimState,
     pub(super) views: Views,
     /// Who steers in a world on rails.
-    pub(super) rails: Option<RailsPolicy>,
+    pub(super) rails: Option<OnRailsAgent>,
     pub(super) had_targets: bool,
     /// The objects' tags, for events.
     pub(super) tags: Vec<Option<Arc<str>>>,
@@ -120,7 +120,7 @@ impl Environment {
         let mut identities = Identities::default();
         let mut state = SimState::new(&world, &seed, &mut identities);
         views.zones.resume(&[], &mut state);
-        let mut rails = (world.agent_params.action_model == ActionModel::OnRails).then(RailsPolicy::default);
+        let mut rails = (world.agent_params.action_model == ActionModel::OnRails).then(OnRailsAgent::default);
         for door in &state.doors {
             if state.objects[door.object].open {
                 views.sync_object(door.object, &world.objects[door.object], &state.objects[door.object]);
@@ -129,7 +129,7 @@ impl Environment {
         if let Some(resume) = resume.filter(ResumeState::has_begun) {
             resume.apply(&world, &mut state, &mut views);
             if let (Some(policy), Some(progress)) = (&mut rails, &resume.progress.rails) {
-                *policy = RailsPolicy::resumed(progress, &world, &views.scene);
+                *policy = OnRailsAgent::resumed(progress, &world, &views.scene);
             }
         }
         Self {

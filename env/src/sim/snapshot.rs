@@ -10,7 +10,7 @@ use super::environment::Environment;
 use super::progress::{agent_now, object_now, to_world};
 use super::rng::Seed;
 use super::state::SimState;
-use crate::agents::RailsPolicy;
+use crate::agents::OnRailsAgent;
 use crate::assets::Catalogue;
 
 /// A moment of a running world, in memory.
@@ -23,7 +23,7 @@ pub struct Snapshot {
     catalogue: Catalogue,
     seed: Seed,
     state: SimState,
-    rails: Option<RailsPolicy>,
+    rails: Option<OnRailsAgent>,
 }
 
 impl fmt::Debug for Snapshot {
@@ -88,7 +88,7 @@ impl Environment {
     /// # Ok::<(), driftworld_env::EnvError>(())
     /// ```
     pub fn state(&self) -> World {
-        to_world(self.sim(), &self.seed, self.rails.as_ref().map(RailsPolicy::progress))
+        to_world(self.sim(), &self.seed, self.rails.as_ref().map(OnRailsAgent::progress))
     }
 
     /// The agent of the world, where it is now: to the bit where it started if it is there.

@@ -3,7 +3,7 @@
 
 use driftworld_spec::{EndCondition, Object, Stimulus};
 
-use super::super::rails_policy::wanted;
+use super::super::on_rails::{reacts_to, wanted};
 use super::plan::{can_interact, usable};
 use crate::sim::SimRef;
 
@@ -64,13 +64,10 @@ fn ends_by_touch(sim: SimRef, index: u32) -> bool {
 /// What makes an object pay, or counts as touching it.
 pub(super) fn toward(sim: SimRef, index: u32) -> Wish<'static> {
     let (object, own) = (&sim.world.objects[index as usize], &sim.objects()[index as usize]);
-    let pays = |stimulus: Stimulus| {
-        object.reward_stimulus.contains(&stimulus) || object.reward_once_stimulus.contains(&stimulus)
-    };
-    if moving(object, own.open).any(|list| list.iter().any(|stimulus| pays(*stimulus))) {
+    if moving(object, own.open).any(|list| list.iter().any(|stimulus| reacts_to(object, *stimulus))) {
         return Wish::Move(index);
     }
-    let by_hand = pays(Stimulus::AgentInteract) && can_interact(sim.world);
+    let by_hand = reacts_to(object, Stimulus::AgentInteract) && can_interact(sim.world);
     if by_hand { Wish::Use(index) } else { Wish::Touch(index) }
 }
 
