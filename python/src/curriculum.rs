@@ -12,7 +12,7 @@ use driftworld_curriculum::{
     CurriculumError, Experience, FoundWorld, Journal, MOST_STEPS, Plan, Progress, REPEATED_EVALUATIONS, Repeats,
     Rollout, Tried, Undrawable, run_rollout,
 };
-use driftworld_env::{EndedBy, Recording};
+use driftworld_env::Recording;
 use driftworld_spec::{BlockKind, Scenario, TaskSpec, World};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -338,7 +338,7 @@ impl Rollout for PythonRollout<'_> {
             steps,
             seconds,
             truncated,
-            ended_by: ended_by.and_then(|word| EndedBy::ALL.into_iter().find(|one| one.word() == word)),
+            ended_by: ended_by.and_then(|word| word.parse().ok()),
         }))
     }
 

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use driftworld_curriculum::{CurriculumError, ENDED_BY, Experience, Journal, Plan, Progress, Rollout, run_rollout};
-use driftworld_env::{EndedBy, RandomAgent};
+use driftworld_env::RandomAgent;
 use driftworld_metrics::{Record, Timestamp};
 use driftworld_spec::{BlockKind, World};
 
@@ -34,10 +34,7 @@ impl Rollout for Replay {
             steps: record.metrics["episode_step_count"] as u32,
             seconds: record.metrics["time_to_completion"],
             truncated: record.metrics["truncated"] == 1.0,
-            ended_by: record
-                .texts
-                .get(ENDED_BY)
-                .and_then(|word| EndedBy::ALL.into_iter().find(|one| one.word() == word)),
+            ended_by: record.texts.get(ENDED_BY).and_then(|word| word.parse().ok()),
         }))
     }
 

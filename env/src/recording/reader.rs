@@ -124,8 +124,8 @@ impl<R: BufRead> RecordingReader<R> {
         check_said(said, &world).map_err(at_episode)?;
         let actions = said.actions.unpack(said.steps).map_err(at_episode)?;
         let ended_by = said.ended_by.as_deref().map(|word| {
-            let known = EndedBy::ALL.into_iter().find(|known| known.word() == word);
-            known.ok_or_else(|| wrong(episode.line, format!("ended_by {word:.40}"), "a word of this version"))
+            let parsed = word.parse::<EndedBy>();
+            parsed.map_err(|_| wrong(episode.line, format!("ended_by {word:.40}"), "a word of this version"))
         });
         let edits = said.edits.iter().map(|(step, hash)| {
             Ok(Edit {

@@ -23,8 +23,9 @@ pub struct Event {
 }
 
 /// What a door, a switch or a thing that is carried did at a stimulus.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum Effect {
     /// The door opened.
     Opened,
@@ -41,19 +42,14 @@ pub enum Effect {
 impl Effect {
     /// Its name, as events are written.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Opened => "opened",
-            Self::Closed => "closed",
-            Self::Switched => "switched",
-            Self::PickedUp => "picked_up",
-            Self::PutDown => "put_down",
-        }
+        self.into()
     }
 }
 
 /// Why an episode ended. Whether that was a success is said beside it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, strum::EnumString, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 #[non_exhaustive]
 pub enum EndedBy {
     /// No object is left that pays a positive reward.
@@ -79,34 +75,9 @@ pub enum EndedBy {
 }
 
 impl EndedBy {
-    /// All of them.
-    pub const ALL: [Self; 10] = [
-        Self::AllCollected,
-        Self::Touch,
-        Self::Opened,
-        Self::Carried,
-        Self::Delivered,
-        Self::Return,
-        Self::Energy,
-        Self::Zone,
-        Self::Steps,
-        Self::Time,
-    ];
-
     /// The word that logs have for it.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::AllCollected => "all_collected",
-            Self::Touch => "touch",
-            Self::Opened => "opened",
-            Self::Carried => "carried",
-            Self::Delivered => "delivered",
-            Self::Return => "return",
-            Self::Energy => "energy",
-            Self::Zone => "zone",
-            Self::Steps => "steps",
-            Self::Time => "time",
-        }
+    pub fn word(self) -> &'static str {
+        self.into()
     }
 }
 
