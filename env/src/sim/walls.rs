@@ -2,9 +2,26 @@
 
 use driftworld_spec::World;
 
-use super::obstacle::Obstacle;
 use super::sim_ref::SimRef;
 use crate::polygon::is_near_or_inside;
+
+/// What stands where the agent should stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::Display)]
+#[non_exhaustive]
+pub enum Obstacle {
+    /// Nothing: the place is outside the arena, or not a place at all.
+    #[strum(to_string = "no ground of the arena")]
+    Outside,
+    /// A wall, or a region that cannot be entered.
+    #[strum(to_string = "a wall")]
+    Wall,
+    /// A solid object.
+    #[strum(to_string = "object {index}")]
+    Object {
+        /// Its index in the world.
+        index: usize,
+    },
+}
 
 /// What of the arena and its walls is in the way of a round body of this radius in metres.
 pub(super) fn obstacle(world: &World, position: [f64; 2], radius: f64) -> Option<Obstacle> {
