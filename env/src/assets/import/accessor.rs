@@ -1,9 +1,9 @@
 //! Numbers out of buffers: positions, texture coordinates, colours, indices. Every count and range is checked before
 //! anything is read or memory is taken.
 
+use gltf_json::Index;
 use gltf_json::accessor::{Accessor, ComponentType, GenericComponentType, Type};
 use gltf_json::validation::Checked;
-use gltf_json::{Index, Root};
 
 use super::buffers::Buffers;
 use super::refusal::{named, one_of, refuse};
@@ -28,111 +28,106 @@ struct Sound<'a> {
     count: usize,
 }
 
-/// How many elements an accessor says it has; at most a million vertices, or indices for a million triangles.
-pub(super) fn count(root: &Root, index: Index<Accessor>, for_use: Use, place: &str) -> Result<usize, EnvError> {
-    sound(root, index, for_use, place).map(|sound| sound.count)
-}
+impl Buffers<'_> {
+    /// How many elements an accessor says it has; at most a million vertices, or indices for a million triangles.
+    pub(super) fn count(&self, index: Index<Accessor>, for_use: Use, place: &str) -> Result<usize, EnvError> {
+        self.sound(index, for_use, place).map(|sound| sound.count)
+    }
 
-/// The numbers of an accessor, element by element, the first three of each; what is missing is 0.
-pub(super) fn vectors(
-    root: &Root,
-    buffers: &Buffers,
-    index: Index<Accessor>,
-    for_use: Use,
-    place: &str,
-) -> Result<Vec<[f32; 3]>, EnvError> {
-    let sound = sound(root, index, for_use, place)?;
-    let (bytes, stride, size) = sound.bytes(buffers)?;
-    let mut vectors = Vec::with_capacity(sound.count);
-    for element in 0..sound.count {
-        let bytes = &bytes[element * stride..];
-        let mut vector = [0.0; 3];
-        for (k, number) in vector.iter_mut().enumerate().take(sound.width) {
-            *number = match (sound.component, &bytes[k * size..]) {
-                (ComponentType::F32, [a, b, c, d, ..]) => f32::from_le_bytes([*a, *b, *c, *d]),
-                (ComponentType::U16, [a, b, ..]) => f32::from(u16::from_le_bytes([*a, *b])) / 65_535.0,
-                (_, [byte, ..]) => f32::from(*byte) / 255.0,
-                (_, []) => 0.0,
+    /// The numbers of an accessor, element by element, the first three of each; what is missing is 0.
+    pub(super) fn vectors(&self, index: Index<Accessor>, for_use: Use, place: &str) -> Result<Vec<[f32; 3]>, EnvError> {
+        let sound = self.sound(index, for_use, place)?;
+        let (bytes, stride, size) = sound.bytes(self)?;
+        let mut vectors = Vec::with_capacity(sound.count);
+        for element in 0..sound.count {
+            let bytes = &bytes[element * stride..];
+            let mut vector = [0.0; 3];
+            for (k, number) in vector.iter_mut().enumerate().take(sound.width) {
+                *number = match (sound.component, &bytes[k * size..]) {
+                    (ComponentType::F32, [a, b, c, d, ..]) => f32::from_le_bytes([*a, *b, *c, *d]),
+                    (ComponentType::U16, [a, b, ..]) => f32::from(u16::from_le_bytes([*a, *b])) / 65_535.0,
+                    (_, [byte, ..]) => f32::from(*byte) / 255.0,
+                    (_, []) => 0.0,
+                };
+            }
+            if !vector.iter().all(|number| number.is_finite()) {
+                let place = format!("{}, element {element}", sound.place);
+                return Err(refuse(place, format!("{vector:?}"), "finite numbers"));
+            }
+            vectors.push(vector);
+        }
+        Ok(vectors)
+    }
+
+    /// Indices of corners, each below `num_corners`.
+    pub(super) fn indices(
+        &self,
+        index: Index<Accessor>,
+        num_corners: usize,
+        place: &str,
+    ) -> Result<Vec<u32>, EnvError> {
+        let sound = self.sound(index, Use::Indices, place)?;
+        let (bytes, stride, _) = sound.bytes(self)?;
+        let mut indices = Vec::with_capacity(sound.count);
+        for element in 0..sound.count {
+            let corner = match (sound.component, &bytes[element * stride..]) {
+                (ComponentType::U32, [a, b, c, d, ..]) => u32::from_le_bytes([*a, *b, *c, *d]),
+                (ComponentType::U16, [a, b, ..]) => u32::from(u16::from_le_bytes([*a, *b])),
+                (_, [byte, ..]) => u32::from(*byte),
+                (_, []) => 0,
             };
+            if corner as usize >= num_corners {
+                let place = format!("{}, element {element}", sound.place);
+                return Err(refuse(place, format!("corner {corner}"), one_of(num_corners)));
+            }
+            indices.push(corner);
         }
-        if !vector.iter().all(|number| number.is_finite()) {
-            let place = format!("{}, element {element}", sound.place);
-            return Err(refuse(place, format!("{vector:?}"), "finite numbers"));
-        }
-        vectors.push(vector);
+        Ok(indices)
     }
-    Ok(vectors)
-}
 
-/// Indices of corners, each below `num_corners`.
-pub(super) fn indices(
-    root: &Root,
-    buffers: &Buffers,
-    index: Index<Accessor>,
-    num_corners: usize,
-    place: &str,
-) -> Result<Vec<u32>, EnvError> {
-    let sound = sound(root, index, Use::Indices, place)?;
-    let (bytes, stride, _) = sound.bytes(buffers)?;
-    let mut indices = Vec::with_capacity(sound.count);
-    for element in 0..sound.count {
-        let corner = match (sound.component, &bytes[element * stride..]) {
-            (ComponentType::U32, [a, b, c, d, ..]) => u32::from_le_bytes([*a, *b, *c, *d]),
-            (ComponentType::U16, [a, b, ..]) => u32::from(u16::from_le_bytes([*a, *b])),
-            (_, [byte, ..]) => u32::from(*byte),
-            (_, []) => 0,
+    fn sound(&self, index: Index<Accessor>, for_use: Use, from: &str) -> Result<Sound<'_>, EnvError> {
+        let accessor = named(&self.root.accessors, index.value(), "accessor", from)?;
+        let place = format!("/accessors/{}", index.value());
+        if accessor.sparse.is_some() {
+            let found = "a sparse accessor";
+            return Err(refuse(place, found, "plain ones; export without sparse accessors"));
+        }
+        let (Checked::Valid(GenericComponentType(component)), Checked::Valid(shape)) =
+            (accessor.component_type, accessor.type_)
+        else {
+            return Err(refuse(place, "an unknown type or componentType", for_use.expected()));
         };
-        if corner as usize >= num_corners {
-            let place = format!("{}, element {element}", sound.place);
-            return Err(refuse(place, format!("corner {corner}"), one_of(num_corners)));
+        let width = match shape {
+            Type::Scalar => 1,
+            Type::Vec2 => 2,
+            Type::Vec3 => 3,
+            _ => 4,
+        };
+        if !for_use.allows(component, shape, accessor.normalized) {
+            let normalized = if accessor.normalized { ", normalized" } else { "" };
+            let found = format!("{shape:?} of {component:?}{normalized}");
+            return Err(refuse(place, found, for_use.expected()));
         }
-        indices.push(corner);
+        let most = match for_use {
+            Use::Indices => 3 * MAX_MODEL_TRIANGLES,
+            _ => MAX_MODEL_VERTICES,
+        };
+        let count = accessor.count.0;
+        if count > most as u64 {
+            return Err(refuse(
+                format!("{place}/count"),
+                count.to_string(),
+                format!("at most {most}"),
+            ));
+        }
+        Ok(Sound {
+            accessor,
+            place,
+            component,
+            width,
+            count: count as usize,
+        })
     }
-    Ok(indices)
-}
-
-fn sound<'a>(root: &'a Root, index: Index<Accessor>, for_use: Use, from: &str) -> Result<Sound<'a>, EnvError> {
-    let accessor = named(&root.accessors, index.value(), "accessor", from)?;
-    let place = format!("/accessors/{}", index.value());
-    if accessor.sparse.is_some() {
-        let found = "a sparse accessor";
-        return Err(refuse(place, found, "plain ones; export without sparse accessors"));
-    }
-    let (Checked::Valid(GenericComponentType(component)), Checked::Valid(shape)) =
-        (accessor.component_type, accessor.type_)
-    else {
-        return Err(refuse(place, "an unknown type or componentType", for_use.expected()));
-    };
-    let width = match shape {
-        Type::Scalar => 1,
-        Type::Vec2 => 2,
-        Type::Vec3 => 3,
-        _ => 4,
-    };
-    if !for_use.allows(component, shape, accessor.normalized) {
-        let normalized = if accessor.normalized { ", normalized" } else { "" };
-        let found = format!("{shape:?} of {component:?}{normalized}");
-        return Err(refuse(place, found, for_use.expected()));
-    }
-    let most = match for_use {
-        Use::Indices => 3 * MAX_MODEL_TRIANGLES,
-        _ => MAX_MODEL_VERTICES,
-    };
-    let count = accessor.count.0;
-    if count > most as u64 {
-        return Err(refuse(
-            format!("{place}/count"),
-            count.to_string(),
-            format!("at most {most}"),
-        ));
-    }
-    Ok(Sound {
-        accessor,
-        place,
-        component,
-        width,
-        count: count as usize,
-    })
 }
 
 impl Sound<'_> {

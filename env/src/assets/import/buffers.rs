@@ -14,7 +14,7 @@ const MAX_BYTES: usize = 256 << 20;
 
 /// All buffers of a file.
 pub(super) struct Buffers<'a> {
-    root: &'a Root,
+    pub(super) root: &'a Root,
     data: Vec<Cow<'a, [u8]>>,
 }
 

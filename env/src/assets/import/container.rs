@@ -3,22 +3,13 @@
 use super::refusal::refuse;
 use crate::EnvError;
 
-/// The parts of a file.
-pub(super) struct Container<'a> {
-    pub(super) json: &'a str,
-    /// The binary chunk of a GLB file.
-    pub(super) binary: Option<&'a [u8]>,
-}
-
 const JSON: u32 = 0x4E4F_534A;
 const BIN: u32 = 0x004E_4942;
 
-pub(super) fn open(bytes: &[u8]) -> Result<Container<'_>, EnvError> {
+/// The JSON of a file, and the binary chunk of one that is GLB.
+pub(super) fn open(bytes: &[u8]) -> Result<(&str, Option<&[u8]>), EnvError> {
     if !bytes.starts_with(b"glTF") {
-        return Ok(Container {
-            json: text(bytes)?,
-            binary: None,
-        });
+        return Ok((text(bytes)?, None));
     }
     let (Some(version), Some(length)) = (number(bytes, 4), number(bytes, 8)) else {
         let found = format!("{} bytes", bytes.len());
@@ -44,10 +35,7 @@ pub(super) fn open(bytes: &[u8]) -> Result<Container<'_>, EnvError> {
         return Err(refuse("GLB chunk 0", "no JSON", "the JSON chunk first"));
     };
     let binary = chunks.get(1).filter(|(kind, _)| *kind == BIN).map(|(_, data)| *data);
-    Ok(Container {
-        json: text(json)?,
-        binary,
-    })
+    Ok((text(json)?, binary))
 }
 
 /// A chunk's kind and data, and what follows it.
@@ -71,8 +59,7 @@ fn chunk(bytes: &[u8], index: usize) -> Result<(u32, &[u8], &[u8]), EnvError> {
 }
 
 fn number(bytes: &[u8], at: usize) -> Option<u32> {
-    let four = bytes.get(at..at + 4)?;
-    Some(u32::from_le_bytes(four.try_into().ok()?))
+    bytes.get(at..)?.first_chunk().map(|four| u32::from_le_bytes(*four))
 }
 
 fn text(bytes: &[u8]) -> Result<&str, EnvError> {

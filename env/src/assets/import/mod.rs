@@ -16,7 +16,6 @@ mod palette;
 mod primitive;
 mod refusal;
 mod simplify;
-mod size;
 mod surface;
 mod texture;
 mod uri;
@@ -24,8 +23,7 @@ mod warning;
 
 pub use fit::ColliderKind;
 pub use limits::{MAX_IMPORT_BYTES, MAX_IMPORT_DEPTH, MAX_IMPORT_NODES, MAX_TEXTURE_SIDE};
-pub use options::ImportOptions;
-pub use size::ImportSize;
+pub use options::{ImportOptions, ImportSize};
 pub use uri::ReadBeside;
 pub use warning::ImportWarning;
 
@@ -56,17 +54,14 @@ impl LibraryModel {
     /// [`MAX_MODEL_TRIANGLES`](crate::MAX_MODEL_TRIANGLES), [`MAX_TEXTURE_SIDE`].
     pub fn from_gltf(bytes: &[u8], options: &ImportOptions, read: &mut ReadBeside) -> Result<Imported, EnvError> {
         at_most(MAX_IMPORT_BYTES, bytes.len(), "bytes", "file")?;
-        let container = container::open(bytes)?;
-        let root = document::parse(container.json)?;
-        let mut warnings = warning::Warnings::default();
-        warnings.note_left_out(&root);
+        let (json, binary) = container::open(bytes)?;
+        let root = document::parse(json)?;
         let main = document::main_material(&root, options.main.as_deref())?;
-        let buffers = buffers::Buffers::load(&root, container.binary, read)?;
+        let buffers = buffers::Buffers::load(&root, binary, read)?;
         let mut reading = primitive::Reading {
-            root: &root,
             buffers: &buffers,
-            textures: texture::Textures::new(&root, &buffers, read),
-            warnings,
+            textures: texture::Textures::new(&buffers, read),
+            warnings: warning::left_out(&root),
         };
         let mut surface = surface::Surface::default();
         nodes::visit(&root, &mut |mesh, pose, node| {
@@ -106,6 +101,6 @@ fn finish(
         .map_err(|(found, expected)| refuse("model", found, expected))?;
     Ok(Imported {
         model,
-        warnings: warnings.into_list(),
+        warnings: warnings.into_iter().collect(),
     })
 }

@@ -6,7 +6,7 @@ use gltf_json::mesh::{Mode, Primitive, Semantic};
 use gltf_json::validation::Checked;
 use gltf_json::{Root, material, texture};
 
-use super::accessor::{self, Use};
+use super::accessor::Use;
 use super::buffers::Buffers;
 use super::coloring::Coloring;
 use super::refusal::{named, refuse};
@@ -17,7 +17,6 @@ use crate::assets::library::{MAX_MODEL_TRIANGLES, MAX_MODEL_VERTICES};
 
 /// A file that is being read, with all that its meshes refer to.
 pub(super) struct Reading<'a, 'b> {
-    pub(super) root: &'a Root,
     pub(super) buffers: &'a Buffers<'a>,
     pub(super) textures: Textures<'a, 'b>,
     pub(super) warnings: Warnings,
@@ -44,19 +43,19 @@ impl Reading<'_, '_> {
         let mode = match primitive.mode {
             Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => mode,
             Checked::Valid(_) => {
-                self.warnings.note(ImportWarning::PointsOrLines);
+                self.warnings.insert(ImportWarning::PointsOrLines);
                 return Ok(None);
             }
             Checked::Invalid => return Err(refuse(format!("{place}/mode"), "an unknown mode", "0 to 6")),
         };
         if primitive.targets.is_some() {
-            self.warnings.note(ImportWarning::MorphTargets);
+            self.warnings.insert(ImportWarning::MorphTargets);
         }
         let (corners, indices) = self.shape(primitive, mode, place, taken)?;
-        let material = material_of(self.root, primitive, place)?;
+        let material = material_of(self.buffers.root, primitive, place)?;
         let opaque = Checked::Valid(material::AlphaMode::Opaque);
         if material.is_some_and(|material| material.alpha_mode != opaque) {
-            self.warnings.note(ImportWarning::Transparency);
+            self.warnings.insert(ImportWarning::Transparency);
         }
         let coloring = self.coloring(primitive, material, corners.len(), place)?;
         let triangles = triangles(mode, &indices).into_iter();
@@ -87,11 +86,11 @@ impl Reading<'_, '_> {
             let expected = format!("at most {most} in the whole scene");
             Err(refuse(place, format!("{found} {what} up to here"), expected))
         };
-        let count = accessor::count(self.root, positions, Use::Positions, &here)?;
+        let count = self.buffers.count(positions, Use::Positions, &here)?;
         within("vertices", vertices + count, MAX_MODEL_VERTICES)?;
         let of_indices = format!("{place}/indices");
         let num_indices = match primitive.indices {
-            Some(indices) => accessor::count(self.root, indices, Use::Indices, &of_indices)?,
+            Some(indices) => self.buffers.count(indices, Use::Indices, &of_indices)?,
             None => count,
         };
         let more = match mode {
@@ -99,9 +98,9 @@ impl Reading<'_, '_> {
             _ => num_indices.saturating_sub(2),
         };
         within("triangles", triangles + more, MAX_MODEL_TRIANGLES)?;
-        let corners = accessor::vectors(self.root, self.buffers, positions, Use::Positions, &here)?;
+        let corners = self.buffers.vectors(positions, Use::Positions, &here)?;
         let indices = match primitive.indices {
-            Some(indices) => accessor::indices(self.root, self.buffers, indices, count, &of_indices)?,
+            Some(indices) => self.buffers.indices(indices, count, &of_indices)?,
             None => (0..count as u32).collect(),
         };
         Ok((corners, indices))
@@ -119,7 +118,7 @@ impl Reading<'_, '_> {
         let Some(&index) = primitive.attributes.get(&Checked::Valid(semantic)) else {
             return Ok(Vec::new());
         };
-        let list = accessor::vectors(self.root, self.buffers, index, for_use, here)?;
+        let list = self.buffers.vectors(index, for_use, here)?;
         if list.len() == num_corners {
             return Ok(list);
         }
@@ -151,7 +150,7 @@ impl Reading<'_, '_> {
                 let from = format!("/materials/{number}/pbrMetallicRoughness/baseColorTexture/index");
                 let texture = self.textures.texture(*index, &from, &mut self.warnings)?;
                 if places.is_empty() && texture.is_some() {
-                    self.warnings.note(ImportWarning::NoTexturePlaces);
+                    self.warnings.insert(ImportWarning::NoTexturePlaces);
                 }
                 (places, texture)
             }

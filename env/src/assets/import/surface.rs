@@ -4,9 +4,9 @@
 use gltf_json::{Index, Mesh};
 
 use super::nodes::Pose;
+use super::options::ImportSize;
 use super::primitive::{ReadPrimitive, Reading};
 use super::refusal::{named, refuse};
-use super::size::ImportSize;
 use crate::EnvError;
 use crate::assets::library::MAX_MODEL_REACH;
 
@@ -42,7 +42,7 @@ impl Surface {
         node: &str,
     ) -> Result<(), EnvError> {
         let index = mesh.value();
-        let mesh = named(&reading.root.meshes, index, "mesh", &format!("{node}/mesh"))?;
+        let mesh = named(&reading.buffers.root.meshes, index, "mesh", &format!("{node}/mesh"))?;
         for (k, primitive) in mesh.primitives.iter().enumerate() {
             self.primitives += 1;
             if self.primitives > MAX_PRIMITIVES {

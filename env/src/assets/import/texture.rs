@@ -4,9 +4,9 @@
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
+use gltf_json::Index;
 use gltf_json::texture::{Sampler, WrappingMode};
 use gltf_json::validation::Checked;
-use gltf_json::{Index, Root};
 
 use super::buffers::Buffers;
 use super::color::linear;
@@ -27,7 +27,6 @@ const NO_SOURCE: usize = u32::MAX as usize;
 
 /// The textures of a file, read when they are first asked for.
 pub(super) struct Textures<'a, 'b> {
-    root: &'a Root,
     buffers: &'a Buffers<'a>,
     read: &'a mut ReadBeside<'b>,
     /// By the number of the image; none where it is not read.
@@ -51,9 +50,8 @@ struct Pixels {
 }
 
 impl<'a, 'b> Textures<'a, 'b> {
-    pub(super) fn new(root: &'a Root, buffers: &'a Buffers<'a>, read: &'a mut ReadBeside<'b>) -> Self {
+    pub(super) fn new(buffers: &'a Buffers<'a>, read: &'a mut ReadBeside<'b>) -> Self {
         Self {
-            root,
             buffers,
             read,
             images: BTreeMap::new(),
@@ -69,12 +67,12 @@ impl<'a, 'b> Textures<'a, 'b> {
         warnings: &mut Warnings,
     ) -> Result<Option<Texture<'_>>, EnvError> {
         let index = texture.value();
-        let texture = named(&self.root.textures, index, "texture", place)?;
+        let texture = named(&self.buffers.root.textures, index, "texture", place)?;
         let place = format!("/textures/{index}");
         let wrap = self.wrap(texture.sampler, &format!("{place}/sampler"))?;
         let image = texture.source.value();
         if image == NO_SOURCE {
-            warnings.note(ImportWarning::TextureWithoutImage { texture: index });
+            warnings.insert(ImportWarning::TextureWithoutImage { texture: index });
             return Ok(None);
         }
         if !self.images.contains_key(&image) {
@@ -90,7 +88,7 @@ impl<'a, 'b> Textures<'a, 'b> {
         let Some(index) = sampler.map(|sampler| sampler.value()) else {
             return Ok([WrappingMode::Repeat; 2]);
         };
-        let sampler = named(&self.root.samplers, index, "sampler", place)?;
+        let sampler = named(&self.buffers.root.samplers, index, "sampler", place)?;
         let [Checked::Valid(across), Checked::Valid(down)] = [sampler.wrap_s, sampler.wrap_t] else {
             let place = format!("/samplers/{index}");
             return Err(refuse(place, "an unknown wrapS or wrapT", "10497, 33071 or 33648"));
@@ -99,7 +97,7 @@ impl<'a, 'b> Textures<'a, 'b> {
     }
 
     fn load(&mut self, index: usize, from: &str, warnings: &mut Warnings) -> Result<Option<Pixels>, EnvError> {
-        let image = named(&self.root.images, index, "image", from)?;
+        let image = named(&self.buffers.root.images, index, "image", from)?;
         if self.images.len() >= MAX_IMAGES {
             let found = format!("more than {MAX_IMAGES} images in use");
             return Err(refuse("/images", found, "at most that"));
@@ -120,7 +118,7 @@ impl<'a, 'b> Textures<'a, 'b> {
                 [b'R', b'I', b'F', b'F', ..] => "WebP",
                 _ => "a format other than PNG",
             };
-            warnings.note(ImportWarning::TextureFormat {
+            warnings.insert(ImportWarning::TextureFormat {
                 image: index,
                 found: found.to_owned(),
             });
