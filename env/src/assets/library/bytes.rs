@@ -137,29 +137,18 @@ fn write_model(model: &LibraryModel, out: &mut Vec<u8>) {
 }
 
 fn write_collider(collider: &ColliderShape, out: &mut Vec<u8>) {
-    match collider {
-        ColliderShape::Box { half } => {
-            out.push(0);
-            write_numbers(half, out);
-        }
-        ColliderShape::Ball { radius } => {
-            out.push(1);
-            write_numbers(&[*radius], out);
-        }
-        ColliderShape::Cylinder { radius, half_height } => {
-            out.push(2);
-            write_numbers(&[*radius, *half_height], out);
-        }
-        ColliderShape::Capsule { radius, half_height } => {
-            out.push(3);
-            write_numbers(&[*radius, *half_height], out);
-        }
-        ColliderShape::Hull { points } => {
-            out.push(4);
-            out.push(points.len() as u8);
-            write_numbers(points.as_flattened(), out);
-        }
+    let (tag, numbers) = match collider {
+        ColliderShape::Box { half } => (0, half.to_vec()),
+        ColliderShape::Ball { radius } => (1, vec![*radius]),
+        ColliderShape::Cylinder { radius, half_height } => (2, vec![*radius, *half_height]),
+        ColliderShape::Capsule { radius, half_height } => (3, vec![*radius, *half_height]),
+        ColliderShape::Hull { points } => (4, points.as_flattened().to_vec()),
+    };
+    out.push(tag);
+    if let ColliderShape::Hull { points } = collider {
+        out.push(points.len() as u8);
     }
+    write_numbers(&numbers, out);
 }
 
 fn write_numbers(numbers: &[f32], out: &mut Vec<u8>) {

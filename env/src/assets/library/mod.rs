@@ -50,20 +50,20 @@ impl Library {
     /// # Errors
     /// [`EnvError::BadModel`] if the library has a model of that class and name, or [`MAX_LIBRARY_MODELS`] of them.
     pub fn insert(&mut self, model: LibraryModel) -> Result<(), EnvError> {
-        let place = || format!("class {:?}, model {:?}", model.class, model.name);
+        let refuse = |found: &str, expected: &str| {
+            Err(EnvError::BadModel {
+                place: format!("class {:?}, model {:?}", model.class, model.name),
+                found: found.to_owned(),
+                expected: expected.to_owned(),
+            })
+        };
         if self.models.len() >= MAX_LIBRARY_MODELS {
-            return Err(EnvError::BadModel {
-                place: place(),
-                found: format!("a library of {MAX_LIBRARY_MODELS} models"),
-                expected: "fewer; begin another library".into(),
-            });
+            let found = format!("a library of {MAX_LIBRARY_MODELS} models");
+            return refuse(&found, "fewer; begin another library");
         }
         if !self.keys.insert(key(&model.class, &model.name)) {
-            return Err(EnvError::BadModel {
-                place: place(),
-                found: "one in the library already".into(),
-                expected: "each class and model once; give another class or model".into(),
-            });
+            let expected = "each class and model once; give another class or model";
+            return refuse("one in the library already", expected);
         }
         self.models.push(model);
         Ok(())
