@@ -19,7 +19,7 @@ pub use options::{Autoreset, BatchOptions, Episode, GoOn, MAX_BATCH_BYTES, MAX_E
 pub use outputs::Outputs;
 
 use self::part::{Drawing, Part, Work};
-use self::slot::{LayoutFrom, Slot};
+use self::slot::{Slot, world_of};
 use crate::EnvError;
 use crate::assets::Catalogue;
 use crate::recording::Recording;
@@ -109,15 +109,11 @@ impl Batch {
         }
         let graphics = Some(Renderer::new(options.renderer)?).filter(|renderer| renderer.kind() == RendererKind::Gpu);
         let limit = options.max_episode_steps;
-        let first = Slot::new(
-            0,
-            Arc::clone(&source),
-            LayoutFrom::World(options.modalities.as_deref()),
-            catalogue,
-            limit,
-        )?;
-        let layout = ImageLayout::clone(&first.layout);
-        let state_len = first.environment.world().agent_params.state_len();
+        let world = world_of(&source, 0, 0)?;
+        let mut layout = ImageLayout::of(&world);
+        layout.modalities = options.modalities.unwrap_or(layout.modalities);
+        let (layout, state_len) = (Arc::new(layout), world.agent_params.state_len());
+        let first = Slot::new(0, world, &source, &layout, catalogue, limit)?;
         // Before anything large is taken.
         let copies = 1 + u64::from(options.autoreset == Autoreset::SameStep);
         expect_room(copies * Outputs::bytes(&layout, options.depth, state_len, num_envs))?;
@@ -141,14 +137,8 @@ impl Batch {
             if !go_on() {
                 return Err(EnvError::Stopped);
             }
-            let layout = Arc::clone(&slots[0].layout);
-            slots.push(Slot::new(
-                env,
-                Arc::clone(&source),
-                LayoutFrom::Other(&layout),
-                catalogue,
-                limit,
-            )?);
+            let world = world_of(&source, env, 0)?;
+            slots.push(Slot::new(env, world, &source, &layout, catalogue, limit)?);
         }
         let outputs = Outputs::new(&layout, options.depth, state_len, num_envs)?;
         let finals = match options.autoreset {

@@ -3,7 +3,7 @@
 use std::num::NonZeroU32;
 use std::sync::Arc;
 
-use driftworld_spec::Modality;
+use driftworld_spec::{Modality, World};
 
 use super::images::{ImageLayout, blank_unasked};
 use super::options::{Autoreset, Episode, WorldSource};
@@ -13,15 +13,6 @@ use crate::assets::Catalogue;
 use crate::recording::{Recorder, Recording};
 use crate::render::CpuRenderer;
 use crate::sim::{Action, EndedBy, Environment, Step};
-
-/// Where the layout of an environment's images is from.
-#[derive(Clone, Copy)]
-pub(super) enum LayoutFrom<'a> {
-    /// Its own world, but for which images there are, if that is said.
-    World(Option<&'a [Modality]>),
-    /// Another environment of its batch.
-    Other(&'a Arc<ImageLayout>),
-}
 
 pub(super) struct Slot {
     env: usize,
@@ -44,35 +35,22 @@ pub(super) struct Slot {
 }
 
 impl Slot {
-    /// An environment at the start of its episode 0.
+    /// An environment at the start of its episode 0, in the world of that.
     pub(super) fn new(
         env: usize,
-        source: WorldSource,
-        images: LayoutFrom<'_>,
+        world: World,
+        source: &WorldSource,
+        layout: &Arc<ImageLayout>,
         catalogue: &Catalogue,
         limit: Option<NonZeroU32>,
     ) -> Result<Self, EnvError> {
-        let episode = Episode { env, index: 0 };
-        let world = source(episode).map_err(|reason| EnvError::BatchWorld {
-            env,
-            episode: 0,
-            reason,
-        })?;
-        let layout = match images {
-            LayoutFrom::World(None) => Arc::new(ImageLayout::of(&world)),
-            LayoutFrom::World(Some(modalities)) => Arc::new(ImageLayout {
-                modalities: modalities.to_vec(),
-                ..ImageLayout::of(&world)
-            }),
-            LayoutFrom::Other(layout) => Arc::clone(layout),
-        };
         layout.check(env, &world)?;
         Ok(Self {
             env,
             environment: Environment::with_catalogue(world, catalogue.clone()),
-            layout,
+            layout: Arc::clone(layout),
             step: Step::default(),
-            source,
+            source: Arc::clone(source),
             current: 0,
             next: 1,
             is_over: false,
@@ -191,15 +169,7 @@ impl Slot {
 
     /// Asks for the next world and enters it; on error the slot stays as it is.
     fn begin(&mut self) -> Result<(), EnvError> {
-        let episode = Episode {
-            env: self.env,
-            index: self.next,
-        };
-        let world = (self.source)(episode).map_err(|reason| EnvError::BatchWorld {
-            env: self.env,
-            episode: self.next,
-            reason,
-        })?;
+        let world = world_of(&self.source, self.env, self.next)?;
         self.layout.check(self.env, &world)?;
         if let Some(recorder) = &mut self.recorder {
             if recorder.num_steps() > 0 {
@@ -246,4 +216,10 @@ impl Slot {
         outputs.images.form_depth(index);
         Ok(())
     }
+}
+
+/// The world of an episode of an environment.
+pub(super) fn world_of(source: &WorldSource, env: usize, episode: u64) -> Result<World, EnvError> {
+    let world = source(Episode { env, index: episode });
+    world.map_err(|reason| EnvError::BatchWorld { env, episode, reason })
 }
