@@ -38,31 +38,26 @@ impl Renderer {
     pub fn new(kind: RendererKind) -> Result<Self, EnvError> {
         match kind {
             RendererKind::Cpu => Ok(Self::default()),
-            RendererKind::Gpu => Self::on_any_gpu(),
-            RendererKind::Auto => Ok(Self::automatic()),
+            RendererKind::Gpu => Self::on_gpu(true),
+            RendererKind::Auto => Ok(Self::on_gpu(false).unwrap_or_default()),
         }
     }
 
+    /// On a graphics card, or else on software that stands in for one where that will do.
     #[cfg(feature = "gpu")]
-    fn on_any_gpu() -> Result<Self, EnvError> {
-        let renderer = GpuRenderer::new(GpuChoice::Any)?;
-        Ok(Self(Inner::Gpu(Box::new(renderer))))
+    fn on_gpu(or_software: bool) -> Result<Self, EnvError> {
+        let choice = if or_software {
+            GpuChoice::Any
+        } else {
+            GpuChoice::Hardware
+        };
+        Ok(Self(Inner::Gpu(Box::new(GpuRenderer::new(choice)?))))
     }
 
     #[cfg(not(feature = "gpu"))]
-    fn on_any_gpu() -> Result<Self, EnvError> {
+    fn on_gpu(_or_software: bool) -> Result<Self, EnvError> {
         let tried = vec![NO_FEATURE.to_owned()];
         Err(EnvError::NoGpu { tried })
-    }
-
-    #[cfg(feature = "gpu")]
-    fn automatic() -> Self {
-        GpuRenderer::new(GpuChoice::Hardware).map_or_else(|_| Self::default(), |gpu| Self(Inner::Gpu(Box::new(gpu))))
-    }
-
-    #[cfg(not(feature = "gpu"))]
-    fn automatic() -> Self {
-        Self::default()
     }
 
     /// What it became: never [`RendererKind::Auto`].

@@ -42,7 +42,11 @@ pub(super) const NO_FEATURE: &str =
 impl RendererReport {
     /// Tries everything with a small picture.
     pub fn make() -> Self {
-        let (adapters, no_adapter) = match adapters() {
+        #[cfg(feature = "gpu")]
+        let found = super::gpu::survey();
+        #[cfg(not(feature = "gpu"))]
+        let found: Result<Vec<AdapterReport>, String> = Err(NO_FEATURE.to_owned());
+        let (adapters, no_adapter) = match found {
             Ok(adapters) => (adapters, None),
             Err(reason) => (Vec::new(), Some(reason)),
         };
@@ -59,14 +63,4 @@ impl RendererReport {
             no_adapter,
         }
     }
-}
-
-#[cfg(feature = "gpu")]
-fn adapters() -> Result<Vec<AdapterReport>, String> {
-    super::gpu::survey()
-}
-
-#[cfg(not(feature = "gpu"))]
-fn adapters() -> Result<Vec<AdapterReport>, String> {
-    Err(NO_FEATURE.to_owned())
 }

@@ -83,7 +83,7 @@ const MOST_KEPT: (usize, u64) = (16, 1 << 25);
 
 /// Atlases of several sizes: depths can only be copied from whole textures, so that each grid needs its own.
 #[derive(Debug, Default)]
-pub(super) struct Atlases(Vec<Atlas>);
+pub(super) struct Atlases(pub(super) Vec<Atlas>);
 
 impl Atlases {
     /// One for this grid; a new one if there is none.
@@ -107,22 +107,17 @@ impl Atlases {
         self.0.drain(..self.0.len() - count);
         Atlas::new(device, grid, planes)
     }
-
-    /// Keeps one for the next time.
-    pub(super) fn put_back(&mut self, atlas: Atlas) {
-        self.0.push(atlas);
-    }
 }
 
 /// Textures and the buffer behind them.
 #[derive(Debug)]
 pub(super) struct Atlas {
     /// Width and height in pixels.
-    size: [u32; 2],
+    pub(super) size: [u32; 2],
     words: wgpu::Texture,
     depth: wgpu::Texture,
     items: Option<wgpu::Texture>,
-    back: wgpu::Buffer,
+    pub(super) back: wgpu::Buffer,
 }
 
 impl Atlas {
@@ -148,14 +143,6 @@ impl Atlas {
             items: planes.items.then(|| texture("items", WORD_FORMAT)),
             back: device.buffer("images", bytes_back(grid, planes), usage),
         }
-    }
-
-    pub(super) fn size(&self) -> [u32; 2] {
-        self.size
-    }
-
-    pub(super) fn back(&self) -> &wgpu::Buffer {
-        &self.back
     }
 
     /// Begins a pass over all of it.

@@ -19,9 +19,9 @@ const MOST_VERTICES: usize = 1 << 22;
 pub(super) type Mesh = Range<u32>;
 
 /// All meshes, the triangle of [`Shape::Triangle`] first.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Library {
-    meshes: Vec<Mesh>,
+    pub(super) meshes: Vec<Mesh>,
     /// Numbers of meshes by the address of their materials.
     known: HashMap<usize, u32>,
     /// Keeps the addresses from being used anew.
@@ -34,47 +34,21 @@ pub(super) struct Library {
 
 impl Library {
     pub(super) fn new() -> Self {
-        let mut library = Self {
-            meshes: Vec::new(),
-            known: HashMap::new(),
-            assets: Vec::new(),
-            vertices: Vec::new(),
-            buffer: None,
-            uploaded: 0,
-        };
-        library.forget();
+        let mut library = Self::default();
+        for corner in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
+            library.vertices.extend(corner);
+            // An upright face that takes its instance's colour.
+            library.vertices.extend([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+        }
+        library.meshes.push(0..3);
         library
-    }
-
-    /// How many meshes there are.
-    pub(super) fn num_meshes(&self) -> usize {
-        self.meshes.len()
-    }
-
-    pub(super) fn mesh(&self, number: u32) -> Mesh {
-        self.meshes[number as usize].clone()
     }
 
     /// Forgets all assets if there are too many; numbers of meshes from before are void then.
     pub(super) fn make_room(&mut self) {
         if self.vertices.len() / VERTEX_LENGTH > MOST_VERTICES {
-            self.forget();
+            *self = Self::new();
         }
-    }
-
-    fn forget(&mut self) {
-        self.meshes.clear();
-        self.known.clear();
-        self.assets.clear();
-        self.vertices.clear();
-        self.buffer = None;
-        self.uploaded = 0;
-        for corner in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
-            self.vertices.extend(corner);
-            // An upright face that takes its instance's colour.
-            self.vertices.extend([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
-        }
-        self.meshes.push(0..3);
     }
 
     /// The number of a shape's mesh; what is new is put down.
@@ -156,9 +130,9 @@ mod tests {
         let materials = asset.level(0.0);
         let shape = Shape::Asset(Arc::clone(&asset), materials.as_ptr().addr());
         let number = library.number(&shape);
-        assert_eq!((number, library.number(&shape), library.num_meshes()), (1, 1, 2));
+        assert_eq!((number, library.number(&shape), library.meshes.len()), (1, 1, 2));
         let triangles: usize = asset.parts.iter().map(|part| part.mesh.triangles.len()).sum();
-        assert_eq!(library.mesh(number), 3..3 + 3 * triangles as u32);
+        assert_eq!(library.meshes[number as usize], 3..3 + 3 * triangles as u32);
         assert_eq!(library.number(&Shape::Triangle), 0);
     }
 }

@@ -105,11 +105,7 @@ impl GpuRenderer {
         if frame.width == 0 || frame.height == 0 {
             return Ok(());
         }
-        self.draw_batch(&mut [Picture {
-            scene,
-            camera: *camera,
-            target: frame.target(),
-        }])
+        self.draw(scene, camera, &mut frame.target())
     }
 
     /// Draws the images that the target asks for.

@@ -135,7 +135,7 @@ impl Stage {
         }
         self.sort(contents, device.has_clip_distances);
         let atlas = self.atlases.take(device, grid, planes);
-        let scale = atlas.size().map(|pixels| 2.0 / pixels as f32);
+        let scale = atlas.size.map(|pixels| 2.0 / pixels as f32);
         device
             .queue
             .write_buffer(&self.sizes, 0, bytemuck::cast_slice(&[scale[0], scale[1], 0.0, 0.0]));
@@ -185,7 +185,7 @@ impl Stage {
         device.check()?;
         read(device, &atlas, layout, take)?;
         device.check()?;
-        self.atlases.put_back(atlas);
+        self.atlases.0.push(atlas);
         Ok(())
     }
 
@@ -209,19 +209,19 @@ impl Stage {
             self.numbers.push(self.library.number(shape));
         }
         self.counts.clear();
-        self.counts.resize(self.library.num_meshes(), 0);
+        self.counts.resize(self.library.meshes.len(), 0);
         for number in &self.numbers {
             self.counts[*number as usize] += 1;
         }
         let mut start = self.sorted.len() as u32;
-        for (number, count) in (0..).zip(&mut self.counts) {
+        for (number, count) in self.counts.iter_mut().enumerate() {
             let instances = start..start + *count;
             // From here on it counts where the next instance goes.
             *count = start;
             start = instances.end;
             if !instances.is_empty() {
                 self.draws.push(Draw {
-                    mesh: self.library.mesh(number),
+                    mesh: self.library.meshes[number].clone(),
                     instances,
                     tile: first_tile,
                 });
@@ -255,12 +255,10 @@ fn read(device: &Device, atlas: &Atlas, layout: Layout, take: impl FnOnce(&[u8],
     };
     let done = Arc::new(OnceLock::new());
     let noted = Arc::clone(&done);
-    atlas
-        .back()
-        .map_async(wgpu::MapMode::Read, ..layout.end, move |outcome| {
-            // Called once.
-            let _ = noted.set(outcome);
-        });
+    atlas.back.map_async(wgpu::MapMode::Read, ..layout.end, move |outcome| {
+        // Called once.
+        let _ = noted.set(outcome);
+    });
     let waited = device.card.poll(wgpu::PollType::wait_indefinitely());
     waited.map_err(|error| failed(&error))?;
     match done.get() {
@@ -269,10 +267,10 @@ fn read(device: &Device, atlas: &Atlas, layout: Layout, take: impl FnOnce(&[u8],
         None => return Err(failed(&"the device does not answer")),
     }
     {
-        let bytes = atlas.back().get_mapped_range(..layout.end);
+        let bytes = atlas.back.get_mapped_range(..layout.end);
         let bytes = bytes.map_err(|error| failed(&error))?;
         take(&bytes, layout);
     }
-    atlas.back().unmap();
+    atlas.back.unmap();
     Ok(())
 }

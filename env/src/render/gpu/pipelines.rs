@@ -35,10 +35,16 @@ pub(super) struct Pair {
 /// All pipelines that were needed so far.
 #[derive(Debug)]
 pub(super) struct Pipelines {
-    module: wgpu::ShaderModule,
+    program: Program,
     pub(super) bindings: wgpu::BindGroupLayout,
-    layout: wgpu::PipelineLayout,
     made: [Option<Pair>; 4],
+}
+
+/// What all pipelines share.
+#[derive(Debug)]
+struct Program {
+    module: wgpu::ShaderModule,
+    layout: wgpu::PipelineLayout,
 }
 
 impl Pipelines {
@@ -60,22 +66,18 @@ impl Pipelines {
             immediate_size: 0,
         });
         Self {
-            module,
+            program: Program { module, layout },
             bindings,
-            layout,
             made: [const { None }; 4],
         }
     }
 
     /// The pipelines for a kind of pass, made when they are first asked for.
     pub(super) fn pair(&mut self, device: &Device, kind: Kind) -> &Pair {
-        let Self {
-            module, layout, made, ..
-        } = self;
         let place = usize::from(kind.items) + 2 * usize::from(kind.fog);
-        made[place].get_or_insert_with(|| Pair {
-            backdrop: backdrop(device, module, layout, kind),
-            objects: objects(device, module, layout, kind),
+        self.made[place].get_or_insert_with(|| Pair {
+            backdrop: self.program.backdrop(device, kind),
+            objects: self.program.objects(device, kind),
         })
     }
 }
@@ -118,57 +120,6 @@ fn binding(binding: u32, ty: wgpu::BufferBindingType) -> wgpu::BindGroupLayoutEn
     }
 }
 
-/// What lies behind: it is drawn first and overwrites whatever was there.
-fn backdrop(
-    device: &Device,
-    module: &wgpu::ShaderModule,
-    layout: &wgpu::PipelineLayout,
-    kind: Kind,
-) -> wgpu::RenderPipeline {
-    let stages = Stages {
-        label: "backdrop",
-        vertex: "backdrop_vertex",
-        fragment: "backdrop_fragment",
-        buffers: &[],
-        cull_mode: None,
-        depth_compare: wgpu::CompareFunction::Always,
-    };
-    stages.pipeline(device, module, layout, kind)
-}
-
-/// Objects: drawn where nothing nearer is, and seen from the front alone.
-fn objects(
-    device: &Device,
-    module: &wgpu::ShaderModule,
-    layout: &wgpu::PipelineLayout,
-    kind: Kind,
-) -> wgpu::RenderPipeline {
-    let corner = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x4];
-    let instance = wgpu::vertex_attr_array![
-        3 => Float32x4, 4 => Float32x4, 5 => Float32x4, 6 => Float32x3, 7 => Float32x4, 8 => Uint32x3
-    ];
-    let stages = Stages {
-        label: "objects",
-        vertex: "objects_vertex",
-        fragment: "objects_fragment",
-        buffers: &[
-            Some(wgpu::VertexBufferLayout {
-                array_stride: (VERTEX_LENGTH * size_of::<f32>()) as u64,
-                step_mode: wgpu::VertexStepMode::Vertex,
-                attributes: &corner,
-            }),
-            Some(wgpu::VertexBufferLayout {
-                array_stride: (WORDS * size_of::<u32>()) as u64,
-                step_mode: wgpu::VertexStepMode::Instance,
-                attributes: &instance,
-            }),
-        ],
-        cull_mode: Some(wgpu::Face::Back),
-        depth_compare: wgpu::CompareFunction::Greater,
-    };
-    stages.pipeline(device, module, layout, kind)
-}
-
 /// In what the two pipelines of a pair differ.
 struct Stages<'a> {
     label: &'a str,
@@ -179,14 +130,49 @@ struct Stages<'a> {
     depth_compare: wgpu::CompareFunction,
 }
 
-impl Stages<'_> {
-    fn pipeline(
-        &self,
-        device: &Device,
-        module: &wgpu::ShaderModule,
-        layout: &wgpu::PipelineLayout,
-        kind: Kind,
-    ) -> wgpu::RenderPipeline {
+impl Program {
+    /// What lies behind: it is drawn first and overwrites whatever was there.
+    fn backdrop(&self, device: &Device, kind: Kind) -> wgpu::RenderPipeline {
+        let stages = Stages {
+            label: "backdrop",
+            vertex: "backdrop_vertex",
+            fragment: "backdrop_fragment",
+            buffers: &[],
+            cull_mode: None,
+            depth_compare: wgpu::CompareFunction::Always,
+        };
+        self.pipeline(device, kind, &stages)
+    }
+
+    /// Objects: drawn where nothing nearer is, and seen from the front alone.
+    fn objects(&self, device: &Device, kind: Kind) -> wgpu::RenderPipeline {
+        let corner = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x4];
+        let instance = wgpu::vertex_attr_array![
+            3 => Float32x4, 4 => Float32x4, 5 => Float32x4, 6 => Float32x3, 7 => Float32x4, 8 => Uint32x3
+        ];
+        let stages = Stages {
+            label: "objects",
+            vertex: "objects_vertex",
+            fragment: "objects_fragment",
+            buffers: &[
+                Some(wgpu::VertexBufferLayout {
+                    array_stride: (VERTEX_LENGTH * size_of::<f32>()) as u64,
+                    step_mode: wgpu::VertexStepMode::Vertex,
+                    attributes: &corner,
+                }),
+                Some(wgpu::VertexBufferLayout {
+                    array_stride: (WORDS * size_of::<u32>()) as u64,
+                    step_mode: wgpu::VertexStepMode::Instance,
+                    attributes: &instance,
+                }),
+            ],
+            cull_mode: Some(wgpu::Face::Back),
+            depth_compare: wgpu::CompareFunction::Greater,
+        };
+        self.pipeline(device, kind, &stages)
+    }
+
+    fn pipeline(&self, device: &Device, kind: Kind, stages: &Stages<'_>) -> wgpu::RenderPipeline {
         let constants = [("FOG", if kind.fog { 1.0 } else { 0.0 })];
         let compilation_options = wgpu::PipelineCompilationOptions {
             constants: &constants,
@@ -199,30 +185,30 @@ impl Stages<'_> {
         });
         let targets = [target.clone(), target];
         let descriptor = wgpu::RenderPipelineDescriptor {
-            label: Some(self.label),
-            layout: Some(layout),
+            label: Some(stages.label),
+            layout: Some(&self.layout),
             vertex: wgpu::VertexState {
-                module,
-                entry_point: Some(self.vertex),
+                module: &self.module,
+                entry_point: Some(stages.vertex),
                 compilation_options: compilation_options.clone(),
-                buffers: self.buffers,
+                buffers: stages.buffers,
             },
             primitive: wgpu::PrimitiveState {
-                cull_mode: self.cull_mode,
+                cull_mode: stages.cull_mode,
                 front_face: wgpu::FrontFace::Ccw,
                 ..Default::default()
             },
             depth_stencil: Some(wgpu::DepthStencilState {
                 format: DEPTH_FORMAT,
                 depth_write_enabled: Some(true),
-                depth_compare: Some(self.depth_compare),
+                depth_compare: Some(stages.depth_compare),
                 stencil: wgpu::StencilState::default(),
                 bias: wgpu::DepthBiasState::default(),
             }),
             multisample: wgpu::MultisampleState::default(),
             fragment: Some(wgpu::FragmentState {
-                module,
-                entry_point: Some(self.fragment),
+                module: &self.module,
+                entry_point: Some(stages.fragment),
                 compilation_options,
                 targets: if kind.items { &targets } else { &targets[..1] },
             }),
