@@ -172,7 +172,7 @@ impl Reach {
 }
 
 /// A buffer whose first number is at the start of a line of the processor's memory, so that whole vectors lie in one.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Aligned<T> {
     numbers: Vec<T>,
     start: usize,
@@ -189,16 +189,6 @@ impl<T: Copy + Default> Aligned<T> {
         self.numbers.resize(length + slack, T::default());
         self.start = self.numbers.as_ptr().align_offset(LINE).min(slack);
         self.length = length;
-    }
-}
-
-impl<T: Clone> Clone for Aligned<T> {
-    /// The copy's numbers may lie elsewhere in a line.
-    fn clone(&self) -> Self {
-        Self {
-            numbers: self.numbers.clone(),
-            ..*self
-        }
     }
 }
 

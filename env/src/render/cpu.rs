@@ -25,7 +25,7 @@ use crate::scene::{Item, PanelGroup, Scene};
 /// enough.
 ///
 /// The same scene and camera give the same pixels on every machine, whichever instruction set is used.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct CpuRenderer {
     set: Set,
     pub(super) canvas: Canvas,
@@ -39,8 +39,6 @@ pub struct CpuRenderer {
     points: Vec<u8>,
     hand: Hand,
     pub(super) hidden: Hidden,
-    /// Whether what walls hide is left out.
-    pub(super) hides: bool,
 }
 
 /// An instruction set that this processor has.
@@ -54,17 +52,10 @@ enum Set {
     Avx512(Avx512),
 }
 
-impl Default for CpuRenderer {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 impl CpuRenderer {
     /// A renderer with the widest instructions that this processor has.
     pub fn new() -> Self {
-        let sets = Set::all();
-        Self::with(sets[sets.len() - 1])
+        Self::default()
     }
 
     /// One renderer for each set of instructions that this processor has, with the set's name; the widest last.
@@ -73,37 +64,23 @@ impl CpuRenderer {
     pub fn each_instruction_set() -> Vec<(&'static str, Self)> {
         Set::all()
             .into_iter()
-            .map(|set| (set.name(), Self::with(set)))
+            .map(|set| {
+                let renderer = Self { set, ..Self::default() };
+                (set.into(), renderer)
+            })
             .collect()
-    }
-
-    fn with(set: Set) -> Self {
-        Self {
-            set,
-            canvas: Canvas::default(),
-            backdrop: Backdrop::default(),
-            natural: Natural::default(),
-            order: Vec::new(),
-            offsets: Vec::new(),
-            classes: Vec::new(),
-            scratch: Scratch::default(),
-            points: Vec::new(),
-            hand: Hand::default(),
-            hidden: Hidden::default(),
-            hides: true,
-        }
     }
 
     /// A renderer that draws what walls hide, too, or does not: the pictures are the same.
     #[cfg(test)]
     pub(super) fn that_hides(mut self, hides: bool) -> Self {
-        self.hides = hides;
+        self.hidden.is_off = !hides;
         self
     }
 
     /// The name of the instruction set in use: `portable`, `avx2` or `avx512`.
     pub fn instruction_set(&self) -> &'static str {
-        self.set.name()
+        self.set.into()
     }
 
     /// Draws all images of a frame.
@@ -233,23 +210,18 @@ impl CpuRenderer {
             match visible.drawable {
                 Drawable::Item(index) => {
                     let item = &scene.items[index as usize];
-                    let [x, y] = item.position;
-                    let top = item.asset.height * item.scale;
-                    let radius = item.asset.ball_radius() * item.scale;
-                    if self.hides && self.hidden.hides_ball([x, y, top / 2.0], radius, top, &view) {
+                    if self.hidden.hides_item(item, &view) {
                         continue;
                     }
                     self.draw_item::<L, ITEMS>(lanes, item, index, visible, &view, &shader, scene);
                 }
                 Drawable::Panels(index) => {
                     let group = &scene.panels[index as usize];
-                    if self.hides && self.hidden.hides_panels(group, &view) {
+                    if self.hidden.hides_panels(group, &view) {
                         continue;
                     }
                     self.draw_panels::<L, ITEMS>(lanes, group, visible, &view, &shader, scene);
-                    if self.hides {
-                        self.hidden.note(group, &view);
-                    }
+                    self.hidden.note(group, &view);
                 }
             }
         }
@@ -341,6 +313,13 @@ impl CpuRenderer {
     }
 }
 
+impl Default for Set {
+    fn default() -> Self {
+        let sets = Self::all();
+        sets[sets.len() - 1]
+    }
+}
+
 impl Set {
     /// What this processor has, the widest last.
     fn all() -> Vec<Self> {
@@ -354,10 +333,6 @@ impl Set {
         }
         #[cfg(not(target_arch = "x86_64"))]
         vec![portable]
-    }
-
-    fn name(self) -> &'static str {
-        self.into()
     }
 }
 

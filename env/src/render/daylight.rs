@@ -8,7 +8,7 @@ use super::shade::FULL_LEVEL;
 use crate::scene::Light;
 
 /// What light does to colours.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Daylight {
     /// Towards the sun, length 1.
     pub(super) direction: [f32; 3],
@@ -90,15 +90,12 @@ impl Daylight {
         let level = |own: [f32; 3], by: [f32; 3]| std::array::from_fn(|k| (own[k] * by[k] * bright).min(FULL_LEVEL));
         let white = between([0.98; 3], [1.0, 0.74, 0.62], low);
         Self {
-            direction: light.direction,
-            sun: [0.0; 3],
-            around: [0.0; 3],
-            above: [0.0; 3],
             zenith: level(light.sky_color, tint),
             horizon: level(pale, away),
             sunward: level(pale, toward),
             cloud: level([1.0; 3], white),
             glow: low,
+            ..Self::default()
         }
     }
 

@@ -2,7 +2,7 @@
 //! things are is in `visibility.rs`.
 
 use super::view::{NEAR, View};
-use crate::scene::PanelGroup;
+use crate::scene::{Item, PanelGroup};
 
 /// Room for how positions round: in columns, and as a share of a depth.
 const COLUMN: f32 = 0.01;
@@ -17,15 +17,8 @@ pub(super) struct Hidden {
     /// All walls that are noted are at least so high, in metres.
     height: Option<f32>,
     is_usable: bool,
-}
-
-/// Where something is seen.
-#[derive(Clone, Copy, Debug)]
-struct Span {
-    /// First and last column.
-    columns: [f32; 2],
-    /// Its least depth in metres.
-    nearest: f32,
+    /// Whether nothing is noted, so that all is drawn.
+    pub(super) is_off: bool,
 }
 
 impl Hidden {
@@ -34,7 +27,8 @@ impl Hidden {
         self.inverse.clear();
         self.inverse.resize(view.size[0] as usize, 0.0);
         self.height = None;
-        self.is_usable = view.axes.forward[2] == 0.0 && view.axes.right[2] == 0.0 && view.position[2] > 0.0;
+        self.is_usable =
+            !self.is_off && view.axes.forward[2] == 0.0 && view.axes.right[2] == 0.0 && view.position[2] > 0.0;
     }
 
     /// Notes walls that were drawn.
@@ -92,10 +86,7 @@ impl Hidden {
         if !self.may_hide(group.height) || group.edges.is_empty() {
             return false;
         }
-        let mut span = Span {
-            columns: [f32::INFINITY, f32::NEG_INFINITY],
-            nearest: f32::INFINITY,
-        };
+        let (mut columns, mut nearest) = ([f32::INFINITY, f32::NEG_INFINITY], f32::INFINITY);
         // Around a region each edge begins where another ends; a wall of the arena is one edge with two ends.
         let last = group.edges.last().map(|[_, to]| to);
         for corner in group.edges.iter().map(|[from, _]| from).chain(last) {
@@ -104,10 +95,18 @@ impl Hidden {
                 return false;
             }
             let at = column(view, right, ahead);
-            span.columns = [span.columns[0].min(at), span.columns[1].max(at)];
-            span.nearest = span.nearest.min(ahead);
+            columns = [columns[0].min(at), columns[1].max(at)];
+            nearest = nearest.min(ahead);
         }
-        self.hides(span)
+        self.hides(columns, nearest)
+    }
+
+    /// Whether an item lies behind what was noted.
+    pub(super) fn hides_item(&self, item: &Item, view: &View) -> bool {
+        let [x, y] = item.position;
+        let top = item.asset.height * item.scale;
+        let radius = item.asset.ball_radius() * item.scale;
+        self.hides_ball([x, y, top / 2.0], radius, top, view)
     }
 
     /// Whether walls hide a ball, of which nothing is higher than `top`, in metres.
@@ -123,24 +122,21 @@ impl Hidden {
         let [left, right] = [right - radius, right + radius];
         let left = column(view, left, if left < 0.0 { nearest } else { farthest });
         let right = column(view, right, if right > 0.0 { nearest } else { farthest });
-        self.hides(Span {
-            columns: [left, right],
-            nearest,
-        })
+        self.hides([left, right], nearest)
     }
 
     fn may_hide(&self, top: f32) -> bool {
         self.height.is_some_and(|height| top <= height)
     }
 
-    fn hides(&self, span: Span) -> bool {
+    fn hides(&self, columns: [f32; 2], nearest: f32) -> bool {
         let last = self.inverse.len() as f32 - 1.0;
-        let first = (span.columns[0] - COLUMN).ceil().max(0.0);
-        let last = (span.columns[1] + COLUMN).floor().min(last);
+        let first = (columns[0] - COLUMN).ceil().max(0.0);
+        let last = (columns[1] + COLUMN).floor().min(last);
         if first > last {
             return true;
         }
-        let inverse = (1.0 + SHARE) / span.nearest;
+        let inverse = (1.0 + SHARE) / nearest;
         let mut walls = self.inverse[first as usize..=last as usize].iter();
         walls.all(|wall| *wall > inverse)
     }

@@ -95,6 +95,17 @@ impl NaturalParams<'_> {
             cover: None,
         }
     }
+
+    #[inline(always)]
+    fn byte<L: Lanes>(&self, l: L, channel: usize, sun: L::Float, up: L::Float) -> L::Word {
+        let around = l.splat(self.around[channel] + ROUNDING);
+        let level = l.mul_add(
+            sun,
+            l.splat(self.sun[channel]),
+            l.mul_add(up, l.splat(self.above[channel]), around),
+        );
+        l.truncate(l.min(level, l.splat(FULL_LEVEL)))
+    }
 }
 
 impl Shading for NaturalParams<'_> {
@@ -148,19 +159,6 @@ impl Shading for NaturalParams<'_> {
     }
 }
 
-impl NaturalParams<'_> {
-    #[inline(always)]
-    fn byte<L: Lanes>(&self, l: L, channel: usize, sun: L::Float, up: L::Float) -> L::Word {
-        let around = l.splat(self.around[channel] + ROUNDING);
-        let level = l.mul_add(
-            sun,
-            l.splat(self.sun[channel]),
-            l.mul_add(up, l.splat(self.above[channel]), around),
-        );
-        l.truncate(l.min(level, l.splat(FULL_LEVEL)))
-    }
-}
-
 /// One picture: where its camera is and how light falls.
 struct Picture<'a> {
     scene: &'a Scene,
@@ -210,13 +208,11 @@ impl CpuRenderer {
                 Drawable::Item(index) => self.draw_natural_item::<L, ITEMS>(lanes, index, visible, &picture),
                 Drawable::Panels(index) => {
                     let group = &scene.panels[index as usize];
-                    if self.hides && self.hidden.hides_panels(group, &view) {
+                    if self.hidden.hides_panels(group, &view) {
                         continue;
                     }
                     self.draw_natural_panels::<L, ITEMS>(lanes, group, visible, &picture);
-                    if self.hides {
-                        self.hidden.note(group, &view);
-                    }
+                    self.hidden.note(group, &view);
                 }
             }
         }
@@ -253,10 +249,7 @@ impl CpuRenderer {
         picture: &Picture<'_>,
     ) {
         let (item, view) = (&picture.scene.items[index as usize], &picture.view);
-        let [x, y] = item.position;
-        let top = item.asset.height * item.scale;
-        let radius = item.asset.ball_radius() * item.scale;
-        if self.hides && self.hidden.hides_ball([x, y, top / 2.0], radius, top, view) {
+        if self.hidden.hides_item(item, view) {
             return;
         }
         let class = if picture.labels_classes { item.class_id } else { 0 };
@@ -325,8 +318,7 @@ impl CpuRenderer {
             return;
         };
         let mut found = std::mem::take(&mut self.order);
-        let hidden = self.hides.then_some(&self.hidden);
-        shadows::find(scene, looks, &cast, view, hidden, &mut found);
+        shadows::find(scene, looks, &cast, view, &self.hidden, &mut found);
         for &shadow in &found {
             let params = ShadowParams {
                 may_be_cut: shadow.nearest < NEAR,

@@ -99,13 +99,13 @@ pub(super) fn find(
     looks: &NaturalLooks,
     cast: &Cast,
     view: &View,
-    hidden: Option<&Hidden>,
+    hidden: &Hidden,
     found: &mut Vec<Visible>,
 ) {
     found.clear();
     let mut note = |(middle, reach): ([f32; 3], f32), drawable: Drawable| {
         let there = view.view_from_world(middle);
-        let is_hidden = || hidden.is_some_and(|hidden| hidden.hides_ball(middle, reach, 0.0, view));
+        let is_hidden = || hidden.hides_ball(middle, reach, 0.0, view);
         if view.sees(there, reach) && !Cast::is_too_flat(view, there[2], reach) && !is_hidden() {
             found.push(Visible {
                 nearest: there[2] - reach,
