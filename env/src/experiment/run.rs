@@ -123,16 +123,10 @@ impl<'a> Run<'a> {
     }
 
     /// Notes a difference: how it is in the first world of the pair comes first, whoever leads.
-    fn note(&self, element: Element, moment: Moment, unlike: Unlike, found: &mut Findings) {
-        let unlike = if self.leader == 0 {
-            unlike
-        } else {
-            Unlike {
-                own: unlike.other,
-                other: unlike.own,
-                ..unlike
-            }
-        };
+    fn note(&self, element: Element, moment: Moment, mut unlike: Unlike, found: &mut Findings) {
+        if self.leader == 1 {
+            std::mem::swap(&mut unlike.own, &mut unlike.other);
+        }
         let witness = Witness::of(Some(self.number), Some(moment.policy), Some(moment.step), unlike);
         found.note(element, witness);
     }

@@ -91,21 +91,9 @@ impl Environment {
         own.returning.clear();
         own.returning
             .extend(theirs.returning.iter().map(|(index, tick)| (*index, ticks(*tick))));
-        for mover in &mut own.movers {
-            if let Ok(place) = theirs.movers.binary_search_by_key(&mover.object, |mover| mover.object) {
-                mover.clone_from(&theirs.movers[place]);
-            }
-        }
-        for rng in &mut own.rngs {
-            if let Ok(place) = theirs.rngs.binary_search_by_key(&rng.object, |rng| rng.object) {
-                rng.clone_from(&theirs.rngs[place]);
-            }
-        }
-        for pushed in &mut own.pushed {
-            if let Ok(place) = theirs.pushed.binary_search_by_key(&pushed.object, |body| body.object) {
-                *pushed = theirs.pushed[place];
-            }
-        }
+        take_over(&mut own.movers, &theirs.movers, |mover| mover.object);
+        take_over(&mut own.rngs, &theirs.rngs, |rng| rng.object);
+        take_over(&mut own.pushed, &theirs.pushed, |body| body.object);
         own.sequence = Sequence::of(&self.world.objects);
         own.advance_sequence();
         self.views.sync_objects(&self.world, &self.state);
@@ -155,38 +143,23 @@ impl Environment {
     /// What of the states of two worlds with the same objects differs first. What objects pay is no part of it.
     pub(crate) fn state_unlike(&self, other: &Self) -> Option<Unlike> {
         let (own, their) = (&self.state, &other.state);
-        Unlike::of(
-            "the agent's position in metres",
-            &own.agent.position,
-            &their.agent.position,
-        )
-        .or_else(|| {
-            Unlike::of(
-                "the agent's heading in degrees",
-                &own.agent.heading_deg,
-                &their.agent.heading_deg,
-            )
-        })
-        .or_else(|| {
-            Unlike::of(
-                "the agent's velocity in m/s",
-                &own.agent.velocity,
-                &their.agent.velocity,
-            )
-        })
-        .or_else(|| Unlike::of("the seconds gone by", &self.seconds(), &other.seconds()))
-        .or_else(|| (0..own.objects.len()).find_map(|index| self.object_unlike(other, index)))
-        .or_else(|| Unlike::of("the objects that the agent touches", &own.contacts, &their.contacts))
-        .or_else(|| {
-            // Where zones are others, being in one follows from where the agent is, and is no state of its own.
-            let [own, their] = [self, other].map(|one| one.views.zones.entered(&one.state));
-            let unlike = Unlike::of("the zones that the agent is in", &own, &their);
-            unlike.filter(|_| have_same_zones(&self.world, &other.world))
-        })
-        .or_else(|| Unlike::of("what the agent carries", &own.carried, &their.carried))
-        .or_else(|| Unlike::of("the agent's energy", &own.energy, &their.energy))
-        .or_else(|| Unlike::of("how what was pushed moves", &own.pushed, &their.pushed))
-        .or_else(|| Unlike::of("when objects come back", &self.returns(), &other.returns()))
+        let (agent, its) = (&own.agent, &their.agent);
+        Unlike::of("the agent's position in metres", &agent.position, &its.position)
+            .or_else(|| Unlike::of("the agent's heading in degrees", &agent.heading_deg, &its.heading_deg))
+            .or_else(|| Unlike::of("the agent's velocity in m/s", &agent.velocity, &its.velocity))
+            .or_else(|| Unlike::of("the seconds gone by", &self.seconds(), &other.seconds()))
+            .or_else(|| (0..own.objects.len()).find_map(|index| self.object_unlike(other, index)))
+            .or_else(|| Unlike::of("the objects that the agent touches", &own.contacts, &their.contacts))
+            .or_else(|| {
+                // Where zones are others, being in one follows from where the agent is, and is no state of its own.
+                let [own, their] = [self, other].map(|one| one.views.zones.entered(&one.state));
+                let unlike = Unlike::of("the zones that the agent is in", &own, &their);
+                unlike.filter(|_| have_same_zones(&self.world, &other.world))
+            })
+            .or_else(|| Unlike::of("what the agent carries", &own.carried, &their.carried))
+            .or_else(|| Unlike::of("the agent's energy", &own.energy, &their.energy))
+            .or_else(|| Unlike::of("how what was pushed moves", &own.pushed, &their.pushed))
+            .or_else(|| Unlike::of("when objects come back", &self.returns(), &other.returns()))
     }
 
     /// When destroyed objects come back: their numbers, and seconds.
@@ -245,6 +218,15 @@ impl Environment {
         let carried = shown(&self.world, &self.state);
         self.renderer.draw_carried(&self.views.scene, carried, &mut target);
         Ok(())
+    }
+}
+
+/// Takes over what others have for the same objects; both are sorted by object.
+fn take_over<T: Clone>(own: &mut [T], theirs: &[T], object: impl Fn(&T) -> usize) {
+    for one in own {
+        if let Ok(place) = theirs.binary_search_by_key(&object(one), &object) {
+            one.clone_from(&theirs[place]);
+        }
     }
 }
 
