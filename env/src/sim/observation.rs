@@ -14,28 +14,28 @@ impl Environment {
     ///
     /// Should a graphics card fail, the processor draws in its place.
     pub fn observe(&mut self) -> &Frame {
-        if self.draw_observation().is_err() {
-            let camera = self.camera();
+        let [width, height] = self.world.agent_params.picture_size();
+        let mut frame = std::mem::replace(&mut self.frame, Frame::new(0, 0));
+        if [frame.width, frame.height] != [width, height] {
+            frame = Frame::new(width, height);
+        }
+        if self.draw_into(frame.target()).is_err() {
             // On the processor: only for so many points that no buffer holds them, then one a pixel.
             let mut renderer = CpuRenderer::new();
-            renderer.render(&self.views.scene, &camera, &mut self.frame);
-            let mut target = self.frame.target();
-            renderer.draw_carried(&self.views.scene, shown(&self.world, &self.state), &mut target);
+            renderer.render(self.scene(), &self.camera(), &mut frame);
+            self.draw_carried(&mut renderer, &mut frame.target());
         }
+        self.frame = frame;
         &self.frame
     }
 
-    fn draw_observation(&mut self) -> Result<(), EnvError> {
-        let agent = &self.world.agent_params;
-        let ([width, height], supersampling) = (agent.picture_size(), agent.supersampling);
-        if (self.frame.width, self.frame.height) != (width, height) {
-            self.frame = Frame::new(width, height);
-        }
-        let camera = self.camera();
+    /// Draws what the agent sees into images of any size; those that are not in the target are left alone.
+    pub(crate) fn draw_into(&mut self, target: Target) -> Result<(), EnvError> {
         let mut target = Target {
-            supersampling,
-            ..self.frame.target()
+            supersampling: self.world.agent_params.supersampling,
+            ..target
         };
+        let camera = self.camera();
         self.renderer.draw(&self.views.scene, &camera, &mut target)?;
         let carried = shown(&self.world, &self.state);
         self.renderer.draw_carried(&self.views.scene, carried, &mut target);
@@ -92,7 +92,7 @@ impl Environment {
 }
 
 /// What is carried, if the world shows it.
-pub(super) fn shown<'a>(world: &World, state: &'a SimState) -> &'a [u32] {
+fn shown<'a>(world: &World, state: &'a SimState) -> &'a [u32] {
     if world.agent_params.show_carried {
         state.carried()
     } else {

@@ -7,12 +7,10 @@ use driftworld_text::shortened;
 use super::action::{Action, Intent};
 use super::environment::Environment;
 use super::mover::Mover;
-use super::observation::shown;
 use super::sequence::Sequence;
 use super::state::SimState;
 use super::walls::agent_obstacle;
 use crate::EnvError;
-use crate::render::Target;
 
 /// The most characters of how something is.
 const MOST_CHARACTERS: usize = 200;
@@ -204,20 +202,6 @@ impl Environment {
                 let (own, their) = (of_mover(&self.state)?, of_mover(&other.state)?);
                 Unlike::of(of("the next goal"), &own, &their)
             })
-    }
-
-    /// Draws what the agent sees into a frame of any size; the images that are not in the target are left alone.
-    pub(crate) fn draw_into(&mut self, target: Target) -> Result<(), EnvError> {
-        let supersampling = self.world.agent_params.supersampling;
-        let camera = self.camera();
-        let mut target = Target {
-            supersampling,
-            ..target
-        };
-        self.renderer.draw(&self.views.scene, &camera, &mut target)?;
-        let carried = shown(&self.world, &self.state);
-        self.renderer.draw_carried(&self.views.scene, carried, &mut target);
-        Ok(())
     }
 }
 
