@@ -18,6 +18,7 @@ const FEW: usize = 64;
 const WORN: usize = 4;
 
 /// Trees of boxes around bodies, by the numbers of their handles.
+#[derive(Default)]
 pub(super) struct BroadPhase {
     trees: [Tree; 3],
     workspace: BvhWorkspace,
@@ -34,13 +35,6 @@ struct Tree {
 }
 
 impl BroadPhase {
-    pub(super) fn new() -> Self {
-        Self {
-            trees: Default::default(),
-            workspace: BvhWorkspace::default(),
-        }
-    }
-
     /// Notes where a body of a group is now.
     pub(super) fn put(&mut self, group: Group, number: u32, area: Aabb) {
         let tree = &mut self.trees[place_of(group)];

@@ -86,7 +86,7 @@ impl CollisionWorld {
         let mut bodies = Self {
             bodies: RigidBodySet::new(),
             colliders: ColliderSet::new(),
-            places: BroadPhase::new(),
+            places: BroadPhase::default(),
             narrow_phase: NarrowPhase::new(),
             islands: IslandManager::new(),
             soft_bodies: SoftBodySet::new(),

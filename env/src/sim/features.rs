@@ -33,15 +33,15 @@ impl Environment {
     fn fill_state(&self, state: &mut [f32]) {
         let mut rest = state;
         for feature in &self.world.agent_params.state_features {
-            let (mut numbers, length) = values(&self.world, &self.state, &self.views.zones, *feature);
+            let mut numbers = values(&self.world, &self.state, &self.views.zones, *feature);
             if *feature == StateFeature::Carrying {
                 // Numbers of classes are those of the scene.
                 let last = self.state.carried.last().map(|index| *index as usize);
                 let class = last.map_or(0, |index| self.views.scene.items[index].class_id);
                 numbers[1] = f32::from(class);
             }
-            let (own, others) = rest.split_at_mut(length);
-            own.copy_from_slice(&numbers[..length]);
+            let (own, others) = rest.split_at_mut(feature.num_values());
+            own.copy_from_slice(&numbers[..own.len()]);
             rest = others;
         }
         for (place, number) in rest.iter_mut().zip(&self.world.agent_params.instruction) {
@@ -50,12 +50,12 @@ impl Environment {
     }
 }
 
-/// The numbers of one feature, and how many of the three are in use.
-fn values(world: &World, state: &SimState, zones: &Zones, feature: StateFeature) -> ([f32; 3], usize) {
+/// The numbers of one feature, the first of the three.
+fn values(world: &World, state: &SimState, zones: &Zones, feature: StateFeature) -> [f32; 3] {
     let agent = &state.agent;
     let [x, y] = agent.position;
     let [vx, vy] = agent.velocity;
-    let numbers = match feature {
+    match feature {
         StateFeature::Position => [x, y, 0.0],
         StateFeature::Heading => [agent.heading_deg, 0.0, 0.0],
         StateFeature::Velocity => [vx, vy, 0.0],
@@ -102,8 +102,7 @@ fn values(world: &World, state: &SimState, zones: &Zones, feature: StateFeature)
             let left = f64::from(most.saturating_sub(state.steps)) / f64::from(most.max(1));
             [if most == 0 { 1.0 } else { left as f32 }, 0.0, 0.0]
         }
-    };
-    (numbers, feature.num_values())
+    }
 }
 
 /// What the goal feature points to: the tag of the shaping, else those whose touch is a success.

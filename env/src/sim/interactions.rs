@@ -41,12 +41,13 @@ pub(super) fn apply_stimuli(
     stimuli: &mut Stimuli,
     step: &mut Step,
 ) {
+    let world = objects.world;
     let Stimuli { reached, triggered } = stimuli;
     triggered.clear();
     triggered.reserve(32);
     encounters.moved.sort_unstable_by_key(|(index, _)| *index);
     encounters.returned.sort_unstable();
-    update_contacts(objects.world, state, views, encounters, triggered);
+    update_contacts(world, state, views, encounters, triggered);
     if intent.interact {
         views
             .bodies
@@ -57,26 +58,18 @@ pub(super) fn apply_stimuli(
     let mut put_down_now = None;
     let hand = (intent.interact && state.has_things)
         .then(|| {
-            let sim = SimRef {
-                world: objects.world,
-                state,
-                views,
-            };
+            let sim = SimRef { world, state, views };
             let answers = answering(sim, reached);
             put_down_now = answers.is_none().then(|| put_down_place(sim)).flatten();
             answers
         })
         .flatten();
-    for (index, object) in objects.world.objects.iter().enumerate() {
+    for (index, object) in world.objects.iter().enumerate() {
         let reach = object.range_stimulus_distance;
         if reach <= 0.0 {
             continue;
         }
-        let sim = SimRef {
-            world: objects.world,
-            state,
-            views,
-        };
+        let sim = SimRef { world, state, views };
         let was = state.objects[index].in_range;
         let is_level = object.range_trigger == Trigger::Level;
         let enters = (!was || is_level) && comes_near(sim, index, encounters);
@@ -97,12 +90,8 @@ pub(super) fn apply_stimuli(
     }
     if state.has_things {
         if let Some((index, place)) = put_down_now {
-            put_down(objects.world, state, views, index, place);
-            let sim = SimRef {
-                world: objects.world,
-                state,
-                views,
-            };
+            put_down(world, state, views, index, place);
+            let sim = SimRef { world, state, views };
             // That it is near to where it is put is no news.
             state.objects[index as usize].in_range = is_in_range(sim, index as usize);
             step.events.push(Event {
@@ -115,7 +104,7 @@ pub(super) fn apply_stimuli(
             });
         }
         follow(state);
-        advance_doors(objects.world, state, views);
+        advance_doors(world, state, views);
     }
     if state.returning.len() > num_returning {
         state.returning.sort_unstable_by_key(|(index, _)| *index);

@@ -52,6 +52,7 @@ pub(super) struct Chosen {
 }
 
 /// What is around one body.
+#[derive(Default)]
 struct Around {
     /// Other bodies that can be pushed and that it may meet, by their numbers among these.
     neighbours: Vec<usize>,
@@ -121,11 +122,7 @@ fn around_pushed(sim: SimRef, index: usize, seconds: f32, widest: f32, budget: &
     let area = box_around(radius.max(0.05) + reach + 2.0 * widest);
     let own_box = sim.views.bodies.box_of(own);
     let surroundings = box_around(standing_reach(sim, index, seconds));
-    let mut around = Around {
-        neighbours: Vec::new(),
-        may_meet: 0,
-        overlaps: 0,
-    };
+    let mut around = Around::default();
     for (count, handle) in sim.views.bodies.around(SOLID | WALL, Some(own), area).enumerate() {
         if !budget.take(1) || count > ONE_LOOKS {
             return None;

@@ -137,7 +137,7 @@ fn note_object(sim: SimRef, index: usize, object: &mut Object) -> ObjectProgress
             .as_ref()
             .filter(|door| door.open != own.open)
             .map(|_| own.open),
-        unlocked: state.door_of(index).is_some_and(|door| door.unlocked),
+        unlocked: state.is_unlocked(index),
         closes_at: state.door_of(index).and_then(|door| door.closes_at),
     }
 }

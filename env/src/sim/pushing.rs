@@ -266,15 +266,14 @@ fn read_back(
         let moved = &physics.bodies[body.handle];
         let (at, turn) = (moved.translation(), moved.rotation());
         let position = [at.x, at.y].map(|metres| metres.clamp(-EDGE, EDGE));
-        let speeds = [moved.linvel().x, moved.linvel().y, moved.angvel().z];
-        let [x, y, turn_speed] = speeds;
+        let [x, y, turn_speed] = [moved.linvel().x, moved.linvel().y, moved.angvel().z];
         let sound = (at.x + at.y + x + y + turn_speed).is_finite();
         if !sound || leads_through(&views.bodies, own.position, position, object as u32) {
             pushed.stop();
             continue;
         }
-        pushed.velocity = [speeds[0], speeds[1]];
-        pushed.spin_deg = -speeds[2].to_degrees();
+        pushed.velocity = [x, y];
+        pushed.spin_deg = -turn_speed.to_degrees();
         let yaw = 2.0 * libm::atan2f(turn.z, turn.w);
         let heading_deg = wrapped(-yaw.to_degrees());
         // A body at rest keeps its very place, whatever solvers make of it.

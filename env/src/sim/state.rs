@@ -10,7 +10,7 @@ use super::rng::{Identities, ObjectRng, Seed};
 use super::sequence::Sequence;
 
 /// Where the agent is and how it moves.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct AgentState {
     /// Position in metres.
     pub position: [f32; 2],
@@ -76,7 +76,7 @@ pub(super) fn wrapped(heading_deg: f32) -> f32 {
 
 /// Where a world stands in its course: the only place that says where things are, whether they are there and what they
 /// pay.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(crate) struct SimState {
     pub(super) agent: AgentState,
     pub(super) objects: Vec<ObjectState>,
@@ -128,25 +128,10 @@ impl SimState {
                 velocity: [0.0; 2],
             },
             objects: Vec::with_capacity(world.objects.len()),
-            steps: 0,
-            ticks: 0,
-            earned: 0.0,
-            unshaped: 0.0,
-            last_reward: 0.0,
-            last_event: None,
-            ended: false,
-            rngs: Vec::new(),
-            contacts: Vec::new(),
-            movers: Vec::new(),
-            pushed: Vec::new(),
-            returning: Vec::new(),
             sequence: Sequence::of(&world.objects),
-            inside: Vec::new(),
-            doors: Vec::new(),
-            carried: Vec::new(),
-            has_things: false,
             time_step: start.time_step,
             energy: start.energy.map_or(0.0, |energy| energy.start),
+            ..Self::default()
         };
         for object in &world.objects {
             state.add_object(object, seed, identities);

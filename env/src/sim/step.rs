@@ -99,14 +99,16 @@ impl Environment {
 
     /// What the agent means to do: in a world on rails, what its policy says in place of the action.
     pub(super) fn intent(&mut self, numbers: [f64; 3]) -> Intent {
-        let agent = &self.world.agent_params;
-        let sim = SimRef {
-            world: &self.world,
-            state: &self.state,
-            views: &self.views,
-        };
+        let Self {
+            world, state, views, ..
+        } = self;
+        let agent = &world.agent_params;
         match &mut self.rails {
-            Some(policy) => Intent::new(ActionModel::ByVelocity, policy.steer(sim), agent),
+            Some(policy) => Intent::new(
+                ActionModel::ByVelocity,
+                policy.steer(SimRef { world, state, views }),
+                agent,
+            ),
             None => Intent::new(agent.action_model, numbers, agent),
         }
     }

@@ -19,15 +19,17 @@ const APART: f32 = 0.1;
 pub(super) fn listens(object: &Object, stimulus: Stimulus) -> bool {
     let door = object.door.as_ref();
     let door = door.is_some_and(|door| door.opens_on.contains(&stimulus) || door.closes_on.contains(&stimulus));
-    let switch = object
-        .switch
-        .as_ref()
-        .is_some_and(|switch| switch.on.contains(&stimulus));
-    let portable = object
-        .portable
-        .as_ref()
-        .is_some_and(|portable| portable.on.contains(&stimulus));
-    door || switch || portable
+    door || is_set_off(object, stimulus) || is_picked_up(object, stimulus)
+}
+
+fn is_set_off(object: &Object, stimulus: Stimulus) -> bool {
+    let switch = object.switch.as_ref();
+    switch.is_some_and(|switch| switch.on.contains(&stimulus))
+}
+
+fn is_picked_up(object: &Object, stimulus: Stimulus) -> bool {
+    let portable = object.portable.as_ref();
+    portable.is_some_and(|portable| portable.on.contains(&stimulus))
 }
 
 /// What an object does at a stimulus as things are; `None` if nothing.
@@ -46,28 +48,17 @@ pub(crate) fn effect_of(world: &World, state: &SimState, index: usize, stimulus:
             return Some(Effect::Closed);
         }
     }
-    if object
-        .switch
-        .as_ref()
-        .is_some_and(|switch| switch.on.contains(&stimulus))
-    {
+    if is_set_off(object, stimulus) {
         return Some(Effect::Switched);
     }
     let has_room = state.carried.len() < world.agent_params.carry_limit as usize;
-    let is_picked_up = object
-        .portable
-        .as_ref()
-        .is_some_and(|portable| portable.on.contains(&stimulus));
-    (is_picked_up && has_room).then_some(Effect::PickedUp)
+    (has_room && is_picked_up(object, stimulus)).then_some(Effect::PickedUp)
 }
 
 /// Whether a door is locked to who carries what the agent carries.
 fn is_locked(world: &World, state: &SimState, index: usize) -> bool {
     let key = world.objects[index].door.as_ref().and_then(|door| door.key.as_ref());
-    key.is_some_and(|key| {
-        let is_unlocked = state.door_of(index).is_some_and(|door| door.unlocked);
-        !is_unlocked && carried_of_tag(world, state, key).is_none()
-    })
+    key.is_some_and(|key| !state.is_unlocked(index) && carried_of_tag(world, state, key).is_none())
 }
 
 /// The place among what is carried of the first thing of a tag.
