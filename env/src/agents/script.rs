@@ -1,6 +1,8 @@
 //! The text form of what a scripted agent does: one command a line, read and checked. Carrying it out is in
 //! `scripted.rs`.
 
+use std::str::FromStr;
+
 use driftworld_spec::nearest;
 use driftworld_text::{is_unprintable, quoted};
 
@@ -113,7 +115,11 @@ fn command(name: &str, words: &[&str]) -> Result<Command, Problem> {
         ("action", ["-a", action @ ..]) if [1, 3].contains(&action.len()) => act(1, action),
         ("touch", [object, rest @ ..]) if rest.len() < 2 => go(object, Until::Touched, rest),
         ("interact", [object, rest @ ..]) if rest.len() < 2 => go(object, Until::Interacted, rest),
-        ("near", [object, metres, rest @ ..]) if rest.len() < 2 => go(object, Until::Near(self::metres(metres)?), rest),
+        ("near", [object, metres, rest @ ..]) if rest.len() < 2 => {
+            let is_sound = |metres: &f32| metres.is_finite() && *metres > 0.0;
+            let metres = parsed(metres, is_sound, "how many metres, more than 0")?;
+            go(object, Until::Near(metres), rest)
+        }
         ("tour", []) => Ok(Command::Tour { steps: MOST_STEPS }),
         ("tour", [count]) => Ok(Command::Tour { steps: steps(count)? }),
         ("repeat", []) => Ok(Command::Repeat),
@@ -142,32 +148,26 @@ fn names() -> String {
 fn act(steps: u32, words: &[&str]) -> Result<Command, Problem> {
     let action = match words {
         [a, b, c] => Action::Continuous([number(a)?, number(b)?, number(c)?]),
-        words => Action::Discrete(row(words.first().copied().unwrap_or_default())?),
+        words => {
+            let expected = "the number of a row of the action table, or three numbers";
+            Action::Discrete(parsed(words.first().copied().unwrap_or_default(), |_| true, expected)?)
+        }
     };
     Ok(Command::Act { action, steps })
 }
 
-fn row(word: &str) -> Result<usize, Problem> {
-    let expected = "the number of a row of the action table, or three numbers";
-    word.parse().map_err(|_| (format!("{word:?}"), expected.to_owned()))
-}
-
 fn number(word: &str) -> Result<f64, Problem> {
-    let number = word.parse::<f64>().ok().filter(|number| number.is_finite());
-    number.ok_or_else(|| (format!("{word:?}"), "a number".to_owned()))
-}
-
-fn metres(word: &str) -> Result<f32, Problem> {
-    let metres = word
-        .parse::<f32>()
-        .ok()
-        .filter(|metres| metres.is_finite() && *metres > 0.0);
-    metres.ok_or_else(|| (format!("{word:?}"), "how many metres, more than 0".to_owned()))
+    parsed(word, |number: &f64| number.is_finite(), "a number")
 }
 
 fn steps(word: &str) -> Result<u32, Problem> {
-    let steps = word.parse().ok().filter(|steps| (1..=MOST_STEPS).contains(steps));
-    steps.ok_or_else(|| (format!("{word:?}"), format!("how many steps, 1 to {MOST_STEPS}")))
+    let expected = format!("how many steps, 1 to {MOST_STEPS}");
+    parsed(word, |steps| (1..=MOST_STEPS).contains(steps), &expected)
+}
+
+fn parsed<T: FromStr>(word: &str, is_sound: impl Fn(&T) -> bool, expected: &str) -> Result<T, Problem> {
+    let found = word.parse().ok().filter(is_sound);
+    found.ok_or_else(|| (format!("{word:?}"), expected.to_owned()))
 }
 
 #[cfg(test)]
