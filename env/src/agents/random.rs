@@ -5,7 +5,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::Agent;
-use crate::sim::{Action, Environment};
+use crate::sim::{Action, Environment, in_units};
 
 /// How many steps it keeps to one action, so that it gets about at all.
 const HOLD: u32 = 8;
@@ -39,13 +39,9 @@ impl Agent for RandomAgent {
                 None if agent.actions == ActionSpace::Normalized || agent.action_model == ActionModel::ByWaypoint => {
                     let mut share = || self.rng.random::<f64>() * 2.0 - 1.0;
                     let shares = [share(), share(), share()];
-                    let [x, y] = environment.world().environment_params.arena_size();
                     Action::Continuous(match (agent.action_model, &agent.actions) {
                         (ActionModel::ByWaypoint, ActionSpace::Normalized) => shares,
-                        (ActionModel::ByWaypoint, _) => {
-                            let [a, b, c] = shares;
-                            [a * x / 2.0, b * y / 2.0, c * agent.max_angular_speed]
-                        }
+                        (ActionModel::ByWaypoint, _) => in_units(shares, environment.world()),
                         // Mostly ahead, as below.
                         _ => [shares[0].abs(), shares[1], shares[2]],
                     })

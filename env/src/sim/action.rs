@@ -57,7 +57,7 @@ impl Action {
 }
 
 /// Numbers in −1..1 as numbers in the units of the action model.
-fn in_units(shares: [f64; 3], world: &World) -> [f64; 3] {
+pub(crate) fn in_units(shares: [f64; 3], world: &World) -> [f64; 3] {
     let agent = &world.agent_params;
     let [a, b, c] = shares.map(|share| share.clamp(-1.0, 1.0));
     match agent.action_model {

@@ -47,7 +47,7 @@ mod warning;
 mod zones;
 
 pub use action::Action;
-pub(crate) use action::Intent;
+pub(crate) use action::{Intent, in_units};
 pub use environment::Environment;
 pub use event::{Effect, EndedBy, Event, Step};
 pub(crate) use sim_ref::SimRef;
