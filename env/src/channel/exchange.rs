@@ -106,31 +106,23 @@ impl Channels {
         let (token, done) = match Message::parse(text) {
             Ok(message) => {
                 let said = format!("{} received {:.40}", channel.name(), message.action);
-                received
-                    .messages
-                    .extend(self.remark(Category::Communications, Level::Log, said, time));
+                let remark = self.remark(Category::Communications, Level::Log, said, time);
+                received.messages.extend(remark);
                 let done = self.execute(environment, channel, &message, time, &mut received);
                 (message.token, done)
             }
             Err((token, refusal)) => (token, Err(refusal)),
         };
+        let messages = &mut received.messages;
         match done {
-            Ok(Answer::Say(action, payload)) => {
-                received
-                    .messages
-                    .push(self.message(channel, action, payload, token, time));
-            }
+            Ok(Answer::Say(action, payload)) => messages.push(self.message(channel, action, payload, token, time)),
             Ok(Answer::Picture(screenshot)) => received.screenshot = Some(Screenshot { token, ..screenshot }),
             Err(refusal) => {
                 // A refusal is made of one text, or of all problems where there are some.
                 let said = format!("{} refused: {}", channel.name(), refusal.texts()[0]);
-                received
-                    .messages
-                    .extend(self.remark(Category::Communications, Level::Error, said, time));
+                messages.extend(self.remark(Category::Communications, Level::Error, said, time));
                 let payload = Some(json!(refusal.texts()));
-                received
-                    .messages
-                    .push(self.message(channel, "error", payload, token, time));
+                messages.push(self.message(channel, "error", payload, token, time));
             }
         }
         received
@@ -220,18 +212,16 @@ impl Channels {
                 let remarks = self.reset(environment, message)?;
                 received.reset = true;
                 let said = format!("a new episode of world {:.12}", self.world);
-                received
-                    .messages
-                    .extend(self.remark(Category::Academy, Level::Log, said, time));
+                let remark = self.remark(Category::Academy, Level::Log, said, time);
+                received.messages.extend(remark);
                 self.warn(remarks, time, received);
                 Ok(OK)
             }
             "object_create" => {
                 let (index, remarks) = create(environment, message)?;
                 let said = format!("object {index} is a {}", environment.world().objects[index].class);
-                received
-                    .messages
-                    .extend(self.remark(Category::Worldmaker, Level::Log, said, time));
+                let remark = self.remark(Category::Worldmaker, Level::Log, said, time);
+                received.messages.extend(remark);
                 self.warn(remarks, time, received);
                 Ok(OK)
             }
