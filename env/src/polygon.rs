@@ -2,6 +2,12 @@
 
 use std::ops::{Add, Div, Mul, Sub};
 
+/// Corners as the simulator has them.
+pub(crate) fn to_f32(corners: &[[f64; 2]]) -> Vec<[f32; 2]> {
+    let corners = corners.iter();
+    corners.map(|corner| corner.map(|metres| metres as f32)).collect()
+}
+
 /// Whether a point is inside a polygon, by the even-odd rule, or nearer to one of its edges than `margin` in metres.
 pub(crate) fn is_near_or_inside<F>(corners: impl Iterator<Item = [F; 2]> + Clone, [x, y]: [F; 2], margin: F) -> bool
 where

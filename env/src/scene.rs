@@ -7,6 +7,7 @@ use driftworld_spec::{Object, Style, Surface, World};
 use crate::assets::{Asset, Block, Catalogue, ColliderShape, Mesh, lowercase};
 use crate::ground;
 use crate::looks::{Finish, NaturalLooks};
+use crate::polygon::to_f32;
 use crate::wall_tops::tops;
 
 /// Everything that a picture of a world depends on, but for the camera.
@@ -254,27 +255,20 @@ impl Scene {
         for region in environment.regions() {
             self.add_region(region, height, color);
         }
-        for wall in &environment.walls {
-            let height = wall.height.map_or(height, |metres| metres as f32);
-            self.add_region(
-                &wall.polygon,
-                height,
-                wall.color.map_or(color, driftworld_spec::Color::to_f32),
-            );
-        }
-        for wall in world.plan().into_iter().flat_map(|plan| &plan.walls) {
-            let height = wall.height.map_or(height, |metres| metres as f32);
-            let color = wall.color.map_or(color, driftworld_spec::Color::to_f32);
-            self.add_region(&wall.polygon, height, color);
+        let walls = environment.walls.iter();
+        let walls = walls.map(|wall| (&wall.polygon, wall.height, wall.color));
+        let planned = world.plan().into_iter().flat_map(|plan| &plan.walls);
+        let planned = planned.map(|wall| (&wall.polygon, wall.height, wall.color));
+        for (polygon, own_height, own_color) in walls.chain(planned) {
+            let height = own_height.map_or(height, |metres| metres as f32);
+            let color = own_color.map_or(color, driftworld_spec::Color::to_f32);
+            self.add_region(polygon, height, color);
         }
     }
 
     /// A region is seen from outside: its corners are put counter-clockwise.
     fn add_region(&mut self, corners: &[[f64; 2]], height: f32, color: [f32; 3]) {
-        let mut corners: Vec<[f32; 2]> = corners
-            .iter()
-            .map(|corner| corner.map(|metres| metres as f32))
-            .collect();
+        let mut corners = to_f32(corners);
         let next = corners.iter().cycle().skip(1);
         let twice_area: f32 = corners.iter().zip(next).map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum();
         if twice_area < 0.0 {

@@ -11,6 +11,7 @@ use super::footprint::{Footprint, Point};
 use super::gap::Gap;
 use super::groups::{AGENT, GHOST, SOLID, WALL};
 use super::outline::Outline;
+use crate::polygon::to_f32;
 use crate::scene::{Item, Scene};
 
 /// Where the world ends for what starts outside the arena, in metres from the origin: a document knows no place beyond.
@@ -189,10 +190,7 @@ impl CollisionWorld {
 
     /// A thin wall along every edge of a polygon: no triangulation that a strange polygon could break.
     fn add_region(&mut self, corners: &[[f64; 2]]) {
-        let corners: Vec<[f32; 2]> = corners
-            .iter()
-            .map(|corner| corner.map(|metres| metres as f32))
-            .collect();
+        let corners = to_f32(corners);
         for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
             let along = [to[0] - from[0], to[1] - from[1]];
             let length = (along[0] * along[0] + along[1] * along[1]).sqrt();

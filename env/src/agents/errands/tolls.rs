@@ -6,7 +6,7 @@ use driftworld_spec::{World, Zone, ZoneEnd};
 use super::floor::COSTS;
 use crate::agents::grid::Grid;
 use crate::ground;
-use crate::polygon::is_near_or_inside;
+use crate::polygon::{is_near_or_inside, to_f32};
 
 /// How far ways like to keep from zones that cost or fail, in metres, and how dear it is to be nearer.
 const LIKED: f32 = 0.35;
@@ -125,11 +125,7 @@ fn seal(grid: Grid) -> f32 {
 
 /// The cells whose middles are in a zone, or nearer to it than this.
 fn cells(zone: &Zone, margin: f32, grid: Grid) -> impl Iterator<Item = usize> {
-    let corners = ground::corners(zone);
-    let corners: Vec<[f32; 2]> = corners
-        .iter()
-        .map(|corner| corner.map(|metres| metres as f32))
-        .collect();
+    let corners = to_f32(&ground::corners(zone));
     let bounds = zone.bounds().unwrap_or([[0.0; 2]; 2]);
     let [low, high] = [(0, -margin), (1, margin)].map(|(end, by)| bounds[end].map(|metres| metres as f32 + by));
     let is_there = move |cell: &usize| is_near_or_inside(corners.iter().copied(), grid.centre(*cell), margin);
