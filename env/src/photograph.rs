@@ -154,7 +154,9 @@ impl Studio {
     /// # Errors
     /// [`EnvError::NoSuchObject`].
     pub fn camera(&self, photograph: &Photograph) -> Result<Camera, EnvError> {
-        let item = self.item(photograph)?;
+        let (found, count) = (photograph.object, self.scene.items.len());
+        let item = self.scene.items.get(found);
+        let item = item.ok_or(EnvError::NoSuchObject { found, count })?;
         let middle = [0.0, 0.0, item.asset.height * item.scale / 2.0];
         let towards_camera = direction(photograph.yaw_deg, photograph.elevation_deg);
         Ok(Camera {
@@ -176,15 +178,6 @@ impl Studio {
         let drawn = self.renderer.draw(&self.scene, &camera, target);
         self.scene.items[photograph.object].visible = false;
         drawn
-    }
-
-    fn item(&self, photograph: &Photograph) -> Result<&Item, EnvError> {
-        let count = self.scene.items.len();
-        let found = photograph.object;
-        self.scene
-            .items
-            .get(found)
-            .ok_or(EnvError::NoSuchObject { found, count })
     }
 }
 
