@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 use std::ops::{ControlFlow, Range};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::mpsc;
-use std::sync::{Condvar, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 use std::thread;
 
 /// How far ahead of the oldest unfinished item each thread may work: bounds what waits to be handed on.
-const AHEAD: u64 = 16;
+const AHEAD: usize = 16;
 
 /// Does every item of a range, a worker to a thread, and hands the results on in order; ends early when `take` says so.
 ///
@@ -19,48 +20,50 @@ pub(super) fn in_order<W: Send, T: Send, E>(
     work: impl Fn(&mut W, u64) -> T + Sync,
     mut take: impl FnMut(u64, T) -> Result<ControlFlow<()>, E>,
 ) -> Result<ControlFlow<()>, E> {
-    let window = AHEAD * workers.len() as u64;
-    let gate = Gate::new(items.clone());
+    let (num_workers, ahead) = (workers.len(), AHEAD * workers.len());
     // Handed out one by one: who gets no thread is still there.
     let workers = Mutex::new(workers);
     let hire = || workers.lock().unwrap_or_else(PoisonError::into_inner).pop();
+    let (give, given) = mpsc::channel();
+    let given = Mutex::new(given);
+    let next = || given.lock().unwrap_or_else(PoisonError::into_inner).recv();
     thread::scope(|scope| {
+        // Dropped however this ends: then no thread goes on waiting for an item.
+        let give = give;
         let (results, arrived) = mpsc::channel();
-        let num_workers = workers.lock().unwrap_or_else(PoisonError::into_inner).len();
-        let mut num_threads = 0;
-        for _ in 0..num_workers {
-            let (results, gate, work, hire) = (results.clone(), &gate, &work, &hire);
+        let is_hired = |_: &usize| {
+            let (results, work, hire, next) = (results.clone(), &work, &hire, &next);
             let thread = thread::Builder::new().spawn_scoped(scope, move || {
-                // If this one panics, the others must not wait for its result for ever.
-                let _closing = Closing(gate);
                 let Some(mut worker) = hire() else { return };
-                while let Some(item) = gate.next(window) {
-                    if results.send((item, work(&mut worker, item))).is_err() {
+                while let Ok(item) = next() {
+                    let result = catch_unwind(AssertUnwindSafe(|| work(&mut worker, item)));
+                    if results.send((item, result)).is_err() {
                         break;
                     }
                 }
             });
-            if thread.is_err() {
-                break;
-            }
-            num_threads += 1;
-        }
-        drop(results);
-        // However this ends, no thread may go on waiting for its turn.
-        let _closing = Closing(&gate);
-        if num_threads == 0 {
+            thread.is_ok()
+        };
+        if (0..num_workers).take_while(is_hired).count() == 0 {
             return alone(items, hire(), &work, &mut take);
         }
-        let (mut early, mut wanted) = (BTreeMap::new(), items.start);
-        for (item, result) in arrived {
-            early.insert(item, result);
-            while let Some(result) = early.remove(&wanted) {
-                if take(wanted, result)?.is_break() {
-                    return Ok(ControlFlow::Break(()));
-                }
-                wanted += 1;
-                gate.done(wanted);
+        let mut later = items.clone();
+        let mut begin = |most: usize| {
+            let begun = later.by_ref().take(most).try_for_each(|item| give.send(item));
+            begun.expect("the other end outlives the threads");
+        };
+        begin(ahead);
+        let mut early = BTreeMap::new();
+        for wanted in items {
+            while !early.contains_key(&wanted) {
+                let (item, result) = arrived.recv().expect("a thread sends every item that was given");
+                early.insert(item, result);
             }
+            let result = early.remove(&wanted).expect("it has arrived");
+            if take(wanted, result.unwrap_or_else(|panic| resume_unwind(panic)))?.is_break() {
+                return Ok(ControlFlow::Break(()));
+            }
+            begin(1);
         }
         Ok(ControlFlow::Continue(()))
     })
@@ -82,58 +85,6 @@ fn alone<W, T, E>(
         }
     }
     Ok(ControlFlow::Continue(()))
-}
-
-/// Gives out items in order, none too far ahead of those that were handed on.
-struct Gate {
-    state: Mutex<Turn>,
-    moved: Condvar,
-}
-
-struct Turn {
-    items: Range<u64>,
-    done: u64,
-}
-
-impl Gate {
-    fn new(items: Range<u64>) -> Self {
-        let done = items.start;
-        Self {
-            state: Mutex::new(Turn { items, done }),
-            moved: Condvar::new(),
-        }
-    }
-
-    fn next(&self, window: u64) -> Option<u64> {
-        let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        let far = |turn: &mut Turn| !turn.items.is_empty() && turn.items.start >= turn.done.saturating_add(window);
-        let mut state = self
-            .moved
-            .wait_while(state, far)
-            .unwrap_or_else(PoisonError::into_inner);
-        state.items.next()
-    }
-
-    fn done(&self, done: u64) {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner).done = done;
-        self.moved.notify_all();
-    }
-
-    fn close(&self) {
-        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        state.items.start = state.items.end;
-        drop(state);
-        self.moved.notify_all();
-    }
-}
-
-/// Closes the gate when it goes, also by an error or a panic. That of a worker goes when there is nothing left to begin.
-struct Closing<'a>(&'a Gate);
-
-impl Drop for Closing<'_> {
-    fn drop(&mut self) {
-        self.0.close();
-    }
 }
 
 #[cfg(test)]
