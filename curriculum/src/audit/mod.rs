@@ -92,14 +92,26 @@ pub fn audit(
         folder,
         repeats: options.repeats.max(2),
     };
-    Ok(vec![
-        room.never_learns(options.lifetimes.max(1))?,
-        room.learns_while_frozen()?,
-        room.by_number()?,
-        room.own_expert()?,
-        room.forgets()?,
-    ])
+    let never = "each metric good in at most 5 % of lifetimes";
+    let own = "ste_rel_perf and sample_efficiency 1";
+    let rows = [
+        ("never learns", never, room.never_learns(options.lifetimes.max(1))?),
+        ("learns while frozen", "refused", room.learns_while_frozen()?),
+        ("remembers by number", "ste_rel_perf not above 1", room.by_number()?),
+        ("its own expert", own, room.own_expert()?),
+        ("forgets", "maintenance bad, forward transfer not good", room.forgets()?),
+    ];
+    let row = |(agent, expected, (found, passed))| AuditRow {
+        agent,
+        expected,
+        found,
+        passed,
+    };
+    Ok(rows.map(row).into())
 }
+
+/// What the protocol says of an agent, and whether that is as expected.
+type Found = (String, Option<bool>);
 
 /// Where agents are audited.
 struct Room<'a> {
@@ -110,7 +122,7 @@ struct Room<'a> {
 }
 
 impl Room<'_> {
-    fn never_learns(&self, lifetimes: u32) -> Result<AuditRow, CurriculumError> {
+    fn never_learns(&self, lifetimes: u32) -> Result<Found, CurriculumError> {
         let mut good: Vec<(String, u32)> = Vec::new();
         for run in 0..lifetimes {
             let scores = scored(&self.log(self.lifetime, &mut never_learns(run), "still", run)?, &[])?;
@@ -125,20 +137,16 @@ impl Room<'_> {
         let most = (0..lifetimes).find(|count| tail(*count + 1, lifetimes, FALSE_POSITIVES) < SURPRISE);
         let most = most.unwrap_or(lifetimes);
         let worst = good.iter().max_by_key(|(_, count)| *count);
-        Ok(AuditRow {
-            agent: "never learns",
-            expected: "each metric good in at most 5 % of lifetimes",
-            found: worst.map_or_else(
-                || "no metric to calibrate: no variant is evaluated both before and after it is learned".to_owned(),
-                |(name, count)| format!("at most {count} of {lifetimes} ({name}); up to {most} is sampling"),
-            ),
-            passed: worst.map(|(_, count)| *count <= most),
-        })
+        let found = worst.map_or_else(
+            || "no metric to calibrate: no variant is evaluated both before and after it is learned".to_owned(),
+            |(name, count)| format!("at most {count} of {lifetimes} ({name}); up to {most} is sampling"),
+        );
+        Ok((found, worst.map(|(_, count)| *count <= most)))
     }
 
-    fn learns_while_frozen(&self) -> Result<AuditRow, CurriculumError> {
+    fn learns_while_frozen(&self) -> Result<Found, CurriculumError> {
         let folder = self.folder.join("frozen");
-        let (found, passed) = match simulation::run(self.lifetime, &mut learns_while_frozen(), &folder) {
+        let found = match simulation::run(self.lifetime, &mut learns_while_frozen(), &folder) {
             Err(CurriculumError::NotFrozen { experience, .. }) => {
                 (format!("refused at experience {experience}"), Some(true))
             }
@@ -147,32 +155,21 @@ impl Room<'_> {
             Ok(num_evaluated) => (format!("not noticed in {num_evaluated} evaluations"), Some(false)),
         };
         remove(&folder);
-        Ok(AuditRow {
-            agent: "learns while frozen",
-            expected: "refused",
-            found,
-            passed,
-        })
+        Ok(found)
     }
 
-    fn by_number(&self) -> Result<AuditRow, CurriculumError> {
+    fn by_number(&self) -> Result<Found, CurriculumError> {
         let ratios = self.beside_experts("ste_rel_perf", |run, number| Box::new(by_number(run, number)))?;
-        let (found, passed) = match Ratio::of(&ratios) {
+        Ok(match Ratio::of(&ratios) {
             Some(ratio) => {
                 let text = format!("{ratio} (standard error, {} lifetimes)", ratios.len());
                 (text, Some(ratio.mean <= 1.0 + ratio.slack()))
             }
             None => (self.no_experts(), None),
-        };
-        Ok(AuditRow {
-            agent: "remembers by number",
-            expected: "ste_rel_perf not above 1",
-            found,
-            passed,
         })
     }
 
-    fn own_expert(&self) -> Result<AuditRow, CurriculumError> {
+    fn own_expert(&self) -> Result<Found, CurriculumError> {
         let pace = pace(self.lifetime);
         let mut found = Vec::new();
         let mut passed = None;
@@ -184,16 +181,12 @@ impl Room<'_> {
             found.push(format!("{metric} {ratio}"));
             passed = Some(passed.unwrap_or(true) && (ratio.mean - 1.0).abs() <= ratio.slack());
         }
-        Ok(AuditRow {
-            agent: "its own expert",
-            expected: "ste_rel_perf and sample_efficiency 1",
-            found: if found.is_empty() {
-                self.no_experts()
-            } else {
-                found.join(", ")
-            },
-            passed,
-        })
+        let found = if found.is_empty() {
+            self.no_experts()
+        } else {
+            found.join(", ")
+        };
+        Ok((found, passed))
     }
 
     /// Why nothing is compared with experts.
@@ -206,7 +199,7 @@ impl Room<'_> {
         }
     }
 
-    fn forgets(&self) -> Result<AuditRow, CurriculumError> {
+    fn forgets(&self) -> Result<Found, CurriculumError> {
         let pace = pace(self.lifetime);
         let (mut bad, mut good, mut maintained, mut transferred) = (0, 0, 0, 0);
         for run in 0..self.repeats {
@@ -226,16 +219,12 @@ impl Room<'_> {
             }
         }
         let is_rare = transferred == 0 || tail(good, transferred, FALSE_POSITIVES) >= SURPRISE;
-        Ok(AuditRow {
-            agent: "forgets",
-            expected: "maintenance bad, forward transfer not good",
-            found: if maintained == 0 {
-                "nothing is evaluated after something else was learned".to_owned()
-            } else {
-                format!("maintenance bad in {bad} of {maintained}, forward transfer good in {good} of {transferred}")
-            },
-            passed: (maintained > 0).then_some(5 * bad >= 4 * maintained && is_rare),
-        })
+        let found = if maintained == 0 {
+            "nothing is evaluated after something else was learned".to_owned()
+        } else {
+            format!("maintenance bad in {bad} of {maintained}, forward transfer good in {good} of {transferred}")
+        };
+        Ok((found, (maintained > 0).then_some(5 * bad >= 4 * maintained && is_rare)))
     }
 
     /// A metric that compares with experts, of each repeat in which the lifetime has it. `agent` is given the number of the
