@@ -97,13 +97,13 @@ impl Recordings {
             self.open.push(self.turn_to(inside, experience)?);
         }
         let open = &mut self.open[place];
-        match fs::metadata(&open.path) {
-            Ok(found) if found.len() == open.length => {}
-            Ok(found) => {
-                let found = format!("{} bytes", found.len());
-                return Err(lost(&open.path, found, open.length));
-            }
-            Err(_) => return Err(lost(&open.path, "no file".to_owned(), open.length)),
+        let found = fs::metadata(&open.path).ok().map(|found| found.len());
+        if found != Some(open.length) {
+            return Err(CurriculumError::RecordingsLost {
+                path: open.path.clone(),
+                found: found.map_or_else(|| "no file".to_owned(), |bytes| format!("{bytes} bytes")),
+                expected: open.length,
+            });
         }
         let lines = open.lines.lines(recording);
         if let Err(error) = open.file.write_all(lines.as_bytes()) {
@@ -287,14 +287,6 @@ fn failed(path: &Path, doing: &'static str) -> impl FnOnce(std::io::Error) -> Cu
         path: path.to_owned(),
         doing,
         source,
-    }
-}
-
-fn lost(path: &Path, found: String, expected: u64) -> CurriculumError {
-    CurriculumError::RecordingsLost {
-        path: path.to_owned(),
-        found,
-        expected,
     }
 }
 
