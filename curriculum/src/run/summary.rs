@@ -118,14 +118,11 @@ impl Summary {
 
     fn row(&mut self, planned: &Planned) -> &mut RegimeSummary {
         // A block that is shuffled comes back to its regimes.
-        let of_block = self.regimes.iter().rev().take_while(|row| row.block == planned.block);
-        let before = of_block.take_while(|row| row.regime != planned.regime).count();
-        let known = self.regimes.len().checked_sub(before + 1);
-        let known = known.filter(|index| {
-            let row = &self.regimes[*index];
-            (row.block, row.regime) == (planned.block, planned.regime)
-        });
-        let index = known.unwrap_or_else(|| {
+        let first = self.regimes.partition_point(|row| row.block < planned.block);
+        let mut of_block = self.regimes[first..].iter();
+        let known = of_block.rposition(|row| row.regime == planned.regime);
+        let index = known.map_or(self.regimes.len(), |place| first + place);
+        if known.is_none() {
             self.regimes.push(RegimeSummary {
                 block: planned.block,
                 regime: planned.regime,
@@ -136,8 +133,7 @@ impl Summary {
                 mean_reward: 0.0,
                 success_rate: 0.0,
             });
-            self.regimes.len() - 1
-        });
+        }
         &mut self.regimes[index]
     }
 }

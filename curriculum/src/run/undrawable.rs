@@ -41,7 +41,7 @@ pub struct Failed {
 }
 
 /// What came of drawing some worlds of a variant, or of a regime of a scenario.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Trial {
     /// The block, from 0; nothing outside of a scenario.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -71,12 +71,7 @@ impl Trial {
             block,
             variant,
             seed,
-            worlds: 0,
-            placement: 0,
-            requirement: 0,
-            other: 0,
-            failed: Vec::new(),
-            expert: None,
+            ..Self::default()
         }
     }
 
