@@ -8,6 +8,7 @@
 mod audit;
 mod design;
 mod error;
+mod hash;
 mod run;
 mod transfer;
 

@@ -2,9 +2,9 @@
 //! index of what is learned is of the variant.
 
 use driftworld_spec::{MAX_EXPERIENCES, Regime};
-use sha2::{Digest, Sha256};
 
 use super::{Choice, Design, MAX_BLOCKS};
+use crate::hash::number_of;
 
 /// What the worlds of evaluation blocks are for. The two have no world in common.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -75,11 +75,6 @@ impl<'a> Streams<'a> {
 
 /// A seed for one use in one lifetime, at most 2⁵³ − 1. Seeds that are near each other give seeds that are not.
 fn spread(seed: u64, lifetime: u64, purpose: &str) -> u64 {
-    let mut hash = Sha256::new();
-    hash.update(seed.to_le_bytes());
-    hash.update(lifetime.to_le_bytes());
-    hash.update(purpose.as_bytes());
-    let digest = hash.finalize();
-    let number = digest.iter().take(8).fold(0, |seed, byte| seed << 8 | u64::from(*byte));
+    let number = number_of([&seed.to_le_bytes()[..], &lifetime.to_le_bytes(), purpose.as_bytes()]);
     number >> (u64::BITS - SEED_BITS)
 }

@@ -1,6 +1,6 @@
 //! [`Shuffle`]: the order in which the experiences of a shuffled block are run.
 
-use sha2::{Digest, Sha256};
+use crate::hash::number_of;
 
 /// Rounds of the network; four make a good permutation of a good function (Luby and Rackoff 1988).
 const ROUNDS: u64 = 4;
@@ -61,12 +61,7 @@ impl Shuffle {
     }
 
     fn hash(&self, half: u64, round: u64) -> u64 {
-        let mut hash = Sha256::new();
-        for number in [self.key, round, half] {
-            hash.update(number.to_le_bytes());
-        }
-        let digest = hash.finalize();
-        digest.iter().take(8).fold(0, |bits, byte| bits << 8 | u64::from(*byte)) & self.mask()
+        number_of([self.key, round, half].map(u64::to_le_bytes)) & self.mask()
     }
 
     fn mask(&self) -> u64 {
