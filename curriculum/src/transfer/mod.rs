@@ -14,7 +14,7 @@ use serde::Serialize;
 use crate::CurriculumError;
 use names::Names;
 pub use names::log_name_of_label;
-use pooling::{Direction, pooled};
+use pooling::pooled;
 
 /// How transfer is compared with distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,7 +126,7 @@ pub fn transfer_report(
         let pairs = pooled(lifetimes, &names, direction, options.measure);
         tested(pairs, distances, options)
     };
-    let (forward, backward) = (direction(Direction::Forward)?, direction(Direction::Backward)?);
+    let (forward, backward) = (direction("forward")?, direction("backward")?);
     let most = forward.pairs.len().max(backward.pairs.len());
     if most < driftworld_similarity::MIN_CORRELATED {
         return Err(CurriculumError::TooFewTransfers {

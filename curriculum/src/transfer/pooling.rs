@@ -2,31 +2,28 @@
 
 use std::collections::BTreeMap;
 
-use driftworld_metrics::{LifetimeMetrics, PairValues, TransferMethod, Values};
+use driftworld_metrics::{LifetimeMetrics, TransferMethod};
 use driftworld_similarity::PairValue;
 
 use super::names::Names;
 
-/// Whether the variant that gains or loses is still to be learned.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Direction {
-    /// It is.
-    Forward,
-    /// It was learned before.
-    Backward,
-}
-
-/// The mean over lifetimes of each pair's first transfer, and how many lifetimes had one, in the order of the matrix.
+/// The mean over lifetimes of each pair's first transfer, and how many lifetimes had one, in the order of the matrix. `direction` is
+/// `forward` or `backward`: whether the variant that gains or loses is still to be learned.
 pub(super) fn pooled(
     lifetimes: &[LifetimeMetrics],
     names: &Names,
-    direction: Direction,
+    direction: &str,
     measure: TransferMethod,
 ) -> Vec<(PairValue, usize)> {
+    let measure = match measure {
+        TransferMethod::Ratio => "ratio",
+        TransferMethod::Contrast | TransferMethod::Both => "contrast",
+    };
+    let metric = format!("{direction}_transfer_{measure}");
     let mut sums: BTreeMap<(usize, usize), (f64, usize)> = BTreeMap::new();
     for lifetime in lifetimes {
         for (trained, task) in &lifetime.task_metrics {
-            let (Some(from), Some(values)) = (names.index(trained), values(task, direction, measure)) else {
+            let (Some(from), Some(values)) = (names.index(trained), task.pairs(&metric)) else {
                 continue;
             };
             for (other, values) in values {
@@ -43,13 +40,4 @@ pub(super) fn pooled(
         (PairValue { from, to, value }, count)
     };
     sums.into_iter().map(mean).collect()
-}
-
-fn values(task: &Values, direction: Direction, measure: TransferMethod) -> Option<&PairValues> {
-    task.pairs(match (direction, measure) {
-        (Direction::Forward, TransferMethod::Ratio) => "forward_transfer_ratio",
-        (Direction::Forward, _) => "forward_transfer_contrast",
-        (Direction::Backward, TransferMethod::Ratio) => "backward_transfer_ratio",
-        (Direction::Backward, _) => "backward_transfer_contrast",
-    })
 }
