@@ -29,10 +29,8 @@ impl Choice {
 
     /// A variant that no task declares, by the values in which it differs from one that `task` does.
     pub fn made(task: impl Into<String>, from: &Variant, made: &Variant) -> Self {
-        let differs = |(name, value): &(&String, &Value)| from.value(name) != Some(*value);
-        let values = made.values().iter().filter(differs);
         Self {
-            values: values.map(|(name, value)| (name.clone(), value.clone())).collect(),
+            values: changes(from, made),
             name: Some(made.name().to_owned()),
             ..Self::new(task, from.name())
         }
@@ -58,4 +56,11 @@ impl Choice {
             ..Regime::new(&self.task, &self.variant, count)
         }
     }
+}
+
+/// The values in which a variant differs from another of its task.
+pub(super) fn changes(from: &Variant, to: &Variant) -> IndexMap<String, Value> {
+    let values = to.values().iter();
+    let changed = values.filter(|(name, value)| from.value(name) != Some(*value));
+    changed.map(|(name, value)| (name.clone(), value.clone())).collect()
 }

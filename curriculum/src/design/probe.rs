@@ -6,6 +6,7 @@ use driftworld_spec::{Domain, Element, Role, Value, Variant};
 
 use driftworld_similarity::{Method, OrderOptions, VariantMeasure, order};
 
+use super::choice::changes;
 use super::picked::{Picked, apart, distances, farthest, in_element, is_alone, measure_of};
 use crate::CurriculumError;
 
@@ -180,9 +181,7 @@ impl Search<'_> {
                 if let Ok(found) = at_distance(anchor, &subject, target, tolerance.min(1e-4), measure)
                     .or_else(|_| at_distance(anchor, &subject, target, tolerance, measure))
                 {
-                    let values = found.variant.values().iter();
-                    let changed = values.filter(|(name, value)| anchor.value(name) != Some(*value));
-                    self.add(changed.map(|(name, value)| (name.clone(), value.clone())))?;
+                    self.add(changes(anchor, &found.variant))?;
                 }
             }
         }

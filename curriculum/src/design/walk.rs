@@ -7,6 +7,7 @@ use driftworld_generator::{Drift, Subject, at_distance};
 use driftworld_similarity::VariantMeasure;
 use driftworld_spec::{Domain, Parameter, ParameterType, Role, Value, Variant};
 
+use super::choice::changes;
 use super::picked::{Picked, apart, farthest, in_element, is_alone, measure_of};
 use super::steps::Steps;
 use crate::CurriculumError;
@@ -103,8 +104,7 @@ impl<'a> Walk<'a> {
     /// How far from the anchor anything is, whatever the search has met.
     pub(super) fn farthest(&self) -> Result<f64, CurriculumError> {
         // Where nothing can move there is still the pool.
-        let made = farthest(&self.measure, self.anchor, &self.free().1, self.wanted.element).unwrap_or(0.0);
-        let mut all = made;
+        let mut all = farthest(&self.measure, self.anchor, &self.free().1, self.wanted.element).unwrap_or(0.0);
         for variant in self.pool {
             let (apart, alone) = self.measure(self.anchor, variant)?;
             if alone {
@@ -114,13 +114,9 @@ impl<'a> Walk<'a> {
         Ok(all)
     }
 
-    fn here(&self) -> Variant {
-        self.path[self.path.len() - 1].variant.clone()
-    }
-
     /// Where the path may go on: what the task declares, then what can be made.
     fn nexts(&mut self) -> Result<Vec<Picked>, CurriculumError> {
-        let here = self.here();
+        let here = self.path[self.path.len() - 1].variant.clone();
         let mut declared = Vec::new();
         for variant in self.pool {
             let (apart, alone) = self.measure(&here, variant)?;
@@ -237,11 +233,7 @@ impl<'a> Walk<'a> {
         if best.0 > tolerance {
             return Ok(None);
         }
-        let values = best.1.values().iter();
-        let changed: Vec<(String, Value)> = values
-            .filter(|(name, value)| self.anchor.value(name) != Some(*value))
-            .map(|(name, value)| (name.clone(), value.clone()))
-            .collect();
+        let changed = changes(self.anchor, &best.1);
         Ok(self.anchor.with(&self.name(), changed).ok())
     }
 
