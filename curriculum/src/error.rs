@@ -6,8 +6,11 @@ use driftworld_env::EnvError;
 use driftworld_files::FileError;
 use driftworld_generator::GeneratorError;
 use driftworld_metrics::MetricsError;
-use driftworld_similarity::SimilarityError;
+use driftworld_similarity::{MIN_CORRELATED, SimilarityError};
+use driftworld_spec::MAX_EXPERIENCES;
 use driftworld_text::{ShownPath, one_line, when};
+
+use crate::design::{MAX_BLOCKS, MAX_PROBED, MAX_SEED, MAX_STEPS, Steps};
 
 /// Everything that can go wrong in this crate.
 #[derive(Debug, thiserror::Error, strum::IntoStaticStr, strum::VariantNames)]
@@ -35,31 +38,19 @@ pub enum CurriculumError {
     #[error("design: found no variants, expected at least 1")]
     NoVariants,
     /// A number of experiences that a regime cannot have.
-    #[error("design: found {found} {kind} experiences per regime, expected 1 to {limit}")]
+    #[error("design: found {found} {kind} experiences per regime, expected 1 to {MAX_EXPERIENCES}")]
     BadCount {
         /// Learning or evaluation.
         kind: &'static str,
         /// The number.
         found: u32,
-        /// The most there can be.
-        limit: u32,
     },
     /// A seed too large to derive others from.
-    #[error("design: found seed {found}, expected at most {limit}")]
-    BadSeed {
-        /// The seed.
-        found: u64,
-        /// The largest there can be.
-        limit: u64,
-    },
+    #[error("design: found seed {0}, expected at most {MAX_SEED}")]
+    BadSeed(u64),
     /// A number of learning blocks that a scenario cannot have.
-    #[error("design: found {found} learning blocks, expected 1 to {limit}")]
-    BadBlocks {
-        /// The number.
-        found: u32,
-        /// The most there can be.
-        limit: u32,
-    },
+    #[error("design: found {0} learning blocks, expected 1 to {MAX_BLOCKS}")]
+    BadBlocks(u32),
     /// Variants or blocks that a form cannot be made of.
     #[error("the form {form}: found {variants} variants{}, expected {expected}", and_blocks(*blocks))]
     BadForm {
@@ -119,38 +110,30 @@ pub enum CurriculumError {
         name: String,
     },
     /// A number of variants that a probe cannot have.
-    #[error("probing: found {found} variants wanted, expected 2 to {limit}")]
-    BadProbe {
-        /// The number.
-        found: usize,
-        /// The most there can be.
-        limit: usize,
-    },
+    #[error("probing: found {0} variants wanted, expected 2 to {MAX_PROBED}")]
+    BadProbe(usize),
     /// A search for a sequence of steps was ended before it was over.
     #[error(
-        "steps from {anchor}: found at most {found} of {distance} ± {tolerance} in {limit} comparisons, expected \
-         {wanted}; ask \
-         for fewer or larger steps, or a larger tolerance"
+        "steps from {anchor}: found at most {found} of {} ± {} in {limit} comparisons, expected \
+         {}; ask for fewer or larger steps, or a larger tolerance",
+        wanted.distance,
+        wanted.tolerance,
+        wanted.count
     )]
     StepsGivenUp {
         /// The variant that the sequence begins with.
         anchor: String,
-        /// How far each step was to go.
-        distance: f64,
-        /// How far off it may be.
-        tolerance: f64,
         /// The most steps that were found.
         found: usize,
-        /// How many were wanted.
-        wanted: u32,
+        /// What was wanted.
+        wanted: Steps,
         /// After how many comparisons the search ends.
         limit: u64,
     },
     /// Not enough variants differ in an element alone.
     #[error(
         "probing the {element}: found {found} variants that differ from {anchor} in it alone, expected {wanted}; ask \
-         for \
-         fewer, or give the task parameters that affect it alone"
+         for fewer, or give the task parameters that affect it alone"
     )]
     TooFew {
         /// The variant that the others are compared with.
@@ -164,37 +147,28 @@ pub enum CurriculumError {
     },
     /// Numbers that make no sequence of steps.
     #[error(
-        "steps: found {count} steps of {distance} ± {tolerance}, expected 1 to {limit} steps, a distance above 0 and \
-         at \
-         most 1, and a tolerance below it"
+        "steps: found {} steps of {} ± {}, expected 1 to {MAX_STEPS} steps, a distance above 0 and at most 1, and a \
+         tolerance below it",
+        .0.count,
+        .0.distance,
+        .0.tolerance
     )]
-    BadSteps {
-        /// How far each step is to go.
-        distance: f64,
-        /// How far off it may be.
-        tolerance: f64,
-        /// How many steps.
-        count: u32,
-        /// The most there can be.
-        limit: u32,
-    },
+    BadSteps(Steps),
     /// A sequence of steps ends too soon.
     #[error(
-        "steps from {anchor}: found at most {found} of {distance} ± {tolerance}, expected {wanted}; the farthest \
-         variant is \
-         {farthest:.4} away: ask for fewer or smaller steps, a larger tolerance, or another start"
+        "steps from {anchor}: found at most {found} of {} ± {}, expected {}; the farthest \
+         variant is {farthest:.4} away: ask for fewer or smaller steps, a larger tolerance, or another start",
+        wanted.distance,
+        wanted.tolerance,
+        wanted.count
     )]
     TooFewSteps {
         /// The variant that the sequence begins with.
         anchor: String,
-        /// How far each step is to go.
-        distance: f64,
-        /// How far off it may be.
-        tolerance: f64,
         /// The steps of the longest sequence that was found.
         found: usize,
-        /// How many are wanted.
-        wanted: u32,
+        /// What is wanted.
+        wanted: Steps,
         /// How far from the first anything is that was tried.
         farthest: f64,
     },
@@ -291,8 +265,7 @@ pub enum CurriculumError {
     /// A variant that was named for a probe differs in something else.
     #[error(
         "probing the {element}: found {a} and {b}, which differ in {differs}, expected variants that differ in the \
-         {element} alone; \
-         name others, or the task to have them chosen"
+         {element} alone; name others, or the task to have them chosen"
     )]
     NotAlone {
         /// The one.
@@ -358,17 +331,14 @@ pub enum CurriculumError {
     /// Too few pairs of variants with a transfer.
     #[error(
         "transfer: found {forward} forward and {backward} backward pairs of variants with a transfer, expected at \
-         least \
-         {needed} in one direction; log a lifetime of 3 or more variants of the matrix, all evaluated before and after \
-         each is learned, or add lifetimes in other orders"
+         least {MIN_CORRELATED} in one direction; log a lifetime of 3 or more variants of the matrix, all evaluated before and \
+         after each is learned, or add lifetimes in other orders"
     )]
     TooFewTransfers {
         /// Pairs whose second variant was not yet learned.
         forward: usize,
         /// Pairs whose second variant had been learned.
         backward: usize,
-        /// How many are needed.
-        needed: usize,
     },
     /// The test cannot be run as asked.
     #[error("transfer: {0}")]

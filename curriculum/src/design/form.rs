@@ -73,10 +73,7 @@ pub(super) fn sequence(
         }
     };
     if !(1..=MAX_BLOCKS).contains(&num_blocks) {
-        return Err(CurriculumError::BadBlocks {
-            found: num_blocks,
-            limit: MAX_BLOCKS,
-        });
+        return Err(CurriculumError::BadBlocks(num_blocks));
     }
     let places = if form == Some(ScenarioForm::Permuted) {
         balanced_order(count, seed, lifetime)?

@@ -233,18 +233,11 @@ fn check(variants: &[Choice], options: &Design) -> Result<(), CurriculumError> {
         ("pre-deployment", before),
     ] {
         if !(1..=MAX_EXPERIENCES).contains(&found) {
-            return Err(CurriculumError::BadCount {
-                kind,
-                found,
-                limit: MAX_EXPERIENCES,
-            });
+            return Err(CurriculumError::BadCount { kind, found });
         }
     }
     if options.seed > MAX_SEED {
-        return Err(CurriculumError::BadSeed {
-            found: options.seed,
-            limit: MAX_SEED,
-        });
+        return Err(CurriculumError::BadSeed(options.seed));
     }
     Ok(())
 }
@@ -284,10 +277,7 @@ fn lessons(
     }
     let num_blocks = options.blocks.unwrap_or(path.len() as u32 - 1);
     if !(1..=MAX_BLOCKS).contains(&num_blocks) {
-        return Err(CurriculumError::BadBlocks {
-            found: num_blocks,
-            limit: MAX_BLOCKS,
-        });
+        return Err(CurriculumError::BadBlocks(num_blocks));
     }
     let lessons = drifting::lessons(
         variants,

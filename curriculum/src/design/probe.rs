@@ -38,10 +38,7 @@ pub fn probe(
     wanted: Option<usize>,
 ) -> Result<Vec<Picked>, CurriculumError> {
     if let Some(found) = wanted.filter(|wanted| !(2..=MAX_PROBED).contains(wanted)) {
-        return Err(CurriculumError::BadProbe {
-            found,
-            limit: MAX_PROBED,
-        });
+        return Err(CurriculumError::BadProbe(found));
     }
     let mut search = Search {
         measure: measure_of(anchor),

@@ -39,12 +39,7 @@ pub fn steps(task: &str, pool: &[Variant], anchor: &Variant, wanted: &Steps) -> 
         && wanted.tolerance < wanted.distance
         && (1..=MAX_STEPS).contains(&wanted.count);
     if !sound {
-        return Err(CurriculumError::BadSteps {
-            distance: wanted.distance,
-            tolerance: wanted.tolerance,
-            count: wanted.count,
-            limit: MAX_STEPS,
-        });
+        return Err(CurriculumError::BadSteps(*wanted));
     }
     if let Some(other) = pool.iter().find(|other| other.task().name() != anchor.task().name()) {
         return Err(CurriculumError::several_tasks(anchor.id(), other.id()));
@@ -56,19 +51,15 @@ pub fn steps(task: &str, pool: &[Variant], anchor: &Variant, wanted: &Steps) -> 
     if walk.is_tired() {
         return Err(CurriculumError::StepsGivenUp {
             anchor: anchor.id(),
-            distance: wanted.distance,
-            tolerance: wanted.tolerance,
             found: walk.longest,
-            wanted: wanted.count,
+            wanted: *wanted,
             limit: MOST_COMPARISONS,
         });
     }
     Err(CurriculumError::TooFewSteps {
         anchor: anchor.id(),
-        distance: wanted.distance,
-        tolerance: wanted.tolerance,
         found: walk.longest,
-        wanted: wanted.count,
+        wanted: *wanted,
         farthest: walk.farthest()?,
     })
 }
@@ -143,7 +134,7 @@ mod tests {
         for (distance, count) in [(0.0, 3), (1.5, 3), (0.2, 0), (0.2, 1001), (f64::NAN, 3), (0.005, 3)] {
             assert!(matches!(
                 found("rich", distance, count, None),
-                Err(CurriculumError::BadSteps { .. })
+                Err(CurriculumError::BadSteps(_))
             ));
         }
     }

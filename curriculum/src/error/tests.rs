@@ -8,6 +8,12 @@ use strum::VariantNames;
 #[test]
 #[expect(clippy::too_many_lines, reason = "one case for each error")]
 fn every_error_has_its_message() {
+    let steps = |distance, tolerance| Steps {
+        distance,
+        tolerance,
+        count: 3,
+        element: None,
+    };
     let errors = [
         CurriculumError::NotFrozen {
             block: 2,
@@ -19,10 +25,9 @@ fn every_error_has_its_message() {
         CurriculumError::BadCount {
             kind: "learning",
             found: 0,
-            limit: 10,
         },
-        CurriculumError::BadSeed { found: 9, limit: 8 },
-        CurriculumError::BadBlocks { found: 9, limit: 8 },
+        CurriculumError::BadSeed(9),
+        CurriculumError::BadBlocks(0),
         CurriculumError::BadForm {
             form: "alternating",
             variants: 3,
@@ -45,13 +50,11 @@ fn every_error_has_its_message() {
             b: "u#v".into(),
             name: "c-v".into(),
         },
-        CurriculumError::BadProbe { found: 1, limit: 9 },
+        CurriculumError::BadProbe(1),
         CurriculumError::StepsGivenUp {
             anchor: "t#v".into(),
-            distance: 0.002,
-            tolerance: 0.0001,
             found: 2,
-            wanted: 3,
+            wanted: steps(0.002, 0.0001),
             limit: 9,
         },
         CurriculumError::TooFew {
@@ -60,18 +63,11 @@ fn every_error_has_its_message() {
             found: 1,
             wanted: 4,
         },
-        CurriculumError::BadSteps {
-            distance: 2.0,
-            tolerance: 0.1,
-            count: 3,
-            limit: 1000,
-        },
+        CurriculumError::BadSteps(steps(2.0, 0.1)),
         CurriculumError::TooFewSteps {
             anchor: "t#v".into(),
-            distance: 0.25,
-            tolerance: 0.01,
             found: 2,
-            wanted: 3,
+            wanted: steps(0.25, 0.01),
             farthest: 0.5,
         },
         CurriculumError::Similarity(SimilarityError::Empty),
@@ -146,7 +142,6 @@ fn every_error_has_its_message() {
         CurriculumError::TooFewTransfers {
             forward: 1,
             backward: 0,
-            needed: 3,
         },
         CurriculumError::Relabelling(SimilarityError::MantelCount {
             what: "relabellings",

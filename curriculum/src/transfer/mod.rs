@@ -132,7 +132,6 @@ pub fn transfer_report(
         return Err(CurriculumError::TooFewTransfers {
             forward: forward.pairs.len(),
             backward: backward.pairs.len(),
-            needed: driftworld_similarity::MIN_CORRELATED,
         });
     }
     let labels = distances.labels().iter().enumerate();
