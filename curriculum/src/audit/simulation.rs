@@ -3,12 +3,12 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use driftworld_metrics::{Log, LogWriter, LoggerInfo, Timestamp, read_log};
+use driftworld_metrics::{Log, Timestamp, read_log};
 use driftworld_spec::World;
 
-use crate::run::Meeting;
+use crate::run::{Lived, Meeting};
 use crate::{
-    COLUMNS, CurriculumError, Experience, Journal, Plan, Progress, REPEATED_EVALUATIONS, Repeats, Rollout, run_rollout,
+    CurriculumError, Experience, Journal, Plan, Progress, REPEATED_EVALUATIONS, Repeats, Rollout, run_rollout,
 };
 
 /// An agent of which only the rewards are simulated: what it earns in its next experience.
@@ -16,20 +16,21 @@ pub(super) type Simulated<'a> = dyn FnMut(&Meeting) -> f64 + 'a;
 
 /// The log of an agent's run; it stays in the folder.
 pub(super) fn simulate(plan: &Plan, agent: &mut Simulated<'_>, folder: &Path) -> Result<Log, CurriculumError> {
-    let columns = LoggerInfo::new(COLUMNS)?;
-    let mut writer = LogWriter::create_unsynced(folder, &columns, &plan.scenario_info("simulated"))?;
+    let mut journal = Journal::simulated(folder, plan)?;
     for number in 0..plan.num_experiences() {
-        let reward = agent(&plan.meeting(number));
-        let now = Timestamp::from_unix_micros(number.cast_signed())?;
-        writer.write(&plan.simulated_record(number, reward, now))?;
+        let lived = Lived {
+            experience: of_one_step(agent(&plan.meeting(number))),
+            ..Lived::default()
+        };
+        journal.append(plan, number, lived, Timestamp::from_unix_micros(number.cast_signed())?)?;
     }
-    writer.finish()?;
+    journal.finish()?;
     Ok(read_log(folder)?)
 }
 
 /// Runs an agent as any other is run, with the check that it is frozen in evaluations. Says how many these were.
 pub(super) fn run(plan: &Plan, agent: &mut Simulated<'_>, folder: &Path) -> Result<u64, CurriculumError> {
-    let mut journal = Journal::create_unsynced(folder, plan, "simulated")?;
+    let mut journal = Journal::simulated(folder, plan)?;
     let mut simulation = Simulation {
         plan,
         agent,
@@ -59,14 +60,19 @@ impl Rollout for Simulation<'_> {
     fn experience(&mut self, number: u64, _world: World) -> Result<Option<Experience>, CurriculumError> {
         let meeting = self.plan.meeting(number);
         self.num_evaluated += u64::from(!meeting.learning);
-        Ok(Some(Experience {
-            reward: (self.agent)(&meeting),
-            steps: 1,
-            ..Experience::default()
-        }))
+        Ok(Some(of_one_step((self.agent)(&meeting))))
     }
 
     fn logged(&mut self, _: &Progress, _: Option<f64>) -> Result<ControlFlow<()>, CurriculumError> {
         Ok(ControlFlow::Continue(()))
+    }
+}
+
+/// An experience of one step that paid this.
+fn of_one_step(reward: f64) -> Experience {
+    Experience {
+        reward,
+        steps: 1,
+        ..Experience::default()
     }
 }

@@ -56,8 +56,7 @@ pub const ENDED_BY: &str = "ended_by";
 
 /// The row of experience `number`.
 pub(super) fn record(planned: &Planned, number: u64, experience: &Experience, gap: &Gap, now: Timestamp) -> Record {
-    let [state, action, transition, reward, observation] = gap.elements;
-    let values = [
+    let lived = [
         experience.reward,
         f64::from(u8::from(experience.success)),
         f64::from(experience.steps),
@@ -65,14 +64,8 @@ pub(super) fn record(planned: &Planned, number: u64, experience: &Experience, ga
         f64::from(u8::from(experience.truncated)),
         planned.world_index(number),
         planned.progress(number),
-        gap.total,
-        state,
-        action,
-        transition,
-        reward,
-        observation,
     ];
-    row(planned, number, values, planned.params(), now)
+    row(planned, number, lived.iter().chain(gap), planned.params(), now)
 }
 
 /// The key of a row's parameters that says why its experience was left out.
@@ -85,15 +78,21 @@ pub(super) fn skipped(planned: &Planned, number: u64, reason: &str, now: Timesta
         "progress" => planned.progress(number),
         _ => f64::NAN,
     });
-    row(planned, number, values, skipped_params(planned, reason), now)
+    row(planned, number, values.iter(), skipped_params(planned, reason), now)
 }
 
 /// A row with a number for each of [`COLUMNS`].
-fn row(planned: &Planned, number: u64, values: [f64; 13], params: TaskParams, now: Timestamp) -> Record {
+fn row<'a>(
+    planned: &Planned,
+    number: u64,
+    values: impl Iterator<Item = &'a f64>,
+    params: TaskParams,
+    now: Timestamp,
+) -> Record {
     let kind = block_type(planned.kind);
     let record = Record::new(planned.block as u64, number, kind, &planned.log_name, now);
     let named = COLUMNS.into_iter().zip(values);
-    let record = named.fold(record, |record, (name, value)| record.with_metric(name, value));
+    let record = named.fold(record, |record, (name, value)| record.with_metric(name, *value));
     record.with_task_params(params)
 }
 

@@ -13,44 +13,18 @@ const WORLDS: u64 = 16;
 const REMEMBERED: usize = 4096;
 const REMEMBERED_WORLDS: usize = 256;
 
-/// A distance in all and in each element; NaN, the format's word for no value, where there is nothing to measure from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Gap {
-    pub(super) total: f64,
-    /// State, action, transition, reward, observation.
-    pub(super) elements: [f64; 5],
-}
+/// A distance in all, and in each element: state, action, transition, reward, observation.
+pub(super) type Gap = [f64; 6];
 
-impl Gap {
-    /// Before anything was learned.
-    pub(super) const UNKNOWN: Self = Self {
-        total: f64::NAN,
-        elements: [f64::NAN; 5],
-    };
-    const NONE: Self = Self {
-        total: 0.0,
-        elements: [0.0; 5],
-    };
+/// Before anything was learned: NaN, the format's word for no value.
+pub(super) const UNKNOWN: Gap = [f64::NAN; 6];
 
-    /// An element in which nothing could differ counts as equal.
-    fn of(distance: &Distance) -> Self {
-        Self {
-            total: distance.total,
-            elements: Element::ALL.map(|element| distance.element(element).unwrap_or(0.0)),
-        }
-    }
-
-    fn mean(gaps: &[Self]) -> Self {
-        let mean = |number: &dyn Fn(&Self) -> f64| gaps.iter().map(number).sum::<f64>() / gaps.len() as f64;
-        let mut elements = [0.0; 5];
-        for (place, element) in elements.iter_mut().enumerate() {
-            *element = mean(&|gap| gap.elements[place]);
-        }
-        Self {
-            total: mean(&|gap| gap.total),
-            elements,
-        }
-    }
+/// An element in which nothing could differ counts as equal.
+fn gap_of(distance: &Distance) -> Gap {
+    std::array::from_fn(|place| match place.checked_sub(1) {
+        None => distance.total,
+        Some(element) => distance.element(Element::ALL[element]).unwrap_or(0.0),
+    })
 }
 
 /// What an experience is an experience of.
@@ -75,7 +49,7 @@ impl Gaps {
     /// not known.
     pub(super) fn between(&mut self, a: (&str, Subject), b: (&str, Subject)) -> Gap {
         if a.0 == b.0 {
-            return Gap::NONE;
+            return [0.0; 6];
         }
         let key = (a.0.to_owned(), b.0.to_owned());
         if let Some(gap) = self.known.get(&key) {
@@ -94,7 +68,7 @@ impl Gaps {
         if let (Subject::Variant(a), Subject::Variant(b)) = (a.1, b.1)
             && let Ok(distance) = variant_distance(a, b, &Weights::of_task(a.task()))
         {
-            return Gap::of(&distance);
+            return gap_of(&distance);
         }
         if self.drawn.len() + 2 > REMEMBERED_WORLDS {
             self.drawn.clear();
@@ -108,14 +82,11 @@ impl Gaps {
         let gaps: Vec<Gap> = (0..pairs)
             .filter_map(|place| {
                 let (a, b) = pair(place);
-                Some(Gap::of(&world_distance(a.as_ref()?, b.as_ref()?, &weights)))
+                Some(gap_of(&world_distance(a.as_ref()?, b.as_ref()?, &weights)))
             })
             .collect();
-        if gaps.is_empty() {
-            Gap::UNKNOWN
-        } else {
-            Gap::mean(&gaps)
-        }
+        // Their mean: without any, NaN.
+        std::array::from_fn(|place| gaps.iter().map(|gap| gap[place]).sum::<f64>() / gaps.len() as f64)
     }
 
     fn draw(&mut self, (name, subject): (&str, Subject)) {
@@ -156,21 +127,21 @@ mod tests {
     fn variants_of_one_task_differ_in_what_they_declare() {
         let (plain, poor) = (variant("t", "plain"), variant("t", "poor"));
         let found = gap(Subject::Variant(&plain), Subject::Variant(&poor));
-        let [state, action, transition, reward, observation] = found.elements;
-        assert!(found.total > 0.0 && reward > 0.0, "{found:?}");
+        let [total, state, action, transition, reward, observation] = found;
+        assert!(total > 0.0 && reward > 0.0, "{found:?}");
         assert_eq!([state, action, transition, observation], [0.0; 4]);
         let same = Subject::Variant(&plain);
-        assert_eq!(Gaps::default().between(("a", same), ("a", same)), Gap::NONE);
+        assert_eq!(Gaps::default().between(("a", same), ("a", same)), [0.0; 6]);
     }
 
     #[test]
     fn variants_of_two_tasks_and_single_worlds_are_compared_by_worlds() {
         let (here, there) = (variant("t", "plain"), variant("u", "poor"));
         let apart = gap(Subject::Variant(&here), Subject::Variant(&there));
-        assert!(apart.total > 0.0 && apart.elements[3] > 0.0, "{apart:?}");
+        assert!(apart[0] > 0.0 && apart[4] > 0.0, "{apart:?}");
         let world = Sampler::new(&here, 0).world(0).unwrap();
-        assert_eq!(gap(Subject::World(&world), Subject::World(&world)).total, 0.0);
+        assert_eq!(gap(Subject::World(&world), Subject::World(&world))[0], 0.0);
         let mixed = gap(Subject::World(&world), Subject::Variant(&here));
-        assert!(mixed.total > 0.0 && mixed.elements[3] == 0.0, "{mixed:?}");
+        assert!(mixed[0] > 0.0 && mixed[4] == 0.0, "{mixed:?}");
     }
 }

@@ -1,20 +1,22 @@
 //! The log that a lifetime is lived into: begun, or taken up where it stopped. What a row holds is in `columns.rs`.
 
 use std::path::Path;
+use std::str::FromStr;
 
 use driftworld_env::{EndedBy, EpisodeOrigin, Recording};
 use driftworld_metrics::{
-    Complexity, DEFAULT_WORKER, Difficulty, LogWriter, LoggerInfo, MetricsError, Record, Row, Rows, ScenarioInfo,
-    ScenarioType, TaskParams, Timestamp, begun_log, read_log_with_texts,
+    DEFAULT_WORKER, LogWriter, LoggerInfo, MetricsError, Record, Row, Rows, ScenarioInfo, ScenarioType, TaskParams,
+    Timestamp, begun_log, read_log_with_texts,
 };
-use driftworld_spec::{ScenarioComplexity, ScenarioDifficulty, ScenarioForm, Variant};
+use driftworld_spec::{ScenarioForm, Variant};
 use driftworld_text::when;
+use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use super::budget::Budget;
 use super::columns::{self, COLUMNS, ENDED_BY, ENDING, block_type};
 use super::episode::Experience;
-use super::gap::{Gap, Gaps};
+use super::gap::{self, Gap, Gaps};
 use super::plan::Plan;
 use super::recordings::Recordings;
 use super::summary::{Progress, Summary};
@@ -28,7 +30,8 @@ pub struct Journal {
     /// The number of the experience that is to be logged next.
     next: u64,
     budget: Budget,
-    gaps: Gaps,
+    /// Nothing where distances are not measured.
+    gaps: Option<Gaps>,
     /// A learning regime, and the variant at the end of its drift if it has one.
     learned: Option<(usize, Option<Variant>)>,
     /// What was done, beside the rows, if that is kept.
@@ -36,13 +39,13 @@ pub struct Journal {
 }
 
 /// An experience that is over.
-#[derive(Clone, Copy)]
-pub(super) struct LoggedExperience<'a> {
-    pub(super) experience: Experience,
+#[derive(Default)]
+pub(crate) struct Lived {
+    pub(crate) experience: Experience,
     /// Its variant where its regime drifts.
-    pub(super) between: Option<&'a Variant>,
+    pub(crate) between: Option<Variant>,
     /// What was done in it, if that is kept.
-    pub(super) recording: Option<&'a Recording>,
+    pub(crate) recording: Option<Recording>,
 }
 
 impl Journal {
@@ -53,17 +56,22 @@ impl Journal {
     pub fn create(folder: &Path, plan: &Plan, agent: &str) -> Result<Self, CurriculumError> {
         let columns = LoggerInfo::new(COLUMNS)?;
         let writer = LogWriter::create(folder, &columns, &scenario_info(plan, agent))?;
-        Ok(Self::new(writer, Summary::default()))
+        Ok(Self::new(writer))
     }
 
-    /// As [`Journal::create`] for a log that is thrown away: the disk is never asked to have it.
+    /// As [`Journal::create`] for a simulated agent, whose log is thrown away: the disk is never asked to have it, and no distance is
+    /// measured.
     ///
     /// # Errors
     /// As there.
-    pub(crate) fn create_unsynced(folder: &Path, plan: &Plan, agent: &str) -> Result<Self, CurriculumError> {
+    pub(crate) fn simulated(folder: &Path, plan: &Plan) -> Result<Self, CurriculumError> {
         let columns = LoggerInfo::new(COLUMNS)?;
-        let writer = LogWriter::create_unsynced(folder, &columns, &scenario_info(plan, agent))?;
-        Ok(Self::new(writer, Summary::default()))
+        let writer = LogWriter::create_unsynced(folder, &columns, &scenario_info(plan, "simulated"))?;
+        let gaps = None;
+        Ok(Self {
+            gaps,
+            ..Self::new(writer)
+        })
     }
 
     /// Takes up a log that was interrupted, at any moment: it goes on with the first experience that is not completely in
@@ -101,7 +109,7 @@ impl Journal {
             Err(MetricsError::NoDataFiles(_)) => Rows::default(),
             Err(error) => return Err(error.into()),
         };
-        let mut journal = Self::new(writer, Summary::default());
+        let mut journal = Self::new(writer);
         for row in rows.iter() {
             let number = journal.next;
             let wrong = |found: String, expected: String| CurriculumError::OtherRow {
@@ -120,13 +128,13 @@ impl Journal {
         Ok(journal)
     }
 
-    fn new(writer: LogWriter, summary: Summary) -> Self {
+    fn new(writer: LogWriter) -> Self {
         Self {
             writer,
-            summary,
+            summary: Summary::default(),
             next: 0,
             budget: Budget::default(),
-            gaps: Gaps::default(),
+            gaps: Some(Gaps::default()),
             learned: None,
             recordings: None,
         }
@@ -198,21 +206,21 @@ impl Journal {
     }
 
     /// Logs experience `number`, which is the next.
-    pub(super) fn append(
+    pub(crate) fn append(
         &mut self,
         plan: &Plan,
         number: u64,
-        logged: LoggedExperience<'_>,
+        lived: Lived,
         now: Timestamp,
     ) -> Result<Progress, CurriculumError> {
         let planned = &plan.regimes[plan.regime_of(number)];
-        let experience = &logged.experience;
-        let gap = self.gap(plan, number, logged.between);
-        if let (Some(recordings), Some(recording)) = (&mut self.recordings, logged.recording) {
+        let experience = &lived.experience;
+        let gap = self.gap(plan, number, lived.between.as_ref());
+        if let (Some(recordings), Some(recording)) = (&mut self.recordings, lived.recording) {
             // First: whenever the run is stopped, each row has its recording.
             let recording = Recording {
                 origin: origin(plan, number)?,
-                ..recording.clone()
+                ..recording
             };
             let block = (planned.block as u64, block_type(planned.kind));
             recordings.append(DEFAULT_WORKER, block, &recording)?;
@@ -231,8 +239,8 @@ impl Journal {
     /// How far an experience is from what was learned last before its regime began.
     fn gap(&mut self, plan: &Plan, number: u64, between: Option<&Variant>) -> Gap {
         let planned = &plan.regimes[plan.regime_of(number)];
-        let Some(index) = planned.learned else {
-            return Gap::UNKNOWN;
+        let (Some(index), Some(gaps)) = (planned.learned, &mut self.gaps) else {
+            return gap::UNKNOWN;
         };
         let learned = &plan.regimes[index];
         if self.learned.as_ref().is_none_or(|(known, _)| *known != index) {
@@ -241,7 +249,7 @@ impl Journal {
         let end = self.learned.as_ref().and_then(|(_, end)| end.as_ref());
         let before = learned.subject(learned.number(u64::from(learned.count) - 1), end);
         let here = planned.subject(number, between);
-        self.gaps.between((&before.0, before.1), (&here.0, here.1))
+        gaps.between((&before.0, before.1), (&here.0, here.1))
     }
 
     /// What the lifetime came to so far.
@@ -350,29 +358,21 @@ pub(super) fn scenario_info(plan: &Plan, agent: &str) -> ScenarioInfo {
         extra.insert("notes".to_owned(), json!(plan.notes));
     }
     let form = match plan.scenario.form {
-        Some(ScenarioForm::Condensed) => ScenarioType::Condensed,
-        Some(ScenarioForm::Dispersed) => ScenarioType::Dispersed,
-        Some(ScenarioForm::Permuted) => ScenarioType::Permuted,
-        Some(ScenarioForm::Alternating) => ScenarioType::Alternating,
         Some(ScenarioForm::Expert) => ScenarioType::Ste,
-        Some(ScenarioForm::Custom | ScenarioForm::Joint) | None => ScenarioType::Custom,
+        Some(ScenarioForm::Joint) | None => ScenarioType::Custom,
+        form => logged(form).unwrap_or(ScenarioType::Custom),
     };
-    let complexity = plan.scenario.complexity.map(|complexity| match complexity {
-        ScenarioComplexity::Low => Complexity::Low,
-        ScenarioComplexity::Intermediate => Complexity::Intermediate,
-        ScenarioComplexity::High => Complexity::High,
-    });
-    let difficulty = plan.scenario.difficulty.map(|difficulty| match difficulty {
-        ScenarioDifficulty::Easy => Difficulty::Easy,
-        ScenarioDifficulty::Medium => Difficulty::Medium,
-        ScenarioDifficulty::Hard => Difficulty::Hard,
-    });
     ScenarioInfo {
-        complexity,
-        difficulty,
+        complexity: logged(plan.scenario.complexity),
+        difficulty: logged(plan.scenario.difficulty),
         scenario_type: Some(form),
         extra,
     }
+}
+
+/// What a word of a scenario is in a log: both have l2logger's.
+fn logged<T: FromStr>(word: Option<impl Serialize>) -> Option<T> {
+    json!(word?).as_str()?.parse().ok()
 }
 
 /// Where two JSON values first differ, and what each has there.
@@ -411,7 +411,33 @@ fn shown(value: &Value) -> String {
 
 #[cfg(test)]
 mod tests {
+    use driftworld_metrics::{Complexity, Difficulty};
+    use driftworld_spec::{ScenarioComplexity, ScenarioDifficulty};
+
     use super::*;
+
+    #[test]
+    fn words_of_scenarios_are_words_of_logs() {
+        use ScenarioComplexity::{High, Intermediate, Low};
+        use ScenarioDifficulty::{Easy, Hard, Medium};
+        use ScenarioForm::{Alternating, Condensed, Custom, Dispersed, Permuted};
+        let forms = [Condensed, Dispersed, Permuted, Alternating, Custom].map(|form| logged(Some(form)));
+        let types = [
+            ScenarioType::Condensed,
+            ScenarioType::Dispersed,
+            ScenarioType::Permuted,
+            ScenarioType::Alternating,
+            ScenarioType::Custom,
+        ];
+        assert_eq!(forms, types.map(Some));
+        let complexities = [Low, Intermediate, High].map(|word| logged(Some(word)));
+        let expected = [Complexity::Low, Complexity::Intermediate, Complexity::High];
+        assert_eq!(complexities, expected.map(Some));
+        let difficulties = [Easy, Medium, Hard].map(|word| logged(Some(word)));
+        let expected = [Difficulty::Easy, Difficulty::Medium, Difficulty::Hard];
+        assert_eq!(difficulties, expected.map(Some));
+        assert_eq!(logged::<Difficulty>(None::<ScenarioDifficulty>), None);
+    }
 
     #[test]
     fn the_first_difference_is_named_by_its_place() {

@@ -27,12 +27,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use driftworld_env::{Agent, Catalogue, Environment, Recorder, Recording};
 use driftworld_metrics::Timestamp;
-use driftworld_spec::{BlockKind, Variant, World};
+use driftworld_spec::{BlockKind, World};
 
 pub use columns::{COLUMNS, ENDED_BY, ENDING};
 pub use episode::{Experience, MOST_STEPS};
 pub use finishing::{Finished, try_expert};
 pub use journal::Journal;
+pub(crate) use journal::Lived;
 pub use log_names::same_log_name;
 pub use plan::{ExperienceSpec, FoundWorld, Plan, Sources, log_name};
 pub use recordings::{MAX_RECORDINGS_BYTES, RECORDINGS_FILE, Recordings, RecordingsFile};
@@ -43,8 +44,7 @@ pub use undrawable::{Failed, Trial, Tried, Undrawable, try_worlds};
 
 use crate::CurriculumError;
 use episode::EpisodeContext;
-use journal::LoggedExperience;
-use worlds::{Drawn, Worlds};
+use worlds::Worlds;
 
 /// What a run is handed, since it does not look at the clock.
 pub struct RunContext<'a> {
@@ -91,12 +91,12 @@ pub fn run(
 ) -> Result<Summary, CurriculumError> {
     let total = plan.num_experiences();
     let (jobs, catalogue, stop) = (context.jobs.get(), context.catalogue.clone(), context.stop);
-    let records = journal.records();
     let repeats = Repeats {
         count: context.repeated_evaluations,
         first: false,
     };
-    let worker = || Worker::new(plan, catalogue.clone(), stop).recording_if(records);
+    let recorder = journal.records().then(Recorder::default);
+    let worker = || Worker::new(plan, catalogue.clone(), stop, recorder.clone());
     let mut own = worker();
     let (mut worlds, mut block) = (Worlds::new(plan), None);
     let mut next = journal.num_experiences();
@@ -153,7 +153,7 @@ pub fn relearn(
     if !agent.learns() {
         return Ok(ControlFlow::Continue(()));
     }
-    let mut worker = Worker::new(plan, context.catalogue.clone(), context.stop);
+    let mut worker = Worker::new(plan, context.catalogue.clone(), context.stop, None);
     let mut one_by_one = OneByOne {
         agent,
         worker: &mut worker,
@@ -204,27 +204,19 @@ fn run_in_parallel(
         let (number, is_repeat) = items[item as usize];
         let progress = match outcome? {
             Outcome::CutOff => return Ok(ControlFlow::Break(())),
-            Outcome::Over { experience, .. } if is_repeat => {
+            Outcome::Over(lived) if is_repeat => {
                 if let (Some((reward, first)), Some(again)) = (evaluated.remove(&number), trace) {
-                    rollout::expect_frozen(plan, number, (reward, &first), (experience.reward, &again), journal)?;
+                    let again = (lived.experience.reward, &again[..]);
+                    rollout::expect_frozen(plan, number, (reward, &first), again, journal)?;
                 }
                 return Ok(ControlFlow::Continue(()));
             }
-            Outcome::LeftOut { .. } if is_repeat => return Ok(ControlFlow::Continue(())),
-            Outcome::Over {
-                experience,
-                between,
-                recording,
-            } => {
-                evaluated.extend(trace.map(|trace| (number, (experience.reward, trace))));
-                let logged = LoggedExperience {
-                    experience,
-                    between: between.as_deref(),
-                    recording: recording.as_deref(),
-                };
-                journal.append(plan, number, logged, (context.now)())?
+            Outcome::LeftOut(_) if is_repeat => return Ok(ControlFlow::Continue(())),
+            Outcome::Over(lived) => {
+                evaluated.extend(trace.map(|trace| (number, (lived.experience.reward, trace))));
+                journal.append(plan, number, *lived, (context.now)())?
             }
-            Outcome::LeftOut { reason } => journal.leave_out(plan, number, &reason, (context.now)())?,
+            Outcome::LeftOut(reason) => journal.leave_out(plan, number, &reason, (context.now)())?,
         };
         Ok((context.watch)(&progress))
     })
@@ -232,15 +224,10 @@ fn run_in_parallel(
 
 /// What became of an experience.
 enum Outcome {
-    /// It is over; with the variant that it was an experience of where its regime drifts.
-    Over {
-        experience: Experience,
-        between: Option<Box<Variant>>,
-        /// What was done in it, if that is wanted.
-        recording: Option<Box<Recording>>,
-    },
-    /// It was left out, since its world cannot be drawn.
-    LeftOut { reason: String },
+    /// It is over.
+    Over(Box<Lived>),
+    /// It was left out, since its world cannot be drawn: why.
+    LeftOut(String),
     /// The run was stopped meanwhile.
     CutOff,
 }
@@ -259,29 +246,22 @@ struct Worker<'a> {
 }
 
 impl<'a> Worker<'a> {
-    fn new(plan: &'a Plan, catalogue: Catalogue, stop: &'a AtomicBool) -> Self {
+    fn new(plan: &'a Plan, catalogue: Catalogue, stop: &'a AtomicBool, recorder: Option<Recorder>) -> Self {
         Self {
             plan,
             catalogue,
             stop,
             worlds: Worlds::new(plan),
             environment: None,
-            recorder: None,
+            recorder,
             trace: Vec::new(),
         }
     }
 
-    fn recording_if(self, records: bool) -> Self {
-        Self {
-            recorder: records.then(Recorder::default),
-            ..self
-        }
-    }
-
     /// The recording of the last experience that was run to its end.
-    fn recording(&self, experience: &Experience) -> Option<Box<Recording>> {
+    fn recording(&self, experience: &Experience) -> Option<Recording> {
         let (recorder, environment) = self.recorder.as_ref().zip(self.environment.as_ref())?;
-        Some(Box::new(recorder.recording(environment, experience.ended_by)))
+        Some(recorder.recording(environment, experience.ended_by))
     }
 
     fn draw_and_run(&mut self, agent: &mut dyn Agent, number: u64) -> Result<Outcome, CurriculumError> {
@@ -289,15 +269,17 @@ impl<'a> Worker<'a> {
             return Ok(Outcome::CutOff);
         }
         let (world, between) = match self.worlds.draw(number)? {
-            Drawn::World { world, between } => (world, between),
-            Drawn::LeftOut { reason } => return Ok(Outcome::LeftOut { reason }),
+            Ok(drawn) => drawn,
+            Err(reason) => return Ok(Outcome::LeftOut(reason)),
         };
-        let experience = self.run(agent, number, world)?;
-        Ok(experience.map_or(Outcome::CutOff, |experience| Outcome::Over {
+        let Some(experience) = self.run(agent, number, world)? else {
+            return Ok(Outcome::CutOff);
+        };
+        Ok(Outcome::Over(Box::new(Lived {
             experience,
             between,
             recording: self.recording(&experience),
-        }))
+        })))
     }
 
     /// Runs one experience in its world; nothing if it was stopped on its way.
@@ -358,7 +340,7 @@ impl Rollout for OneByOne<'_, '_> {
     }
 
     fn recording(&mut self, _number: u64, experience: &Experience) -> Result<Option<Recording>, CurriculumError> {
-        Ok(self.worker.recording(experience).map(|recording| *recording))
+        Ok(self.worker.recording(experience))
     }
 
     fn logged(&mut self, progress: &Progress, _reward: Option<f64>) -> Result<ControlFlow<()>, CurriculumError> {

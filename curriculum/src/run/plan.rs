@@ -8,10 +8,11 @@ use driftworld_env::Label;
 use driftworld_generator::{Drift, Sampler};
 use driftworld_metrics::logged_word;
 use driftworld_spec::{Block, BlockKind, BlockMix, Regime, Scenario, TaskLabel, TaskSpec, Variant, World};
+use indexmap::IndexSet;
 use serde_json::{Value, json};
 
 use super::log_names::LogNames;
-use super::planned::{Planned, Source};
+use super::planned::{Planned, Source, end_name};
 use super::rollout::Repeats;
 use super::shuffle::Shuffle;
 use super::undrawable::Undrawable;
@@ -111,6 +112,7 @@ impl Plan {
             sources,
             tasks: BTreeMap::new(),
             worlds: BTreeMap::new(),
+            notes: BTreeMap::new(),
         };
         let mut log_names = LogNames::default();
         // For each variant and seed, the regimes in which it was learned.
@@ -140,7 +142,7 @@ impl Plan {
             }
         }
         plan.put_labels();
-        plan.tasks = finder.tasks;
+        (plan.tasks, plan.notes) = (finder.tasks, finder.notes);
         Ok(plan)
     }
 
@@ -174,6 +176,11 @@ impl Plan {
         of_block.any(|planned| planned.steps.is_some())
     }
 
+    /// What becomes of experiences whose worlds cannot be drawn.
+    pub fn undrawable(&self) -> Undrawable {
+        self.undrawable
+    }
+
     /// The scenario that it was made from.
     pub fn scenario(&self) -> &Scenario {
         &self.scenario
@@ -189,11 +196,18 @@ impl Plan {
     /// # Errors
     /// [`CurriculumError::World`] if it cannot be drawn; [`CurriculumError::NoSuchExperience`].
     pub fn world(&self, number: u64) -> Result<World, CurriculumError> {
+        let planned = self.planned_at(number)?;
+        let drawn = planned.draw(number, None);
+        Ok(drawn.map_err(|source| planned.wrong(number, source))?.0)
+    }
+
+    /// The regime that an experience belongs to, if there is such an experience.
+    fn planned_at(&self, number: u64) -> Result<&Planned, CurriculumError> {
         let total = self.num_experiences();
         if number >= total {
             return Err(CurriculumError::NoSuchExperience { found: number, total });
         }
-        Ok(self.regimes[self.regime_of(number)].assignment(number, None)?.world)
+        Ok(&self.regimes[self.regime_of(number)])
     }
 
     /// What an experience is one of, by its number over the whole lifetime; its world is [`Plan::world`].
@@ -201,12 +215,8 @@ impl Plan {
     /// # Errors
     /// [`CurriculumError::NoSuchExperience`].
     pub fn experience_spec(&self, number: u64) -> Result<ExperienceSpec<'_>, CurriculumError> {
-        let total = self.num_experiences();
-        if number >= total {
-            return Err(CurriculumError::NoSuchExperience { found: number, total });
-        }
-        let planned = &self.regimes[self.regime_of(number)];
-        let is_drawn = !matches!(planned.source, Source::World { .. });
+        let planned = self.planned_at(number)?;
+        let is_drawn = planned.is_drawn();
         Ok(ExperienceSpec {
             block: planned.block,
             regime: planned.regime,
@@ -263,11 +273,6 @@ impl Plan {
         (from..end)
             .filter(|number| place(number) - from < repeats.count as u64)
             .collect()
-    }
-
-    /// What becomes of experiences whose worlds cannot be drawn.
-    pub fn undrawable(&self) -> Undrawable {
-        self.undrawable
     }
 
     /// Every variant that it draws worlds of, both ends of drifts among them, each once with the limit of steps that its first regime
@@ -356,11 +361,6 @@ impl Plan {
             labels: None,
         };
         self.fingerprint(&planned)?;
-        if let Source::World { path, .. } = &planned.source
-            && let Some(note) = finder.worlds[path].1.clone()
-        {
-            self.notes.insert(path.clone(), note);
-        }
         Ok(planned)
     }
 
@@ -402,18 +402,10 @@ impl Plan {
         if wanted == TaskLabel::None {
             return;
         }
-        let mut names: Vec<String> = Vec::new();
-        let mut numbers: BTreeMap<String, usize> = BTreeMap::new();
-        for id in self.regimes.iter().flat_map(Planned::ends) {
-            let next = names.len();
-            numbers.entry(id.clone()).or_insert_with(|| {
-                names.push(id);
-                next
-            });
-        }
+        let names: IndexSet<String> = self.regimes.iter().flat_map(Planned::ends).collect();
         for planned in &mut self.regimes {
             planned.labels = Some(planned.ends().map(|name| Label {
-                number: numbers[&name],
+                number: names.get_index_of(&name).expect("the names are those of all ends"),
                 of: names.len(),
                 observed: wanted == TaskLabel::Observation,
                 name,
@@ -437,7 +429,8 @@ fn block_key(seed: u64, block: usize) -> u64 {
 struct Finder<'a, 'b> {
     sources: &'a mut Sources<'b>,
     tasks: BTreeMap<String, Arc<TaskSpec>>,
-    worlds: BTreeMap<String, (Arc<World>, Option<String>)>,
+    worlds: BTreeMap<String, Arc<World>>,
+    notes: BTreeMap<String, String>,
 }
 
 impl Finder<'_, '_> {
@@ -449,10 +442,11 @@ impl Finder<'_, '_> {
                     regime: regime_number,
                     reason,
                 })?;
-                self.worlds.insert(path.clone(), (Arc::new(found.world), found.note));
+                self.worlds.insert(path.clone(), Arc::new(found.world));
+                self.notes.extend(found.note.map(|note| (path.clone(), note)));
             }
             return Ok(Source::World {
-                world: Arc::clone(&self.worlds[path].0),
+                world: Arc::clone(&self.worlds[path]),
                 path: path.clone(),
             });
         }
@@ -489,15 +483,6 @@ impl Finder<'_, '_> {
             way: Box::new(way),
             drift: Box::new(drift.clone()),
         })
-    }
-}
-
-/// What the end of a drift is called beside its beginning: its name, and the task's before it where that is another.
-fn end_name(task: &str, to: &Variant) -> String {
-    if to.task().name() == task {
-        to.name().to_owned()
-    } else {
-        to.id()
     }
 }
 

@@ -8,11 +8,11 @@ use driftworld_generator::{Drift, GeneratorError, Sampler};
 use driftworld_metrics::TaskParams;
 use driftworld_spec::{BlockKind, DriftSwitch, Phase, RegimeDrift, Variant, World};
 use serde_json::{Map, Value, json};
-use sha2::{Digest, Sha256};
 
 use super::gap::Subject;
 use super::shuffle::Shuffle;
 use crate::CurriculumError;
+use crate::hash::number_of;
 
 /// A regime of a plan.
 pub(super) struct Planned {
@@ -59,13 +59,6 @@ pub(super) enum Source {
     },
 }
 
-/// What one experience is made of.
-pub(super) struct Assignment {
-    pub(super) world: World,
-    /// The variant, where it is another in each experience.
-    pub(super) between: Option<Variant>,
-}
-
 impl Planned {
     /// The names of the variants that it begins with and ends with, which are one unless it drifts.
     pub(super) fn ends(&self) -> [String; 2] {
@@ -89,24 +82,16 @@ impl Planned {
     }
 
     fn is_near_its_beginning(&self, number: u64) -> bool {
-        let Source::Drift { drift, .. } = &self.source else {
+        let Source::Drift { to, drift, .. } = &self.source else {
             return true;
         };
         // Where whole variants switch, an experience is of one of the two.
         if drift.switch == DriftSwitch::Task
             && let Ok(Some(variant)) = self.variant_of(number)
         {
-            return !self.is_end(&variant);
+            return variant.id() != to.id();
         }
-        drift
-            .schedule
-            .at(drift.progress(self.offset(number) as u32, self.count))
-            < 0.5
-    }
-
-    /// Whether a variant is the one that it drifts to.
-    fn is_end(&self, variant: &Variant) -> bool {
-        matches!(&self.source, Source::Drift { to, .. } if to.id() == variant.id())
+        drift.schedule.at(self.progress(number)) < 0.5
     }
 
     pub(super) fn wrong(&self, number: u64, source: GeneratorError) -> CurriculumError {
@@ -158,13 +143,13 @@ impl Planned {
         }
     }
 
-    /// What experience `number` of the lifetime is made of. `sampler` is this regime's own.
-    pub(super) fn assignment(&self, number: u64, sampler: Option<&Sampler>) -> Result<Assignment, CurriculumError> {
-        self.draw(number, sampler).map_err(|source| self.wrong(number, source))
-    }
-
-    /// As [`Planned::assignment`], with the error as the generator says it.
-    pub(super) fn draw(&self, number: u64, sampler: Option<&Sampler>) -> Result<Assignment, GeneratorError> {
+    /// The world of experience `number` of the lifetime, and the variant, where it is another in each experience. `sampler` is this
+    /// regime's own.
+    pub(super) fn draw(
+        &self,
+        number: u64,
+        sampler: Option<&Sampler>,
+    ) -> Result<(World, Option<Variant>), GeneratorError> {
         let index = self.index_of(number);
         let between = self.variant_of(number)?;
         let world = match &self.source {
@@ -181,7 +166,7 @@ impl Planned {
                 .expect("a scenario limits steps to what a world may have"),
             None => world,
         };
-        Ok(Assignment { world, between })
+        Ok((world, between))
     }
 
     /// The number that an agent begins an experience with.
@@ -190,22 +175,17 @@ impl Planned {
     /// variants under one seed. Every evaluation of a world has the same, so that an agent that has not changed earns the
     /// same in it; what is learned in the same world again has another, so that a learner does not try the same again.
     pub(super) fn agent_seed(&self, number: u64) -> u64 {
-        let index = self.index_of(number);
-        let mut hash = Sha256::new();
         let task = self.id.rsplit_once('#').map_or(self.id.as_str(), |(task, _)| task);
-        hash.update(task.as_bytes());
-        hash.update([0]);
-        hash.update(self.seed.to_le_bytes());
-        hash.update(index.to_le_bytes());
+        let numbers = [self.seed, self.index_of(number), self.learned_before, self.run_seed];
+        let [seed, index, learned_before, run_seed] = numbers.map(u64::to_le_bytes);
+        let mut parts: Vec<&[u8]> = vec![task.as_bytes(), &[0], &seed, &index];
         if self.kind == BlockKind::Learning {
-            hash.update(self.learned_before.to_le_bytes());
+            parts.push(&learned_before);
         }
         if self.run_seed != 0 {
-            hash.update(b"run");
-            hash.update(self.run_seed.to_le_bytes());
+            parts.extend([&b"run"[..], &run_seed]);
         }
-        let digest = hash.finalize();
-        digest.iter().take(8).fold(0, |seed, byte| seed << 8 | u64::from(*byte))
+        number_of(parts)
     }
 
     /// The variant that an experience is of, where its regime drifts.
@@ -242,9 +222,10 @@ impl Planned {
 
     /// The number of an experience's world among those of its variant and seed; NaN for a world from a file.
     pub(super) fn world_index(&self, number: u64) -> f64 {
-        match self.source {
-            Source::Variant(_) | Source::Drift { .. } => self.index_of(number) as f64,
-            Source::World { .. } => f64::NAN,
+        if self.is_drawn() {
+            self.index_of(number) as f64
+        } else {
+            f64::NAN
         }
     }
 
@@ -260,29 +241,20 @@ impl Planned {
     /// logs take experiences with other parameters for other regimes.
     pub(super) fn params(&self) -> TaskParams {
         let mut params = Map::new();
-        let mut say = |key: &str, value: Value| params.insert(key.to_owned(), value);
+        let mut say = |key: &str, value: Value| drop(params.insert(key.to_owned(), value));
+        let (task, variant) = match &self.source {
+            Source::Variant(variant) | Source::Drift { from: variant, .. } => (variant.task().name(), variant.name()),
+            Source::World { .. } => self.id.split_once('#').unwrap_or((&self.id, "")),
+        };
+        say("task", json!(task));
+        say("variant", json!(variant));
         match &self.source {
-            Source::Variant(variant) => {
-                say("task", json!(variant.task().name()));
-                say("variant", json!(variant.name()));
-                say("seed", json!(self.seed));
-            }
-            Source::Drift { from, to, .. } => {
-                say("task", json!(from.task().name()));
-                say("variant", json!(from.name()));
-                if to.task().name() == from.task().name() {
-                    say("to", json!(to.name()));
-                } else {
-                    say("to", json!(to.id()));
-                }
-                say("seed", json!(self.seed));
-            }
-            Source::World { path, .. } => {
-                let (task, variant) = self.id.split_once('#').unwrap_or((&self.id, ""));
-                say("task", json!(task));
-                say("variant", json!(variant));
-                say("world", json!(path));
-            }
+            Source::Variant(_) => {}
+            Source::Drift { to, .. } => say("to", json!(end_name(task, to))),
+            Source::World { path, .. } => say("world", json!(path)),
+        }
+        if self.is_drawn() {
+            say("seed", json!(self.seed));
         }
         if self.shuffle.is_some() {
             say("mix", json!("shuffled"));
@@ -294,5 +266,14 @@ impl Planned {
             say("phase", json!("pre_deployment"));
         }
         TaskParams::from(params)
+    }
+}
+
+/// What the end of a drift is called beside its beginning: its name, and the task's before it where that is another.
+pub(super) fn end_name(task: &str, to: &Variant) -> String {
+    if to.task().name() == task {
+        to.name().to_owned()
+    } else {
+        to.id()
     }
 }

@@ -7,8 +7,8 @@ use driftworld_metrics::Timestamp;
 use driftworld_spec::{BlockKind, World};
 
 use super::budget::Budget;
-use super::journal::LoggedExperience;
-use super::worlds::{Drawn, Worlds};
+use super::journal::Lived;
+use super::worlds::Worlds;
 use super::{Experience, Journal, Plan, Progress, Summary};
 use crate::CurriculumError;
 
@@ -117,7 +117,7 @@ pub(super) fn relearn_range<R: Rollout>(
         let planned = &plan.regimes[plan.regime_of(number)];
         next = number + 1;
         if planned.kind == BlockKind::Learning
-            && let Drawn::World { world, .. } = worlds.draw(number)?
+            && let Ok((world, _)) = worlds.draw(number)?
         {
             if block.replace(planned.block) != Some(planned.block) {
                 rollout.begin_block(true, &[])?;
@@ -150,8 +150,8 @@ pub(super) fn run_range<R: Rollout>(
         let number = next;
         let planned = &plan.regimes[plan.regime_of(number)];
         let (progress, reward) = match worlds.draw(number)? {
-            Drawn::LeftOut { reason } => (journal.leave_out(plan, number, &reason, now())?, None),
-            Drawn::World { world, between } => {
+            Err(reason) => (journal.leave_out(plan, number, &reason, now())?, None),
+            Ok((world, between)) => {
                 if block.replace(planned.block) != Some(planned.block) {
                     repeated = plan.repeated(number, rollout.repeats());
                     rollout.begin_block(planned.kind == BlockKind::Learning, &repeated)?;
@@ -164,12 +164,12 @@ pub(super) fn run_range<R: Rollout>(
                 } else {
                     None
                 };
-                let logged = LoggedExperience {
+                let lived = Lived {
                     experience,
-                    between: between.as_deref(),
-                    recording: recording.as_ref(),
+                    between,
+                    recording,
                 };
-                let progress = journal.append(plan, number, logged, now())?;
+                let progress = journal.append(plan, number, lived, now())?;
                 if repeated.contains(&number) {
                     evaluated.push((number, experience.reward, rollout.trace()));
                 }
@@ -186,7 +186,7 @@ pub(super) fn run_range<R: Rollout>(
         }
         if is_last {
             for (number, reward, trace) in evaluated.drain(..) {
-                let Drawn::World { world, .. } = worlds.draw(number)? else {
+                let Ok((world, _)) = worlds.draw(number)? else {
                     continue;
                 };
                 let Some(again) = rollout.experience(number, world)? else {
@@ -209,12 +209,8 @@ pub(super) fn expect_frozen(
     journal: &mut Journal,
 ) -> Result<(), CurriculumError> {
     let found = if first.1 != again.1 {
-        let same = first
-            .1
-            .iter()
-            .zip(again.1)
-            .take_while(|(one, other)| one == other)
-            .count();
+        let pairs = first.1.iter().zip(again.1);
+        let same = pairs.take_while(|(one, other)| one == other).count();
         format!("another action in step {}", same + 1)
     } else if first.0.to_bits() != again.0.to_bits() {
         format!("reward {}, {} before, at the end", again.0, first.0)

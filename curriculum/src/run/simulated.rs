@@ -1,12 +1,7 @@
-//! What a log would say of an experience that nobody runs: for agents of which only the rewards are simulated.
+//! What an agent of which only the rewards are simulated is told of an experience.
 
-use driftworld_metrics::{Record, ScenarioInfo, Timestamp};
 use driftworld_spec::BlockKind;
 
-use super::columns;
-use super::episode::Experience;
-use super::gap::Gap;
-use super::journal;
 use super::plan::Plan;
 
 /// An experience as a simulated agent meets it.
@@ -42,21 +37,5 @@ impl Plan {
                 [0, 0]
             },
         }
-    }
-
-    /// The row of an experience of one step that paid this.
-    pub(crate) fn simulated_record(&self, number: u64, reward: f64, now: Timestamp) -> Record {
-        let experience = Experience {
-            reward,
-            steps: 1,
-            ..Experience::default()
-        };
-        let planned = &self.regimes[self.regime_of(number)];
-        columns::record(planned, number, &experience, &Gap::UNKNOWN, now)
-    }
-
-    /// What the log of this agent says of itself.
-    pub(crate) fn scenario_info(&self, agent: &str) -> ScenarioInfo {
-        journal::scenario_info(self, agent)
     }
 }

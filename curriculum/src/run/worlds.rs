@@ -13,20 +13,9 @@ pub(super) struct Worlds<'a> {
     sampler: Option<(usize, Option<Sampler>)>,
 }
 
-/// What came of drawing a world.
-#[expect(
-    clippy::large_enum_variant,
-    reason = "there is one at a time, and nearly all are worlds"
-)]
-pub(super) enum Drawn {
-    /// The world, and the variant that it is of where its regime drifts.
-    World {
-        world: World,
-        between: Option<Box<Variant>>,
-    },
-    /// It cannot be drawn, and the plan leaves such experiences out.
-    LeftOut { reason: String },
-}
+/// A world, and the variant that it is of where its regime drifts; or why it cannot be drawn, where the plan leaves such experiences
+/// out.
+pub(super) type Drawn = Result<(World, Option<Variant>), String>;
 
 impl<'a> Worlds<'a> {
     pub(super) fn new(plan: &'a Plan) -> Self {
@@ -42,13 +31,8 @@ impl<'a> Worlds<'a> {
             old => &mut old.insert((index, planned.sampler())).1,
         };
         match planned.draw(number, sampler.as_ref()) {
-            Ok(assignment) => Ok(Drawn::World {
-                world: assignment.world,
-                between: assignment.between.map(Box::new),
-            }),
-            Err(source) if self.plan.undrawable() == Undrawable::Skipped => Ok(Drawn::LeftOut {
-                reason: source.to_string(),
-            }),
+            Ok(drawn) => Ok(Ok(drawn)),
+            Err(source) if self.plan.undrawable == Undrawable::Skipped => Ok(Err(source.to_string())),
             Err(source) => Err(planned.wrong(number, source)),
         }
     }
