@@ -31,23 +31,31 @@ pub struct Opened {
 /// pipe, a socket and a link that leads nowhere; [`FileError::TooLarge`].
 pub fn open(path: &Path, limit: u64) -> Result<Opened, FileError> {
     check(path)?;
-    let unreadable = |source| FileError::Unreadable {
-        path: path.to_owned(),
-        source,
-    };
-    let file = without_waiting(path).map_err(unreadable)?;
+    let file = without_waiting(path).map_err(unreadable(path))?;
     // Another file may have taken its place meanwhile.
-    let found = file.metadata().map_err(unreadable)?;
+    let found = file.metadata().map_err(unreadable(path))?;
     kind::check(path, found.file_type())?;
     let length = found.len();
-    if length > limit {
-        return Err(FileError::TooLarge {
-            path: path.to_owned(),
-            found: length,
-            limit,
-        });
-    }
+    within(path, length, limit)?;
     Ok(Opened { file, length })
+}
+
+fn unreadable(path: &Path) -> impl FnOnce(std::io::Error) -> FileError {
+    move |source| FileError::Unreadable {
+        path: path.to_owned(),
+        source,
+    }
+}
+
+fn within(path: &Path, found: u64, limit: u64) -> Result<(), FileError> {
+    if found <= limit {
+        return Ok(());
+    }
+    Err(FileError::TooLarge {
+        path: path.to_owned(),
+        found,
+        limit,
+    })
 }
 
 /// Looks whether a regular file is there, and opens nothing; links are followed.
@@ -57,10 +65,7 @@ pub fn open(path: &Path, limit: u64) -> Result<Opened, FileError> {
 pub fn check(path: &Path) -> Result<(), FileError> {
     let found = fs::metadata(path).map_err(|source| match source.kind() {
         ErrorKind::NotFound if path.is_symlink() => kind::error(path, LOST_LINK),
-        _ => FileError::Unreadable {
-            path: path.to_owned(),
-            source,
-        },
+        _ => unreadable(path)(source),
     })?;
     kind::check(path, found.file_type())
 }
@@ -82,26 +87,16 @@ pub fn check(path: &Path) -> Result<(), FileError> {
 /// ```
 pub fn read(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
     let Opened { file, length } = open(path, limit)?;
-    let unreadable = |source| FileError::Unreadable {
-        path: path.to_owned(),
-        source,
-    };
     let mut bytes = Vec::new();
     // One more, so that the end is seen without making room again.
     let room = usize::try_from(length).unwrap_or(usize::MAX).saturating_add(1);
     bytes
         .try_reserve_exact(room)
-        .map_err(|_| unreadable(ErrorKind::OutOfMemory.into()))?;
+        .map_err(|_| unreadable(path)(ErrorKind::OutOfMemory.into()))?;
     file.take(limit.saturating_add(1))
         .read_to_end(&mut bytes)
-        .map_err(unreadable)?;
-    if bytes.len() as u64 > limit {
-        return Err(FileError::TooLarge {
-            path: path.to_owned(),
-            found: bytes.len() as u64,
-            limit,
-        });
-    }
+        .map_err(unreadable(path))?;
+    within(path, bytes.len() as u64, limit)?;
     Ok(bytes)
 }
 
