@@ -1,6 +1,5 @@
 //! The stage `size` and `cargo xtask size`: `SIZE.md`, which lists the lines of code of each room beside a limit.
 
-use std::fmt::Write as _;
 use std::fs;
 
 use crate::process::{Result, Workspace, about};
@@ -108,12 +107,7 @@ fn count(sources: &Sources) -> Vec<(&'static str, usize)> {
 }
 
 fn summary(counts: &[(&str, usize)]) -> String {
-    let of = |room| {
-        counts
-            .iter()
-            .find(|(name, _)| *name == room)
-            .map_or(0, |(_, lines)| *lines)
-    };
+    let of = |room| counts.iter().find(|(name, _)| *name == room).map_or(0, |found| found.1);
     format!("{} lines of Rust, {} of its tests", of(TOTAL), of(TESTS))
 }
 
@@ -141,11 +135,7 @@ fn table(counts: &[(&str, usize)], written: &[Row]) -> String {
         let old = written.iter().find(|row| row.room == *room);
         let limit = old.map_or(lines.next_multiple_of(50), |row| row.limit);
         let reason = old.map_or("", |row| row.reason.as_str());
-        let _ = writeln!(
-            text,
-            "{}",
-            format!("| {room} | {lines} | {limit} | {reason} |").replace("  ", " ")
-        );
+        text += &format!("| {room} | {lines} | {limit} | {reason} |\n").replace("  ", " ");
     }
     text
 }

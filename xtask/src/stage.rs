@@ -39,10 +39,8 @@ const fn quick(name: &'static str, about: &'static str, run: fn(&Workspace) -> R
 
 const fn slow(name: &'static str, about: &'static str, run: fn(&Workspace) -> Result<Outcome>) -> Stage {
     Stage {
-        name,
         is_quick: false,
-        about,
-        run,
+        ..quick(name, about, run)
     }
 }
 
