@@ -169,24 +169,12 @@ fn unsafety(sources: &Sources) -> Vec<String> {
         Some((file.to_owned(), cells.next()?.parse().ok()?))
     };
     let listed: BTreeMap<String, usize> = sources.text(UNSAFE).lines().filter_map(listed).collect();
-    let files = found
-        .keys()
-        .copied()
-        .chain(listed.keys().map(String::as_str))
-        .collect::<BTreeSet<_>>();
-    let counts = files.into_iter().map(|file| {
-        (
-            file,
-            found.get(file).copied().unwrap_or(0),
-            listed.get(file).copied().unwrap_or(0),
-        )
-    });
-    let differing = counts.filter(|(_, found, listed)| found != listed);
-    differing
-        .map(|(file, found, listed)| {
-            format!("{UNSAFE}: found {listed} unsafe places listed for {file}, expected {found}")
-        })
-        .collect()
+    let files: BTreeSet<&str> = found.keys().copied().chain(listed.keys().map(String::as_str)).collect();
+    let difference = |file| {
+        let (found, listed) = (found.get(file).unwrap_or(&0), listed.get(file).unwrap_or(&0));
+        (found != listed).then(|| format!("{UNSAFE}: found {listed} unsafe places listed for {file}, expected {found}"))
+    };
+    files.into_iter().filter_map(difference).collect()
 }
 
 /// Lines of a Markdown text outside fenced blocks, numbered from 1.

@@ -125,17 +125,9 @@ fn opened_comment(word: &str, is_python: bool) -> Option<(&'static str, &str)> {
 
 /// The lines of a file; those of comments and of tests are empty.
 pub(crate) fn shipped_lines(text: &str) -> Vec<&str> {
-    let code = |line: &'_ str| !line.trim_start().starts_with("//");
-    let mut lines: Vec<&str> = text
-        .lines()
-        .map(|line| {
-            if code(line) {
-                line.split(" // ").next().unwrap_or(line)
-            } else {
-                ""
-            }
-        })
-        .collect();
+    let code = |line: &&str| !line.trim_start().starts_with("//");
+    let before_comment = |line| Some(line).filter(code).and_then(|line| line.split(" // ").next());
+    let mut lines: Vec<&str> = text.lines().map(|line| before_comment(line).unwrap_or("")).collect();
     for start in 0..lines.len() {
         if lines[start].trim_start().starts_with("#[cfg(test)]") {
             let is_attribute = |line: &&str| line.trim_start().starts_with('#') || line.is_empty();
