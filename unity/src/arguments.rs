@@ -143,7 +143,7 @@ impl Request {
             };
             let mut value = |expected: &str| {
                 let refused =
-                    |found: &str| UnityError::arguments(format!("{name}: found {found}, expected {expected}"));
+                    |found: &str| UnityError::Arguments(format!("{name}: found {found}, expected {expected}"));
                 let found = match &inline {
                     Some(value) => Some(value),
                     None => match rest.peek() {
@@ -169,7 +169,7 @@ impl Request {
                 "--raw-observations" => match &inline {
                     None => options.pictures = PictureForm::Floats,
                     Some(found) => {
-                        return Err(UnityError::arguments(format!(
+                        return Err(UnityError::Arguments(format!(
                             "{name}: found the value {found:?}, expected none"
                         )));
                     }
@@ -213,7 +213,7 @@ fn meant(word: &str) -> Option<String> {
 fn port(text: &str) -> Result<u16, UnityError> {
     let number = text.parse().ok().filter(|port| *port > 0);
     number.ok_or_else(|| {
-        UnityError::arguments(format!(
+        UnityError::Arguments(format!(
             "--mlagents-port: found {text:?}, expected a port from 1 to 65535"
         ))
     })
@@ -223,7 +223,7 @@ fn wait(text: &str) -> Result<Duration, UnityError> {
     let seconds: Option<f64> = text.parse().ok();
     let seconds = seconds.filter(|seconds| (SHORTEST_WAIT_SECS..=LONGEST_WAIT_SECS).contains(seconds));
     seconds.map(Duration::from_secs_f64).ok_or_else(|| {
-        UnityError::arguments(format!(
+        UnityError::Arguments(format!(
             "--wait: found {text:?}, expected seconds from {SHORTEST_WAIT_SECS} to {LONGEST_WAIT_SECS}"
         ))
     })

@@ -20,9 +20,8 @@ impl Client {
     /// [`UnityError::ClientVersion`] unless it speaks version 1 of the protocol.
     pub(crate) fn new(said: &UnityRlInitializationInputProto) -> Result<Self, UnityError> {
         if major(&said.communication_version) != Some(1) {
-            return Err(UnityError::ClientVersion {
-                found: said.communication_version.chars().take(40).collect(),
-            });
+            let found = said.communication_version.chars().take(40).collect();
+            return Err(UnityError::ClientVersion(found));
         }
         let capabilities = said.capabilities.unwrap_or_default();
         Ok(Self {

@@ -49,9 +49,7 @@ impl Connection {
             host.to_owned()
         };
         let address = format!("{host}:{port}");
-        let no_address = |_| UnityError::NoAddress {
-            address: address.clone(),
-        };
+        let no_address = |_| UnityError::NoAddress(address.clone());
         let endpoint = Endpoint::from_shared(format!("http://{address}"))
             .map_err(no_address)?
             .tcp_nodelay(true)
@@ -115,9 +113,7 @@ fn reply(answer: Result<UnityMessageProto, Status>) -> Result<Reply, UnityError>
             if matches!(status.code(), Code::OutOfRange | Code::Internal | Code::DataLoss)
                 && !is_transport(&status) =>
         {
-            Err(UnityError::Unreadable {
-                reason: status.message().to_owned(),
-            })
+            Err(UnityError::Unreadable(status.message().to_owned()))
         }
         // A client that closes cancels the call, one that is killed breaks the connection, and one that ends within its handler
         // says that this failed: all of them are gone.

@@ -8,18 +8,16 @@ use driftworld_spec::SpecError;
 use driftworld_text::{ShownPath, one_line};
 
 use crate::behavior::BEHAVIOR;
+use crate::outbox::MAX_OUTGOING_BYTES;
 
 /// Everything that ends a session before its client does.
 #[derive(Debug, thiserror::Error, strum::IntoStaticStr, strum::VariantNames)]
 #[strum(prefix = "unity/", serialize_all = "kebab-case")]
 #[non_exhaustive]
 pub enum UnityError {
-    /// Arguments that cannot be.
-    #[error("{text}", text = one_line(text))]
-    Arguments {
-        /// What was found where, and what was expected.
-        text: String,
-    },
+    /// Arguments that cannot be: what was found where, and what was expected.
+    #[error("{}", one_line(.0))]
+    Arguments(String),
     /// A file that cannot be read, is no regular file, is too large or is no text.
     #[strum(serialize = "file")]
     #[error("{option} {source}")]
@@ -48,12 +46,9 @@ pub enum UnityError {
         /// Where, and what was found.
         source: EnvError,
     },
-    /// The system gives us no network.
-    #[error("network: cannot be used: {source}", source = one_line(source))]
-    Network {
-        /// What the system says.
-        source: std::io::Error,
-    },
+    /// The system gives us no network: what it says.
+    #[error("network: cannot be used: {}", one_line(.0))]
+    Network(#[source] std::io::Error),
     /// A world or a maps file with problems.
     #[error(transparent)]
     Document(#[from] SpecError),
@@ -69,11 +64,8 @@ pub enum UnityError {
         seconds: f64,
     },
     /// Machine and port that make no address.
-    #[error("{address}: expected the name or address of a machine, such as 127.0.0.1", address = one_line(address))]
-    NoAddress {
-        /// Machine and port.
-        address: String,
-    },
+    #[error("{}: expected the name or address of a machine, such as 127.0.0.1", one_line(.0))]
+    NoAddress(String),
     /// Something listens that does not speak the protocol.
     #[error("{address}: what listens there does not answer as an ML-Agents client does: {reason}", address = one_line(address), reason = one_line(reason))]
     NotAClient {
@@ -82,30 +74,18 @@ pub enum UnityError {
         /// What it did.
         reason: String,
     },
-    /// A client of another major version of the protocol.
-    #[error("client: found version {found:?} of the protocol, expected 1.x, which mlagents-envs 0.16 to 1.1 speak")]
-    ClientVersion {
-        /// The version that it says.
-        found: String,
-    },
-    /// A message that is no message of the protocol, or too long.
-    #[error("client: a message cannot be read: {reason}", reason = one_line(reason))]
-    Unreadable {
-        /// Why; of one that is too long, this says the limit.
-        reason: String,
-    },
-    /// A message without what it has to say.
-    #[error("client: found a message without {missing}")]
-    Incomplete {
-        /// What is missing.
-        missing: &'static str,
-    },
-    /// A command that there is not.
-    #[error("client: found command {found}, expected 0 (step), 1 (reset) or 2 (quit)")]
-    UnknownCommand {
-        /// The command's number.
-        found: i32,
-    },
+    /// A client of another major version of the protocol, which it says.
+    #[error("client: found version {0:?} of the protocol, expected 1.x, which mlagents-envs 0.16 to 1.1 speak")]
+    ClientVersion(String),
+    /// A message that is no message of the protocol, or too long: why; of one that is too long, this says the limit.
+    #[error("client: a message cannot be read: {}", one_line(.0))]
+    Unreadable(String),
+    /// A message without this, which it has to say.
+    #[error("client: found a message without {0}")]
+    Incomplete(&'static str),
+    /// The number of a command that there is not.
+    #[error("client: found command {0}, expected 0 (step), 1 (reset) or 2 (quit)")]
+    UnknownCommand(i32),
     /// The client says that it has failed.
     #[error("client: it ended with status {status}: {text:?}")]
     ClientFailed {
@@ -146,32 +126,20 @@ pub enum UnityError {
         /// What is wrong with it.
         source: EnvError,
     },
-    /// An answer that is longer than clients accept.
+    /// An answer that is longer, by its bytes, than clients accept.
     #[error(
-        "observation: {found} bytes in a message, of which clients accept {limit}; reset to a smaller observation_size, or leave out --raw-observations"
+        "observation: {0} bytes in a message, of which clients accept {MAX_OUTGOING_BYTES}; reset to a smaller observation_size, or leave out --raw-observations"
     )]
-    TooLarge {
-        /// How long it is.
-        found: usize,
-        /// The most that gRPC accepts where nobody says otherwise.
-        limit: usize,
-    },
-    /// A picture that cannot be made into a file.
-    #[error("picture: {reason}", reason = one_line(reason))]
-    Picture {
-        /// Why.
-        reason: String,
-    },
+    TooLarge(usize),
+    /// A picture that cannot be made into a file: why.
+    #[error("picture: {}", one_line(.0))]
+    Picture(String),
     /// What the world says.
     #[error(transparent)]
     Env(#[from] EnvError),
 }
 
 impl UnityError {
-    pub(crate) fn arguments(text: String) -> Self {
-        Self::Arguments { text }
-    }
-
     /// A name for programs, which stays as it is.
     pub fn code(&self) -> &'static str {
         self.into()
@@ -180,7 +148,7 @@ impl UnityError {
     /// The exit status of the executable.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Arguments { .. } | Self::NoAddress { .. } => 2,
+            Self::Arguments(_) | Self::NoAddress(_) => 2,
             Self::NoClient { .. } => 3,
             _ => 1,
         }

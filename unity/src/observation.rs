@@ -111,9 +111,7 @@ fn vector(state: Vec<f32>) -> ObservationProto {
 
 /// A PNG file of 8-bit RGB, made in a hurry: it lives for a millisecond.
 pub(crate) fn png([width, height]: [u32; 2], rgb: &[u8]) -> Result<Vec<u8>, UnityError> {
-    let failed = |error: png::EncodingError| UnityError::Picture {
-        reason: error.to_string(),
-    };
+    let failed = |error: png::EncodingError| UnityError::Picture(error.to_string());
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgb);

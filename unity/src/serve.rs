@@ -66,7 +66,7 @@ pub fn run(options: &Options, journal: &mut Journal) -> Result<(), UnityError> {
     let runtime = runtime::Builder::new_current_thread()
         .enable_all()
         .build()
-        .map_err(|source| UnityError::Network { source })?;
+        .map_err(UnityError::Network)?;
     let ended = runtime.block_on(serve(&mut session, options, journal, recordings.as_mut()));
     // However it ended: the episode under way is kept, too.
     session.end_recording();
@@ -156,9 +156,7 @@ async fn serve(
         return Ok(());
     };
     let Some(said) = who.rl_initialization_input else {
-        return Err(UnityError::Incomplete {
-            missing: "an rl_initialization_input",
-        });
+        return Err(UnityError::Incomplete("an rl_initialization_input"));
     };
     journal.note(&format!(
         "a client at {}: package {:?}, protocol {:?}",
@@ -187,7 +185,7 @@ async fn serve(
             Ok(None) => return Ok(()),
             Ok(Some(input)) => match input.rl_input {
                 Some(command) => session.answer(&command),
-                None => Err(UnityError::Incomplete { missing: "an rl_input" }),
+                None => Err(UnityError::Incomplete("an rl_input")),
             },
             Err(error) => Err(error),
         };
@@ -214,9 +212,7 @@ fn input(reply: Reply, journal: &mut Journal) -> Result<Option<UnityInputProto>,
     };
     match message.header {
         Some(HeaderProto { status: WELL, .. }) => {
-            let missing = UnityError::Incomplete {
-                missing: "a unity_input",
-            };
+            let missing = UnityError::Incomplete("a unity_input");
             message.unity_input.map(Some).ok_or(missing)
         }
         Some(HeaderProto { status: END, .. }) => Ok(None),
@@ -224,7 +220,7 @@ fn input(reply: Reply, journal: &mut Journal) -> Result<Option<UnityInputProto>,
             status,
             text: message.chars().take(200).collect(),
         }),
-        None => Err(UnityError::Incomplete { missing: "a header" }),
+        None => Err(UnityError::Incomplete("a header")),
     }
 }
 
@@ -233,8 +229,7 @@ fn fitting(output: UnityOutputProto) -> Result<UnityMessageProto, UnityError> {
     let message = message(output);
     let found = message.encoded_len();
     if found > MAX_OUTGOING_BYTES {
-        let limit = MAX_OUTGOING_BYTES;
-        return Err(UnityError::TooLarge { found, limit });
+        return Err(UnityError::TooLarge(found));
     }
     Ok(message)
 }

@@ -35,29 +35,21 @@ fn errors() -> Vec<UnityError> {
                 expected: "the first line of a file of recordings".to_owned(),
             },
         },
-        UnityError::Network {
-            source: io::Error::new(io::ErrorKind::QuotaExceeded, "too many open files"),
-        },
+        UnityError::Network(io::Error::new(io::ErrorKind::QuotaExceeded, "too many open files")),
         document.expect_err("steps are counted from 0").into(),
         UnityError::NoClient {
             address: address(),
             seconds: 60.0,
         },
-        UnityError::NoAddress {
-            address: "not a machine:5005".to_owned(),
-        },
+        UnityError::NoAddress("not a machine:5005".to_owned()),
         UnityError::NotAClient {
             address: address(),
             reason: "silence for 60 s".to_owned(),
         },
-        UnityError::ClientVersion {
-            found: "2.0.0".to_owned(),
-        },
-        UnityError::Unreadable {
-            reason: "invalid varint".to_owned(),
-        },
-        UnityError::Incomplete { missing: "a header" },
-        UnityError::UnknownCommand { found: 7 },
+        UnityError::ClientVersion("2.0.0".to_owned()),
+        UnityError::Unreadable("invalid varint".to_owned()),
+        UnityError::Incomplete("a header"),
+        UnityError::UnknownCommand(7),
         UnityError::ClientFailed {
             status: 500,
             text: "two\nlines".to_owned(),
@@ -75,13 +67,8 @@ fn errors() -> Vec<UnityError> {
             path: "town.assets".into(),
             source: EnvError::NoSuchAction { found: 7, last: 6 },
         },
-        UnityError::TooLarge {
-            found: 9_437_482,
-            limit: 4_194_304,
-        },
-        UnityError::Picture {
-            reason: "out of memory".to_owned(),
-        },
+        UnityError::TooLarge(9_437_482),
+        UnityError::Picture("out of memory".to_owned()),
         EnvError::NoSuchAction { found: 7, last: 6 }.into(),
     ]
 }

@@ -192,7 +192,7 @@ impl Session {
     /// cannot be understood are answered, or remarked.
     pub fn answer(&mut self, input: &UnityRlInputProto) -> Result<Turn, UnityError> {
         let Ok(command) = CommandProto::try_from(input.command) else {
-            return Err(UnityError::UnknownCommand { found: input.command });
+            return Err(UnityError::UnknownCommand(input.command));
         };
         let messages = self.take_settings(&input.side_channel);
         if command == CommandProto::Reset {
@@ -344,9 +344,9 @@ impl Session {
             || world.step_limit().is_some()
             || !world.rules.success.is_empty()
             || !world.rules.failure.is_empty();
-        let (found, limit) = (2 * agent.encoded_len() + ENVELOPE, MAX_OUTGOING_BYTES);
-        if self.pictures == PictureForm::Floats && can_end && found > limit {
-            return Err(UnityError::TooLarge { found, limit });
+        let found = 2 * agent.encoded_len() + ENVELOPE;
+        if self.pictures == PictureForm::Floats && can_end && found > MAX_OUTGOING_BYTES {
+            return Err(UnityError::TooLarge(found));
         }
         Ok(())
     }
