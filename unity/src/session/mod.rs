@@ -111,23 +111,17 @@ pub struct Session {
 impl Session {
     /// A session whose world is at its start. `clock` tells the time in ISO 8601, for messages.
     pub fn new(setup: Setup, screenshots: Screenshots, clock: impl Fn() -> String + 'static) -> Self {
-        let Setup {
-            world,
-            maps,
-            catalogue,
-            pictures,
-        } = setup;
         // A world that was written down while it ran is taken back to its start: clients begin episodes.
-        let start = Environment::new(world).world().clone().with_maps(&maps);
+        let start = Environment::new(setup.world).world().clone().with_maps(&setup.maps);
         let mut session = Self {
-            environment: Environment::with_catalogue(start.clone(), catalogue),
+            environment: Environment::with_catalogue(start.clone(), setup.catalogue),
             album: None,
-            channels: Channels::new(&start).with_maps(maps.clone()),
+            channels: Channels::new(&start).with_maps(setup.maps.clone()),
             start,
-            maps,
+            maps: setup.maps,
             parameters: Parameters::default(),
             client: Client::default(),
-            pictures,
+            pictures: setup.pictures,
             screenshots,
             clock: Box::new(clock),
             episodes: 0,
@@ -305,32 +299,29 @@ impl Session {
 
     /// Carries out an action; an episode that it ends is followed by the start of the next one, as Unity has it.
     fn step(&mut self, action: Action) -> Result<Vec<AgentInfoProto>, UnityError> {
+        let mut agent;
         if let Some(album) = &mut self.album {
             let is_over = !album.turn();
-            let mut agent = self.decision(0.0, 0)?;
-            if !is_over {
-                return Ok(vec![agent]);
+            agent = self.decision(0.0, 0)?;
+            (agent.done, agent.max_step_reached) = (is_over, is_over);
+        } else {
+            let step = self.environment.step(action)?;
+            if let Some(recorder) = &mut self.recorder {
+                recorder.step(action);
             }
-            (agent.done, agent.max_step_reached) = (true, true);
-            self.restart();
-            self.episodes += 1;
-            return Ok(vec![agent, self.decision(0.0, 0)?]);
+            let time = (self.clock)();
+            for message in self.channels.after_step(&self.environment, &step, &time) {
+                self.send(&message);
+            }
+            agent = self.decision(step.reward, collected(&step))?;
+            (agent.done, agent.max_step_reached) = (step.ended(), step.truncated);
+            if agent.done {
+                self.keep_recording(step.ended_by);
+            }
         }
-        let step = self.environment.step(action)?;
-        if let Some(recorder) = &mut self.recorder {
-            recorder.step(action);
-        }
-        let time = (self.clock)();
-        for message in self.channels.after_step(&self.environment, &step, &time) {
-            self.send(&message);
-        }
-        let mut agent = self.decision(step.reward, collected(&step))?;
-        if !step.ended() {
+        if !agent.done {
             return Ok(vec![agent]);
         }
-        agent.done = true;
-        agent.max_step_reached = step.truncated;
-        self.keep_recording(step.ended_by);
         self.restart();
         self.episodes += 1;
         Ok(vec![agent, self.decision(0.0, 0)?])
