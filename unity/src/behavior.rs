@@ -18,9 +18,9 @@ const ROW: &str = "a row of the world's table of actions";
 /// The behaviour as a client understands it: three continuous numbers, or one discrete, the row of the world's table.
 pub(crate) fn behavior(agent: &AgentParams, client: Client) -> BrainParametersProto {
     let num_rows = agent.num_actions().map(|rows| rows as i32);
-    let words: Vec<String> = match num_rows {
-        Some(_) => vec![ROW.to_owned()],
-        None => words(agent).map(str::to_owned).to_vec(),
+    let (words, kind) = match num_rows {
+        Some(_) => (vec![ROW.to_owned()], SpaceTypeProto::Discrete),
+        None => (words(agent).map(str::to_owned).to_vec(), SpaceTypeProto::Continuous),
     };
     let action_spec = client.hybrid_actions.then(|| ActionSpecProto {
         num_continuous_actions: if num_rows.is_some() { 0 } else { ACTION_LENGTH as i32 },
@@ -28,10 +28,6 @@ pub(crate) fn behavior(agent: &AgentParams, client: Client) -> BrainParametersPr
         discrete_branch_sizes: num_rows.into_iter().collect(),
         action_descriptions: words.clone(),
     });
-    let kind = match num_rows {
-        Some(_) => SpaceTypeProto::Discrete,
-        None => SpaceTypeProto::Continuous,
-    };
     BrainParametersProto {
         vector_action_size: vec![num_rows.unwrap_or(ACTION_LENGTH as i32)],
         vector_action_descriptions: words,

@@ -36,28 +36,27 @@ impl Screenshots {
         let relative = inside(name)?;
         let path = self.folder.join(&relative);
         let failed = |error: std::io::Error| format!("{}: {error}", path.shown());
+        let refused = |found: &str, expected: &str| {
+            Err(format!(
+                "payload/filename: found {name:?}, which {found}, expected {expected}"
+            ))
+        };
         let mut folder = self.folder.clone();
         fs::create_dir_all(&folder).map_err(failed)?;
         for part in relative.parent().into_iter().flat_map(Path::components) {
             folder.push(part);
             if folder.symlink_metadata().is_ok_and(|found| found.is_symlink()) {
-                return Err(format!(
-                    "payload/filename: found {name:?}, which leads through a link, expected a plain folder"
-                ));
+                return refused("leads through a link", "a plain folder");
             }
             if !folder.is_dir() {
                 fs::create_dir(&folder).map_err(failed)?;
             }
         }
         if path.symlink_metadata().is_ok_and(|found| found.is_dir()) {
-            return Err(format!(
-                "payload/filename: found {name:?}, which is a folder, expected a name for a file"
-            ));
+            return refused("is a folder", "a name for a file");
         }
         if path.is_file() && !path.is_symlink() && !is_png(&path) {
-            return Err(format!(
-                "payload/filename: found {name:?}, which is a file but no picture, expected another name"
-            ));
+            return refused("is a file but no picture", "another name");
         }
         let mut file = AtomicFile::create_in_place_of_links(&path).map_err(failed)?;
         file.write_all(png).map_err(failed)?;

@@ -40,10 +40,10 @@ const FAREWELL: Duration = Duration::from_millis(500);
 /// [`UnityError`] for files that cannot be used, without a client, and for a client that breaks the protocol, which is told so
 /// before. A client that ends or goes away is no error.
 pub fn run(options: &Options, journal: &mut Journal) -> Result<(), UnityError> {
-    let maps = options
-        .maps
-        .as_deref()
-        .map_or_else(|| Ok(MapLibrary::default()), maps)?;
+    let maps = match &options.maps {
+        Some(path) => MapLibrary::from_json(&path.display().to_string(), &read("--maps", path)?)?,
+        None => MapLibrary::default(),
+    };
     let setup = Setup {
         world: match &options.world {
             Some(path) => world(path, &maps, journal)?,
@@ -112,13 +112,6 @@ fn world(path: &Path, maps: &MapLibrary, journal: &mut Journal) -> Result<World,
 #[derive(Deserialize)]
 struct Ours {
     version: Option<IgnoredAny>,
-}
-
-fn maps(path: &Path) -> Result<MapLibrary, UnityError> {
-    Ok(MapLibrary::from_json(
-        &path.display().to_string(),
-        &read("--maps", path)?,
-    )?)
 }
 
 /// The built-in models with those of libraries in front.
