@@ -99,20 +99,18 @@ impl Plan {
         sources: &mut Sources,
         undrawable: Undrawable,
     ) -> Result<Self, CurriculumError> {
-        let mut plan = Self {
-            scenario: scenario.clone(),
-            regimes: Vec::new(),
-            fingerprints: BTreeMap::new(),
-            notes: BTreeMap::new(),
-            undrawable,
-            tasks: BTreeMap::new(),
-            lanes: 1,
-        };
         let mut finder = Finder {
+            plan: Self {
+                scenario: scenario.clone(),
+                regimes: Vec::new(),
+                fingerprints: BTreeMap::new(),
+                notes: BTreeMap::new(),
+                undrawable,
+                tasks: BTreeMap::new(),
+                lanes: 1,
+            },
             sources,
-            tasks: BTreeMap::new(),
             worlds: BTreeMap::new(),
-            notes: BTreeMap::new(),
         };
         let mut log_names = LogNames::default();
         // For each variant and seed, the regimes in which it was learned.
@@ -128,22 +126,21 @@ impl Plan {
                     learned
                 };
                 let place = (first, shuffle.clone());
-                let mut planned = plan.planned(&mut finder, (b, block), (r, regime), place, before)?;
+                let mut planned = finder.planned((b, block), (r, regime), place, before)?;
                 first += u64::from(planned.count);
                 log_names.claim(regime, &planned.log_name)?;
                 if planned.kind == BlockKind::Learning {
-                    learned = Some(plan.regimes.len());
+                    learned = Some(finder.plan.regimes.len());
                     let [begins, _] = planned.ends();
                     let rounds = rounds.entry((begins, planned.seed)).or_insert(0);
                     planned.learned_before = *rounds;
                     *rounds += 1;
                 }
-                plan.regimes.push(planned);
+                finder.plan.regimes.push(planned);
             }
         }
-        plan.put_labels();
-        (plan.tasks, plan.notes) = (finder.tasks, finder.notes);
-        Ok(plan)
+        finder.plan.put_labels();
+        Ok(finder.plan)
     }
 
     /// Notes something else that its lifetime depends on, such as the bytes of an agent's script: a log is taken up again only if
@@ -318,52 +315,6 @@ impl Plan {
         other.map_or(self.num_experiences(), |planned| planned.first)
     }
 
-    fn planned(
-        &mut self,
-        finder: &mut Finder,
-        (b, block): (usize, &Block),
-        (r, regime): (usize, &Regime),
-        (first, shuffle): (u64, Option<Arc<Shuffle>>),
-        learned: Option<usize>,
-    ) -> Result<Planned, CurriculumError> {
-        let source = finder.source(b, r, regime)?;
-        let (id, log_name) = match &source {
-            Source::Variant(variant) => (variant.id(), log_name(variant.task().name(), variant.name())),
-            Source::Drift { from, to, .. } => {
-                let task = from.task().name();
-                let end = end_name(from.task().name(), to);
-                let id = format!("{}..{end}", from.id());
-                (id, log_name(task, &format!("{}to{end}", from.name())))
-            }
-            Source::World { .. } => {
-                let name = regime.variant_name();
-                (format!("{}#{name}", regime.task), log_name(&regime.task, name))
-            }
-        };
-        let planned = Planned {
-            block: b,
-            regime: r,
-            kind: block.kind,
-            phase: block.phase,
-            id,
-            log_name,
-            first,
-            shuffle,
-            count: regime.count,
-            steps: regime.steps,
-            seed: regime.seed,
-            first_index: regime.first_index,
-            max_steps: regime.max_steps,
-            source,
-            learned_before: 0,
-            run_seed: 0,
-            learned,
-            labels: None,
-        };
-        self.fingerprint(&planned)?;
-        Ok(planned)
-    }
-
     /// Takes down what a regime's worlds are made from.
     fn fingerprint(&mut self, planned: &Planned) -> Result<(), CurriculumError> {
         let undrawable = self.undrawable;
@@ -425,15 +376,60 @@ fn block_key(seed: u64, block: usize) -> u64 {
     seed.wrapping_add((block as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15))
 }
 
-/// Finds tasks and worlds, each once.
+/// Finds what a plan names, each task and world once.
 struct Finder<'a, 'b> {
+    /// As far as it was found.
+    plan: Plan,
     sources: &'a mut Sources<'b>,
-    tasks: BTreeMap<String, Arc<TaskSpec>>,
     worlds: BTreeMap<String, Arc<World>>,
-    notes: BTreeMap<String, String>,
 }
 
 impl Finder<'_, '_> {
+    fn planned(
+        &mut self,
+        (b, block): (usize, &Block),
+        (r, regime): (usize, &Regime),
+        (first, shuffle): (u64, Option<Arc<Shuffle>>),
+        learned: Option<usize>,
+    ) -> Result<Planned, CurriculumError> {
+        let source = self.source(b, r, regime)?;
+        let (id, log_name) = match &source {
+            Source::Variant(variant) => (variant.id(), log_name(variant.task().name(), variant.name())),
+            Source::Drift { from, to, .. } => {
+                let task = from.task().name();
+                let end = end_name(from.task().name(), to);
+                let id = format!("{}..{end}", from.id());
+                (id, log_name(task, &format!("{}to{end}", from.name())))
+            }
+            Source::World { .. } => {
+                let name = regime.variant_name();
+                (format!("{}#{name}", regime.task), log_name(&regime.task, name))
+            }
+        };
+        let planned = Planned {
+            block: b,
+            regime: r,
+            kind: block.kind,
+            phase: block.phase,
+            id,
+            log_name,
+            first,
+            shuffle,
+            count: regime.count,
+            steps: regime.steps,
+            seed: regime.seed,
+            first_index: regime.first_index,
+            max_steps: regime.max_steps,
+            source,
+            learned_before: 0,
+            run_seed: 0,
+            learned,
+            labels: None,
+        };
+        self.plan.fingerprint(&planned)?;
+        Ok(planned)
+    }
+
     fn source(&mut self, block: usize, regime_number: usize, regime: &Regime) -> Result<Source, CurriculumError> {
         if let Some(path) = &regime.world {
             if !self.worlds.contains_key(path) {
@@ -443,7 +439,7 @@ impl Finder<'_, '_> {
                     reason,
                 })?;
                 self.worlds.insert(path.clone(), Arc::new(found.world));
-                self.notes.extend(found.note.map(|note| (path.clone(), note)));
+                self.plan.notes.extend(found.note.map(|note| (path.clone(), note)));
             }
             return Ok(Source::World {
                 world: Arc::clone(&self.worlds[path]),
@@ -459,12 +455,12 @@ impl Finder<'_, '_> {
         };
         let end = regime.drift.as_ref().map_or(&regime.variant, |drift| &drift.to);
         for (name, variant) in [(regime.task.as_str(), &regime.variant), (regime.end_task(), end)] {
-            if !self.tasks.contains_key(name) {
+            if !self.plan.tasks.contains_key(name) {
                 let task = (self.sources.task)(name).map_err(|reason| unknown(variant, reason))?;
-                self.tasks.insert(name.to_owned(), task);
+                self.plan.tasks.insert(name.to_owned(), task);
             }
         }
-        let (task, end_task) = (&self.tasks[&regime.task], &self.tasks[regime.end_task()]);
+        let (task, end_task) = (&self.plan.tasks[&regime.task], &self.plan.tasks[regime.end_task()]);
         let from = regime
             .resolve(task)
             .map_err(|error| unknown(&regime.variant, error.to_string()))?;
