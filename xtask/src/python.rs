@@ -29,14 +29,7 @@ pub(crate) struct Environment {
 
 /// The interpreter that `DRIFTWORLD_PYTHON` names, else the first of the usual names, of such a version and with venv and pip.
 pub(crate) fn interpreter(version: &str) -> Option<PathBuf> {
-    let usual = [
-        "python3",
-        "python",
-        "python3.13",
-        "python3.12",
-        "python3.11",
-        "python3.10",
-    ];
+    let usual = "python3 python python3.13 python3.12 python3.11 python3.10".split(' ');
     let names = env::var_os("DRIFTWORLD_PYTHON")
         .into_iter()
         .chain(usual.map(Into::into));
@@ -70,7 +63,7 @@ impl Environment {
             run(make)?;
         }
         for list in lists {
-            environment.pip(workspace, &["install", "--quiet", "--requirement", list])?;
+            environment.pip(workspace, "install --quiet --requirement", &[list])?;
         }
         Ok(environment)
     }
@@ -82,10 +75,10 @@ impl Environment {
         command
     }
 
-    /// Runs its pip in the root.
-    pub(crate) fn pip(&self, workspace: &Workspace, arguments: &[&str]) -> Result {
+    /// Runs its pip in the root, with words and behind them what may have blanks in it.
+    pub(crate) fn pip(&self, workspace: &Workspace, words: &str, rest: &[&str]) -> Result {
         let mut pip = self.python(workspace, &["-m", "pip", "--disable-pip-version-check"]);
-        pip.args(arguments);
+        pip.args(words.split(' ')).args(rest);
         run(pip)
     }
 
@@ -95,19 +88,9 @@ impl Environment {
         let builder = Self::with(workspace, &interpreter(ANY).ok_or(NO_INTERPRETER)?, "newcomer", &[])?;
         let wheels = workspace.target.join("python/wheels");
         let wheels = wheels.to_str().ok_or("the build folder's path is not UTF-8")?;
-        builder.pip(
-            workspace,
-            &["wheel", "--quiet", "--no-deps", "./python", "--wheel-dir", wheels],
-        )?;
-        let found = [
-            "install",
-            "--quiet",
-            "--no-deps",
-            "--force-reinstall",
-            "--no-index",
-            "--find-links",
-        ];
-        self.pip(workspace, &[&found[..], &[wheels, "driftworld"]].concat())
+        builder.pip(workspace, "wheel --quiet --no-deps ./python --wheel-dir", &[wheels])?;
+        let anew = "install --quiet --no-deps --force-reinstall --no-index --find-links";
+        self.pip(workspace, anew, &[wheels, "driftworld"])
     }
 
     /// Runs tests of the package on the installed wheel, without a display.
@@ -131,7 +114,7 @@ pub(crate) fn wheel(workspace: &Workspace) -> Result<Outcome> {
         fs::remove_dir_all(&folder).map_err(about(&folder))?;
     }
     let newcomer = Environment::with(workspace, &interpreter, "newcomer", &[])?;
-    newcomer.pip(workspace, &["install", "--quiet", "./python"])?;
+    newcomer.pip(workspace, "install --quiet ./python", &[])?;
     let mut first_steps = newcomer.python(workspace, &["-W", "error"]);
     first_steps.arg(workspace.root.join("python/tests/newcomer.py"));
     // From a folder outside the checkout's packages: what runs is what was installed.
@@ -167,15 +150,8 @@ pub(crate) fn package(workspace: &Workspace) -> Result<Outcome> {
     // A file on each core; not so the learners' tests, which start processes of their own.
     let cores = ["--numprocesses", "auto", "--dist", "loadfile", "-m", "not learners"];
     tests.pytest(workspace, &cores)?;
-    tests.pip(
-        workspace,
-        &[
-            "install",
-            "--quiet",
-            "--requirement",
-            "python/tests/requirements-oldest.txt",
-        ],
-    )?;
+    let oldest = ["python/tests/requirements-oldest.txt"];
+    tests.pip(workspace, "install --quiet --requirement", &oldest)?;
     tests.pytest(workspace, &[&cores, &ANY_GYMNASIUM[..]].concat())?;
     Ok(Outcome::Passed("with the newest and the oldest Gymnasium".into()))
 }

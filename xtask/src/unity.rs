@@ -20,7 +20,7 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
         Ok(environment) => environment,
         Err(reason) => return missing("UNITY_CLIENTS", reason),
     };
-    environment.pip(workspace, &["uninstall", "--quiet", "--yes", "driftworld"])?;
+    environment.pip(workspace, "uninstall --quiet --yes driftworld", &[])?;
     run(workspace.cargo(&["build", "--release", "-p", "driftworld-unity"]))?;
     let executable = workspace.target.join("release/driftworld-unity");
     for client in CLIENTS {
@@ -48,20 +48,11 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
 /// Installs a client. Some run where their own lists of needs say that they do not: their packages are installed without these.
 fn install(workspace: &Workspace, environment: &Environment, client: &str) -> Result {
     let list = |kind: &str| format!("unity/tests/clients/{kind}-{client}.txt");
-    environment.pip(
-        workspace,
-        &["install", "--quiet", "--requirement", &list("requirements")],
-    )?;
+    environment.pip(workspace, "install --quiet --requirement", &[&list("requirements")])?;
     let unwilling = list("without-dependencies");
     if workspace.root.join(&unwilling).exists() {
-        let options = [
-            "install",
-            "--quiet",
-            "--no-deps",
-            "--ignore-requires-python",
-            "--requirement",
-        ];
-        environment.pip(workspace, &[&options[..], &[&unwilling]].concat())?;
+        let alone = "install --quiet --no-deps --ignore-requires-python --requirement";
+        environment.pip(workspace, alone, &[&unwilling])?;
     }
     Ok(())
 }
