@@ -239,12 +239,13 @@ fn taken(all: &[Said], overrides: &str, shown: Option<&str>) -> Result<String> {
         }
         world
     };
-    let given = overrides.given();
+    let given = json!(overrides);
+    let is_given = |option: &str| !given[option].is_null();
     let found = OPTIONS
         .iter()
-        .filter_map(|option| option.taken(all, given.contains(&option.name), &laid));
+        .filter_map(|option| option.taken(all, is_given(option.name), &laid));
     let mut found: Vec<Json> = found.collect();
-    if (given.contains(&"modalities") || shown.is_some()) && !found.iter().any(|each| each["option"] == "modalities") {
+    if (is_given("modalities") || shown.is_some()) && !found.iter().any(|each| each["option"] == "modalities") {
         found.extend(hidden(all, &laid));
     }
     Ok(Json::from(found).to_string())

@@ -4,11 +4,11 @@ use driftworld_spec::{
     ActionModel, ActionSpace, AgentParams, Modality, Resolved, SpecError, StateFeature, Value, Variant, World,
     WorldDraft,
 };
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value as Json, json};
 
 /// Options that stand in place of what worlds say; what is `None` stays as it is.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(crate) struct WorldOverrides {
     modalities: Option<Vec<Modality>>,
@@ -52,24 +52,6 @@ impl WorldOverrides {
         if let Some(max_steps) = self.max_steps {
             world.limit_steps(max_steps);
         }
-    }
-
-    /// The names of the options that stand in place of what every world says.
-    pub(crate) fn given(&self) -> Vec<&'static str> {
-        let given = [
-            ("modalities", self.modalities.is_some()),
-            ("size", self.size.is_some()),
-            ("actions", self.actions.is_some()),
-            ("interact", self.interact.is_some()),
-            ("frame_skip", self.frame_skip.is_some()),
-            ("supersampling", self.supersampling.is_some()),
-            ("max_steps", self.max_steps.is_some()),
-        ];
-        given
-            .into_iter()
-            .filter(|(_, is_given)| *is_given)
-            .map(|(name, _)| name)
-            .collect()
     }
 
     /// Whether there are none.
