@@ -6,10 +6,11 @@ use std::sync::{Mutex, PoisonError};
 use driftworld::lifetime_report::{ReportRequest, write_report};
 use driftworld::scales::ScalesFile;
 use driftworld::scoring::{Scores, ScoringChoice, ScoringRequest, ScoringSettings, score};
-use driftworld_metrics::{Anchors, BootstrapOptions, DataRanges, Noise, Scales};
+use driftworld_metrics::{BootstrapOptions, DataRanges, Noise, Scales};
 use driftworld_report::{Figure, FigureOptions};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
 use crate::document::{json_to_py, to_py};
@@ -147,41 +148,42 @@ fn scoring(logs: Vec<PathBuf>, options: &Options<'_>) -> Result<ScoringRequest> 
 
 /// The ranges of tasks: a dictionary for each, by names that are lower-cased as in the metrics.
 fn data_ranges(options: &Options<'_>) -> Result<Option<DataRanges>> {
-    let Some(value) = options.json("data_range")? else {
-        return Ok(None);
-    };
     let expected = r#"a range for each task, such as {"find_red": {"min": 0, "max": 10}}"#;
-    let Value::Object(tasks) = value else {
-        return Err(options.wrong("data_range", value, expected));
-    };
-    let mut ranges = DataRanges::new();
-    for (task, range) in tasks {
-        let range = serde_json::from_value(range)
-            .map_err(|error| options.refuse(format!("data_range, {task:?}: {error}; expected {expected}")))?;
-        ranges.insert(task.to_lowercase(), range);
-    }
-    Ok(Some(ranges))
+    let given = options.json("data_range")?;
+    given
+        .map(|tasks| by_task(options, "data_range", tasks, expected))
+        .transpose()
 }
 
 /// Floors and ceilings of tasks: the path of a file, or a dictionary for each, by names that are lower-cased.
 fn scales(options: &Options<'_>) -> Result<Option<Scales>> {
     let expected = r#"a file, or floor and ceiling for each task, such as {"find_red": {"floor": 0, "ceiling": 10}}"#;
-    let tasks = match options.json("scales")? {
-        None => return Ok(None),
+    match options.json("scales")? {
+        None => Ok(None),
         Some(Value::String(path)) => {
             let read = ScalesFile::read(path.as_ref()).map_err(|failure| refused(REFUSED, &failure))?;
-            return Ok(Some(read.anchors()));
+            Ok(Some(read.anchors()))
         }
-        Some(Value::Object(tasks)) => tasks,
-        Some(other) => return Err(options.wrong("scales", other, expected)),
-    };
-    let mut scales = Scales::new();
-    for (task, anchors) in tasks {
-        let anchors: Anchors = serde_json::from_value(anchors)
-            .map_err(|error| options.refuse(format!("scales, {task:?}: {error}; expected {expected}")))?;
-        scales.insert(task.to_lowercase(), anchors);
+        Some(tasks) => by_task(options, "scales", tasks, expected).map(Some),
     }
-    Ok(Some(scales))
+}
+
+/// A value for each task, by its lower-cased name.
+fn by_task<T: DeserializeOwned, M: FromIterator<(String, T)>>(
+    options: &Options<'_>,
+    option: &str,
+    tasks: Value,
+    expected: &str,
+) -> Result<M> {
+    let Value::Object(tasks) = tasks else {
+        return Err(options.wrong(option, tasks, expected));
+    };
+    let read = |(task, value): (String, Value)| {
+        let read = serde_json::from_value(value);
+        let read = read.map_err(|error| options.refuse(format!("{option}, {task:?}: {error}; expected {expected}")))?;
+        Ok((task.to_lowercase(), read))
+    };
+    tasks.into_iter().map(read).collect()
 }
 
 fn noise(options: &Options<'_>) -> Result<Option<Noise>> {
