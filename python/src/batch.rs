@@ -21,7 +21,7 @@ use crate::errors::{Error, Result};
 use crate::interruptible::run_between_envs;
 use crate::recordings::PyRecording;
 use crate::rounding::{detach, usually_rounded};
-use crate::supply::{PyStream, Stream, Supply, overrides_of};
+use crate::supply::{Origin, PyStream, Stream, Supply, overrides_of};
 use crate::views::views;
 
 /// Environments that step together.
@@ -271,9 +271,8 @@ impl PyBatch {
     }
 
     /// Task, variant, seed, index and hash of the world that an environment is in.
-    fn origin(&self, env: usize) -> Result<(String, String, u64, u64, String)> {
-        let origin = self.supply(env)?.origin();
-        Ok((origin.task, origin.variant, origin.seed, origin.index, origin.hash))
+    fn origin(&self, env: usize) -> Result<Origin> {
+        Ok(self.supply(env)?.origin())
     }
 
     /// What happened in an environment in the last step.

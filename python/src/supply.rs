@@ -1,5 +1,6 @@
 //! [`Supply`]: where one environment's worlds come from, episode after episode. What is laid over them is in `overrides.rs`.
 
+use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use driftworld_generator::{Drift, GeneratorError, Sampler};
@@ -54,12 +55,8 @@ impl PyStream {
     #[staticmethod]
     fn variants(variants: Vec<Bound<'_, PyVariant>>) -> Result<Self> {
         let order = (0..).take(variants.len()).collect();
-        let turns = Turns {
-            order,
-            first: 0,
-            step: 1,
-        };
-        Ok(Self(Stream::of(&variants, turns)?))
+        let one = Stream::dealt(&variants, order, 1)?.pop();
+        Ok(Self(one.expect("there is one for one environment")))
     }
 
     /// The worlds of variants in the order that their places in `order` say, dealt out like cards, over and over: one stream for each
@@ -70,16 +67,9 @@ impl PyStream {
         order: PyReadonlyArray1<'_, u32>,
         num_envs: u32,
     ) -> Result<Vec<Self>> {
-        let order: Arc<[u32]> = order.as_array().iter().copied().collect();
-        let turns = Turns {
-            order,
-            first: 0,
-            step: num_envs.into(),
-        };
-        let all = Stream::of(&variants, turns)?;
-        Ok((0..num_envs)
-            .map(|env| Self(all.clone().beginning(env.into())))
-            .collect())
+        let order = order.as_array().iter().copied().collect();
+        let dealt = Stream::dealt(&variants, order, num_envs)?;
+        Ok(dealt.into_iter().map(Self).collect())
     }
 
     /// The worlds on the way from one variant to another. `schedule` and `switch` are JSON, as in a scenario.
@@ -151,33 +141,29 @@ impl PyStream {
 }
 
 impl Stream {
-    /// The worlds of variants in turns.
-    fn of(variants: &[Bound<'_, PyVariant>], turns: Turns) -> PyResult<Self> {
+    /// The worlds of variants in an order, dealt out to so many environments.
+    fn dealt(variants: &[Bound<'_, PyVariant>], order: Arc<[u32]>, num_envs: u32) -> PyResult<Vec<Self>> {
         let wrong = |found: &str, expected: &str| {
             PyValueError::new_err(format!("variants: found {found}, expected {expected}"))
         };
-        if turns.order.is_empty() || turns.order.len() as u64 > u64::from(u32::MAX) {
-            return Err(wrong(
-                &turns.order.len().to_string(),
-                "at least one, and less than 2^32",
-            ));
+        if order.is_empty() || order.len() as u64 > u64::from(u32::MAX) {
+            return Err(wrong(&order.len().to_string(), "at least one, and less than 2^32"));
         }
-        if let Some(place) = turns.order.iter().find(|place| **place as usize >= variants.len()) {
-            return Err(wrong(
-                &format!("place {place} in the order"),
-                "less than there are variants",
-            ));
+        if let Some(place) = order.iter().find(|place| **place as usize >= variants.len()) {
+            let found = format!("place {place} in the order");
+            return Err(wrong(&found, "less than there are variants"));
         }
-        let variants = variants.iter().map(|variant| variant.get().0.clone()).collect();
-        Ok(Self::Variants { variants, turns })
-    }
-
-    /// The same turns from this one on.
-    fn beginning(mut self, first: u64) -> Self {
-        if let Self::Variants { turns, .. } = &mut self {
-            turns.first = first;
-        }
-        self
+        let variants: Arc<[Variant]> = variants.iter().map(|variant| variant.get().0.clone()).collect();
+        let turns = |env: u32| Turns {
+            order: Arc::clone(&order),
+            first: env.into(),
+            step: num_envs.into(),
+        };
+        let stream = |env: u32| Self::Variants {
+            variants: Arc::clone(&variants),
+            turns: turns(env),
+        };
+        Ok((0..num_envs).map(stream).collect())
     }
 }
 
@@ -190,16 +176,8 @@ pub(crate) fn overrides_of(text: &str) -> Result<WorldOverrides> {
     Ok(serde_json::from_str(text).map_err(|error| PyValueError::new_err(format!("options: {error}")))?)
 }
 
-/// Where a world came from.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Origin {
-    pub(crate) task: String,
-    pub(crate) variant: String,
-    pub(crate) seed: u64,
-    pub(crate) index: u64,
-    /// The hash of the world as it was drawn, before options were laid over it.
-    pub(crate) hash: String,
-}
+/// Where a world came from: task, variant, seed, index, and the hash of the world as it was drawn, before options were laid over it.
+pub(crate) type Origin = (String, String, u64, u64, String);
 
 /// Hands one environment its worlds.
 pub(crate) struct Supply {
@@ -209,8 +187,8 @@ pub(crate) struct Supply {
 
 struct State {
     stream: Stream,
-    /// A sampler for each variant of the stream, made when it is first needed.
-    samplers: Vec<Option<Sampler>>,
+    /// A sampler for each variant of the stream by its place, made when it is first needed.
+    samplers: BTreeMap<usize, Sampler>,
     seed: u64,
     /// Index of the next world.
     next: u64,
@@ -226,7 +204,7 @@ impl Supply {
         Self {
             overrides,
             state: Mutex::new(State {
-                samplers: no_samplers(&stream),
+                samplers: BTreeMap::new(),
                 stream,
                 seed: 0,
                 next: 0,
@@ -281,7 +259,7 @@ impl Supply {
     pub(crate) fn seed(&self, seed: u64, index: u64) {
         let mut state = self.lock();
         if state.seed != seed {
-            state.samplers.fill_with(|| None);
+            state.samplers.clear();
         }
         (state.seed, state.next, state.turn) = (seed, index, 0);
     }
@@ -294,7 +272,7 @@ impl Supply {
     /// Takes worlds from another stream from now on.
     pub(crate) fn stream(&self, stream: Stream) {
         let mut state = self.lock();
-        state.samplers = no_samplers(&stream);
+        state.samplers.clear();
         (state.stream, state.turn) = (stream, 0);
     }
 
@@ -316,52 +294,29 @@ impl Supply {
     }
 }
 
-fn no_samplers(stream: &Stream) -> Vec<Option<Sampler>> {
-    let length = if let Stream::Variants { variants, .. } = stream {
-        variants.len()
-    } else {
-        0
-    };
-    (0..length).map(|_| None).collect()
-}
-
 impl State {
     fn draw(&mut self) -> std::result::Result<(World, Origin), GeneratorError> {
         let (seed, index) = (self.seed, self.next);
-        let origin = |world: &World, task: &str, variant: String| Origin {
-            task: task.to_owned(),
-            variant,
-            seed,
-            index,
-            hash: world.hash(),
-        };
-        if let Some(world) = &self.given {
-            return Ok((world.clone(), origin(world, "given", "given".to_owned())));
-        }
-        let drawn = match &self.stream {
-            Stream::Variants { variants, turns } => {
+        let of = |variant: &Variant| (variant.task().name().to_owned(), variant.id());
+        let (world, (task, variant)) = match (&self.given, &self.stream) {
+            (Some(world), _) => (world.clone(), ("given".to_owned(), "given".to_owned())),
+            (None, Stream::Variants { variants, turns }) => {
                 let place = turns.place(self.turn);
                 let variant = &variants[place];
-                let sampler = self.samplers[place].get_or_insert_with(|| Sampler::new(variant, seed));
-                let world = sampler.world(index)?;
-                let origin = origin(&world, variant.task().name(), variant.id());
-                (world, origin)
+                let sampler = self.samplers.entry(place);
+                let sampler = sampler.or_insert_with(|| Sampler::new(variant, seed));
+                (sampler.world(index)?, of(variant))
             }
-            Stream::Drift { drift, episodes } => {
+            (None, Stream::Drift { drift, episodes }) => {
                 let progress = RegimeDrift::to("").progress(clamped(index), clamped(*episodes));
                 let progress = if *episodes == 1 { 1.0 } else { progress };
                 let variant = drift.at(progress, index)?;
-                let world = driftworld_generator::sample(&variant, seed, index)?;
-                let origin = origin(&world, variant.task().name(), variant.id());
-                (world, origin)
+                (driftworld_generator::sample(&variant, seed, index)?, of(&variant))
             }
-            Stream::World { world, name } => {
-                let world = World::clone(world);
-                let origin = origin(&world, name, name.clone());
-                (world, origin)
-            }
+            (None, Stream::World { world, name }) => (World::clone(world), (name.clone(), name.clone())),
         };
-        Ok(drawn)
+        let hash = world.hash();
+        Ok((world, (task, variant, seed, index, hash)))
     }
 }
 
