@@ -178,9 +178,8 @@ impl PyBatch {
 
     /// Steps of the episode that an environment is in, as the limit beside the worlds counts them.
     fn episode_steps(&self, env: usize) -> Result<u32> {
-        let num_envs = self.supplies.len();
         let steps = self.lock()?.batch.episode_steps(env);
-        steps.ok_or_else(|| EnvError::NoSuchEnv { found: env, num_envs }.into())
+        of_env(steps, env, self.supplies.len())
     }
 
     /// Counts on from so many.
@@ -395,9 +394,7 @@ impl PyBatch {
     }
 
     fn supply(&self, env: usize) -> Result<&Supply> {
-        let num_envs = self.supplies.len();
-        let supply = self.supplies.get(env).map(AsRef::as_ref);
-        supply.ok_or_else(|| EnvError::NoSuchEnv { found: env, num_envs }.into())
+        of_env(self.supplies.get(env).map(AsRef::as_ref), env, self.supplies.len())
     }
 
     /// Threads do not survive a fork: stepping there would wait for ever.
@@ -429,10 +426,13 @@ impl Stepping {
     }
 
     fn environment(&self, env: usize) -> Result<&driftworld_env::Environment> {
-        let num_envs = self.batch.num_envs();
-        let environment = self.batch.environment(env);
-        environment.ok_or_else(|| EnvError::NoSuchEnv { found: env, num_envs }.into())
+        of_env(self.batch.environment(env), env, self.batch.num_envs())
     }
+}
+
+/// What an environment has, if there is such an environment.
+fn of_env<T>(found: Option<T>, env: usize, num_envs: usize) -> Result<T> {
+    found.ok_or_else(|| EnvError::NoSuchEnv { found: env, num_envs }.into())
 }
 
 /// An event as a dictionary.
