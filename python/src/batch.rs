@@ -469,10 +469,13 @@ fn row_action(row: i64) -> Action {
 
 /// An error, as that of an action that is no row's number with the number that was found, where it is one.
 fn no_row(error: Error, row: impl Fn(usize) -> Option<i64>) -> Error {
-    let (inner, env) = match &error {
-        Error::Env(EnvError::BatchAction { env, error }) => (&**error, *env),
-        Error::Env(inner) => (inner, 0),
-        _ => return error,
+    let Error::Cause(cause) = &error else {
+        return error;
+    };
+    let (inner, env) = match cause.downcast_ref() {
+        Some(EnvError::BatchAction { env, error }) => (&**error, *env),
+        Some(inner) => (inner, 0),
+        None => return error,
     };
     let (EnvError::NoSuchAction { found: NO_ROW, last }, Some(row)) = (inner, row(env)) else {
         return error;

@@ -17,7 +17,7 @@ use serde_json::json;
 
 use crate::classes::catalogue;
 use crate::document::{Whole, json_to_py, to_py};
-use crate::errors::Result;
+use crate::errors::{Result, wrong};
 use crate::interruptible::{run_cancellable, run_detached};
 use crate::rounding::usually_rounded;
 use crate::variant::PyVariant;
@@ -80,19 +80,14 @@ fn sample(by: Option<&str>, worlds: Option<Whole>, most: u64, scale: &str, libra
         );
     }
     let catalogue = catalogue(libraries)?;
+    let by = by.map(|name| By::from_name(name).map_err(|said| wrong(format!("by: {said}"))));
     Ok(Sample {
-        by: named(by)?,
-        scale: Scale::from_name(scale).map_err(|said| PyValueError::new_err(format!("scale: {said}")))?,
+        by: by.transpose()?,
+        scale: Scale::from_name(scale).map_err(|said| wrong(format!("scale: {said}")))?,
         worlds,
         catalogue,
         ..Sample::default()
     })
-}
-
-/// What to compare by, by its name.
-fn named(by: Option<&str>) -> Result<Option<By>> {
-    let by = by.map(|name| By::from_name(name).map_err(|said| PyValueError::new_err(format!("by: {said}"))));
-    Ok(by.transpose()?)
 }
 
 impl Compared<'_> {
@@ -190,8 +185,7 @@ impl PyMatrix {
         let matrix = Arc::clone(&self.0);
         let map = run_detached(py, move || classical_map(&matrix))?;
         let flat: Vec<f64> = map.points.into_iter().flatten().collect();
-        let points = numpy::ndarray::Array2::from_shape_vec((flat.len() / 2, 2), flat)
-            .map_err(|error| PyValueError::new_err(error.to_string()))?;
+        let points = numpy::ndarray::Array2::from_shape_vec((flat.len() / 2, 2), flat).map_err(wrong)?;
         Ok((points.to_pyarray(py), map.explained))
     }
 

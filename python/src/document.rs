@@ -10,7 +10,7 @@ use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString};
 use serde_json::Value;
 
 use crate::classes::catalogue;
-use crate::errors::{Result, described};
+use crate::errors::{Error, Result, described, wrong};
 use crate::rounding::{detach, usually_rounded};
 
 /// A JSON value as Python has it.
@@ -40,15 +40,14 @@ pub(crate) fn json_to_py<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<
 
 /// Anything that serialises, as Python has it.
 pub(crate) fn to_py<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyResult<Bound<'py, PyAny>> {
-    let value = serde_json::to_value(value).map_err(|error| PyValueError::new_err(error.to_string()))?;
+    let value = serde_json::to_value(value).map_err(wrong)?;
     json_to_py(py, &value)
 }
 
 /// What a text of ours says: as Python's own reader has it, but read the same however the calling thread rounds.
 #[pyfunction]
 pub(crate) fn parsed<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyAny>> {
-    let value: Value =
-        usually_rounded(|| serde_json::from_str(text)).map_err(|error| PyValueError::new_err(error.to_string()))?;
+    let value: Value = usually_rounded(|| serde_json::from_str(text)).map_err(wrong)?;
     json_to_py(py, &value)
 }
 
@@ -122,18 +121,17 @@ pub(crate) fn check<'py>(
     let problems = PyList::empty(py);
     let mut error = None;
     if let Some(found) = checked.error {
-        let listed = found.problems().iter().map(|problem| described(py, problem));
-        for problem in listed.collect::<PyResult<Vec<_>>>()? {
-            problems.append(problem)?;
+        for problem in found.problems() {
+            problems.append(described(py, problem)?)?;
         }
-        let raised = PyErr::from(crate::errors::Error::from(found));
+        let raised = PyErr::from(Error::from(found));
         if problems.is_empty() {
             problems.append(alone(py, &raised)?)?;
         }
         error = Some(raised.into_value(py).into_any());
     }
     if let Some(found) = checked.same_log_name {
-        let raised = PyErr::from(crate::errors::Error::from(found));
+        let raised = PyErr::from(Error::from(found));
         problems.append(alone(py, &raised)?)?;
         error = Some(raised.into_value(py).into_any());
     }

@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 use crate::document::{Whole, from_python};
 use crate::errors::Result;
 use crate::rounding::usually_rounded;
+use crate::task::specs;
 use crate::variant::PyVariant;
 
 /// The way from one variant of a task to another: ``Drift(blue, dusk, schedule="cosine").at(0.25)``.
@@ -78,7 +79,7 @@ impl PyDrift {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Made)> {
-        let again = py.import("driftworld.specs")?.getattr("_drift_again")?;
+        let again = specs(py, "_drift_again")?;
         Ok((again, self.made.clone()))
     }
 

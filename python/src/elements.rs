@@ -29,17 +29,14 @@ pub(crate) fn elements<'py>(
     let Ok(between) = between else {
         return Err(options.refuse("between: found other than two variants, expected two".to_owned()));
     };
-    let modality = |word: String| -> std::result::Result<Modality, String> {
-        serde_json::from_value(word.into()).map_err(|error| error.to_string())
+    let modality = |word: String| -> Result<Modality> {
+        serde_json::from_value(word.into()).map_err(|error| options.refuse(format!("modalities: {error}")))
     };
     let words: Option<Vec<String>> = options.list("modalities", "a list of kinds of images, such as [\"rgb\"]")?;
-    let modalities: Option<std::result::Result<Vec<Modality>, String>> =
-        words.map(|words| words.into_iter().map(modality).collect());
+    let modalities: Option<Result<_>> = words.map(|words| words.into_iter().map(modality).collect());
     let request = ElementsRequest {
         between,
-        modalities: modalities
-            .transpose()
-            .map_err(|error| options.refuse(format!("modalities: {error}")))?,
+        modalities: modalities.transpose()?,
         worlds: options.whole("worlds")?.unwrap_or(usual.worlds),
         seed: options.whole("seed")?.unwrap_or(usual.seed),
         steps: options.whole("steps")?.unwrap_or(usual.steps),

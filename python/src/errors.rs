@@ -1,4 +1,6 @@
-//! Rust's errors as Python's: one `match` for each crate's. The classes themselves are in `driftworld/errors.py`.
+//! Rust's errors as Python's: each with the class that it is raised as. The classes themselves are in `driftworld/errors.py`.
+
+use std::sync::Arc;
 
 use driftworld::distances::DistancesError;
 use driftworld::documents::DocumentError;
@@ -14,17 +16,15 @@ use driftworld_text::printable_lines;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
+use serde_json::json;
 
-/// An error of one of the crates, on its way to Python.
+use crate::document::json_to_py;
+
+/// An error on its way to Python.
 #[derive(Debug)]
 pub(crate) enum Error {
-    Spec(SpecError),
-    Task(TaskError),
-    Generator(GeneratorError),
-    Similarity(SimilarityError),
-    Env(EnvError),
-    Metrics(MetricsError),
-    Curriculum(CurriculumError),
+    /// One of the crates'.
+    Cause(Cause),
     /// A scenario names a task whose document is wrong: what the scenario's error says, and what is wrong with the document.
     InScenario(CurriculumError, SpecError),
     /// An operation that has no result, raised as this class.
@@ -50,30 +50,28 @@ pub(crate) fn refused(class: &'static str, failure: &Failure) -> Error {
 pub(crate) type Result<T> = std::result::Result<T, Error>;
 
 macro_rules! from {
-    ($($variant:ident($source:ty)),* $(,)?) => {
+    ($($source:ty),* $(,)?) => {
         $(impl From<$source> for Error {
             fn from(source: $source) -> Self {
-                Self::$variant(source)
+                Self::Cause(Arc::new(source))
             }
         })*
     };
 }
 
 from!(
-    Spec(SpecError),
-    Generator(GeneratorError),
-    Similarity(SimilarityError),
-    Env(EnvError),
-    Metrics(MetricsError),
-    Python(PyErr),
+    SpecError,
+    TaskError,
+    GeneratorError,
+    SimilarityError,
+    EnvError,
+    MetricsError,
+    CurriculumError
 );
 
-impl From<CurriculumError> for Error {
-    fn from(source: CurriculumError) -> Self {
-        match source {
-            CurriculumError::Log(source) => Self::Metrics(source),
-            source => Self::Curriculum(source),
-        }
+impl From<PyErr> for Error {
+    fn from(error: PyErr) -> Self {
+        Self::Python(error)
     }
 }
 
@@ -84,33 +82,20 @@ impl From<Failure> for Error {
             Some(cause) if cause.is::<EnvError>() => "EnvError",
             Some(cause) if cause.is::<MetricsError>() => "MetricsError",
             Some(cause) if cause.is::<CurriculumError>() => "CurriculumError",
-            None if matches!(failure, Failure::Usage(_)) => {
-                return Self::Python(PyValueError::new_err(
-                    printable_lines(&failure.to_string()).into_owned(),
-                ));
-            }
+            None if matches!(failure, Failure::Usage(_)) => return value_error(&failure.to_string()),
             _ => "DriftworldError",
         };
         refused(class, &failure)
     }
 }
 
-impl From<TaskError> for Error {
-    fn from(source: TaskError) -> Self {
-        match source {
-            TaskError::Spec(source) => Self::Spec(source),
-            source => Self::Task(source),
-        }
-    }
-}
-
 impl From<DistancesError> for Error {
     fn from(source: DistancesError) -> Self {
         match source {
-            DistancesError::Generator(source) => Self::Generator(source),
-            DistancesError::Similarity(source) => Self::Similarity(source),
+            DistancesError::Generator(source) => source.into(),
+            DistancesError::Similarity(source) => source.into(),
             // The enum may grow; its message says all there is to say.
-            source => Self::Python(PyValueError::new_err(printable_lines(&source.to_string()).into_owned())),
+            source => value_error(&source.to_string()),
         }
     }
 }
@@ -125,92 +110,83 @@ impl Error {
     /// The exception for this error.
     fn raise(self, py: Python<'_>) -> PyResult<PyErr> {
         let details = PyDict::new(py);
-        let (class, source): (_, &(dyn std::error::Error + 'static)) = match &self {
-            // A name that stands for nothing, and no document that is wrong.
-            Self::Spec(source @ SpecError::UnknownVariant { .. }) => ("TaskError", source),
-            Self::Spec(source) => ("SpecError", source),
-            Self::Task(source) => ("TaskError", source),
-            Self::Generator(source) => {
+        let (class, text) = match self {
+            Self::Cause(cause) => {
                 // What is wrong with the variant on the way is what is wrong.
-                if let GeneratorError::Between(source) = source {
+                if let Some(GeneratorError::Between(source)) = cause.downcast_ref() {
                     of_spec(&details, source)?;
                 }
-                ("GeneratorError", source)
+                (describe(&details, &*cause)?, cause.to_string())
             }
-            Self::Similarity(source) => ("SimilarityError", source),
-            Self::Env(source) => {
-                if let EnvError::BadScript { line, .. } = source {
-                    details.set_item("line", line)?;
-                }
-                ("EnvError", source)
-            }
-            Self::Metrics(source) => ("MetricsError", source),
-            Self::Curriculum(source) => ("CurriculumError", source),
             Self::InScenario(source, because) => {
-                of_spec(&details, because)?;
-                ("CurriculumError", source)
+                of_spec(&details, &because)?;
+                (describe(&details, &source)?, source.to_string())
             }
             Self::Refused { class, text, cause } => {
                 if let Some(cause) = cause {
-                    describe(&details, &**cause)?;
+                    describe(&details, &*cause)?;
                 }
-                return exception(class, text, &details);
+                (class, text)
             }
-            Self::Python(source) => return Ok(source.clone_ref(py)),
+            Self::Python(source) => return Ok(source),
         };
-        describe(&details, source)?;
-        exception(class, &source.to_string(), &details)
+        let class = py.import("driftworld.errors")?.getattr(class)?;
+        // Python prints it as it is.
+        let text = printable_lines(&text);
+        Ok(PyErr::from_value(class.call((text,), Some(&details))?))
     }
 }
 
-/// An exception of one of the package's classes.
-fn exception(class: &str, text: &str, details: &Bound<'_, PyDict>) -> PyResult<PyErr> {
-    let class = details.py().import("driftworld.errors")?.getattr(class)?;
-    // Python prints it as it is.
-    let text = printable_lines(text);
-    Ok(PyErr::from_value(class.call((text,), Some(details))?))
+fn value_error(text: &str) -> Error {
+    Error::Python(PyValueError::new_err(printable_lines(text).into_owned()))
 }
 
-/// Adds what an error of one of the crates knows beside its text.
-fn describe(details: &Bound<'_, PyDict>, cause: &(dyn std::error::Error + 'static)) -> PyResult<()> {
-    let code = if let Some(source) = cause.downcast_ref::<SpecError>() {
-        return of_spec(details, source);
+/// The `ValueError` of what cannot be read.
+pub(crate) fn wrong(error: impl std::fmt::Display) -> PyErr {
+    PyValueError::new_err(error.to_string())
+}
+
+/// Adds what an error of one of the crates knows beside its text, and says as which class it is raised by itself.
+fn describe(details: &Bound<'_, PyDict>, cause: &(dyn std::error::Error + 'static)) -> PyResult<&'static str> {
+    let (class, code) = if let Some(source) = cause.downcast_ref::<SpecError>() {
+        of_spec(details, source)?;
+        // A name that stands for nothing, and no document that is wrong.
+        let is_name = matches!(source, SpecError::UnknownVariant { .. });
+        (if is_name { "TaskError" } else { "SpecError" }, source.code())
     } else if let Some(source) = cause.downcast_ref::<MetricsError>() {
-        return of_metrics(details, source);
-    } else if let Some(source) = cause.downcast_ref::<TaskError>() {
-        if let TaskError::Spec(source) = source {
-            return describe(details, source);
+        details.set_item("line", source.line())?;
+        if let MetricsError::Json { column, .. } = source {
+            details.set_item("column", column)?;
         }
-        of_task(source)
+        ("MetricsError", source.code())
+    } else if let Some(source) = cause.downcast_ref::<TaskError>() {
+        match source {
+            TaskError::Spec(source) => return describe(details, source),
+            TaskError::Unreadable { .. } => ("TaskError", "task/unreadable"),
+            TaskError::Document(_) => ("TaskError", "task/document"),
+            _ => ("TaskError", "task/unknown"),
+        }
     } else if let Some(source) = cause.downcast_ref::<CurriculumError>() {
         if let CurriculumError::Log(source) = source {
             return describe(details, source);
         }
-        source.code()
+        ("CurriculumError", source.code())
     } else if let Some(DocumentError::Spec(source)) = cause.downcast_ref::<DocumentError>() {
         return describe(details, source);
     } else if let Some(source) = cause.downcast_ref::<GeneratorError>() {
-        source.code()
+        ("GeneratorError", source.code())
     } else if let Some(source) = cause.downcast_ref::<SimilarityError>() {
-        source.code()
+        ("SimilarityError", source.code())
     } else if let Some(source) = cause.downcast_ref::<EnvError>() {
-        source.code()
+        ("EnvError", source.code())
     } else {
-        return Ok(());
+        return Ok("DriftworldError");
     };
-    details.set_item("code", code)
-}
-
-fn of_task(source: &TaskError) -> &'static str {
-    match source {
-        TaskError::Unreadable { .. } => "task/unreadable",
-        TaskError::Document(_) => "task/document",
-        _ => "task/unknown",
-    }
+    details.set_item("code", code)?;
+    Ok(class)
 }
 
 fn of_spec(details: &Bound<'_, PyDict>, source: &SpecError) -> PyResult<()> {
-    details.set_item("code", source.code())?;
     let py = details.py();
     let problems = source.problems().iter().map(|problem| described(py, problem));
     details.set_item("problems", PyList::new(py, problems.collect::<PyResult<Vec<_>>>()?)?)?;
@@ -221,26 +197,13 @@ fn of_spec(details: &Bound<'_, PyDict>, source: &SpecError) -> PyResult<()> {
     Ok(())
 }
 
-fn of_metrics(details: &Bound<'_, PyDict>, source: &MetricsError) -> PyResult<()> {
-    details.set_item("code", source.code())?;
-    details.set_item("line", source.line())?;
-    if let MetricsError::Json { column, .. } = source {
-        details.set_item("column", column)?;
-    }
-    Ok(())
-}
-
 /// A problem of a document as a dictionary.
-pub(crate) fn described<'py>(py: Python<'py>, problem: &Problem) -> PyResult<Bound<'py, PyDict>> {
-    let described = PyDict::new(py);
-    described.set_item("code", problem.code)?;
-    described.set_item("pointer", &problem.pointer)?;
+pub(crate) fn described<'py>(py: Python<'py>, problem: &Problem) -> PyResult<Bound<'py, PyAny>> {
     // 0 says that the place is not known.
-    described.set_item("line", (problem.line > 0).then_some(problem.line))?;
-    described.set_item("column", (problem.column > 0).then_some(problem.column))?;
-    described.set_item("found", &problem.found)?;
-    described.set_item("expected", &problem.expected)?;
-    described.set_item("advice", problem.advice.as_deref())?;
-    described.set_item("message", problem.to_string())?;
-    Ok(described)
+    let known = |number: usize| (number > 0).then_some(number);
+    let described = json!({
+        "code": problem.code, "pointer": problem.pointer, "line": known(problem.line), "column": known(problem.column),
+        "found": problem.found, "expected": problem.expected, "advice": problem.advice, "message": problem.to_string(),
+    });
+    json_to_py(py, &described)
 }

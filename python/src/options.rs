@@ -34,9 +34,8 @@ impl<'py> Options<'py> {
     }
 
     pub(crate) fn refuse(&self, text: String) -> Error {
-        let class = self.class;
         Error::Refused {
-            class,
+            class: self.class,
             text,
             cause: None,
         }

@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use driftworld::tasks;
 use driftworld_spec::{DEFAULT_VARIANT, TaskSpec};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::document::{Whole, from_python, json_to_py, to_py};
+use crate::document::{Whole, from_python, parsed, to_py};
 use crate::errors::Result;
 use crate::rounding::usually_rounded;
 use crate::variant::PyVariant;
@@ -49,9 +49,8 @@ impl PyTask {
     }
 
     /// The document as a dictionary.
-    fn to_dict<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
-        let value = serde_json::from_str(&self.0.to_json()).map_err(wrong)?;
-        Ok(json_to_py(py, &value)?)
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        parsed(py, &self.0.to_json())
     }
 
     /// Its name.
@@ -84,10 +83,7 @@ impl PyTask {
 
     /// A table for notebooks: what each variant changes.
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        slf.py()
-            .import("driftworld.specs")?
-            .getattr("_task_html")?
-            .call1((slf,))
+        specs(slf.py(), "_task_html")?.call1((slf,))
     }
 
     /// The names of the variants that it declares, families unfolded; ``["default"]`` if it declares none.
@@ -147,7 +143,7 @@ impl PyTask {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (String, String))> {
-        let again = py.import("driftworld.specs")?.getattr("_task_again")?;
+        let again = specs(py, "_task_again")?;
         Ok((again, (self.0.name().to_owned(), self.0.to_json())))
     }
 }
@@ -182,7 +178,7 @@ pub(crate) fn hash_of(text: &str) -> u64 {
     hasher.finish()
 }
 
-/// The `ValueError` of what cannot be read.
-pub(crate) fn wrong(error: impl std::fmt::Display) -> PyErr {
-    PyValueError::new_err(error.to_string())
+/// A function of the package's `specs.py`.
+pub(crate) fn specs<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+    py.import("driftworld.specs")?.getattr(name)
 }

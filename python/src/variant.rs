@@ -12,11 +12,11 @@ use pyo3::types::{PyDict, PyList};
 
 use crate::distances::element;
 use crate::document::{Whole, from_python, json_to_py, to_py};
-use crate::errors::Result;
+use crate::errors::{Result, wrong};
 use crate::interruptible::run_detached;
 use crate::portions::{draw, numbers};
 use crate::rounding::{detach, usually_rounded};
-use crate::task::{PyTask, hash_of, wrong};
+use crate::task::{PyTask, hash_of, specs};
 
 /// One variant of a task, in which every parameter that is not drawn anew in each world has its value.
 ///
@@ -47,10 +47,7 @@ impl PyVariant {
 
     /// A table for notebooks: the values, those that are not the task's defaults first.
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        slf.py()
-            .import("driftworld.specs")?
-            .getattr("_variant_html")?
-            .call1((slf,))
+        specs(slf.py(), "_variant_html")?.call1((slf,))
     }
 
     /// What its author says of it, if anything.
@@ -200,7 +197,7 @@ impl PyVariant {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (PyTask, String, String))> {
-        let again = py.import("driftworld.specs")?.getattr("_variant_again")?;
+        let again = specs(py, "_variant_again")?;
         let values = serde_json::to_string(self.0.values()).map_err(wrong)?;
         Ok((again, (self.task(), self.0.name().to_owned(), values)))
     }
@@ -234,13 +231,10 @@ pub(crate) fn variant_again(task: &Bound<'_, PyTask>, name: &str, values: &str) 
         return Ok(PyVariant(declared));
     }
     // Values that are as in the variant begun with are left as they are: they may be ones that nothing can be set to.
-    let mut bases = usually_rounded(|| task.all_variants())
-        .into_iter()
-        .map(Ok)
-        .collect::<Vec<_>>();
-    bases.push(task.variant(DEFAULT_VARIANT));
+    let mut bases = usually_rounded(|| task.all_variants());
+    bases.extend(task.variant(DEFAULT_VARIANT));
     let mut refused = None;
-    for base in bases.into_iter().flatten() {
+    for base in bases {
         let changes = wanted.iter().filter(|(name, value)| base.value(name) != Some(*value));
         match base.with(name, changes.map(|(name, value)| (name.clone(), value.clone()))) {
             Ok(variant) => return Ok(PyVariant(variant)),
