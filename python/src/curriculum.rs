@@ -20,7 +20,7 @@ use serde_json::json;
 
 use crate::covered::covered_in;
 use crate::document::{Whole, from_python, json_to_py, to_py};
-use crate::errors::{Error, Result};
+use crate::errors::{Error, Result, wrong};
 use crate::recordings::PyRecording;
 use crate::rounding::detach;
 use crate::supply::{PyStream, Stream};
@@ -32,8 +32,6 @@ pub(crate) struct PyPlan {
     /// What it was made with: files that change later do not change it.
     named: Named,
     warnings: Vec<String>,
-    /// What becomes of experiences whose worlds cannot be drawn.
-    undrawable: Undrawable,
 }
 
 /// A plan as values: the scenario's text; of each task its name there, its own and its text; of each world file its name there, its
@@ -56,30 +54,21 @@ impl PyPlan {
     #[new]
     fn new(py: Python<'_>, path: PathBuf, text: &str, stand_in: Option<bool>, skip_undrawable: bool) -> Result<Self> {
         let mut warnings = Vec::new();
-        let (plan, named, undrawable) = detach(py, || {
+        let (plan, named) = detach(py, || {
             let mut warn = |warning| warnings.push(warning);
             let file = ScenarioFile::from_text(Path::new(&path), text, &mut warn)?;
             // The original's own scenario names a map that it does not come with, and has to run as it stands.
             let missing = Missing::may_stand_in(stand_in.unwrap_or(file.original));
-            let undrawable = undrawable(skip_undrawable);
-            let (plan, named) = file
-                .plan_named(missing, undrawable, &mut warn)
-                .map_err(|error| because(&path, error))?;
-            Ok::<_, Error>((plan, named, undrawable))
+            let planned = file.plan_named(missing, undrawable(skip_undrawable), &mut warn);
+            planned.map_err(|error| because(&path, error))
         })?;
-        Ok(Self {
-            plan,
-            named,
-            warnings,
-            undrawable,
-        })
+        Ok(Self { plan, named, warnings })
     }
 
     /// The plan of these values.
     #[staticmethod]
     fn from_values(py: Python<'_>, values: Values, skip_undrawable: bool) -> Result<Self> {
         let (scenario, tasks, worlds, warnings) = values;
-        let undrawable = undrawable(skip_undrawable);
         let (plan, named) = detach(py, || {
             let mut named = Named::default();
             for (called, name, text) in tasks {
@@ -91,14 +80,9 @@ impl PyPlan {
             }
             let find = |task: &str| named.tasks.get(task).cloned();
             let scenario = Scenario::from_json_with("scenario", &scenario, find)?;
-            Ok::<_, Error>((named.plan(&scenario, undrawable)?, named))
+            Ok::<_, Error>((named.plan(&scenario, undrawable(skip_undrawable))?, named))
         })?;
-        Ok(Self {
-            plan,
-            named,
-            warnings,
-            undrawable,
-        })
+        Ok(Self { plan, named, warnings })
     }
 
     /// All that it was made from: equal values are equal plans.
@@ -120,7 +104,7 @@ impl PyPlan {
     /// The plan in another process, also where its files are not, or are others by now.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (Values, bool))> {
         let plan = slf.borrow();
-        let skips = plan.undrawable == Undrawable::Skipped;
+        let skips = plan.plan.undrawable() == Undrawable::Skipped;
         Ok((slf.get_type().getattr("from_values")?, (plan.values(), skips)))
     }
 
@@ -258,7 +242,7 @@ impl PyJournal {
         learned: Whole,
         check_frozen: bool,
     ) -> Result<Bound<'py, PyAny>> {
-        let clock = Clock::from_environment().map_err(|error| PyValueError::new_err(error.to_string()))?;
+        let clock = Clock::from_environment().map_err(wrong)?;
         let repeats = Repeats {
             count: if check_frozen { REPEATED_EVALUATIONS } else { 0 },
             first: rollout.getattr("repeats_first")?.extract()?,
@@ -348,7 +332,7 @@ impl Rollout for PythonRollout<'_> {
         // What ended it is said by whoever set a limit, too.
         Ok(found.map(|recording| Recording {
             ended_by: experience.ended_by,
-            ..recording.get().recording().clone()
+            ..Recording::clone(&recording.get().0)
         }))
     }
 

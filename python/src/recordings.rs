@@ -16,7 +16,7 @@ use serde_json::json;
 
 use crate::classes::catalogue;
 use crate::document::{Whole, json_to_py};
-use crate::errors::{Error, Result};
+use crate::errors::{Error, Result, wrong};
 use crate::rounding::detach;
 
 /// The most bytes of frames that are handed out at once.
@@ -24,7 +24,7 @@ const MAX_FRAME_BYTES: usize = 1 << 34;
 
 /// An episode as it was recorded.
 #[pyclass(name = "RecordingHandle", module = "driftworld._native", frozen)]
-pub(crate) struct PyRecording(Arc<Recording>);
+pub(crate) struct PyRecording(pub(crate) Arc<Recording>);
 
 impl From<Recording> for PyRecording {
     fn from(recording: Recording) -> Self {
@@ -33,10 +33,6 @@ impl From<Recording> for PyRecording {
 }
 
 impl PyRecording {
-    pub(crate) fn recording(&self) -> &Recording {
-        &self.0
-    }
-
     /// The same as the episode that a row of a log is about.
     pub(crate) fn of_row(&self, row: &Record) -> Recording {
         Recording {
@@ -87,19 +83,12 @@ fn word<T>(option: &str, read: std::result::Result<T, String>) -> PyResult<T> {
 impl PyRecording {
     /// What names the episode, and what it came to, as a dictionary.
     fn about<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
-        let Recording {
-            origin,
-            recorded_by,
-            reward,
-            ended_by,
-            edits,
-            ..
-        } = &*self.0;
+        let (recording, origin) = (&self.0, &self.0.origin);
         let about = json!({
             "experience": origin.experience, "block": origin.block, "task": origin.task, "variant": origin.variant,
-            "seed": origin.seed, "index": origin.index, "recorded_by": recorded_by, "steps": self.0.actions.len(),
-            "reward": reward, "ended_by": ended_by.map(EndedBy::word), "edits": edits.len(),
-            "seconds_per_step": self.0.seconds_per_step(),
+            "seed": origin.seed, "index": origin.index, "recorded_by": recording.recorded_by,
+            "steps": recording.actions.len(), "reward": recording.reward, "ended_by": recording.ended_by.map(EndedBy::word),
+            "edits": recording.edits.len(), "seconds_per_step": recording.seconds_per_step(),
         });
         Ok(json_to_py(py, &about)?)
     }
@@ -208,7 +197,5 @@ pub(crate) fn png<'py>(py: Python<'py>, picture: PyReadonlyArray3<'py, u8>) -> R
         height: height as u32,
         rgb: picture.iter().copied().collect(),
     };
-    let bytes = picture.to_png();
-    let bytes = bytes.map_err(|error| PyValueError::new_err(error.to_string()))?;
-    Ok(PyBytes::new(py, &bytes))
+    Ok(PyBytes::new(py, &picture.to_png().map_err(wrong)?))
 }
