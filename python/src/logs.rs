@@ -16,7 +16,7 @@ use pyo3::types::{PyDict, PyList};
 use serde_json::{Map, Value, json};
 
 use crate::document::{Whole, from_python, json_to_py, to_py};
-use crate::errors::Result;
+use crate::errors::{Result, wrong};
 use crate::recordings::PyRecording;
 use crate::rounding::detach;
 
@@ -172,9 +172,8 @@ pub(crate) fn validate_log(py: Python<'_>, folder: PathBuf) -> Result<Bound<'_, 
 }
 
 /// The time on the clock, to the microsecond, or the one that `DRIFTWORLD_CLOCK` says.
-pub(crate) fn now() -> Result<Timestamp> {
-    let clock = Clock::from_environment().map_err(|error| PyValueError::new_err(error.to_string()))?;
-    Ok(clock.now())
+fn now() -> PyResult<Timestamp> {
+    Ok(Clock::from_environment().map_err(wrong)?.now())
 }
 
 fn scenario_info(said: Value) -> Result<ScenarioInfo> {
@@ -203,16 +202,11 @@ fn columns<'py>(py: Python<'py>, rows: &Rows) -> Result<Bound<'py, PyDict>> {
     let columns = PyDict::new(py);
     columns.set_item("block_num", rows.block_nums().to_pyarray(py))?;
     columns.set_item("exp_num", rows.exp_nums().to_pyarray(py))?;
-    columns.set_item(
-        "worker_id",
-        shared(py, rows.workers(), |worker| Ok(worker.into_pyobject(py)?.into_any()))?,
-    )?;
+    let text = |text: &String| Ok(text.into_pyobject(py)?.into_any());
+    columns.set_item("worker_id", shared(py, rows.workers(), text)?)?;
     columns.set_item("block_type", words(py, rows.block_types())?)?;
     columns.set_item("block_subtype", words(py, rows.block_subtypes())?)?;
-    columns.set_item(
-        "task_name",
-        shared(py, rows.task_names(), |name| Ok(name.into_pyobject(py)?.into_any()))?,
-    )?;
+    columns.set_item("task_name", shared(py, rows.task_names(), text)?)?;
     let params = |params: &TaskParams| json_to_py(py, &Value::Object(Map::clone(&Arc::clone(params))));
     columns.set_item("task_params", shared(py, rows.task_params(), params)?)?;
     columns.set_item("exp_status", words(py, rows.exp_statuses())?)?;
@@ -222,9 +216,9 @@ fn columns<'py>(py: Python<'py>, rows: &Rows) -> Result<Bound<'py, PyDict>> {
         columns.set_item(name, rows.metric(name).unwrap_or_default().to_pyarray(py))?;
     }
     for name in rows.text_names() {
-        let texts = rows.text(name).into_iter();
-        let texts = texts.flat_map(|column| column.ids().iter().map(|id| &column.values()[*id as usize]));
-        columns.set_item(name, PyList::new(py, texts.collect::<Vec<_>>())?)?;
+        if let Some(column) = rows.text(name) {
+            columns.set_item(name, shared(py, column, text)?)?;
+        }
     }
     Ok(columns)
 }
