@@ -2,11 +2,17 @@
 
 use crate::env::{Action, Category};
 use crate::modality;
-use crate::spec::Modality;
-use crate::spec::did_you_mean;
+use crate::spec::{Modality, did_you_mean};
 use serde_json::{Map, Value, json};
 
-use super::line::{Line, Picture, misused};
+use super::line::misused;
+
+/// A picture for the terminal or for a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Picture {
+    Seen(Modality),
+    Map,
+}
 
 /// The most steps of one command.
 const MOST_STEPS: u32 = 100_000;
@@ -38,7 +44,7 @@ pub(super) fn number(word: &str) -> Result<f64, String> {
     number.ok_or_else(|| format!("found {word:?}, expected a number"))
 }
 
-pub(super) fn count(word: &str) -> Result<u32, String> {
+fn count(word: &str) -> Result<u32, String> {
     let count = word.parse().ok().filter(|count| (1..=MOST_STEPS).contains(count));
     count.ok_or_else(|| format!("found {word:?}, expected how many steps, 1 to {MOST_STEPS}"))
 }
@@ -49,18 +55,16 @@ pub(super) fn columns(word: &str) -> Result<u32, String> {
 }
 
 pub(super) fn category(word: &str) -> Result<Category, String> {
-    let names = Category::names();
-    let near = || did_you_mean(word, names.iter().copied());
-    Category::from_name(word).ok_or_else(|| {
-        format!(
-            "found category {word:?}, expected one of {}{}",
-            names.join(", "),
-            near()
-        )
-    })
+    Category::from_name(word).ok_or_else(|| not_one_of("category", word, &Category::names()))
 }
 
-pub(super) fn step(words: &[&str]) -> Result<Line, String> {
+fn not_one_of(what: &str, word: &str, names: &[&str]) -> String {
+    let near = did_you_mean(word, names.iter().copied());
+    format!("found {what} {word:?}, expected one of {}{near}", names.join(", "))
+}
+
+/// An action and how often it is taken.
+pub(super) fn step(words: &[&str]) -> Result<(Action, u32), String> {
     let (count, numbers) = match words {
         [] => (1, words),
         [_, _, _] if words.iter().all(|word| number(word).is_ok()) => {
@@ -73,12 +77,13 @@ pub(super) fn step(words: &[&str]) -> Result<Line, String> {
     };
     let action = match numbers {
         [] => Action::Continuous([0.0; 3]),
-        numbers => an_action(numbers).ok_or_else(|| misused("step"))??,
+        numbers => an_action("step", numbers)?,
     };
-    Ok(Line::Act { action, count })
+    Ok((action, count))
 }
 
-pub(super) fn action(words: &[&str]) -> Result<Line, String> {
+/// The same with options.
+pub(super) fn action(words: &[&str]) -> Result<(Action, u32), String> {
     let (count, words) = match words {
         ["-c", steps, rest @ ..] | [rest @ .., "-c", steps] => (count(steps)?, rest),
         _ => (1, words),
@@ -86,25 +91,18 @@ pub(super) fn action(words: &[&str]) -> Result<Line, String> {
     let ["-a", numbers @ ..] = words else {
         return Err(misused("action"));
     };
-    let action = an_action(numbers).ok_or_else(|| misused("action"))??;
-    Ok(Line::Act { action, count })
+    Ok((an_action("action", numbers)?, count))
 }
 
 /// Three numbers, or one row.
-fn an_action(words: &[&str]) -> Option<Result<Action, String>> {
+fn an_action(command: &str, words: &[&str]) -> Result<Action, String> {
     match words {
         [row] => {
-            let row = row
-                .parse()
-                .map_err(|_| format!("found {row:?}, expected the number of a row"));
-            Some(row.map(Action::Discrete))
+            let found = row.parse().map(Action::Discrete);
+            found.map_err(|_| format!("found {row:?}, expected the number of a row"))
         }
-        [a, b, c] => {
-            let numbers = [a, b, c].map(|word| number(word));
-            let [a, b, c] = numbers;
-            Some(a.and_then(|a| Ok(Action::Continuous([a, b?, c?]))))
-        }
-        _ => None,
+        [a, b, c] => Ok(Action::Continuous([number(a)?, number(b)?, number(c)?])),
+        _ => Err(misused(command)),
     }
 }
 
@@ -113,29 +111,23 @@ fn picture(word: &str) -> Result<Picture, String> {
         return Ok(Picture::Map);
     }
     let kind = modality::ALL.into_iter().find(|kind| modality::name(*kind) == word);
-    let near = || did_you_mean(word, modality::NAMES);
-    kind.map(Picture::Seen).ok_or_else(|| {
-        format!(
-            "found modality {word:?}, expected one of {}{}",
-            modality::NAMES.join(", "),
-            near()
-        )
-    })
+    kind.map(Picture::Seen)
+        .ok_or_else(|| not_one_of("modality", word, &modality::NAMES))
 }
 
-pub(super) fn show(words: &[&str]) -> Result<Line, String> {
+/// A picture and how wide it is shown.
+pub(super) fn show(words: &[&str]) -> Result<(Picture, Option<u32>), String> {
     let is_number = |word: &str| word.starts_with(|letter: char| letter.is_ascii_digit());
     let (kind, width) = match words {
         [width] if is_number(width) => (None, Some(*width)),
         words => (words.first().copied(), words.get(1).copied()),
     };
-    Ok(Line::Show {
-        picture: kind.map_or(Ok(Picture::Seen(Modality::Rgb)), picture)?,
-        columns: width.map(columns).transpose()?,
-    })
+    let picture = kind.map_or(Ok(Picture::Seen(Modality::Rgb)), picture)?;
+    Ok((picture, width.map(columns).transpose()?))
 }
 
-pub(super) fn screenshot(file: &str, words: &[&str]) -> Result<Line, String> {
+/// A picture and its width and height.
+pub(super) fn screenshot(words: &[&str]) -> Result<(Picture, Option<[u32; 2]>), String> {
     let (mut kind, mut size) = (Picture::Seen(Modality::Rgb), None);
     for word in words {
         if word.starts_with(|letter: char| letter.is_ascii_digit()) {
@@ -148,12 +140,7 @@ pub(super) fn screenshot(file: &str, words: &[&str]) -> Result<Line, String> {
             kind = picture(word)?;
         }
     }
-    let file = file.to_owned();
-    Ok(Line::Screenshot {
-        file,
-        picture: kind,
-        size,
-    })
+    Ok((kind, size))
 }
 
 /// An object as JSON, from `key=value` words.
@@ -181,5 +168,39 @@ fn value(key: &str, text: &str) -> Value {
         // A model or a name may look like a number.
         Value::Number(_) if ["model", "tag", "unique_name"].contains(&key) => json!(text),
         other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn actions_can_be_given_both_ways() {
+        let twenty = (Action::Continuous([2.0, 0.0, 1.0]), 20);
+        assert_eq!(action(&["-c", "20", "-a", "2", "0", "1"]), Ok(twenty));
+        assert_eq!(action(&["-a", "2", "0", "1", "-c", "20"]), Ok(twenty));
+        assert_eq!(step(&["20", "2", "0", "1"]), Ok(twenty));
+        assert_eq!(action(&["-a", "4"]), Ok((Action::Discrete(4), 1)));
+        assert_eq!(step(&[]), Ok((Action::Continuous([0.0; 3]), 1)));
+    }
+
+    #[test]
+    fn an_object_is_spawned_by_words() {
+        let words = words(
+            "color=1,0,0 reward=1 reward_stimulus=AgentCollide model=2 tag='red things' \
+             solid=false",
+        )
+        .expect("each quote is closed");
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        let expected = r#"{"class":"barrel","coordinates":[1.0,-2.5],"color":[1,0,0],"reward":1,"reward_stimulus":["AgentCollide"],"model":"2","tag":"red things","solid":false}"#;
+        assert_eq!(object("barrel", [1.0, -2.5], &words), Ok(expected.to_owned()));
+    }
+
+    #[test]
+    fn pictures_have_a_kind_and_a_size() {
+        let depth = Picture::Seen(Modality::Depth);
+        assert_eq!(screenshot(&["depth", "320x240"]), Ok((depth, Some([320, 240]))));
+        assert_eq!(show(&["40"]), Ok((Picture::Seen(Modality::Rgb), Some(40))));
     }
 }

@@ -4,7 +4,7 @@
 use crate::env::{Frame, Image, top_down};
 use driftworld_text::ShownPath;
 
-use super::line::Picture;
+use super::arguments::Picture;
 use super::map;
 use super::screen::{color_of, half_blocks, letters};
 use super::session::{Session, plain};
@@ -44,7 +44,7 @@ impl Session<'_> {
         top_down(&scene, width, height, agent)
     }
 
-    pub(super) fn show(&mut self, picture: Picture, columns: Option<u32>) -> Result<String, String> {
+    pub(super) fn show(&mut self, (picture, columns): (Picture, Option<u32>)) -> Result<String, String> {
         let [width, height] = match picture {
             Picture::Seen(_) => self.environment.world().agent_params.picture_size(),
             Picture::Map => [1, 1],
@@ -61,8 +61,7 @@ impl Session<'_> {
     pub(super) fn screenshot(
         &mut self,
         file: &str,
-        picture: Picture,
-        size: Option<[u32; 2]>,
+        (picture, size): (Picture, Option<[u32; 2]>),
     ) -> Result<String, String> {
         let own = self.environment.world().agent_params.picture_size();
         let size = size.unwrap_or(match picture {

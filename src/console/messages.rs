@@ -7,7 +7,7 @@ use crate::env::{Channel, Outgoing};
 use crate::spec::nearest;
 use serde_json::Value;
 
-use super::line::Picture;
+use super::arguments::Picture;
 use super::session::{Session, plain};
 use crate::documents;
 use crate::spec::Modality;
@@ -34,7 +34,7 @@ impl Session<'_> {
             let mut answers = received.messages;
             if let Some(picture) = received.screenshot {
                 let size = Some([picture.width, picture.height]);
-                let written = self.screenshot(&picture.filename, Picture::Seen(Modality::Rgb), size);
+                let written = self.screenshot(&picture.filename, (Picture::Seen(Modality::Rgb), size));
                 lines.extend(written.iter().cloned());
                 answers.push(self.channels.answer_screenshot(&picture, written.map(drop), &time));
             }

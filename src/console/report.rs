@@ -2,10 +2,9 @@
 
 use std::fmt::Write;
 
-use crate::spec::{EnvironmentParams, Layout, did_you_mean};
+use crate::spec::{EnvironmentParams, Layout};
 use driftworld_text::{amount, joined_or};
 
-use super::line::COMMANDS;
 use super::session::{MOST_LINES, Session};
 use crate::modality;
 use crate::table::table;
@@ -92,19 +91,6 @@ impl Session<'_> {
         }
         text
     }
-}
-
-/// The list of commands, or one of them.
-pub(super) fn help(command: Option<&str>) -> Result<String, String> {
-    let line = |(name, usage, what): &(&str, &str, &str)| format!("{:<48} {what}", format!("{name} {usage}"));
-    let Some(command) = command else {
-        return Ok(COMMANDS.iter().map(line).collect::<Vec<_>>().join("\n"));
-    };
-    let found = COMMANDS.iter().find(|(name, _, _)| *name == command);
-    found.map(line).ok_or_else(|| {
-        let near = did_you_mean(command, COMMANDS.map(|(name, _, _)| name));
-        format!("found command {command:?}, expected one listed by help{near}")
-    })
 }
 
 /// A number with at most two decimals, and without those that say nothing.

@@ -1,5 +1,5 @@
-//! A running world and what the console does to it. What a line says is in `line.rs`; what is told of the world in
-//! `report.rs`, shown of it in `look.rs`, and sent to it in `messages.rs`.
+//! A running world and what the lines of the console do to it. Which commands there are is in `line.rs`, how their arguments are
+//! read in `arguments.rs`; what is told of the world in `report.rs`, shown of it in `look.rs`, and sent to it in `messages.rs`.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -8,10 +8,10 @@ use crate::env::{Action, Category, Channels, CpuRenderer, Environment, Event, Le
 use crate::spec::{Object, World, did_you_mean};
 use driftworld_text::{ShownPath, amount, counted, joined_or};
 
-use super::line::Line;
+use super::arguments::{Picture, action, category, columns, number, object, screenshot, show, step, words};
+use super::line::{help, misused};
 use super::messages::shown;
 use super::place::Folder;
-use super::report::help;
 use super::screen::Screen;
 use crate::Failure;
 use crate::Warn;
@@ -95,32 +95,56 @@ impl<'a> Session<'a> {
 
     /// Does what a line says. On error nothing is changed, but by the messages of a file before the one refused.
     pub(crate) fn execute(&mut self, line: &str) -> Result<Reply, String> {
-        let text = match Line::parse(line)? {
-            Line::Quit => return Ok(Reply::Quit),
-            Line::Help(command) => help(command.as_deref())?,
-            Line::Info => self.info(),
-            Line::Objects => self.objects(),
-            Line::Agent => self.agent(),
-            Line::StateJson => return Ok(Reply::Json(self.environment.state().to_json_pretty())),
-            Line::StateFile(file) => {
-                let text = self.environment.state().to_json_pretty();
-                self.folder.write(&file, "json", text.as_bytes())?.shown().to_string()
+        let line = line.trim();
+        let (name, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+        let rest = rest.trim();
+        if rest.starts_with(['{', '[']) {
+            match name {
+                "send_message" => return self.send(rest).map(Reply::Said),
+                "spawn" => return self.spawn(rest).map(Reply::Said),
+                _ => {}
             }
-            Line::Act { action, count } => self.act(action, count)?,
-            Line::Reset(to) => self.reset(to.as_deref())?,
-            Line::Spawn(json) => self.spawn(&json)?,
-            Line::Destroy(object) => self.destroy(&object)?,
-            Line::Teleport { position, heading } => {
+        }
+        let words = words(rest)?;
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        let text = match (name, &words[..]) {
+            ("help", words) if words.len() < 2 => help(words.first().copied())?,
+            ("info", []) => self.info(),
+            ("objects", []) => self.objects(),
+            ("state", []) => self.agent(),
+            ("state", ["--json"]) => return Ok(Reply::Json(self.environment.state().to_json_pretty())),
+            ("state", [file]) if !file.starts_with('-') => {
+                let text = self.environment.state().to_json_pretty();
+                self.folder.write(file, "json", text.as_bytes())?.shown().to_string()
+            }
+            ("step", words) => self.act(step(words)?)?,
+            ("action", words) => self.act(action(words)?)?,
+            ("reset", words) if words.len() < 2 => self.reset(words.first().copied())?,
+            ("spawn", [class, x, y, keys @ ..]) => self.spawn(&object(class, [number(x)?, number(y)?], keys)?)?,
+            ("destroy", [object]) => self.destroy(object)?,
+            ("teleport", [x, y, rest @ ..]) if rest.len() < 2 => {
+                let position = [number(x)?, number(y)?];
+                let heading = rest.first().map(|heading| number(heading)).transpose()?;
                 let heading = heading.unwrap_or(f64::from(self.environment.agent().heading_deg));
                 self.environment.teleport(position, heading).map_err(plain)?;
                 self.agent()
             }
-            Line::Show { picture, columns } => return self.show(picture, columns).map(Reply::Picture),
-            Line::Screenshot { file, picture, size } => self.screenshot(&file, picture, size)?,
-            Line::Snapshot(name) => self.snapshot(name)?,
-            Line::Restore(name) => self.restore(&name)?,
-            Line::Send(text) => self.send(&text)?,
-            Line::Log(change) => self.log(change),
+            ("show", words) if words.len() <= 2 => return self.show(show(words)?).map(Reply::Picture),
+            ("map", words) if words.len() <= 1 => {
+                let columns = words.first().map(|word| columns(word)).transpose()?;
+                return self.show((Picture::Map, columns)).map(Reply::Picture);
+            }
+            ("screenshot", [file, rest @ ..]) if rest.len() <= 2 => self.screenshot(file, screenshot(rest)?)?,
+            ("snapshot", words) if words.len() < 2 => self.snapshot(words.first().copied())?,
+            ("restore", [name]) => self.restore(name)?,
+            ("send_message", [file]) => self.send(file)?,
+            ("log", []) => self.log(),
+            ("log", [name, change @ ("on" | "off")]) => {
+                self.channels.set_active(category(name)?, *change == "on");
+                self.log()
+            }
+            ("quit" | "exit", []) => return Ok(Reply::Quit),
+            (name, _) => return Err(misused(name)),
         };
         Ok(Reply::Said(text))
     }
@@ -141,7 +165,7 @@ impl<'a> Session<'a> {
         remark.map_or_else(String::new, |message| shown(&message) + "\n")
     }
 
-    fn act(&mut self, action: Action, count: u32) -> Result<String, String> {
+    fn act(&mut self, (action, count): (Action, u32)) -> Result<String, String> {
         self.environment.check(action).map_err(plain)?;
         let (mut lines, mut left_out, mut reward, mut steps) = (Vec::new(), 0, 0.0, 0);
         let mut last = Step::default();
@@ -231,17 +255,17 @@ impl<'a> Session<'a> {
         Ok(format!("{remark}object {index} is gone"))
     }
 
-    fn snapshot(&mut self, name: Option<String>) -> Result<String, String> {
+    fn snapshot(&mut self, name: Option<&str>) -> Result<String, String> {
         let Some(name) = name else {
             let names: Vec<&str> = self.snapshots.keys().map(String::as_str).collect();
             return Ok(joined_or(&names, ", ", "no moments yet"));
         };
-        if self.snapshots.len() >= MOST_SNAPSHOTS && !self.snapshots.contains_key(&name) {
+        if self.snapshots.len() >= MOST_SNAPSHOTS && !self.snapshots.contains_key(name) {
             return Err(format!(
                 "found {MOST_SNAPSHOTS} snapshots, expected fewer; reuse a name"
             ));
         }
-        self.snapshots.insert(name.clone(), self.environment.snapshot());
+        self.snapshots.insert(name.to_owned(), self.environment.snapshot());
         Ok(format!("{name}: step {}", self.environment.num_steps()))
     }
 
@@ -254,10 +278,7 @@ impl<'a> Session<'a> {
         Ok(self.agent())
     }
 
-    fn log(&mut self, change: Option<(Category, bool)>) -> String {
-        if let Some((category, active)) = change {
-            self.channels.set_active(category, active);
-        }
+    fn log(&self) -> String {
         let state = |category| if self.channels.is_active(category) { "on" } else { "off" };
         let each = Category::ALL
             .iter()
@@ -275,4 +296,46 @@ impl<'a> Session<'a> {
 pub(crate) struct Names {
     pub(super) objects: Vec<String>,
     pub(super) snapshots: Vec<String>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spec::WorldDraft;
+
+    #[test]
+    fn a_line_that_is_not_understood_says_what_was_expected() {
+        let choice = WorldRequest {
+            world: String::new(),
+            seed: 0,
+            index: 0,
+            l2explorer: false,
+            maps: None,
+        };
+        let world = WorldDraft::default().check().expect("open ground is sound");
+        let mut session = Session::new((choice, &|_| ()), world, Path::new("out"), Screen::PLAIN);
+        for (line, expected) in [
+            ("step 0", "1 to 100000"),
+            ("step 1 2 3", "write: step 1 1 2 3"),
+            ("step 1 2 nan 3", "found \"nan\", expected a number"),
+            ("action 2 0 1", "action: expected [-c N] -a"),
+            ("spawn barrel 1", "spawn: expected CLASS X Y"),
+            ("spawn barrel 1 north", "found \"north\", expected a number"),
+            ("spawn barrel 1 2 reward", "expected KEY=VALUE"),
+            ("spawn barrel 1 2 class=tree", "found class twice"),
+            ("show dept", "did you mean \"depth\"?"),
+            ("screenshot a.png 3by4", "expected WIDTHxHEIGHT"),
+            ("map 4", "8 to 400"),
+            ("telport 1 2", "did you mean \"teleport\"?"),
+            ("xyzzy", "expected one listed by help"),
+            ("objects all", "objects: expected no arguments"),
+            ("log agnet on", "did you mean \"agent\"?"),
+            ("destroy 'oak", "found ' once"),
+        ] {
+            let said = session.execute(line).err().unwrap_or_default();
+            assert!(said.contains(expected), "{line}: {said}");
+        }
+        let spawned = session.execute(r#"spawn  { "class": "tree", "coordinates": [1, 2], "tag": "a b" }"#);
+        assert!(matches!(spawned, Ok(Reply::Said(text)) if text == "object 0"));
+    }
 }
