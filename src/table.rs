@@ -18,41 +18,35 @@ pub(crate) fn cells(raw: bool) -> Cells {
 }
 
 /// A table with these headings; `numbers` are the columns that are set to the right.
-pub(crate) fn table<const N: usize>(headings: [&str; N], rows: Vec<[String; N]>, numbers: &[usize]) -> String {
-    wide_table(
-        headings.map(str::to_owned).to_vec(),
-        rows.into_iter().map(Vec::from).collect(),
-        numbers,
-    )
-}
-
-/// The same for a number of columns that is not known beforehand.
-pub(crate) fn wide_table(headings: Vec<String>, rows: Vec<Vec<String>>, numbers: &[usize]) -> String {
+pub(crate) fn table<H: Into<String>, R: Into<Vec<String>>>(
+    headings: impl IntoIterator<Item = H>,
+    rows: impl IntoIterator<Item = R>,
+    numbers: &[usize],
+) -> String {
+    let headings = headings.into_iter().map(Into::into).collect();
+    let rows = rows.into_iter().map(Into::into).collect();
     fitted(headings, rows, numbers, columns_of_stdout())
 }
 
 /// The same without the columns in which no row says anything.
-pub(crate) fn without_empty(headings: &[String], rows: &[Vec<String>], numbers: &[usize]) -> String {
+pub(crate) fn without_empty(headings: &[&str], rows: &[Vec<String>], numbers: &[usize]) -> String {
     let says = |column: &usize| rows.is_empty() || rows.iter().any(|row| !row[*column].is_empty());
     let kept: Vec<usize> = (0..headings.len()).filter(says).collect();
     let (headings, rows, numbers) = only(&kept, headings, rows, numbers);
-    wide_table(headings, rows, &numbers)
+    table(headings, rows, &numbers)
 }
 
 /// A table with these of its columns alone: headings, rows, and which columns are set to the right.
-fn only(
+fn only<H: Clone>(
     kept: &[usize],
-    headings: &[String],
+    headings: &[H],
     rows: &[Vec<String>],
     numbers: &[usize],
-) -> (Vec<String>, Vec<Vec<String>>, Vec<usize>) {
-    let of = |cells: &[String]| kept.iter().map(|column| cells[*column].clone()).collect();
+) -> (Vec<H>, Vec<Vec<String>>, Vec<usize>) {
+    let headings = kept.iter().map(|column| headings[*column].clone()).collect();
+    let of = |row: &Vec<String>| kept.iter().map(|column| row[*column].clone()).collect();
     let numbers = (0..kept.len()).filter(|place| numbers.contains(&kept[*place]));
-    (
-        of(headings),
-        rows.iter().map(|row| of(row)).collect(),
-        numbers.collect(),
-    )
+    (headings, rows.iter().map(of).collect(), numbers.collect())
 }
 
 /// A table of at most `width` columns of the terminal. Cells go on in further lines where need be, broken between words; where
@@ -262,7 +256,7 @@ mod tests {
         let row = |cells: [&str; 3]| cells.map(str::to_owned).to_vec();
         let rows = vec![row(["a", "", "1"]), row(["b", "", "22"])];
         assert_eq!(
-            without_empty(&row(["name", "nothing", "number"]), &rows, &[2]),
+            without_empty(&["name", "nothing", "number"], &rows, &[2]),
             "name  number\na          1\nb         22"
         );
     }

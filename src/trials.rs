@@ -45,7 +45,7 @@ pub(crate) fn shown(trials: &[Trial]) -> String {
         "other",
         "planner finishes",
     ];
-    let mut lines = vec![table(headings, rows.collect(), &[0, 2, 3, 4, 5, 6, 7])];
+    let mut lines = vec![table(headings, rows, &[0, 2, 3, 4, 5, 6, 7])];
     // The first of each kind: what fails in one way may fail in another, too.
     let failed = trials.iter().flat_map(|trial| {
         let is_first =

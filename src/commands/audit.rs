@@ -101,5 +101,5 @@ fn shown(rows: &[AuditRow]) -> String {
             verdict(row).to_owned(),
         ]
     };
-    table(["agent", "expected", "found", ""], rows.iter().map(row).collect(), &[])
+    table(["agent", "expected", "found", ""], rows.iter().map(row), &[])
 }

@@ -173,7 +173,7 @@ fn parts(distance: &Measured) -> String {
     }
     let shown = table(
         ["what", "element", "measure", "raw", "scaled", "weight", "share"],
-        parts.into_iter().map(row).collect(),
+        parts.into_iter().map(row),
         &[3, 4, 5, 6],
     );
     shown + &equal

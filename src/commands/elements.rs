@@ -97,7 +97,7 @@ pub(crate) fn shown(found: &ElementsOutcome) -> String {
         "looks",
         "verdict",
     ];
-    let rows = found.variants.iter().map(row).collect();
+    let rows = found.variants.iter().map(row);
     format!(
         "{}, beside {}:\n{}",
         found.task,

@@ -396,7 +396,7 @@ pub(crate) fn regimes(summary: &Summary) -> String {
     });
     table(
         ["block", "kind", "variant", "experiences", "mean reward", "success"],
-        rows.collect(),
+        rows,
         &[0, 3, 4, 5],
     )
 }

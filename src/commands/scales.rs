@@ -144,7 +144,7 @@ fn shown(found: &ScalesFile) -> String {
     let unlabelled = unlabelled(found).map_or_else(String::new, |shown| format!("\n\n{shown}"));
     format!(
         "{}\nReward of an episode, ± the standard error over {} worlds of seed {}.{unlabelled}",
-        table(headings, rows.collect(), &[1, 2, 3, 4, 5]),
+        table(headings, rows, &[1, 2, 3, 4, 5]),
         found.worlds,
         found.seed
     )

@@ -77,12 +77,12 @@ fn list(as_json: bool) -> Result<(), Failure> {
             first_of(&names, LISTED),
         ]
     });
-    output::line(table(["task", "what it is", "variants"], rows.collect(), &[]))?;
+    output::line(table(["task", "what it is", "variants"], rows, &[]))?;
     let rows = tasks::FAMILIES.map(|(group, tasks)| {
         let names: Vec<&str> = tasks.iter().map(|(name, _)| *name).collect();
         [group.to_owned(), names.join(", ")]
     });
-    output::line(format!("\n{}", table(["more", "tasks"], rows.into(), &[])))?;
+    output::line(format!("\n{}", table(["more", "tasks"], rows, &[])))?;
     output::line("\n`driftworld tasks show TASK` says what varies in one, and what each of its variants changes.")
 }
 
@@ -127,7 +127,7 @@ fn show(task: &Arc<TaskSpec>, own: Option<&str>, as_json: bool) -> Result<(), Fa
             ]
         });
         let headings = ["parameter", "role", "affects", "default", "range or choices"];
-        output::line(format!("\n{}", table(headings, rows.collect(), &[])))?;
+        output::line(format!("\n{}", table(headings, rows, &[])))?;
     }
     let rows = variants.iter().map(|variant| {
         let said = task.variant_description(variant.name()).unwrap_or_default();
@@ -135,11 +135,7 @@ fn show(task: &Arc<TaskSpec>, own: Option<&str>, as_json: bool) -> Result<(), Fa
     });
     output::line(format!(
         "\n{}",
-        table(
-            ["variant", "differs from the defaults in", "what it is"],
-            rows.collect(),
-            &[]
-        )
+        table(["variant", "differs from the defaults in", "what it is"], rows, &[])
     ))
 }
 

@@ -85,7 +85,7 @@ impl Session<'_> {
             ]
         });
         let headings = ["object", "class", "name or tag", "x", "y", "heading", "reward", ""];
-        let mut text = table(headings, rows.collect(), &[0, 3, 4, 5, 6]);
+        let mut text = table(headings, rows, &[0, 3, 4, 5, 6]);
         if world.objects.len() > MOST_LINES {
             write!(text, "\nand {} more", world.objects.len() - MOST_LINES).expect("writing to a String does not fail");
         }

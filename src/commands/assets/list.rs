@@ -79,7 +79,7 @@ pub(super) fn models(models: &[LibraryModel]) -> String {
     });
     table(
         ["class", "model", "triangles", "height", "width", "body"],
-        rows.collect(),
+        rows,
         &[3, 4],
     )
 }
@@ -116,7 +116,7 @@ fn built_in() -> String {
     });
     table(
         ["class", "number", "models", "triangles", "height", "body"],
-        rows.collect(),
+        rows,
         &[1, 2, 3, 4],
     )
 }

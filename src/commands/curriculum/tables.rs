@@ -8,7 +8,7 @@ use crate::similarity::{Distance, DistanceMatrix};
 use crate::spec::{Block, BlockKind, By, Element, Phase, Regime, Scenario, Variant};
 
 use crate::commands::Failure;
-use crate::table::{table, wide_table};
+use crate::table::table;
 use crate::tasks;
 
 /// Variants in an order, as a scenario names them.
@@ -36,7 +36,7 @@ fn probe(picked: &[Picked], order: &[usize], element: Element) -> Result<String,
         "distances from {}, probing the {}: 0 means exactly 0, - means that nothing could differ\n{}\n{}",
         shown(anchor),
         element.name(),
-        wide_table(headings(), rows, &[2, 3, 4, 5, 6]),
+        table(headings(), rows, &[2, 3, 4, 5, 6]),
         made_values(order.iter().map(|index| &picked[*index]))
     ))
 }
@@ -51,15 +51,14 @@ fn steps(picked: &[Picked], wanted: &Steps) -> Result<String, Failure> {
         row.push(if index == 0 { String::new() } else { exact(apart.total) });
         rows.push(row);
     }
-    let mut headings = headings();
-    headings.push("all together".to_owned());
+    let headings = headings().chain(["all together"]);
     let measured = wanted.element.map_or("all together", Element::name);
     Ok(format!(
         "distances from the variant before, {} ± {} wanted in {}{measured}\n{}\n{}",
         wanted.distance,
         wanted.tolerance,
         if wanted.element.is_some() { "the " } else { "" },
-        wide_table(headings, rows, &[2, 3, 4, 5, 6, 7]),
+        table(headings, rows, &[2, 3, 4, 5, 6, 7]),
         made_values(picked)
     ))
 }
@@ -84,13 +83,8 @@ fn shown(picked: &Picked) -> String {
     format!("{}#{}", picked.variant.task().name(), picked.choice.name())
 }
 
-fn headings() -> Vec<String> {
-    let elements = Element::ALL.map(|element| element.name().to_owned());
-    ["variant", "is"]
-        .map(str::to_owned)
-        .into_iter()
-        .chain(elements)
-        .collect()
+fn headings() -> impl Iterator<Item = &'static str> {
+    ["variant", "is"].into_iter().chain(Element::ALL.map(Element::name))
 }
 
 fn row(picked: &Picked, apart: &Distance) -> Vec<String> {
@@ -195,7 +189,7 @@ pub(super) fn optima(found: &[PairOptimum]) -> String {
     format!(
         "{}\nWhat a planner of one variant earns less in worlds of the other than that one's own, in points; where nothing \
          changes, nothing has to be forgotten.\n",
-        table(headings, rows.collect(), &[2, 3])
+        table(headings, rows, &[2, 3])
     )
 }
 
@@ -236,7 +230,7 @@ pub(crate) fn blocks(scenario: &Scenario, measured: Option<(&DistanceMatrix, By)
             "experiences",
             &format!("distance{by} from the last learned"),
         ],
-        rows.collect(),
+        rows,
         &[0, 3, 4],
     )
 }

@@ -2,7 +2,7 @@
 
 use crate::curriculum::Summary;
 use crate::spec::BlockKind;
-use crate::table::wide_table;
+use crate::table::table;
 use crate::tasks;
 
 /// What one learning block did to other variants.
@@ -57,8 +57,8 @@ pub(super) fn effects_table(summary: &Summary) -> String {
         "forgotten",
         "at the end",
     ];
-    let row = |account: &Account| {
-        vec![
+    let row = |account: Account| {
+        [
             account.variant.clone(),
             account.at_first.to_string(),
             change(account.transferred),
@@ -67,8 +67,8 @@ pub(super) fn effects_table(summary: &Summary) -> String {
             account.at_the_end().to_string(),
         ]
     };
-    let rows = accounts(summary).iter().map(row).collect();
-    let table = wide_table(headings.map(str::to_owned).to_vec(), rows, &[1, 2, 3, 4, 5]);
+    let rows = accounts(summary).into_iter().map(row);
+    let table = table(headings, rows, &[1, 2, 3, 4, 5]);
     let meaning = "transferred: gained before its own block, by learning others\n\
                    learned: gained in its own block\n\
                    forgotten: lost after it (-), or still gained (+)\n\

@@ -28,7 +28,7 @@ use super::run::{LifetimeRun, Start, processors};
 use super::{Failure, output};
 use crate::contact_sheet::{self, ways};
 use crate::report::picture::heat_map;
-use crate::table::wide_table;
+use crate::table::table;
 use crate::variant_names::VariantNames;
 use crate::views::Views;
 
@@ -259,7 +259,7 @@ fn block_table(summary: &Summary, beside: &[(String, Summary)]) -> String {
     let mut headings = vec!["block".to_owned(), "learned (reward)".to_owned()];
     headings.extend(variants.into_iter().map(short));
     let numbers: Vec<usize> = (2..headings.len()).collect();
-    "Mean reward of each variant in every evaluation:\n\n".to_owned() + &wide_table(headings, rows, &numbers)
+    "Mean reward of each variant in every evaluation:\n\n".to_owned() + &table(headings, rows, &numbers)
 }
 
 /// A demo may be run again and again: its own log is replaced, anything else in the way is not.

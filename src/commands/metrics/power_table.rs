@@ -41,6 +41,6 @@ pub(super) fn power(found: &[MetricPower]) -> Option<String> {
          lifetimes at hand; how many lifetimes of each agent have a power of 80%; and the smallest difference that those at hand \
          show with 80%. One agent alone is compared with one that varies as much. Of a metric that does not vary between these lifetimes nothing \
          can be said.",
-        table(headings, rows.collect(), &[1, 2, 3, 4, 5])
+        table(headings, rows, &[1, 2, 3, 4, 5])
     ))
 }

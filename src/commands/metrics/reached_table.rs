@@ -27,50 +27,33 @@ pub(super) fn reached(scores: &LifetimeMetrics, names: &VariantNames) -> Option<
     let relearns = evaluated().any(|(_, task)| task.plasticity_loss().is_some());
     let rows = evaluated().take(MOST_ROWS).map(|(name, task)| {
         let of = |evaluation: Option<&EvaluationCell>| evaluation.map_or_else(String::new, |found| cell(task, found));
-        let mut cells = vec![
+        let expert = task.expert.filter(|_| has_own);
+        let shares = task.shares.iter().filter(|_| has_expert && relearns);
+        let is_not = task.is_never_learned() == Some(true);
+        vec![
             names.shown(name).to_owned(),
             of(task.evaluations.first()),
             of(task.best()),
             of(task.last()),
-        ];
-        if is_scaled {
-            cells.push(scale(task));
-        }
-        if has_expert {
-            if has_own {
-                cells.push(task.expert.map_or_else(String::new, |level| in_units_of(task, level)));
-                cells.push(task.share.map_or_else(String::new, percent));
-            }
-            if relearns {
-                cells.push(task.shares.iter().copied().map(percent).collect::<Vec<_>>().join(", "));
-            }
-            let is_not = task.is_never_learned() == Some(true);
-            cells.push(if is_not { NEVER_LEARNED } else { "" }.to_owned());
-        }
-        cells
+            when(is_scaled, || scale(task)),
+            expert.map_or_else(String::new, |level| in_units_of(task, level)),
+            task.share.filter(|_| has_own).map_or_else(String::new, percent),
+            shares.copied().map(percent).collect::<Vec<_>>().join(", "),
+            when(is_not, || NEVER_LEARNED.to_owned()),
+        ]
     });
     let rows: Vec<Vec<String>> = rows.collect();
     if rows.is_empty() {
         return None;
     }
-    let mut headings = vec!["reached", "first evaluation", "best after learning", "last evaluation"];
-    let mut numbers = vec![1, 2, 3];
     let column = driftworld_text::one_line(&scores.metrics_column);
     let mut notes = vec![format!("In units of {column}, ± the standard error over worlds.")];
     if is_scaled {
-        headings.push("scale");
         notes = vec![format!(
             "In % of the way from floor to ceiling where these are known, else in units of {column}; ± the standard error over worlds."
         )];
     }
     if has_expert {
-        let first = headings.len();
-        if has_own {
-            headings.extend(["expert", "best / expert"]);
-            numbers.extend([first, first + 1]);
-        }
-        headings.extend(relearns.then_some("after each learning"));
-        headings.push("");
         notes.push(format!(
             "Below {:.0}% of the {} a task was never learned, and its maintenance and transfer say nothing.",
             100.0 * LEARNED_SHARE,
@@ -83,8 +66,19 @@ pub(super) fn reached(scores: &LifetimeMetrics, names: &VariantNames) -> Option<
             evaluated().count() - MOST_ROWS
         ));
     }
-    let headings: Vec<String> = headings.into_iter().map(str::to_owned).collect();
-    let mut lines = vec![without_empty(&headings, &rows, &numbers), notes.join(" ")];
+    let headings = [
+        "reached",
+        "first evaluation",
+        "best after learning",
+        "last evaluation",
+        "scale",
+        "expert",
+        "best / expert",
+        "after each learning",
+        "",
+    ];
+    let table = without_empty(&headings, &rows, &[1, 2, 3, 5, 6]);
+    let mut lines = vec![table, notes.join(" ")];
     lines.extend(unlabelled(scores, names));
     Some(lines.join("\n"))
 }
@@ -172,7 +166,6 @@ pub(super) fn reached_by_several(agent: &str, lifetimes: &[LifetimeMetrics], nam
         "best / expert",
         "",
     ];
-    let headings: Vec<String> = headings.into_iter().map(str::to_owned).collect();
     let is_scaled = tasks.values().flatten().any(|task| task.is_scaled());
     let unit = if is_scaled { UNITS } else { "" };
     let alike: BTreeSet<String> = lifetimes.iter().flat_map(|scores| unlabelled(scores, names)).collect();
@@ -205,7 +198,6 @@ pub(super) fn curves(scores: &LifetimeMetrics, names: &VariantNames) -> Option<S
         return None;
     }
     let headings = ["curve", "area", "forgetting", "lag", "regret", ""];
-    let headings: Vec<String> = headings.into_iter().map(str::to_owned).collect();
     let explained = |is_there: bool, text: &'static str| if is_there { text } else { "" };
     let lag = explained(
         shown().any(|(_, curve)| curve.lag.is_some()),

@@ -35,7 +35,7 @@ pub(crate) fn summary(scores: &LifetimeMetrics, names: &VariantNames) -> String 
         let value = with_error(short(value), error.map(|error| rounded(error, decimals(value))));
         let [band, p] = beside_null(row.null_band);
         let reading = row.word.unwrap_or_default().to_owned();
-        Some([
+        Some(vec![
             row.name.into_owned(),
             value,
             band,
@@ -44,7 +44,7 @@ pub(crate) fn summary(scores: &LifetimeMetrics, names: &VariantNames) -> String 
             row.explanation.into_owned(),
         ])
     });
-    let rows: Vec<[String; 6]> = rows.collect();
+    let rows: Vec<Vec<String>> = rows.collect();
     let has_bands = !scores.null_bands.is_empty();
     let head = format!(
         "{}: {} learning and {} evaluation experiences, scored by {}",
@@ -59,8 +59,7 @@ pub(crate) fn summary(scores: &LifetimeMetrics, names: &VariantNames) -> String 
     parts.extend(curves(scores, names));
     parts.extend(scaled(scores, names));
     let headings = ["metric", "value", "null band", "p", "reading", "what it says"];
-    let headings = headings.map(str::to_owned).to_vec();
-    let mut metrics = without_empty(&headings, &rows.into_iter().map(Vec::from).collect::<Vec<_>>(), &[1, 3]);
+    let mut metrics = without_empty(&headings, &rows, &[1, 3]);
     if has_bands {
         metrics.push('\n');
         metrics.push_str(&what_bands_are(scores));
@@ -242,11 +241,7 @@ fn improvements(together: &Comparison, share: &str) -> String {
         .iter()
         .any(|row| row.improvement.probability.t_interval.is_some());
     let share = if by_t { format!("{share} (t)") } else { share.to_owned() };
-    table(
-        ["metric", "P(better)", &share, "p", "", "tasks"],
-        rows.collect(),
-        &[1, 3, 5],
-    )
+    table(["metric", "P(better)", &share, "p", "", "tasks"], rows, &[1, 3, 5])
 }
 
 /// Each metric over the lifetimes, and what a reader must know about the intervals.
@@ -278,7 +273,6 @@ fn repeats(metrics: &[RepeatedMetric], share: &str) -> String {
     headings.extend(few.then_some(t.as_str()));
     headings.extend(["null band", "p", "reading", "runs x tasks", "better"]);
     let numbers = if few { [1, 4, 7] } else { [1, 3, 5] };
-    let headings: Vec<String> = headings.into_iter().map(str::to_owned).collect();
     let cautions: BTreeSet<&str> = metrics.iter().filter_map(|row| row.caution.as_deref()).collect();
     let mut lines = vec![without_empty(&headings, &rows.collect::<Vec<_>>(), &numbers)];
     if metrics.iter().any(|row| row.null.is_some()) {

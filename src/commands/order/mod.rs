@@ -186,5 +186,5 @@ pub(crate) fn path_table(matrix: &DistanceMatrix, ordering: &Ordering) -> String
             .map_or_else(String::new, |before| format!("{:.4}", ordering.steps[before]));
         [(place + 1).to_string(), matrix.labels()[*index].clone(), step]
     });
-    table(["", "variant", "distance from the one before"], rows.collect(), &[0, 2])
+    table(["", "variant", "distance from the one before"], rows, &[0, 2])
 }
