@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::generator::{Drift, GeneratorError, Sampler, Sequence, Switch};
-use crate::spec::{DriftSchedule, Variant, World, maps::MapLibrary};
+use crate::spec::{DriftSchedule, Variant, World};
 use crate::tasks;
 use clap::{Args, ValueEnum};
 use driftworld_atomic_files::AtomicFile;
@@ -126,43 +126,8 @@ impl Shard {
     }
 }
 
-/// Where the worlds come from: one variant, or a drift between two.
-enum Source {
-    Variant(Box<Sampler>),
-    Drift {
-        drift: Box<Drift>,
-        first: u64,
-        count: u64,
-        maps: Option<Arc<MapLibrary>>,
-        sequence: Sequence,
-        seed: u64,
-    },
-}
-
-impl Source {
-    /// World number `index` with the name of its variant.
-    fn world(&self, index: u64) -> Result<(String, World), GeneratorError> {
-        match self {
-            Self::Variant(sampler) => Ok((sampler.variant().name().to_owned(), sampler.world(index)?)),
-            Self::Drift {
-                drift,
-                first,
-                count,
-                maps,
-                sequence,
-                seed,
-            } => {
-                let progress = (index - first) as f64 / (count.saturating_sub(1).max(1)) as f64;
-                let variant = drift.at(progress, index)?;
-                let mut sampler = Sampler::new(&variant, *seed).with_sequence(*sequence);
-                if let Some(maps) = maps {
-                    sampler = sampler.with_maps(Arc::clone(maps));
-                }
-                Ok((variant.name().to_owned(), sampler.world(index)?))
-            }
-        }
-    }
-}
+/// Draws the world of a number.
+type Draw = Box<dyn Fn(u64) -> Result<World, GeneratorError> + Sync>;
 
 impl Sample {
     pub(crate) fn run(self) -> Result<(), Failure> {
@@ -181,25 +146,25 @@ impl Sample {
         overwrite::refuse_inputs(&self.output, [self.task.as_str()])?;
         output::refuse_removed_ending(&self.output)?;
         let variant = tasks::variant(&self.task)?;
-        let source = self.source(&variant, count)?;
+        let draw = self.source(&variant, count)?;
         let range = self
             .shard
             .map_or(self.index..self.index + count, |shard| shard.of(self.index, count));
         if self.jsonl {
-            return self.stream(&source, range);
+            return self.stream(&draw, range);
         }
         if self.count.is_none() {
-            return output::write_or_print(&self.output, &line_of(&source, self.index)?);
+            return output::write_or_print(&self.output, &(draw(self.index)?.to_json() + "\n"));
         }
         if self.output == Path::new("-") {
             return Err(Failure::usage(
                 "found several worlds for one document, expected a folder (-o DIR), or one world per line (--jsonl)",
             ));
         }
-        self.files(&source, range)
+        self.files(&draw, range)
     }
 
-    fn source(&self, variant: &Variant, count: u64) -> Result<Source, Failure> {
+    fn source(&self, variant: &Variant, count: u64) -> Result<Draw, Failure> {
         let sequence = match self.sequence {
             SequenceName::Independent => Sequence::Independent,
             SequenceName::Sobol => Sequence::Sobol,
@@ -211,12 +176,17 @@ impl Sample {
         let catalogue = self.libraries.catalogue()?;
         tasks::check_variants([variant], &catalogue)?;
         let maps = self.maps.as_deref().map(worlds::maps).transpose()?.map(Arc::new);
-        let Some(name) = &self.drift_to else {
-            let mut sampler = Sampler::new(variant, self.seed).with_sequence(sequence);
-            if let Some(maps) = maps {
-                sampler = sampler.with_maps(maps);
+        let (seed, first) = (self.seed, self.index);
+        let sampler = move |variant: &Variant| {
+            let sampler = Sampler::new(variant, seed).with_sequence(sequence);
+            match &maps {
+                Some(maps) => sampler.with_maps(Arc::clone(maps)),
+                None => sampler,
             }
-            return Ok(Source::Variant(Box::new(sampler)));
+        };
+        let Some(name) = &self.drift_to else {
+            let sampler = sampler(variant);
+            return Ok(Box::new(move |index| sampler.world(index)));
         };
         // The other variant is of the same task where it is named without one.
         let (_, own) = tasks::split(name);
@@ -230,15 +200,11 @@ impl Sample {
             Some(Mix::Parameter) => Drift::new(variant.clone(), to)?.with_switch(Switch::Mixture { seed: self.seed }),
             Some(Mix::Task) => Drift::mixing(variant.clone(), to, self.seed),
         };
-        let drift = Box::new(drift.with_schedule(self.schedule));
-        Ok(Source::Drift {
-            drift,
-            first: self.index,
-            count,
-            maps,
-            sequence,
-            seed: self.seed,
-        })
+        let drift = drift.with_schedule(self.schedule);
+        Ok(Box::new(move |index| {
+            let progress = (index - first) as f64 / (count.saturating_sub(1).max(1)) as f64;
+            sampler(&drift.at(progress, index)?).world(index)
+        }))
     }
 
     fn failed(&self, error: &dyn std::fmt::Display) -> Failure {
@@ -250,18 +216,18 @@ impl Sample {
         file.commit().map_err(|error| self.failed(&error))
     }
 
-    fn stream(&self, source: &Source, range: std::ops::Range<u64>) -> Result<(), Failure> {
+    fn stream(&self, draw: &Draw, range: std::ops::Range<u64>) -> Result<(), Failure> {
         let count = range.end - range.start;
         if output::is_stdout(&self.output) {
             output::carries_data();
-            return each(source, range, REMOVED, |(_, _, world)| {
+            return each(draw, range, REMOVED, |_, world| {
                 output::print_json(&(world.to_json() + "\n"))
             });
         }
         let file = output::create(&self.output)?;
         let is_read_now = file.is_straight();
         let mut file = BufWriter::new(file);
-        each(source, range, REMOVED, |(_, _, world)| {
+        each(draw, range, REMOVED, |_, world| {
             let written = file.write_all((world.to_json() + "\n").as_bytes());
             let written = written.and_then(|()| if is_read_now { file.flush() } else { Ok(()) });
             written.map_err(|error| self.failed(&error))
@@ -271,17 +237,12 @@ impl Sample {
         Ok(())
     }
 
-    fn files(&self, source: &Source, range: std::ops::Range<u64>) -> Result<(), Failure> {
+    fn files(&self, draw: &Draw, range: std::ops::Range<u64>) -> Result<(), Failure> {
         let count = range.end - range.start;
-        each(
-            source,
-            range,
-            "what was written is whole and stays",
-            |(index, _, world)| {
-                let path = self.output.join(format!("{index:08}.json"));
-                output::write(&path, world.to_json_pretty().as_bytes())
-            },
-        )?;
+        each(draw, range, "what was written is whole and stays", |index, world| {
+            let path = self.output.join(format!("{index:08}.json"));
+            output::write(&path, world.to_json_pretty().as_bytes())
+        })?;
         output::wrote(&self.output, format!("{count} worlds"));
         Ok(())
     }
@@ -292,10 +253,10 @@ const REMOVED: &str = "incomplete output was removed";
 /// Hands over the worlds with their numbers and variants, in order; draws a chunk at a time on all cores. `left` says what an
 /// interrupt leaves behind.
 fn each(
-    source: &Source,
+    draw: &Draw,
     range: std::ops::Range<u64>,
     left: &str,
-    mut take: impl FnMut((u64, String, World)) -> Result<(), Failure>,
+    mut take: impl FnMut(u64, World) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     // Whoever is asked to stop gives up what is half written, and removes it.
     let interrupt = Interrupt::listen(format!("interrupted; {left}"));
@@ -305,11 +266,11 @@ fn each(
     while first < range.end {
         let next = range.end.min(first.saturating_add(chunk));
         let mut objects = 0;
-        let worlds: Vec<_> = (first..next).into_par_iter().map(|index| source.world(index)).collect();
+        let worlds: Vec<_> = (first..next).into_par_iter().map(draw).collect();
         for (index, world) in (first..next).zip(worlds) {
-            let (variant, world) = world?;
+            let world = world?;
             objects += world.objects.len() as u64;
-            take((index, variant, world))?;
+            take(index, world)?;
             if interrupt.is_asked() && index + 1 < range.end {
                 let done = index + 1 - range.start;
                 return Err(interrupt.failure(format!(
@@ -325,11 +286,6 @@ fn each(
     }
     bar.finish_and_clear();
     Ok(())
-}
-
-/// One world as one line: alone it has the same bytes as in a stream.
-fn line_of(source: &Source, index: u64) -> Result<String, Failure> {
-    Ok(source.world(index)?.1.to_json() + "\n")
 }
 
 /// How values or variants switch in a drift.
