@@ -5,44 +5,27 @@ use crate::spec::BlockKind;
 use crate::table::table;
 use crate::tasks;
 
-/// What one learning block did to other variants.
-struct Effect {
+/// The mean reward of a variant before and after another was learned.
+struct Change {
     /// The variant that was learned.
     learned: String,
-    /// The variant that was not learned yet and rose most.
-    transfer: Option<Change>,
-    /// The variant that was learned before and fell most.
-    forgetting: Option<Change>,
-}
-
-/// The mean reward of a variant before and after another was learned.
-#[derive(Clone)]
-struct Change {
     variant: String,
     before: f64,
     after: f64,
+    /// Whether the variant that changed had been learned before.
+    was_learned: bool,
 }
 
 impl Change {
     fn gain(&self) -> f64 {
         self.after - self.before
     }
-}
 
-/// What became of one variant over the lifetime, in whole points of reward, so that the parts shown add up.
-struct Account {
-    variant: String,
-    at_first: i64,
-    /// Gained before its own block: by learning others.
-    transferred: i64,
-    learned: i64,
-    /// Gained after its own block, while others were learned: below 0 where it was forgotten.
-    afterwards: i64,
-}
-
-impl Account {
-    fn at_the_end(&self) -> i64 {
-        self.at_first + self.transferred + self.learned + self.afterwards
+    fn in_words(&self, moved: &str) -> String {
+        format!(
+            "learning {} {moved} {} from {:.0} to {:.0}",
+            self.learned, self.variant, self.before, self.after
+        )
     }
 }
 
@@ -57,59 +40,44 @@ pub(super) fn effects_table(summary: &Summary) -> String {
         "forgotten",
         "at the end",
     ];
-    let row = |account: Account| {
-        [
-            account.variant.clone(),
-            account.at_first.to_string(),
-            change(account.transferred),
-            change(account.learned),
-            change(account.afterwards),
-            account.at_the_end().to_string(),
-        ]
-    };
-    let rows = accounts(summary).into_iter().map(row);
-    let table = table(headings, rows, &[1, 2, 3, 4, 5]);
-    let meaning = "transferred: gained before its own block, by learning others\n\
-                   learned: gained in its own block\n\
-                   forgotten: lost after it (-), or still gained (+)\n\
-                   Each row adds up to its end.\n"
-        .to_owned();
-    let effects = effects(summary);
-    [
-        Some(table),
-        Some(meaning),
-        transfer_sentence(&effects),
-        forgetting_sentence(&effects),
-    ]
-    .into_iter()
-    .flatten()
-    .collect::<Vec<_>>()
-    .join("\n")
-}
-
-fn change(points: i64) -> String {
-    if points == 0 {
-        "0".to_owned()
-    } else {
-        format!("{points:+}")
-    }
+    let mut parts = vec![
+        table(headings, rows(summary), &[1, 2, 3, 4, 5]),
+        "transferred: gained before its own block, by learning others\n\
+         learned: gained in its own block\n\
+         forgotten: lost after it (-), or still gained (+)\n\
+         Each row adds up to its end.\n"
+            .to_owned(),
+    ];
+    let (known, new): (Vec<Change>, Vec<Change>) = changes(summary).into_iter().partition(|change| change.was_learned);
+    let by_gain = |a: &Change, b: &Change| a.gain().total_cmp(&b.gain());
+    let rose = new.into_iter().filter(|change| change.gain() > 0.0).max_by(by_gain);
+    let fell = known.into_iter().filter(|change| change.gain() < 0.0).min_by(by_gain);
+    parts.extend(rose.map(|rose| {
+        let (from_to, variant) = (rose.in_words("raised"), &rose.variant);
+        format!("Transfer: {from_to}, before {variant} was ever learned.")
+    }));
+    parts.extend(fell.map(|fell| {
+        let (from_to, variant) = (fell.in_words("lowered"), &fell.variant);
+        format!("Forgetting: {from_to}, although {variant} had been learned.")
+    }));
+    parts.join("\n")
 }
 
 fn short(variant: &str) -> String {
     tasks::split(variant).1.unwrap_or(variant).to_owned()
 }
 
-/// Every variant that was learned, in the order of its first block, and was evaluated around it.
-fn accounts(summary: &Summary) -> Vec<Account> {
+/// Every variant that was learned, in the order of its first block, and was evaluated around it: in whole points of reward, so that
+/// the parts shown add up.
+fn rows(summary: &Summary) -> Vec<[String; 6]> {
     let of = |kind: BlockKind| summary.regimes.iter().filter(move |regime| regime.kind == kind);
-    let mut accounts: Vec<Account> = Vec::new();
+    let mut rows: Vec<[String; 6]> = Vec::new();
     for block in of(BlockKind::Learning) {
         let variant = short(&block.variant);
-        if accounts.iter().any(|account| account.variant == variant) {
+        if rows.iter().any(|row| row[0] == variant) {
             continue;
         }
         let evaluations = || of(BlockKind::Evaluation).filter(|regime| regime.variant == block.variant);
-        let points = |reward: f64| reward.round() as i64;
         let (Some(first), Some(before), Some(after), Some(last)) = (
             evaluations().next(),
             evaluations().take_while(|regime| regime.block < block.block).last(),
@@ -118,77 +86,53 @@ fn accounts(summary: &Summary) -> Vec<Account> {
         ) else {
             continue;
         };
-        let [first, before, after, last] = [first, before, after, last].map(|regime| points(regime.mean_reward));
-        accounts.push(Account {
+        let [first, before, after, last] = [first, before, after, last].map(|regime| regime.mean_reward.round() as i64);
+        let change = |points: i64| match points {
+            0 => "0".to_owned(),
+            points => format!("{points:+}"),
+        };
+        rows.push([
             variant,
-            at_first: first,
-            transferred: before - first,
-            learned: after - before,
-            afterwards: last - after,
-        });
+            first.to_string(),
+            change(before - first),
+            change(after - before),
+            change(last - after),
+            last.to_string(),
+        ]);
     }
-    accounts
+    rows
 }
 
-fn transfer_sentence(effects: &[Effect]) -> Option<String> {
-    let changes = effects
-        .iter()
-        .filter_map(|effect| Some((effect, effect.transfer.as_ref()?)));
-    let (effect, change) = changes.max_by(|(_, a), (_, b)| a.gain().total_cmp(&b.gain()))?;
-    Some(format!(
-        "Transfer: learning {} raised {} from {:.0} to {:.0}, before {} was ever learned.",
-        effect.learned, change.variant, change.before, change.after, change.variant
-    ))
-}
-
-fn forgetting_sentence(effects: &[Effect]) -> Option<String> {
-    let changes = effects
-        .iter()
-        .filter_map(|effect| Some((effect, effect.forgetting.as_ref()?)));
-    let (effect, change) = changes.min_by(|(_, a), (_, b)| a.gain().total_cmp(&b.gain()))?;
-    Some(format!(
-        "Forgetting: learning {} lowered {} from {:.0} to {:.0}, although {} had been learned.",
-        effect.learned, change.variant, change.before, change.after, change.variant
-    ))
-}
-
-fn effects(summary: &Summary) -> Vec<Effect> {
-    let evaluation = |block: Option<usize>| -> Vec<(String, f64)> {
-        let own = summary.regimes.iter().filter(|regime| Some(regime.block) == block);
+/// What each learning block did to the other variants that were evaluated before and after it.
+fn changes(summary: &Summary) -> Vec<Change> {
+    let evaluation = |block: Option<usize>| {
+        let own = summary.regimes.iter().filter(move |regime| Some(regime.block) == block);
         own.filter(|regime| regime.kind == BlockKind::Evaluation)
             .map(|regime| (short(&regime.variant), regime.mean_reward))
-            .collect()
     };
     let mut learned_before: Vec<String> = Vec::new();
-    let mut effects = Vec::new();
+    let mut changes = Vec::new();
     for regime in summary
         .regimes
         .iter()
         .filter(|regime| regime.kind == BlockKind::Learning)
     {
-        let (first, second) = (
-            evaluation(regime.block.checked_sub(1)),
-            evaluation(Some(regime.block + 1)),
-        );
         let learned = short(&regime.variant);
-        let change = |(variant, before): &(String, f64)| {
-            let after = second.iter().find(|(other, _)| other == variant)?.1;
-            let (variant, before) = (variant.clone(), *before);
-            Some(Change { variant, before, after })
-        };
-        let changes: Vec<Change> = first.iter().filter_map(change).collect();
-        let others = changes.into_iter().filter(|change| change.variant != learned);
-        let (known, new): (Vec<_>, Vec<_>) = others.partition(|change| learned_before.contains(&change.variant));
-        let rose = new.into_iter().filter(|change| change.gain() > 0.0);
-        let fell = known.into_iter().filter(|change| change.gain() < 0.0);
-        effects.push(Effect {
-            learned: learned.clone(),
-            transfer: rose.max_by(|a, b| a.gain().total_cmp(&b.gain())),
-            forgetting: fell.min_by(|a, b| a.gain().total_cmp(&b.gain())),
-        });
+        for (variant, before) in evaluation(regime.block.checked_sub(1)) {
+            let mut evaluated = evaluation(Some(regime.block + 1));
+            if let Some((_, after)) = evaluated.find(|(other, _)| *other == variant && variant != learned) {
+                changes.push(Change {
+                    was_learned: learned_before.contains(&variant),
+                    learned: learned.clone(),
+                    variant,
+                    before,
+                    after,
+                });
+            }
+        }
         learned_before.push(learned);
     }
-    effects
+    changes
 }
 
 #[cfg(test)]
