@@ -49,12 +49,14 @@ pub(crate) fn measure(round: Duration, renderer: RendererKind) -> Result<Figures
     let small = in_color(arena(ARENA_8, [64, 64])?)?;
     let mazes = mazes()?;
     let small_maze = in_color(mazes.world(0)?.edit(|world| world.agent_params.observation_size = 64)?)?;
-    let one = steps(&square, NUM_ENVS, 1, round)?;
+    let steps_of = |world: &World, num_envs, threads| steps(batch(world, num_envs, threads, RendererKind::Cpu)?, round);
+    let one_core = |world: &World| steps_of(world, NUM_ENVS, 1);
+    let natural = |world: &World| one_core(&in_natural_looks(world)?);
     let mut environment = Environment::new(square.clone());
     let mut figures = rates([
-        ("steps_per_second_per_core_84", one),
-        ("steps_per_second_per_core_160x120", steps(&wide, NUM_ENVS, 1, round)?),
-        ("steps_per_second_per_core_64_rgb", steps(&small, NUM_ENVS, 1, round)?),
+        ("steps_per_second_per_core_84", one_core(&square)?),
+        ("steps_per_second_per_core_160x120", one_core(&wide)?),
+        ("steps_per_second_per_core_64_rgb", one_core(&small)?),
         (
             "resets_per_second_per_core",
             rate(round, |_| {
@@ -62,30 +64,12 @@ pub(crate) fn measure(round: Duration, renderer: RendererKind) -> Result<Figures
                 Ok::<_, Failure>(())
             })?,
         ),
-        (
-            "steps_per_second_per_core_maze_84",
-            steps(&mazes.world(0)?, NUM_ENVS, 1, round)?,
-        ),
-        (
-            "steps_per_second_per_core_84_natural",
-            steps(&in_natural_looks(&square)?, NUM_ENVS, 1, round)?,
-        ),
-        (
-            "steps_per_second_per_core_maze_84_natural",
-            steps(&in_natural_looks(&mazes.world(0)?)?, NUM_ENVS, 1, round)?,
-        ),
-        (
-            "steps_per_second_per_core_160x120_natural",
-            steps(&in_natural_looks(&wide)?, NUM_ENVS, 1, round)?,
-        ),
-        (
-            "steps_per_second_per_core_maze_64_rgb",
-            steps(&small_maze, NUM_ENVS, 1, round)?,
-        ),
-        (
-            "steps_per_second_per_core_maze_64_rgb_natural",
-            steps(&in_natural_looks(&small_maze)?, NUM_ENVS, 1, round)?,
-        ),
+        ("steps_per_second_per_core_maze_84", one_core(&mazes.world(0)?)?),
+        ("steps_per_second_per_core_84_natural", natural(&square)?),
+        ("steps_per_second_per_core_maze_84_natural", natural(&mazes.world(0)?)?),
+        ("steps_per_second_per_core_160x120_natural", natural(&wide)?),
+        ("steps_per_second_per_core_maze_64_rgb", one_core(&small_maze)?),
+        ("steps_per_second_per_core_maze_64_rgb_natural", natural(&small_maze)?),
         (
             "resets_per_second_per_core_maze",
             rate(round, |index| {
@@ -95,7 +79,7 @@ pub(crate) fn measure(round: Duration, renderer: RendererKind) -> Result<Figures
         ),
     ]);
     // One core again, so that both are measured in the same state of the machine.
-    let [two, again] = [2, 1].map(|num_threads| steps(&square, NUM_ENVS_OF_TWO, num_threads, round));
+    let [two, again] = [2, 1].map(|num_threads| steps_of(&square, NUM_ENVS_OF_TWO, num_threads));
     let (two, again) = (two?, again?);
     let speedup = (two / again * 100.0).round() / 100.0;
     figures.insert("two_core_speedup".to_owned(), json!(speedup));
@@ -109,7 +93,7 @@ pub(crate) fn measure(round: Duration, renderer: RendererKind) -> Result<Figures
 fn measure_graphics(round: Duration) -> Result<Figures, Failure> {
     let square = arena(ARENA_20, [84, 84])?;
     let colors = in_color(square.clone())?;
-    let steps = |world: &World, num_envs| steps_of(batch_drawn_by(world, num_envs, 0, RendererKind::Gpu)?, round);
+    let steps = |world: &World, num_envs| steps(batch(world, num_envs, 0, RendererKind::Gpu)?, round);
     Ok(rates([
         ("gpu_steps_per_second_84_batch_256", steps(&square, 256)?),
         ("gpu_steps_per_second_84_rgb_batch_256", steps(&colors, 256)?),
@@ -146,16 +130,7 @@ fn arena(text: &str, [width, height]: [u32; 2]) -> Result<World, Failure> {
     })?)
 }
 
-fn batch(world: &World, num_envs: usize, num_threads: usize) -> Result<Batch, Failure> {
-    batch_drawn_by(world, num_envs, num_threads, RendererKind::Cpu)
-}
-
-fn batch_drawn_by(
-    world: &World,
-    num_envs: usize,
-    num_threads: usize,
-    renderer: RendererKind,
-) -> Result<Batch, Failure> {
+fn batch(world: &World, num_envs: usize, num_threads: usize, renderer: RendererKind) -> Result<Batch, Failure> {
     let world = world.clone();
     let options = BatchOptions {
         autoreset: Autoreset::NextStep,
@@ -166,12 +141,8 @@ fn batch_drawn_by(
     Ok(Batch::new(num_envs, Arc::new(move |_| Ok(world.clone())), options)?)
 }
 
-/// Steps of single environments each second, in a batch on so many threads.
-fn steps(world: &World, num_envs: usize, num_threads: usize, round: Duration) -> Result<f64, Failure> {
-    steps_of(batch(world, num_envs, num_threads)?, round)
-}
-
-fn steps_of(mut batch: Batch, round: Duration) -> Result<f64, Failure> {
+/// Steps of single environments each second, in a batch.
+fn steps(mut batch: Batch, round: Duration) -> Result<f64, Failure> {
     let num_envs = batch.num_envs();
     let mut actions = vec![Action::Continuous([0.0; 3]); num_envs];
     // Not all at the same place of the circle: the first ones set out, one after the other.
@@ -188,7 +159,7 @@ fn steps_of(mut batch: Batch, round: Duration) -> Result<f64, Failure> {
 /// tells.
 fn kilobytes_per_environment(world: &World) -> Result<Option<u64>, Failure> {
     let Some(before) = resident() else { return Ok(None) };
-    let batch = batch(world, NUM_MEASURED, 1)?;
+    let batch = batch(world, NUM_MEASURED, 1, RendererKind::Cpu)?;
     let after = resident().unwrap_or(before);
     drop(batch);
     Ok(Some(after.saturating_sub(before) / NUM_MEASURED as u64))
