@@ -113,6 +113,16 @@ impl Failure {
         Self::Input(FailureText(text.into()), None)
     }
 
+    /// What is wrong with a file or a folder.
+    pub(crate) fn in_file(path: &Path, what: impl fmt::Display) -> Self {
+        Self::input(format!("{}: {what}", path.shown()))
+    }
+
+    /// What is wrong with what an argument says.
+    pub(crate) fn in_argument(name: &str, what: impl fmt::Display) -> Self {
+        Self::usage(format!("{}: {what}", argument(name)))
+    }
+
     /// An error in other words than its own.
     pub(crate) fn because(text: impl Into<String>, error: impl Error + Send + Sync + 'static) -> Self {
         Self::Input(FailureText(text.into()), Some(Arc::new(error)))

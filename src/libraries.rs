@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use driftworld_env::{Catalogue, Library};
-use driftworld_text::ShownPath;
 
 use crate::Failure;
 
@@ -22,5 +21,5 @@ pub(crate) fn catalogue(paths: &[PathBuf]) -> Result<Catalogue, Failure> {
 /// A library from its file.
 pub(crate) fn library(path: &Path) -> Result<Library, Failure> {
     let bytes = driftworld_files::read(path, MAX_LIBRARY_BYTES)?;
-    Library::from_bytes(&bytes).map_err(|error| Failure::input(format!("{}: {error}", path.shown())))
+    Library::from_bytes(&bytes).map_err(|error| Failure::in_file(path, error))
 }

@@ -190,7 +190,7 @@ impl Search {
 
     fn entries(&mut self, folder: &Path) -> Result<Vec<Entry>, Failure> {
         self.count(folder)?;
-        entries(folder).map_err(|error| Failure::input(format!("{}: cannot be read: {error}", folder.shown())))
+        entries(folder).map_err(|error| Failure::in_file(folder, format!("cannot be read: {error}")))
     }
 
     /// Takes down that a folder's entries are read.
@@ -211,10 +211,10 @@ fn too_many(path: &Path, logs: usize) -> Result<(), Failure> {
     if logs <= MOST_LOGS {
         return Ok(());
     }
-    Err(Failure::input(format!(
-        "{}: found more than {MOST_LOGS} logs, expected at most that; name fewer folders",
-        path.shown()
-    )))
+    Err(Failure::in_file(
+        path,
+        format!("found more than {MOST_LOGS} logs, expected at most that; name fewer folders"),
+    ))
 }
 
 /// Whether a folder has one of the files that say what is in a log.

@@ -46,7 +46,7 @@ pub(crate) fn write(option: &str, path: &Path, matrix: &DistanceMatrix, cells: C
 
 /// Reads a matrix.
 pub(crate) fn read(option: &str, path: &Path) -> Result<DistanceMatrix, Failure> {
-    let named = |error: SimilarityError| Failure::input(format!("{}: {error}", path.shown()));
+    let named = |error: SimilarityError| Failure::in_file(path, error);
     if let Some(other) = OtherContents::check(path, Contents::of_folder(path), &[Contents::Matrix]) {
         return Err(other.into());
     }

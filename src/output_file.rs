@@ -57,5 +57,5 @@ pub(crate) fn refuse_removed_ending(path: &Path) -> Result<(), Failure> {
 
 /// Why a file cannot be written.
 pub(crate) fn unwritable(path: &Path, error: &dyn std::fmt::Display) -> Failure {
-    Failure::input(format!("{}: cannot be written: {error}", path.shown()))
+    Failure::in_file(path, format!("cannot be written: {error}"))
 }

@@ -19,6 +19,11 @@ const LOG_FILES: [&str; 4] = [
     RECORDINGS_FILE,
 ];
 
+/// Why a file that is there already is not written over; `advice` says what to do instead.
+pub(crate) fn exists(path: &Path, advice: &str) -> Failure {
+    Failure::in_file(path, format!("found a file, expected none; {advice}"))
+}
+
 /// Refuses a file that a log is made of, and one that would be read as such a file if it were there.
 pub(crate) fn refuse_log_files(target: &Path) -> Result<(), Failure> {
     let name = target.file_name().unwrap_or_default();
@@ -32,11 +37,10 @@ pub(crate) fn refuse_log_files(target: &Path) -> Result<(), Failure> {
     let is_log = |folder: &&Path| Contents::of_folder(folder) == Some(Contents::Log);
     match folder.ancestors().find(is_log) {
         None => Ok(()),
-        Some(log) => Err(Failure::input(format!(
-            "{}: found a file of the log {}, expected another file; the log would be overwritten",
-            target.shown(),
-            log.shown()
-        ))),
+        Some(log) => {
+            let found = format!("found a file of the log {}, expected another file", log.shown());
+            Err(Failure::in_file(target, found + "; the log would be overwritten"))
+        }
     }
 }
 
@@ -75,10 +79,8 @@ pub(crate) fn refuse_inputs<'a>(target: &Path, names: impl IntoIterator<Item = &
     let is_target = |path: &str| Path::new(path).canonicalize().is_ok_and(|path| path == target_itself);
     let is_read = |name: &str| is_target(name) || is_target(tasks::split(name).0);
     if target_itself.is_file() && names.into_iter().any(is_read) {
-        return Err(Failure::input(format!(
-            "{}: found the input file, expected another file to write; the input would be overwritten",
-            target.shown()
-        )));
+        let found = "found the input file, expected another file to write; the input would be overwritten";
+        return Err(Failure::in_file(target, found));
     }
     Ok(())
 }

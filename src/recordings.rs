@@ -48,12 +48,7 @@ impl RecordedEpisodes {
         };
         if !path.is_dir() {
             let file = RecordingsFile::open(path)?;
-            let missing = || {
-                Failure::input(format!(
-                    "{}: found no such file, expected a log or recordings",
-                    path.shown()
-                ))
-            };
+            let missing = || Failure::in_file(path, "found no such file, expected a log or recordings");
             this.file = Some(((String::new(), 0, BlockType::Train), Some(file.ok_or_else(missing)?)));
             return Ok(this);
         }
@@ -205,10 +200,7 @@ impl RecordedEpisodes {
             (Some(first), Some(last)) => format!("one of episodes {first} to {last}"),
             _ => "an episode, and there is none".to_owned(),
         };
-        Failure::input(format!(
-            "{}: found no episode {number}, expected {there}",
-            self.path.shown()
-        ))
+        Failure::in_file(&self.path, format!("found no episode {number}, expected {there}"))
     }
 
     /// Why an episode of a log has no recording, and what to do.

@@ -84,7 +84,7 @@ pub(crate) fn json_files(path: &Path) -> Result<Vec<PathBuf>, Failure> {
     if !path.is_dir() {
         return Ok(vec![path.to_owned()]);
     }
-    let failed = |error| Failure::input(format!("{}: cannot be read: {error}", path.shown()));
+    let failed = |error| Failure::in_file(path, format!("cannot be read: {error}"));
     let mut files = Vec::new();
     for entry in fs::read_dir(path).map_err(failed)? {
         let file = entry.map_err(failed)?.path();
@@ -93,7 +93,7 @@ pub(crate) fn json_files(path: &Path) -> Result<Vec<PathBuf>, Failure> {
         }
     }
     if files.is_empty() {
-        return Err(Failure::input(format!("{}: holds no .json file", path.shown())));
+        return Err(Failure::in_file(path, "holds no .json file"));
     }
     files.sort();
     Ok(files)

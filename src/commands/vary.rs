@@ -1,16 +1,15 @@
 //! `driftworld vary`: a variant at a wanted distance from another. The search is the generator's, the distance `similarity`'s.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::generator::{Subject, at_distance};
 use crate::similarity::{VariantMeasure, Weights};
 use crate::spec::{DEFAULT_VARIANT, Element, TaskSpec, Variant, sound_name};
 use crate::tasks;
 use clap::Args;
-use driftworld_text::ShownPath;
 use serde_json::{Map, Value, json};
 
-use super::{Failure, output};
+use super::{Failure, output, overwrite};
 
 /// Find a variant at a given distance from another.
 ///
@@ -73,8 +72,12 @@ impl Vary {
                 task.name()
             )));
         }
-        if let Some(path) = &self.output {
-            self.refuse_existing(path)?;
+        let found = self
+            .output
+            .as_ref()
+            .filter(|path| !output::is_stdout(path) && path.is_file());
+        if let (Some(path), false) = (found, self.force) {
+            return Err(overwrite::exists(path, "name another file, or replace it with --force"));
         }
         let subject = match self.element {
             Some(element) => Subject::Element(element),
@@ -135,17 +138,6 @@ impl Vary {
             .map(|(name, value)| format!("{name} = {value}"))
             .collect();
         output::line(format!("holds: {}", held.join(", ")))
-    }
-
-    /// Refuses a file that exists and may not be replaced.
-    fn refuse_existing(&self, path: &Path) -> Result<(), Failure> {
-        if self.force || output::is_stdout(path) || !path.is_file() {
-            return Ok(());
-        }
-        Err(Failure::input(format!(
-            "{}: found a file, expected none; name another file, or replace it with --force",
-            path.shown()
-        )))
     }
 }
 

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::{AgentLevel, ScalesRequest, episode};
-use crate::{Failure, argument, tasks};
+use crate::{Failure, tasks};
 
 /// In how many worlds the first pictures are compared.
 const PICTURES: u64 = 5;
@@ -156,7 +156,7 @@ fn named<'a>(
     request: &ScalesRequest,
     catalogue: &Catalogue,
 ) -> Result<Vec<&'a Variant>, Failure> {
-    let wrong = |text: String| Failure::usage(format!("{}: {text}", argument("unlabelled")));
+    let wrong = |text: String| Failure::in_argument("unlabelled", text);
     let mut set: Vec<&Variant> = Vec::new();
     // They may be named without their tasks.
     let all = tasks::with_tasks(&[request.tasks.as_slice(), names].concat());

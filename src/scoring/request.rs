@@ -131,10 +131,10 @@ impl ScoringSettings {
             None => Options::default(),
         };
         if self.scales.is_some() && (self.data_range.is_some() || options.data_range.is_some()) {
-            return Err(Failure::usage(format!(
-                "{}: found ranges of tasks, too, expected one of the two",
-                argument("scales")
-            )));
+            return Err(Failure::in_argument(
+                "scales",
+                "found ranges of tasks, too, expected one of the two",
+            ));
         }
         let choice = &self.choice;
         set(&mut options.perf_measure, choice.perf_measure.clone());

@@ -8,7 +8,7 @@ use serde::{Serialize, Serializer};
 
 use super::varied::{Makeup, Varied};
 use super::{Comparison, ScoredLog, ScoringRequest, Setup, score_logs};
-use crate::{Failure, Warn, argument, output_file};
+use crate::{Failure, Warn, output_file};
 
 /// What several lifetimes are called together, as in l2metrics.
 const NAME_OF_SEVERAL: &str = "ll_metrics";
@@ -146,10 +146,10 @@ fn check_power(effect: Option<f64>, num: usize) -> Result<(), Failure> {
     } else {
         return Ok(());
     };
-    Err(Failure::usage(format!(
-        "{}: found {found}, expected {expected}",
-        argument("power")
-    )))
+    Err(Failure::in_argument(
+        "power",
+        format!("found {found}, expected {expected}"),
+    ))
 }
 
 /// Each lifetime with what l2metrics' files have no field for.

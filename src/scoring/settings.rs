@@ -158,10 +158,7 @@ fn object(path: &Path, text: &str, expected: &str) -> Result<Map<String, Value>,
     }
     match serde_json::from_str(text) {
         Ok(Value::Object(object)) => Ok(object),
-        Ok(_) => Err(Failure::input(format!(
-            "{}: found other JSON, expected {expected}",
-            path.shown()
-        ))),
+        Ok(_) => Err(Failure::in_file(path, format!("found other JSON, expected {expected}"))),
         Err(error) => Err(Failure::input(format!(
             "{}:{}:{}: found no JSON ({error}), expected {expected}",
             path.shown(),

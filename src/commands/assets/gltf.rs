@@ -5,7 +5,6 @@ use std::io::Read;
 use std::path::Path;
 
 use crate::env::{Library, MAX_IMPORT_BYTES};
-use driftworld_text::ShownPath;
 
 use super::super::Failure;
 
@@ -20,12 +19,12 @@ pub(super) fn check_output(path: &Path) -> Result<(), Failure> {
         .file
         .take(16)
         .read_to_end(&mut start);
-    read.map_err(|error| Failure::input(format!("{}: cannot be read: {error}", path.shown())))?;
+    read.map_err(|error| Failure::in_file(path, format!("cannot be read: {error}")))?;
     if Library::is_meant(&start) {
         return Ok(());
     }
     let found = "found a file that is no library, expected a new name or a library";
-    Err(Failure::input(format!("{}: {found}", path.shown())))
+    Err(Failure::in_file(path, found))
 }
 
 /// The bytes of a glTF file.

@@ -104,7 +104,7 @@ impl Pack {
     }
 
     fn pack(&self, path: &Path, library: &mut Library) -> Result<(), Failure> {
-        let in_file = |error: crate::env::EnvError| Failure::input(format!("{}: {error}", path.shown()));
+        let in_file = |error: crate::env::EnvError| Failure::in_file(path, error);
         let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
         let class = self.class.clone().or(stem).unwrap_or_default().trim().to_lowercase();
         let options = ImportOptions {

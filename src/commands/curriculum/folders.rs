@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use driftworld_text::ShownPath;
 
-use crate::commands::{Failure, output};
+use crate::commands::{Failure, output, overwrite};
 use crate::spec::Scenario;
 
 /// Refuses standard output and files in place of the folder of several scenarios.
@@ -37,15 +37,11 @@ pub(super) fn refuse_standard_output(option: &str, folder: Option<&Path>) -> Res
 pub(super) fn refuse_existing(into: &[(Option<&PathBuf>, &Vec<Scenario>)]) -> Result<(), Failure> {
     let folders = into
         .iter()
-        .filter_map(|(folder, scenarios)| Some(((*folder)?, scenarios)));
+        .filter_map(|(folder, scenarios)| folder.zip(Some(*scenarios)));
     let mut files = folders.flat_map(|(folder, scenarios)| scenarios.iter().map(|scenario| file_of(folder, scenario)));
-    match files.find(|path| path.is_file()) {
-        None => Ok(()),
-        Some(path) => Err(Failure::input(format!(
-            "{}: found a file, expected none; name another folder, or replace its scenarios with --force",
-            path.shown()
-        ))),
-    }
+    let advice = "name another folder, or replace its scenarios with --force";
+    let found = files.find(|path| path.is_file());
+    found.map_or(Ok(()), |path| Err(overwrite::exists(&path, advice)))
 }
 
 /// Writes a scenario into a folder, in a file named after it.

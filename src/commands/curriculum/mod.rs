@@ -15,7 +15,6 @@ use crate::spec::{
     TaskLabel, sound_name,
 };
 use clap::{Args, ValueEnum};
-use driftworld_text::ShownPath;
 use serde_json::json;
 
 use super::assets::LibraryChoice;
@@ -272,10 +271,8 @@ impl Curriculum {
                 (self.experts.as_ref(), &designed.experts),
             ])?;
             if !request.is_of_several() && self.output.is_file() {
-                return Err(Failure::input(format!(
-                    "{}: found a file, expected none; name another with -o, or replace it with --force",
-                    self.output.shown()
-                )));
+                let advice = "name another with -o, or replace it with --force";
+                return Err(overwrite::exists(&self.output, advice));
             }
         }
         let evidence = designed.chosen.evidence.as_ref();

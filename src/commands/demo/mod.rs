@@ -264,15 +264,15 @@ fn block_table(summary: &Summary, beside: &[(String, Summary)]) -> String {
 
 /// A demo may be run again and again: its own log is replaced, anything else in the way is not.
 fn remove_old_log(logs: &Path) -> Result<(), Failure> {
-    let failed = |error| Failure::input(format!("{}: cannot be removed: {error}", logs.shown()));
+    let failed = |error| Failure::in_file(logs, format!("cannot be removed: {error}"));
     if !logs.exists() {
         return Ok(());
     }
     if !logs.join("logger_info.json").exists() {
-        return Err(Failure::input(format!(
-            "{}: is not a log of an earlier demo; choose another folder with -o",
-            logs.shown()
-        )));
+        return Err(Failure::in_file(
+            logs,
+            "is not a log of an earlier demo; choose another folder with -o",
+        ));
     }
     std::fs::remove_dir_all(logs).map_err(failed)
 }

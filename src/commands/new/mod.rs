@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use driftworld_text::ShownPath;
 
-use super::{Failure, output};
+use super::{Failure, output, overwrite};
 use crate::spec::{TaskSpec, did_you_mean};
 use crate::tasks;
 
@@ -113,10 +113,10 @@ fn renamed((old, text): (&str, &str), name: &str) -> Result<String, Failure> {
 
 fn write(file: &Path, text: &str, force: bool, json: bool) -> Result<(), Failure> {
     if !force && !output::is_stdout(file) && file.exists() {
-        return Err(Failure::input(format!(
-            "{}: found a file, expected none; name another with -o, or replace it with --force",
-            file.shown()
-        )));
+        return Err(overwrite::exists(
+            file,
+            "name another with -o, or replace it with --force",
+        ));
     }
     output::write_or_print(file, text)?;
     output::json_of_what_was_written(json && !output::is_stdout(file))
