@@ -12,9 +12,8 @@ use driftworld_spec::{Scenario, SpecError, TaskSpec, World, nearest};
 use driftworld_text::ShownPath;
 
 use crate::contents::Contents;
-use crate::documents::{self, DocumentError};
+use crate::documents::{self, DocumentError, Kind};
 use crate::tasks::{self, TaskError};
-use crate::top_level::TopLevel;
 
 /// The most files that are read to find a world with a name near to a missing one's.
 const MOST_READ: usize = 8;
@@ -81,22 +80,14 @@ impl ScenarioFile {
     /// Whether a file is a scenario, in whichever form.
     pub fn is_one(path: &Path) -> bool {
         let text = documents::text(path).unwrap_or_default();
-        TopLevel::of(&text).is_some_and(|keys| keys.has("blocks") || keys.is_l2explorer_scenario())
+        Contents::of_text(&text) == Some(Contents::Scenario)
     }
 
     /// The scenario with everything that it names.
     ///
     /// # Errors
-    /// As [`Plan::new`].
-    pub fn plan(&self, missing: Missing, warn: Warn) -> Result<Plan, CurriculumError> {
-        self.plan_with(missing, Undrawable::Refused, warn)
-    }
-
-    /// The same, and says what becomes of experiences whose worlds cannot be drawn.
-    ///
-    /// # Errors
     /// As [`Plan::with_undrawable`].
-    pub fn plan_with(&self, missing: Missing, undrawable: Undrawable, warn: Warn) -> Result<Plan, CurriculumError> {
+    pub fn plan(&self, missing: Missing, undrawable: Undrawable, warn: Warn) -> Result<Plan, CurriculumError> {
         self.plan_named(missing, undrawable, warn).map(|(plan, _)| plan)
     }
 
@@ -293,26 +284,11 @@ impl Missing {
     }
 }
 
-/// A scenario with everything that it names, tasks from the working folder; its world files come from `world`.
-///
-/// # Errors
-/// As [`Plan::new`].
-pub fn plan(
-    scenario: &Scenario,
-    world: &mut dyn FnMut(&str) -> Result<FoundWorld, String>,
-) -> Result<Plan, CurriculumError> {
-    let mut sources = Sources {
-        task: &mut |name| tasks::task(name).map_err(|error| error.to_string()),
-        world,
-    };
-    Plan::new(scenario, &mut sources)
-}
-
-/// As [`plan`], for a scenario without world files whose worlds are to be tried.
+/// The plan of a scenario without world files, whose tasks are built in or named by their paths from here.
 ///
 /// # Errors
 /// As [`Plan::with_undrawable`].
-pub fn plan_to_try(scenario: &Scenario) -> Result<Plan, CurriculumError> {
+pub fn plan(scenario: &Scenario, undrawable: Undrawable) -> Result<Plan, CurriculumError> {
     let mut sources = Sources {
         task: &mut |name| tasks::task(name).map_err(|error| error.to_string()),
         world: &mut |path| {
@@ -321,10 +297,10 @@ pub fn plan_to_try(scenario: &Scenario) -> Result<Plan, CurriculumError> {
             ))
         },
     };
-    Plan::with_undrawable(scenario, &mut sources, Undrawable::Skipped)
+    Plan::with_undrawable(scenario, &mut sources, undrawable)
 }
 
 /// Whether a text is a scenario of the original's.
 pub fn is_original(text: &str) -> bool {
-    TopLevel::of(text).is_some_and(|keys| keys.is_l2explorer_scenario())
+    Kind::of(text) == Kind::L2ExplorerScenario
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::curriculum::{AuditOptions, AuditRow, audit};
+use crate::curriculum::{AuditOptions, AuditRow, Undrawable, audit};
 use crate::scenarios::{Missing, ScenarioFile};
 use crate::table::table;
 use clap::Args;
@@ -56,7 +56,7 @@ impl Audit {
             let folder = ScratchFolder::new(".driftworld-audit-", &std::env::temp_dir())?;
             let mut plan = |scenario: &_| {
                 file.with_scenario(scenario)
-                    .plan(Missing::StandIn, &mut output::warning)
+                    .plan(Missing::StandIn, Undrawable::Refused, &mut output::warning)
             };
             let rows = audit(&file.scenario, &mut plan, folder.path(), options)?;
             let count = |passed| rows.iter().filter(|row| row.passed == passed).count();

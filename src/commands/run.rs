@@ -76,18 +76,6 @@ pub(crate) struct Run {
     /// such an experience, continue it with this option and --resume.
     #[arg(long)]
     skip_undrawable: bool,
-    #[command(flatten)]
-    missing: MissingChoice,
-    #[command(flatten)]
-    libraries: LibraryChoice,
-    /// Print the summary as JSON.
-    #[arg(long)]
-    json: bool,
-}
-
-/// What happens if a world file is missing.
-#[derive(Args)]
-struct MissingChoice {
     /// If a world file is missing, use the one with the most similar name.
     ///
     /// The log says so. This is the default for L2Explorer's scenarios.
@@ -96,6 +84,11 @@ struct MissingChoice {
     /// Fail if a world file is missing, also for L2Explorer's scenarios.
     #[arg(long, conflicts_with = "stand_in")]
     no_stand_in: bool,
+    #[command(flatten)]
+    libraries: LibraryChoice,
+    /// Print the summary as JSON.
+    #[arg(long)]
+    json: bool,
 }
 
 fn jobs(text: &str) -> Result<NonZeroUsize, String> {
@@ -121,14 +114,14 @@ impl Run {
         self.refuse_task()?;
         let file = ScenarioFile::read(&self.scenario, &mut output::warning)?;
         // The original's own scenario names a map that it does not come with, and has to run as it stands.
-        let may = self.missing.stand_in || (file.original && !self.missing.no_stand_in);
+        let may = self.stand_in || (file.original && !self.no_stand_in);
         let missing = Missing::may_stand_in(may);
         let undrawable = if self.skip_undrawable {
             Undrawable::Skipped
         } else {
             Undrawable::Refused
         };
-        let plan = file.plan_with(missing, undrawable, &mut output::warning);
+        let plan = file.plan(missing, undrawable, &mut output::warning);
         let mut plan = plan.map_err(|error| match &error {
             CurriculumError::World { .. } => Failure::input(format!(
                 "{error}\nnothing was run: fix the task (driftworld validate SCENARIO --worlds 100 finds what cannot \
@@ -156,7 +149,7 @@ impl Run {
             plan: &plan,
             agent,
             logs: &self.output,
-            start: if self.resume { Start::Resumed } else { Start::New },
+            resumes: self.resume,
             jobs: self.jobs.unwrap_or_else(processors),
             catalogue: self.libraries.catalogue()?,
             records: self.record,
@@ -233,21 +226,13 @@ pub(crate) fn processors() -> NonZeroUsize {
 const UNDRAWABLE: &str = "this one cannot be run: to skip such experiences, repeat the command with --resume and \
      --skip-undrawable; or fix the task and start a new log";
 
-/// How a log is begun.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Start {
-    /// In an empty folder.
-    New,
-    /// Where it stopped, if there is one.
-    Resumed,
-}
-
 /// A lifetime to run.
 pub(crate) struct LifetimeRun<'a> {
     pub(crate) plan: &'a Plan,
     pub(crate) agent: NamedAgent,
     pub(crate) logs: &'a Path,
-    pub(crate) start: Start,
+    /// Whether the log goes on where it stopped, if there is one; else its folder is empty.
+    pub(crate) resumes: bool,
     pub(crate) jobs: NonZeroUsize,
     pub(crate) catalogue: Catalogue,
     /// Whether what is done is kept.
@@ -328,11 +313,8 @@ impl LifetimeRun<'_> {
     }
 
     fn journal(&self) -> Result<Journal, Failure> {
-        let opened = match self.start {
-            Start::New => Journal::create(self.logs, self.plan, &self.agent.name),
-            Start::Resumed => Journal::resume(self.logs, self.plan, &self.agent.name),
-        };
-        opened.map_err(|error| match error {
+        let open = if self.resumes { Journal::resume } else { Journal::create };
+        open(self.logs, self.plan, &self.agent.name).map_err(|error| match error {
             CurriculumError::Log(MetricsError::LogExists(path)) => Failure::input(format!(
                 "{}: found a folder that is not empty; choose a new one with --output, or continue its log with --resume",
                 path.shown()

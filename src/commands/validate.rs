@@ -188,7 +188,7 @@ impl Validate {
             Kind::Scenario => {
                 let warn = &mut |_| {};
                 let file = ScenarioFile::from_text(path, text, warn)?;
-                let plan = file.plan_with(Missing::Refused, Undrawable::Skipped, warn)?;
+                let plan = file.plan(Missing::Refused, Undrawable::Skipped, warn)?;
                 plan.tasks().values().map(Arc::clone).collect()
             }
             // The tasks of the original's scenarios, and worlds, claim nothing.
@@ -238,7 +238,7 @@ impl Validate {
                 let file =
                     ScenarioFile::from_text(path, text, warn).map_err(|error| (error.code(), error.to_string()))?;
                 let missing = Missing::may_stand_in(file.original);
-                let plan = file.plan_with(missing, Undrawable::Skipped, warn);
+                let plan = file.plan(missing, Undrawable::Skipped, warn);
                 let plan = plan.map_err(|error| (error.code(), error.to_string()))?;
                 for (task, spec) in plan.tasks() {
                     tasks::check_classes(task, spec, classes).map_err(|error| (error.code(), error.to_string()))?;

@@ -1,7 +1,7 @@
 //! That a scenario can be run, before it is written: its names in logs, its classes, a few of its worlds. Drawing them is
 //! `curriculum`'s.
 
-use driftworld_curriculum::Tried;
+use driftworld_curriculum::{Tried, Undrawable};
 use driftworld_env::Catalogue;
 use driftworld_spec::{Classes, Scenario};
 
@@ -25,7 +25,7 @@ impl Drawable {
 
     /// Refuses a scenario that could not be run.
     pub(super) fn check(&mut self, scenario: &Scenario) -> Result<(), Failure> {
-        let plan = scenarios::plan_to_try(scenario)?;
+        let plan = scenarios::plan(scenario, Undrawable::Skipped)?;
         for (name, task) in plan.tasks() {
             tasks::check_classes(name, task, &self.classes)?;
         }

@@ -5,7 +5,7 @@ mod effects;
 
 use std::path::{Path, PathBuf};
 
-use crate::curriculum::{Design, Summary, design};
+use crate::curriculum::{Design, Summary, Undrawable, design};
 use crate::distances::{By, Sample, labelled_matrix};
 use crate::env::Catalogue;
 use crate::generator::Sampler;
@@ -24,7 +24,7 @@ use super::metrics::summary;
 use super::order::path_table;
 use effects::effects_table;
 
-use super::run::{LifetimeRun, Start, processors};
+use super::run::{LifetimeRun, processors};
 use super::{Failure, output};
 use crate::contact_sheet::{self, ways};
 use crate::report::picture::heat_map;
@@ -202,7 +202,7 @@ fn heading(number: &str, text: &str) -> Result<(), Failure> {
 /// Runs a scenario into a folder, in place of what an earlier demo left there.
 fn run_lifetime(scenario: &Scenario, agent: &AgentArg, logs: &Path) -> Result<Summary, Failure> {
     remove_old_log(logs)?;
-    let mut plan = scenarios::plan(scenario, &mut |_| Err("the demo has no world files".to_owned()))?;
+    let mut plan = scenarios::plan(scenario, Undrawable::Refused)?;
     let agent = agent.agent()?;
     for (what, fingerprint) in agent.fingerprints() {
         plan.add_fingerprint(what, fingerprint);
@@ -211,7 +211,7 @@ fn run_lifetime(scenario: &Scenario, agent: &AgentArg, logs: &Path) -> Result<Su
         plan: &plan,
         agent,
         logs,
-        start: Start::New,
+        resumes: false,
         jobs: processors(),
         catalogue: Catalogue::default(),
         records: false,
