@@ -8,17 +8,13 @@ use driftworld_spec::{Modality, MotionModel, Variant, World};
 
 use crate::Failure;
 use crate::map_drawing::Moves;
+use crate::modality;
 use crate::sheet_words::{Worlds, alike, below_all, commonest, differences, modality_words, placed, sentence};
 use crate::subject::{Sight, openness, sight, subjects};
-use crate::views::{Views, agent_camera};
+use crate::views::{TURNS, Views, agent_camera};
 
 /// Worlds of each variant that are tried.
 const WORLDS: u64 = 4;
-
-/// Turns of the camera that are tried, in degrees clockwise from the agent's heading.
-const TURNS: [f32; 12] = [
-    0.0, 30.0, -30.0, 60.0, -60.0, 90.0, -90.0, 120.0, -120.0, 150.0, -150.0, 180.0,
-];
 
 /// For how many seconds moving objects draw their ways.
 const SECONDS: f64 = 5.0;
@@ -166,17 +162,8 @@ pub(crate) fn cells(shown: &[Shown], look: Look, tick: &dyn Fn()) -> Result<(Vec
 /// In which of the kinds of pictures that its agent gets a world is shown: colours before distances before what things are.
 fn shown_modality(world: &World) -> Modality {
     let own = &world.agent_params.modalities;
-    let order = [
-        Modality::Rgb,
-        Modality::Depth,
-        Modality::Segmentation,
-        Modality::Class,
-        Modality::Instance,
-    ];
-    order
-        .into_iter()
-        .find(|kind| own.contains(kind))
-        .unwrap_or(Modality::Rgb)
+    let first = modality::ALL.into_iter().find(|kind| own.contains(kind));
+    first.unwrap_or(Modality::Rgb)
 }
 
 /// The worlds of a variant that are tried, drawn when they are asked for.

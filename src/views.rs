@@ -163,19 +163,10 @@ const CLOSE_UP_TANGENT: f32 = 0.384;
 /// A close-up of fewer pixels, of 4,096, shows nothing.
 const LEAST_CLOSE_UP: u32 = 80;
 
-/// From where objects are looked at: degrees from the agent's side, and shares of the usual distance.
-const CLOSE_UPS: [(f32, f32); 24] = {
-    let turns = [
-        0.0, 30.0, -30.0, 60.0, -60.0, 90.0, -90.0, 120.0, -120.0, 150.0, -150.0, 180.0,
-    ];
-    let mut all = [(0.0, 1.0); 24];
-    let mut number = 0;
-    while number < 24 {
-        all[number] = (turns[number % 12], if number < 12 { 1.0 } else { 0.6 });
-        number += 1;
-    }
-    all
-};
+/// Turns of the camera that are tried, in degrees clockwise.
+pub(crate) const TURNS: [f32; 12] = [
+    0.0, 30.0, -30.0, 60.0, -60.0, 90.0, -90.0, 120.0, -120.0, 150.0, -150.0, 180.0,
+];
 
 /// What a reward category is.
 fn category_name(category: u8) -> &'static str {
@@ -308,7 +299,7 @@ impl<'a> Views<'a> {
 
     /// What the agent sees at the start.
     pub(crate) fn first_person(&self) -> Result<Seen, Failure> {
-        let camera = self.agent_camera(self.turn);
+        let camera = agent_camera(self.world, self.turn);
         let frame = self.frame(&self.scene, &camera, self.size, self.size)?;
         let picture = |kind| Picture::new(self.size, self.size, to_rgb(kind, &frame, number_color));
         Ok(Seen {
@@ -325,7 +316,7 @@ impl<'a> Views<'a> {
 
     /// What the agent sees at the start, in one kind of picture: classes and objects have a colour for each.
     pub(crate) fn seen_in(&self, modality: Modality) -> Result<Picture, Failure> {
-        let camera = self.agent_camera(self.turn);
+        let camera = agent_camera(self.world, self.turn);
         if modality == Modality::Rgb {
             return self.smooth(&self.scene, &camera, self.size);
         }
@@ -336,13 +327,13 @@ impl<'a> Views<'a> {
 
     /// What the agent sees at the start in colour, pixel by pixel as a learner gets it.
     pub(crate) fn as_learners_see(&self, side: u32) -> Result<Picture, Failure> {
-        let frame = self.frame(&self.scene, &self.agent_camera(self.turn), side, side)?;
+        let frame = self.frame(&self.scene, &agent_camera(self.world, self.turn), side, side)?;
         Ok(Picture::new(side, side, frame.rgb))
     }
 
     /// What the agent sees at the start in colour, with smooth edges.
     pub(crate) fn smoothly(&self, [width, height]: [u32; 2]) -> Result<Picture, Failure> {
-        let camera = self.agent_camera(self.turn);
+        let camera = agent_camera(self.world, self.turn);
         let frame = self.frame(&self.scene, &camera, 2 * width, 2 * height)?;
         let picture = Picture::new(frame.width, frame.height, frame.rgb);
         Ok(picture.halved())
@@ -353,7 +344,7 @@ impl<'a> Views<'a> {
         let look = |turn: f32| {
             let camera = Camera {
                 field_of_view_deg: 90.0,
-                ..self.agent_camera(self.turn + turn)
+                ..agent_camera(self.world, self.turn + turn)
             };
             self.smooth(&self.scene, &camera, self.size)
         };
@@ -390,7 +381,11 @@ impl<'a> Views<'a> {
     /// A camera that sees an object, where possible from where the agent is: walls and other things may be in the way.
     fn near(&self, index: usize) -> Result<Option<Camera>, Failure> {
         let mut best: (u32, Option<Camera>) = (LEAST_CLOSE_UP, None);
-        for (turn, closeness) in CLOSE_UPS {
+        // From the agent's side first; then closer by, at shares of the usual distance.
+        let places = [1.0, 0.6]
+            .into_iter()
+            .flat_map(|closeness| TURNS.map(|turn| (turn, closeness)));
+        for (turn, closeness) in places {
             let camera = self.close_to(index, turn, closeness);
             let pixels = sight(&mut self.renderer.borrow_mut(), &self.scene, &camera, &[index])?.pixels;
             // Another place is taken only where clearly more is seen.
@@ -433,10 +428,6 @@ impl<'a> Views<'a> {
     /// The map with triggers, what pays and what costs, and ways, and a legend to its right with scale and north.
     pub(crate) fn map_with_legend(&self, moves: &Moves) -> Drawing {
         map_legend::map_with_legend(self.world, &self.scene, moves, self.size)
-    }
-
-    fn agent_camera(&self, turn: f32) -> Camera {
-        agent_camera(self.world, turn)
     }
 
     /// A colour picture with smooth edges: drawn at twice the size where that is allowed.
