@@ -54,13 +54,7 @@ pub fn elements_of(task: &Arc<TaskSpec>, request: &ElementsRequest) -> Result<El
     let trial = Trial::new(request)?;
     tasks::check_variants(&compared, &trial.experiment.catalogue)?;
     let mut outcome = ElementsOutcome::new(request, task.name());
-    if let Some((base, others)) = compared.split_first() {
-        base.name().clone_into(&mut outcome.base);
-        let worlds = trial.worlds(base, request.worlds)?;
-        for other in others {
-            outcome.variants.push(trial.of_variant(base, &worlds, other)?);
-        }
-    }
+    trial.compare_all(&compared, &mut outcome, Trial::of_variant)?;
     // One variant alone shows little of what a parameter can do.
     if compared.len() == task.variant_names().len() {
         outcome.note_in_vain(task);
@@ -75,15 +69,12 @@ pub fn elements_of(task: &Arc<TaskSpec>, request: &ElementsRequest) -> Result<El
 pub(crate) fn elements_among(variants: &[Variant], request: &ElementsRequest) -> Result<ElementsOutcome, Failure> {
     let trial = Trial::new(request)?;
     let mut outcome = ElementsOutcome::new(request, variants.first().map_or("", |first| first.task().name()));
-    if let Some((base, others)) = variants.split_first() {
-        base.name().clone_into(&mut outcome.base);
-        let worlds = trial.worlds(base, request.worlds)?;
-        for other in others {
-            outcome.variants.push(trial.compared(base, &worlds, other)?);
-        }
-    }
+    trial.compare_all(variants, &mut outcome, Trial::compared)?;
     Ok(outcome)
 }
+
+/// Compares a variant with a base in worlds of the base.
+type Compare = fn(&Trial, &Variant, &[World], &Variant) -> Result<VariantElements, Failure>;
 
 /// What holds for every variant that is tried.
 struct Trial {
@@ -105,6 +96,24 @@ impl Trial {
             seed: request.seed,
             num_worlds: request.worlds,
         })
+    }
+
+    /// Compares each variant but the first with the first.
+    fn compare_all(
+        &self,
+        variants: &[Variant],
+        outcome: &mut ElementsOutcome,
+        compare: Compare,
+    ) -> Result<(), Failure> {
+        let Some((base, others)) = variants.split_first() else {
+            return Ok(());
+        };
+        base.name().clone_into(&mut outcome.base);
+        let worlds = self.worlds(base, self.num_worlds)?;
+        for other in others {
+            outcome.variants.push(compare(self, base, &worlds, other)?);
+        }
+        Ok(())
     }
 
     fn worlds(&self, variant: &Variant, count: u64) -> Result<Vec<World>, Failure> {

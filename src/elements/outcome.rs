@@ -85,8 +85,9 @@ pub struct Contradiction {
 }
 
 /// What the experiment says of a variant's claims.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "lowercase")]
+#[strum(serialize_all = "lowercase")]
 pub enum Verdict {
     /// All that was measured is declared.
     Sound,
@@ -99,11 +100,7 @@ pub enum Verdict {
 impl Verdict {
     /// The verdict in a word.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Sound => "sound",
-            Self::Idle => "idle",
-            Self::Contradicted => "contradicted",
-        }
+        self.into()
     }
 }
 
