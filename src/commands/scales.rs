@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::scales::{
-    BestAgent, DEFAULT_SCALES_WORLDS, MAX_SCALES_WORLDS, ScalesFile, ScalesRequest, num_variants, scales,
+    AgentLevel, BestAgent, DEFAULT_SCALES_WORLDS, MAX_SCALES_WORLDS, ScalesFile, ScalesRequest, num_variants, scales,
 };
 use crate::table::table;
 use crate::tasks::built_in_names;
@@ -94,12 +94,7 @@ fn unlabelled(found: &ScalesFile) -> Option<String> {
     let mut rows = Vec::new();
     for set in &found.unlabelled {
         for (place, name) in set.among.iter().enumerate() {
-            let level = |best: &BestAgent| {
-                let level = best.levels.get(name);
-                level.map_or_else(String::new, |level| {
-                    format!("{:.1} ± {:.1}", level.mean, level.standard_error)
-                })
-            };
+            let level = |best: &BestAgent| in_words(best.levels.get(name));
             let agent = |best: &BestAgent| if place == 0 { best.agent.clone() } else { String::new() };
             let scale = found.scales.get(name);
             rows.push([
@@ -117,14 +112,15 @@ fn unlabelled(found: &ScalesFile) -> Option<String> {
     (!rows.is_empty()).then(|| format!("{}\n{what}", table(headings, rows, &[1, 2, 4])))
 }
 
+fn in_words(level: Option<&AgentLevel>) -> String {
+    level.map_or_else(String::new, |level| {
+        format!("{:.1} ± {:.1}", level.mean, level.standard_error)
+    })
+}
+
 fn shown(found: &ScalesFile) -> String {
     let rows = found.scales.values().map(|scale| {
-        let level = |agent: &str| {
-            let level = scale.agents.get(agent);
-            level.map_or_else(String::new, |level| {
-                format!("{:.1} ± {:.1}", level.mean, level.standard_error)
-            })
-        };
+        let level = |agent: &str| in_words(scale.agents.get(agent));
         let word = if scale.ceiling > scale.floor {
             ""
         } else {
