@@ -1,6 +1,7 @@
 //! Numbers and words as several options of the command line take them. What they mean stands with each.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use driftworld_spec::sound_name;
 use serde::de::DeserializeOwned;
 
 /// A seed.
@@ -23,7 +24,22 @@ pub(crate) fn share(text: &str) -> Result<f64, String> {
     within(text, |share| 0.0 < share && share < 1.0, "a share above 0 and below 1")
 }
 
-fn within(text: &str, is_sound: impl FnOnce(f64) -> bool, expected: &str) -> Result<f64, String> {
+/// A distance, or how much it may be off.
+pub(crate) fn distance(text: &str) -> Result<f64, String> {
+    within(
+        text,
+        |distance| distance.is_finite() && distance >= 0.0,
+        "a number, 0 or more",
+    )
+}
+
+/// A name that a task, a variant or a scenario can have.
+pub(crate) fn name(text: &str) -> Result<String, String> {
+    sound_name(text).map(|()| text.to_owned())
+}
+
+/// A number for which `is_sound` holds.
+pub(crate) fn within(text: &str, is_sound: impl FnOnce(f64) -> bool, expected: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number| is_sound(*number));
     number.ok_or_else(|| format!("expected {expected}"))
 }

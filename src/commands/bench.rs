@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use crate::Failure;
 use crate::env::RendererKind;
+use crate::numbers::within;
 use crate::throughput::environment;
 use clap::{Args, Subcommand};
 
@@ -42,10 +43,11 @@ struct EnvOptions {
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(seconds) if (0.001..=60.0).contains(&seconds) => Ok(seconds),
-        _ => Err("expected seconds in 0.001..60".to_owned()),
-    }
+    within(
+        text,
+        |seconds| (0.001..=60.0).contains(&seconds),
+        "seconds in 0.001..60",
+    )
 }
 
 impl Bench {

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use crate::generator::{Subject, at_distance};
 use crate::similarity::{VariantMeasure, Weights};
-use crate::spec::{DEFAULT_VARIANT, Element, TaskSpec, Variant, sound_name};
-use crate::tasks;
+use crate::spec::{DEFAULT_VARIANT, Element, TaskSpec, Variant};
+use crate::{numbers, tasks};
 use clap::Args;
 use serde_json::{Map, Value, json};
 
@@ -30,13 +30,13 @@ pub(crate) struct Vary {
     #[arg(long, value_delimiter = ',', value_name = "NAME,…")]
     parameters: Vec<String>,
     /// The distance to reach: 0 or more, where 1 is one parameter moved over its whole range.
-    #[arg(long, value_parser = distance, allow_negative_numbers = true)]
+    #[arg(long, value_parser = numbers::distance, allow_negative_numbers = true)]
     distance: f64,
     /// How far the result may be from that distance.
-    #[arg(long, default_value = "0.001", value_parser = distance, allow_negative_numbers = true)]
+    #[arg(long, default_value = "0.001", value_parser = numbers::distance, allow_negative_numbers = true)]
     tolerance: f64,
     /// Name of the new variant.
-    #[arg(long, default_value = "found", value_parser = name)]
+    #[arg(long, default_value = "found", value_parser = numbers::name)]
     name: String,
     /// Also write the task spec with the new variant at its end to this file.
     #[arg(short, long, value_name = "FILE")]
@@ -47,17 +47,6 @@ pub(crate) struct Vary {
     /// Print the result as JSON.
     #[arg(long)]
     json: bool,
-}
-
-fn distance(text: &str) -> Result<f64, String> {
-    text.parse()
-        .ok()
-        .filter(|distance: &f64| distance.is_finite() && *distance >= 0.0)
-        .ok_or_else(|| "expected a number, 0 or more".to_owned())
-}
-
-fn name(text: &str) -> Result<String, String> {
-    sound_name(text).map(|()| text.to_owned())
 }
 
 impl Vary {
@@ -72,11 +61,10 @@ impl Vary {
                 task.name()
             )));
         }
-        let found = self
-            .output
-            .as_ref()
-            .filter(|path| !output::is_stdout(path) && path.is_file());
-        if let (Some(path), false) = (found, self.force) {
+        if let Some(path) = self.output.as_ref().filter(|_| !self.force)
+            && !output::is_stdout(path)
+            && path.is_file()
+        {
             return Err(overwrite::exists(path, "name another file, or replace it with --force"));
         }
         let subject = match self.element {

@@ -12,7 +12,7 @@ use crate::distances::By;
 use crate::modality;
 use crate::spec::{
     DriftSchedule, DriftSwitch, Element, Modality, Scenario, ScenarioComplexity, ScenarioDifficulty, ScenarioForm,
-    TaskLabel, sound_name,
+    TaskLabel,
 };
 use clap::{Args, ValueEnum};
 use serde_json::json;
@@ -21,7 +21,7 @@ use super::assets::LibraryChoice;
 use super::order::OrderArgs;
 use super::sample::Mix;
 use super::{Failure, output, overwrite};
-use crate::numbers::documented;
+use crate::numbers::{self, documented};
 use folders::write_into;
 pub(crate) use tables::{blocks, choices};
 
@@ -112,7 +112,7 @@ pub(crate) struct Curriculum {
     #[arg(long, requires = "drift", num_args = 0..=1, require_equals = true, default_missing_value = "parameter", value_name = "WHAT")]
     mix: Option<Mix>,
     /// Name of the scenario.
-    #[arg(long, default_value = "curriculum", value_parser = name)]
+    #[arg(long, default_value = "curriculum", value_parser = numbers::name)]
     name: String,
     /// Experiences per learning block.
     ///
@@ -141,7 +141,7 @@ pub(crate) struct Curriculum {
     #[arg(long, value_parser = documented::<ScenarioDifficulty>(&DIFFICULTIES))]
     difficulty: Option<ScenarioDifficulty>,
     /// Seed of all worlds, at most 2^52. Learning and evaluation never share a world.
-    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = crate::numbers::seed)]
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = numbers::seed)]
     seed: u64,
     /// Which worlds to evaluate on: validation to choose hyperparameters, test for what you report.
     #[arg(long, value_enum, default_value_t = WorldSplit::Test)]
@@ -394,9 +394,4 @@ impl Curriculum {
             seed: self.seed,
         }
     }
-}
-
-/// A name that a scenario may have.
-fn name(text: &str) -> Result<String, String> {
-    sound_name(text).map(|()| text.to_owned())
 }
