@@ -57,18 +57,12 @@ enum Format {
     Csv,
 }
 
-impl Format {
-    fn delimiter(self) -> Delimiter {
-        match self {
-            Self::Tsv => Delimiter::Tab,
-            Self::Csv => Delimiter::Comma,
-        }
-    }
-}
-
 impl Aggregate {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let format = self.format()?;
+        let delimiter = match self.format()? {
+            Format::Tsv => Delimiter::Tab,
+            Format::Csv => Delimiter::Comma,
+        };
         let logs = log_folders::found(&self.logs, self.recursive)?;
         overwrite::refuse_log_files(&self.output)?;
         let mut table = LogTable::new(if self.incomplete {
@@ -85,9 +79,9 @@ impl Aggregate {
             table.add(log)?;
         }
         if output::is_stdout(&self.output) {
-            return self.print(&table, format);
+            return self.print(&table, delimiter);
         }
-        self.write(&table, format)?;
+        self.write(&table, delimiter)?;
         let (rows, logs) = (table.len() as u64, logs.len() as u64);
         let what = format!("{} of {}", count(rows, "row"), count(logs, "log"));
         output::wrote(&self.output, what);
@@ -119,21 +113,21 @@ impl Aggregate {
         }
     }
 
-    fn write(&self, table: &LogTable, format: Format) -> Result<(), Failure> {
+    fn write(&self, table: &LogTable, delimiter: Delimiter) -> Result<(), Failure> {
         let failed = |error: &dyn std::fmt::Display| output::unwritable(&self.output, error);
         let mut file = BufWriter::new(output::create(&self.output)?);
         table
-            .write(&mut file, format.delimiter(), cells(self.raw_cells))
+            .write(&mut file, delimiter, cells(self.raw_cells))
             .map_err(|error| failed(&error))?;
         let file = file.into_inner().map_err(|error| failed(&error.into_error()))?;
         file.commit().map_err(|error| failed(&error))
     }
 
-    fn print(&self, table: &LogTable, format: Format) -> Result<(), Failure> {
+    fn print(&self, table: &LogTable, delimiter: Delimiter) -> Result<(), Failure> {
         let failed = |error: &dyn std::fmt::Display| Failure::input(format!("standard output: {error}"));
         let mut bytes = Vec::new();
         table
-            .write(&mut bytes, format.delimiter(), cells(self.raw_cells))
+            .write(&mut bytes, delimiter, cells(self.raw_cells))
             .map_err(|error| failed(&error))?;
         let text = String::from_utf8(bytes).map_err(|error| failed(&error))?;
         output::carries_data();
