@@ -10,7 +10,7 @@ use driftworld_metrics::{
 
 use driftworld_text::when;
 
-use super::{Experts, settings};
+use super::settings;
 use crate::{Failure, argument, log_folders};
 
 /// Which logs are scored, and how.
@@ -155,11 +155,6 @@ impl ScoringSettings {
             options.definitions = Definitions::Published;
         }
         Ok(options)
-    }
-
-    /// The experts to compare with.
-    pub(crate) fn experts(&self) -> Result<Experts, Failure> {
-        Experts::new(&self.choice.experts, self.choice.expert_store.as_deref())
     }
 
     /// The log that the file of settings was saved for.

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use driftworld_metrics::{LifetimeMetrics, Options, Settings, WholeLifetime, save_all};
 use serde::{Serialize, Serializer};
 
+use super::scored_log::each_log;
 use super::varied::{Makeup, Varied};
 use super::{Comparison, ScoredLog, ScoringRequest, Setup, score_logs};
 use crate::{Failure, Warn, output_file};
@@ -48,40 +49,34 @@ pub(crate) fn score_looking(
     warn: Warn<'_>,
     look: impl Fn(&ScoredLog) -> Result<(), Failure> + Sync,
 ) -> Result<Scores, Failure> {
-    let setup = Setup::new(request.folders()?, request)?;
-    let scored = setup.each(warn, |log| {
+    let Setup {
+        logs,
+        options,
+        experts,
+        others,
+    } = Setup::new(request.folders()?, request)?;
+    let scored = each_log(&logs, &experts, &options, warn, |log| {
         look(&log)?;
         Ok((Makeup::of(&log.log), log.metrics))
     })?;
     let (makeups, lifetimes): (Vec<_>, Vec<_>) = scored.into_iter().unzip();
-    let varied = Varied::between(&makeups);
-    let scores = Scores::new(request, setup, lifetimes, warn)?;
-    Ok(Scores { varied, ..scores })
+    let lifetimes_against = score_logs(&others, &experts, &options, warn)?;
+    check_power(request.power, lifetimes.len())?;
+    let is_alone = lifetimes.len() == 1 && !request.recursive && request.against.is_empty();
+    let comparison =
+        (!is_alone).then(|| Comparison::new(&lifetimes, &lifetimes_against, &request.intervals, request.power));
+    Ok(Scores {
+        comparison: comparison.transpose()?,
+        varied: Varied::between(&makeups),
+        lifetimes,
+        lifetimes_against,
+        options,
+        asked: request.logs.clone(),
+        recursive: request.recursive,
+    })
 }
 
 impl Scores {
-    fn new(
-        request: &ScoringRequest,
-        setup: Setup,
-        lifetimes: Vec<LifetimeMetrics>,
-        warn: Warn<'_>,
-    ) -> Result<Self, Failure> {
-        let Setup { options, experts, .. } = &setup;
-        let others = score_logs(&setup.others, experts, options, warn)?;
-        let is_alone = lifetimes.len() == 1 && !request.recursive && request.against.is_empty();
-        check_power(request.power, lifetimes.len())?;
-        let comparison = (!is_alone).then(|| Comparison::new(&lifetimes, &others, &request.intervals, request.power));
-        Ok(Self {
-            lifetimes,
-            lifetimes_against: others,
-            comparison: comparison.transpose()?,
-            varied: None,
-            options: setup.options,
-            asked: request.logs.clone(),
-            recursive: request.recursive,
-        })
-    }
-
     /// Saves the results in a folder, made if need be: of one lifetime `NAME_metrics.json`, `NAME_regime.tsv` and
     /// `NAME_settings.json`; of several, or where folders were searched, `NAME.json`, `NAME.tsv`, `NAME_regime.tsv`,
     /// `NAME_settings.json`; and `NAME_repeats.json` with what they say together. Hands back the files.

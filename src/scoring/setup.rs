@@ -6,9 +6,8 @@ use std::path::PathBuf;
 use driftworld_metrics::{DataRanges, Lifetime, NormalizationMethod, Options, read_log};
 use rayon::prelude::*;
 
-use super::scored_log::each_log;
-use super::{Experts, ScoredLog, ScoringRequest};
-use crate::{Failure, Warn, log_folders};
+use super::{Experts, ScoringRequest};
+use crate::{Failure, log_folders};
 
 /// What lifetimes are scored by, and the logs that they are compared with.
 pub(crate) struct Setup {
@@ -22,7 +21,8 @@ pub(crate) struct Setup {
 impl Setup {
     /// As the request says; on one scale for all lifetimes where two agents are compared, or where it is asked for.
     pub(crate) fn new(logs: Vec<PathBuf>, request: &ScoringRequest) -> Result<Self, Failure> {
-        let (mut options, experts) = (request.settings.options()?, request.settings.experts()?);
+        let (mut options, choice) = (request.settings.options()?, &request.settings.choice);
+        let experts = Experts::new(&choice.experts, choice.expert_store.as_deref())?;
         let others = log_folders::below(&request.against)?;
         if request.common_ranges || !others.is_empty() {
             options = with_common_ranges(&[logs.as_slice(), &others].concat(), &experts, options);
@@ -33,15 +33,6 @@ impl Setup {
             experts,
             others,
         })
-    }
-
-    /// Reads and scores each log, and keeps what `keep` makes of it.
-    pub(super) fn each<T: Send>(
-        &self,
-        warn: Warn<'_>,
-        keep: impl Fn(ScoredLog) -> Result<T, Failure> + Sync,
-    ) -> Result<Vec<T>, Failure> {
-        each_log(&self.logs, &self.experts, &self.options, warn, keep)
     }
 }
 
