@@ -13,7 +13,7 @@ use crate::lifetime_report::{ReportRequest, write_report};
 use crate::scenarios;
 use crate::scoring::{ScoringRequest, score};
 use crate::similarity::{DistanceMatrix, Method, OrderOptions, Ordering, order};
-use crate::spec::{BlockKind, Scenario, Variant, World};
+use crate::spec::{BlockKind, Scenario, Variant};
 use crate::tasks;
 use clap::Args;
 use driftworld_text::{ShownPath, when};
@@ -52,12 +52,6 @@ pub(crate) struct Demo {
     seed: u64,
 }
 
-/// A variant with the world that pictures show of it.
-struct Shown {
-    variant: Variant,
-    world: World,
-}
-
 impl Demo {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let folder = &self.output;
@@ -69,8 +63,7 @@ impl Demo {
             "1",
             "One world of each variant under one seed: they differ only in what the variants set",
         )?;
-        let shown = self.worlds(&variants)?;
-        self.pictures(&shown)?;
+        self.pictures(&variants)?;
 
         heading(
             "2",
@@ -139,31 +132,20 @@ impl Demo {
         output::line(contents())
     }
 
-    fn worlds(&self, variants: &[(String, Variant)]) -> Result<Vec<Shown>, Failure> {
-        let mut shown = Vec::new();
+    /// One world of each variant and its map, each in a file; and all side by side, as the agent sees them and from above.
+    fn pictures(&self, variants: &[(String, Variant)]) -> Result<(), Failure> {
+        let mut cells = Vec::new();
         for (_, variant) in variants {
+            let name = variant.name();
             let world = Sampler::new(variant, self.seed).world(0)?;
-            let path = self.output.join("worlds").join(format!("{}.json", variant.name()));
+            let path = self.output.join("worlds").join(format!("{name}.json"));
             output::write(&path, world.to_json_pretty().as_bytes())?;
-            let said = variant.task().variant_description(variant.name()).unwrap_or_default();
-            output::line(format!("{:<10} {said}", variant.name()))?;
-            shown.push(Shown {
-                variant: variant.clone(),
-                world,
-            });
+            let map = Views::new(&world, 480, 0.0).map_with_legend(&ways(&world)?);
+            output::write_picture(&self.output.join("maps").join(format!("{name}.png")), &map)?;
+            let said = variant.task().variant_description(name).unwrap_or_default();
+            output::line(format!("{name:<10} {said}"))?;
+            cells.push(contact_sheet::Shown::declared(variant.clone(), self.seed));
         }
-        Ok(shown)
-    }
-
-    fn pictures(&self, shown: &[Shown]) -> Result<(), Failure> {
-        for shown in shown {
-            let map = Views::new(&shown.world, 480, 0.0).map_with_legend(&ways(&shown.world)?);
-            let name = format!("{}.png", shown.variant.name());
-            output::write_picture(&self.output.join("maps").join(name), &map)?;
-        }
-        let cells: Vec<contact_sheet::Shown> = (shown.iter())
-            .map(|shown| contact_sheet::Shown::declared(shown.variant.clone(), self.seed))
-            .collect();
         let look = contact_sheet::Look {
             index: None,
             turn: None,
