@@ -11,7 +11,8 @@ use crate::checksum::checksum;
 use crate::{Failure, documents};
 
 /// The built-in agents.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, strum::AsRefStr)]
+#[strum(serialize_all = "lowercase")]
 pub(crate) enum AgentArg {
     /// Acts at random.
     Random,
@@ -34,22 +35,21 @@ impl AgentArg {
     /// What logs call the agent.
     pub(crate) fn name(&self) -> String {
         match self {
-            Self::Random => "random".to_owned(),
-            Self::Still => "still".to_owned(),
-            Self::Onrails => "onrails".to_owned(),
-            Self::Sarsa => "sarsa".to_owned(),
-            Self::Scripted(path) => format!("scripted:{}", path.shown()),
-            Self::Net(path) => format!("net:{}", path.shown()),
+            Self::Scripted(path) | Self::Net(path) => format!("{}:{}", self.as_ref(), path.shown()),
+            _ => self.as_ref().to_owned(),
         }
     }
 
     /// The agent before its first step.
     pub(crate) fn agent(&self) -> Result<NamedAgent, Failure> {
-        let (agent, file): (Box<dyn Agent>, _) = match self {
+        let (agent, fingerprint): (Box<dyn Agent>, _) = match self {
             Self::Random => (Box::new(RandomAgent::new(0)), None),
             Self::Still => (Box::new(StillAgent), None),
             Self::Onrails => (Box::new(OnRailsAgent::new()), None),
-            Self::Sarsa => (Box::new(SarsaAgent::new()), None),
+            Self::Sarsa => {
+                let policy = SarsaAgent::POLICY.to_owned();
+                (Box::new(SarsaAgent::new()), Some(("policy", policy)))
+            }
             Self::Scripted(path) => {
                 let text = documents::text(path)?;
                 let agent = ScriptedAgent::parse(&path.display().to_string(), &text)?;
@@ -61,12 +61,10 @@ impl AgentArg {
                 (Box::new(agent), Some(("network", checksum(&bytes))))
             }
         };
-        let (name, policy) = (self.name(), (*self == Self::Sarsa).then_some(SarsaAgent::POLICY));
         Ok(NamedAgent {
-            name,
+            name: self.name(),
             agent,
-            file,
-            policy,
+            fingerprint,
         })
     }
 }
@@ -76,18 +74,8 @@ pub(crate) struct NamedAgent {
     /// What logs call it.
     pub(crate) name: String,
     pub(crate) agent: Box<dyn Agent>,
-    /// What its file is, if it acts by one, and the checksum of that.
-    file: Option<(&'static str, String)>,
-    /// How it chooses its actions, if it learns.
-    pub(crate) policy: Option<&'static str>,
-}
-
-impl NamedAgent {
-    /// What a log depends on of the agent, for a plan to note.
-    pub(crate) fn fingerprints(&self) -> impl Iterator<Item = (&'static str, &str)> {
-        let file = self.file.as_ref().map(|(what, checksum)| (*what, checksum.as_str()));
-        file.into_iter().chain(self.policy.map(|policy| ("policy", policy)))
-    }
+    /// What a log depends on, for a plan to note: the checksum of the agent's file, or how it chooses its actions while it learns.
+    pub(crate) fingerprint: Option<(&'static str, String)>,
 }
 
 impl FromStr for AgentArg {

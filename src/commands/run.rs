@@ -138,8 +138,8 @@ impl Run {
         let unasked = when(self.agent.is_none(), || {
             format!(", by {} as no --agent was given", agent.name)
         });
-        for (what, fingerprint) in agent.fingerprints() {
-            plan.add_fingerprint(what, fingerprint);
+        if let Some((what, fingerprint)) = &agent.fingerprint {
+            plan.add_fingerprint(what, fingerprint.as_str());
         }
         let libraries = self.libraries.fingerprints()?;
         if !libraries.is_empty() {

@@ -186,8 +186,8 @@ fn run_lifetime(scenario: &Scenario, agent: &AgentArg, logs: &Path) -> Result<Su
     remove_old_log(logs)?;
     let mut plan = scenarios::plan(scenario, Undrawable::Refused)?;
     let agent = agent.agent()?;
-    for (what, fingerprint) in agent.fingerprints() {
-        plan.add_fingerprint(what, fingerprint);
+    if let Some((what, fingerprint)) = &agent.fingerprint {
+        plan.add_fingerprint(what, fingerprint.as_str());
     }
     let run = LifetimeRun {
         plan: &plan,
