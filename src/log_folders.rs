@@ -43,19 +43,16 @@ pub(crate) fn found(arguments: &[PathBuf], is_recursive: bool) -> Result<Vec<Pat
 pub(crate) fn below(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut found = Vec::new();
     for argument in arguments {
-        is_folder(argument)?;
-        let before = found.len();
-        let mut search = Search::default();
-        search.collect(argument, MOST_LEVELS)?;
-        found.append(&mut search.found);
-        too_many(argument, found.len())?;
-        if found.len() == before {
+        let mut logs = search(argument)?;
+        if logs.is_empty() {
             return Err(Failure::input(format!(
                 "{}: found no log, expected a folder with logger_info.json, or such folders up to {MOST_LEVELS} \
                  levels below; `driftworld run … -o DIR` writes one",
                 argument.shown()
             )));
         }
+        found.append(&mut logs);
+        too_many(argument, found.len())?;
     }
     Ok(each_once(found))
 }
@@ -63,10 +60,7 @@ pub(crate) fn below(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
 /// Every log that the arguments name, in order, each once. A folder that is no log, but has logs below, is refused with advice.
 pub(crate) fn named(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     if let Some(folder) = arguments.iter().find(|folder| !is_log(folder)) {
-        is_folder(folder)?;
-        let mut search = Search::default();
-        search.collect(folder, MOST_LEVELS)?;
-        let below = search.found;
+        let below = search(folder)?;
         let path = folder.shown();
         return Err(Failure::input(match below.first() {
             Some(first) => format!(
@@ -126,6 +120,14 @@ fn folders_to(log: &Path) -> Vec<String> {
         .collect()
 }
 
+/// The logs in and below a folder, by name.
+fn search(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    is_folder(folder)?;
+    let mut search = Search::default();
+    search.collect(folder, MOST_LEVELS)?;
+    Ok(search.found)
+}
+
 fn is_folder(argument: &Path) -> Result<(), Failure> {
     let found = match fs::metadata(argument) {
         Ok(kind) if kind.is_dir() => return Ok(()),
@@ -165,9 +167,9 @@ impl Search {
         }
         for below in self.entries(folder)? {
             match below {
-                Entry::Folder(below) => self.collect(&below, levels - 1)?,
-                Entry::Link(link) if has_info(&link) => self.found.push(link),
-                Entry::Link(_) => {}
+                (Entry::Folder, below) => self.collect(&below, levels - 1)?,
+                (Entry::Link, link) if has_info(&link) => self.found.push(link),
+                (Entry::Link, _) => {}
             }
         }
         too_many(folder, self.found.len())
@@ -188,7 +190,7 @@ impl Search {
         Ok(false)
     }
 
-    fn entries(&mut self, folder: &Path) -> Result<Vec<Entry>, Failure> {
+    fn entries(&mut self, folder: &Path) -> Result<Vec<(Entry, PathBuf)>, Failure> {
         self.count(folder)?;
         entries(folder).map_err(|error| Failure::in_file(folder, format!("cannot be read: {error}")))
     }
@@ -233,20 +235,20 @@ fn is_log(folder: &Path) -> bool {
 /// What may hold logs in a folder.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 enum Entry {
-    Folder(PathBuf),
-    Link(PathBuf),
+    Folder,
+    Link,
 }
 
 /// The folders in a folder, and the links, each by name.
-fn entries(folder: &Path) -> std::io::Result<Vec<Entry>> {
+fn entries(folder: &Path) -> std::io::Result<Vec<(Entry, PathBuf)>> {
     let mut below = Vec::new();
     for entry in fs::read_dir(folder)? {
         let entry = entry?;
         let kind = entry.file_type()?;
         if kind.is_dir() {
-            below.push(Entry::Folder(entry.path()));
+            below.push((Entry::Folder, entry.path()));
         } else if kind.is_symlink() {
-            below.push(Entry::Link(entry.path()));
+            below.push((Entry::Link, entry.path()));
         }
     }
     below.sort();
@@ -257,11 +259,8 @@ fn entries(folder: &Path) -> std::io::Result<Vec<Entry>> {
 fn listed(folder: &Path) -> Vec<PathBuf> {
     // What cannot be listed here is reported when it is searched.
     let entries = entries(folder).unwrap_or_default().into_iter();
-    let folders = entries.filter_map(|entry| match entry {
-        Entry::Folder(path) => Some(path),
-        Entry::Link(_) => None,
-    });
-    folders.collect()
+    let folders = entries.filter(|(kind, _)| *kind == Entry::Folder);
+    folders.map(|(_, path)| path).collect()
 }
 
 /// A message with the log in front, unless it begins with it: some name a file below the log, others only what is meant.
