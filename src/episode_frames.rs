@@ -11,7 +11,6 @@ use driftworld_text::{amount, whole};
 
 use crate::Failure;
 use crate::film::{FilmModality, FilmOptions, FilmView};
-use crate::map_drawing::map_size;
 use crate::modality::{number_color, to_rgb};
 
 /// What one step did, in words, and how much it matters: 0 for a step on the way.
@@ -249,11 +248,6 @@ fn oversize(size: u32) -> u32 {
 fn finished(width: u32, height: u32, rgb: Vec<u8>, size: u32) -> Picture {
     let picture = Picture { width, height, rgb };
     if oversize(size) == 2 { picture.halved() } else { picture }
-}
-
-/// The size of a map of an episode beside pictures of this height.
-pub(crate) fn map_beside(environment: &Environment, height: u32) -> [u32; 2] {
-    map_size(environment.scene(), height)
 }
 
 /// What the agent sees: in colours with smooth edges, else pixel by pixel.

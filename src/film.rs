@@ -10,7 +10,8 @@ use driftworld_report::picture::{Picture, caption_lines, sheet};
 use driftworld_text::ShownPath;
 use serde::Serialize;
 
-use crate::episode_frames::{deed, facts, map_beside, map_of, rows, seen_by};
+use crate::episode_frames::{deed, facts, map_of, rows, seen_by};
+use crate::map_drawing::map_size;
 use crate::{Failure, argument, output_file};
 
 /// Most pixels along a side of the agent's view, and of the map.
@@ -125,7 +126,7 @@ impl FilmOptions {
 
     /// Pixels across.
     fn width(&self, environment: &Environment) -> u32 {
-        let map = map_beside(environment, self.size)[0];
+        let map = map_size(environment.scene(), self.size)[0];
         match self.view {
             FilmView::Agent => self.size,
             FilmView::Above => map,
@@ -169,7 +170,7 @@ impl FilmOptions {
             pictures.push(seen(environment)?);
         }
         if self.view != FilmView::Agent {
-            pictures.push(map_of(environment, map_beside(environment, self.size), way));
+            pictures.push(map_of(environment, map_size(environment.scene(), self.size), way));
         }
         Ok(pictures)
     }
