@@ -59,6 +59,12 @@ pub(crate) fn name_of(path: &Path) -> String {
     }
 }
 
+/// The folder that a file is in; of a bare name the working folder.
+pub(crate) fn folder_of(file: &Path) -> &Path {
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
+    folder.unwrap_or(Path::new("."))
+}
+
 /// The text of standard input, however often it is asked for.
 fn standard_input() -> Result<String, DocumentError> {
     let mut input = STANDARD_INPUT.lock().unwrap_or_else(PoisonError::into_inner);

@@ -7,9 +7,7 @@ use driftworld_curriculum::RECORDINGS_FILE;
 use driftworld_text::ShownPath;
 
 use crate::contents::Contents;
-use crate::tasks;
-
-use crate::Failure;
+use crate::{Failure, documents, tasks};
 
 /// The files of which a log is made.
 const LOG_FILES: [&str; 4] = [
@@ -30,8 +28,7 @@ pub(crate) fn refuse_log_files(target: &Path) -> Result<(), Failure> {
     if !LOG_FILES.iter().any(|log_file| name == *log_file) {
         return Ok(());
     }
-    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let Ok(folder) = folder.unwrap_or(Path::new(".")).canonicalize() else {
+    let Ok(folder) = documents::folder_of(target).canonicalize() else {
         return Ok(());
     };
     let is_log = |folder: &&Path| Contents::of_folder(folder) == Some(Contents::Log);

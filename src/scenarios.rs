@@ -3,7 +3,6 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -14,6 +13,7 @@ use driftworld_text::ShownPath;
 use crate::contents::Contents;
 use crate::documents::{self, DocumentError, Kind};
 use crate::tasks::{self, TaskError};
+use crate::worlds;
 
 /// The most files that are read to find a world with a name near to a missing one's.
 const MOST_READ: usize = 8;
@@ -179,7 +179,8 @@ impl ScenarioFile {
     fn nearest(&self, wanted: &[&PathBuf]) -> Option<PathBuf> {
         wanted.iter().find_map(|wanted| {
             let name = wanted.file_name()?.to_string_lossy().into_owned();
-            let mut files = json_files(wanted.parent()?);
+            let folder = Some(documents::folder_of(wanted)).filter(|folder| folder.is_dir())?;
+            let mut files = worlds::json_files(folder).unwrap_or_default();
             // Only what is near by its name is read: a folder may hold anything.
             for _ in 0..MOST_READ {
                 let names = files
@@ -234,23 +235,6 @@ impl Named {
         };
         Plan::with_undrawable(scenario, &mut sources, undrawable)
     }
-}
-
-/// The `.json` files of a folder, sorted; none where it cannot be read.
-fn json_files(folder: &Path) -> Vec<PathBuf> {
-    // The folder of a bare file name is the working folder.
-    let folder = if folder.as_os_str().is_empty() {
-        Path::new(".")
-    } else {
-        folder
-    };
-    let entries = fs::read_dir(folder).into_iter().flatten();
-    let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
-    let mut files: Vec<PathBuf> = paths
-        .filter(|path| path.extension().is_some_and(|ending| ending == "json"))
-        .collect();
-    files.sort();
-    files
 }
 
 /// The task that a scenario names: a built-in one, a file from the scenario's folder, else one from the working folder.

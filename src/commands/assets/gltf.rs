@@ -34,15 +34,10 @@ pub(super) fn model(path: &Path) -> Result<Vec<u8>, Failure> {
 
 /// Reads the files beside a glTF file, as far as they lie in its folder when all links are followed.
 pub(super) fn beside(path: &Path) -> impl FnMut(&str) -> Result<Vec<u8>, String> {
-    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    let folder = crate::documents::folder_of(path).to_owned();
     move |relative| {
-        let folder = if folder.as_os_str().is_empty() {
-            Path::new(".")
-        } else {
-            &folder
-        };
         let whole = |path: &Path| path.canonicalize().map_err(|error| error.to_string());
-        let (folder, file) = (whole(folder)?, whole(&folder.join(relative))?);
+        let (folder, file) = (whole(&folder)?, whole(&folder.join(relative))?);
         if !file.starts_with(&folder) {
             return Err("it leads out of the model's folder".to_owned());
         }
