@@ -1,59 +1,18 @@
 //! [`behavior`]: what the experts of two variants earn in each other's worlds. How an expert lives in a world that is not its own is
 //! `env`'s.
 
-use std::path::PathBuf;
-
-use driftworld_env::{Catalogue, ExpertRun, Expertise, MAX_EXPERT_STEPS};
+use driftworld_env::{Catalogue, ExpertRun, Expertise};
 use driftworld_generator::Sampler;
 use driftworld_spec::{Variant, World};
 use rayon::prelude::*;
 
-use crate::{Failure, libraries, tasks, within};
-
-/// How many pairs of worlds experts live in where nobody says.
-pub const DEFAULT_BEHAVIOR_WORLDS: u64 = 16;
+use crate::Failure;
 
 /// The most pairs of worlds.
 pub const MAX_BEHAVIOR_WORLDS: u64 = 1_000;
 
 /// Points of regret that count 1.
 pub(crate) const POINTS: f64 = 100.0;
-
-/// Whose experts are exchanged.
-#[derive(Clone, Debug, PartialEq)]
-pub struct BehaviorRequest {
-    /// One variant, as `task#variant`.
-    pub a: String,
-    /// The other.
-    pub b: String,
-    /// How many pairs of worlds, 1 to [`MAX_BEHAVIOR_WORLDS`]; default [`DEFAULT_BEHAVIOR_WORLDS`].
-    pub worlds: u64,
-    /// The seed that worlds are drawn under; default 0.
-    pub seed: u64,
-    /// Steps after which an episode ends that no rule ends before, 1 to [`MAX_EXPERT_STEPS`]; default 500.
-    pub steps: u32,
-    /// Asset libraries whose classes the tasks use, in front of the built-in assets, the last one first.
-    pub libraries: Vec<PathBuf>,
-}
-
-impl BehaviorRequest {
-    /// Two variants; all else is at its default.
-    pub fn between(a: impl Into<String>, b: impl Into<String>) -> Self {
-        Self {
-            a: a.into(),
-            b: b.into(),
-            worlds: DEFAULT_BEHAVIOR_WORLDS,
-            seed: 0,
-            steps: Expertise::default().steps,
-            libraries: Vec::new(),
-        }
-    }
-
-    fn check(&self) -> Result<(), Failure> {
-        within("worlds", self.worlds, 1..=MAX_BEHAVIOR_WORLDS)?;
-        within("steps", self.steps.into(), 1..=MAX_EXPERT_STEPS.into())
-    }
-}
 
 /// What experts did in one pair of worlds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -103,52 +62,37 @@ pub struct BehaviorOutcome {
 
 /// Lets the experts of two variants live in each other's worlds.
 ///
-/// World number `i` of one variant is paired with number `i` of the other, under one seed. [`Expertise::abroad`] says what an expert
-/// knows in a world that is not its own: where everything is, and of what it pays only what it would pay at home.
+/// `worlds` worlds of each are drawn under one seed, and number `i` of one variant is paired with number `i` of the other.
+/// [`Expertise::abroad`] says what an expert knows in a world that is not its own: where everything is, and of what it pays only
+/// what it would pay at home.
 ///
 /// The distance is symmetric, and 0 of a variant to itself. It may be 0 between different variants, and does not obey the triangle
 /// inequality. An expert tours what pays, nearest first: it is no optimum, and where another's tour happens to be better the regret is
 /// below 0.
 ///
 /// # Errors
-/// [`Failure`] where a variant is nowhere or wrong, a world cannot be drawn, or a number is out of its range.
+/// [`Failure`] where a world cannot be drawn.
 ///
 /// # Example
 /// ```
-/// use driftworld::behavior::{BehaviorRequest, behavior};
-/// let request = BehaviorRequest { worlds: 2, ..BehaviorRequest::between("find_objects#red", "find_objects#penalty") };
-/// let found = behavior(&request).unwrap();
+/// use driftworld::{behavior::behavior, env::Catalogue, tasks};
+/// let [red, penalty] = ["find_objects#red", "find_objects#penalty"].map(|name| tasks::variant(name).unwrap());
+/// let found = behavior(&red, &penalty, 2, 0, &Catalogue::default()).unwrap();
 /// assert!(found.distance > 0.0);
 /// ```
-pub fn behavior(request: &BehaviorRequest) -> Result<BehaviorOutcome, Failure> {
-    behavior_between(&tasks::variant(&request.a)?, &tasks::variant(&request.b)?, request)
-}
-
-/// The same for variants that have been read; the names in the request are not looked at.
-///
-/// # Errors
-/// As [`behavior`].
-pub fn behavior_between(a: &Variant, b: &Variant, request: &BehaviorRequest) -> Result<BehaviorOutcome, Failure> {
-    behavior_with(a, b, request, libraries::catalogue(&request.libraries)?)
-}
-
-/// The same with assets out of a catalogue; the libraries in the request are not looked at.
-///
-/// # Errors
-/// As [`behavior`].
-pub(crate) fn behavior_with(
+pub fn behavior(
     a: &Variant,
     b: &Variant,
-    request: &BehaviorRequest,
-    catalogue: Catalogue,
+    worlds: u64,
+    seed: u64,
+    catalogue: &Catalogue,
 ) -> Result<BehaviorOutcome, Failure> {
-    request.check()?;
     let expertise = Expertise {
-        steps: request.steps,
-        catalogue,
+        catalogue: catalogue.clone(),
+        ..Expertise::default()
     };
-    let (of_a, of_b) = (Sampler::new(a, request.seed), Sampler::new(b, request.seed));
-    let pairs: Vec<ExpertPair> = (0..request.worlds)
+    let (of_a, of_b) = (Sampler::new(a, seed), Sampler::new(b, seed));
+    let pairs: Vec<ExpertPair> = (0..worlds)
         .into_par_iter()
         .map(|index| exchange(&expertise, &of_a.world(index)?, &of_b.world(index)?))
         .collect::<Result<_, Failure>>()?;
@@ -180,13 +124,11 @@ fn outcome(pairs: Vec<ExpertPair>) -> BehaviorOutcome {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tasks;
 
     fn between(a: &str, b: &str, worlds: u64) -> BehaviorOutcome {
-        behavior(&BehaviorRequest {
-            worlds,
-            ..BehaviorRequest::between(a, b)
-        })
-        .expect("both variants are built in")
+        let [a, b] = [a, b].map(|name| tasks::variant(name).expect("it is built in"));
+        behavior(&a, &b, worlds, 0, &Catalogue::default()).expect("both can be drawn")
     }
 
     #[test]
@@ -236,24 +178,5 @@ mod tests {
         let found = outcome(vec![pair]);
         assert_eq!((found.regret_in_a, found.regret_in_b), (60.0, -20.0));
         assert_eq!((found.distance, found.success_difference), (0.2, 0.5));
-    }
-
-    #[test]
-    fn numbers_out_of_range_are_refused() {
-        let request = BehaviorRequest::between("find_objects#red", "find_objects#blue");
-        assert!(
-            behavior(&BehaviorRequest {
-                worlds: 0,
-                ..request.clone()
-            })
-            .is_err()
-        );
-        assert!(
-            behavior(&BehaviorRequest {
-                steps: 100_001,
-                ..request
-            })
-            .is_err()
-        );
     }
 }

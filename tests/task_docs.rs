@@ -3,9 +3,9 @@
 
 use std::fmt::Write;
 
-use driftworld::behavior::{BehaviorRequest, behavior_between};
+use driftworld::behavior::behavior;
 use driftworld::elements::Optimum;
-use driftworld::env::{Agent, Environment, OnRailsAgent, StillAgent};
+use driftworld::env::{Agent, Catalogue, Environment, OnRailsAgent, StillAgent};
 use driftworld::generator::Sampler;
 use driftworld::spec::{BlockKind, Domain, Element, Parameter, Role, Scenario, TaskSpec, Value, Variant};
 use driftworld::tasks;
@@ -59,11 +59,7 @@ fn turned(first: &Variant, variant: &Variant, elements: &[Element]) -> String {
     if !elements.contains(&Element::R) {
         return String::new();
     }
-    let request = BehaviorRequest {
-        worlds: WORLDS,
-        ..BehaviorRequest::between(first.id(), variant.id())
-    };
-    let found = behavior_between(first, variant, &request).unwrap_or_else(|error| panic!("{error}"));
+    let found = behavior(first, variant, WORLDS, 0, &Catalogue::default()).unwrap_or_else(|error| panic!("{error}"));
     let optimum = Optimum::of(&found);
     if optimum.turned {
         format!("yes, {:.0} points", optimum.regret)

@@ -5,7 +5,6 @@ use driftworld_spec::Element;
 
 use super::{Chosen, DesignRequest, Evidence};
 use crate::Failure;
-use crate::behavior::{BehaviorRequest, behavior_with};
 use crate::elements::Optimum;
 
 /// More variants than these are compared with their neighbours only.
@@ -32,32 +31,22 @@ impl DesignRequest {
     /// # Errors
     /// [`Failure`] where a world cannot be drawn.
     pub fn optima(&self, chosen: &Chosen) -> Result<Vec<PairOptimum>, Failure> {
-        let Some(Evidence::Probe {
-            picked,
-            element: Element::R,
-        }) = &chosen.evidence
-        else {
+        let Some(Evidence::Probe { picked, element }) = &chosen.evidence else {
             return Ok(Vec::new());
         };
+        if *element != Element::R || self.worlds == 0 {
+            return Ok(Vec::new());
+        }
         let (catalogue, order) = (self.catalogue()?, &chosen.order);
         let mut found = Vec::new();
         for place in 1..order.len() {
             let first = if order.len() > MOST_WITH_ALL { place - 1 } else { 0 };
             for other in first..place {
-                if self.worlds == 0 {
-                    continue;
-                }
                 let [a, b] = [&picked[order[other]], &picked[order[place]]];
-                let request = BehaviorRequest {
-                    worlds: WORLDS,
-                    seed: self.design.seed,
-                    ..BehaviorRequest::between(a.choice.id(), b.choice.id())
-                };
-                let outcome = behavior_with(&a.variant, &b.variant, &request, catalogue.clone())?;
                 found.push(PairOptimum {
                     a: a.choice.id(),
                     b: b.choice.id(),
-                    optimum: Optimum::of(&outcome),
+                    optimum: Optimum::tried(&a.variant, &b.variant, self.design.seed, WORLDS, &catalogue)?,
                 });
             }
         }

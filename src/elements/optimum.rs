@@ -6,7 +6,7 @@ use driftworld_spec::Variant;
 use serde::{Deserialize, Serialize};
 
 use crate::Failure;
-use crate::behavior::{BehaviorOutcome, BehaviorRequest, ExpertPair, behavior_with};
+use crate::behavior::{BehaviorOutcome, ExpertPair, behavior};
 
 /// The most pairs of worlds in which experts are exchanged.
 const MOST_WORLDS: u64 = 16;
@@ -33,19 +33,20 @@ impl Optimum {
     ///
     /// # Errors
     /// [`Failure`] where a world cannot be drawn.
-    pub(super) fn tried(
+    pub(crate) fn tried(
         base: &Variant,
         other: &Variant,
         seed: u64,
         worlds: u64,
         catalogue: &Catalogue,
     ) -> Result<Self, Failure> {
-        let request = BehaviorRequest {
-            worlds: worlds.min(MOST_WORLDS),
+        Ok(Self::of(&behavior(
+            base,
+            other,
+            worlds.min(MOST_WORLDS),
             seed,
-            ..BehaviorRequest::between(base.id(), other.id())
-        };
-        Ok(Self::of(&behavior_with(base, other, &request, catalogue.clone())?))
+            catalogue,
+        )?))
     }
 
     /// What an exchange of experts says, the first variant of it as the one that is compared with.
