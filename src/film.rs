@@ -273,21 +273,12 @@ fn frame(environment: &mut Environment, options: &FilmOptions, way: &[[f32; 2]])
     Ok(frame)
 }
 
-/// What a file's ending stands for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Ending {
-    Film(FilmKind),
-    /// One picture of the frames that matter.
-    Sheet,
-}
-
-fn ending(path: &Path) -> Result<Ending, Failure> {
+/// The kind of film that a file's ending stands for; none for one picture of the frames that matter.
+fn ending(path: &Path) -> Result<Option<FilmKind>, Failure> {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-    if let Some(kind) = FilmKind::of_ending(ending) {
-        return Ok(Ending::Film(kind));
-    }
-    if ending.eq_ignore_ascii_case("png") {
-        return Ok(Ending::Sheet);
+    let kind = FilmKind::of_ending(ending);
+    if kind.is_some() || ending.eq_ignore_ascii_case("png") {
+        return Ok(kind);
     }
     let advice = if ["mp4", "webm", "mkv", "mov"]
         .iter()
@@ -324,9 +315,8 @@ pub fn write_film(
     watch: &mut dyn FnMut(u64),
 ) -> Result<FilmSummary, Failure> {
     options.check()?;
-    let kind = match ending(path)? {
-        Ending::Film(kind) => kind,
-        Ending::Sheet => return write_sheet(path, recording, catalogue, options),
+    let Some(kind) = ending(path)? else {
+        return write_sheet(path, recording, catalogue, options);
     };
     let num_frames = options.num_frames(recording.actions.len()) as u32;
     let own = recording.seconds_per_step() * f64::from(options.every);
