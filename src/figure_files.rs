@@ -36,16 +36,11 @@ impl Files {
         let mut names = (1..=self.names.len() + 1).map(numbered);
         let name = names.find(|name| !self.names.contains(name)).unwrap_or_default();
         for (ending, bytes) in &drawn.files {
-            self.put(&format!("{name}_{ending}"), bytes)?;
+            output_file::write(&self.folder.join(format!("{name}_{ending}")), bytes)?;
+            self.count += 1;
+            self.bytes += bytes.len();
         }
         self.names.insert(name);
-        Ok(())
-    }
-
-    fn put(&mut self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
-        output_file::write(&self.folder.join(name), bytes)?;
-        self.count += 1;
-        self.bytes += bytes.len();
         Ok(())
     }
 
