@@ -192,7 +192,7 @@ mod system {
         let leaving = thread::Builder::new().spawn(move || {
             remove_unfinished();
             if let Some(words) = words {
-                output::to_standard_error(&words);
+                output::note(words);
             }
             let _ = done.send(());
         });

@@ -264,7 +264,7 @@ subcommands! {
 
 /// Says on standard error why the command failed; hands back the exit code.
 fn report(failure: &Failure) -> u8 {
-    output::to_standard_error(&format!("error: {}", failure.text().for_command()));
+    output::note(format!("error: {}", failure.text().for_command()));
     interrupt::exit_code().unwrap_or(match failure {
         Failure::Input(..) => 1,
         Failure::Usage(_) => 2,
@@ -286,7 +286,7 @@ fn translate_panics() {
         }
         if text.starts_with("The global thread pool has not been initialized") {
             driftworld_atomic_files::remove_unfinished();
-            output::to_standard_error(
+            output::note(
                 "error: threads: could not start any, expected one per processor; end other programs, or allow more \
                  (`ulimit -u`)",
             );

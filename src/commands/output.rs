@@ -133,15 +133,10 @@ pub(crate) fn json(value: &impl Serialize) -> Result<(), Failure> {
     print_json(&(serde_json::to_string_pretty(value)? + "\n"))
 }
 
-/// Says something on standard error that is not a result.
+/// Says something on standard error that is not a result; unprintable characters are shown. Where its reader has gone, there is
+/// nobody to tell, and the work goes on.
 pub(crate) fn note(text: impl AsRef<str>) {
-    to_standard_error(text.as_ref());
-}
-
-/// A line on standard error, in which unprintable characters are shown. Where its reader has gone, there is nobody to
-/// tell, and the work goes on.
-pub(super) fn to_standard_error(text: &str) {
-    let text = wrap_lines(&printable_lines(text), columns_of_stderr());
+    let text = wrap_lines(&printable_lines(text.as_ref()), columns_of_stderr());
     let text = match Style::of_message(&text).filter(|_| style::of_stderr()) {
         Some((style, length)) => style.painted(&text[..length]) + &text[length..],
         None => text,
