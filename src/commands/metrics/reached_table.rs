@@ -7,7 +7,7 @@ use crate::metrics::{EvaluationCell, LEARNED_SHARE, LifetimeMetrics, Reached, Un
 
 use driftworld_text::{when, whole};
 
-use super::tables::{number, with_error};
+use super::tables::{mean, number, rounded, with_error};
 use crate::table::without_empty;
 use crate::variant_names::VariantNames;
 
@@ -130,9 +130,7 @@ pub(super) fn reached_by_several(agent: &str, lifetimes: &[LifetimeMetrics], nam
     let has_own = tasks.values().flatten().any(|task| has_own_expert(task));
     let rows = tasks.iter().take(MOST_ROWS).map(|(name, found)| {
         let mean = |of: &dyn Fn(&Reached) -> Option<f64>, show: fn(f64) -> String| {
-            let values: Vec<f64> = found.iter().filter_map(|task| of(task)).collect();
-            let mean = values.iter().sum::<f64>() / values.len() as f64;
-            if values.is_empty() { String::new() } else { show(mean) }
+            mean(&found.iter().filter_map(|task| of(task)).collect::<Vec<_>>(), show)
         };
         let is_scaled = found.iter().all(|task| task.is_scaled());
         let level = |of: fn(&Reached) -> Option<&EvaluationCell>| {
@@ -179,9 +177,8 @@ const UNITS: &str = "\nIn % of the way from floor to ceiling where these are kno
 /// A row per evaluated task: what its curve says. `None` unless a task is evaluated more than once.
 pub(super) fn curves(scores: &LifetimeMetrics, names: &VariantNames) -> Option<String> {
     let shown = || scores.curves.iter().filter(|(_, curve)| curve.points.len() > 1);
-    let level = |value: f64, is_scaled: bool| if is_scaled { percent(value) } else { number(value) };
     let rows = shown().take(MOST_ROWS).map(|(name, curve)| {
-        let level = |value: f64| level(value, curve.is_scaled);
+        let level = if curve.is_scaled { percent } else { number };
         let is_noise =
             curve.forgetting > 0.0 && (curve.forgetting_error).is_some_and(|error| curve.forgetting < 2.0 * error);
         vec![
@@ -198,16 +195,14 @@ pub(super) fn curves(scores: &LifetimeMetrics, names: &VariantNames) -> Option<S
         return None;
     }
     let headings = ["curve", "area", "forgetting", "lag", "regret", ""];
-    let explained = |is_there: bool, text: &'static str| if is_there { text } else { "" };
-    let lag = explained(
-        shown().any(|(_, curve)| curve.lag.is_some()),
+    let lag = when(shown().any(|(_, curve)| curve.lag.is_some()), || {
         " lag: learning experiences of any task, from where the task was first learned (if never, from its first \
-         evaluation) until half of the later gain.",
-    );
-    let regret = explained(
-        shown().any(|(_, curve)| curve.regret.is_some()),
-        " regret: expert, or else ceiling, less curve while the task was present.",
-    );
+         evaluation) until half of the later gain."
+            .to_owned()
+    });
+    let regret = when(shown().any(|(_, curve)| curve.regret.is_some()), || {
+        " regret: expert, or else ceiling, less curve while the task was present.".to_owned()
+    });
     Some(format!(
         "{}\nOf evaluation curves alone. area: mean height. forgetting: highest less last.{lag}{regret}",
         without_empty(&headings, &rows, &[1, 2, 3, 4])
@@ -221,8 +216,7 @@ fn has_own_expert(task: &Reached) -> bool {
 
 /// In whole percent; what rounds to nothing has no sign.
 fn percent(share: f64) -> String {
-    let shown = format!("{:.0}%", 100.0 * share);
-    if shown == "-0%" { "0%".to_owned() } else { shown }
+    rounded(100.0 * share, 0) + "%"
 }
 
 /// Mean and standard error of an evaluation, as the part of the way from floor to ceiling where these are known.

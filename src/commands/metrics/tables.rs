@@ -16,15 +16,11 @@ use crate::variant_names::VariantNames;
 
 /// The scores of one lifetime, or of several with what they say together.
 pub(super) fn scores(scores: &Scores, names: &VariantNames) -> String {
-    match (&scores.comparison, scores.lifetimes.as_slice()) {
-        (None, [lifetime]) => summary(lifetime, names),
-        (None, lifetimes) => lifetimes
-            .iter()
-            .map(|one| summary(one, names))
-            .collect::<Vec<_>>()
-            .join("\n\n"),
-        (Some(comparison), _) => several(scores, comparison, names),
-    }
+    let Some(comparison) = &scores.comparison else {
+        let each = scores.lifetimes.iter().map(|lifetime| summary(lifetime, names));
+        return each.collect::<Vec<_>>().join("\n\n");
+    };
+    several(scores, comparison, names)
 }
 
 /// The lifetime's values as a table for a newcomer.
@@ -140,9 +136,7 @@ fn as_logged(agents: &[(&str, &[LifetimeMetrics])]) -> String {
                 let logged = lifetimes
                     .iter()
                     .filter_map(|lifetime| part(lifetime.as_logged.get(column)?));
-                let values: Vec<f64> = logged.collect();
-                let mean = values.iter().sum::<f64>() / values.len() as f64;
-                if values.is_empty() { String::new() } else { number(mean) }
+                mean(&logged.collect::<Vec<_>>(), number)
             };
             let name = format!("mean {column}{agent}");
             if rows.iter().all(|row| row[0] != name) {
@@ -313,6 +307,12 @@ pub(super) fn with_error(value: String, error: Option<String>) -> String {
     }
 }
 
+/// The mean of some values as `show` writes it; nothing of none.
+pub(super) fn mean(values: &[f64], show: fn(f64) -> String) -> String {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    if values.is_empty() { String::new() } else { show(mean) }
+}
+
 /// With three decimals; what rounds to nothing has no sign.
 pub(super) fn number(value: f64) -> String {
     rounded(value, 3)
@@ -333,7 +333,7 @@ fn decimals(value: f64) -> usize {
 }
 
 /// With so many decimals; what rounds to nothing has no sign.
-fn rounded(value: f64, decimals: usize) -> String {
+pub(super) fn rounded(value: f64, decimals: usize) -> String {
     let shown = format!("{value:.decimals$}");
     let is_nothing = shown.chars().all(|letter| matches!(letter, '-' | '0' | '.'));
     if is_nothing {
