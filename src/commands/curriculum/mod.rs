@@ -337,11 +337,12 @@ impl Curriculum {
     }
 
     fn request(&self) -> DesignRequest {
+        let (ordering, order) = self.ordering.design();
         DesignRequest {
             tasks: self.tasks.clone(),
-            ordering: self.ordering.design_request(),
+            ordering,
             by: self.by,
-            order: self.ordering.design_order(),
+            order,
             probe: self.probe,
             modalities: self.modalities.clone(),
             variants: self.variants,

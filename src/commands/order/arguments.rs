@@ -86,25 +86,20 @@ impl OrderArgs {
         }
     }
 
-    /// The same for a curriculum, which has orders by what they are to show of its own: [`OrderArgs::design_order`].
-    pub(crate) fn design_request(&self) -> OrderRequest {
-        OrderRequest {
-            method: match self.order {
-                Some(OrderWord::Method(method)) => Some(method),
-                Some(OrderWord::Design(_)) | None => None,
-            },
+    /// As a design is asked for: the order of its blocks apart, where the word names one.
+    pub(crate) fn design(&self) -> (OrderRequest, Option<DesignOrder>) {
+        let (method, order) = match self.order {
+            Some(OrderWord::Method(method)) => (Some(method), None),
+            Some(OrderWord::Design(order)) => (None, Some(order)),
+            None => (None, None),
+        };
+        let request = OrderRequest {
+            method,
             start: self.start.clone(),
             end: self.end.clone(),
             target_step: self.target_step,
-        }
-    }
-
-    /// The order by what it is to show, where one was asked for.
-    pub(crate) fn design_order(&self) -> Option<DesignOrder> {
-        match self.order {
-            Some(OrderWord::Design(order)) => Some(order),
-            Some(OrderWord::Method(_)) | None => None,
-        }
+        };
+        (request, order)
     }
 }
 
