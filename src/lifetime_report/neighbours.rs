@@ -9,7 +9,7 @@ use driftworld_metrics::{Lifetime, Log, Regime, VariantMode};
 use driftworld_report::neighbours;
 use driftworld_similarity::DistanceMatrix;
 use driftworld_spec::{BlockKind, Scenario, TaskSpec, Variant};
-use driftworld_text::ShownPath;
+use driftworld_text::{ShownPath, when};
 
 use crate::distances::{Sample, fitting, variant_matrix};
 use crate::{Failure, argument, matrix_file, tasks};
@@ -140,21 +140,15 @@ impl Named {
             );
             return (None, why);
         }
-        let drifts = if self.drifts() > 0 {
+        let drifts = when(self.index.values().any(|ends| ends.first != ends.last), || {
             " The beginning of a drifting block is compared with the block before, its end with the block after."
-        } else {
-            ""
-        };
+                .to_owned()
+        });
         let words = format!(
             "Stems: how far apart the variants of neighbouring learning blocks are, {}.{drifts}",
             self.origin
         );
         (Some(distances), words)
-    }
-
-    /// How many names are those of drifts.
-    fn drifts(&self) -> usize {
-        self.index.values().filter(|ends| ends.first != ends.last).count()
     }
 
     fn origin_as_subject(&self) -> &str {
