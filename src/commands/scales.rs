@@ -4,13 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::scales::{
-    AgentLevel, BestAgent, DEFAULT_SCALES_WORLDS, MAX_SCALES_WORLDS, ScalesFile, ScalesRequest, num_variants, scales,
-};
+use crate::scales::{AgentLevel, BestAgent, ScalesFile, ScalesRequest, num_variants, scales};
 use crate::table::table;
 use crate::tasks::built_in_names;
 
-use super::assets::LibraryChoice;
 use super::{Failure, output};
 
 /// Measure the floor and the ceiling of each variant.
@@ -27,26 +24,8 @@ use super::{Failure, output};
   driftworld scales find_objects#blue find_objects#turned --unlabelled
   driftworld metrics LOG --scales scales.json")]
 pub(crate) struct Scales {
-    /// Variants, or tasks, which stand for all their variants [default: the built-in tasks].
-    #[arg(value_name = "TASK")]
-    tasks: Vec<String>,
-    /// Worlds of each variant.
-    #[arg(long, value_name = "N", default_value_t = DEFAULT_SCALES_WORLDS,
-        value_parser = clap::value_parser!(u64).range(2..=MAX_SCALES_WORLDS))]
-    worlds: u64,
-    /// Seed of the worlds.
-    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = crate::numbers::seed)]
-    seed: u64,
-    /// Also the ceiling of agents that cannot tell variants apart which look alike at the start.
-    ///
-    /// Of each set of the variants above that look alike, or of the set named; may be given several times. It is what
-    /// the best of some scripted agents earns in the mean over the set: one that stands still, one that acts at random,
-    /// the planner of each variant, and that planner until a reward shows another variant. Without the last, it is the
-    /// ceiling of agents without memory.
-    #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "", value_name = "VARIANT,…")]
-    unlabelled: Vec<String>,
     #[command(flatten)]
-    libraries: LibraryChoice,
+    request: ScalesRequest,
     /// JSON file to write.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -57,14 +36,10 @@ pub(crate) struct Scales {
 
 impl Scales {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let built_in = || built_in_names().into_iter().map(str::to_owned).collect();
-        let request = ScalesRequest {
-            tasks: if self.tasks.is_empty() { built_in() } else { self.tasks },
-            worlds: self.worlds,
-            seed: self.seed,
-            libraries: self.libraries.paths().to_vec(),
-            unlabelled: self.unlabelled.iter().map(|set| names(set)).collect(),
-        };
+        let mut request = self.request;
+        if request.tasks.is_empty() {
+            request.tasks = built_in_names().into_iter().map(str::to_owned).collect();
+        }
         let bar = output::progress(num_variants(&request)? as u64, "measuring");
         let found = scales(&request, &|| bar.inc(1))?;
         bar.finish_and_clear();
@@ -79,14 +54,6 @@ impl Scales {
         }
         output::line(shown(&found))
     }
-}
-
-/// Names between commas; none in an empty text.
-fn names(set: &str) -> Vec<String> {
-    set.split(',')
-        .filter(|name| !name.is_empty())
-        .map(str::to_owned)
-        .collect()
 }
 
 /// A row per variant of each set that looks alike; nothing where nobody asked for one.

@@ -6,8 +6,10 @@ mod file;
 mod unlabelled;
 
 use std::collections::BTreeMap;
+use std::convert::Infallible;
 use std::path::PathBuf;
 
+use clap::Args;
 use driftworld_curriculum::{MOST_STEPS, log_name};
 use driftworld_env::{Agent, Catalogue, Environment, OnRailsAgent, RandomAgent, StillAgent};
 use driftworld_generator::Sampler;
@@ -17,7 +19,7 @@ use rayon::prelude::*;
 pub use file::{AgentLevel, ScalesFile, VariantScale};
 pub use unlabelled::{BestAgent, UnlabelledCeiling};
 
-use crate::{Failure, libraries, tasks};
+use crate::{Failure, libraries, numbers, tasks};
 
 /// How many worlds each agent runs in where nobody says.
 pub const DEFAULT_SCALES_WORLDS: u64 = 50;
@@ -32,19 +34,38 @@ const FLOOR: [&str; 2] = ["random", "still"];
 const CEILING: &str = "onrails";
 
 /// What is measured.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Args, Clone, Debug, PartialEq)]
+#[group(skip)]
 pub struct ScalesRequest {
-    /// Variants, or tasks, which stand for all their variants.
+    /// Variants, or tasks, which stand for all their variants [default: the built-in tasks].
+    #[arg(value_name = "TASK")]
     pub tasks: Vec<String>,
-    /// Worlds of each variant, 2 to [`MAX_SCALES_WORLDS`].
+    /// Worlds of each variant.
+    #[arg(long, value_name = "N", default_value_t = DEFAULT_SCALES_WORLDS,
+        value_parser = clap::value_parser!(u64).range(2..=MAX_SCALES_WORLDS))]
     pub worlds: u64,
-    /// The seed that they are drawn under.
+    /// Seed of the worlds.
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = numbers::seed)]
     pub seed: u64,
-    /// Asset libraries whose classes the tasks use.
-    pub libraries: Vec<PathBuf>,
-    /// Sets of variants that an agent without a label cannot tell apart, and whose ceilings it is to have; an empty one
-    /// stands for all sets of the measured variants that look alike.
+    /// Also the ceiling of agents that cannot tell variants apart which look alike at the start.
+    ///
+    /// Of each set of the variants above that look alike, or of the set named; may be given several times. It is what
+    /// the best of some scripted agents earns in the mean over the set: one that stands still, one that acts at random,
+    /// the planner of each variant, and that planner until a reward shows another variant. Without the last, it is the
+    /// ceiling of agents without memory.
+    #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "", value_parser = names, value_name = "VARIANT,…")]
     pub unlabelled: Vec<Vec<String>>,
+    /// An asset library to search before the built-in assets. Repeatable.
+    ///
+    /// The last one given is searched first.
+    #[arg(long = "assets", value_name = "LIBRARY")]
+    pub libraries: Vec<PathBuf>,
+}
+
+#[expect(clippy::unnecessary_wraps, reason = "as the command line reads values")]
+fn names(set: &str) -> Result<Vec<String>, Infallible> {
+    let names = set.split(',').filter(|name| !name.is_empty());
+    Ok(names.map(str::to_owned).collect())
 }
 
 /// Runs three agents in the same worlds of each variant: one that acts at random, one that stands still, one that knows
