@@ -19,9 +19,6 @@ const METRES_PER_LEVEL: f32 = 0.01;
 impl Session<'_> {
     /// What the agent sees, with colours smooth as the world asks for.
     fn seen(&mut self, kind: Modality, [width, height]: [u32; 2]) -> Result<Frame, String> {
-        if !(1..=4096).contains(&width) || !(1..=4096).contains(&height) {
-            return Err(format!("found {width} × {height} pixels, expected 1 to 4096 each way"));
-        }
         let wanted = self.environment.world().agent_params.supersampling;
         // A picture with too many points for its smoothness is drawn less smooth.
         let samples = (1..=wanted).rev().find(|samples| width.max(height) * samples <= 8192);
@@ -68,27 +65,25 @@ impl Session<'_> {
             Picture::Map => [480, 480],
             Picture::Seen(_) => own,
         });
+        let [width, height] = size;
+        if !(1..=4096).contains(&width) || !(1..=4096).contains(&height) {
+            return Err(format!("found {width} × {height} pixels, expected 1 to 4096 each way"));
+        }
         let bytes = match picture {
             Picture::Seen(kind) => modality::to_png(kind, &self.seen(kind, size)?, METRES_PER_LEVEL).map_err(plain)?,
             // A square one with scale, north, triggers and signs.
-            Picture::Map if size[0] == size[1] && (1..=4096).contains(&size[0]) => {
+            Picture::Map if width == height => {
                 let agent = self.environment.agent();
                 let moves = Moves {
                     agent: (agent.position, agent.heading_deg),
                     ..Moves::default()
                 };
-                let drawing = map_drawing::map(self.environment.world(), self.environment.scene(), &moves, size[0]);
+                let drawing = map_drawing::map(self.environment.world(), self.environment.scene(), &moves, width);
                 drawing.to_png().map_err(plain)?
             }
-            Picture::Map if size.iter().all(|side| (1..=4096).contains(side)) => {
-                let Image { width, height, rgb } = self.bird_view(size[0], size[1]);
-                picture::Picture { width, height, rgb }.to_png().map_err(plain)?
-            }
             Picture::Map => {
-                return Err(format!(
-                    "found {} × {} pixels, expected 1 to 4096 each way",
-                    size[0], size[1]
-                ));
+                let Image { width, height, rgb } = self.bird_view(width, height);
+                picture::Picture { width, height, rgb }.to_png().map_err(plain)?
             }
         };
         let path = self.folder.write(file, "png", &bytes)?;
@@ -96,6 +91,6 @@ impl Session<'_> {
             Picture::Seen(Modality::Depth) => ", 1 cm a level",
             _ => "",
         };
-        Ok(format!("{}: {} × {} pixels{unit}", path.shown(), size[0], size[1]))
+        Ok(format!("{}: {width} × {height} pixels{unit}", path.shown()))
     }
 }
