@@ -119,7 +119,7 @@ pub(crate) fn cells(shown: &[Shown], look: Look, tick: &dyn Fn()) -> Result<(Vec
     let mut bases = Vec::new();
     for (number, (shown_here, candidates)) in shown.iter().zip(&worlds).enumerate() {
         let (choice, is_seen) = choices[number];
-        let candidate = candidates.at(choice.world)?;
+        let candidate = candidates.at(choice.world);
         let views = Views::new(&candidate.world, look.size, choice.turn);
         let modality = shown_modality(&candidate.world);
         let seen: Drawing = views.seen_in(modality)?.into();
@@ -195,14 +195,14 @@ impl Candidates {
     }
 
     /// The world at a place; where there are fewer, they are taken in turn.
-    fn at(&self, place: u64) -> Result<&Candidate, Failure> {
+    fn at(&self, place: u64) -> &Candidate {
         let found = self.all.get(place as usize % self.all.len());
         let found = found.and_then(Option::as_ref).or_else(|| self.all[0].as_ref());
-        found.ok_or_else(|| Failure::input("found no world to draw"))
+        found.expect("the first can be drawn")
     }
 
     fn sight(&self, renderer: &mut Renderer, choice: Choice) -> Result<Sight, Failure> {
-        let candidate = self.at(choice.world)?;
+        let candidate = self.at(choice.world);
         let camera = agent_camera(&candidate.world, choice.turn);
         sight(renderer, &candidate.scene, &camera, &candidate.subjects)
     }
@@ -232,10 +232,10 @@ impl Candidates {
 
     /// The camera before which there is most room; of equals that of all, then the first.
     fn most_open(&self, renderer: &mut Renderer, joint: Choice, look: Look) -> Result<Choice, Failure> {
-        let scene = &self.at(joint.world)?.scene;
+        let scene = &self.at(joint.world).scene;
         let mut best = (0.0, joint);
         for turn in std::iter::once(joint.turn).chain(turns(look)) {
-            let camera = agent_camera(&self.at(joint.world)?.world, turn);
+            let camera = agent_camera(&self.at(joint.world).world, turn);
             let metres = openness(renderer, scene, &camera)?;
             if metres > best.0 {
                 best = (metres, Choice { turn, ..joint });
@@ -412,7 +412,7 @@ mod tests {
                 continue;
             }
             blind += 1;
-            let candidate = candidates.at(choice.world).expect("it is there");
+            let candidate = candidates.at(choice.world);
             let mut open = |turn| {
                 let camera = agent_camera(&candidate.world, turn);
                 openness(&mut renderer, &candidate.scene, &camera).expect("it is drawn")

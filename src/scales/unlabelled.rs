@@ -283,16 +283,11 @@ pub(super) fn ceiling(
         let agents = Ignorant::all(set.len()).enumerate().filter(|(_, agent)| is_one(*agent));
         // Of equals the first, which knows least.
         let better = |best: BestAgent, other: BestAgent| if other.mean() > best.mean() { other } else { best };
-        agents.map(of_agent).reduce(better)
+        agents.map(of_agent).reduce(better).expect("one stands still")
     };
-    match (best(&Ignorant::is_fixed), best(&|_| true)) {
-        (Some(fixed), Some(finds_out)) => Ok(UnlabelledCeiling {
-            among,
-            fixed,
-            finds_out,
-        }),
-        _ => Err(Failure::usage(
-            "found no agent, expected one that stands still at least",
-        )),
-    }
+    Ok(UnlabelledCeiling {
+        fixed: best(&Ignorant::is_fixed),
+        finds_out: best(&|_| true),
+        among,
+    })
 }
