@@ -70,7 +70,7 @@ impl DesignRequest {
             let (task, pool, anchor) = self.one_task(&named)?;
             let picked = steps(&task, &pool, &anchor, &wanted)?;
             let order = (0..picked.len()).collect();
-            return chosen(&picked.clone(), self.probe, order, Evidence::Steps { picked, wanted });
+            return chosen(Evidence::Steps { picked, wanted }, self.probe, order);
         }
         if let Some(element) = self.probe {
             let (task, pool, anchor) = self.one_task(&named)?;
@@ -102,12 +102,7 @@ impl DesignRequest {
                     order => arrange(&matrix, order.map_or(Some(Method::Outward), DesignOrder::method), 0)?,
                 }
             };
-            return chosen(
-                &picked.clone(),
-                Some(element),
-                order,
-                Evidence::Probe { picked, element },
-            );
+            return chosen(Evidence::Probe { picked, element }, Some(element), order);
         }
         let by = self
             .by
@@ -236,12 +231,8 @@ impl DesignRequest {
     }
 }
 
-fn chosen(
-    picked: &[Picked],
-    element: Option<Element>,
-    order: Vec<usize>,
-    evidence: Evidence,
-) -> Result<Chosen, Failure> {
+fn chosen(evidence: Evidence, element: Option<Element>, order: Vec<usize>) -> Result<Chosen, Failure> {
+    let (Evidence::Probe { picked, .. } | Evidence::Steps { picked, .. }) = &evidence;
     Ok(Chosen {
         variants: picked.iter().map(|picked| picked.choice.clone()).collect(),
         matrix: distances(picked, element)?,
