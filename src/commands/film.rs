@@ -1,8 +1,8 @@
 //! `driftworld film`: an agent's episode in a world, filmed. What a frame shows is the library's.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use crate::env::{MAX_EXPERT_STEPS, Recording, RecordingLines};
+use crate::env::MAX_EXPERT_STEPS;
 use crate::episode_frames::recorded;
 use crate::film::{FilmOptions, expect_film};
 use crate::worlds::WorldRequest;
@@ -74,7 +74,7 @@ impl Film {
         }
         let film = film_choice::write(&self.output, &recording, &catalogue, &self.film)?;
         if let Some(path) = &self.record {
-            write_recording(path, &recording)?;
+            film_choice::record(path, std::slice::from_ref(&recording))?;
         }
         if self.json {
             return output::json(&json!({
@@ -88,10 +88,4 @@ impl Film {
             .as_ref()
             .map_or(Ok(()), |path| output::line(format!("wrote {}", path.shown())))
     }
-}
-
-/// Writes an episode as a file of recordings, whole or not at all.
-fn write_recording(path: &Path, recording: &Recording) -> Result<(), Failure> {
-    let text = RecordingLines::header() + &RecordingLines::default().lines(recording);
-    output::write(path, text.as_bytes())
 }

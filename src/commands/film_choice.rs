@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::Failure;
-use crate::env::{Catalogue, Recording};
+use crate::env::{Catalogue, Recording, RecordingLines};
 use crate::film::{FilmOptions, FilmSummary, write_film};
 use driftworld_text::{ShownPath, amount, counted};
 
@@ -22,6 +22,13 @@ pub(super) fn write(
     });
     bar.finish_and_clear();
     written
+}
+
+/// Writes recordings into a file, from which `replay` plays them.
+pub(super) fn record(path: &Path, recordings: &[Recording]) -> Result<(), Failure> {
+    let mut lines = RecordingLines::default();
+    let episodes: String = recordings.iter().map(|recording| lines.lines(recording)).collect();
+    output::write(path, (RecordingLines::header() + &episodes).as_bytes())
 }
 
 /// Says which file was written, and what it is.

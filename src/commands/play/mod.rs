@@ -10,7 +10,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use crate::env::{RecordingLines, Renderer, RendererKind};
+use crate::env::{Renderer, RendererKind};
 use crate::worlds::WorldRequest;
 use clap::Args;
 use driftworld_text::{ShownPath, printable};
@@ -20,7 +20,7 @@ use self::game::Game;
 use self::keys::Key;
 use self::terminal::RawTerminal;
 use super::assets::LibraryChoice;
-use super::film_choice::summary;
+use super::film_choice::{self, summary};
 use super::interrupt::Interrupt;
 use super::{Failure, output};
 
@@ -80,9 +80,7 @@ impl Play {
             output::line(summary(recording))?;
         }
         if let Some(path) = &self.record {
-            let mut lines = RecordingLines::default();
-            let episodes: String = recordings.iter().map(|recording| lines.lines(recording)).collect();
-            output::write(path, (RecordingLines::header() + &episodes).as_bytes())?;
+            film_choice::record(path, &recordings)?;
             output::line(format!("wrote {}", path.shown()))?;
         }
         Ok(())
