@@ -135,8 +135,8 @@ impl Render {
             }
             let pictures: Vec<Drawing> = vec![large.into(), small];
             Ok(SheetRow::new(
-                title.to_owned(),
-                "640 × 360 pixels with smooth edges; 160 × 160 and 84 × 84 as learners see it".to_owned(),
+                title,
+                "640 × 360 pixels with smooth edges; 160 × 160 and 84 × 84 as learners see it",
                 pictures,
             ))
         };
@@ -173,38 +173,37 @@ impl Render {
     fn sheet(&self, world: &World, views: &Views) -> Result<Drawing, Failure> {
         let small = views.of_size((self.size * 2 / 3).max(1));
         let seen = views.first_person()?;
-        let row = |title: &str, words: String, pictures: Vec<Drawing>| SheetRow::new(title, words, pictures);
         let close_ups = small.close_ups(5)?;
         let (classes, close_ups): (Vec<String>, Vec<Drawing>) = close_ups
             .into_iter()
             .map(|(class, picture)| (class, picture.into()))
             .unzip();
         let mut rows = vec![
-            row(
+            SheetRow::new(
                 "The world",
-                "from outside, and from above: the arrow is the agent, small things are drawn larger".into(),
+                "from outside, and from above: the arrow is the agent, small things are drawn larger",
                 vec![
                     views.overview((self.size * 16 / 9).min(4096))?.into(),
                     views.map_with_legend(&ways(world)?),
                 ],
             ),
-            row(
+            SheetRow::new(
                 "What the agent sees",
-                "colour, depth, reward category".into(),
+                "colour, depth, reward category",
                 vec![
                     seen.rgb.clone().into(),
                     seen.depth_with_legend(),
                     seen.segmentation_with_legend(),
                 ],
             ),
-            row(
+            SheetRow::new(
                 "All around the agent",
-                "ahead, right, behind, left; 90° each".into(),
+                "ahead, right, behind, left; 90° each",
                 small.all_around()?.into_iter().map(Into::into).collect(),
             ),
         ];
         if !close_ups.is_empty() {
-            rows.push(row("What stands in it", classes.join(", "), close_ups));
+            rows.push(SheetRow::new("What stands in it", classes.join(", "), close_ups));
         }
         Ok(sheet(&rows, 1))
     }
