@@ -18,16 +18,13 @@ fn called(scenario: &Value) -> BTreeMap<String, String> {
     let regimes = blocks.filter_map(|block| block.get("regimes")?.as_array()).flatten();
     for regime in regimes {
         let word = |key: &str| regime.get(key).and_then(Value::as_str);
-        let Some(task) = word("task") else { continue };
-        let file = task.rsplit(['/', '\\']).next().unwrap_or(task);
-        let task = file.strip_suffix(".json").unwrap_or(file);
         // A drift is called by both of its ends, and is left as it is.
-        let Some(variant) = word("name")
-            .or_else(|| word("variant"))
-            .filter(|_| regime.get("drift").is_none())
-        else {
+        let variant = word("name").or_else(|| word("variant"));
+        let (Some(task), Some(variant), None) = (word("task"), variant, regime.get("drift")) else {
             continue;
         };
+        let file = task.rsplit(['/', '\\']).next().unwrap_or(task);
+        let task = file.strip_suffix(".json").unwrap_or(file);
         let name = format!("{task}#{variant}");
         let known = names
             .entry(log_name(task, variant))

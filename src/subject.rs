@@ -70,10 +70,8 @@ pub(crate) fn sight(
     renderer.draw(scene, camera, &mut target)?;
     let mut counts = vec![0_u32; scene.items.len()];
     let counted = MARGIN as usize..(SIDE - MARGIN) as usize;
-    for (place, instance) in instances.into_iter().enumerate() {
-        if !counted.contains(&(place % SIDE as usize)) {
-            continue;
-        }
+    let is_counted = |(place, _): &(usize, u32)| counted.contains(&(place % SIDE as usize));
+    for (_, instance) in instances.into_iter().enumerate().filter(is_counted) {
         if let Some(count) = (instance as usize)
             .checked_sub(1)
             .and_then(|index| counts.get_mut(index))
