@@ -55,3 +55,15 @@ def test_what_was_measured_of_a_family_is_measured_again(families: ModuleType, n
     assert round(scale["agents"]["random"]["mean"], 2) == measured[first]["random"]
     assert round(scale["agents"]["onrails"]["mean"], 2) == measured[first]["planner"]
     assert scale["agents"]["onrails"]["success"] == measured[first]["success"]
+
+
+def test_readme_says_what_was_learned_and_measured() -> None:
+    readme = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
+    measured = json.loads((ROOT / "examples/families.json").read_text(encoding="utf-8"))
+    assert f"[{len(measured)} families of tasks](docs/families.md)** with {sum(map(len, measured.values()))} variants" in readme
+    seeds = json.loads((ROOT / "examples/families_learned.json").read_text(encoding="utf-8"))["obstacle_course"]["ppo"]
+    (success,) = {seed["success"] for seed in seeds}
+    seconds = [seed["processor_seconds"] for seed in seeds]
+    assert f"{success:.0%} successes".replace("%", " %") in readme
+    assert f"{min(seconds)} to {max(seconds)} seconds of one core" in readme
+    assert len(seeds) == 3 and "three seeds" in readme
