@@ -93,10 +93,11 @@ impl Environment {
         self.pip(workspace, anew, &[wheels, "driftworld"])
     }
 
-    /// Runs tests of the package on the installed wheel, without a display.
+    /// Runs tests of the package on the installed wheel, a file on each core, without a display.
     fn pytest(&self, workspace: &Workspace, arguments: &[&str]) -> Result {
         let mut pytest = self.python(workspace, &["-m", "pytest", "--quiet"]);
         pytest
+            .args(["--numprocesses", "auto", "--dist", "loadfile"])
             .args(arguments)
             .current_dir(workspace.root.join("python"))
             .env("SDL_VIDEODRIVER", "dummy");
@@ -147,12 +148,11 @@ pub(crate) fn package(workspace: &Workspace) -> Result<Outcome> {
         run(check)?;
     }
     tests.install_driftworld(workspace)?;
-    // A file on each core; not so the learners' tests, which start processes of their own.
-    let cores = ["--numprocesses", "auto", "--dist", "loadfile", "-m", "not learners"];
-    tests.pytest(workspace, &cores)?;
+    let quick = ["-m", "not learners"];
+    tests.pytest(workspace, &quick)?;
     let oldest = ["python/tests/requirements-oldest.txt"];
     tests.pip(workspace, "install --quiet --requirement", &oldest)?;
-    tests.pytest(workspace, &[&cores, &ANY_GYMNASIUM[..]].concat())?;
+    tests.pytest(workspace, &[&quick, &ANY_GYMNASIUM[..]].concat())?;
     Ok(Outcome::Passed("with the newest and the oldest Gymnasium".into()))
 }
 
