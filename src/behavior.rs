@@ -7,8 +7,9 @@ use driftworld_spec::{Variant, World};
 use rayon::prelude::*;
 
 use crate::Failure;
+use crate::failure::within;
 
-/// The most pairs of worlds.
+/// The most pairs of worlds; of pictures and dynamics, too.
 pub const MAX_BEHAVIOR_WORLDS: u64 = 1_000;
 
 /// Points of regret that count 1.
@@ -62,7 +63,7 @@ pub struct BehaviorOutcome {
 
 /// Lets the experts of two variants live in each other's worlds.
 ///
-/// `worlds` worlds of each are drawn under one seed, and number `i` of one variant is paired with number `i` of the other.
+/// `worlds` worlds of each, 1 to [`MAX_BEHAVIOR_WORLDS`], are drawn under one seed, and number `i` of one variant is paired with number `i` of the other.
 /// [`Expertise::abroad`] says what an expert knows in a world that is not its own: where everything is, and of what it pays only
 /// what it would pay at home.
 ///
@@ -71,7 +72,7 @@ pub struct BehaviorOutcome {
 /// below 0.
 ///
 /// # Errors
-/// [`Failure`] where a world cannot be drawn.
+/// [`Failure`] where a world cannot be drawn, or `worlds` is out of its range.
 ///
 /// # Example
 /// ```
@@ -87,6 +88,7 @@ pub fn behavior(
     seed: u64,
     catalogue: &Catalogue,
 ) -> Result<BehaviorOutcome, Failure> {
+    within("worlds", worlds, 1..=MAX_BEHAVIOR_WORLDS)?;
     let expertise = Expertise {
         catalogue: catalogue.clone(),
         ..Expertise::default()
@@ -178,5 +180,16 @@ mod tests {
         let found = outcome(vec![pair]);
         assert_eq!((found.regret_in_a, found.regret_in_b), (60.0, -20.0));
         assert_eq!((found.distance, found.success_difference), (0.2, 0.5));
+    }
+
+    #[test]
+    fn numbers_of_worlds_out_of_range_are_refused() {
+        let red = tasks::variant("find_objects#red").expect("it is built in");
+        for worlds in [0, MAX_BEHAVIOR_WORLDS + 1] {
+            assert!(
+                behavior(&red, &red, worlds, 0, &Catalogue::default()).is_err(),
+                "{worlds}"
+            );
+        }
     }
 }
