@@ -83,6 +83,19 @@ fn values_are_checked_where_they_stand_and_refused_where_they_are_written() {
 }
 
 #[test]
+fn a_choice_called_default_is_checked_where_it_stands() {
+    let parameter = r#"{ "role": "variant", "type": "json", "affects": ["O"],
+        "choices": { "a": ["depht"], "default": ["depht"] }, "default": "a" }"#;
+    let said = said(
+        parameter,
+        r#"{ "agent_params": { "modalities": { "param": "p" } } }"#,
+        "{}",
+    );
+    assert!(said.contains("/choices/a/0"), "{said}");
+    assert!(said.contains("/choices/default/0"), "{said}");
+}
+
+#[test]
 fn a_value_that_no_choice_is_is_refused_also_by_code() {
     let text = r#"{ "name": "t", "parameters": { "p": {
         "role": "variant", "type": "json", "affects": ["O"], "choices": [["rgb"], null], "default": ["rgb"] } } }"#;

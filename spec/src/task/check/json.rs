@@ -90,7 +90,7 @@ impl Check<'_> {
                             listed(own, &pointer, &mut found);
                         }
                         // A default is one of the choices.
-                        _ if pointer.ends_with("/default") && found.iter().any(|(_, known)| known == value) => {}
+                        _ if key == "default" && found.iter().any(|(_, known)| known == value) => {}
                         _ => found.push((pointer, value.clone())),
                     }
                 }
