@@ -37,9 +37,13 @@ fn fits(value: &Value, room: &mut usize) -> bool {
 }
 
 fn fits_text(text: &str, room: &mut usize) -> bool {
-    // Escapes make it longer than it is.
-    let fits = text.len() <= 4 * *room && Value::from(text).to_string().chars().count() <= *room;
-    *room = room.saturating_sub(text.chars().count() + 2);
+    // A text that is far too long is not escaped to be counted.
+    if text.len() > 4 * *room {
+        return false;
+    }
+    let characters = Value::from(text).to_string().chars().count();
+    let fits = characters <= *room;
+    *room = room.saturating_sub(characters);
     fits
 }
 
@@ -71,4 +75,25 @@ pub(crate) fn pointer_of(path: &serde_path_to_error::Path) -> String {
         Segment::Enum { variant } => format!("{pointer}/{}", escape(variant)),
         Segment::Unknown => pointer,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn values_are_shown_whole_up_to_60_characters_escapes_among_them() {
+        let of_quotes = |a: usize, b: usize| json!({ "a": "\"".repeat(a), "b": "\"".repeat(b) });
+        for (a, b) in [(12, 10), (0, 0), (22, 0), (0, 22)] {
+            let text = of_quotes(a, b).to_string();
+            assert!(text.len() <= 60, "{text}");
+            assert_eq!(describe(&of_quotes(a, b)), text);
+        }
+        for (a, b) in [(20, 12), (23, 0), (0, 23)] {
+            assert!(of_quotes(a, b).to_string().len() > 60);
+            assert_eq!(describe(&of_quotes(a, b)), "an object");
+        }
+    }
 }
