@@ -13,7 +13,8 @@ const AHEAD: usize = 16;
 /// Does every item of a range, a worker to a thread, and hands the results on in order; ends early when `take` says so.
 ///
 /// Items are begun in order, each by whichever worker is free. After an early end the items under way are finished and
-/// dropped. Where the system has no threads to give, fewer do the work, or this one alone.
+/// dropped. A panic of `work` goes on here, where its result would be handed on; one behind an early end is dropped, too. Where the
+/// system has no threads to give, fewer do the work, or this one alone.
 pub(super) fn in_order<W: Send, T: Send, E>(
     items: Range<u64>,
     workers: Vec<W>,
@@ -31,11 +32,12 @@ pub(super) fn in_order<W: Send, T: Send, E>(
         // Dropped however this ends: then no thread goes on waiting for an item.
         let give = give;
         let (results, arrived) = mpsc::channel();
-        let is_hired = |_: &usize| {
+        let starts_a_thread = |_: &usize| {
             let (results, work, hire, next) = (results.clone(), &work, &hire, &next);
             let thread = thread::Builder::new().spawn_scoped(scope, move || {
                 let Some(mut worker) = hire() else { return };
                 while let Ok(item) = next() {
+                    // A worker that panicked makes nothing that is used: the panic comes before whatever else it does.
                     let result = catch_unwind(AssertUnwindSafe(|| work(&mut worker, item)));
                     if results.send((item, result)).is_err() {
                         break;
@@ -44,7 +46,7 @@ pub(super) fn in_order<W: Send, T: Send, E>(
             });
             thread.is_ok()
         };
-        if (0..num_workers).take_while(is_hired).count() == 0 {
+        if (0..num_workers).take_while(starts_a_thread).count() == 0 {
             return alone(items, hire(), &work, &mut take);
         }
         let mut later = items.clone();
@@ -55,11 +57,13 @@ pub(super) fn in_order<W: Send, T: Send, E>(
         begin(ahead);
         let mut early = BTreeMap::new();
         for wanted in items {
-            while !early.contains_key(&wanted) {
+            let result = loop {
+                if let Some(result) = early.remove(&wanted) {
+                    break result;
+                }
                 let (item, result) = arrived.recv().expect("a thread sends every item that was given");
                 early.insert(item, result);
-            }
-            let result = early.remove(&wanted).expect("it has arrived");
+            };
             if take(wanted, result.unwrap_or_else(|panic| resume_unwind(panic)))?.is_break() {
                 return Ok(ControlFlow::Break(()));
             }
@@ -140,15 +144,25 @@ mod tests {
                     assert_ne!(item, 3, "this one is too hard");
                     item
                 };
+                let mut taken = Vec::new();
                 let all = || {
-                    in_order(0..10_000, vec![(); jobs], work, |_, _| {
+                    in_order(0..10_000, vec![(); jobs], work, |item, _| {
+                        taken.push(item);
                         Ok::<_, ()>(ControlFlow::Continue(()))
                     })
                 };
-                done.send(std::panic::catch_unwind(all).is_err())
+                let panic = catch_unwind(AssertUnwindSafe(all)).expect_err("item 3 panics");
+                let said = panic
+                    .downcast_ref::<String>()
+                    .is_some_and(|text| text.contains("too hard"));
+                done.send((taken, said))
             });
-            let panicked = ended.recv_timeout(std::time::Duration::from_mins(1));
-            assert_eq!(panicked, Ok(true), "{jobs} threads: it ends, by the panic");
+            let ended = ended.recv_timeout(std::time::Duration::from_mins(1));
+            assert_eq!(
+                ended,
+                Ok((vec![0, 1, 2], true)),
+                "{jobs} threads: it ends, by the panic"
+            );
         }
     }
 

@@ -4,6 +4,7 @@ use crate::EnvError;
 
 /// What draws pictures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, strum::Display, strum::EnumString, strum::IntoStaticStr)]
+#[cfg_attr(test, derive(strum::EnumIter))]
 #[strum(serialize_all = "lowercase", parse_err_ty = EnvError, parse_err_fn = unknown)]
 pub enum RendererKind {
     /// The processor: everywhere, and the same pixels on every machine.
@@ -29,11 +30,13 @@ fn unknown(word: &str) -> EnvError {
 
 #[cfg(test)]
 mod tests {
+    use strum::IntoEnumIterator;
+
     use super::*;
 
     #[test]
     fn names_lead_back_to_their_kind() {
-        for kind in [RendererKind::Cpu, RendererKind::Gpu, RendererKind::Auto] {
+        for kind in RendererKind::iter() {
             assert_eq!(kind.to_string().parse(), Ok(kind));
         }
         assert!("GPU".parse::<RendererKind>().is_err());
