@@ -247,10 +247,7 @@ fn list(name: &str, problems: &[Problem], more: bool) -> String {
 
 /// A text as a message shows it: not longer than one can bear.
 pub(crate) fn cut(text: &str) -> String {
-    match text.char_indices().nth(SHOWN_CHARACTERS) {
-        Some((end, _)) => format!("{}…", &text[..end]),
-        None => text.to_owned(),
-    }
+    driftworld_text::shortened(text, SHOWN_CHARACTERS)
 }
 
 /// Names as a message lists them: the first of them, and how many more there are.

@@ -123,11 +123,18 @@ fn opened_comment(word: &str, is_python: bool) -> Option<(&'static str, &str)> {
     word.strip_prefix("/*").map(|rest| ("*/", rest))
 }
 
+/// A line without the comment at its end.
+fn before_comment(line: &str) -> &str {
+    line.split_once(" // ").map_or(line, |(code, _)| code)
+}
+
 /// The lines of a file; those of comments and of tests are empty.
 pub(crate) fn shipped_lines(text: &str) -> Vec<&str> {
-    let code = |line: &&str| !line.trim_start().starts_with("//");
-    let before_comment = |line| Some(line).filter(code).and_then(|line| line.split(" // ").next());
-    let mut lines: Vec<&str> = text.lines().map(|line| before_comment(line).unwrap_or("")).collect();
+    let code = |line: &str| !line.trim_start().starts_with("//");
+    let mut lines: Vec<&str> = text
+        .lines()
+        .map(|line| if code(line) { before_comment(line) } else { "" })
+        .collect();
     for start in 0..lines.len() {
         if lines[start].trim_start().starts_with("#[cfg(test)]") {
             let is_attribute = |line: &&str| line.trim_start().starts_with('#') || line.is_empty();

@@ -8,7 +8,7 @@ use driftworld_env::{Action, Agent, EndedBy, EnvError, Environment, Label, Recor
 /// Steps after which an experience in a world without a limit is over.
 pub const MOST_STEPS: u32 = 100_000;
 
-/// What an agent is told of an experience.
+/// The experience that an agent is about to have.
 pub(super) struct EpisodeContext<'a> {
     /// The number that it draws its own chance from.
     pub(super) seed: u64,

@@ -359,7 +359,6 @@ pub(super) fn scenario_info(plan: &Plan, agent: &str) -> ScenarioInfo {
     }
     let form = match plan.scenario.form {
         Some(ScenarioForm::Expert) => ScenarioType::Ste,
-        Some(ScenarioForm::Joint) | None => ScenarioType::Custom,
         form => logged(form).unwrap_or(ScenarioType::Custom),
     };
     ScenarioInfo {
@@ -370,7 +369,7 @@ pub(super) fn scenario_info(plan: &Plan, agent: &str) -> ScenarioInfo {
     }
 }
 
-/// What a word of a scenario is in a log: both have l2logger's.
+/// The word of a log for a word of a scenario: both use l2logger's.
 fn logged<T: FromStr>(word: Option<impl Serialize>) -> Option<T> {
     json!(word?).as_str()?.parse().ok()
 }
@@ -399,13 +398,9 @@ fn difference<'a>(found: &'a Value, expected: &'a Value, place: String) -> Optio
 
 /// A value in the few words that a message has room for.
 fn shown(value: &Value) -> String {
-    let text = match value {
-        Value::Null => return "nothing".to_owned(),
-        other => other.to_string(),
-    };
-    match text.char_indices().nth(120) {
-        Some((end, _)) => format!("{}…", &text[..end]),
-        None => text,
+    match value {
+        Value::Null => "nothing".to_owned(),
+        other => driftworld_text::shortened(&other.to_string(), 120),
     }
 }
 
@@ -437,6 +432,7 @@ mod tests {
         let expected = [Difficulty::Easy, Difficulty::Medium, Difficulty::Hard];
         assert_eq!(difficulties, expected.map(Some));
         assert_eq!(logged::<Difficulty>(None::<ScenarioDifficulty>), None);
+        assert_eq!(logged::<ScenarioType>(Some(ScenarioForm::Joint)), None);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! What an agent of which only the rewards are simulated is told of an experience.
+//! An experience as an agent sees it when only rewards are simulated.
 
 use driftworld_spec::BlockKind;
 

@@ -61,28 +61,31 @@ impl Expertise {
                 Some(belief) => in_space(expert.steer(belief.at(&truth).sim()), truth.sim()),
                 None => expert.act(&truth),
             };
-            let mut agrees = vec![true; beliefs.len()];
-            if beliefs.len() > 1 {
+            let doubts = beliefs.len() > 1;
+            if doubts {
                 for belief in &mut beliefs {
                     belief.at(&truth);
                 }
             }
             truth.step_into(action, &mut step)?;
-            if beliefs.len() > 1 {
-                for (belief, agrees) in beliefs.iter_mut().zip(&mut agrees) {
+            if doubts {
+                let mut agrees = Vec::with_capacity(beliefs.len());
+                for belief in &mut beliefs {
                     belief.foresee(action, &mut foreseen)?;
-                    *agrees = (foreseen.reward - step.reward).abs() <= SAME_REWARD
-                        && (foreseen.success, foreseen.terminated) == (step.success, step.terminated);
+                    agrees.push(
+                        (foreseen.reward - step.reward).abs() <= SAME_REWARD
+                            && (foreseen.success, foreseen.terminated) == (step.success, step.terminated),
+                    );
                 }
-            }
-            if agrees.contains(&true) {
-                if !agrees[0] {
-                    expert = OnRailsAgent::new();
+                if agrees.contains(&true) {
+                    if !agrees[0] {
+                        expert = OnRailsAgent::new();
+                    }
+                    let mut kept = agrees.into_iter();
+                    beliefs.retain(|_| kept.next() == Some(true));
+                } else {
+                    beliefs.truncate(1);
                 }
-                let mut kept = agrees.into_iter();
-                beliefs.retain(|_| kept.next() == Some(true));
-            } else {
-                beliefs.truncate(1);
             }
             for belief in &mut beliefs {
                 belief.note(&step);

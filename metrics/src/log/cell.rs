@@ -116,10 +116,7 @@ pub(super) fn shown(text: &str) -> String {
 
 /// A name as it stands in a message: not longer than one can bear.
 pub(super) fn cut(text: &str) -> String {
-    match text.char_indices().nth(SHOWN) {
-        Some((end, _)) => format!("{}…", &text[..end]),
-        None => text.to_owned(),
-    }
+    driftworld_text::shortened(text, SHOWN)
 }
 
 /// Names as a message lists them: the first of them, and how many more there are.

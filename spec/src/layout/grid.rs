@@ -58,7 +58,7 @@ impl Grid {
     }
 
     /// Every side between two cells.
-    pub(super) fn sides(&self) -> impl Iterator<Item = SideOf> + use<> {
+    pub(super) fn between_cells(&self) -> impl Iterator<Item = SideOf> + use<> {
         let [columns, rows] = self.lattice;
         (0..columns * rows).flat_map(move |cell| {
             let east = (cell % columns + 1 < columns).then_some((cell, 0));
@@ -99,7 +99,7 @@ impl Grid {
         if share >= 1.0 {
             return;
         }
-        let mut sides: Vec<SideOf> = self.sides().collect();
+        let mut sides: Vec<SideOf> = self.between_cells().collect();
         sides.retain(|(cell, axis)| self.sides[*axis][*cell] != Side::Open);
         Draws::new(seed, Purpose::Standing).shuffle(&mut sides);
         let stand = share_of(share, sides.len());
@@ -112,7 +112,7 @@ impl Grid {
     fn ways_out(&self) -> Vec<u8> {
         let mut ways = vec![0; self.sides[0].len()];
         for (cell, axis) in self
-            .sides()
+            .between_cells()
             .filter(|(cell, axis)| self.sides[*axis][*cell] != Side::Wall)
         {
             ways[cell] |= [EAST, NORTH][axis];

@@ -87,7 +87,7 @@ impl Rooms {
         let mut grid = Grid::new(lattice, Side::Open);
         let mut draws = Draws::new(seed, Purpose::Doorways);
         // Where the doorway of a wall is does not depend on which walls have one.
-        for (room, axis) in joined.sides() {
+        for (room, axis) in joined.between_cells() {
             let [column, row] = [room % joined.lattice[0], room / joined.lattice[0]];
             let has_doorway = joined.sides[axis][room] == Side::Doorway;
             let along = cells[1 - axis];
@@ -119,7 +119,7 @@ impl Rooms {
     fn joined(&self, seed: u64) -> Grid {
         let mut joined = Grid::new(self.grid.map(|count| count as usize), Side::Wall);
         joined.open_tree(Side::Doorway, &mut Draws::new(seed, Purpose::Tree));
-        let mut others: Vec<SideOf> = joined.sides().collect();
+        let mut others: Vec<SideOf> = joined.between_cells().collect();
         others.retain(|(cell, axis)| joined.sides[*axis][*cell] == Side::Wall);
         Draws::new(seed, Purpose::Loops).shuffle(&mut others);
         for (cell, axis) in &others[..share_of(self.loops, others.len())] {

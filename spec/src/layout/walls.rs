@@ -68,7 +68,7 @@ fields! {
     }
 }
 
-/// Of some keys those that are there.
+/// The keys that are there.
 pub(super) fn present<const N: usize>(keys: [(&'static str, bool); N]) -> Vec<&'static str> {
     let present = keys.into_iter().filter(|(_, is_there)| *is_there);
     present.map(|(key, _)| key).collect()

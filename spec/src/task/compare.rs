@@ -165,7 +165,7 @@ impl MeasureName {
                 of_numbers && always_positive(parameter),
                 "a variant parameter of type number or integer whose values are all above 0 for it",
             ),
-            _ if self.is_of_colors() => (
+            Self::Srgb | Self::Cie76 | Self::Ciede2000 | Self::Oklab | Self::Hyab => (
                 parameter.kind == ParameterType::Color || by_distribution,
                 "a parameter of type color, or one whose distributions draw colours, for it",
             ),
@@ -173,7 +173,13 @@ impl MeasureName {
                 parameter.kind == ParameterType::Layout,
                 "a variant parameter of type layout for it",
             ),
-            _ => (
+            Self::Wasserstein1
+            | Self::Wasserstein2
+            | Self::TotalVariation
+            | Self::Hellinger
+            | Self::JensenShannon
+            | Self::Energy
+            | Self::BuresWasserstein => (
                 by_distribution,
                 "a randomized parameter, or one of type distribution for it",
             ),

@@ -137,18 +137,17 @@ fn write_model(model: &LibraryModel, out: &mut Vec<u8>) {
 }
 
 fn write_collider(collider: &ColliderShape, out: &mut Vec<u8>) {
-    let (tag, numbers) = match collider {
-        ColliderShape::Box { half } => (0, half.to_vec()),
-        ColliderShape::Ball { radius } => (1, vec![*radius]),
-        ColliderShape::Cylinder { radius, half_height } => (2, vec![*radius, *half_height]),
-        ColliderShape::Capsule { radius, half_height } => (3, vec![*radius, *half_height]),
-        ColliderShape::Hull { points } => (4, points.as_flattened().to_vec()),
+    let mut write = |start: &[u8], numbers: &[f32]| {
+        out.extend(start);
+        write_numbers(numbers, out);
     };
-    out.push(tag);
-    if let ColliderShape::Hull { points } = collider {
-        out.push(points.len() as u8);
+    match collider {
+        ColliderShape::Box { half } => write(&[0], half),
+        ColliderShape::Ball { radius } => write(&[1], &[*radius]),
+        ColliderShape::Cylinder { radius, half_height } => write(&[2], &[*radius, *half_height]),
+        ColliderShape::Capsule { radius, half_height } => write(&[3], &[*radius, *half_height]),
+        ColliderShape::Hull { points } => write(&[4, points.len() as u8], points.as_flattened()),
     }
-    write_numbers(&numbers, out);
 }
 
 fn write_numbers(numbers: &[f32], out: &mut Vec<u8>) {
