@@ -1,4 +1,4 @@
-"""Trains PPO and films it: the film at the top of the README, and the network that acts in it.
+"""Trains PPO and films it: the film at the top of the README, and its network.
 
     python scripts/trained_film.py target/release/driftworld
 
@@ -39,5 +39,5 @@ def train() -> None:
 if __name__ == "__main__":
     if not NETWORK.is_file():
         train()
-    command = [sys.argv[1], "film", f"{TASK}#crowded", "--agent", f"net:{NETWORK}", "--index", "2", "--size", "200", "-o", FILM]
+    command = [sys.argv[1], "film", f"{TASK}#crowded", "--agent", f"net:{NETWORK}", "--index", "2", "--size", "176", "-o", FILM]
     subprocess.run(command, check=True)

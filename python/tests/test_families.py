@@ -15,13 +15,18 @@ from driftworld import _native
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.fixture
-def families(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    """The script, with the command in this process."""
-    spec = importlib.util.spec_from_file_location("families", ROOT / "scripts/families.py")
+def script(name: str) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(name, ROOT / f"scripts/{name}.py")
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture
+def families(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    """The script, with the command in this process."""
+    module = script("families")
 
     def said(_: str, *words: str) -> Any:
         assert _native.main(["driftworld", *words, "--json"]) in (0, 1)
@@ -67,3 +72,7 @@ def test_readme_says_what_was_learned_and_measured() -> None:
     assert f"{success:.0%} successes".replace("%", " %") in readme
     assert f"{min(seconds)} to {max(seconds)} seconds of one core" in readme
     assert len(seeds) == 3 and "three seeds" in readme
+    learning = script("learn_families")
+    side = learning.OPTIONS["size"]
+    assert f"{side} × {side} pixels in {learning.DECISIONS:,} decisions" in readme
+    assert f"{learning.WORLDS} new worlds" in readme
