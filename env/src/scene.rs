@@ -24,8 +24,9 @@ pub struct Scene {
     /// Walls: the arena's own and regions that cannot be entered.
     pub walls: Vec<WallPanel>,
     arena_size: [f32; 2],
+    /// The walls as they are drawn: the arena's four, then a group for each region, then the zones on the ground.
     pub(crate) panels: Vec<PanelGroup>,
-    /// The highest number of a class among its items.
+    /// The highest number of a class among its items; 0 without items.
     pub(crate) highest_class: u16,
     catalogue: Catalogue,
     /// Which looks its objects have.

@@ -137,11 +137,12 @@ impl Error {
     }
 }
 
+/// A text as a `ValueError`, unprintable characters escaped.
 fn value_error(text: &str) -> Error {
     Error::Python(PyValueError::new_err(printable_lines(text).into_owned()))
 }
 
-/// The `ValueError` of what cannot be read.
+/// An error's text as a `ValueError`, as it stands.
 pub(crate) fn wrong(error: impl std::fmt::Display) -> PyErr {
     PyValueError::new_err(error.to_string())
 }

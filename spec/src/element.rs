@@ -1,4 +1,4 @@
-//! [`Element`]: the parts of a decision process. What of a world belongs to which is in `world/comparison.rs`.
+//! [`Element`]: the parts of a decision process. What of a world belongs to which is in `world/fields/comparison.rs`.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

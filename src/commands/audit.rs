@@ -33,7 +33,7 @@ pub(crate) struct Audit {
     #[arg(long, default_value_t = AuditOptions::default().lifetimes, value_name = "N",
         value_parser = clap::value_parser!(u32).range(1..=100_000))]
     lifetimes: u32,
-    /// Lifetimes of each other agent; fewer than five reveal only gross faults.
+    /// Lifetimes of each other agent; few reveal only gross faults.
     #[arg(long, default_value_t = AuditOptions::default().repeats, value_name = "N",
         value_parser = clap::value_parser!(u32).range(2..=100_000))]
     repeats: u32,

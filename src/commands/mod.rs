@@ -86,7 +86,7 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> u8 {
                 output::note(help.render().to_string().trim_end());
             } else {
                 let printed = help.print().and_then(|()| std::io::stdout().flush());
-                // Where nobody reads, there is nobody to tell of it.
+                // A reader that has gone needs no message.
                 if let Err(error) = printed.or_else(|error| match error.kind() {
                     std::io::ErrorKind::BrokenPipe => Ok(()),
                     _ => Err(error),

@@ -133,8 +133,8 @@ pub(crate) fn json(value: &impl Serialize) -> Result<(), Failure> {
     print_json(&(serde_json::to_string_pretty(value)? + "\n"))
 }
 
-/// Says something on standard error that is not a result; unprintable characters are shown. Where its reader has gone, there is
-/// nobody to tell, and the work goes on.
+/// Prints a message that is not a result on standard error, with unprintable characters escaped. A reader that has gone is no
+/// error: the work continues.
 pub(crate) fn note(text: impl AsRef<str>) {
     let text = wrap_lines(&printable_lines(text.as_ref()), columns_of_stderr());
     let text = match Style::of_message(&text).filter(|_| style::of_stderr()) {

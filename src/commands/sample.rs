@@ -164,6 +164,7 @@ impl Sample {
         self.files(&draw, range)
     }
 
+    /// What worlds are drawn from.
     fn source(&self, variant: &Variant, count: u64) -> Result<Draw, Failure> {
         let sequence = match self.sequence {
             SequenceName::Independent => Sequence::Independent,
@@ -250,7 +251,7 @@ impl Sample {
 
 const REMOVED: &str = "incomplete output was removed";
 
-/// Hands over the worlds with their numbers and variants, in order; draws a chunk at a time on all cores. `left` says what an
+/// Hands over the worlds with their numbers, in order; draws a chunk at a time on all cores. `left` says what an
 /// interrupt leaves behind.
 fn each(
     draw: &Draw,

@@ -1,4 +1,4 @@
-//! Editing lines on a terminal: history and completion. What a line says is in `line.rs`.
+//! Editing lines on a terminal: history and completion. Which commands there are is in `line.rs`.
 
 use crate::env::Category;
 use rustyline::completion::Completer;

@@ -1,4 +1,4 @@
-//! The console: a running world by hand, line by line. What a line says is in `line.rs`, what is done in `session.rs`; where
+//! The console: a running world by hand, line by line. Which commands there are is in `line.rs`, what a line does in `session.rs`; where
 //! lines come from, the command's.
 
 mod arguments;

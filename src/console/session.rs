@@ -1,5 +1,5 @@
-//! A running world and what the lines of the console do to it. Which commands there are is in `line.rs`, how their arguments are
-//! read in `arguments.rs`; what is told of the world in `report.rs`, shown of it in `look.rs`, and sent to it in `messages.rs`.
+//! Runs the console's commands on a world. `line.rs` lists them, `arguments.rs` reads their arguments, `report.rs` describes the
+//! world, `look.rs` shows it, and `messages.rs` sends it messages.
 
 use std::collections::BTreeMap;
 use std::path::Path;

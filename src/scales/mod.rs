@@ -33,7 +33,7 @@ const FLOOR: [&str; 2] = ["random", "still"];
 /// The agent that makes the ceiling: it knows the map and what pays.
 const CEILING: &str = "onrails";
 
-/// What is measured.
+/// What is measured: the arguments of `driftworld scales`. There are 2 to [`MAX_SCALES_WORLDS`] worlds of each variant.
 #[derive(Args, Clone, Debug, PartialEq)]
 #[group(skip)]
 pub struct ScalesRequest {
@@ -62,6 +62,7 @@ pub struct ScalesRequest {
     pub libraries: Vec<PathBuf>,
 }
 
+/// Names between commas; none in an empty text.
 #[expect(clippy::unnecessary_wraps, reason = "as the command line reads values")]
 fn names(set: &str) -> Result<Vec<String>, Infallible> {
     let names = set.split(',').filter(|name| !name.is_empty());

@@ -91,17 +91,17 @@ impl<R: BufRead> RecordingReader<R> {
         loop {
             let place = self.mark();
             let Some(line) = self.line()? else { return Ok(None) };
-            let no_line = |this: &Self, error: &serde_json::Error| {
+            let not_a_line = |this: &Self, error: &serde_json::Error| {
                 wrong(this.line, in_plain_words(error), "a line of a world or of an episode")
             };
             if line.starts_with(b"{\"world_hash\":") {
-                let world: WorldLine = serde_json::from_slice(&line).map_err(|error| no_line(self, &error))?;
+                let world: WorldLine = serde_json::from_slice(&line).map_err(|error| not_a_line(self, &error))?;
                 let line = self.line;
                 // The last counts: it was written where one before could not be made out.
                 self.worlds.insert(world.world_hash, (line, world.world));
                 continue;
             }
-            let said: EpisodeLine = serde_json::from_slice(&line).map_err(|error| no_line(self, &error))?;
+            let said: EpisodeLine = serde_json::from_slice(&line).map_err(|error| not_a_line(self, &error))?;
             return Ok(Some(RecordedEpisode {
                 origin: said.origin.clone(),
                 steps: said.steps,

@@ -172,6 +172,7 @@ impl Reach {
 }
 
 /// A buffer whose first number is at the start of a line of the processor's memory, so that whole vectors lie in one.
+/// The numbers of a clone begin there once it is resized.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Aligned<T> {
     numbers: Vec<T>,

@@ -43,7 +43,7 @@ impl Renderer {
         }
     }
 
-    /// On a graphics card, or else on software that stands in for one where that will do.
+    /// On a graphics card; with `or_software`, else on software that stands in for one.
     #[cfg(feature = "gpu")]
     fn on_gpu(or_software: bool) -> Result<Self, EnvError> {
         let choice = if or_software {

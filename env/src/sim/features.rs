@@ -50,7 +50,7 @@ impl Environment {
     }
 }
 
-/// The numbers of one feature, the first of the three.
+/// The numbers of one feature, followed by zeros.
 fn values(world: &World, state: &SimState, zones: &Zones, feature: StateFeature) -> [f32; 3] {
     let agent = &state.agent;
     let [x, y] = agent.position;

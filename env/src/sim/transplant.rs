@@ -12,7 +12,7 @@ use super::state::SimState;
 use super::walls::agent_obstacle;
 use crate::EnvError;
 
-/// The most characters of how something is.
+/// The most characters that a message shows of a value: lists of corners have no end.
 const MOST_CHARACTERS: usize = 200;
 
 /// What differs, in words, and how it is in each of the two.

@@ -196,7 +196,10 @@ impl Sampler {
 
     /// The free space of all worlds, or a world's own.
     fn free_space_of<'a>(&'a self, own: Option<&'a FreeSpace>) -> &'a FreeSpace {
-        self.free_space.as_ref().or(own).expect("one of the two is there")
+        self.free_space
+            .as_ref()
+            .or(own)
+            .expect("a world has its own where there is none for all")
     }
 
     /// The world but for its objects, with its free space where that is its own. The agent's start lies in free space: a

@@ -44,7 +44,7 @@ pub struct Regime {
     /// The tasks that it counts as learning of, for maintenance and transfer: its own, or in a drift those that it
     /// passes. Empty for an evaluation.
     pub learns: Vec<String>,
-    /// Its rows in the log.
+    /// Its rows in the log that it was formed from; those of a shuffled block need not ascend.
     pub(crate) rows: Vec<usize>,
     /// Experience number of each row, ascending.
     pub exp_nums: Vec<u64>,

@@ -86,7 +86,7 @@ fn all_asked() -> Options {
 /// ```
 pub trait Metric: Send + Sync {
     /// The values by which a lifetime is known that this metric sets under these options, in order. Their names must be its
-    /// own. Without it, there are none.
+    /// own. By default there are none.
     fn headlines(&self, _options: &Options) -> Vec<Headline> {
         Vec::new()
     }

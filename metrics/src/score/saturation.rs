@@ -53,7 +53,7 @@ pub(super) fn peak(per_experience: &[f64], assessment: &Assessment<'_>) -> Peak 
 fn first_maximum(values: &[f64], slack: f64) -> Peak {
     let higher = |best: f64, value: f64| if value > best { value } else { best };
     let value = values.iter().copied().reduce(higher).unwrap_or(0.0);
-    let reached = values.iter().position(|reached| *reached >= value - slack);
+    let reached = values.iter().position(|other| *other >= value - slack);
     Peak {
         value,
         experiences: reached.unwrap_or(0),

@@ -9,8 +9,8 @@ use super::values;
 
 /// Σ term(ln p, ln q) over single values and ∫ term(ln f, ln g) dx over densities, on the circle where either draws headings.
 ///
-/// The term must be homogeneous: term of c p and c q is c times that of p and q, and 0 where they are equal. `None` if one draws what the other cannot,
-/// such as words and numbers, or points with a density.
+/// The term must be homogeneous, and 0 where the two are equal: term of c p and c q is c times that of p and q. `None` if one
+/// draws what the other cannot, such as words and numbers, or points with a density.
 pub(super) fn sum(a: &Distribution, b: &Distribution, term: impl Fn(f64, f64) -> f64) -> Option<Measured> {
     let equal = (a == b).then(|| Measured::closed(0.0));
     if let Some((p, q)) = law::both(a, b) {

@@ -38,7 +38,7 @@ pub const MAX_TRANSPORTED: usize = 4096;
 pub fn optimal_transport(from: &[f64], to: &[f64], costs: &[f64]) -> Result<TransportPlan, SimilarityError> {
     check_costs(from.len(), to.len(), costs)?;
     let units = Units::of(from, to)?;
-    let cost = |from: usize, destination: usize| costs[from * to.len() + destination];
+    let cost = |origin: usize, destination: usize| costs[origin * to.len() + destination];
     let moves = cheapest_moves(&units.from, &units.to, cost)?.into_iter();
     let moves: Vec<Move> = moves
         .map(|(from, to, flow)| Move {

@@ -1,4 +1,4 @@
-//! What is wrong with a distribution's numbers. References and types are checked in `task/check.rs`.
+//! What is wrong with a distribution's numbers. References and types are checked in `task/check/`.
 
 use std::ops::RangeInclusive;
 

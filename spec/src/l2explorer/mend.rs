@@ -113,8 +113,7 @@ impl Reader {
             // What is made of it takes its place.
             Json::Object(part) => Some(std::mem::take(part)),
             other => {
-                let other = other.take();
-                self.warn_instead(format!("/{key}"), &other, "an object; its defaults are assumed");
+                self.warn_instead(format!("/{key}"), other, "an object; its defaults are assumed");
                 map.shift_remove(key);
                 None
             }
@@ -156,8 +155,8 @@ impl Entry {
 /// A whole number; of others the nearest one.
 fn whole(value: &Json) -> Option<Json> {
     let number = value.as_f64()?;
-    let is_broken = number.fract() != 0.0;
-    Some(if is_broken {
+    let has_fraction = number.fract() != 0.0;
+    Some(if has_fraction {
         json!(number.round() as i64)
     } else {
         value.clone()

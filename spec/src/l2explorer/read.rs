@@ -150,7 +150,7 @@ impl Reader {
         self.warnings.push(as_spelled(pointer.into(), &self.spelled), text);
     }
 
-    /// Warns of something else than was expected: of that, and what is made of what was found.
+    /// Warns that something else was found. `expected` says what was expected, and what is assumed.
     pub(super) fn warn_instead(&mut self, pointer: impl Into<String>, found: &Json, expected: &str) {
         self.warn(pointer, format!("found {}, expected {expected}", describe(found)));
     }

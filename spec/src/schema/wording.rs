@@ -59,7 +59,7 @@ pub(super) fn expected(error: &ValidationError, root: &Value, schema: &Value) ->
     }
 }
 
-/// The types of JSON Schema that may stand somewhere.
+/// The names of the types that a schema allows.
 pub(super) fn types(kind: &TypeKind) -> Vec<String> {
     match kind {
         TypeKind::Single(kind) => vec![kind.to_string()],

@@ -370,7 +370,7 @@ pub(crate) fn problems(
             continue;
         }
         if known.is_none() {
-            // It is none that a variant can set: once is enough.
+            // No variant can set it: one report is enough.
             found.extend(problems_of(&at, parameter, &Value::Number(sweep.from)));
             continue;
         }

@@ -138,7 +138,10 @@ impl TaskSpec {
         }
         let spec: TaskDocument = document.deserialize()?;
         let task = check::compile(spec, classes, check::Unsound::default());
-        task.map(Arc::new).map_err(|problems| document.error(problems))
+        task.map(Arc::new).map_err(|problems| {
+            debug_assert!(!problems.is_empty(), "a task without problems compiles");
+            document.error(problems)
+        })
     }
 
     /// Every object whose class or model is, or can be, none of these.

@@ -329,7 +329,7 @@ impl Parameter {
         if let Value::Layout(layout) = &typed {
             layout.check().map_err(|error| format!("a sound layout; {error}"))?;
         }
-        if let Some(expected) = self.vector_length().filter(|_| !self.has_length_of(&typed)) {
+        if let Some(expected) = self.vector_length().filter(|_| !self.is_as_long(&typed)) {
             return Err(format!("a list of {expected} numbers"));
         }
         let Some([low, high]) = self.range else {
@@ -360,8 +360,8 @@ impl Parameter {
         self.declared().next()?.as_vector().map(<[f64]>::len)
     }
 
-    /// Whether a value is as long as all are, where they are vectors.
-    fn has_length_of(&self, value: &Value) -> bool {
+    /// Whether a value is as long as this parameter's vectors; true of other types.
+    fn is_as_long(&self, value: &Value) -> bool {
         self.kind != ParameterType::Vector || value.as_vector().map(<[f64]>::len) == self.vector_length()
     }
 
@@ -381,7 +381,7 @@ impl Parameter {
             .chain(alone)
     }
 
-    /// The distributions that it declares to be, or that it may be.
+    /// The distributions among its value, default and choices.
     pub(super) fn distributions(&self) -> impl Iterator<Item = &Distribution<Number>> {
         self.declared().filter_map(|value| match value {
             Value::Distribution(distribution) => Some(&**distribution),
@@ -407,7 +407,7 @@ impl Parameter {
         }
         for (key, value) in self.entries().filter(|(key, _)| key != "default") {
             let typed = value.cast(self.kind);
-            if typed.is_none() || !self.has_length_of(value) {
+            if typed.is_none() || !self.is_as_long(value) {
                 let expected = format!("a value of type {kind}");
                 problems.push(Problem::new("spec/type", at(&key), value.to_string(), expected));
             }
@@ -443,10 +443,10 @@ impl Parameter {
             let problem = Problem::new("spec/type", pointer, format!("a range for a {kind}"), "choices");
             return Some(problem.advise(advice));
         }
-        let is_broken = low.fract() != 0.0 || high.fract() != 0.0;
+        let has_fraction = low.fract() != 0.0 || high.fract() != 0.0;
         let expected = match self.kind {
             _ if low >= high => "the low end below the high end",
-            ParameterType::Integer if is_broken => "whole numbers at both ends",
+            ParameterType::Integer if has_fraction => "whole numbers at both ends",
             ParameterType::Heading if high - low > 360.0 => "an arc of at most 360 degrees",
             _ => return None,
         };

@@ -114,10 +114,11 @@ impl World {
         let arena = &self.environment_params;
         let walls = arena.walls.iter().map(|wall| Some(&wall.polygon));
         let own = arena.layout.iter().flat_map(|layout| layout.walls.iter().flatten());
+        let walls_of_layout = format!("{}/walls", layout::POINTER);
         let lists = [
             ("/environment_params/walls", walls.collect::<Vec<_>>()),
             (
-                "/environment_params/layout/walls",
+                walls_of_layout.as_str(),
                 own.map(|wall| wall.polygon.as_ref()).collect(),
             ),
             (

@@ -91,7 +91,7 @@ impl Check<'_> {
         }
     }
 
-    /// Whether none of these parameters is drawn, where that is too late.
+    /// Whether none of these parameters is drawn for each world; reports the first that is.
     pub(super) fn reads_no_draw(&mut self, pointer: &str, names: &[impl AsRef<str>]) -> bool {
         let is_drawn = |name: &&str| {
             let parameter = self.parameters.get(*name);

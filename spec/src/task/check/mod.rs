@@ -308,7 +308,7 @@ impl<'a> Check<'a> {
         conditions
     }
 
-    /// A condition, if it can be read.
+    /// A condition read from a text; reports what is wrong with the text.
     fn parsed(&mut self, pointer: &str, text: &str) -> Option<Requirement> {
         let parsed = Requirement::parse(text);
         let problem = |expected| Problem::new("spec/requirement", pointer, format!("{text:?}"), expected);

@@ -56,7 +56,7 @@ impl Rest {
         let words: Vec<String> = problem.pointer.split('/').skip(1).map(plain).collect();
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
         let is_stray = problem.code == "spec/unknown-key" && words.len() != 2;
-        // One that is refused spoils the variant that gives it to a parameter.
+        // A refused value spoils the variant that gives it to a parameter.
         let is_value_of_variant = matches!(words[..], ["variants", _, _]);
         match words.as_slice() {
             // A key that is not there: of the top ones only the name has to be.

@@ -110,7 +110,7 @@ enum Made {
     Distance,
 }
 
-/// The name of a function, how many values it takes where that is not any number of them, in words too, and what it makes of them.
+/// A function: its name, how many values it takes, as a number and in words (`None` for any number), and what it computes.
 type Function = (&'static str, Option<(usize, &'static str)>, Made);
 
 /// The functions.
@@ -125,6 +125,7 @@ static FUNCTIONS: [Function; 4] = [
         None,
         Made::OfNumbers(|all| all.iter().copied().fold(f64::NEG_INFINITY, f64::max)),
     ),
+    // The parser lets one value through, no more and no fewer.
     ("abs", Some((1, "one value")), Made::OfNumbers(|all| all[0].abs())),
     ("distance", Some((2, "two colours")), Made::Distance),
 ];

@@ -1,7 +1,7 @@
-//! The table of fields: [`fields!`] declares a part of a world once (in `object.rs`, `agent.rs`, `environment.rs`,
-//! `rules.rs` and `draft.rs`), and beside each field stands what else there is to say of it: its unit, whether the original has it, how it is compared, whether it can be a parameter. The setters of
-//! templates, the keys of the L2Explorer dialect, the comparison of worlds and `docs/reference/` come from it. Types,
-//! ranges and defaults are read from the schema that is made of the same declaration.
+//! The table of fields: [`fields!`] declares a part of a world once, in `world/` and `layout/`. Beside each field stand its
+//! unit, whether the original has it, how it is compared, and whether it can be a parameter. The setters of templates, the keys
+//! of the L2Explorer dialect, the comparison of worlds and `docs/reference/` come from it. Types, ranges and defaults are read
+//! from the schema of the same declaration.
 
 mod comparison;
 mod place;
