@@ -17,6 +17,7 @@ from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
 
 from driftworld import _native
+from driftworld.envs import info
 from driftworld.envs.options import Options, coverings, expect_same_spaces, images_among, widest_action
 from driftworld.envs.origin import (
     DrawnWorld,
@@ -270,8 +271,7 @@ class Members:
 
     def origin(self, env: int) -> dict[str, Any]:
         """Where an environment's world comes from."""
-        keys = ("task_id", "variant_id", "seed", "index", "world_hash")
-        return dict(zip(keys, self.batch.origin(env), strict=True))
+        return dict(zip(info.ORIGIN, self.batch.origin(env), strict=True))
 
     def reset_info(self, env: int) -> dict[str, Any]:
         """What a reset says of an environment; notes in which variant it is."""
@@ -283,10 +283,10 @@ class Members:
             return {}
         if not self._options.names_variant:
             del origin["task_id"], origin["variant_id"]
-        info: dict[str, Any] = {**origin, "events": (), "is_success": False, "ended_by": None}
+        found = origin | info.of_step()
         if self.label_in_info:
-            info["task_label"] = self.label_number(env)
-        return info
+            found["task_label"] = self.label_number(env)
+        return found
 
     def ended_by(self, env: int) -> str | None:
         """What ended an environment's episode; None for a limit of steps, which may as well be a wrapper's."""

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from driftworld import _native
 from driftworld._literals import CameraName, RenderMode
 from driftworld.envs.conversion import teach_conversions
+from driftworld.envs.info import of_step
 from driftworld.envs.members import Members
 from driftworld.envs.options import EnvOptions, Options, refuse_unknown, shows_options
 from driftworld.envs.origin import Home
@@ -178,11 +179,8 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         reward, terminated, truncated, success, eventful = members.step_one(action)
         info: dict[str, Any] = {}
         if members.has_infos:
-            info = {
-                "events": members.batch.events(0) if eventful else (),
-                "is_success": success,
-                "ended_by": members.ended_by(0) if terminated or truncated else None,
-            }
+            events = members.batch.events(0) if eventful else ()
+            info = of_step(events, success, members.ended_by(0) if terminated or truncated else None)
         if members.label_in_info:
             info["task_label"] = members.label_number(0)
         observation = members.observation(0)

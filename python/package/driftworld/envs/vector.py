@@ -18,6 +18,7 @@ from driftworld import _native
 from driftworld._literals import AutoresetName, CameraName
 from driftworld.envs.autoreset import AutoresetMode, autoreset_mode_of
 from driftworld.envs.conversion import teach_conversions
+from driftworld.envs.info import OF_STEP
 from driftworld.envs.members import Members, Prepared
 from driftworld.envs.options import EnvOptions, Options, refuse_unknown, shows_options, whole
 from driftworld.envs.origin import Home, spread_seeds, whole_number
@@ -359,7 +360,7 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         members = self._members
         if self._mode == AutoresetMode.SAME_STEP:
             members.note_finals(env)
-            final = {key: infos[key][env] for key in _STEP_KEYS if key in infos}
+            final = {key: infos[key][env] for key in OF_STEP if key in infos}
             final = {key: value.item() if isinstance(value, np.generic) else value for key, value in final.items()}
             for key in ("final_obs", "_final_obs", *(("final_info", "_final_info") if members.has_infos else ())):
                 if key not in infos:
@@ -480,7 +481,3 @@ def _limit(steps: Any) -> int | None:
     if not found:
         raise ValueError(f"max_episode_steps: found {steps!r}, expected a whole number from 1 on, or -1 for no limit")
     return found
-
-
-#: What a step says, and so what the last step of an episode ends with.
-_STEP_KEYS = ("events", "is_success", "ended_by", "task_label")
