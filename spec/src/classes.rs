@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::error::{Problem, nearest};
+use crate::error::Problem;
+use crate::suggest::nearest;
 use crate::world::{Model, Object};
 
 /// The most classes or models that a message lists.

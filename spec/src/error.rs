@@ -2,8 +2,9 @@
 
 use std::fmt;
 
-use crate::limits::MAX_KEY_BYTES;
 use driftworld_text::one_line;
+
+use crate::suggest::{did_you_mean, nearest};
 
 /// The most problems of a document that are listed; beyond them is only said that there are more.
 pub const MAX_PROBLEMS: usize = 300;
@@ -255,46 +256,9 @@ pub(crate) fn first_of<S: AsRef<str>>(known: &[S]) -> String {
     driftworld_text::first_of(known, SHOWN)
 }
 
-/// The end of a message about a misspelt word, `; did you mean "red"?`; empty where no known word is near.
-pub fn did_you_mean<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S>) -> String {
-    nearest(word, known).map_or_else(String::new, |near| format!("; did you mean {near:?}?"))
-}
-
-/// The known word that a misspelt one most likely stands for.
-pub fn nearest<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S>) -> Option<String> {
-    // No name is so long, and comparing takes room for both words multiplied.
-    if word.len() > MAX_KEY_BYTES {
-        return None;
-    }
-    let lower = word.to_lowercase();
-    let letters = lower.chars().count();
-    let near = known.into_iter().filter_map(|candidate| {
-        let name = candidate.as_ref();
-        let length = name.chars().count();
-        // One that is much longer or shorter is far.
-        if name.len() > MAX_KEY_BYTES || length.abs_diff(letters) > 2 + length / 4 {
-            return None;
-        }
-        let distance = strsim::damerau_levenshtein(&lower, &name.to_lowercase());
-        (distance < length && distance <= 1 + length / 4).then_some((distance, candidate))
-    });
-    let nearest = near.min_by_key(|(distance, _)| *distance);
-    nearest.map(|(_, candidate)| candidate.as_ref().to_owned())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_nearest_word_is_found_and_a_far_one_is_not() {
-        assert_eq!(nearest("bleu", ["blue", "red"]).as_deref(), Some("blue"));
-        assert_eq!(
-            nearest("maxsteps", ["max_steps", "objects"]).as_deref(),
-            Some("max_steps")
-        );
-        assert_eq!(nearest("zebra", ["blue", "red"]), None);
-    }
 
     #[test]
     fn a_message_says_where_what_was_found_what_was_expected_and_what_to_do() {

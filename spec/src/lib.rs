@@ -21,6 +21,7 @@ mod philox;
 pub mod reference;
 mod scenario;
 pub mod schema;
+mod suggest;
 mod task;
 mod value;
 mod version;
@@ -34,13 +35,13 @@ pub use distribution::{
     ParamRef, Spread, Turns,
 };
 pub use element::Element;
-pub use error::{MAX_PROBLEMS, Problem, SpecError, did_you_mean, nearest};
+pub use error::{MAX_PROBLEMS, Problem, SpecError};
 pub use layout::{
     Circle, Doorway, Layout, LayoutWall, Legend, MAX_CELLS, MAX_LAYOUT_SIDE, Maze, Plan, PlanCell, PlanWall, RoomDoors,
     Rooms,
 };
 pub use limits::{
-    MAX_BYTES, MAX_DEPTH, MAX_KEY_BYTES, MAX_SCENARIO_VALUES, MAX_TASK_DEPTH, MAX_VALUES, MAX_WORLD_VALUES,
+    MAX_BYTES, MAX_DEPTH, MAX_KEY_BYTES, MAX_OBJECTS, MAX_SCENARIO_VALUES, MAX_TASK_DEPTH, MAX_VALUES, MAX_WORLD_VALUES,
 };
 pub use names::sound_name;
 pub use oklab::{Oklab, linear_from_srgb, srgb_from_linear};
@@ -49,6 +50,7 @@ pub use scenario::{
     Block, BlockKind, BlockMix, DriftSchedule, DriftSwitch, MAX_EXPERIENCES, Phase, ProvenVariant, Regime, RegimeDrift,
     Scenario, ScenarioComplexity, ScenarioDifficulty, ScenarioForm, ScenarioProof, TaskLabel,
 };
+pub use suggest::{did_you_mean, nearest};
 pub use task::{
     By, Choices, Compare, Count, DEFAULT_VARIANT, Domain, ElementWeights, Facing, Group, Hole, KeepOut, MeasureName,
     Parameter, PlacedGroup, Readers, Requirement, Resolved, Role, Source, Spacing, Sweep, TaskSpec, Template, Variant,
@@ -60,7 +62,7 @@ pub use warning::Warning;
 pub use world::{
     ActionModel, ActionSpace, AgentParams, Compared, Comparison, Covering, Delivery, Disc, Door, Enclosure,
     EndCondition, Energy, EnvironmentParams, Field, FieldPlace, GameMode, ImageParams, LastEvent, LeafTexts, Looks,
-    MAX_OBJECTS, MAX_POINTS, MAX_SEED, Modality, Model, MotionModel, Object, ObjectProgress, Origin, Portable,
-    Progress, Pushable, RailsProgress, Region, Respawn, Rules, Shaping, StateFeature, Stimulus, Style, Surface, Switch,
-    SwitchAction, Trigger, Wall, World, WorldDraft, Zone, ZoneEnd,
+    MAX_POINTS, MAX_SEED, Modality, Model, MotionModel, Object, ObjectProgress, Origin, Portable, Progress, Pushable,
+    RailsProgress, Region, Respawn, Rules, Shaping, StateFeature, Stimulus, Style, Surface, Switch, SwitchAction,
+    Trigger, Wall, World, WorldDraft, Zone, ZoneEnd,
 };

@@ -1,4 +1,7 @@
-//! How large the documents are that are read. Limits of what they hold stand beside it.
+//! How large documents may be, and how many objects a world may hold. Other limits stand beside what they bound.
+
+/// The most objects that one world may hold.
+pub const MAX_OBJECTS: usize = 100_000;
 
 /// The longest text that is read, in bytes.
 pub const MAX_BYTES: usize = 64 << 20;

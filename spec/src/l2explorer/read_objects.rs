@@ -10,7 +10,7 @@ use super::mend::Entry;
 use super::read::Reader;
 use super::{ASSUMED_SPEED, PARTS, black_is_chosen};
 use crate::describe::describe;
-use crate::world::MAX_OBJECTS;
+use crate::limits::MAX_OBJECTS;
 
 impl Reader {
     pub(super) fn objects(&mut self, objects: Vec<Json>) -> Vec<Json> {

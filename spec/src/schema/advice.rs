@@ -4,7 +4,7 @@ use driftworld_text::{WordKind, removed};
 use serde_json::Value;
 
 use crate::Element;
-use crate::error::nearest;
+use crate::suggest::nearest;
 
 /// The advice for a word that earlier releases took at a place.
 pub(super) fn for_removed(pointer: &str, value: &Value) -> Option<String> {

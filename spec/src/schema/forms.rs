@@ -8,7 +8,8 @@ use super::explain::{Explainer, Finding, missing_key};
 use super::wording::{article, both, either, list, object, quoted, words_of};
 use super::{advice, color};
 use crate::describe::describe;
-use crate::error::{Problem, nearest};
+use crate::error::Problem;
+use crate::suggest::nearest;
 
 /// The definitions that messages call by a name of their own rather than by what they consist of.
 const NAMED: [&str; 5] = ["Color", "ParamRef", "Case", "NumberCase", "Distribution"];

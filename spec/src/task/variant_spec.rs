@@ -10,7 +10,8 @@ use super::DEFAULT_VARIANT;
 use super::family::{Sweep, Variants};
 use super::parameter::{Parameter, Role};
 use crate::describe::escape;
-use crate::error::{MAX_PROBLEMS, Problem, first_of, nearest};
+use crate::error::{MAX_PROBLEMS, Problem, first_of};
+use crate::suggest::nearest;
 use crate::value::Value;
 
 /// A variant, or a family of them, as a document declares it.

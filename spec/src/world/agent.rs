@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::StateFeature;
+use super::camera::{DEFAULT_FIELD_OF_VIEW, Modality};
 use super::fields::{Field, FieldPlace, Place, fields, word};
 use crate::defaults::{is_default, is_one, is_true};
 use crate::value::{ParameterType, Value};
@@ -56,7 +57,7 @@ fields! {
         pub frame_skip: u32 = 1 => Field::ours(Measured(&[TimeStep, StepReward, Limit])),
         /// Vertical field of view in degrees.
         #[schemars(range(min = 1.0, max = 170.0))]
-        pub field_of_view: f64 = 60.0 => Field::ours(Leaves(CameraAndWeather)).unit("degrees"),
+        pub field_of_view: f64 = DEFAULT_FIELD_OF_VIEW => Field::ours(Leaves(CameraAndWeather)).unit("degrees"),
         /// Which images an observation holds. Segmentation by reward category shows what is worth what, so it is none of them
         /// unless it is asked for.
         #[schemars(length(max = 5))]
@@ -119,14 +120,6 @@ fn is_classic(features: &[StateFeature]) -> bool {
 }
 
 impl AgentParams {
-    /// Width and height of the observations in pixels.
-    pub fn picture_size(&self) -> [u32; 2] {
-        [
-            self.observation_width.unwrap_or(self.observation_size),
-            self.observation_size,
-        ]
-    }
-
     /// How many rows the table of actions has; `None` for continuous actions.
     pub fn num_actions(&self) -> Option<usize> {
         match &self.actions {
@@ -177,23 +170,6 @@ pub enum ActionModel {
     OnRails,
     /// Input is ignored: the agent stands still.
     None,
-}
-
-/// One kind of image.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum Modality {
-    /// Colour, `(size, size, 3)` bytes.
-    Rgb,
-    /// Distance along the view axis in metres, `(size, size)` floats.
-    Depth,
-    /// Reward category per pixel, `(size, size)` bytes.
-    Segmentation,
-    /// Object class per pixel, `(size, size)` numbers that are the same in every world: built-in classes have 1 to 29, unknown ones
-    /// 31, those of libraries follow from 32 on in the order of their names; 0 where there is no object.
-    Class,
-    /// Object per pixel, `(size, size)` numbers: its index in the world plus 1; 0 where there is no object.
-    Instance,
 }
 
 /// How a learner hands in actions.

@@ -5,12 +5,12 @@ use std::sync::{Arc, LazyLock};
 
 use serde::Serialize;
 
-use super::{ActionModel, ActionSpace, MAX_OBJECTS, MAX_POINTS, Object, World, WorldDraft};
+use super::{ActionModel, ActionSpace, MAX_POINTS, Object, World, WorldDraft};
 use super::{progress, zone};
 use crate::document::Document;
 use crate::error::{Problem, SpecError};
 use crate::layout::{self, Plan};
-use crate::limits::MAX_VALUES;
+use crate::limits::{MAX_OBJECTS, MAX_VALUES};
 use crate::maps::MapLibrary;
 use crate::schema::document::DocumentSchema;
 

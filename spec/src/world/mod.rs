@@ -1,6 +1,7 @@
 //! [`World`]: the reset JSON, one fully concrete world. Its L2Explorer dialect is read in `l2explorer/`.
 
 mod agent;
+mod camera;
 mod check;
 mod draft;
 mod environment;
@@ -24,7 +25,8 @@ use std::sync::{Arc, LazyLock};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-pub use agent::{ActionModel, ActionSpace, AgentParams, Energy, Modality};
+pub use agent::{ActionModel, ActionSpace, AgentParams, Energy};
+pub use camera::Modality;
 pub use draft::{GameMode, ImageParams, WorldDraft};
 pub use environment::{Enclosure, EnvironmentParams, Region, Wall};
 pub use features::StateFeature;
@@ -46,9 +48,6 @@ use crate::layout::Plan;
 use crate::limits::MAX_WORLD_VALUES;
 use crate::schema::document::DocumentSchema;
 use crate::version;
-
-/// The most objects that one world may hold.
-pub const MAX_OBJECTS: usize = 100_000;
 
 /// The largest seed of a world or an object, 2⁵³ − 1: the largest whole number that every reader of JSON keeps.
 pub const MAX_SEED: u64 = (1 << 53) - 1;

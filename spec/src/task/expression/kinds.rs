@@ -2,7 +2,8 @@
 
 use super::{Binary, Made, Node, Operator, Requirement, Term, Unary};
 use crate::Color;
-use crate::error::{first_of, nearest};
+use crate::error::first_of;
+use crate::suggest::nearest;
 use crate::task::parameter::{Parameter, Role};
 use crate::value::{ParameterType, Value};
 

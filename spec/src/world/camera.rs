@@ -1,0 +1,36 @@
+//! The agent's camera: the images that it takes, their size and how wide it sees. Its keys stand in `agent.rs`.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::AgentParams;
+
+/// Vertical field of view in degrees, unless a world says otherwise.
+pub(super) const DEFAULT_FIELD_OF_VIEW: f64 = 60.0;
+
+/// One kind of image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Modality {
+    /// Colour, `(size, size, 3)` bytes.
+    Rgb,
+    /// Distance along the view axis in metres, `(size, size)` floats.
+    Depth,
+    /// Reward category per pixel, `(size, size)` bytes.
+    Segmentation,
+    /// Object class per pixel, `(size, size)` numbers that are the same in every world: built-in classes have 1 to 29, unknown ones
+    /// 31, those of libraries follow from 32 on in the order of their names; 0 where there is no object.
+    Class,
+    /// Object per pixel, `(size, size)` numbers: its index in the world plus 1; 0 where there is no object.
+    Instance,
+}
+
+impl AgentParams {
+    /// Width and height of the observations in pixels.
+    pub fn picture_size(&self) -> [u32; 2] {
+        [
+            self.observation_width.unwrap_or(self.observation_size),
+            self.observation_size,
+        ]
+    }
+}
