@@ -11,7 +11,9 @@ mod sketch;
 mod value;
 pub(crate) mod variant;
 mod weighted_distance;
+mod weights;
 pub(crate) mod world;
 
-pub use weighted_distance::{Distance, MAX_WEIGHT, Part, Weights};
+pub use weighted_distance::{Distance, Part};
+pub use weights::{MAX_WEIGHT, Weights};
 pub(crate) use world::match_objects;

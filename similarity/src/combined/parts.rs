@@ -8,7 +8,8 @@ use driftworld_spec::Comparison;
 use crate::combined::kinds::Kinds;
 use crate::combined::matching::{UNIT_OF_PLACE, UNIT_OF_REWARD, each_match};
 use crate::combined::sketch::{ObjectFeatures, Sketch};
-use crate::combined::weighted_distance::{Part, Weights};
+use crate::combined::weighted_distance::Part;
+use crate::combined::weights::Weights;
 use crate::layout_shape::LayoutShape;
 use crate::scalar::relative_difference;
 

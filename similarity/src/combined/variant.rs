@@ -7,7 +7,8 @@ use driftworld_spec::{Element, ParameterType, Role, TaskSpec, Variant};
 use crate::combined::arena::Arena;
 use crate::combined::drawn::DrawnMeasure;
 use crate::combined::value::ValueMeasure;
-use crate::combined::weighted_distance::{Distance, Part, Weights};
+use crate::combined::weighted_distance::{Distance, Part};
+use crate::combined::weights::Weights;
 use crate::{MetricProperties, SimilarityError};
 
 /// How far apart two variants of one task are: the sum over its parameters, where 1 is one parameter moved over its whole

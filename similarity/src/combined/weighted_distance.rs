@@ -1,50 +1,10 @@
-//! [`Distance`]: the weighted sum of its parts, with [`Weights`] for each element. The parts are measured in `variant.rs` and `world.rs`.
+//! [`Distance`]: the weighted sum of its parts. The parts are measured in `variant.rs` and `world.rs`.
 
-use driftworld_spec::{Element, TaskSpec};
+use driftworld_spec::Element;
 use serde::Serialize;
 
-use crate::SimilarityError;
+use super::weights::{Weights, position};
 use crate::distribution::Method;
-
-/// The most that an element can weigh: what a task spec may say, too.
-pub const MAX_WEIGHT: f64 = 1e6;
-
-/// What the elements of the decision process weigh in the whole. Each 1 by default.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Weights([f64; 5]);
-
-impl Default for Weights {
-    fn default() -> Self {
-        Self([1.0; 5])
-    }
-}
-
-impl Weights {
-    /// The weights that a task declares under `element_weights`.
-    pub fn of_task(task: &TaskSpec) -> Self {
-        Self(task.element_weights().to_array())
-    }
-
-    /// The same weights but for one element.
-    ///
-    /// # Errors
-    /// [`SimilarityError::BadWeight`] unless the weight is in `0..=`[`MAX_WEIGHT`].
-    pub fn with(mut self, element: Element, weight: f64) -> Result<Self, SimilarityError> {
-        if !(0.0..=MAX_WEIGHT).contains(&weight) {
-            return Err(SimilarityError::BadWeight {
-                name: element.name().to_owned(),
-                found: weight,
-            });
-        }
-        self.0[position(element)] = weight;
-        Ok(self)
-    }
-
-    /// What an element weighs.
-    pub fn of(&self, element: Element) -> f64 {
-        self.0[position(element)]
-    }
-}
 
 /// One comparison that a distance is made of.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -163,13 +123,6 @@ impl Distance {
 /// The elements under their names, in order.
 fn by_name<S: serde::Serializer>(elements: &[Option<f64>; 5], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_map(Element::ALL.iter().map(|element| element.name()).zip(elements))
-}
-
-fn position(element: Element) -> usize {
-    Element::ALL
-        .iter()
-        .position(|other| *other == element.coarse())
-        .expect("ALL holds every coarse element")
 }
 
 #[cfg(test)]

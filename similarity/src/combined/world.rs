@@ -7,7 +7,8 @@ use crate::SimilarityError;
 use crate::combined::matching::each_match;
 use crate::combined::parts::{Parts, Sum, compare};
 use crate::combined::sketch::{Sketch, Sketcher};
-use crate::combined::weighted_distance::{Distance, Weights};
+use crate::combined::weighted_distance::Distance;
+use crate::combined::weights::Weights;
 use crate::distribution::Method;
 
 /// How far apart two worlds are: a sum of parts, each in a unit of its own.

@@ -7,6 +7,9 @@ use driftworld_spec::World;
 use super::grid::{Grid, GridShape};
 use crate::SimilarityError;
 
+/// Side of a cell in metres, where an arena of such cells is not too fine.
+const CELL: f64 = 1.0;
+
 /// How worlds become grids: the smallest area around the origin that holds all their arenas, cut into square cells from its
 /// south-western corner on, with a plane for each class.
 ///
@@ -22,6 +25,21 @@ pub(crate) struct Raster {
 }
 
 impl Raster {
+    /// One for these worlds, with cells of 1 m, or of 2, 4, 8 … m for arenas that are too large for it.
+    ///
+    /// # Errors
+    /// Those of [`Raster::of_worlds`].
+    pub(crate) fn fitting(worlds: &[&World]) -> Result<Self, SimilarityError> {
+        let mut cell = CELL;
+        loop {
+            match Self::of_worlds(worlds, cell) {
+                // An arena has a cell at least, and fewer classes than there are cells in all.
+                Err(SimilarityError::TooFine { .. }) if cell < 1e6 => cell *= 2.0,
+                made => return made,
+            }
+        }
+    }
+
     /// One that holds the arenas and the classes of all these worlds. `cell`: side of a cell in metres; the last cells may reach
     /// beyond the arenas.
     ///

@@ -4,7 +4,7 @@ use driftworld_spec::{Element, World};
 
 use super::colors;
 use super::objects::{counts_of, places_apart};
-use super::occupancy::{earth_movers, of_taken, raster};
+use super::occupancy::{earth_movers, of_taken};
 use crate::scalar::counts_distance;
 use crate::{
     ColorMeasure, MetricProperties, Raster, SimilarityError, grid_chamfer_distance, grid_hausdorff_distance,
@@ -129,7 +129,7 @@ impl WorldMeasure {
         let arena = |world: &World| world.environment_params.arena_size();
         let cell = |raster: Result<Raster, SimilarityError>| raster.map(|raster| raster.shape().cell());
         let has_one_arena = worlds.iter().all(|other| arena(other) == arena(first));
-        if has_one_arena && cell(raster(&[*first])) == cell(raster(&worlds)) {
+        if has_one_arena && cell(Raster::fitting(&[*first])) == cell(Raster::fitting(&worlds)) {
             self.properties()
         } else {
             MetricProperties::Distance

@@ -5,9 +5,6 @@ use driftworld_spec::World;
 
 use crate::{BitGrid, Grid, GridShape, Raster, SimilarityError, grid_earth_movers_distance};
 
-/// Side of a cell in metres.
-const CELL: f64 = 1.0;
-
 /// A distance between the cells that are taken in two worlds.
 pub(super) fn of_taken(
     a: &World,
@@ -18,22 +15,10 @@ pub(super) fn of_taken(
     distance(&a.taken(), &b.taken())
 }
 
-/// The raster of these worlds' arenas and classes.
-pub(super) fn raster(worlds: &[&World]) -> Result<Raster, SimilarityError> {
-    let mut cell = CELL;
-    loop {
-        match Raster::of_worlds(worlds, cell) {
-            // An arena has a cell at least, and fewer classes than there are cells in all.
-            Err(SimilarityError::TooFine { .. }) if cell < 1e6 => cell *= 2.0,
-            made => return made,
-        }
-    }
-}
-
 /// How many objects stand in each cell of both, the one or the other first whichever was named first, so that it is as
 /// far there as back to the last bit.
 fn grids(a: &World, b: &World) -> Result<[Grid; 2], SimilarityError> {
-    let raster = raster(&[a, b])?;
+    let raster = Raster::fitting(&[a, b])?;
     let mut grids = [raster.counts(a)?, raster.counts(b)?];
     if grids[0].masses() > grids[1].masses() {
         grids.swap(0, 1);

@@ -6,7 +6,7 @@ use driftworld_spec::{Color, Element, Object, World};
 use proptest::prelude::*;
 
 use super::*;
-use crate::{ColorMeasure, MetricProperties, SimilarityError, Weights};
+use crate::{ColorMeasure, MetricProperties, Raster, SimilarityError, Weights};
 
 const COLORS: [&str; 3] = ["red", "tan", "navy"];
 
@@ -120,7 +120,7 @@ fn cells_grow_until_those_of_all_classes_fit() {
         });
         made.unwrap()
     };
-    let cell = |classes, side| occupancy::raster(&[&with(classes, side)]).unwrap().shape().cell();
+    let cell = |classes, side| Raster::fitting(&[&with(classes, side)]).unwrap().shape().cell();
     assert_eq!((cell(11, 300.0), cell(12, 300.0), cell(100, 300.0)), (1.0, 2.0, 4.0));
     let emd = WorldMeasure::EarthMovers;
     assert!(emd.between(&with(100, 300.0), &with(0, 300.0)).unwrap().is_finite());
