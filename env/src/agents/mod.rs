@@ -2,7 +2,6 @@
 //! learns, one acts by a trained network.
 
 mod agent;
-mod errands;
 mod flood;
 mod grid;
 mod marks;
@@ -10,6 +9,7 @@ mod nearest;
 mod network;
 mod occupancy;
 mod on_rails;
+mod planner;
 mod random;
 mod route;
 mod sarsa;

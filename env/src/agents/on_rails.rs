@@ -4,8 +4,8 @@
 use driftworld_spec::{Object, RailsProgress, Stimulus, World, Zone};
 
 use super::Agent;
-use super::errands::Errands;
 use super::nearest::Goal;
+use super::planner::Planner;
 use super::route::Route;
 use super::steering::{Purpose, Target, avoided, distance, fails, walk};
 use crate::ground;
@@ -35,7 +35,7 @@ pub struct OnRailsAgent {
     /// Leads to the target. Boxed: agents are moved about, and this is large.
     route: Box<Route>,
     /// Plans in worlds with doors and things, in place of the tour.
-    errands: Box<Errands>,
+    planner: Box<Planner>,
 }
 
 impl OnRailsAgent {
@@ -47,12 +47,12 @@ impl OnRailsAgent {
     /// What it is about to do, to be written down.
     pub(crate) fn progress(&self) -> RailsProgress {
         let target = self.target.as_ref();
-        let errands = &self.errands;
-        if errands.target.is_some() || !errands.given_up.is_empty() {
+        let planner = &self.planner;
+        if planner.target.is_some() || !planner.given_up.is_empty() {
             return RailsProgress {
-                target: errands.target,
-                steps_on_target: errands.steps_on_target,
-                given_up: errands.given_up.clone(),
+                target: planner.target,
+                steps_on_target: planner.steps_on_target,
+                given_up: planner.given_up.clone(),
                 ..RailsProgress::default()
             };
         }
@@ -69,12 +69,12 @@ impl OnRailsAgent {
     pub(crate) fn resumed(progress: &RailsProgress, world: &World, scene: &Scene) -> Self {
         let known = |index: &u32| (*index as usize) < world.objects.len();
         if world.objects.iter().any(Object::is_used) {
-            let mut errands = Box::<Errands>::default();
-            errands.target = progress.target.filter(known);
-            errands.steps_on_target = progress.steps_on_target;
-            errands.given_up = progress.given_up.iter().copied().filter(known).collect();
+            let mut planner = Box::<Planner>::default();
+            planner.target = progress.target.filter(known);
+            planner.steps_on_target = progress.steps_on_target;
+            planner.given_up = progress.given_up.iter().copied().filter(known).collect();
             return Self {
-                errands,
+                planner,
                 ..Self::default()
             };
         }
@@ -95,14 +95,14 @@ impl OnRailsAgent {
             given_up: progress.given_up.iter().map(|index| *index as usize).collect(),
             zone_goal: None,
             route,
-            errands: Box::default(),
+            planner: Box::default(),
         }
     }
 
     /// Whether nothing is worth going to.
     pub(crate) fn is_done(sim: SimRef) -> bool {
         if sim.state.has_things {
-            return Errands::is_done(sim);
+            return Planner::is_done(sim);
         }
         wanted(sim).is_empty()
     }
@@ -206,11 +206,11 @@ impl OnRailsAgent {
     /// What it does next, as speed, turn rate and interaction, whatever actions the world takes.
     pub(crate) fn steer(&mut self, sim: SimRef) -> [f64; 3] {
         let step = if sim.state.has_things {
-            self.errands.steer(sim)
+            self.planner.steer(sim)
         } else {
             self.tour(sim)
         };
-        self.errands.shield().slowed(sim, step)
+        self.planner.shield().slowed(sim, step)
     }
 
     fn tour(&mut self, sim: SimRef) -> [f64; 3] {
@@ -247,17 +247,17 @@ impl Agent for OnRailsAgent {
     fn act(&mut self, environment: &Environment) -> Action {
         let sim = environment.sim();
         let step = self.steer(sim);
-        self.errands.shield().in_space(step, sim)
+        self.planner.shield().in_space(step, sim)
     }
 
     // What the route knows of the ground it looks at again before it uses it.
     fn begin(&mut self, _seed: u64) {
         let route = std::mem::take(&mut self.route);
-        let mut errands = std::mem::take(&mut self.errands);
-        errands.begin();
+        let mut planner = std::mem::take(&mut self.planner);
+        planner.begin();
         *self = Self {
             route,
-            errands,
+            planner,
             ..Self::default()
         };
     }

@@ -1,6 +1,6 @@
 //! Keeps who walks by a plan out of zones that end the episode as a failure, off objects whose touch does so, and out of zones
 //! that cost: a plan leads around them, but steps are as long as the world's actions make them. Where ways lead is found in
-//! `flood.rs` and `errands/`.
+//! `flood.rs` and `planner/`.
 
 use driftworld_spec::{Zone, ZoneEnd};
 

@@ -1,33 +1,33 @@
-//! Which doors keys are spent on that are gone once they have opened one: a bounded search, for such a step cannot be taken
-//! back. All else a plan does can be done at any time, and is found in rounds in `plan.rs`.
+//! Decides which doors to spend single-use keys on, by a bounded search, since spending a key cannot be undone. Everything else
+//! can be done at any time; `plan.rs` finds it in rounds.
 
 use std::collections::{BTreeSet, VecDeque};
 
+use super::goals::Goal;
 use super::plan::{Plan, Way};
-use super::wishes::Wish;
 
-/// The most choices of doors that are looked at; of more, the best among these is taken. Those that spend fewer keys come first.
+/// The most choices of doors that are compared, those that spend fewer keys first; if there are more, the best of these wins.
 const MOST_CHOICES: usize = 1000;
 
-/// What a plan is good for, the more weighty first: whether it comes to a success, what it is paid, how much of what ends the
-/// episode well it can do.
+/// What a plan is worth, most important first: whether it reaches a success, what it is paid, how many successful endings it
+/// can reach.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 struct Worth {
     succeeds: bool,
     pay: f64,
     num_endings: usize,
-    /// How many zones it comes to that are worth being in.
+    /// How many rewarding zones it can reach.
     num_zones: usize,
 }
 
 impl Plan<'_> {
-    /// The plan with those keys spent, of all that can be, that are worth most; of equals the fewest.
-    pub(super) fn with_keys_spent(self, wishes: &[Vec<Wish>; 3]) -> Self {
+    /// The plan that spends the most valuable set of keys; of equals, the smallest.
+    pub(super) fn with_keys_spent(self, goals: &[Vec<Goal>; 3]) -> Self {
         let mut next = self.spendings();
         if next.is_empty() {
             return self;
         }
-        let mut worth = self.worth(wishes);
+        let mut worth = self.worth(goals);
         let mut best = self.clone();
         let mut waiting = VecDeque::from([self]);
         let mut seen = BTreeSet::new();
@@ -44,7 +44,7 @@ impl Plan<'_> {
                 if seen.len() > MOST_CHOICES {
                     return best;
                 }
-                let of_other = other.worth(wishes);
+                let of_other = other.worth(goals);
                 if of_other > worth {
                     (worth, best) = (of_other, other.clone());
                 }
@@ -54,14 +54,14 @@ impl Plan<'_> {
         best
     }
 
-    /// The doors that only a key opens that is gone then.
+    /// The doors that only a single-use key opens.
     fn spendings(&self) -> Vec<Way> {
         let mut ways = self.ways_through();
         ways.retain(|way| way.spends.is_some());
         ways
     }
 
-    /// The doors that keys were spent on, and these keys: each rising.
+    /// The doors that keys were spent on, and those keys, each sorted.
     fn spent(&self) -> [Vec<u32>; 2] {
         let ways = || self.ways.iter().filter(|way| way.spends.is_some());
         let mut spent: [Vec<u32>; 2] = [
@@ -74,17 +74,17 @@ impl Plan<'_> {
         spent
     }
 
-    fn worth(&self, [paying, others, held]: &[Vec<Wish>; 3]) -> Worth {
+    fn worth(&self, [paying, others, held]: &[Vec<Goal>; 3]) -> Worth {
         let spent = self.spent();
-        let can_be = |wish: &&Wish| self.first(**wish).is_some();
-        // A thing that ends the episode well must not be spent before.
-        let can_end = |wish: &&Wish| can_be(wish) && !spent[1].contains(&wish.object());
+        let is_possible = |goal: &&Goal| self.first(**goal).is_some();
+        // A thing needed for success must not be spent first.
+        let can_end = |goal: &&Goal| is_possible(goal) && !spent[1].contains(&goal.object());
         let endings = || others.iter().chain(held);
-        let is_one_of_many = |wish: &&Wish| matches!(wish, Wish::Bring { .. });
+        let is_one_of_many = |goal: &&Goal| matches!(goal, Goal::Bring { .. });
         let is_delivered =
-            endings().any(|wish| is_one_of_many(&wish)) && endings().filter(is_one_of_many).all(|wish| can_end(&wish));
-        let pay = |wish: &Wish| {
-            let index = wish.object() as usize;
+            endings().any(|goal| is_one_of_many(&goal)) && endings().filter(is_one_of_many).all(|goal| can_end(&goal));
+        let pay = |goal: &Goal| {
+            let index = goal.object() as usize;
             self.sim.objects()[index].reward.max(0.0) * self.sim.world.objects[index].reward_probability
         };
         let zones = || {
@@ -97,10 +97,10 @@ impl Plan<'_> {
             succeeds: is_delivered
                 || ends_in_zone()
                 || endings()
-                    .filter(|wish| !is_one_of_many(wish))
-                    .any(|wish| can_end(&wish)),
-            // What is touched for a success may pay nothing.
-            pay: paying.iter().filter(can_be).map(|wish| 1e-6 + pay(wish)).sum(),
+                    .filter(|goal| !is_one_of_many(goal))
+                    .any(|goal| can_end(&goal)),
+            // Objects touched for a success may pay nothing.
+            pay: paying.iter().filter(is_possible).map(|goal| 1e-6 + pay(goal)).sum(),
             num_endings: endings().filter(can_end).count(),
             num_zones: zones().count(),
         }

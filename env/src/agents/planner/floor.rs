@@ -1,11 +1,10 @@
-//! The ground that the agent's middle can be on, in fine cells, with closed doors as what divides it into rooms. What is done
-//! about the doors is decided in `plan.rs`, ways are found in `ways.rs`.
+//! [`Floor`]: the cells that the agent's centre can be on, divided into rooms by closed doors. `ways.rs` finds paths on it.
 
 use driftworld_spec::{MotionModel, World, Zone};
 
 use super::leaf::Leaf;
-use super::tolls::Tolls;
 use super::ways::{Bringing, Waiting};
+use super::zone_costs::ZoneCosts;
 use crate::agents::grid::Grid;
 use crate::agents::steering::fails;
 use crate::polygon::is_near_or_inside;
@@ -14,29 +13,29 @@ use crate::sim::SimRef;
 /// Side of a cell in metres, in arenas that are not too large for it.
 const SIDE: f32 = 0.2;
 
-/// How far the agent's body keeps from walls at least, in metres, and how far it likes to keep.
+/// How far the agent's body must keep from walls, and prefers to keep, in metres.
 const LEAST: f32 = 0.04;
 const LIKED: f32 = 0.25;
 
-/// How far it keeps from closed doors, and from what fails when it is touched, in metres: farther than the last step is held back.
+/// How far it keeps from closed doors, and from objects whose touch is a failure, in metres: farther than the last step is held back.
 const DOOR: f32 = 0.02;
 const FAILING: f32 = 0.15;
 
-/// How dear cells are: where nobody should be, on open ground, beside walls, at what stands around, at what costs.
+/// Weights of cells: closed, open ground, beside walls, beside obstacles, beside objects that cost.
 const NOWHERE: u16 = 0;
 const OPEN: u16 = 1;
 pub(super) const BESIDE: u16 = 2;
 const STANDS: u16 = 6;
 pub(super) const COSTS: u16 = 20;
 
-/// How far beyond touching a place counts as beside an object, in metres.
+/// A place this far beyond touching still counts as beside an object, in metres.
 const NEAR: f32 = 0.3;
 
-/// A number of a room; cells that nobody can be on have none.
+/// The number of a room; closed cells have none.
 pub(super) type Room = u32;
 const NO_ROOM: Room = 0;
 
-/// What stands where, as far as it decides where ways lead.
+/// An object that affects where paths lead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Standing {
     object: u32,
@@ -46,14 +45,14 @@ pub(super) struct Standing {
     weight: u16,
 }
 
-/// A closed door, and the rooms behind and in front of it.
+/// A closed door and the rooms on its two sides.
 #[derive(Clone, Debug)]
 pub(super) struct ClosedDoor {
     pub(super) object: u32,
     pub(super) rooms: [Option<Room>; 2],
 }
 
-/// The ground of a world as it is now. Everything in it follows from the world and where things are.
+/// The ground of a world as it is now, derived from the world and from where things are.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Floor {
     pub(super) grid: Grid,
@@ -61,29 +60,29 @@ pub(super) struct Floor {
     pub(super) body: f32,
     regions: Vec<Vec<[f64; 2]>>,
     zones: Vec<Zone>,
-    /// What each cell costs by walls and zones alone; 0 where nobody can be, or should not.
+    /// The weight of each cell by walls and zones alone; 0 where it is closed.
     pub(super) bare: Vec<u16>,
-    /// The same with what stands around.
+    /// The same with objects.
     pub(super) weight: Vec<u16>,
-    /// What entering zones costs: on the way to a cell, by how much more it has than the cell before it; empty if nothing does.
-    pub(super) tolls: Tolls,
+    /// What zones cost to enter and to be in.
+    pub(super) zone_costs: ZoneCosts,
     pub(super) room: Vec<Room>,
     pub(super) standing: Vec<Standing>,
     pub(super) doors: Vec<ClosedDoor>,
-    /// Counts the changes, so that who looks again knows whether to.
+    /// Counts changes, so that a plan knows whether it is out of date.
     pub(super) version: u64,
     pub(super) field: Vec<u32>,
     pub(super) open: Waiting,
-    /// What `field` leads to, and in which version.
+    /// The version and the cells that `field` leads to.
     pub(super) leads: Option<(u64, Vec<u32>)>,
-    /// Whether the way that was looked at last leads into no zone that costs, as far as it was looked at.
+    /// Whether the path followed last enters no zone that costs, as far as it was looked at.
     pub(super) keeps_out: bool,
-    /// For what it leads there, if for a thing that is put down.
+    /// The version and what is brought, if `field` leads to where a thing is put down.
     pub(super) brings: Option<(u64, Bringing)>,
 }
 
 impl Floor {
-    /// Brings the floor up to date.
+    /// Updates the floor to where things are now.
     pub(super) fn update(&mut self, sim: SimRef) {
         let has_moved = self.look_at_walls(sim.world, sim.scene().arena_size());
         let standing = standing(sim);
@@ -126,7 +125,7 @@ impl Floor {
             .collect();
     }
 
-    /// Whether the walls are others than before.
+    /// Looks at the walls again; whether they have changed.
     fn look_at_walls(&mut self, world: &World, arena_size: [f32; 2]) -> bool {
         let body = world.agent_params.agent_width as f32 / 2.0;
         let regions = || world.obstacles();
@@ -161,14 +160,14 @@ impl Floor {
         }
         self.regions = regions().map(<[[f64; 2]]>::to_vec).collect();
         self.zones.clone_from(zones);
-        self.tolls = Tolls::lay(world, self.grid, &mut self.bare);
+        self.zone_costs = ZoneCosts::lay(world, self.grid, &mut self.bare);
         true
     }
 
     /// Whether a round body has room between the walls at a place.
     pub(super) fn is_off_walls(&self, at: [f32; 2], radius: f32) -> bool {
         let is_inside = (0..2).all(|axis| at[axis].abs() + radius <= self.arena_size[axis] / 2.0);
-        // The middle of a cell that the agent can be on is its body's radius away from walls.
+        // The centre of an open cell is at least the body's radius from walls.
         if !is_inside || radius + self.grid.side() <= self.body && self.bare[self.grid.cell_at(at)] > 0 {
             return is_inside;
         }
@@ -203,7 +202,7 @@ impl Floor {
         }
     }
 
-    /// The cell where the agent is: the nearest on which it can be.
+    /// The open cell nearest to a place.
     pub(super) fn cell_near(&self, at: [f32; 2]) -> Option<usize> {
         let reach = self.body + 2.0 * self.grid.side();
         let of_all = self.grid.near(at, reach).filter(|cell| self.weight[*cell] > 0);
@@ -219,7 +218,7 @@ impl Floor {
         self.cell_near(at).map(|cell| self.room[cell])
     }
 
-    /// The cells in a zone on which the agent can be.
+    /// The open cells in a zone.
     pub(super) fn cells_in(&self, zone: &Zone) -> Vec<u32> {
         let Some([low, high]) = zone.bounds() else {
             return Vec::new();
@@ -233,12 +232,12 @@ impl Floor {
             .collect()
     }
 
-    /// The room that an object is reached from.
+    /// The room from which an object can be reached.
     pub(super) fn room_of(&self, sim: SimRef, object: u32) -> Option<Room> {
         self.room_beside(&Leaf::of(sim, object as usize), None)
     }
 
-    /// The room of the nearest cell beside a body, on one side of it if that is asked for.
+    /// The room of the nearest open cell beside a body, on one side of it if given.
     fn room_beside(&self, leaf: &Leaf, side: Option<f32>) -> Option<Room> {
         let reach = leaf.reach() + self.body + 0.6;
         let cells = self.grid.near(leaf.at, reach);
@@ -256,7 +255,7 @@ impl Floor {
         nearest.map(|(cell, _)| self.room[cell])
     }
 
-    /// The cells of a room beside an object, so near that the agent goes straight at it from there.
+    /// The cells of a room from which the agent can walk straight to an object.
     pub(super) fn cells_beside(&self, sim: SimRef, object: u32, room: Room) -> Vec<u32> {
         let leaf = Leaf::of(sim, object as usize);
         let reach = leaf.reach() + self.body + 0.6;
@@ -281,7 +280,7 @@ impl Floor {
     }
 }
 
-/// The weight of a cell by how much room the walls leave there beyond the agent's body.
+/// The weight of a cell by the room that walls leave beyond the agent's body.
 fn by_room(metres: f32) -> u16 {
     match metres {
         room if room < LEAST => 0,
@@ -290,7 +289,7 @@ fn by_room(metres: f32) -> u16 {
     }
 }
 
-/// What decides where ways lead, by rising object.
+/// The objects that affect where paths lead, by rising index.
 fn standing(sim: SimRef) -> Vec<Standing> {
     let objects = sim.world.objects.iter().zip(sim.objects()).enumerate();
     let stands = objects.filter_map(|(index, (object, own))| {

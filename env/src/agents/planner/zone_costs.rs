@@ -1,5 +1,4 @@
-//! What zones make of the ground: where it is dearer, what entering costs, and where nobody should be. Where ways lead then is
-//! found in `ways.rs`.
+//! [`ZoneCosts`]: what zones add to the cost of the ground and of entering, and where the agent must not be.
 
 use driftworld_spec::{World, Zone, ZoneEnd};
 
@@ -8,34 +7,34 @@ use crate::agents::grid::Grid;
 use crate::ground;
 use crate::polygon::{is_near_or_inside, to_f32};
 
-/// How far ways like to keep from zones that cost or fail, in metres, and how dear it is to be nearer.
+/// How far paths keep from zones that cost or fail, in metres, and the weight of cells that are nearer.
 const LIKED: f32 = 0.35;
 const NEAR: u16 = 8;
 
-/// The most times as dear as elsewhere that a zone makes the ground. Time alone costs nothing in some worlds: whatever costs is
-/// so dear there.
+/// The largest factor by which a zone raises the cost of the ground. Worlds where time costs nothing use it for every zone that
+/// costs.
 const MOST: f64 = 100.0;
 
 /// The most that entering costs, in fifths of a cell: 800 m of open ground with cells of 0.2 m.
-const MOST_TOLL: f64 = 20_000.0;
+const MOST_ENTRY_COST: f64 = 20_000.0;
 
-/// The dearest ground, so that sums over all cells stay far from overflow.
+/// The largest weight of a cell: sums over all cells stay far from overflow.
 const MOST_WEIGHT: f64 = 4000.0;
 
-/// Slower than this nobody gets out of a zone.
+/// An agent slower than this cannot leave a zone.
 const STUCK: f64 = 0.01;
 
-/// What zones do to ways beside making the ground dear.
+/// What zones add to path costs beside the weights of cells.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Tolls {
-    /// For each cell what entering the zones that it is in costs, in fifths of a cell; empty if nothing does.
+pub(super) struct ZoneCosts {
+    /// For each cell, what entering its zones costs, in fifths of a cell; empty if nothing does.
     entering: Vec<u32>,
     /// Whether a cell is in a zone that costs; empty if none does.
     costs: Vec<bool>,
 }
 
-impl Tolls {
-    /// Makes ground dearer by the zones that it is in, and takes away that of zones that end an episode as failures.
+impl ZoneCosts {
+    /// Raises the weights of cells in zones that cost, and closes zones that end an episode in failure.
     pub(super) fn lay(world: &World, grid: Grid, weight: &mut [u16]) -> Self {
         let zones = &world.environment_params.zones;
         if zones.is_empty() {
@@ -47,24 +46,24 @@ impl Tolls {
         let second = (-rules.reward_per_second - rules.step_reward / step).max(0.0);
         let metre = second / agent.max_linear_speed.max(1e-6);
         let (mut pay, mut pace) = (vec![0.0_f64; weight.len()], vec![1.0_f64; weight.len()]);
-        let mut tolls = Self::default();
+        let mut zone_costs = Self::default();
         for zone in zones {
             let fails = zone.ends == Some(ZoneEnd::Failure);
             if fails || zone.is_costly() {
                 shun(zone, fails, grid, weight);
             }
-            // What is in it without being meant to be: the end of the episode, another place.
+            // Entering may also end the episode, or move the agent.
             let is_trap = zone.ends == Some(ZoneEnd::Success) || zone.teleport.is_some();
-            let toll = match -zone.reward_on_entering {
+            let entry_cost = match -zone.reward_on_entering {
                 pay if pay <= 0.0 => 0.0,
-                pay if metre > 0.0 => (pay / metre / f64::from(grid.side()) * 5.0).min(MOST_TOLL),
-                _ => MOST_TOLL,
+                pay if metre > 0.0 => (pay / metre / f64::from(grid.side()) * 5.0).min(MOST_ENTRY_COST),
+                _ => MOST_ENTRY_COST,
             };
             if zone.is_costly() {
-                tolls.costs.resize(weight.len(), false);
-                cells(zone, 0.0, grid).for_each(|cell| tolls.costs[cell] = true);
+                zone_costs.costs.resize(weight.len(), false);
+                cells(zone, 0.0, grid).for_each(|cell| zone_costs.costs[cell] = true);
             }
-            // What costs does so from where a step to the next cell could lead into it.
+            // A zone counts from where one more step could lead into it.
             let margin = if zone.is_costly() { seal(grid) } else { 0.0 };
             for cell in cells(zone, margin, grid) {
                 pay[cell] -= zone.reward_per_second;
@@ -72,9 +71,10 @@ impl Tolls {
                 if is_trap {
                     weight[cell] = weight[cell].saturating_mul(COSTS);
                 }
-                if toll > 0.0 {
-                    tolls.entering.resize(weight.len(), 0);
-                    tolls.entering[cell] = (tolls.entering[cell] + toll as u32).min(MOST_TOLL as u32);
+                if entry_cost > 0.0 {
+                    zone_costs.entering.resize(weight.len(), 0);
+                    zone_costs.entering[cell] =
+                        (zone_costs.entering[cell] + entry_cost as u32).min(MOST_ENTRY_COST as u32);
                 }
             }
         }
@@ -91,10 +91,10 @@ impl Tolls {
                 (f64::from(*weight) * times).min(MOST_WEIGHT) as u16
             };
         }
-        tolls
+        zone_costs
     }
 
-    /// What a step from a cell to another costs beside the ground, in fifths of a cell.
+    /// What a step from one cell to the next costs beyond their weights, in fifths of a cell.
     pub(super) fn of(&self, from: usize, to: usize) -> u32 {
         match (self.entering.get(from), self.entering.get(to)) {
             (Some(from), Some(to)) => to.saturating_sub(*from),
@@ -108,7 +108,7 @@ impl Tolls {
     }
 }
 
-/// Makes the ground around a zone dear, and shuts that of one that fails.
+/// Raises the weights around a zone, and closes the cells of one that fails.
 fn shun(zone: &Zone, fails: bool, grid: Grid, weight: &mut [u16]) {
     for cell in cells(zone, LIKED, grid) {
         weight[cell] = weight[cell].saturating_mul(NEAR);
@@ -118,12 +118,12 @@ fn shun(zone: &Zone, fails: bool, grid: Grid, weight: &mut [u16]) {
     }
 }
 
-/// So far from a border, in metres, no step from cell to cell crosses it.
+/// This far from a border, in metres, no step between cells crosses it.
 fn seal(grid: Grid) -> f32 {
     0.71 * grid.side()
 }
 
-/// The cells whose middles are in a zone, or nearer to it than this.
+/// The cells whose centres are in a zone, or nearer to it than `metres`.
 fn cells(zone: &Zone, margin: f32, grid: Grid) -> impl Iterator<Item = usize> {
     let corners = to_f32(&ground::corners(zone));
     let bounds = zone.bounds().unwrap_or([[0.0; 2]; 2]);

@@ -1,54 +1,53 @@
-//! What is done first to get somewhere or to get something: which door is opened, and before it which key is fetched or which
-//! switch set off. How it is done is in `deed.rs`, where it is in `floor.rs`; which doors keys are spent on that open one door
-//! only, in `spending.rs`.
+//! [`Plan`]: chooses the next subgoal: which door to open, and which key or switch comes first. `subgoal.rs` carries it out;
+//! `spending.rs` decides which doors to spend keys on that open one door only.
 
 use driftworld_spec::{ActionModel, ActionSpace, Object, Stimulus, SwitchAction, World, Zone};
 
-use super::deed::{Deed, Task};
 use super::floor::{Floor, Room};
-use super::wishes::{Wish, toward};
+use super::goals::{Goal, toward};
+use super::subgoal::{Act, Subgoal};
 use crate::sim::SimRef;
 
-/// How a closed door can be got open.
+/// How a closed door can be opened.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Means {
-    /// By its stimuli.
+    /// By its own stimuli.
     Hand,
-    /// By its stimuli, once this object has been fetched.
+    /// By its own stimuli, after fetching this key.
     Key(u32),
-    /// By setting off this object.
+    /// By setting off this switch.
     Switch(u32),
     /// By waiting for its clock.
     Clock,
-    /// Once this has had its turn in the sequence.
-    After(Wish<'static>),
+    /// After this goal has had its turn in the sequence.
+    After(Goal<'static>),
 }
 
-/// A door that can be got open: what leads to it is known before it.
+/// A door that can be opened; the ways that lead to it come before it in the plan.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Way {
     pub(super) door: u32,
     /// The room from which it is opened, or passed.
     from: Room,
     means: Means,
-    /// The key that is gone when it has opened the door.
+    /// The key that is used up by opening it.
     pub(super) spends: Option<u32>,
 }
 
-/// What can be reached from where the agent is, door by door.
+/// What the agent can reach, door by door.
 #[derive(Clone)]
 pub(super) struct Plan<'a> {
     pub(super) sim: SimRef<'a>,
     floor: &'a Floor,
     here: Room,
-    /// For each room that can be got to beyond this one, the door that leads there.
+    /// For each other room within reach, the index of the way that leads there.
     entered: Vec<(Room, usize)>,
     pub(super) ways: Vec<Way>,
 }
 
 impl<'a> Plan<'a> {
-    /// What can be reached for the sake of these wishes.
-    pub(super) fn new(sim: SimRef<'a>, floor: &'a Floor, wishes: &[Vec<Wish>; 3]) -> Option<Self> {
+    /// Opens every free door, then spends keys as these goals need.
+    pub(super) fn new(sim: SimRef<'a>, floor: &'a Floor, goals: &[Vec<Goal>; 3]) -> Option<Self> {
         let here = floor.room_at(sim.agent().position)?;
         let mut plan = Self {
             sim,
@@ -58,10 +57,10 @@ impl<'a> Plan<'a> {
             ways: Vec::new(),
         };
         plan.open_what_is_free();
-        Some(plan.with_keys_spent(wishes))
+        Some(plan.with_keys_spent(goals))
     }
 
-    /// Opens all doors for which nothing is used up, in rounds: each with what is found without it.
+    /// Opens all doors that use up no key, in rounds: each round uses only what earlier rounds reached.
     pub(super) fn open_what_is_free(&mut self) {
         loop {
             let found = self.ways_through();
@@ -75,7 +74,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// The doors that can be got open next, by rising object.
+    /// The doors that can be opened next, by rising object.
     pub(super) fn ways_through(&self) -> Vec<Way> {
         let doors = self.floor.doors.iter();
         doors
@@ -108,7 +107,7 @@ impl<'a> Plan<'a> {
             .is_some_and(|room| self.can_reach(room))
     }
 
-    /// How a door that cannot be passed yet can be got open with what can be reached.
+    /// How a door that is still closed can be opened with what is within reach.
     fn way_through(&self, door: u32, rooms: [Option<Room>; 2]) -> Option<Way> {
         if self.ways.iter().any(|way| way.door == door) {
             return None;
@@ -123,7 +122,7 @@ impl<'a> Plan<'a> {
         })
     }
 
-    /// How a door is got open, and which key is gone then: rather by what is not used up.
+    /// How to open a door, and the key that uses up; prefers what uses up none.
     fn means(&self, door: u32) -> Option<(Means, Option<u32>)> {
         let by_hand = self.by_hand(door);
         match by_hand {
@@ -132,7 +131,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// How a door is opened at the door.
+    /// How to open a door by its own stimuli, with a key if it needs one.
     fn by_hand(&self, door: u32) -> Option<(Means, Option<u32>)> {
         let SimRef { world, state, .. } = self.sim;
         let object = &world.objects[door as usize];
@@ -162,7 +161,7 @@ impl<'a> Plan<'a> {
         self.ways.iter().any(|way| way.spends == Some(key))
     }
 
-    /// How a door is opened without a key: by a switch, by its clock, or later in the sequence.
+    /// How to open a door without a key: by a switch, by its clock, or later in the sequence.
     fn without_key(&self, door: u32) -> Option<Means> {
         let SimRef { world, state, .. } = self.sim;
         let object = &world.objects[door as usize];
@@ -185,8 +184,8 @@ impl<'a> Plan<'a> {
         self.next_in_turn(door).map(Means::After)
     }
 
-    /// What has its turn in the sequence now and can be done, if a door waits for its own turn, or for that of what opens it.
-    fn next_in_turn(&self, door: u32) -> Option<Wish<'static>> {
+    /// The possible goal whose turn it is in the sequence, if the door, its key or its switch waits for its own turn.
+    fn next_in_turn(&self, door: u32) -> Option<Goal<'static>> {
         let SimRef { world, state, .. } = self.sim;
         let object = &world.objects[door as usize];
         let key = object.door.as_ref().and_then(|own| own.key.as_ref());
@@ -205,17 +204,17 @@ impl<'a> Plan<'a> {
             object.order.is_some() && state.is_due(object.order) && own.present && !own.collected
         };
         let next = (0..world.objects.len() as u32).filter(is_next);
-        let mut wishes = next.map(|index| {
+        let mut goals = next.map(|index| {
             if world.objects[index as usize].is_used() {
-                Wish::Move(index)
+                Goal::Move(index)
             } else {
                 toward(self.sim, index)
             }
         });
-        wishes.find(|wish| self.first(*wish).is_some())
+        goals.find(|goal| self.first(*goal).is_some())
     }
 
-    /// Whether a thing lies where it can be reached, and can be picked up there.
+    /// Whether a thing lies within reach and can be picked up.
     fn can_pick_up(&self, index: u32) -> bool {
         let SimRef { world, state, .. } = self.sim;
         let object = &world.objects[index as usize];
@@ -227,7 +226,7 @@ impl<'a> Plan<'a> {
             && self.can_reach_object(index)
     }
 
-    /// The rooms that can be got to, and whether each takes a door.
+    /// How many doors lie on the way to an object; `None` if it cannot be reached.
     pub(super) fn takes_doors(&self, object: u32) -> Option<usize> {
         let room = self.floor.room_of(self.sim, object)?;
         let mut doors = 0;
@@ -240,13 +239,13 @@ impl<'a> Plan<'a> {
         Some(doors)
     }
 
-    /// What is done first for the sake of a wish; `None` where there is no way to it.
-    pub(super) fn first(&self, wish: Wish) -> Option<Task> {
-        match wish {
-            Wish::Touch(object) => self.at(object, Deed::Touch),
-            Wish::Use(object) => self.at(object, Deed::Use),
-            Wish::Move(object) => self.moved(object),
-            Wish::Bring { thing, tag } => {
+    /// The first subgoal of a goal; `None` if it cannot be reached.
+    pub(super) fn first(&self, goal: Goal) -> Option<Subgoal> {
+        match goal {
+            Goal::Touch(object) => self.at(object, Act::Touch),
+            Goal::Use(object) => self.at(object, Act::Use),
+            Goal::Move(object) => self.moved(object),
+            Goal::Bring { thing, tag } => {
                 if !self.sim.state.carried().contains(&thing) {
                     return self.picked_up(thing);
                 }
@@ -258,66 +257,66 @@ impl<'a> Plan<'a> {
                         && world.objects[*index as usize].tag.as_deref() == Some(tag)
                         && self.can_reach_object(*index)
                 });
-                self.at(places.next()?, Deed::Bring { thing })
+                self.at(places.next()?, Act::Bring { thing })
             }
         }
     }
 
-    /// How a zone is entered, or what is to be done first; `None` where there is no way to it.
-    pub(super) fn zone_entered(&self, index: usize, zone: &Zone) -> Option<Task> {
+    /// The first subgoal of entering a zone; `None` if it cannot be reached.
+    pub(super) fn zone_entered(&self, index: usize, zone: &Zone) -> Option<Subgoal> {
         let rooms = self.floor.cells_in(zone).into_iter();
         let mut rooms: Vec<Room> = rooms.map(|cell| self.floor.room[cell as usize]).collect();
         rooms.sort_by_key(|room| (*room != self.here, *room));
         let room = rooms.into_iter().find(|room| self.can_reach(*room))?;
-        let task = Task {
+        let subgoal = Subgoal {
             object: index as u32,
             room,
-            deed: Deed::Enter,
+            act: Act::Enter,
         };
-        self.got_to(room, task)
+        self.reached_first(room, subgoal)
     }
 
-    /// A deed at an object, or what is to be done before the agent gets there.
-    fn at(&self, object: u32, deed: Deed) -> Option<Task> {
+    /// An act at an object, or the subgoal that comes before it.
+    fn at(&self, object: u32, act: Act) -> Option<Subgoal> {
         let room = self.floor.room_of(self.sim, object)?;
-        self.got_to(room, Task { object, room, deed })
+        self.reached_first(room, Subgoal { object, room, act })
     }
 
-    /// A task in a room, or what is to be done before the agent gets there. It ends: doors are opened with what was reached
-    /// before them.
-    fn got_to(&self, room: Room, task: Task) -> Option<Task> {
+    /// A subgoal in a room, or the one that comes before it. Terminates: each door is opened only with what was reached before
+    /// it.
+    fn reached_first(&self, room: Room, subgoal: Subgoal) -> Option<Subgoal> {
         if room == self.here {
-            return Some(task);
+            return Some(subgoal);
         }
         let (_, number) = self.entered.iter().find(|(other, _)| *other == room)?;
         self.opened(self.ways[*number])
     }
 
-    fn opened(&self, way: Way) -> Option<Task> {
-        let at_door = |deed| {
-            self.got_to(
+    fn opened(&self, way: Way) -> Option<Subgoal> {
+        let at_door = |act| {
+            self.reached_first(
                 way.from,
-                Task {
+                Subgoal {
                     object: way.door,
                     room: way.from,
-                    deed,
+                    act,
                 },
             )
         };
         match way.means {
-            Means::Hand => at_door(Deed::Move),
-            Means::Clock => at_door(Deed::Wait),
+            Means::Hand => at_door(Act::Move),
+            Means::Clock => at_door(Act::Wait),
             Means::Key(key) => match self.locked_before(way) {
                 Some(earlier) => self.opened(earlier),
                 None => self.picked_up(key),
             },
-            Means::Switch(switch) => self.at(switch, Deed::Move),
-            Means::After(wish) => self.first(wish),
+            Means::Switch(switch) => self.at(switch, Act::Move),
+            Means::After(goal) => self.first(goal),
         }
     }
 
-    /// The first locked door on the way to a door, if the agent has no hand left once it has the door's key: it would put
-    /// the one key down for the other, and back again. Doors once unlocked stay so, so that this comes to an end.
+    /// The first locked door on the way to a door, if the door's key would fill the agent's hands: else it would swap the two keys
+    /// forever. Terminates, since an unlocked door stays unlocked.
     fn locked_before(&self, way: Way) -> Option<Way> {
         let hands = self.sim.world.agent_params.carry_limit as usize;
         if self.sim.state.carried().len() + 1 < hands {
@@ -340,8 +339,8 @@ impl<'a> Plan<'a> {
         first
     }
 
-    /// A door is opened, a switch set off, a thing picked up.
-    fn moved(&self, object: u32) -> Option<Task> {
+    /// The first subgoal of opening a door, setting off a switch or picking up a thing.
+    fn moved(&self, object: u32) -> Option<Subgoal> {
         let parts = &self.sim.world.objects[object as usize];
         if parts.door.is_some() && !self.sim.objects()[object as usize].open {
             let way = self.ways.iter().find(|way| way.door == object)?;
@@ -350,18 +349,18 @@ impl<'a> Plan<'a> {
         if parts.portable.is_some() && parts.switch.is_none() {
             return self.picked_up(object);
         }
-        self.at(object, Deed::Move)
+        self.at(object, Act::Move)
     }
 
-    fn picked_up(&self, thing: u32) -> Option<Task> {
+    fn picked_up(&self, thing: u32) -> Option<Subgoal> {
         if !self.can_pick_up(thing) {
             return None;
         }
-        let task = self.at(thing, Deed::Move)?;
+        let subgoal = self.at(thing, Act::Move)?;
         let hands_are_full = self.sim.state.carried().len() >= self.sim.world.agent_params.carry_limit as usize;
-        // What is carried is put down where the thing is, for what is on the way to it may need it.
-        let can_be_emptied = !hands_are_full || can_interact(self.sim.world);
-        can_be_emptied.then_some(task)
+        // Hands are emptied at the thing itself: the way to it may need what they carry.
+        let hands_can_be_emptied = !hands_are_full || can_interact(self.sim.world);
+        hands_can_be_emptied.then_some(subgoal)
     }
 }
 
@@ -377,7 +376,7 @@ pub(super) fn can_interact(world: &World) -> bool {
     agent.interact && agent.action_model != ActionModel::ByWaypoint && has_row
 }
 
-/// Which of some stimuli of an object the agent can bring about; an interaction if it can.
+/// The stimulus of an object that the agent can cause; an interaction if possible.
 pub(super) fn usable(world: &World, object: u32, stimuli: &[Stimulus]) -> Option<Stimulus> {
     let has_range = world.objects[object as usize].range_stimulus_distance > 0.0;
     let can = |stimulus: &Stimulus| match stimulus {

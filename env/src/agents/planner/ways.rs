@@ -1,4 +1,4 @@
-//! Ways over the floor: how dear it is to get somewhere from each cell, and where to walk next.
+//! Shortest paths over the floor: the cost from each cell to the target, and where to walk next.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -7,39 +7,39 @@ use super::floor::{BESIDE, Floor, Room, Standing, squared};
 use super::leaf::Leaf;
 use crate::sim::{SimRef, answering};
 
-/// Cells from which to go on, the nearest first.
+/// Cells still to be expanded, the cheapest first.
 pub(super) type Waiting = BinaryHeap<Reverse<(u32, u32)>>;
 
 /// How far beyond the agent's body and to its sides an interaction reaches, in metres.
 const REACH: f32 = 1.0;
 const ASIDE: f32 = 0.5;
 
-/// Where a thing is to be put down.
+/// Where to put a thing down.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Bringing {
-    /// Index of the object near which it is to lie.
+    /// Index of the object to put it near.
     pub(super) to: u32,
     /// The room of the agent.
     pub(super) room: Room,
     /// Radius of the thing in metres.
     pub(super) radius: f32,
-    /// How far in front of the agent's middle it comes to lie.
+    /// How far in front of the agent's centre it will lie, in metres.
     pub(super) ahead: f32,
-    /// How far from the object the agent stands, at least and at most.
+    /// The least and the most distance of the agent from the object, in metres.
     pub(super) from: [f32; 2],
-    /// How near to the object the thing is to lie at most, in metres.
+    /// The most distance of the thing from the object, in metres.
     pub(super) within: f32,
-    /// How many things the agent carries: with a free hand it picks up what lies in front of it.
+    /// How many things the agent carries: a free hand picks up what lies in front of it.
     pub(super) carried: usize,
 }
 
 impl Floor {
-    /// Leads to where a thing can be put down near an object, by who looks at that from a distance between `least` and `most`.
+    /// Leads to where a thing can be put down near an object by an agent that faces it from a distance in `from`.
     pub(super) fn lead_to_bring(&mut self, sim: SimRef, bringing: Bringing) {
         if self.brings == Some((self.version, bringing)) {
             return;
         }
-        // First with room to spare, for the agent stands anywhere in a cell.
+        // Tries with room to spare first, since the agent may stand anywhere in a cell.
         let mut goals = [0.15, 0.03]
             .into_iter()
             .map(|margin| self.places_to_bring(sim, bringing, margin));
@@ -58,7 +58,7 @@ impl Floor {
             ..
         } = bringing;
         let at = sim.objects()[to as usize].position;
-        // What would answer in place of what is put down, and what is still to be picked up: the nearer thing answers.
+        // The nearest thing answers an interaction: another one, or one still to be picked up, must not be nearer.
         let answers = |index: &u32| answering(sim, &[*index]).is_some() || is_left(sim, bringing, *index);
         let others: Vec<Leaf> = (0..sim.objects().len() as u32)
             .filter(answers)
@@ -71,7 +71,7 @@ impl Floor {
                 return false;
             }
             let [east, north] = [0, 1].map(|axis| (at[axis] - cell[axis]) / away);
-            // Where it would lie, and half the way there.
+            // Where it would lie, and halfway there.
             let has_room = [ahead, ahead / 2.0].into_iter().all(|metres| {
                 let point = [cell[0] + east * metres, cell[1] + north * metres];
                 let is_room = |standing: &Standing| standing.leaf.distance(point) > radius + margin;
@@ -92,7 +92,7 @@ impl Floor {
             .collect()
     }
 
-    /// Leads to these cells from now on.
+    /// Sets the cells that paths lead to.
     pub(super) fn lead(&mut self, goals: Vec<u32>) {
         if self
             .leads
@@ -112,7 +112,7 @@ impl Floor {
         self.leads = Some((self.version, goals));
     }
 
-    /// Finds how dear the way is from a cell, and from all that are nearer: no farther than anyone asks.
+    /// Expands cells until the cost from this cell is known, and no farther.
     fn reach(&mut self, asked: usize) {
         while let Some(Reverse((here, cell))) = self.open.peek().copied()
             && here <= self.field[asked]
@@ -128,7 +128,7 @@ impl Floor {
                     continue;
                 }
                 let ground = u32::from(self.weight[other]) * if is_slanting { 7 } else { 5 };
-                let through = here.saturating_add(ground + self.tolls.of(other, cell));
+                let through = here.saturating_add(ground + self.zone_costs.of(other, cell));
                 if through < self.field[other] {
                     self.field[other] = through;
                     self.open.push(Reverse((through, other as u32)));
@@ -137,7 +137,7 @@ impl Floor {
         }
     }
 
-    /// Whether a slanting step cuts no corner.
+    /// Whether a diagonal step cuts no corner.
     fn is_corner_open(&self, cell: usize, step: isize) -> bool {
         let row = self.grid.stride() as isize * step.signum();
         let column = step - row;
@@ -160,12 +160,12 @@ impl Floor {
             let open = around.filter(|(step, is_slanting)| !is_slanting || self.is_corner_open(cell, *step));
             let nearest = open
                 .map(|(step, _)| cell.wrapping_add_signed(step))
-                .min_by_key(|other| self.field[*other].saturating_add(self.tolls.of(cell, *other)));
+                .min_by_key(|other| self.field[*other].saturating_add(self.zone_costs.of(cell, *other)));
             let Some(nearest) = nearest.filter(|other| self.field[*other] < self.field[cell]) else {
                 break;
             };
             cell = nearest;
-            self.keeps_out &= !self.tolls.is_in_what_costs(cell);
+            self.keeps_out &= !self.zone_costs.is_in_what_costs(cell);
             beside.get_or_insert(nearest);
             if self.is_clear(from, self.grid.centre(cell)) {
                 best = self.grid.centre(cell);
@@ -173,14 +173,14 @@ impl Floor {
                 break;
             }
         }
-        // Onto dearer ground, such as a zone that is to be entered, nothing is clear: who stands in the cell goes to the next.
+        // No straight walk onto costlier ground, such as a zone to enter: the agent walks cell by cell there.
         if best == self.grid.centre(start) && self.grid.cell_at(from) == start {
             best = beside.map_or(best, |cell| self.grid.centre(cell));
         }
         Some(best)
     }
 
-    /// Whether nothing is in the way of a straight walk, but for where it begins.
+    /// Whether a straight walk is clear, except where it begins.
     fn is_clear(&self, from: [f32; 2], to: [f32; 2]) -> bool {
         let length = squared(from, to).sqrt();
         let count = (length / (self.grid.side() / 2.0)) as usize;
@@ -191,13 +191,13 @@ impl Floor {
             let at = [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * share);
             let cell = self.grid.cell_at(at);
             let weight = self.weight[cell];
-            let is_walked = (1..=dear).contains(&weight) && self.tolls.of(start, cell) == 0;
+            let is_walked = (1..=dear).contains(&weight) && self.zone_costs.of(start, cell) == 0;
             is_walked || weight == 0 && share * length < 0.3
         })
     }
 }
 
-/// Whether a thing lies that is not delivered yet and may be picked up next.
+/// Whether a thing is present that is not delivered yet and may be picked up next.
 pub(super) fn is_left(sim: SimRef, bringing: Bringing, index: u32) -> bool {
     let (object, own) = (&sim.world.objects[index as usize], &sim.objects()[index as usize]);
     let to = sim.objects()[bringing.to as usize].position;

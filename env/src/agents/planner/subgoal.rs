@@ -1,82 +1,81 @@
-//! How one thing is done: walking to an object, and there touching it, using it, waiting at it or putting something down. What
-//! is to be done is decided in `plan.rs`.
+//! [`Subgoal`]: walks to an object, and touches it, uses it, waits at it or puts something down there. `plan.rs` chooses which.
 
 use driftworld_spec::Stimulus;
 
 use super::floor::{Floor, Room};
+use super::goals::moving_stimulus;
 use super::leaf::Leaf;
 use super::plan::can_interact;
 use super::ways::{Bringing, is_left};
-use super::wishes::moving_stimulus;
 use crate::agents::steering::{distance, is_narrow, off, seconds, step_to};
 use crate::sim::{SimRef, answering, put_down_place};
 
-/// Degrees off which an agent goes on looking at what it means to use, rather than walking to it.
+/// An object is faced if it is at most this many degrees off.
 const OFF: f32 = 8.0;
 
-/// Slower than this, in m/s, the agent gets nowhere.
+/// An agent slower than this, in m/s, is held up.
 const HELD_UP: f32 = 0.3;
 
-/// How near to a thing the agent puts down what it carries in its place, in metres.
+/// Within this distance of a thing, in metres, full hands put something down to take it.
 const BESIDE: f32 = 1.8;
 
-/// How far from things that are still to be picked up another is put down, in metres.
+/// Things are put down at least this far, in metres, from things still to be picked up.
 const CROWDED: f32 = 1.0;
 
-/// What is done at an object.
+/// What to do at an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Deed {
-    /// It is touched.
+pub(super) enum Act {
+    /// Touch it.
     Touch,
-    /// It is interacted with.
+    /// Interact with it.
     Use,
-    /// It is opened, set off or picked up.
+    /// Open it, set it off or pick it up.
     Move,
-    /// It opens by itself, and the agent stands before it.
+    /// Stand before it until it opens by itself.
     Wait,
-    /// This thing is put down near it.
+    /// Put this thing down near it.
     Bring {
         /// Its index.
         thing: u32,
     },
-    /// A zone is entered; its place in the world's list stands for the object.
+    /// Enter a zone; `object` is then the zone's index.
     Enter,
 }
 
-/// A deed, and where it is done.
+/// What to do next, and where.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Task {
+pub(super) struct Subgoal {
     pub(super) object: u32,
     pub(super) room: Room,
-    pub(super) deed: Deed,
+    pub(super) act: Act,
 }
 
-impl Task {
-    /// The next step, as speed, turn rate and interaction.
+impl Subgoal {
+    /// The next action, as speed, turn rate and interaction.
     pub(super) fn act(self, sim: SimRef, floor: &mut Floor) -> [f64; 3] {
-        match self.deed {
-            Deed::Bring { thing } => self.bring(sim, floor, thing),
-            Deed::Enter => self.enter(sim, floor),
-            Deed::Touch | Deed::Use | Deed::Move | Deed::Wait => self.meet(sim, floor),
+        match self.act {
+            Act::Bring { thing } => self.bring(sim, floor, thing),
+            Act::Enter => self.enter(sim, floor),
+            Act::Touch | Act::Use | Act::Move | Act::Wait => self.meet(sim, floor),
         }
     }
 
     fn meet(self, sim: SimRef, floor: &mut Floor) -> [f64; 3] {
-        let stimulus = match self.deed {
-            Deed::Use => Some(Stimulus::AgentInteract),
-            Deed::Move => moving_stimulus(sim, self.object),
+        let stimulus = match self.act {
+            Act::Use => Some(Stimulus::AgentInteract),
+            Act::Move => moving_stimulus(sim, self.object),
             _ => None,
         };
         let away = distance(sim.agent().position, sim.objects()[self.object as usize].position);
-        if self.deed == Deed::Move && is_too_much(sim, self.object) && away < BESIDE {
+        if self.act == Act::Move && is_too_much(sim, self.object) && away < BESIDE {
             return put_down(sim, self.object);
         }
         let by_hand = stimulus == Some(Stimulus::AgentInteract) && can_interact(sim.world);
         if by_hand && (self.is_at_hand(sim) || self.is_behind_another(sim)) {
             return [0.0, 0.0, 1.0];
         }
-        // A contact counts when it begins: what wants to be touched again is left first.
-        let counts = self.deed == Deed::Touch || stimulus == Some(Stimulus::AgentCollide);
+        // Only the start of a contact counts: back off before touching again.
+        let counts = self.act == Act::Touch || stimulus == Some(Stimulus::AgentCollide);
         if counts && sim.state.touches(self.object as usize) {
             return [-sim.world.agent_params.max_linear_speed / 2.0, 0.0, 0.0];
         }
@@ -87,26 +86,26 @@ impl Task {
         let at = sim.objects()[self.object as usize].position;
         let gap = Leaf::of(sim, self.object as usize).distance(sim.agent().position)
             - sim.world.agent_params.agent_width as f32 / 2.0;
-        if self.deed == Deed::Wait && gap < 0.4 || by_hand && gap < 0.15 && !is_facing(sim, at) {
+        if self.act == Act::Wait && gap < 0.4 || by_hand && gap < 0.15 && !is_facing(sim, at) {
             return [0.0, turn(sim, at), 0.0];
         }
         walk(sim, at, if by_hand { 0.1 } else { 0.5 })
     }
 
-    /// Whether an interaction now is answered by this object.
+    /// Whether this object would answer an interaction now.
     fn is_at_hand(self, sim: SimRef) -> bool {
         let reached = reached(sim);
-        match self.deed {
-            Deed::Use => reached.contains(&self.object),
+        match self.act {
+            Act::Use => reached.contains(&self.object),
             _ => answering(sim, &reached) == Some(self.object),
         }
     }
 
-    /// Whether another thing answers an interaction in place of the one that is wanted, though the agent looks at that from as
-    /// near as it gets: it is taken, and put down elsewhere.
+    /// Whether another thing would answer although the agent faces the wanted one from as near as it gets: the agent then takes
+    /// that thing and puts it down elsewhere.
     fn is_behind_another(self, sim: SimRef) -> bool {
         let object = &sim.world.objects[self.object as usize];
-        if self.deed != Deed::Move || object.portable.is_none() {
+        if self.act != Act::Move || object.portable.is_none() {
             return false;
         }
         let reached = reached(sim);
@@ -199,7 +198,7 @@ impl Task {
     }
 }
 
-/// Whether something that is to be picked up lies so near that what is put down here would answer in its place.
+/// Whether a thing put down here would answer in place of one still to be picked up.
 fn is_crowded(sim: SimRef, bringing: Bringing, place: [f32; 2]) -> bool {
     let near = |index: &u32| distance(sim.objects()[*index as usize].position, place) < CROWDED;
     (0..sim.objects().len() as u32)
@@ -207,7 +206,7 @@ fn is_crowded(sim: SimRef, bringing: Bringing, place: [f32; 2]) -> bool {
         .any(|index| is_left(sim, bringing, index))
 }
 
-/// Turns until there is room in front, and what is to be picked up is not.
+/// Puts something down: turns until there is room in front, away from the wanted thing.
 fn put_down(sim: SimRef, wanted: u32) -> [f64; 3] {
     let reached = reached(sim);
     let is_free = answering(sim, &reached).is_none() && put_down_place(sim).is_some() && !reached.contains(&wanted);
@@ -217,20 +216,20 @@ fn put_down(sim: SimRef, wanted: u32) -> [f64; 3] {
     [0.0, sim.world.agent_params.max_angular_speed, 0.0]
 }
 
-/// Whether the agent looks at a point as well as its turns allow.
+/// Whether the agent faces a point, as precisely as its turns allow.
 fn is_facing(sim: SimRef, point: [f32; 2]) -> bool {
     let step = sim.world.agent_params.max_angular_speed as f32 * seconds(sim);
     off(sim, point).abs() <= OFF.max(0.55 * step)
 }
 
-/// Whether an object can be picked up, and the agent's hands are full.
+/// Whether an object is portable and the agent's hands are full.
 fn is_too_much(sim: SimRef, object: u32) -> bool {
     let object = &sim.world.objects[object as usize];
     let is_thing = object.portable.is_some() && object.door.is_none() && object.switch.is_none();
     is_thing && sim.state.carried().len() >= sim.world.agent_params.carry_limit as usize
 }
 
-/// Whether the agent gets nowhere, with a thing in front that an interaction would take out of its way.
+/// Whether the agent is held up by a solid portable thing that it could pick up.
 pub(super) fn is_blocked_by_a_thing(sim: SimRef) -> bool {
     let world = sim.world;
     let has_hand = sim.state.carried().len() < world.agent_params.carry_limit as usize;
@@ -245,22 +244,22 @@ pub(super) fn is_blocked_by_a_thing(sim: SimRef) -> bool {
     answering(sim, &reached(sim)).is_some_and(is_thing)
 }
 
-/// The objects that an interaction reaches now.
+/// The objects within reach of an interaction now.
 fn reached(sim: SimRef) -> Vec<u32> {
     let mut reached = Vec::new();
     sim.reached_by_hand(&mut reached);
     reached
 }
 
-/// The turn rate that brings the agent to look at a point in one step, if it can turn so fast.
+/// The turn rate that would face a point after one step.
 fn turn(sim: SimRef, point: [f32; 2]) -> f64 {
     f64::from(off(sim, point) / seconds(sim))
 }
 
-/// A step towards a point, and so many metres past it: not at full speed into a turn.
+/// A step towards a point, and `past` metres beyond it; slower in turns.
 fn walk(sim: SimRef, point: [f32; 2], past: f32) -> [f64; 3] {
     if is_narrow(sim) {
-        // Beside what costs no corner is cut.
+        // Cuts no corner beside something that costs.
         return step_to(sim, point, past.min(0.05), 5.0);
     }
     step_to(sim, point, past, 20.0)
