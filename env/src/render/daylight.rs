@@ -28,12 +28,12 @@ pub(super) struct Daylight {
 }
 
 /// From 0 at `from` to 1 at `to`, smoothly.
-fn rise(value: f32, from: f32, to: f32) -> f32 {
+pub(super) fn rise(value: f32, from: f32, to: f32) -> f32 {
     let share = ((value - from) / (to - from)).clamp(0.0, 1.0);
     share * share * (3.0 - 2.0 * share)
 }
 
-fn between(a: [f32; 3], b: [f32; 3], share: f32) -> [f32; 3] {
+pub(super) fn between(a: [f32; 3], b: [f32; 3], share: f32) -> [f32; 3] {
     std::array::from_fn(|k| a[k] + (b[k] - a[k]) * share)
 }
 
@@ -77,25 +77,6 @@ impl Daylight {
             around: color.map(|level| 0.72 * level),
             above: color.map(|level| 0.06 * level),
             ..sky
-        }
-    }
-
-    /// The sky alone.
-    fn sky(light: &Light, exposure: f32, low: f32, height: f32) -> Self {
-        let bright = exposure * (0.62 + 0.38 * rise(height, -0.1, 0.35)) * FULL_LEVEL;
-        let tint = between([1.0; 3], [0.7, 0.62, 0.74], low);
-        let away = between([1.0; 3], [0.88, 0.72, 0.76], low);
-        let toward = between([1.0; 3], [1.5, 0.92, 0.4], low);
-        let pale: [f32; 3] = light.sky_color.map(|channel| channel * 0.42 + 0.55);
-        let level = |own: [f32; 3], by: [f32; 3]| std::array::from_fn(|k| (own[k] * by[k] * bright).min(FULL_LEVEL));
-        let white = between([0.98; 3], [1.0, 0.74, 0.62], low);
-        Self {
-            zenith: level(light.sky_color, tint),
-            horizon: level(pale, away),
-            sunward: level(pale, toward),
-            cloud: level([1.0; 3], white),
-            glow: low,
-            ..Self::default()
         }
     }
 

@@ -27,6 +27,7 @@ mod report;
 mod rows;
 mod shade;
 mod shadows;
+mod sky;
 mod surfaces;
 mod target;
 mod top_down;

@@ -20,12 +20,6 @@ pub(crate) const FULL_LEVEL: f32 = 255.0;
 /// Added to a level before it is cut to a byte.
 pub(crate) const ROUNDING: f32 = 0.5;
 
-/// How bright the sky is: without any light, what each unit of the brightest channel adds, and at most.
-const SKY_BRIGHTNESS: [f32; 3] = [0.12, 0.88, 1.06];
-
-/// The horizon's colour: this share of the zenith's, and so much white.
-const HORIZON: [f32; 2] = [0.42, 0.55];
-
 /// Turns colours and normals into levels 0 to 255 under one light; more than 255 is cut by whoever makes bytes of it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shader {
@@ -65,15 +59,5 @@ impl Shader {
             .in_light(color)
             .map(|level| (level * share + ROUNDING).min(FULL_LEVEL) as u8);
         u32::from_le_bytes([red, green, blue, 0])
-    }
-
-    /// The sky's colours at the zenith and at the horizon, for its own colour. It dims with the light, less than the
-    /// ground does.
-    pub(crate) fn sky(&self, color: [f32; 3]) -> [[f32; 3]; 2] {
-        let brightest = self.tint[0].max(self.tint[1]).max(self.tint[2]);
-        let [dark, gain, most] = SKY_BRIGHTNESS;
-        let bright = (dark + gain * brightest).min(most) * FULL_LEVEL;
-        let [share, white] = HORIZON;
-        [color.map(|c| c * bright), color.map(|c| (c * share + white) * bright)]
     }
 }

@@ -29,6 +29,7 @@ mod progress;
 mod pushed;
 mod pushing;
 mod respawn;
+mod reward;
 mod rng;
 mod sequence;
 mod sim_ref;

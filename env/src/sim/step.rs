@@ -1,5 +1,4 @@
-//! One step of a world: the action, its time steps, what the rules make of them. What touching things does is in
-//! `interactions.rs`, endings are in `termination.rs`.
+//! One step of a world: the action, its time steps, its reward and its end.
 
 use driftworld_spec::{ActionModel, LastEvent, ZoneEnd};
 
@@ -11,8 +10,9 @@ use super::event::{EndedBy, Step};
 use super::interactions::{Objects, apply_stimuli};
 use super::motion::move_objects;
 use super::respawn::respawn;
+use super::reward;
 use super::sim_ref::SimRef;
-use super::termination::{check_termination, potential};
+use super::termination::check_termination;
 use super::zones::{apply_zones, slowed};
 use crate::EnvError;
 
@@ -41,9 +41,9 @@ impl Environment {
     /// One step by a command of the body, whatever action it comes from.
     pub(crate) fn step_by(&mut self, mut intent: Intent, step: &mut Step) {
         step.clear();
-        let potential_before = potential(&self.world, &self.state);
+        let potential_before = reward::potential(&self.world, &self.state);
         step.reward = self.world.rules.step_reward;
-        let pay = self.world.rules.reward_per_second * self.world.agent_params.time_step;
+        let pay = reward::per_tick(&self.world);
         let max_ticks = self.world.max_ticks().unwrap_or(u64::MAX);
         for _ in 0..self.world.agent_params.frame_skip.max(1) {
             step.reward += pay;
@@ -63,13 +63,8 @@ impl Environment {
             let limit = if steps_are_over { EndedBy::Steps } else { EndedBy::Time };
             step.ended_by = Some(limit);
         }
-        if let Some(shaping) = &self.world.rules.shaping {
-            let after = if step.terminated {
-                0.0
-            } else {
-                potential(&self.world, state)
-            };
-            step.reward += shaping.discount * after - potential_before;
+        if let Some(shaping) = reward::shaping(&self.world, state, potential_before, step.terminated) {
+            step.reward += shaping;
         }
         state.earned += step.reward;
         state.last_reward = step.reward;

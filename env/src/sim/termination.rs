@@ -1,25 +1,9 @@
-//! What the world's rules make of where things stand: the potential of its shaping, and what ends an episode. What
-//! objects pay is in `interactions.rs`.
+//! What ends an episode: the conditions of success and failure, and zones.
 
 use driftworld_spec::{Delivery, EndCondition, Object, Stimulus, World, ZoneEnd};
 
 use super::event::{Effect, EndedBy, Event, Step};
 use super::state::{ObjectState, SimState};
-
-/// The potential that the world's shaping gives to this moment; 0 without shaping and where nothing draws the agent.
-pub(super) fn potential(world: &World, state: &SimState) -> f64 {
-    let Some(shaping) = &world.rules.shaping else {
-        return 0.0;
-    };
-    let nearest = match &shaping.toward {
-        Some(tag) => state.nearest(world, |object, own| own.present && object.tag.as_ref() == Some(tag)),
-        None => state.nearest(world, |object, own| pays_now(object, own) && state.is_due(object.order)),
-    };
-    nearest.map_or(0.0, |index| {
-        let [x, y] = state.way_to(index).map(f64::from);
-        -shaping.scale * (x * x + y * y).sqrt()
-    })
-}
 
 /// Notes whether the step so far ended the episode by itself, and how. `had_targets`: whether there ever was a target; `zone`: how a
 /// zone ends it.

@@ -1,12 +1,10 @@
 //! Linear Sarsa(λ): what a deed is worth is a weighted sum of what is seen. What is seen is in `eye.rs`, who acts in `mod.rs`.
 
+use super::LEARNING_RATE;
 use super::eye::FEATURES;
 
 /// What is seen before a deed.
 pub(super) type Seen = [f32; FEATURES];
-
-/// The share of an error that is learned.
-const RATE: f32 = 0.02;
 
 /// Weights of `DEEDS` deeds, and what of them the errors to come will change.
 #[derive(Clone)]
@@ -50,7 +48,7 @@ impl<const DEEDS: usize> LinearSarsa<DEEDS> {
     /// one deed whatever the number of features that are on.
     pub(super) fn learn(&mut self, seen: &Seen, error: f32) {
         let size = seen.iter().map(|x| x * x).sum::<f32>().max(1.0);
-        let step = RATE * error / size;
+        let step = LEARNING_RATE * error / size;
         let traces = self.traces.iter().flatten();
         for (weight, trace) in self.weights.iter_mut().flatten().zip(traces) {
             *weight += step * trace;
@@ -84,7 +82,7 @@ mod tests {
             for (k, (feature, _, deed, _)) in way.iter().enumerate() {
                 let mut expected = 0.0_f64;
                 for (t, (_, x, _, error)) in way.iter().enumerate() {
-                    let step = f64::from(RATE * error) / f64::from((x * x).max(1.0));
+                    let step = f64::from(LEARNING_RATE * error) / f64::from((x * x).max(1.0));
                     for (earlier, other) in way.iter().enumerate().take(t + 1) {
                         if (other.0, other.2) == (*feature, *deed) {
                             expected += step * f64::from(decay).powi((t - earlier) as i32) * f64::from(other.1);

@@ -24,6 +24,8 @@ const DEEDS: [[f64; 3]; 5] = [
 
 /// A deed takes so many seconds of the world, as nearly as steps allow.
 const DEED_SECONDS: f64 = 0.2;
+/// The share of an error that is learned.
+const LEARNING_RATE: f32 = 0.02;
 /// What a reward is worth one deed later.
 const DISCOUNT: f32 = 0.93;
 /// How much of an error one deed earlier is to blame for.

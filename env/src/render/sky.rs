@@ -1,0 +1,44 @@
+//! The colours of the sky, in the plain style and in the natural one.
+
+use super::daylight::{Daylight, between, rise};
+use super::shade::{FULL_LEVEL, Shader};
+use crate::scene::Light;
+
+/// How bright the sky is: without any light, what each unit of the brightest channel adds, and at most.
+const SKY_BRIGHTNESS: [f32; 3] = [0.12, 0.88, 1.06];
+
+/// The horizon's colour: this share of the zenith's, and so much white.
+const HORIZON: [f32; 2] = [0.42, 0.55];
+
+impl Shader {
+    /// The sky's colours at the zenith and at the horizon, for its own colour. It dims with the light, less than the
+    /// ground does.
+    pub(crate) fn sky(&self, color: [f32; 3]) -> [[f32; 3]; 2] {
+        let brightest = self.tint[0].max(self.tint[1]).max(self.tint[2]);
+        let [dark, gain, most] = SKY_BRIGHTNESS;
+        let bright = (dark + gain * brightest).min(most) * FULL_LEVEL;
+        let [share, white] = HORIZON;
+        [color.map(|c| c * bright), color.map(|c| (c * share + white) * bright)]
+    }
+}
+
+impl Daylight {
+    /// The sky under a light whose sun stands this high, and reads as this low.
+    pub(super) fn sky(light: &Light, exposure: f32, low: f32, height: f32) -> Self {
+        let bright = exposure * (0.62 + 0.38 * rise(height, -0.1, 0.35)) * FULL_LEVEL;
+        let tint = between([1.0; 3], [0.7, 0.62, 0.74], low);
+        let away = between([1.0; 3], [0.88, 0.72, 0.76], low);
+        let toward = between([1.0; 3], [1.5, 0.92, 0.4], low);
+        let pale: [f32; 3] = light.sky_color.map(|channel| channel * 0.42 + 0.55);
+        let level = |own: [f32; 3], by: [f32; 3]| std::array::from_fn(|k| (own[k] * by[k] * bright).min(FULL_LEVEL));
+        let white = between([0.98; 3], [1.0, 0.74, 0.62], low);
+        Self {
+            zenith: level(light.sky_color, tint),
+            horizon: level(pale, away),
+            sunward: level(pale, toward),
+            cloud: level([1.0; 3], white),
+            glow: low,
+            ..Self::default()
+        }
+    }
+}

@@ -1,0 +1,34 @@
+//! What a step pays by the world's rules: per step, per second, and by the shaping's potential. What objects pay is in
+//! `interactions.rs`.
+
+use driftworld_spec::World;
+
+use super::state::SimState;
+use super::termination::pays_now;
+
+/// What every second pays, for one time step.
+pub(super) fn per_tick(world: &World) -> f64 {
+    world.rules.reward_per_second * world.agent_params.time_step
+}
+
+/// What shaping adds to a step between two potentials; an end has the potential 0.
+pub(super) fn shaping(world: &World, state: &SimState, before: f64, terminated: bool) -> Option<f64> {
+    let shaping = world.rules.shaping.as_ref()?;
+    let after = if terminated { 0.0 } else { potential(world, state) };
+    Some(shaping.discount * after - before)
+}
+
+/// The potential that the world's shaping gives to this moment; 0 without shaping and where nothing draws the agent.
+pub(super) fn potential(world: &World, state: &SimState) -> f64 {
+    let Some(shaping) = &world.rules.shaping else {
+        return 0.0;
+    };
+    let nearest = match &shaping.toward {
+        Some(tag) => state.nearest(world, |object, own| own.present && object.tag.as_ref() == Some(tag)),
+        None => state.nearest(world, |object, own| pays_now(object, own) && state.is_due(object.order)),
+    };
+    nearest.map_or(0.0, |index| {
+        let [x, y] = state.way_to(index).map(f64::from);
+        -shaping.scale * (x * x + y * y).sqrt()
+    })
+}
