@@ -1,6 +1,6 @@
 //! What was learned, transferred and forgotten in a lifetime, read off the evaluations around its learning blocks.
 
-use crate::curriculum::Summary;
+use crate::curriculum::{RegimeSummary, Summary};
 use crate::spec::BlockKind;
 use crate::table::table;
 use crate::tasks;
@@ -29,10 +29,10 @@ impl Change {
     }
 }
 
-/// One row for each variant: what it paid at first, what was transferred to it, learned and forgotten, and what it paid at
-/// the end; below in words where transfer and forgetting were largest.
-pub(super) fn effects_table(summary: &Summary) -> String {
-    let headings = [
+/// One row for each variant: what it paid at first, what was transferred to it, learned and forgotten, what it paid at the
+/// end, and what it paid each agent `beside`; below in words where transfer and forgetting were largest.
+pub(super) fn effects_table(summary: &Summary, beside: &[(String, Summary)]) -> String {
+    let mut headings = vec![
         "variant",
         "at first",
         "transferred",
@@ -40,8 +40,10 @@ pub(super) fn effects_table(summary: &Summary) -> String {
         "forgotten",
         "at the end",
     ];
+    headings.extend(beside.iter().map(|(agent, _)| agent.as_str()));
+    let numbers: Vec<usize> = (1..headings.len()).collect();
     let mut parts = vec![
-        table(headings, rows(summary), &[1, 2, 3, 4, 5]),
+        table(headings, rows(summary, beside), &numbers),
         "transferred: gained before its own block, by learning others\n\
          learned: gained in its own block\n\
          forgotten: lost after it (-), or still gained (+)\n\
@@ -67,17 +69,24 @@ fn short(variant: &str) -> String {
     tasks::split(variant).1.unwrap_or(variant).to_owned()
 }
 
+fn of_kind(summary: &Summary, kind: BlockKind) -> impl DoubleEndedIterator<Item = &RegimeSummary> {
+    summary.regimes.iter().filter(move |regime| regime.kind == kind)
+}
+
+fn evaluations_of<'a>(summary: &'a Summary, variant: &'a str) -> impl DoubleEndedIterator<Item = &'a RegimeSummary> {
+    of_kind(summary, BlockKind::Evaluation).filter(move |regime| regime.variant == variant)
+}
+
 /// Every variant that was learned, in the order of its first block, and was evaluated around it: in whole points of reward, so that
 /// the parts shown add up.
-fn rows(summary: &Summary) -> Vec<[String; 6]> {
-    let of = |kind: BlockKind| summary.regimes.iter().filter(move |regime| regime.kind == kind);
-    let mut rows: Vec<[String; 6]> = Vec::new();
-    for block in of(BlockKind::Learning) {
+fn rows(summary: &Summary, beside: &[(String, Summary)]) -> Vec<Vec<String>> {
+    let mut rows: Vec<Vec<String>> = Vec::new();
+    for block in of_kind(summary, BlockKind::Learning) {
         let variant = short(&block.variant);
         if rows.iter().any(|row| row[0] == variant) {
             continue;
         }
-        let evaluations = || of(BlockKind::Evaluation).filter(|regime| regime.variant == block.variant);
+        let evaluations = || evaluations_of(summary, &block.variant);
         let (Some(first), Some(before), Some(after), Some(last)) = (
             evaluations().next(),
             evaluations().take_while(|regime| regime.block < block.block).last(),
@@ -91,14 +100,19 @@ fn rows(summary: &Summary) -> Vec<[String; 6]> {
             0 => "0".to_owned(),
             points => format!("{points:+}"),
         };
-        rows.push([
+        let others = beside
+            .iter()
+            .filter_map(|(_, other)| evaluations_of(other, &block.variant).next());
+        let mut row = vec![
             variant,
             first.to_string(),
             change(before - first),
             change(after - before),
             change(last - after),
             last.to_string(),
-        ]);
+        ];
+        row.extend(others.map(|regime| format!("{:.0}", regime.mean_reward)));
+        rows.push(row);
     }
     rows
 }
@@ -106,17 +120,12 @@ fn rows(summary: &Summary) -> Vec<[String; 6]> {
 /// What each learning block did to the other variants that were evaluated before and after it.
 fn changes(summary: &Summary) -> Vec<Change> {
     let evaluation = |block: Option<usize>| {
-        let own = summary.regimes.iter().filter(move |regime| Some(regime.block) == block);
-        own.filter(|regime| regime.kind == BlockKind::Evaluation)
-            .map(|regime| (short(&regime.variant), regime.mean_reward))
+        let own = of_kind(summary, BlockKind::Evaluation).filter(move |regime| Some(regime.block) == block);
+        own.map(|regime| (short(&regime.variant), regime.mean_reward))
     };
     let mut learned_before: Vec<String> = Vec::new();
     let mut changes = Vec::new();
-    for regime in summary
-        .regimes
-        .iter()
-        .filter(|regime| regime.kind == BlockKind::Learning)
-    {
+    for regime in of_kind(summary, BlockKind::Learning) {
         let learned = short(&regime.variant);
         for (variant, before) in evaluation(regime.block.checked_sub(1)) {
             let mut evaluated = evaluation(Some(regime.block + 1));
@@ -138,7 +147,6 @@ fn changes(summary: &Summary) -> Vec<Change> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::curriculum::RegimeSummary;
     use proptest::prelude::*;
 
     fn summary(blocks: &[&[(&str, f64)]]) -> Summary {
@@ -170,17 +178,19 @@ mod tests {
 
     #[test]
     fn what_was_not_learned_yet_transfers_and_what_was_learned_is_forgotten() {
-        let said = effects_table(&summary(&[
+        let lifetime = summary(&[
             &[("a", 0.0), ("b", 1.0), ("c", 2.0)],
             &[("a", 5.0)],
             &[("a", 10.0), ("b", 4.0), ("c", 9.0)],
             &[("b", 5.0)],
             &[("a", 3.0), ("b", 20.0), ("c", 8.0)],
-        ]));
+        ]);
+        let planner = summary(&[&[("b", 30.0), ("a", 11.4)]]);
+        let said = effects_table(&lifetime, &[("planner".to_owned(), planner)]);
         let expected = "\
-variant  at first  transferred  learned  forgotten  at the end
-a               0            0      +10         -7           3
-b               1           +3      +16          0          20
+variant  at first  transferred  learned  forgotten  at the end  planner
+a               0            0      +10         -7           3       11
+b               1           +3      +16          0          20       30
 transferred: gained before its own block, by learning others
 learned: gained in its own block
 forgotten: lost after it (-), or still gained (+)
@@ -206,7 +216,7 @@ Forgetting: learning b lowered a from 10 to 3, although a had been learned.";
                 blocks.extend([&evaluations[number][..], &learned[number][..]]);
             }
             blocks.push(&evaluations[3]);
-            let said = effects_table(&summary(&blocks));
+            let said = effects_table(&summary(&blocks), &[]);
             for (number, name) in NAMES.into_iter().enumerate() {
                 let line = said.lines().find(|line| line.starts_with(&format!("{name} "))).unwrap();
                 let shown: Vec<i64> = line.split_whitespace().skip(1).map(|cell| cell.parse().unwrap()).collect();
@@ -223,7 +233,7 @@ Forgetting: learning b lowered a from 10 to 3, although a had been learned.";
     #[test]
     fn an_agent_that_does_not_change_neither_transfers_nor_forgets() {
         let same: &[(&str, f64)] = &[("a", 1.0), ("b", 1.0)];
-        let said = effects_table(&summary(&[same, &[("a", 1.0)], same, &[("b", 1.0)], same]));
+        let said = effects_table(&summary(&[same, &[("a", 1.0)], same, &[("b", 1.0)], same]), &[]);
         assert!(!said.contains("Transfer") && !said.contains("Forgetting"), "{said}");
     }
 }

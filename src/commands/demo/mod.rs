@@ -1,27 +1,25 @@
-//! `driftworld demo`: the whole way once, on `find_objects`, with every product kept. Each step is a subcommand of its own. What
-//! the lifetime shows is read off in `effects.rs`.
+//! `driftworld demo`: the whole pipeline once, on `find_objects`, with every product kept. Each step is a subcommand of its own.
+//! `effects.rs` reads off what was learned, transferred and forgotten.
 
 mod effects;
 
 use std::path::{Path, PathBuf};
 
 use crate::curriculum::{Design, Summary, Undrawable, design};
-use crate::distances::{By, Sample, labelled_matrix};
+use crate::distances::{Sample, labelled_matrix};
 use crate::env::Catalogue;
 use crate::generator::Sampler;
 use crate::lifetime_report::{ReportRequest, write_report};
 use crate::scenarios;
 use crate::scoring::{ScoringRequest, score};
 use crate::similarity::{DistanceMatrix, Method, OrderOptions, Ordering, order};
-use crate::spec::{BlockKind, Scenario, Variant};
+use crate::spec::{Scenario, Variant};
 use crate::tasks;
 use clap::Args;
-use driftworld_text::{ShownPath, when};
+use driftworld_text::ShownPath;
 
 use super::agent::AgentArg;
-use super::curriculum::{blocks, choices};
-use super::metrics::summary;
-use super::order::path_table;
+use super::curriculum::choices;
 use effects::effects_table;
 
 use super::run::{LifetimeRun, processors};
@@ -29,14 +27,24 @@ use super::{Failure, output};
 use crate::contact_sheet::{self, ways};
 use crate::report::picture::heat_map;
 use crate::table::table;
-use crate::variant_names::VariantNames;
 use crate::views::Views;
 
 /// The task that the demo is about.
 const TASK: &str = "find_objects";
 
 /// Its variants that the demo shows.
-const VARIANTS: [&str; 3] = ["blue", "huddle", "penalty"];
+const VARIANTS: [&str; 3] = ["blue", "huddle", "turned"];
+
+/// Episodes of each learning block.
+const LEARN: u32 = 150;
+
+/// What is in the folder at the end.
+const CONTENTS: &str = "  report.html        the lifetime on one page: metrics, curves, worlds
+  contact-sheet.png  each variant as the agent sees it, and from above; alone in maps/ and worlds/
+  distances.png      how far apart the variants are; the numbers in distances.csv
+  scenario.json      the curriculum: driftworld run FILE runs it
+  log/, beside/      every experience of the learner and of the others, in l2logger's format
+  scores/            the metrics: driftworld metrics on the log prints them";
 
 /// Run the whole pipeline once, from worlds to scores.
 ///
@@ -58,52 +66,26 @@ impl Demo {
         let task = tasks::task(TASK)?;
         let variant = |name| Ok::<_, Failure>((TASK.to_owned(), task.variant(name)?));
         let variants: Vec<(String, Variant)> = VARIANTS.into_iter().map(variant).collect::<Result<_, _>>()?;
-
-        heading(
-            "1",
-            "One world of each variant under one seed: they differ only in what the variants set",
-        )?;
         self.pictures(&variants)?;
-
-        heading(
-            "2",
-            "How far apart the variants are: 1 is one parameter moved over its whole range",
-        )?;
         let matrix = labelled_matrix(&variants, &Sample::default(), Ok)?;
         let ordering = order(&matrix, Method::Exact, &OrderOptions::default().with_first(0))?;
         output::write(&folder.join("distances.csv"), matrix.to_csv().as_bytes())?;
-        let short: Vec<String> = variants.iter().map(|(_, variant)| variant.name().to_owned()).collect();
-        let picture = heat_map("Distances between the variants of find_objects", &short, |a, b| {
-            matrix.get(a, b)
-        });
+        let title = "Distances between the variants of find_objects";
+        let picture = heat_map(title, &VARIANTS.map(str::to_owned), |a, b| matrix.get(a, b));
         output::write_picture(&folder.join("distances.png"), &picture)?;
-        output::line(path_table(&matrix, &ordering))?;
+        let scenario = self.scenario(&variants, &ordering)?;
 
-        heading(
-            "3",
-            "A curriculum: the shortest path through them, with an evaluation before and after each block",
-        )?;
-        let scenario = self.scenario(&variants, &matrix, &ordering)?;
-
-        heading(
-            "4",
-            "A lifetime: a small learner runs it (--agent sarsa), beside an agent at random and a planner that knows the map",
-        )?;
         let logs = folder.join("log");
-        let outcome = run_lifetime(&scenario, &AgentArg::Sarsa, &logs)?;
+        let lifetime = run_lifetime(&scenario, &AgentArg::Sarsa, &logs)?;
         let first = Scenario {
             blocks: scenario.blocks.iter().take(1).cloned().collect(),
             ..scenario.clone()
         };
         let mut beside = Vec::new();
-        for agent in [AgentArg::Random, AgentArg::Onrails] {
-            let name = agent.name();
-            let summary = run_lifetime(&first, &agent, &folder.join("beside").join(&name))?;
-            beside.push((name, summary));
+        for (name, agent) in [("random", AgentArg::Random), ("planner", AgentArg::Onrails)] {
+            let summary = run_lifetime(&first, &agent, &folder.join("beside").join(name))?;
+            beside.push((name.to_owned(), summary));
         }
-        output::line(block_table(&outcome, &beside))?;
-
-        heading("5", "The lifelong-learning metrics of the lifetime")?;
         let warn = |text| output::warning(text);
         let page = write_report(
             &ReportRequest {
@@ -113,23 +95,22 @@ impl Demo {
             &warn,
         )?;
         output::write(&folder.join("report.html"), page.html.as_bytes())?;
-        let scores = score(&ScoringRequest::of([&logs]), &warn)?;
-        scores.save(&folder.join("scores"), Some("demo"))?;
-        let names = VariantNames::of_logs(&[&logs]);
-        let lifetimes = scores.lifetimes.iter().map(|lifetime| summary(lifetime, &names));
-        output::line(lifetimes.collect::<String>())?;
-        heading(
-            "6",
-            "In short: what was learned, transferred and forgotten, in mean reward",
-        )?;
-        output::line(effects_table(&outcome))?;
-        output::line(
-            "\nThe learner sees 169 numbers of a small picture, and knows no map. Yours takes its place from Python or \
-             Rust: docs/curricula.md says how.",
-        )?;
+        score(&ScoringRequest::of([&logs]), &warn)?.save(&folder.join("scores"), Some("demo"))?;
 
-        heading("", &format!("Everything is in {}", folder.shown()))?;
-        output::line(contents())
+        output::line(format!(
+            "A small learner meets three variants of {TASK}, {LEARN} episodes each, in the order of their distances.\n\
+             Mean reward of each in the evaluations before and after, and of two agents beside it:\n\n{}",
+            effects_table(&lifetime, &beside)
+        ))?;
+        output::line(format!(
+            "\nThe variants:\n\n{}",
+            variants_table(&variants, &matrix, &ordering)
+        ))?;
+        output::line(
+            "The learner (--agent sarsa) sees 169 numbers of a small picture and no map. Yours takes its place from Python \
+             or Rust: docs/curricula.md says how.",
+        )?;
+        output::line(format!("\nEverything is in {}\n\n{CONTENTS}", folder.shown()))
     }
 
     /// One world of each variant and its map, each in a file; and all side by side, as the agent sees them and from above.
@@ -142,8 +123,6 @@ impl Demo {
             output::write(&path, world.to_json_pretty().as_bytes())?;
             let map = Views::new(&world, 480, 0.0).map_with_legend(&ways(&world)?);
             output::write_picture(&self.output.join("maps").join(format!("{name}.png")), &map)?;
-            let said = variant.task().variant_description(name).unwrap_or_default();
-            output::line(format!("{name:<10} {said}"))?;
             cells.push(contact_sheet::Shown::declared(variant.clone(), self.seed));
         }
         let look = contact_sheet::Look {
@@ -156,29 +135,31 @@ impl Demo {
         output::write_picture(&self.output.join("contact-sheet.png"), &drawing)
     }
 
-    fn scenario(
-        &self,
-        variants: &[(String, Variant)],
-        matrix: &DistanceMatrix,
-        ordering: &Ordering,
-    ) -> Result<Scenario, Failure> {
+    fn scenario(&self, variants: &[(String, Variant)], ordering: &Ordering) -> Result<Scenario, Failure> {
         let options = Design {
             name: "demo".to_owned(),
-            learn: 150,
+            learn: LEARN,
             evaluate: 10,
             seed: self.seed,
             ..Design::default()
         };
         let scenario = design(&choices(variants, &ordering.indices), &options)?;
         output::write(&self.output.join("scenario.json"), scenario.to_json_pretty().as_bytes())?;
-        output::line(blocks(&scenario, Some((matrix, By::Parameters))))?;
         Ok(scenario)
     }
 }
 
-fn heading(number: &str, text: &str) -> Result<(), Failure> {
-    let number = when(!number.is_empty(), || format!("{number}. "));
-    output::line(format!("\n{number}{text}\n"))
+/// The variants in their order, each with its distance from the one before it.
+fn variants_table(variants: &[(String, Variant)], matrix: &DistanceMatrix, ordering: &Ordering) -> String {
+    let mut before = None;
+    let rows = ordering.indices.iter().map(|&index| {
+        let variant = &variants[index].1;
+        let step = before.replace(index).map(|before| matrix.get(before, index));
+        let said = variant.task().variant_description(variant.name()).unwrap_or_default();
+        let step = step.map_or_else(String::new, |step| format!("{step:.2}"));
+        vec![variant.name().to_owned(), step, said.to_owned()]
+    });
+    table(["variant", "distance", "what it is"], rows.collect::<Vec<_>>(), &[1])
 }
 
 /// Runs a scenario into a folder, in place of what an earlier demo left there.
@@ -201,49 +182,6 @@ fn run_lifetime(scenario: &Scenario, agent: &AgentArg, logs: &Path) -> Result<Su
     run.run()
 }
 
-/// One row for each block: what was learned, and the mean reward of every variant in the evaluation after it. Then one for each of
-/// the agents beside, which do not learn.
-fn block_table(summary: &Summary, beside: &[(String, Summary)]) -> String {
-    let mut variants: Vec<&str> = Vec::new();
-    for regime in summary
-        .regimes
-        .iter()
-        .filter(|regime| regime.kind == BlockKind::Evaluation)
-    {
-        if !variants.contains(&regime.variant.as_str()) {
-            variants.push(&regime.variant);
-        }
-    }
-    let short = |variant: &str| tasks::split(variant).1.unwrap_or(variant).to_owned();
-    let mut rows: Vec<Vec<String>> = Vec::new();
-    let mut learned = "nothing yet".to_owned();
-    for regime in &summary.regimes {
-        if regime.kind == BlockKind::Learning {
-            learned = format!("{} ({:.1})", short(&regime.variant), regime.mean_reward);
-            continue;
-        }
-        if rows.last().is_none_or(|row| row[0] != regime.block.to_string()) {
-            rows.push(vec![regime.block.to_string(), std::mem::take(&mut learned)]);
-        }
-        if let Some(row) = rows.last_mut() {
-            row.push(format!("{:.1}", regime.mean_reward));
-        }
-    }
-    for (name, summary) in beside {
-        let mut row = vec![String::new(), format!("({name})")];
-        let rewards = summary
-            .regimes
-            .iter()
-            .map(|regime| format!("{:.1}", regime.mean_reward));
-        row.extend(rewards);
-        rows.push(row);
-    }
-    let mut headings = vec!["block".to_owned(), "learned (reward)".to_owned()];
-    headings.extend(variants.into_iter().map(short));
-    let numbers: Vec<usize> = (2..headings.len()).collect();
-    "Mean reward of each variant in every evaluation:\n\n".to_owned() + &table(headings, rows, &numbers)
-}
-
 /// A demo may be run again and again: its own log is replaced, anything else in the way is not.
 fn remove_old_log(logs: &Path) -> Result<(), Failure> {
     let failed = |error| Failure::in_file(logs, format!("cannot be removed: {error}"));
@@ -257,21 +195,4 @@ fn remove_old_log(logs: &Path) -> Result<(), Failure> {
         ));
     }
     std::fs::remove_dir_all(logs).map_err(failed)
-}
-
-fn contents() -> String {
-    let entries = [
-        ("contact-sheet.png", "each variant as the agent sees it, and from above"),
-        ("maps/", "the maps alone"),
-        ("worlds/", "the worlds: driftworld render FILE draws one"),
-        ("distances.csv", "the distance matrix"),
-        ("distances.png", "the same as a heat map"),
-        ("scenario.json", "the curriculum: driftworld run FILE runs it"),
-        ("log/", "every experience, in l2logger's format"),
-        ("beside/", "the same of the agent at random and the planner"),
-        ("report.html", "the lifetime on one page, for a browser"),
-        ("scores/", "the metrics: driftworld metrics on the log prints them"),
-    ];
-    let line = |(name, what): &(&str, &str)| format!("  {name:<18} {what}");
-    entries.iter().map(line).collect::<Vec<_>>().join("\n")
 }

@@ -15,7 +15,6 @@ use crate::report::FigureOptions;
 use crate::scoring::{Scores, ScoringRequest, score, score_looking};
 use clap::Args;
 
-pub(crate) use tables::summary;
 
 use super::figures::FigureChoice;
 use super::output;

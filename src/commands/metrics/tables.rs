@@ -24,7 +24,7 @@ pub(super) fn scores(scores: &Scores, names: &VariantNames) -> String {
 }
 
 /// The lifetime's values as a table for a newcomer.
-pub(crate) fn summary(scores: &LifetimeMetrics, names: &VariantNames) -> String {
+fn summary(scores: &LifetimeMetrics, names: &VariantNames) -> String {
     let rows = scores.summary().into_iter().filter_map(|row| {
         let error = row.null_band.and_then(|band| band.standard_error);
         let value = row.value?;
