@@ -1,9 +1,8 @@
-//! Curricula: variants in an order made into learning and evaluation blocks, and lived by an agent into a log.
+//! Curricula: turns ordered variants into learning and evaluation blocks, runs an agent through them and writes the log.
 //!
-//! [`probe`] and [`steps`] find the variants that a hypothesis is about, [`arrange`] puts them into its order, [`design`] makes a
-//! [`Scenario`](driftworld_spec::Scenario) of them, [`run`] runs it, [`audit`] says what its scores
-//! are worth. Distances are measured elsewhere; files and the clock are
-//! handed in.
+//! [`probe`] and [`steps`] find variants for a hypothesis, [`arrange`] orders them, [`design`] makes a
+//! [`Scenario`](driftworld_spec::Scenario) of them, [`run`] runs it, and [`audit`] checks its scores with simulated agents of known
+//! behaviour. The caller passes in folders and the clock.
 
 mod audit;
 mod design;

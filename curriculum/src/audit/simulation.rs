@@ -6,7 +6,7 @@ use std::path::Path;
 use driftworld_metrics::{Log, Timestamp, read_log};
 use driftworld_spec::World;
 
-use crate::run::{Lived, Meeting};
+use crate::run::{FinishedExperience, Meeting};
 use crate::{
     CurriculumError, Experience, Journal, Plan, Progress, REPEATED_EVALUATIONS, Repeats, Rollout, run_rollout,
 };
@@ -18,11 +18,16 @@ pub(super) type Simulated<'a> = dyn FnMut(&Meeting) -> f64 + 'a;
 pub(super) fn simulate(plan: &Plan, agent: &mut Simulated<'_>, folder: &Path) -> Result<Log, CurriculumError> {
     let mut journal = Journal::simulated(folder, plan)?;
     for number in 0..plan.num_experiences() {
-        let lived = Lived {
+        let finished = FinishedExperience {
             experience: of_one_step(agent(&plan.meeting(number))),
-            ..Lived::default()
+            ..FinishedExperience::default()
         };
-        journal.append(plan, number, lived, Timestamp::from_unix_micros(number.cast_signed())?)?;
+        journal.append(
+            plan,
+            number,
+            finished,
+            Timestamp::from_unix_micros(number.cast_signed())?,
+        )?;
     }
     journal.finish()?;
     Ok(read_log(folder)?)

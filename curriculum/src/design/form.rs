@@ -1,4 +1,4 @@
-//! Which variant each learning block is about: the forms of lifelong learning. Evaluation blocks are `evaluation.rs`'s.
+//! The forms of lifelong learning: decides which variant each learning block trains.
 
 use driftworld_spec::ScenarioForm;
 
@@ -8,10 +8,10 @@ use crate::CurriculumError;
 /// The most learning blocks of a scenario.
 pub const MAX_BLOCKS: u32 = 10_000;
 
-/// How often a variant comes back in a form of recurring tasks, where nobody says.
+/// Default number of rounds in the forms with recurring tasks.
 const ROUNDS: u32 = 3;
 
-/// For each learning block the number of its variant, of `count` in an order.
+/// The index of each learning block's variant, among `count` in order.
 pub(super) fn sequence(
     form: Option<ScenarioForm>,
     count: usize,
@@ -57,7 +57,7 @@ pub(super) fn sequence(
         }
         Some(ScenarioForm::Joint) => {
             if let Some(blocks) = blocks {
-                let expected = "no number of blocks: there is one with all variants".to_owned();
+                let expected = "no number of blocks: one block has all variants".to_owned();
                 return Err(CurriculumError::bad_form("joint", count, Some(blocks), expected));
             }
             all
@@ -83,7 +83,7 @@ pub(super) fn sequence(
     Ok(places.iter().copied().cycle().take(num_blocks as usize).collect())
 }
 
-/// The learning blocks of a control: those of `path`, each variant as often, in rounds of another order.
+/// The learning blocks of a control: each variant as often as in `path`, in rounds of `order`.
 pub(super) fn reordered(
     form: Option<ScenarioForm>,
     path: &[usize],
@@ -92,22 +92,22 @@ pub(super) fn reordered(
 ) -> Result<Vec<usize>, CurriculumError> {
     let wrong = |form, expected: &str| CurriculumError::bad_form(form, count, None, expected);
     if form == Some(ScenarioForm::Permuted) {
-        let expected = "a form whose order is not drawn at random; its lifetimes are each other's controls";
+        let expected = "a form with a fixed order; the lifetimes of this one are controls for each other";
         return Err(wrong("permuted", expected));
     }
     let mut sorted = order.to_vec();
     sorted.sort_unstable();
     if !sorted.into_iter().eq(0..count) {
-        return Err(wrong("of a control", "an order with each of them once"));
+        return Err(wrong("of a control", "an order with each variant once"));
     }
-    // All forms that are not drawn by chance go round through the variants.
+    // All forms without a random order cycle through the variants.
     let (rounds, rest) = (path.len() / count, &path[path.len() / count * count..]);
     let rest: Vec<usize> = order.iter().copied().filter(|variant| rest.contains(variant)).collect();
     let round = order.iter().copied().cycle().take(rounds * count);
     let first: Vec<usize> = rest.iter().copied().chain(round.clone()).collect();
     let last: Vec<usize> = round.chain(rest).collect();
     let twice_in_a_row = |path: &[usize]| path.windows(2).any(|pair| pair[0] == pair[1]);
-    // A rotated order may come out as the design itself where the rest is learned first.
+    // With the rest first, a rotated order may equal the design itself.
     let other = |found: &Vec<usize>| !twice_in_a_row(found) && *found != path;
     Ok(if other(&first) || (twice_in_a_row(&last) && !twice_in_a_row(&first)) {
         first
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn lifetimes_of_the_permuted_form_meet_all_variants_in_orders_of_their_own() {
+    fn permuted_lifetimes_learn_all_variants_in_different_orders() {
         let of = |seed, lifetime| sequence(Some(ScenarioForm::Permuted), 6, None, (seed, lifetime)).unwrap();
         assert_eq!(of(3, 1), of(3, 1));
         assert!((0..8).any(|lifetime| of(3, lifetime) != of(3, 0)));
@@ -158,12 +158,12 @@ mod tests {
         check(&[0, 1, 2, 0, 1], &[2, 1, 0], &[1, 0, 2, 1, 0]);
         check(&[0, 1, 2, 0], &[0, 2, 1], &[0, 2, 1, 0]);
         check(&[0, 1, 2, 0, 1], &[2, 0, 1], &[2, 0, 1, 0, 1]);
-        // There is no other order of these in which none comes twice in a row.
+        // No other order avoids the same variant twice in a row.
         check(&[0, 1, 0], &[1, 0], &[0, 1, 0]);
         check(&[0, 1], &[2, 1, 0], &[1, 0]);
         for order in [[0, 1], [0, 0], [1, 2]] {
             let said = reordered(None, &[0, 1, 2], &order, 3).unwrap_err().to_string();
-            assert!(said.ends_with("an order with each of them once"), "{said}");
+            assert!(said.ends_with("an order with each variant once"), "{said}");
         }
         let said = reordered(Some(ScenarioForm::Permuted), &[1, 0], &[0, 1], 2)
             .unwrap_err()
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_form_cannot_be_is_refused() {
+    fn impossible_forms_are_refused() {
         let said = |form, count, blocks| sequence(Some(form), count, blocks, (0, 0)).unwrap_err().to_string();
         assert_eq!(
             said(ScenarioForm::Alternating, 3, None),

@@ -1,19 +1,19 @@
-//! Orders that a hypothesis is about, and the controls that it is held against. The paths themselves are `similarity`'s to find.
+//! The order of variants that a hypothesis predicts something about, and the control orders to compare it with.
 
 use driftworld_similarity::{DistanceMatrix, Method, OrderOptions, order};
 use strum::VariantArray;
 
 use crate::CurriculumError;
 
-/// An order of the same variants that a hypothesis is compared with.
+/// A control: another order of the same variants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, strum::IntoStaticStr, strum::VariantArray)]
 #[strum(serialize_all = "lowercase")]
 pub enum Control {
-    /// The order, last first.
+    /// The order reversed.
     Reversed,
-    /// An order drawn by chance.
+    /// A random order.
     Random,
-    /// The longest path, wherever it begins: neighbours as unlike as can be.
+    /// The longest path from any start: neighbours are as different as possible.
     Contrast,
 }
 
@@ -21,17 +21,17 @@ impl Control {
     /// All controls.
     pub const ALL: &[Self] = Self::VARIANTS;
 
-    /// The word that scenarios are named with.
+    /// The word used in scenario names.
     pub fn name(self) -> &'static str {
         self.into()
     }
 }
 
-/// The items of a matrix in the order that a hypothesis is about, beginning with `first`; ties go by name. Without a method it is
-/// the shortest path.
+/// The items of a matrix in the order of a hypothesis, beginning with `first`; ties are broken by name. Without a method, the
+/// shortest path.
 ///
 /// # Errors
-/// [`CurriculumError::Similarity`] without items, or if there is no such first.
+/// [`CurriculumError::Similarity`] if there are no items, or `first` is out of range.
 ///
 /// # Example
 /// ```
@@ -49,7 +49,7 @@ pub fn arrange(matrix: &DistanceMatrix, method: Option<Method>, first: usize) ->
     Ok(order(matrix, method, &OrderOptions::default().with_first(first))?.indices)
 }
 
-/// The same items in the order of a control. `seed` is what chance draws from.
+/// The same items in the order of a control. `seed` is used by [`Control::Random`].
 ///
 /// # Errors
 /// [`CurriculumError::Similarity`] without items.
@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn the_hypotheses_are_different_orders_from_the_same_first() {
+    fn methods_give_different_orders_from_the_same_start() {
         // The first stands in the middle: growing distance jumps from side to side, the shortest path does not. Of two
         // equally short ones (10), gradual takes that with steps up to 3, not 5.
         let matrix = line(&[0.0, 1.0, -2.0, 3.0, -4.0]);
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn controls_are_the_same_items() {
+    fn controls_permute_the_same_items() {
         let matrix = line(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
         let arranged = arrange(&matrix, None, 0).unwrap();
         assert_eq!(

@@ -1,5 +1,4 @@
-//! Variants that differ in one element of the decision process and in no other: chosen where the task declares them, made where it
-//! does not. In which order they are met is said by `hypothesis.rs`.
+//! Finds variants that differ in exactly one element of the decision process: declared ones first, then made ones.
 
 use driftworld_generator::{GeneratorError, Subject, at_distance};
 use driftworld_spec::{Domain, Element, Role, Value, Variant};
@@ -10,26 +9,27 @@ use super::choice::changes;
 use super::picked::{Picked, apart, distances, farthest, in_element, is_alone, measure_of};
 use crate::CurriculumError;
 
-/// The most variants that a probe can be asked for: each is compared with every other.
+/// Most variants of a probe: all pairs are compared.
 pub const MAX_PROBED: usize = 200;
 
-/// How many variants there are at least where nobody says how many.
-const ENOUGH: usize = 4;
+/// Least number of variants by default.
+const DEFAULT_COUNT: usize = 4;
 
-/// Two variants are alike if they are no farther apart than this.
+/// Two variants at most this far apart count as equal.
 const ALIKE: f64 = 1e-9;
 
 /// Variants for a curriculum that probes one element: the anchor first, and others whose distance from it, and from each
 /// other, is above 0 in `element` and exactly 0 in all other elements.
 ///
-/// Those of the `pool` that are such come first, in its order. Of more than `wanted` those are kept that lie farthest apart
-/// (farthest-first from the anchor). If there are fewer than `wanted`, or than 4 where that is left open, others are made along
-/// the parameters that affect this element alone: every choice of a list, then variants at even distances up to the farthest.
-/// `task` is what scenarios call the task.
+/// Matching variants of the `pool` come first, in its order. If there are more than `wanted`, those farthest apart are kept
+/// (farthest-first from the anchor). If there are fewer than `wanted`, or than 4 by default, others are made by changing the
+/// parameters that affect this element alone: every choice of a list, then variants at even distances up to the farthest.
+/// `task` is the task's name in scenarios.
 ///
 /// # Errors
-/// [`CurriculumError::BadProbe`] if fewer than 2 or more than [`MAX_PROBED`] are wanted; [`CurriculumError::SeveralTasks`] if the pool has a variant of another task; [`CurriculumError::TooFew`] if not enough are
-/// found and made; [`CurriculumError::Generator`] if no parameter affects the element alone.
+/// [`CurriculumError::BadProbe`] if fewer than 2 or more than [`MAX_PROBED`] are wanted; [`CurriculumError::SeveralTasks`] if
+/// the pool has a variant of another task; [`CurriculumError::TooFew`] if not enough could be found or made;
+/// [`CurriculumError::Generator`] if no parameter affects the element alone.
 pub fn probe(
     task: &str,
     pool: &[Variant],
@@ -56,10 +56,10 @@ pub fn probe(
             search.found.push(Picked::declared(task, variant.clone()));
         }
     }
-    let (least, enough) = wanted.map_or((2, ENOUGH), |wanted| (wanted, wanted));
+    let (least, enough) = wanted.map_or((2, DEFAULT_COUNT), |wanted| (wanted, wanted));
     if search.found.len() < enough {
         match search.make(enough) {
-            // What the task declares may do where nothing can be made.
+            // The declared variants may be enough if none can be made.
             Err(CurriculumError::Generator(GeneratorError::NothingToVary { .. })) if search.found.len() >= least => {}
             other => other?,
         }
@@ -79,12 +79,12 @@ pub fn probe(
     }
 }
 
-/// Variants for a curriculum that probes one element, where somebody has named which: the anchor first, then all others named, in their
-/// order; if more are `wanted`, others are made as [`probe`] does.
+/// Like [`probe`], with variants named by the user: the anchor first, then the named ones in their order; if more are `wanted`,
+/// others are made.
 ///
 /// # Errors
-/// [`CurriculumError::NotAlone`] for a variant that differs from the anchor or another named one in something else, or not at all; else
-/// as [`probe`].
+/// [`CurriculumError::NotAlone`] for a variant that does not differ from the anchor and all other named ones in exactly this
+/// element; otherwise as [`probe`].
 pub fn probe_named(
     task: &str,
     named: &[Variant],
@@ -120,7 +120,7 @@ pub fn probe_named(
     probe(task, &named, anchor, element, Some(count))
 }
 
-/// The `wanted` that lie farthest apart, in the order they had.
+/// Keeps the `wanted` variants that are farthest apart, in their original order.
 fn spread_out(found: Vec<Picked>, element: Element, wanted: usize) -> Result<Vec<Picked>, CurriculumError> {
     let matrix = distances(&found, Some(element))?;
     let order = order(&matrix, Method::Farthest, &OrderOptions::default().with_first(0))?;
@@ -142,7 +142,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Whether a variant differs in the element alone, from everything that was found.
+    /// Whether a variant differs from every one found so far, in this element alone.
     fn is_new(&self, variant: &Variant) -> Result<bool, CurriculumError> {
         for picked in &self.found {
             let apart = self.measure.between(&picked.variant, variant)?;
@@ -153,7 +153,7 @@ impl Search<'_> {
         Ok(true)
     }
 
-    /// Makes variants until there are `enough`, or nothing new comes of it.
+    /// Makes variants until there are `enough`, or no new ones can be made.
     fn make(&mut self, enough: usize) -> Result<(), CurriculumError> {
         for (parameter, value) in self.choices() {
             if self.found.len() >= enough {
@@ -174,7 +174,7 @@ impl Search<'_> {
                 }
                 let target = farthest * part as f64 / parts as f64;
                 let tolerance = farthest / (8 * parts) as f64;
-                // Where choices leave a gap, there is none.
+                // Discrete choices may leave no variant at this distance.
                 if let Ok(found) = at_distance(anchor, &subject, target, tolerance.min(1e-4), measure)
                     .or_else(|_| at_distance(anchor, &subject, target, tolerance, measure))
                 {
@@ -202,7 +202,7 @@ impl Search<'_> {
         choices
     }
 
-    /// Adds the anchor with these values, if the task allows them and they are new.
+    /// Adds a copy of the anchor with these values, if the task allows it and it is new.
     fn add(&mut self, changes: impl IntoIterator<Item = (String, Value)>) -> Result<(), CurriculumError> {
         let name = self.next_name();
         let Ok(variant) = self.anchor.with(&name, changes) else {
@@ -215,7 +215,7 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// A name that the task does not have: `blue-reward-1`.
+    /// A name that the task does not declare: `blue-reward-1`.
     fn next_name(&self) -> String {
         let declared = self.anchor.task().variant_names();
         let name = |number: usize| format!("{}-{}-{number}", self.anchor.name(), self.element.name());
@@ -305,7 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn of_too_many_those_are_kept_that_lie_farthest_apart() {
+    fn surplus_variants_are_reduced_to_the_farthest_apart() {
         let task = task();
         let pick = |wanted| {
             let picked = probe(
@@ -326,7 +326,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_probed_says_why() {
+    fn impossible_probes_are_refused_with_reason() {
         let task = task();
         let pool = task.all_variants();
         let base = task.variant("base").unwrap();

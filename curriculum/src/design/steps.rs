@@ -1,4 +1,4 @@
-//! A sequence of variants whose neighbours are a wanted distance apart. The search is in `walk.rs`.
+//! Sequences of variants whose neighbours are a given distance apart. The search is in `walk.rs`.
 
 use driftworld_spec::{Element, Variant};
 
@@ -9,29 +9,29 @@ use crate::CurriculumError;
 /// The most steps of a sequence.
 pub const MAX_STEPS: u32 = 1000;
 
-/// A sequence that is wanted.
+/// The sequence to find.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steps {
-    /// How far neighbours are apart, above 0 and at most 1.
+    /// Distance between neighbours, above 0 and at most 1.
     pub distance: f64,
-    /// How far off that may be, at least 0 and below `distance`.
+    /// Allowed deviation from `distance`, at least 0 and below it.
     pub tolerance: f64,
     /// How many steps: one fewer than variants. At most [`MAX_STEPS`].
     pub count: u32,
-    /// The element that alone changes and is measured; all together if there is none.
+    /// The only element that changes and is measured; `None` for all elements together.
     pub element: Option<Element>,
 }
 
-/// Variants of one task of which each is `distance ± tolerance` from the one before, beginning with `anchor`.
+/// Variants of one task, beginning with `anchor`, each `distance ± tolerance` from the one before.
 ///
-/// No two of them are nearer to each other than half the distance, so the sequence does not run back and forth. A variant of the
-/// `pool` that is right is taken before one is made; of those that can be made, the one farthest from everything met so far. Where
-/// that leads nowhere the sequence goes back and on another way, a bounded number of times. The same arguments always give the same
-/// sequence. `task` is what scenarios call the task.
+/// No two variants are closer than half the distance, so the sequence does not run back and forth. A matching variant of the
+/// `pool` is preferred to a made one; among made ones, the farthest from the path so far. At a dead end the search backtracks, a
+/// bounded number of times. The same arguments always give the same sequence. `task` is the task's name in scenarios.
 ///
 /// # Errors
-/// [`CurriculumError::BadSteps`] for numbers that make no sequence; [`CurriculumError::SeveralTasks`];
-/// [`CurriculumError::StepsGivenUp`] where the search takes too long; [`CurriculumError::TooFewSteps`] with the longest sequence that was found, and how far from the anchor anything is.
+/// [`CurriculumError::BadSteps`] for numbers out of range; [`CurriculumError::SeveralTasks`];
+/// [`CurriculumError::StepsGivenUp`] if the search takes too long; [`CurriculumError::TooFewSteps`] with the length of the
+/// longest sequence found, and the largest distance of any variant from the anchor.
 pub fn steps(task: &str, pool: &[Variant], anchor: &Variant, wanted: &Steps) -> Result<Vec<Picked>, CurriculumError> {
     let sound = wanted.distance > 0.0
         && wanted.distance <= 1.0
@@ -45,10 +45,10 @@ pub fn steps(task: &str, pool: &[Variant], anchor: &Variant, wanted: &Steps) -> 
         return Err(CurriculumError::several_tasks(anchor.id(), other.id()));
     }
     let mut walk = Walk::new(task, pool, anchor, wanted);
-    if walk.go_on()? {
+    if walk.extend()? {
         return Ok(walk.path);
     }
-    if walk.is_tired() {
+    if walk.budget_exhausted() {
         return Err(CurriculumError::StepsGivenUp {
             anchor: anchor.id(),
             found: walk.longest,
@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn a_way_that_ends_too_soon_is_left_for_another() {
+    fn search_backtracks_from_a_dead_end() {
         // From the middle, 3 steps of 0.25 fit on neither side: at most 2 in the reward alone, more in all together.
         let error = found("middle", 0.25, 3, Some(Element::R)).unwrap_err();
         assert_eq!(
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_make_no_sequence_are_refused() {
+    fn numbers_out_of_range_are_refused() {
         for (distance, count) in [(0.0, 3), (1.5, 3), (0.2, 0), (0.2, 1001), (f64::NAN, 3), (0.005, 3)] {
             assert!(matches!(
                 found("rich", distance, count, None),

@@ -1,4 +1,4 @@
-//! Whole designs. Forms, drifts and orders have their tests beside them.
+//! Tests of whole designs. Forms, drifts and orders are tested in their own files.
 
 use super::*;
 use proptest::prelude::*;
@@ -29,7 +29,7 @@ fn learned(scenario: &Scenario) -> Vec<&Regime> {
 }
 
 #[test]
-fn every_variant_is_learned_once_in_order_and_evaluated_in_every_evaluation() {
+fn default_design_learns_each_variant_once_and_evaluates_all_in_every_block() {
     let scenario = design(&choices(3), &Design::default()).unwrap();
     assert_eq!(kinds(&scenario), "ELELELE");
     let names: Vec<&str> = learned(&scenario)
@@ -42,7 +42,7 @@ fn every_variant_is_learned_once_in_order_and_evaluated_in_every_evaluation() {
 }
 
 #[test]
-fn evaluations_stand_where_they_are_wanted() {
+fn evaluation_option_places_evaluation_blocks() {
     let with = |evaluation| Design {
         evaluation,
         ..Design::default()
@@ -62,7 +62,7 @@ fn evaluations_stand_where_they_are_wanted() {
     );
 }
 
-/// What the experiences of a regime are drawn from: variant, seed and index.
+/// Variant, seed and index of every world in these regimes, sorted.
 fn worlds<'a>(regimes: impl IntoIterator<Item = &'a Regime>) -> Vec<(String, u64, u64)> {
     let of = |regime: &Regime| {
         let (variant, seed, first) = (regime.variant.clone(), regime.seed, regime.first_index);
@@ -81,12 +81,12 @@ fn evaluated(scenario: &Scenario) -> Vec<&Regime> {
     blocks.flat_map(|block| &block.regimes).collect()
 }
 
-/// Layouts: what variants of one task share.
+/// The layouts: pairs of seed and index, which variants of one task share.
 fn layouts(worlds: &[(String, u64, u64)]) -> BTreeSet<(u64, u64)> {
     worlds.iter().map(|(_, seed, index)| (*seed, *index)).collect()
 }
 
-/// Any design of `variants` variants that keeps to them.
+/// Random valid designs of `variants` variants, without held-out ones.
 fn any_design(variants: usize) -> impl Strategy<Value = Design> {
     let all = variants as u32;
     let form = prop_oneof![
@@ -114,43 +114,43 @@ fn any_design(variants: usize) -> impl Strategy<Value = Design> {
 
 proptest! {
     #[test]
-    fn nothing_is_learned_twice_and_variants_lifetimes_and_uses_share_no_layout(
+    fn layouts_are_disjoint_between_variants_lifetimes_seeds_and_splits(
         options in any_design(4), other in 3..9_u64,
     ) {
         let of = |options: &Design| design(&choices(4), options).unwrap();
         let scenario = of(&options);
-        let lessons = worlds(learned(&scenario));
-        prop_assert_eq!(layouts(&lessons).len(), lessons.len());
+        let learned_worlds = worlds(learned(&scenario));
+        prop_assert_eq!(layouts(&learned_worlds).len(), learned_worlds.len());
         let tested = layouts(&worlds(evaluated(&scenario)));
         prop_assert_eq!(tested.len(), options.evaluate as usize, "evaluation is in pairs");
-        prop_assert!(layouts(&lessons).is_disjoint(&tested));
+        prop_assert!(layouts(&learned_worlds).is_disjoint(&tested));
         let later = of(&Design { lifetime: other, ..options.clone() });
-        prop_assert!(layouts(&lessons).is_disjoint(&layouts(&worlds(learned(&later)))));
+        prop_assert!(layouts(&learned_worlds).is_disjoint(&layouts(&worlds(learned(&later)))));
         prop_assert!(tested.is_disjoint(&layouts(&worlds(evaluated(&later)))));
         let neighbour = of(&Design { seed: options.seed + 1, ..options.clone() });
-        prop_assert!(layouts(&lessons).is_disjoint(&layouts(&worlds(learned(&neighbour)))));
+        prop_assert!(layouts(&learned_worlds).is_disjoint(&layouts(&worlds(learned(&neighbour)))));
         let turned = if options.split == Split::Test { Split::Validation } else { Split::Test };
         let tuned = of(&Design { split: turned, ..options.clone() });
-        prop_assert_eq!(&lessons, &worlds(learned(&tuned)));
+        prop_assert_eq!(&learned_worlds, &worlds(learned(&tuned)));
         prop_assert!(tested.is_disjoint(&layouts(&worlds(evaluated(&tuned)))));
         let fixed = |lifetime| of(&Design { fixed_evaluation: true, lifetime, ..options.clone() });
         prop_assert_eq!(worlds(evaluated(&fixed(other))), worlds(evaluated(&fixed(other + 1))));
     }
 
     #[test]
-    fn the_order_does_not_decide_which_worlds_there_are(seed in 0..MAX_SEED, before in 0..3_u32) {
+    fn reordering_variants_keeps_the_worlds(seed in 0..MAX_SEED, before in 0..3_u32) {
         let options = Design { form: Some(ScenarioForm::Dispersed), learn: 20, seed, ..Design::default() };
         let mut reversed = choices(3);
         reversed.reverse();
         let of = |variants: &[Choice]| worlds(learned(&design(variants, &options).unwrap()));
         prop_assert_eq!(of(&choices(3)), of(&reversed));
         let paired = Design { paired_learning: true, pre_deployment: before, ..options };
-        let lessons = worlds(learned(&design(&choices(3), &paired).unwrap()));
-        prop_assert_eq!(layouts(&lessons).len(), 60 + before as usize);
+        let learned_worlds = worlds(learned(&design(&choices(3), &paired).unwrap()));
+        prop_assert_eq!(layouts(&learned_worlds).len(), 60 + before as usize);
     }
 
     #[test]
-    fn experts_have_what_their_lifetime_has_of_their_variant(options in any_design(4)) {
+    fn experts_get_their_variants_share_of_the_lifetime(options in any_design(4)) {
         let scenario = design(&choices(4), &options).unwrap();
         let before = |scenario: &Scenario| {
             let block = scenario.blocks.iter().find(|block| block.phase == Phase::PreDeployment);
@@ -181,7 +181,7 @@ proptest! {
     }
 
     #[test]
-    fn experts_of_a_drift_have_as_many_experiences_as_it(learn in 1..60_u32, blocks in 1..6_u32) {
+    fn experts_of_a_drift_have_as_many_experiences_as_the_drift(learn in 1..60_u32, blocks in 1..6_u32) {
         let options = Design {
             learn,
             blocks: Some(blocks),
@@ -195,7 +195,7 @@ proptest! {
 }
 
 #[test]
-fn what_is_held_out_is_evaluated_and_never_learned() {
+fn held_out_variant_is_evaluated_and_never_learned() {
     let options = Design {
         held_out: vec![Choice::new("t", "new")],
         ..Design::default()
@@ -277,7 +277,7 @@ fn a_control_learns_the_same_worlds_after_the_same_pre_deployment() {
 }
 
 #[test]
-fn what_is_designed_is_a_valid_scenario_that_reads_back_the_same() {
+fn design_round_trips_through_json() {
     let options = Design {
         form: Some(ScenarioForm::Alternating),
         task_label: TaskLabel::Observation,
@@ -293,7 +293,7 @@ fn what_is_designed_is_a_valid_scenario_that_reads_back_the_same() {
 }
 
 #[test]
-fn a_design_that_cannot_be_says_why() {
+fn invalid_designs_are_refused_with_reason() {
     let said = |count: usize, options: Design| design(&choices(count), &options).unwrap_err().to_string();
     assert_eq!(
         said(0, Design::default()),

@@ -1,5 +1,4 @@
-//! The search for a sequence of even steps: where it may go on, and back where that leads nowhere. What is asked of it is in
-//! `steps.rs`.
+//! Depth-first search, with backtracking, for a sequence of variants at even distances.
 
 use std::cell::Cell;
 
@@ -12,16 +11,16 @@ use super::picked::{Picked, apart, farthest, in_element, is_alone, measure_of};
 use super::steps::Steps;
 use crate::CurriculumError;
 
-/// The most variants that a sequence is tried to go on from.
+/// Most variants from which the search tries to extend the path.
 const MOST_TRIES: u32 = 4000;
 
-/// The most comparisons of two variants in a search for a sequence.
+/// Most comparisons of two variants per search.
 pub(super) const MOST_COMPARISONS: u64 = 4_000_000;
 
-/// Halvings of a stretch before it is given up.
+/// Bisection steps on the line to one target.
 const HALVINGS: u32 = 60;
 
-/// A path under construction, and what it may cost.
+/// The path found so far, and the budget that the search has used.
 pub(super) struct Walk<'a> {
     task: &'a str,
     pool: &'a [Variant],
@@ -31,12 +30,12 @@ pub(super) struct Walk<'a> {
     pub(super) longest: usize,
     tries: u32,
     measure: VariantMeasure,
-    /// How many were made so far.
+    /// Comparisons made so far.
     comparisons: Cell<u64>,
 }
 
 impl<'a> Walk<'a> {
-    /// The path that holds only the anchor.
+    /// Starts with a path that holds only the anchor.
     pub(super) fn new(task: &'a str, pool: &'a [Variant], anchor: &'a Variant, wanted: &'a Steps) -> Self {
         Self {
             task,
@@ -51,30 +50,30 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Completes the path; false if it cannot be.
-    pub(super) fn go_on(&mut self) -> Result<bool, CurriculumError> {
+    /// Extends the path to the wanted length; false if that fails.
+    pub(super) fn extend(&mut self) -> Result<bool, CurriculumError> {
         self.longest = self.longest.max(self.path.len() - 1);
         if self.path.len() > self.wanted.count as usize {
             return Ok(true);
         }
         self.tries += 1;
-        if self.tries > MOST_TRIES || self.is_tired() {
+        if self.tries > MOST_TRIES || self.budget_exhausted() {
             return Ok(false);
         }
-        for next in self.nexts()? {
+        for next in self.candidates()? {
             self.path.push(next);
-            if self.go_on()? {
+            if self.extend()? {
                 return Ok(true);
             }
             self.path.pop();
-            if self.tries > MOST_TRIES || self.is_tired() {
+            if self.tries > MOST_TRIES || self.budget_exhausted() {
                 break;
             }
         }
         Ok(false)
     }
 
-    pub(super) fn is_tired(&self) -> bool {
+    pub(super) fn budget_exhausted(&self) -> bool {
         self.comparisons.get() >= MOST_COMPARISONS
     }
 
@@ -83,7 +82,7 @@ impl<'a> Walk<'a> {
         apart(&self.measure, a, b, self.wanted.element)
     }
 
-    /// The parameters that may change, and the subject that they are.
+    /// The parameters that may change, and the matching [`Subject`].
     fn free(&self) -> (Vec<(&String, &Parameter)>, Subject) {
         let belongs = |parameter: &Parameter| {
             parameter.role == Role::Variant
@@ -101,9 +100,9 @@ impl<'a> Walk<'a> {
         (free, subject)
     }
 
-    /// How far from the anchor anything is, whatever the search has met.
+    /// The largest distance of any variant from the anchor, whether the search reached it or not.
     pub(super) fn farthest(&self) -> Result<f64, CurriculumError> {
-        // Where nothing can move there is still the pool.
+        // Without parameters to change, the pool may still hold variants.
         let mut all = farthest(&self.measure, self.anchor, &self.free().1, self.wanted.element).unwrap_or(0.0);
         for variant in self.pool {
             let (apart, alone) = self.measure(self.anchor, variant)?;
@@ -114,14 +113,14 @@ impl<'a> Walk<'a> {
         Ok(all)
     }
 
-    /// Where the path may go on: what the task declares, then what can be made.
-    fn nexts(&mut self) -> Result<Vec<Picked>, CurriculumError> {
+    /// Candidates for the next step: declared variants, then made ones.
+    fn candidates(&mut self) -> Result<Vec<Picked>, CurriculumError> {
         let here = self.path[self.path.len() - 1].variant.clone();
         let mut declared = Vec::new();
         for variant in self.pool {
             let (apart, alone) = self.measure(&here, variant)?;
             let miss = (apart - self.wanted.distance).abs();
-            if alone && miss <= self.wanted.tolerance && self.nearest_met(variant)? > self.wanted.distance / 2.0 {
+            if alone && miss <= self.wanted.tolerance && self.distance_to_path(variant)? > self.wanted.distance / 2.0 {
                 declared.push((miss, Picked::declared(self.task, variant.clone())));
             }
         }
@@ -131,23 +130,23 @@ impl<'a> Walk<'a> {
         });
         let mut made: Vec<(f64, Picked)> = Vec::new();
         for target in self.targets(&here)? {
-            if self.is_tired() {
+            if self.budget_exhausted() {
                 break;
             }
             let Some(variant) = self.on_the_way(&here, &target)? else {
                 continue;
             };
-            let met = self.nearest_met(&variant)?;
+            let met = self.distance_to_path(&variant)?;
             if met > self.wanted.distance / 2.0 {
                 made.push((met, Picked::made(self.task, self.anchor, variant)));
             }
         }
-        // A stable sort: of equally new ones the first parameter's comes first.
+        // The sort is stable: ties keep the order of the parameters.
         made.sort_by(|a, b| b.0.total_cmp(&a.0));
         Ok(declared.into_iter().chain(made).map(|(_, picked)| picked).collect())
     }
 
-    /// How far two variants are apart, and whether in nothing but what may change.
+    /// The distance between two variants, and whether they differ only in what may change.
     fn measure(&self, a: &Variant, b: &Variant) -> Result<(f64, bool), CurriculumError> {
         self.comparisons.set(self.comparisons.get() + 1);
         let apart = self.measure.between(a, b)?;
@@ -156,7 +155,7 @@ impl<'a> Walk<'a> {
     }
 
     /// The distance to the nearest variant of the path.
-    fn nearest_met(&self, variant: &Variant) -> Result<f64, CurriculumError> {
+    fn distance_to_path(&self, variant: &Variant) -> Result<f64, CurriculumError> {
         let mut nearest = f64::INFINITY;
         for met in &self.path {
             nearest = nearest.min(self.apart(&met.variant, variant)?);
@@ -164,8 +163,8 @@ impl<'a> Walk<'a> {
         Ok(nearest)
     }
 
-    /// Variants in whose direction a step may go: the ends and choices of each parameter, both ends of all, those of the pool,
-    /// and the one that the generator finds.
+    /// Variants to step towards: the ends and choices of each parameter, all ranges at their low or high end, the pool, and the
+    /// one that the generator finds.
     fn targets(&self, here: &Variant) -> Result<Vec<Variant>, CurriculumError> {
         let (free, subject) = self.free();
         let mut changes: Vec<Vec<(String, Value)>> = Vec::new();
@@ -237,7 +236,7 @@ impl<'a> Walk<'a> {
         Ok(self.anchor.with(&self.name(), changed).ok())
     }
 
-    /// What the next variant is called: `blue-step-3`.
+    /// Name of the next made variant: `blue-step-3`.
     fn name(&self) -> String {
         let declared = self.anchor.task().variant_names();
         let mut name = format!("{}-step-{}", self.anchor.name(), self.path.len());
@@ -248,7 +247,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// The values that a parameter could go to: low and high end of a range, a heading's opposite too, or its other choices.
+/// Values to move a parameter to: both ends of a range, for a heading also its opposite, or the other choices.
 fn ends(parameter: &Parameter, value: &Value) -> Vec<Value> {
     match parameter.domain() {
         Some(Domain::Choices(choices)) => choices.into_iter().filter(|choice| choice != value).collect(),

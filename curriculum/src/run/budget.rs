@@ -1,22 +1,22 @@
-//! [`Budget`]: regimes that end after so many decisions. How many experiences these have is known once they are run.
+//! [`Budget`]: ends regimes after a number of decisions; how many experiences they have is known only once they are run.
 
 use super::plan::Plan;
 
-/// Which experiences of a block are run, from how long those before them took.
+/// Decides which experiences of a block are run, from the lengths of those before them.
 ///
-/// An experience of a regime with a budget begins if fewer decisions than that were made in the regime until then. Where several
-/// environments run (the plan's lanes), each begins the next experience as soon as it is free; what is under way is run to its end.
+/// In a regime with a budget, an experience begins only while the regime's decisions so far are below it. With several
+/// environments (the plan's lanes), each begins the next experience as soon as it is free; those under way run to their end.
 #[derive(Debug, Default)]
 pub(super) struct Budget {
     block: usize,
-    /// When each environment begins and ends its last experience, in steps from the start of the block, and the regime of it.
+    /// Start and end of each environment's last experience, in steps since the start of the block, and its regime.
     lanes: Vec<(u64, u64, usize)>,
-    /// Decisions in all experiences of each regime of the block, by their indices in the plan.
+    /// Decisions in all experiences of each regime of the block, by the regime's index in the plan.
     sums: Vec<(usize, u64)>,
 }
 
 impl Budget {
-    /// Takes an experience into account that is over.
+    /// Counts a finished experience.
     pub(super) fn count(&mut self, plan: &Plan, number: u64, steps: u64) {
         let regime = plan.regime_of(number);
         if !plan.has_budgets(plan.regimes[regime].block) {
@@ -34,7 +34,7 @@ impl Budget {
         }
     }
 
-    /// The first experience from `number` on that is run.
+    /// The first experience from `number` on that the budgets allow.
     pub(super) fn next(&mut self, plan: &Plan, mut number: u64) -> u64 {
         while number < plan.num_experiences() {
             let regime = plan.regime_of(number);
@@ -50,7 +50,7 @@ impl Budget {
         number
     }
 
-    /// Decisions made in a regime until an environment is free.
+    /// Decisions made in a regime by the time that an environment is free.
     fn decisions(&self, plan: &Plan, regime: usize) -> u64 {
         let sum = self.sums.iter().find(|sum| sum.0 == regime).map_or(0, |sum| sum.1);
         let free = self.lanes.iter().map(|lane| lane.1).min().unwrap_or(0);
@@ -59,7 +59,7 @@ impl Budget {
         sum - of_regime.map(|lane| lane.1 - now.max(lane.0)).sum::<u64>()
     }
 
-    /// In a new block all environments are free.
+    /// Starts a new block, in which all environments are free.
     fn enter(&mut self, plan: &Plan, regime: usize) {
         let block = plan.regimes[regime].block;
         if self.block != block {

@@ -1,43 +1,43 @@
-//! One experience: an agent in a world from the first step to the last. Which world and what becomes of the numbers is said elsewhere.
+//! Runs one experience: an agent in a world, from the first step to the last.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use driftworld_env::{Action, Agent, EndedBy, EnvError, Environment, Label, Recorder, Step};
 
-/// Steps after which an experience in a world without a limit is over.
+/// Step limit of an experience in a world without one of its own.
 pub const MOST_STEPS: u32 = 100_000;
 
-/// The experience that an agent is about to have.
+/// What an experience needs besides agent and environment.
 pub(super) struct EpisodeContext<'a> {
-    /// The number that it draws its own chance from.
+    /// Seed of the agent's own randomness.
     pub(super) seed: u64,
     pub(super) label: Option<&'a Label>,
     pub(super) learn: bool,
-    /// Looked at before each step: once it is set, the experience is cut off.
+    /// Checked before each step: once it is set, the experience is abandoned.
     pub(super) stop: &'a AtomicBool,
 }
 
-/// One experience that is over.
+/// A finished experience.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Experience {
-    /// What all its steps paid.
+    /// The sum of its rewards.
     pub reward: f64,
     /// Whether the world's success condition ended it.
     pub success: bool,
     /// Its steps.
     pub steps: u32,
-    /// The seconds of the world's time that it took: steps times time step times `frame_skip`, at most the world's limit of seconds.
+    /// Simulated seconds that it took: steps × time step × `frame_skip`, at most the world's limit of seconds.
     pub seconds: f64,
-    /// Cut off by a limit of steps, not ended by what happened.
+    /// Whether a step limit cut it off, as opposed to an event in the world.
     pub truncated: bool,
-    /// What ended it, as the environment says; `None` where nobody said.
+    /// What ended it, according to the environment; `None` if unknown.
     pub ended_by: Option<EndedBy>,
 }
 
 impl Experience {
-    /// How it ended: `success` where the world's success condition ended it, `step_limit` where a limit of steps cut it off, else
-    /// `failure`: another condition of the world ended it.
+    /// How it ended: `success` by the world's success condition, `step_limit` by a step limit, `failure` by any other condition
+    /// of the world.
     pub fn ending(&self) -> &'static str {
         match self {
             Self { success: true, .. } => "success",
@@ -47,8 +47,8 @@ impl Experience {
     }
 }
 
-/// A hash of an action, and of where it led to.
-fn print_of(action: Action, environment: &Environment) -> u64 {
+/// A hash of an action and of the state that it led to.
+fn fingerprint(action: Action, environment: &Environment) -> u64 {
     let mut hash = DefaultHasher::new();
     match action {
         Action::Continuous(numbers) => numbers.map(f64::to_bits).hash(&mut hash),
@@ -60,10 +60,10 @@ fn print_of(action: Action, environment: &Environment) -> u64 {
     hash.finish()
 }
 
-/// Lives one experience in an environment that stands at its beginning; `trace`, where one is wanted, gets a hash of each step.
+/// Runs one experience in a freshly reset environment; `trace`, if given, gets a hash of each step.
 ///
-/// It ends as the environment says, so that the last of a block ends like any other: by what happened, or cut off by
-/// the limit of steps, never because the block does. One that was stopped on its way returns nothing.
+/// Only the environment ends it, by an event or the step limit. So the last experience of a block ends like any other, never
+/// because the block does. Returns `None` if it was stopped.
 pub(super) fn run_episode(
     agent: &mut dyn Agent,
     environment: &mut Environment,
@@ -78,7 +78,7 @@ pub(super) fn run_episode(
     if let Some(trace) = &mut trace {
         trace.clear();
     }
-    // A world without a limit of steps and without an end would never be over.
+    // A world without a step limit or end condition would never end.
     let limit = environment.world().step_limit().map_or(MOST_STEPS, |_| u32::MAX);
     let mut last = Step::default();
     while !environment.ended() && environment.num_steps() < limit {
@@ -91,7 +91,7 @@ pub(super) fn run_episode(
             recorder.step(action);
         }
         if let Some(trace) = &mut trace {
-            trace.push(print_of(action, environment));
+            trace.push(fingerprint(action, environment));
         }
         if !last.terminated && environment.num_steps() >= limit {
             last.truncated = true;

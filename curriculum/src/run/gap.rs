@@ -1,4 +1,4 @@
-//! How far a regime's variant is from the one that was learned last: the distance columns of a log. The distances are `similarity`'s.
+//! The distance columns of a log: how far a regime's variant is from the one learned last.
 
 use std::collections::BTreeMap;
 
@@ -6,17 +6,17 @@ use driftworld_generator::Sampler;
 use driftworld_similarity::{Distance, Weights, variant_distance, world_distance};
 use driftworld_spec::{Element, Variant, World};
 
-/// How many worlds of each variant are compared where variants of different tasks meet.
+/// Number of worlds per variant when comparing variants of different tasks.
 const WORLDS: u64 = 16;
 
-/// How many gaps, and how many subjects' worlds, are remembered: a drift has a variant for each experience.
+/// Cache sizes, for gaps and for the worlds of subjects: a drift has a new variant for each experience.
 const REMEMBERED: usize = 4096;
 const REMEMBERED_WORLDS: usize = 256;
 
 /// A distance in all, and in each element: state, action, transition, reward, observation.
 pub(super) type Gap = [f64; 6];
 
-/// Before anything was learned: NaN, the format's word for no value.
+/// The gap before anything was learned: NaN, the log format's missing value.
 pub(super) const UNKNOWN: Gap = [f64::NAN; 6];
 
 /// An element in which nothing could differ counts as equal.
@@ -27,14 +27,14 @@ fn gap_of(distance: &Distance) -> Gap {
     })
 }
 
-/// What an experience is an experience of.
+/// What gaps are measured between: variants, or single worlds.
 #[derive(Clone, Copy)]
 pub(super) enum Subject<'a> {
     Variant(&'a Variant),
     World(&'a World),
 }
 
-/// Measures gaps, each pair of names once.
+/// Measures gaps, and caches them by pair of names.
 #[derive(Debug, Default)]
 pub(super) struct Gaps {
     known: BTreeMap<(String, String), Gap>,
@@ -44,9 +44,9 @@ pub(super) struct Gaps {
 impl Gaps {
     /// The gap between two subjects; equal names mean equal subjects.
     ///
-    /// Variants of one task are compared by what they declare, with the task's own weights. Others are compared by their first 16 worlds under seed 0, in
-    /// pairs; where there is one world only, it is compared with each. Worlds that cannot be drawn are left out; without any, the gap is
-    /// not known.
+    /// Variants of one task are compared by what they declare, with the task's own weights. Others are compared by their first 16
+    /// worlds under seed 0, in pairs; a single world is compared with each world of the other. Worlds that cannot be drawn are
+    /// left out; if none remain, the gap is unknown.
     pub(super) fn between(&mut self, a: (&str, Subject), b: (&str, Subject)) -> Gap {
         if a.0 == b.0 {
             return [0.0; 6];
@@ -64,7 +64,7 @@ impl Gaps {
     }
 
     fn measure(&mut self, a: (&str, Subject), b: (&str, Subject)) -> Gap {
-        // What cannot be compared by what is declared, such as variants of two tasks, is compared by worlds.
+        // Subjects whose declarations cannot be compared, such as variants of two tasks, are compared by worlds.
         if let (Subject::Variant(a), Subject::Variant(b)) = (a.1, b.1)
             && let Ok(distance) = variant_distance(a, b, &Weights::of_task(a.task()))
         {
@@ -77,7 +77,7 @@ impl Gaps {
         self.draw(b);
         let (a, b) = (&self.drawn[a.0], &self.drawn[b.0]);
         let (weights, pairs) = (Weights::default(), a.len().max(b.len()));
-        // A list of one world is as long as the other.
+        // A single world is paired with every world of the other.
         let pair = |place: usize| (&a[place % a.len()], &b[place % b.len()]);
         let gaps: Vec<Gap> = (0..pairs)
             .filter_map(|place| {
@@ -85,7 +85,7 @@ impl Gaps {
                 Some(gap_of(&world_distance(a.as_ref()?, b.as_ref()?, &weights)))
             })
             .collect();
-        // Their mean: without any, NaN.
+        // Their mean; NaN if there are none.
         std::array::from_fn(|place| gaps.iter().map(|gap| gap[place]).sum::<f64>() / gaps.len() as f64)
     }
 

@@ -1,4 +1,4 @@
-//! The log that a lifetime is lived into: begun, or taken up where it stopped. What a row holds is in `columns.rs`.
+//! Writes the log of a lifetime: starts a new one, or resumes one where it stopped.
 
 use std::path::Path;
 use std::str::FromStr;
@@ -27,29 +27,29 @@ use crate::CurriculumError;
 pub struct Journal {
     writer: LogWriter,
     summary: Summary,
-    /// The number of the experience that is to be logged next.
+    /// The number of the next experience to log.
     next: u64,
     budget: Budget,
-    /// Nothing where distances are not measured.
+    /// `None` if distances are not measured.
     gaps: Option<Gaps>,
-    /// A learning regime, and the variant at the end of its drift if it has one.
+    /// The regime learned last, and the variant at the end of its drift if it drifts.
     learned: Option<(usize, Option<Variant>)>,
-    /// What was done, beside the rows, if that is kept.
+    /// Recordings next to the rows, if they are kept.
     recordings: Option<Recordings>,
 }
 
-/// An experience that is over.
+/// A finished experience.
 #[derive(Default)]
-pub(crate) struct Lived {
+pub(crate) struct FinishedExperience {
     pub(crate) experience: Experience,
-    /// Its variant where its regime drifts.
+    /// Its interpolated variant, if the regime drifts.
     pub(crate) between: Option<Variant>,
-    /// What was done in it, if that is kept.
+    /// Its recording, if recordings are kept.
     pub(crate) recording: Option<Recording>,
 }
 
 impl Journal {
-    /// Begins a log in a new or empty folder. `agent` is who will live it, as it is to be written down.
+    /// Starts a log in a new or empty folder. `agent` is the agent's name in the log.
     ///
     /// # Errors
     /// [`CurriculumError::Log`].
@@ -59,11 +59,11 @@ impl Journal {
         Ok(Self::new(writer))
     }
 
-    /// As [`Journal::create`] for a simulated agent, whose log is thrown away: the disk is never asked to have it, and no distance is
+    /// Like [`Journal::create`], for a simulated agent whose log is thrown away: it is never synced to disk, and no distances are
     /// measured.
     ///
     /// # Errors
-    /// As there.
+    /// As [`Journal::create`].
     pub(crate) fn simulated(folder: &Path, plan: &Plan) -> Result<Self, CurriculumError> {
         let columns = LoggerInfo::new(COLUMNS)?;
         let writer = LogWriter::create_unsynced(folder, &columns, &scenario_info(plan, "simulated"))?;
@@ -74,13 +74,13 @@ impl Journal {
         })
     }
 
-    /// Takes up a log that was interrupted, at any moment: it goes on with the first experience that is not completely in
-    /// it. Where none was begun, it is begun.
+    /// Resumes a log that was interrupted at any moment: it continues with the first experience that is not completely in it.
+    /// Starts a new log if there is none.
     ///
     /// # Errors
-    /// [`CurriculumError::OtherRun`] if the log is of another scenario, of another agent, or of variants or worlds that are no longer
-    /// what they were; [`CurriculumError::OtherRow`] if its rows are not those of the plan; [`CurriculumError::Log`] if it cannot
-    /// be read or is being written. In each case the log stays as it is.
+    /// [`CurriculumError::OtherRun`] if the log belongs to another scenario or agent, or its variants or worlds have changed since;
+    /// [`CurriculumError::OtherRow`] if its rows do not match the plan; [`CurriculumError::Log`] if it cannot be read or is being
+    /// written. The log is left unchanged in each case.
     pub fn resume(folder: &Path, plan: &Plan, agent: &str) -> Result<Self, CurriculumError> {
         let Some((columns, found)) = begun_log(folder)? else {
             return Self::create(folder, plan, agent);
@@ -140,19 +140,20 @@ impl Journal {
         }
     }
 
-    /// From now on keeps what is done in each experience, in a file beside the rows of its block, so that it can be drawn once more.
+    /// Starts recording: the actions of each experience are kept in a file next to the rows of its block, so that it can be
+    /// replayed.
     ///
-    /// A log that was begun so goes on so by itself.
+    /// A log started this way keeps recording when resumed.
     pub fn record(&mut self) {
         self.recordings = Some(Recordings::new(self.writer.dir()));
     }
 
-    /// Whether it keeps what is done.
+    /// Whether experiences are recorded.
     pub fn records(&self) -> bool {
         self.recordings.is_some()
     }
 
-    /// Logs that experience `number`, which is the next, is left out.
+    /// Logs that the next experience, `number`, is left out.
     pub(super) fn leave_out(
         &mut self,
         plan: &Plan,
@@ -169,8 +170,7 @@ impl Journal {
         Ok(self.progress(plan, number, f64::NAN))
     }
 
-    /// A record that says how its experience ended, and what by; a log that was begun before there were these columns goes on
-    /// without them.
+    /// Adds how, and by what, the experience ended; a log started before these columns existed continues without them.
     fn with_words(&self, record: Record, ending: &str, ended_by: &str) -> Record {
         let words = [(ENDING, ending), (ENDED_BY, ended_by)];
         words.into_iter().fold(record, |record, (name, word)| {
@@ -183,7 +183,7 @@ impl Journal {
         })
     }
 
-    /// Goes on behind experience `number`, which took so many steps, or was left out.
+    /// Moves past experience `number`; `steps` is `None` if it was left out.
     fn pass(&mut self, plan: &Plan, number: u64, steps: Option<u64>) {
         if let Some(steps) = steps {
             self.budget.count(plan, number, steps);
@@ -192,7 +192,7 @@ impl Journal {
         self.summary.finished = self.next == plan.num_experiences();
     }
 
-    /// How far the run has come with experience `number`.
+    /// The run's progress after experience `number`.
     fn progress(&self, plan: &Plan, number: u64, reward: f64) -> Progress {
         let planned = &plan.regimes[plan.regime_of(number)];
         Progress {
@@ -205,19 +205,19 @@ impl Journal {
         }
     }
 
-    /// Logs experience `number`, which is the next.
+    /// Logs the next experience, `number`.
     pub(crate) fn append(
         &mut self,
         plan: &Plan,
         number: u64,
-        lived: Lived,
+        lived: FinishedExperience,
         now: Timestamp,
     ) -> Result<Progress, CurriculumError> {
         let planned = &plan.regimes[plan.regime_of(number)];
         let experience = &lived.experience;
         let gap = self.gap(plan, number, lived.between.as_ref());
         if let (Some(recordings), Some(recording)) = (&mut self.recordings, lived.recording) {
-            // First: whenever the run is stopped, each row has its recording.
+            // Before the row: whenever the run is stopped, each row has its recording.
             let recording = Recording {
                 origin: origin(plan, number)?,
                 ..recording
@@ -252,18 +252,18 @@ impl Journal {
         gaps.between((&before.0, before.1), (&here.0, here.1))
     }
 
-    /// What the lifetime came to so far.
+    /// The results of the lifetime so far.
     pub fn summary(&self) -> &Summary {
         &self.summary
     }
 
-    /// How many experiences of the plan are over: those in the log, and those that a spent budget passed over.
+    /// How many experiences of the plan are done: those in the log, and those skipped because a budget was spent.
     pub fn num_experiences(&self) -> u64 {
         self.next
     }
 
-    /// Takes back the block that was logged last: an agent that may not be judged by it gets no rows, and a log that is taken up
-    /// runs it again. The journal is not to be used any more.
+    /// Removes the last block from the log: a block that must not count leaves no rows, and a resumed log runs it again. The
+    /// journal must not be used afterwards.
     ///
     /// # Errors
     /// [`CurriculumError::Log`].
@@ -272,7 +272,7 @@ impl Journal {
         Ok(self.writer.withdraw_block()?)
     }
 
-    /// Ends the log: asks the disk to have all of it.
+    /// Ends the log and syncs it to disk.
     ///
     /// # Errors
     /// [`CurriculumError::Log`].
@@ -283,7 +283,7 @@ impl Journal {
     }
 }
 
-/// What names the episode of an experience.
+/// The origin of an experience's episode.
 fn origin(plan: &Plan, number: u64) -> Result<EpisodeOrigin, CurriculumError> {
     let spec = plan.experience_spec(number)?;
     let (task, variant) = spec.variant.split_once('#').unwrap_or((spec.variant, ""));
@@ -297,15 +297,15 @@ fn origin(plan: &Plan, number: u64) -> Result<EpisodeOrigin, CurriculumError> {
     })
 }
 
-/// The word for what ended an experience where nobody said.
+/// Logged when it is unknown what ended an experience.
 const UNKNOWN: &str = "unknown";
 
-/// Counts a row of an earlier run, if it is the one that the plan has there, and says how many steps it took if it was not left out;
-/// else says what it is, and what the plan has.
+/// Counts a row of an earlier run if it is the one that the plan expects, and returns its steps, `None` if it was left out.
+/// Otherwise returns what was found and what was expected.
 fn count_row(plan: &Plan, summary: &mut Summary, number: u64, row: Row<'_>) -> Result<Option<u64>, (String, String)> {
     if number >= plan.num_experiences() {
         return Err((
-            "one row more".to_owned(),
+            "one more row".to_owned(),
             format!("{} experiences", plan.num_experiences()),
         ));
     }
@@ -348,7 +348,7 @@ fn count_row(plan: &Plan, summary: &mut Summary, number: u64, row: Row<'_>) -> R
     Ok(Some(steps))
 }
 
-/// What the log says of a lifetime: the scenario, who lives it, and what its variants and worlds were made from.
+/// A lifetime's metadata for the log: the scenario, the agent, and what its variants and worlds were made from.
 pub(super) fn scenario_info(plan: &Plan, agent: &str) -> ScenarioInfo {
     let mut extra = Map::new();
     extra.insert("agent".to_owned(), json!(agent));
@@ -369,7 +369,7 @@ pub(super) fn scenario_info(plan: &Plan, agent: &str) -> ScenarioInfo {
     }
 }
 
-/// The word of a log for a word of a scenario: both use l2logger's.
+/// Converts a scenario's word to the log's: both use l2logger's words.
 fn logged<T: FromStr>(word: Option<impl Serialize>) -> Option<T> {
     json!(word?).as_str()?.parse().ok()
 }
@@ -380,7 +380,7 @@ fn difference<'a>(found: &'a Value, expected: &'a Value, place: String) -> Optio
     match (found, expected) {
         (Value::Object(a), Value::Object(b)) => {
             let mut keys: Vec<&String> = b.keys().chain(a.keys().filter(|key| !b.contains_key(*key))).collect();
-            // A scenario of another name is another scenario: that tells more than a count that differs.
+            // Names first: a different scenario name explains more than a different count.
             keys.sort_by_key(|key| *key != "name");
             keys.into_iter().find_map(|key| {
                 let of = |map: &'a Map<String, Value>| map.get(key).unwrap_or(NOTHING);
@@ -396,7 +396,7 @@ fn difference<'a>(found: &'a Value, expected: &'a Value, place: String) -> Optio
     }
 }
 
-/// A value in the few words that a message has room for.
+/// A value, shortened for a message.
 fn shown(value: &Value) -> String {
     match value {
         Value::Null => "nothing".to_owned(),

@@ -32,8 +32,8 @@ use driftworld_spec::{BlockKind, World};
 pub use columns::{COLUMNS, ENDED_BY, ENDING};
 pub use episode::{Experience, MOST_STEPS};
 pub use finishing::{Finished, try_expert};
+pub(crate) use journal::FinishedExperience;
 pub use journal::Journal;
-pub(crate) use journal::Lived;
 pub use log_names::same_log_name;
 pub use plan::{ExperienceSpec, FoundWorld, Plan, Sources, log_name};
 pub use recordings::{MAX_RECORDINGS_BYTES, RECORDINGS_FILE, Recordings, RecordingsFile};
@@ -225,7 +225,7 @@ fn run_in_parallel(
 /// What became of an experience.
 enum Outcome {
     /// It is over.
-    Over(Box<Lived>),
+    Over(Box<FinishedExperience>),
     /// It was left out, since its world cannot be drawn: why.
     LeftOut(String),
     /// The run was stopped meanwhile.
@@ -275,7 +275,7 @@ impl<'a> Worker<'a> {
         let Some(experience) = self.run(agent, number, world)? else {
             return Ok(Outcome::CutOff);
         };
-        Ok(Outcome::Over(Box::new(Lived {
+        Ok(Outcome::Over(Box::new(FinishedExperience {
             experience,
             between,
             recording: self.recording(&experience),

@@ -1,4 +1,4 @@
-//! [`run_rollout`]: the loop of a lifetime, for whoever runs single experiences ([`Rollout`]).
+//! [`run_rollout`]: the main loop of a lifetime, for anything that can run single experiences ([`Rollout`]).
 
 use std::ops::{ControlFlow, Range};
 
@@ -7,7 +7,7 @@ use driftworld_metrics::Timestamp;
 use driftworld_spec::{BlockKind, World};
 
 use super::budget::Budget;
-use super::journal::Lived;
+use super::journal::FinishedExperience;
 use super::worlds::Worlds;
 use super::{Experience, Journal, Plan, Progress, Summary};
 use crate::CurriculumError;
@@ -17,17 +17,17 @@ use crate::CurriculumError;
 pub struct Repeats {
     /// How many.
     pub count: usize,
-    /// The first of the block, not some that the seeds of the scenario draw: where the order matters, as in batches.
+    /// Repeat the first ones of the block instead of a seeded sample: for when order matters, as in batches.
     pub first: bool,
 }
 
 /// Runs single experiences: an agent with an environment of its own.
 pub trait Rollout {
-    /// What may go wrong in it.
+    /// The rollout's error type.
     type Error: From<CurriculumError>;
 
-    /// Before the first experience of a block: whether the agent may learn in it, and which of its evaluations are run once more
-    /// at its end, in ascending order.
+    /// Called before the first experience of a block. `learning`: whether the agent may learn in it; `repeated`: the evaluations
+    /// that are run again at its end, in ascending order.
     ///
     /// # Errors
     /// Ends the run.
@@ -36,13 +36,13 @@ pub trait Rollout {
         Ok(())
     }
 
-    /// Which evaluations of each block are run once more at its end, to see that the agent is frozen: none by default.
+    /// Which evaluations of each block are run again at its end, to check that the agent is frozen; none by default.
     fn repeats(&self) -> Repeats {
         Repeats::default()
     }
 
-    /// What was done in the experience that was run last: a hash of each action and the state that it led to. An evaluation that is run
-    /// once more must have the same. Nothing by default: then rewards are compared alone.
+    /// The trace of the last experience: a hash of each action and the state that it led to. A repeated evaluation must give the
+    /// same trace. Empty by default: then only rewards are compared.
     fn trace(&self) -> Vec<u64> {
         Vec::new()
     }
@@ -53,7 +53,7 @@ pub trait Rollout {
     /// Ends the run.
     fn experience(&mut self, number: u64, world: World) -> Result<Option<Experience>, Self::Error>;
 
-    /// What was done in the experience that was run last, for a log that keeps that. Nothing by default.
+    /// The recording of the last experience, for a log that keeps recordings; `None` by default.
     ///
     /// # Errors
     /// Ends the run.
@@ -62,7 +62,7 @@ pub trait Rollout {
         Ok(None)
     }
 
-    /// After the last experience of a learning block, when so many are in the log.
+    /// Called after the last experience of a learning block, when `done` experiences are in the log.
     ///
     /// # Errors
     /// Ends the run.
@@ -71,7 +71,7 @@ pub trait Rollout {
         Ok(())
     }
 
-    /// After each experience, once it is in the log; may end the run there. `reward` is `None` for one that was left out.
+    /// Called after each experience is logged; may end the run. `reward` is `None` for one that was left out.
     ///
     /// # Errors
     /// Ends the run.
@@ -80,12 +80,12 @@ pub trait Rollout {
 
 /// Runs a scenario one experience after the other, from the first that is not in the log.
 ///
-/// The agent has learned from the first `learned` experiences. Experiences in which it learned between these and the end of
-/// the log are run once more, in the same worlds, without being logged again.
+/// The agent has learned from the first `learned` experiences. Later learning experiences in the log are run again, in the same
+/// worlds, without being logged again.
 ///
 /// # Errors
 /// [`CurriculumError`] as [`run`](super::run), and those of the rollout; what was run before is in the log.
-/// [`CurriculumError::NotFrozen`] for an agent that does something else in the same evaluation a second time.
+/// [`CurriculumError::NotFrozen`] if the agent behaves differently when an evaluation is repeated.
 pub fn run_rollout<R: Rollout>(
     plan: &Plan,
     rollout: &mut R,
@@ -98,12 +98,12 @@ pub fn run_rollout<R: Rollout>(
     if relearn_range(plan, learned..done, (&mut worlds, &mut block), rollout)?.is_break() {
         return Ok(journal.summary().clone());
     }
-    // What the rollout says of it is in the summary.
+    // Whether the rollout ended it early shows in the summary.
     let _ = run_range(plan, done..total, (&mut worlds, &mut block), rollout, journal, now)?;
     Ok(journal.summary().clone())
 }
 
-/// Runs those of these experiences once more in which the agent learned, and logs none. `block` is the last that the rollout began.
+/// Runs the learning experiences of a range again, without logging them. `block` is the last block that the rollout began.
 pub(super) fn relearn_range<R: Rollout>(
     plan: &Plan,
     numbers: Range<u64>,
@@ -132,7 +132,7 @@ pub(super) fn relearn_range<R: Rollout>(
     Ok(ControlFlow::Continue(()))
 }
 
-/// Runs these experiences, and logs each as soon as it is over. `block` is the last that the rollout began.
+/// Runs a range of experiences, and logs each as soon as it is over. `block` is the last block that the rollout began.
 pub(super) fn run_range<R: Rollout>(
     plan: &Plan,
     numbers: Range<u64>,
@@ -142,7 +142,7 @@ pub(super) fn run_range<R: Rollout>(
     now: &mut dyn FnMut() -> Timestamp,
 ) -> Result<ControlFlow<()>, R::Error> {
     let total = plan.num_experiences();
-    // Those of the present block, with what was earned and done in them.
+    // Repeated evaluations of the current block, with their rewards and traces.
     let mut repeated: Vec<u64> = Vec::new();
     let mut evaluated: Vec<(u64, f64, Vec<u64>)> = Vec::new();
     let mut next = numbers.start;
@@ -164,12 +164,12 @@ pub(super) fn run_range<R: Rollout>(
                 } else {
                     None
                 };
-                let lived = Lived {
+                let finished = FinishedExperience {
                     experience,
                     between,
                     recording,
                 };
-                let progress = journal.append(plan, number, lived, now())?;
+                let progress = journal.append(plan, number, finished, now())?;
                 if repeated.contains(&number) {
                     evaluated.push((number, experience.reward, rollout.trace()));
                 }
@@ -200,7 +200,7 @@ pub(super) fn run_range<R: Rollout>(
     Ok(ControlFlow::Continue(()))
 }
 
-/// Refuses an agent that earned or did something else when it ran an evaluation once more, and takes its block out of the log.
+/// Fails if a repeated evaluation gave another reward or trace, and then removes its block from the log.
 pub(super) fn expect_frozen(
     plan: &Plan,
     number: u64,
@@ -213,7 +213,7 @@ pub(super) fn expect_frozen(
         let same = pairs.take_while(|(one, other)| one == other).count();
         format!("another action in step {}", same + 1)
     } else if first.0.to_bits() != again.0.to_bits() {
-        format!("reward {}, {} before, at the end", again.0, first.0)
+        format!("reward {} instead of {}, at the end", again.0, first.0)
     } else {
         return Ok(());
     };

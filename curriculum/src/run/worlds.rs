@@ -6,14 +6,14 @@ use driftworld_spec::{Variant, World};
 use super::{Plan, Undrawable};
 use crate::CurriculumError;
 
-/// Draws worlds; those of one regime by one sampler.
+/// Draws worlds, with one sampler per regime.
 pub(super) struct Worlds<'a> {
     plan: &'a Plan,
     /// The regime of the last world, and its sampler.
     sampler: Option<(usize, Option<Sampler>)>,
 }
 
-/// A world, and the variant that it is of where its regime drifts; or why it cannot be drawn, where the plan leaves such experiences
+/// A world, and its interpolated variant if the regime drifts; or why it cannot be drawn, if the plan leaves such experiences
 /// out.
 pub(super) type Drawn = Result<(World, Option<Variant>), String>;
 

@@ -1,16 +1,16 @@
-//! Which variant of a distance matrix a name in a log means. How logs name variants is decided in `run/plan.rs`.
+//! Maps the names in a log to the variants of a distance matrix.
 
 use std::collections::BTreeMap;
 
 use crate::CurriculumError;
 
-/// Indices of a matrix's labels by the names that logs give them.
+/// Indices of a matrix's labels, by log name.
 #[derive(Debug)]
 pub(super) struct Names(BTreeMap<String, usize>);
 
 impl Names {
     /// # Errors
-    /// [`CurriculumError::SameLogName`] where two labels have one name in a log.
+    /// [`CurriculumError::SameLogName`] if two labels have the same log name.
     pub(super) fn of(labels: &[String]) -> Result<Self, CurriculumError> {
         let mut names: BTreeMap<String, usize> = BTreeMap::new();
         for (index, label) in labels.iter().enumerate() {
@@ -23,14 +23,14 @@ impl Names {
         Ok(Self(names))
     }
 
-    /// The index of the label that a log calls by this name.
+    /// The index of the label with this log name.
     pub(super) fn index(&self, log_name: &str) -> Option<usize> {
         self.0.get(&log_name.to_lowercase()).copied()
     }
 }
 
-/// The name in a log of what a matrix calls `task#variant`; of a task that is a file, the file's name counts. A label without
-/// `#` is taken for a log's name already.
+/// The log name of a label `task#variant`; a task given as a path counts by its file name. A label without `#` is taken as a
+/// log name already.
 pub fn log_name_of_label(label: &str) -> String {
     let Some((task, variant)) = label.rsplit_once('#') else {
         return label.to_lowercase();
