@@ -1,6 +1,4 @@
-//! What killed processes left of the files that they wrote: found by its name, and by the lock that nobody holds.
-//!
-//! Not here: what this process has not finished, see `unfinished`.
+//! Removes the unfinished files of killed processes: those with our file name ending that no process has locked.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions};
@@ -8,50 +6,50 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// How the name of every file ends that is not finished.
+/// File name ending of unfinished files.
 pub(crate) const ENDING: &str = ".driftworld-part";
 
-/// How often something is made anew that another process took for a leftover before it was locked.
+/// Attempts at creating a file or folder: another process may remove it as a leftover before it is locked.
 pub(crate) const TRIES: u32 = 8;
 
-/// Most folders that are remembered as looked through.
+/// Most folders remembered as already searched.
 const MOST_FOLDERS: usize = 4096;
 
-/// Whether a file has the name of one that is being written, or was when its process was killed.
+/// Whether this is the name of an unfinished file: one being written, or left by a killed process.
 pub fn is_unfinished(name: &str) -> bool {
     name.starts_with('.') && name.ends_with(ENDING)
 }
 
-/// Removes from a folder the files that processes left which were killed while they wrote. What cannot be looked at or
-/// removed stays: it harms nobody.
+/// Removes the files that killed processes left unfinished in a folder. Files that cannot be opened or removed stay; they do
+/// no harm.
 pub fn remove_leftovers(folder: &Path) {
     remove_in(folder, is_unfinished, |path| fs::remove_file(path));
 }
 
-/// The same once for each folder: a process that writes many files into one looks through it once.
+/// Like [`remove_leftovers`], but once per folder: a process that writes many files into it searches it only once.
 pub(crate) fn remove_leftovers_once(folder: &Path) {
-    static LOOKED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+    static SEARCHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
     let Ok(folder) = folder.canonicalize() else { return };
     let is_new = {
-        let mut looked = LOOKED.lock().unwrap_or_else(PoisonError::into_inner);
-        if looked.len() == MOST_FOLDERS {
-            looked.clear();
+        let mut searched = SEARCHED.lock().unwrap_or_else(PoisonError::into_inner);
+        if searched.len() == MOST_FOLDERS {
+            searched.clear();
         }
-        looked.insert(folder.clone())
+        searched.insert(folder.clone())
     };
     if is_new {
         remove_leftovers(&folder);
     }
 }
 
-/// Removes what has such a name and is locked by nobody.
+/// Removes files and folders whose names match and that no process has locked.
 pub(crate) fn remove_in(folder: &Path, is_ours: impl Fn(&str) -> bool, remove: impl Fn(&Path) -> io::Result<()>) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries.flatten() {
         let is_plain = entry.file_type().is_ok_and(|kind| kind.is_file() || kind.is_dir());
         if is_plain && is_ours(&entry.file_name().to_string_lossy()) {
             let path = entry.path();
-            // The lock is held while it is removed: nobody takes the file up meanwhile.
+            // Holds the lock while removing, so that no other process starts to use the file.
             if let Ok(file) = opened(&path)
                 && file.try_lock().is_ok()
             {
@@ -61,9 +59,9 @@ pub(crate) fn remove_in(folder: &Path, is_ours: impl Fn(&str) -> bool, remove: i
     }
 }
 
-/// Opened for writing where possible: some file systems lock nothing else.
+/// Opens for writing where possible: some file systems can lock only files open for writing.
 fn opened(path: &Path) -> io::Result<File> {
     let written = OpenOptions::new().read(true).write(true).open(path);
-    // To be locked and not read, not by driftworld-files: it is ours by its name.
+    // Not through driftworld-files: the file is only locked, never read, and its name shows that it is ours.
     written.or_else(|_| File::open(path))
 }

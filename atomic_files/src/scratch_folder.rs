@@ -1,4 +1,4 @@
-//! [`ScratchFolder`]: a folder for what is made of several files, gone when the work is over, however it ends.
+//! [`ScratchFolder`]: a temporary folder that is removed when the work is over, however it ends.
 
 use std::fs::{self, TryLockError};
 use std::io;
@@ -9,17 +9,17 @@ use tempfile::TempDir;
 use crate::leftovers::{TRIES, remove_in};
 use crate::unfinished::Unfinished;
 
-/// A folder of our own with a name that begins as given. Dropped, it is gone with all that is in it.
+/// A temporary folder whose name starts with a given prefix. Dropping it deletes it with all its contents.
 #[derive(Debug)]
 pub struct ScratchFolder {
     folder: TempDir,
-    /// Held, not used: who has it locked is still at work.
+    /// Never read: the held lock tells other processes that the folder is in use.
     _lock: Option<fs::File>,
     _unfinished: Unfinished,
 }
 
 impl ScratchFolder {
-    /// Makes one in a folder that is there. Those that killed processes left there under such names are removed.
+    /// Creates one in an existing folder, and first removes those that killed processes left there with the same prefix.
     ///
     /// # Errors
     /// Those of the system.
@@ -28,11 +28,11 @@ impl ScratchFolder {
         let mut tries = 0;
         loop {
             let (folder, unfinished) = Unfinished::make(|| TempDir::with_prefix_in(prefix, parent), TempDir::path)?;
-            // A folder to be locked, not by driftworld-files: that opens regular files only.
+            // Not through driftworld-files, which opens regular files only: this is a folder to be locked.
             let lock = fs::File::open(folder.path());
             let is_taken = match lock.as_ref().map(fs::File::try_lock) {
                 Err(_) | Ok(Err(TryLockError::WouldBlock)) => true,
-                // Some file systems have no locks: then another may take it for a leftover.
+                // Without file locks, another process may have removed it as a leftover.
                 Ok(_) => !folder.path().exists(),
             };
             tries += 1;
@@ -46,12 +46,12 @@ impl ScratchFolder {
         }
     }
 
-    /// Where it is.
+    /// The folder's path.
     pub fn path(&self) -> &Path {
         self.folder.path()
     }
 
-    /// Removes it, and says if that fails.
+    /// Deletes the folder, and returns an error if that fails.
     ///
     /// # Errors
     /// Those of the system.

@@ -1,4 +1,4 @@
-//! A task for one variant under one seed, with all that is settled filled in and a stream for all that is drawn.
+//! A task compiled for one variant and seed: fixed values are filled in, and each drawn value has a random stream.
 
 use std::borrow::Cow;
 
@@ -12,25 +12,25 @@ use crate::placement::Margins;
 use crate::sequence::Sequence;
 use crate::stream::{Rng, Stream};
 
-/// What a world is drawn from.
+/// A task compiled for one variant and seed, from which worlds are drawn.
 #[derive(Debug)]
 pub(crate) struct Compiled {
     pub(crate) parameters: Vec<Randomized>,
-    /// The numbers of the parameters, each behind those that its look-ups read.
+    /// Indices of the parameters, each after those that its look-ups read.
     pub(crate) order: Vec<usize>,
     pub(crate) world: Filled<WorldDraft>,
-    /// The cells of a layout in which the agent starts, where it does so.
+    /// The layout cells in which the agent starts, if it starts in cells.
     pub(crate) start: Option<Start>,
     pub(crate) fixtures: Vec<Filled<Object>>,
     pub(crate) groups: Vec<Group>,
-    /// How many objects room is made for.
+    /// Number of objects to reserve memory for.
     pub(crate) room: usize,
 }
 
-/// A distribution with numbers settled, and the stream it draws from.
+/// A distribution with fixed numbers, and the stream it draws from.
 #[derive(Debug)]
 pub(crate) struct Drawn {
-    /// The distribution; where look-ups read what is drawn, over all that this can be.
+    /// The distribution; if look-ups read drawn values, the one over all their outcomes.
     pub(crate) distribution: Distribution,
     pub(crate) stream: Stream,
     look_up: Option<Box<LookUp>>,
@@ -46,12 +46,12 @@ impl Drawn {
     }
 }
 
-/// A source whose look-ups read what is drawn.
+/// A source whose look-ups read drawn values.
 #[derive(Debug)]
 struct LookUp {
     variant: Variant,
     source: Source,
-    /// The randomized parameters that it names, and their numbers.
+    /// The randomized parameters that it names, and their indices.
     reads: Vec<(String, usize)>,
 }
 
@@ -123,7 +123,7 @@ impl Randomized {
     }
 }
 
-/// A template whose settled holes are filled.
+/// A template with its fixed holes filled.
 #[derive(Debug)]
 pub(crate) struct Filled<T> {
     pub(crate) base: T,
@@ -135,7 +135,7 @@ pub(crate) struct Filled<T> {
 /// Where a hole gets its value in each world.
 #[derive(Debug)]
 pub(crate) enum Fill {
-    /// The randomized parameter of this number, or a number in it.
+    /// The randomized parameter with this index, or one of its components.
     Parameter(usize, Option<usize>),
     /// A draw of its own.
     Own(Box<Drawn>),
@@ -153,7 +153,7 @@ pub(crate) struct Address {
 }
 
 impl Address {
-    /// Of the first attempt.
+    /// The address of the first attempt.
     pub(crate) fn first(index: u64, object: u64) -> Self {
         let attempt = 0;
         Self { index, object, attempt }
@@ -161,7 +161,7 @@ impl Address {
 }
 
 impl Fill {
-    /// Hands over the value at an address.
+    /// Calls `take` with the value at an address.
     pub(crate) fn with<R>(&self, at: Address, values: &[Value], take: impl FnOnce(&Value) -> R) -> R {
         match self {
             Self::Parameter(parameter, None) => take(&values[*parameter]),
@@ -188,21 +188,21 @@ pub(crate) struct Group {
     pub(crate) around: Option<usize>,
     pub(crate) turned: bool,
     pub(crate) facing: Option<Look>,
-    /// Where its objects have their seeds from, if what becomes of them is random in any variant.
+    /// The stream of its objects' seeds, if their behaviour is random in any variant.
     pub(crate) seeds: Option<Stream>,
-    /// About how many objects it will have: room is made for them at once.
+    /// Expected number of objects, for reserving memory.
     pub(crate) expected: f64,
 }
 
-/// Whether what becomes of objects of a template is random, in any variant of its task. One answer for all of them:
-/// worlds of two variants differ in what the variants differ in, and not in who has a seed.
+/// Whether a template's objects behave randomly in any variant of the task. The answer is the same for every variant, so that
+/// worlds of two variants do not also differ in which objects have seeds.
 fn may_be_random(template: &Template<Object>) -> bool {
     let random = ["/motion_model", "/reward_probability", "/respawn"];
     let opens = |hole: &Hole<Object>| random.contains(&hole.pointer.as_str());
     template.base.takes_chances() || template.holes.iter().any(opens)
 }
 
-/// The seeds of the objects of a group or fixture: by its name alone, so that they are the same in every world.
+/// The seeds of a group's or fixture's objects: they depend on its name alone, so they are the same in every world.
 fn seeds_of(place: &str) -> Stream {
     Stream::new("", 0, &format!("{place}/seed"))
 }
@@ -214,7 +214,7 @@ pub(crate) enum GroupCount {
     Drawn(Fill),
 }
 
-/// Where the objects of a group look.
+/// Where the objects of a group face.
 #[derive(Debug)]
 pub(crate) enum Look {
     Random(Stream),
@@ -229,11 +229,11 @@ pub(crate) enum Look {
 pub(crate) enum Start {
     /// In one of these cells, as the task says.
     Cells(Drawn),
-    /// The task says nothing: where a text has a letter for it, else in any cell, if the layout has some.
+    /// Not given by the task: the start marked in a text layout, else any cell, if the layout has cells.
     Default(Stream),
 }
 
-/// The numbers of parameters, in the order of the task but for those that its look-ups read, which come first.
+/// Parameter indices in the task's order, except that each parameter comes after those that its look-ups read.
 fn order(parameters: &[Randomized]) -> Vec<usize> {
     fn visit(number: usize, parameters: &[Randomized], order: &mut Vec<usize>) {
         if order.contains(&number) {
@@ -254,7 +254,7 @@ fn order(parameters: &[Randomized]) -> Vec<usize> {
     order
 }
 
-/// Turns what a task declares into what is drawn for one variant under one seed.
+/// Compiles a task's declarations for one variant and seed.
 struct Compiler<'a> {
     variant: &'a Variant,
     seed: u64,
@@ -328,7 +328,7 @@ impl Compiled {
             _ => None,
         };
         Self {
-            // A quarter more than the mean is enough for most worlds; few have to move when they grow beyond.
+            // A quarter more than the mean is enough for most worlds; few need to reallocate.
             room: (expected * 1.25).min(4096.0) as usize + task.fixtures().len(),
             order: order(&parameters),
             parameters,
@@ -362,7 +362,7 @@ impl Compiler<'_> {
         }
     }
 
-    /// The look-ups of a source, if they read what is drawn.
+    /// The look-ups of a source, if they read drawn values.
     fn look_up(&self, source: &Source) -> Option<Box<LookUp>> {
         if self.variant.resolve_with(source, &[]).is_some() {
             return None;
@@ -397,7 +397,7 @@ impl Compiler<'_> {
         }
     }
 
-    /// What fills a hole in each world, or the value that it has in all.
+    /// How a hole is filled in each world, or its value if it is the same in all.
     fn fill(&self, source: &Source, name: &str) -> Result<Fill, Value> {
         match self.variant.resolve(source) {
             Resolved::Value(value) => Err(value),

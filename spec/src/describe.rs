@@ -1,10 +1,10 @@
-//! Values, numbers and places as messages show them.
+//! Formats values, numbers and places for messages.
 
 use std::fmt::Write;
 
 use serde_json::Value;
 
-/// A value in the few words that a message has room for.
+/// A value, shortened for a message.
 pub(crate) fn describe(value: &Value) -> String {
     match value {
         Value::String(text) if text.chars().count() > 40 => {
@@ -18,7 +18,7 @@ pub(crate) fn describe(value: &Value) -> String {
     }
 }
 
-/// Whether a value takes at most so many characters; whatever it holds beyond them is not looked at.
+/// Whether a value fits into `room` characters; stops at the first part that does not.
 fn fits(value: &Value, room: &mut usize) -> bool {
     let mut take = |characters: usize| {
         let fits = characters <= *room;
@@ -37,7 +37,7 @@ fn fits(value: &Value, room: &mut usize) -> bool {
 }
 
 fn fits_text(text: &str, room: &mut usize) -> bool {
-    // A text that is far too long is not escaped to be counted.
+    // Far too long: not worth escaping to count.
     if text.len() > 4 * *room {
         return false;
     }
@@ -56,7 +56,7 @@ pub(crate) fn plain_number(number: f64) -> String {
     }
 }
 
-/// Bytes as hexadecimal letters, two for each.
+/// Bytes in hexadecimal, two digits each.
 pub(crate) fn hexadecimal(bytes: &[u8]) -> String {
     let letters = String::with_capacity(2 * bytes.len());
     bytes.iter().fold(letters, |mut letters, byte| {
@@ -84,7 +84,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_are_shown_whole_up_to_60_characters_escapes_among_them() {
+    fn values_up_to_60_characters_including_escapes_are_shown_whole() {
         let of_quotes = |a: usize, b: usize| json!({ "a": "\"".repeat(a), "b": "\"".repeat(b) });
         for (a, b) in [(12, 10), (0, 0), (22, 0), (0, 22)] {
             let text = of_quotes(a, b).to_string();

@@ -5,7 +5,6 @@
 
 mod classes;
 mod color;
-mod defaults;
 mod describe;
 mod distribution;
 mod document;
@@ -21,6 +20,7 @@ mod philox;
 pub mod reference;
 mod scenario;
 pub mod schema;
+mod serde_defaults;
 mod suggest;
 mod task;
 mod value;

@@ -1,6 +1,4 @@
-//! What may stand in a cell of a data file, and the words for what may not.
-//!
-//! Not here: rules between rows.
+//! Parses single cells of a data file, and words the errors for bad ones.
 
 use std::path::Path;
 
@@ -11,13 +9,13 @@ use super::json_file::{MAX_JSON_VALUES, fault};
 use super::record::{TaskParams, is_worker_id};
 use crate::{LogLine, MetricsError};
 
-/// Longest piece of a cell that is quoted in a message, in characters.
-const SHOWN: usize = 60;
+/// Most characters of a cell quoted in a message.
+const MAX_QUOTED: usize = 60;
 
 /// Most names that a message lists.
 const LISTED: usize = 20;
 
-/// Where a cell stands; makes the error when what it holds is wrong.
+/// A cell with its place in the file, which makes the error if its text is wrong.
 #[derive(Clone, Copy)]
 pub(super) struct Cell<'a> {
     pub(super) path: &'a Path,
@@ -28,7 +26,7 @@ pub(super) struct Cell<'a> {
 
 impl Cell<'_> {
     pub(super) fn whole_number(self) -> Result<u64, MetricsError> {
-        // As data frames write whole numbers of a column that lacks some: 3.0.
+        // Data frames write integers as 3.0 in columns with missing values.
         let zeros = |rest: &str| !rest.is_empty() && rest.bytes().all(|byte| byte == b'0');
         let whole = self
             .text
@@ -64,7 +62,7 @@ impl Cell<'_> {
             .map_err(|_| self.error("a time stamp as in 20200913T122640.000000"))
     }
 
-    /// A JSON object; an empty cell is one without members.
+    /// A JSON object; an empty cell counts as an empty one.
     pub(super) fn params(self) -> Result<TaskParams, MetricsError> {
         match self.text {
             "" => Ok(TaskParams::default()),
@@ -80,7 +78,7 @@ impl Cell<'_> {
         number(self.text).ok_or_else(|| self.error("a finite number, or nothing for a missing one"))
     }
 
-    /// The error that says what stands here and what should.
+    /// The error that names what was found here and what was expected.
     pub(super) fn error(self, expected: impl Into<String>) -> MetricsError {
         MetricsError::Cell {
             at: LogLine {
@@ -106,20 +104,20 @@ pub(super) fn number(text: &str) -> Option<f64> {
     Some(number).filter(|number| !number.is_infinite())
 }
 
-/// A cell as it is quoted in a message: in quotes, and not longer than a message can bear.
+/// A cell for a message: quoted, and cut to [`MAX_QUOTED`] characters.
 pub(super) fn shown(text: &str) -> String {
-    match text.char_indices().nth(SHOWN) {
+    match text.char_indices().nth(MAX_QUOTED) {
         Some((end, _)) => format!("{:?}…", &text[..end]),
         None => format!("{text:?}"),
     }
 }
 
-/// A name as it stands in a message: not longer than one can bear.
+/// A name for a message, cut to [`MAX_QUOTED`] characters.
 pub(super) fn cut(text: &str) -> String {
-    driftworld_text::shortened(text, SHOWN)
+    driftworld_text::shortened(text, MAX_QUOTED)
 }
 
-/// Names as a message lists them: the first of them, and how many more there are.
+/// Names for a message: the first [`LISTED`], and how many more there are.
 pub(super) fn listed(names: &[String]) -> String {
     let names: Vec<String> = names.iter().map(|name| cut(name)).collect();
     driftworld_text::first_of(&names, LISTED)

@@ -1,6 +1,4 @@
 //! Null bands: what the metrics of a lifetime would be if the agent had never changed.
-//!
-//! Not here: which evaluations are exchanged, see `exchange`; what a band says, see `results::null_band`.
 
 use indexmap::IndexMap;
 use rand_chacha::ChaCha8Rng;
@@ -15,24 +13,23 @@ use crate::{BlockType, Log, Options};
 /// How often the evaluations of a lifetime are permuted.
 pub const NULL_PERMUTATIONS: usize = 1000;
 
-/// What permutations are drawn from: a lifetime has the same bands wherever it is scored.
+/// Seed of the permutations; fixed, so that a lifetime gets the same bands wherever it is scored.
 const SEED: u64 = 0;
 
 /// The null bands of a lifetime, and the values that they were made of.
 #[derive(Default)]
 pub(super) struct NullBands {
     pub(super) bands: IndexMap<String, NullBand>,
-    /// Of each metric the value of each permutation, in order; infinite where there was none.
+    /// For each metric its value under each permutation, in order; infinite where it cannot be computed.
     pub(super) drawn: IndexMap<String, Vec<f64>>,
 }
 
-/// The null band of each metric that evaluations decide, by name: maintenance as far as it is asked for, transfer as a
-/// contrast, and as a ratio where it is asked for. `term_perfs` are the lifetime's, by regime number.
+/// Null bands, by name, of the metrics that depend on evaluations alone: maintenance if requested, transfer as a contrast, and
+/// as a ratio if requested. `term_perfs` are the lifetime's terminal performances, by regime number.
 ///
-/// An agent that never changes is as likely to earn one of its rewards in a world at one evaluation as at another. So
-/// the rows of each world are permuted among the evaluations of their task, and every metric is computed of them anew. Performances
-/// are permuted as they are scored: scaling and clamping treat every row alike. Smoothing does not, so there are no bands
-/// where evaluations are smoothed.
+/// If an agent never changes, its rewards in one world are exchangeable between evaluations. So the rows of each world are
+/// permuted among the evaluations of their task, and every metric is recomputed. Performances are permuted as scored: scaling
+/// and clamping treat every row alike. Smoothing does not, so there are no bands if evaluations are smoothed.
 pub(super) fn null_bands(log: &Log, lifetime: &Lifetime, options: &Options, term_perfs: &[f64]) -> NullBands {
     let mut statistics = performance_maintenance::statistics(lifetime, options);
     statistics.extend(transfer::statistics(lifetime, options));
@@ -72,7 +69,7 @@ pub(super) fn null_bands(log: &Log, lifetime: &Lifetime, options: &Options, term
     bands
 }
 
-/// The standard error of each evaluation that counts, by its regime number, as far as it is known.
+/// The standard error, if known, of each evaluation that counts, by its regime number.
 fn errors(log: &Log, lifetime: &Lifetime) -> Vec<(usize, Option<f64>)> {
     let worlds = worlds(log, lifetime);
     let counts = |regime: &&Regime| regime.block_type == BlockType::Test && lifetime.is_assessed(regime);
@@ -81,10 +78,10 @@ fn errors(log: &Log, lifetime: &Lifetime) -> Vec<(usize, Option<f64>)> {
     evaluated.map(error).collect()
 }
 
-/// More evaluations than these take too long to vary one by one.
+/// With more evaluations, varying them one by one takes too long.
 const MOST_EVALUATIONS: usize = 2000;
 
-/// Of a value that is made of evaluations with these errors, by how it changes with each of them.
+/// Propagates the evaluations' standard errors to the statistic, to first order.
 fn standard_error(statistic: &Statistic<'_>, term_perfs: &[f64], errors: &[(usize, Option<f64>)]) -> Option<f64> {
     if errors.len() > MOST_EVALUATIONS {
         return None;
@@ -106,10 +103,10 @@ fn standard_error(statistic: &Statistic<'_>, term_perfs: &[f64], errors: &[(usiz
     Some(square.sqrt())
 }
 
-/// A value of the lifetime, of terminal performances by regime number.
+/// Computes a value of the lifetime from terminal performances, by regime number.
 type Compute<'a> = dyn Fn(&[f64]) -> Option<f64> + 'a;
 
-/// A headline that terminal performances alone decide.
+/// A headline metric that depends on terminal performances alone.
 pub(super) struct Statistic<'a> {
     pub(super) name: &'static str,
     compute: Box<Compute<'a>>,

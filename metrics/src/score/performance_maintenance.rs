@@ -1,6 +1,4 @@
 //! Performance maintenance: how much of what was learned is still there at later evaluations.
-//!
-//! Not here: what learning one task does to another, see `transfer`.
 
 use std::rc::Rc;
 
@@ -12,8 +10,8 @@ use crate::results::{Direction, Headline};
 use crate::statistics::mean;
 use crate::{BlockType, MetricsError, Options};
 
-/// `perf_maintenance_mrlep` and `perf_maintenance_mrtlp` of every task, as far as they are asked for, and the
-/// differences they are the means of, `maintenance_val_…`.
+/// `perf_maintenance_mrlep` and `perf_maintenance_mrtlp` of every task, if requested, and the differences that they average,
+/// `maintenance_val_…`.
 pub(super) struct PerformanceMaintenance;
 
 impl Metric for PerformanceMaintenance {
@@ -61,7 +59,7 @@ impl Metric for PerformanceMaintenance {
     }
 }
 
-/// The lifetime's values as functions of terminal performances, as far as they are asked for.
+/// The requested metrics of the lifetime, as functions of terminal performances.
 pub(super) fn statistics<'a>(lifetime: &Lifetime, options: &'a Options) -> Vec<Statistic<'a>> {
     let tasks = lifetime.tasks().iter();
     let tasks: Vec<Vec<Difference>> = tasks.map(|task| differences(lifetime, task).concat()).collect();
@@ -95,7 +93,7 @@ struct Difference {
 }
 
 impl Difference {
-    #[expect(clippy::unnecessary_wraps, reason = "stands beside `mrtlp`, which may have none")]
+    #[expect(clippy::unnecessary_wraps, reason = "same signature as `mrtlp`, which may have none")]
     fn mrlep(&self, term_perfs: &[f64]) -> Option<f64> {
         Some(term_perfs[self.evaluation] - term_perfs[self.reference])
     }
@@ -105,9 +103,9 @@ impl Difference {
     }
 }
 
-/// Compares each evaluation of a task with what it was right after learning, in runs of consecutive regimes of the task.
+/// Compares each evaluation of a task with the one right after learning, in runs of consecutive regimes of the task.
 ///
-/// The first evaluation after each learning regime is its reference. Every later evaluation that is no reference
+/// The first evaluation after each learning regime is its reference. Every later evaluation that is not a reference
 /// gives one difference of terminal performances; runs of such evaluations end where the task is learned again. Drifts
 /// that pass the task count as learning of it.
 fn differences(lifetime: &Lifetime, task: &str) -> Vec<Vec<Difference>> {

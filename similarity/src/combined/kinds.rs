@@ -1,21 +1,21 @@
-//! How far apart kinds of objects are, remembered from pair to pair: worlds have many objects of few kinds.
+//! Distances between kinds of objects, cached per thread: worlds have many objects of few kinds.
 
 use std::cell::RefCell;
 
 use crate::combined::sketch::ObjectFeatures;
 
 /// How many pairs of kinds a thread remembers; a power of 2.
-const REMEMBERED: usize = 2048;
+const CACHE_SIZE: usize = 2048;
 
-/// How much what objects pay counts when they are matched.
+/// Weight of the reward in the cost of a match: just enough to break ties.
 const TIE_BREAK: f64 = 1e-9;
 
-/// How far apart two kinds of objects are, in each part that places, headings and sizes do not decide.
+/// The distance between two kinds of objects in each part that does not depend on place, heading or size.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct KindsApart {
+pub(super) struct KindDistance {
     /// The kinds; 0 is none.
     of: [u64; 2],
-    /// What it costs to match objects of the two.
+    /// Cost of matching an object of one kind with one of the other.
     pub(super) cost: f64,
     pub(super) motion: f64,
     pub(super) body: f64,
@@ -26,8 +26,8 @@ pub(super) struct KindsApart {
     pub(super) model: f64,
 }
 
-impl KindsApart {
-    /// Measured anew. What kinds pay only decides between matches that are equally cheap else.
+impl KindDistance {
+    /// Measures without the cache. Rewards only break ties between otherwise equally cheap matches.
     pub(super) fn between(a: &ObjectFeatures, b: &ObjectFeatures) -> Self {
         let of = [a.kind, b.kind];
         if a.kind == b.kind {
@@ -52,30 +52,30 @@ impl KindsApart {
     }
 }
 
-/// What pairs of kinds came to. The number of a kind is its own among all sketchers, so nothing here goes out of date.
-pub(super) struct Kinds(Vec<KindsApart>);
+/// The cache. A kind's number is unique among all sketchers, so entries never become stale.
+pub(super) struct Kinds(Vec<KindDistance>);
 
 thread_local! {
     static KINDS: RefCell<Kinds> = const { RefCell::new(Kinds(Vec::new())) };
 }
 
 impl Kinds {
-    /// Hands over what this thread remembers.
+    /// Calls `look` with this thread's cache.
     pub(super) fn with<T>(look: impl FnOnce(&mut Self) -> T) -> T {
         KINDS.with_borrow_mut(|kinds| {
             if kinds.0.is_empty() {
-                kinds.0.resize(REMEMBERED, KindsApart::default());
+                kinds.0.resize(CACHE_SIZE, KindDistance::default());
             }
             look(kinds)
         })
     }
 
     #[inline]
-    pub(super) fn apart(&mut self, a: &ObjectFeatures, b: &ObjectFeatures) -> &KindsApart {
-        let place = a.kind.wrapping_mul(47).wrapping_add(b.kind) as usize % REMEMBERED;
+    pub(super) fn apart(&mut self, a: &ObjectFeatures, b: &ObjectFeatures) -> &KindDistance {
+        let place = a.kind.wrapping_mul(47).wrapping_add(b.kind) as usize % CACHE_SIZE;
         let known = &mut self.0[place];
         if known.of != [a.kind, b.kind] {
-            *known = KindsApart::between(a, b);
+            *known = KindDistance::between(a, b);
         }
         known
     }

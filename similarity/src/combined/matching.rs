@@ -5,9 +5,9 @@ use std::cell::RefCell;
 use std::cmp::Ordering;
 
 use crate::assignment::{Assignment, MAX_ASSIGNED};
-use crate::combined::kinds::Kinds;
 #[cfg(test)]
-use crate::combined::kinds::KindsApart;
+use crate::combined::kinds::KindDistance;
+use crate::combined::kinds::Kinds;
 use crate::combined::parts::{length, turn};
 use crate::combined::sketch::ObjectFeatures;
 
@@ -36,7 +36,7 @@ impl ObjectFeatures {
     /// decides between matches that are equally cheap else. A metric.
     #[cfg(test)]
     fn cost(&self, other: &Self) -> f64 {
-        self.cost_of_place(other) + KindsApart::between(self, other).cost
+        self.cost_of_place(other) + KindDistance::between(self, other).cost
     }
 
     fn cost_of_place(&self, other: &Self) -> f64 {

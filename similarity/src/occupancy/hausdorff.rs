@@ -1,18 +1,18 @@
-//! Hausdorff distance of two grids: how far it is to the nearest at most. On the mean it is in `chamfer.rs`.
+//! Hausdorff distance of two grids: the largest distance to a nearest taken cell. The mean is in `chamfer.rs`.
 
 use super::bit_grid::BitGrid;
 use super::chamfer::ways;
 use crate::SimilarityError;
 
-/// The largest distance in metres from a taken cell to the nearest that is taken in the other grid:
+/// The largest distance in metres from a taken cell of one grid to the nearest taken cell of the other:
 /// max(max over A of d(a, B), max over B of d(b, A)).
 ///
-/// Between the centres of cells, within a plane; of several planes the largest. A metric in `0..=` the grid's diameter. Two empty
-/// planes are 0 apart, one that is empty and one that is not the diameter, which keeps it a metric. Time: a few times over the
-/// cells.
+/// Measured between cell centres within each plane; the result is the largest over all planes. A metric from 0 to the grid's
+/// diameter. Two empty planes are 0 apart; an empty and a non-empty one are the diameter apart, which keeps it a metric. Time: a
+/// few passes over the cells.
 ///
 /// # Errors
-/// [`SimilarityError::GridsDiffer`] when the shapes do.
+/// [`SimilarityError::GridsDiffer`] if the shapes differ.
 ///
 /// # Example
 /// ```
@@ -23,8 +23,8 @@ use crate::SimilarityError;
 /// assert_eq!(grid_hausdorff_distance(&a, &b)?, 6.0);
 /// # Ok::<(), driftworld_similarity::SimilarityError>(())
 /// ```
-/// Source: Hausdorff 1914. Same numbers as scikit-image's `hausdorff_distance`, which says infinity where one grid is empty, see
-/// `tests/oracle/occupancy.json`.
+/// Source: Hausdorff 1914. Agrees with scikit-image's `hausdorff_distance`, except that scikit-image returns infinity if one grid
+/// is empty; see `tests/oracle/occupancy.json`.
 pub fn grid_hausdorff_distance(a: &BitGrid, b: &BitGrid) -> Result<f64, SimilarityError> {
     let there = ways(a, b)?;
     Ok(there.into_iter().chain(ways(b, a)?).fold(0.0, f64::max))

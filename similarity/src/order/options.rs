@@ -1,20 +1,20 @@
-//! [`OrderOptions`]: what an order has to keep to. The methods are in their files.
+//! [`OrderOptions`]: constraints on an order, and the methods' own options.
 
-/// What an order has to keep to, besides its method.
+/// Options of an order, besides its method.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OrderOptions {
     /// The item that comes first, by its index in the matrix; whichever is best if none is given.
     pub first: Option<usize>,
     /// The item that comes last, by its index in the matrix; whichever is best if none is given.
     pub last: Option<usize>,
-    /// What [`Method::Random`](super::Method::Random) draws from; 0 by default. The other methods draw nothing.
+    /// Seed of [`Method::Random`](super::Method::Random), 0 by default; the other methods ignore it.
     pub seed: u64,
-    /// The step that [`Method::TargetStep`](super::Method::TargetStep) wants, in the distances' own unit; the other methods want none.
+    /// Step length for [`Method::TargetStep`](super::Method::TargetStep), in the distances' unit; the other methods ignore it.
     pub target_step: Option<f64>,
 }
 
 impl OrderOptions {
-    /// With an item that comes first.
+    /// These options with a given first item.
     #[must_use]
     pub fn with_first(self, first: usize) -> Self {
         Self {

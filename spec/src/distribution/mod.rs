@@ -32,7 +32,7 @@ pub use reference::{Number, ParamRef};
 pub(crate) use support::MOST_ATOMS;
 pub use turn::Turns;
 
-use crate::defaults::is_default;
+use crate::serde_defaults::is_default;
 use crate::value::Value;
 
 /// How values scatter. `N` is [`Number`] in a spec, where numbers may be references, and `f64` once a variant has settled them.

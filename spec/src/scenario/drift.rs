@@ -5,7 +5,7 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::defaults::{is_default, is_one, one};
+use crate::serde_defaults::{is_default, is_one, one};
 use crate::value::Value;
 
 /// A drift from a regime's variant to another: of the same task, or, where whole variants switch, of any.

@@ -15,11 +15,11 @@ pub use drift::{DriftSchedule, DriftSwitch, RegimeDrift};
 pub use proof::{ProvenVariant, ScenarioProof};
 pub use regime::Regime;
 
-use crate::defaults::is_default;
 use crate::document::Document;
 use crate::error::SpecError;
 use crate::limits::MAX_SCENARIO_VALUES;
 use crate::schema::document::DocumentSchema;
+use crate::serde_defaults::is_default;
 use crate::task::TaskSpec;
 use crate::version;
 use crate::version::SCENARIO_VERSION;

@@ -1,5 +1,4 @@
-//! [`ScenarioProof`]: what shows that the variants of a scenario differ in one element of the decision process only. Trying it is
-//! the facade's job.
+//! [`ScenarioProof`]: a recorded experiment that shows that a scenario's variants differ in only one element.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -7,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::element::Element;
 use crate::world::Modality;
 
-/// An experiment on pairs of worlds of a scenario's variants, for a learner's images: what each variant changes beside the first.
+/// An experiment on pairs of worlds: which elements each variant changes, compared with the base, for a learner's images.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("examples" = [
@@ -20,20 +19,20 @@ pub struct ScenarioProof {
     /// The variant that the others were compared with.
     #[schemars(length(min = 1, max = 1000))]
     pub base: String,
-    /// The images for which it holds: with others a difference may show that these do not have.
+    /// The images for which it holds: other kinds of image may show more differences.
     #[schemars(length(max = 5))]
     pub modalities: Vec<Modality>,
     /// Pairs of worlds that were tried for each variant.
     #[schemars(range(min = 1, max = 10_000))]
     pub worlds: u64,
     /// The seed under which they were drawn.
-    #[schemars(range(min = 0, max = MOST))]
+    #[schemars(range(min = 0, max = MAX_SAFE_INTEGER))]
     pub seed: u64,
-    /// Steps that both worlds of a pair took from one state by one command, of all pairs together.
-    #[schemars(range(min = 0, max = MOST))]
+    /// Steps that both worlds of a pair took from the same state with the same command, summed over all pairs.
+    #[schemars(range(min = 0, max = MAX_SAFE_INTEGER))]
     pub steps: u64,
-    /// States in which both observations were compared, of all pairs together.
-    #[schemars(range(min = 0, max = MOST))]
+    /// States in which the two observations were compared, summed over all pairs.
+    #[schemars(range(min = 0, max = MAX_SAFE_INTEGER))]
     pub observations: u64,
     /// The other variants, in the order in which they were found.
     #[schemars(length(max = 1000))]
@@ -53,5 +52,5 @@ pub struct ProvenVariant {
     pub measured: Vec<Element>,
 }
 
-/// The largest whole number that every reader of JSON keeps: 2⁵³ − 1.
-const MOST: u64 = (1 << 53) - 1;
+/// The largest integer that every JSON reader represents exactly: 2⁵³ − 1.
+const MAX_SAFE_INTEGER: u64 = (1 << 53) - 1;

@@ -1,4 +1,4 @@
-//! [`Choices`]: the values that a parameter may have, in a list or by names.
+//! [`Choices`]: the values that a parameter may have, as a list or by name.
 
 use std::ops::Deref;
 
@@ -10,7 +10,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use crate::describe::escape;
 use crate::value::Value;
 
-/// The values that a parameter may have. Where they have names, these stand for them in defaults, variants and captions.
+/// The values that a parameter may have. Named values are given by name in defaults, variants and captions.
 ///
 /// # Example
 /// ```
@@ -30,7 +30,7 @@ pub struct Choices {
 }
 
 impl Choices {
-    /// The names of the values; none of a list.
+    /// The names of the values; empty for a list.
     pub fn names(&self) -> &[String] {
         &self.names
     }
@@ -42,7 +42,7 @@ impl Choices {
         self.values.get(place)
     }
 
-    /// Each value with the key in the document under which it stands.
+    /// Each value with its key in the document.
     pub(super) fn entries(&self) -> impl Iterator<Item = (String, &Value)> {
         let key = |index: usize| {
             self.names
@@ -76,7 +76,7 @@ impl<'a> IntoIterator for &'a Choices {
 impl<'de> Deserialize<'de> for Choices {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         #[derive(Deserialize)]
-        #[serde(untagged, expecting = "a list of values, or an object of values by their names")]
+        #[serde(untagged, expecting = "a list of values, or an object that names the values")]
         enum Either {
             Listed(Vec<Value>),
             Named(IndexMap<String, Value>),

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value as Json, json};
 
 use super::{By, ElementWeights, Group, Parameter, VariantSpec};
-use crate::defaults::is_default;
 use crate::schema::document::DocumentSchema;
+use crate::serde_defaults::is_default;
 
 /// A task spec as its document has it, before anything but the schema has been checked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

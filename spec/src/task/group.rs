@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
 
 use super::template::Source;
-use crate::defaults::is_default;
 use crate::distribution::{Distribution, Number};
+use crate::serde_defaults::is_default;
 
 /// A group of objects: how many, what each is, and where they stand.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

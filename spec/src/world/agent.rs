@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::StateFeature;
 use super::camera::{DEFAULT_FIELD_OF_VIEW, Modality};
 use super::fields::{Field, FieldPlace, Place, fields, word};
-use crate::defaults::{is_default, is_one, is_true};
+use crate::serde_defaults::{is_default, is_one, is_true};
 use crate::value::{ParameterType, Value};
 
 fields! {

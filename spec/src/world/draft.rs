@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::fields::{fields, word};
 use super::{AgentParams, EnvironmentParams, MAX_SEED, Object, Progress, Rules};
-use crate::defaults::is_default;
+use crate::serde_defaults::is_default;
 use crate::version::WORLD_VERSION;
 
 fields! {

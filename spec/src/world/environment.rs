@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 use super::fields::{Field, FieldPlace, Place, fields};
 use super::looks::LooksForm;
 use super::{Looks, Zone};
-use crate::defaults::is_default;
 use crate::layout::{Layout, Plan};
+use crate::serde_defaults::is_default;
 use crate::value::{ParameterType, Value};
 use crate::{Color, maps};
 

@@ -12,8 +12,8 @@ use serde_json::Value as Json;
 
 use super::fields::{fields, word};
 use crate::Color;
-use crate::defaults::{is_default, is_one, one};
 use crate::layout::Layout;
+use crate::serde_defaults::{is_default, is_one, one};
 
 /// How a world is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]

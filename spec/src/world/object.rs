@@ -8,7 +8,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use super::fields::{Place, fields, word};
 use super::{Door, MAX_SEED, Portable, Surface, Switch};
 use crate::Color;
-use crate::defaults::{half, is_default, is_one, one, yes};
+use crate::serde_defaults::{half, is_default, is_one, one, yes};
 use crate::value::{ParameterType, Value};
 
 /// What can be written on a sign.

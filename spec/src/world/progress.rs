@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::WorldDraft;
 use super::fields::Place;
-use crate::defaults::{is_default, is_true};
 use crate::error::Problem;
+use crate::serde_defaults::{is_default, is_true};
 
 /// The course of a running world; absent at its start.
 ///

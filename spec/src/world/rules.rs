@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Object;
 use super::fields::{Field, FieldPlace, Place, fields};
-use crate::defaults::{is_default, is_one, is_two, one, two};
+use crate::serde_defaults::{is_default, is_one, is_two, one, two};
 use crate::value::{ParameterType, Value};
 
 fields! {

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Stimulus;
 use super::fields::{fields, word};
-use crate::defaults::is_default;
+use crate::serde_defaults::is_default;
 
 /// What a person does with a handle.
 fn by_interaction() -> Vec<Stimulus> {

@@ -8,8 +8,8 @@ use super::WorldDraft;
 use super::environment::{EnvironmentParams, encloses};
 use super::fields::{fields, word};
 use crate::Color;
-use crate::defaults::{is_default, is_one, is_true};
 use crate::error::Problem;
+use crate::serde_defaults::{is_default, is_one, is_true};
 
 fields! {
     /// A part of the ground, either a `disc` or a `polygon`. It acts on the agent while the agent's centre is in it, from the
