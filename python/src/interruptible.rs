@@ -1,5 +1,5 @@
-//! Long work that Ctrl-C ends: done on a thread of its own while the interpreter is asked for signals, with threads beside it that
-//! are this process's own.
+//! Runs long work on a separate thread while polling Python for signals, so that Ctrl-C can stop it. The worker pool is made anew
+//! after a fork.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
@@ -15,17 +15,17 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use crate::errors::Result;
 use crate::rounding::{detach, usually_rounded};
 
-/// How often signals are looked for.
-const LOOK: Duration = Duration::from_millis(50);
+/// How often to check for signals.
+const SIGNAL_INTERVAL: Duration = Duration::from_millis(50);
 
-/// From so many environments on, Ctrl-C ends making and resetting them: fewer are done before anybody waits.
+/// From this many environments on, Ctrl-C can stop making and resetting them; fewer are done almost at once.
 const MANY_ENVS: usize = 32;
 
-/// The threads that work is shared among, one for each processor. Not rayon's common ones: those are made once, and in a process that
-/// was forked after that there are none of them, so that all work waits for ever.
+/// This process's worker pool, one thread per processor. Rayon's global pool does not survive a fork: its threads stay in the
+/// parent, and work in the child would wait forever.
 pub(crate) fn workers(_held: Python<'_>) -> PyResult<Arc<ThreadPool>> {
     static WORKERS: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
-    // Only ever locked with the interpreter's lock held, as whoever forks holds it: never locked in the middle of a fork.
+    // Locked only while holding the GIL. Whoever forks also holds the GIL, so the child never inherits this locked.
     let mut workers = WORKERS.lock().unwrap_or_else(PoisonError::into_inner);
     let here = process::id();
     if let Some((process, pool)) = &*workers
@@ -36,13 +36,12 @@ pub(crate) fn workers(_held: Python<'_>) -> PyResult<Arc<ThreadPool>> {
     let pool = usually_rounded(|| ThreadPoolBuilder::new().build())
         .map_err(|error| PyRuntimeError::new_err(format!("threads: could not start any: {error}")))?;
     let pool = Arc::new(pool);
-    // The parent's threads are not in this process: nothing that is left of them may be touched.
+    // The parent's threads do not exist in this process, so the old pool must be leaked, not dropped.
     mem::forget(workers.replace((here, Arc::clone(&pool))));
     Ok(pool)
 }
 
-/// Does work without the interpreter's lock. On Ctrl-C the flag that the work is handed becomes true, and the interrupt is raised
-/// once the work has ended.
+/// Runs work without the GIL. Ctrl-C sets the flag that the work gets, and the interrupt is raised once the work has returned.
 pub(crate) fn run_cancellable<T: Send>(py: Python<'_>, work: impl FnOnce(&AtomicBool) -> T + Send) -> PyResult<T> {
     let (stop, pool) = (AtomicBool::new(false), workers(py)?);
     let (done, ended) = mpsc::channel();
@@ -63,7 +62,7 @@ pub(crate) fn run_cancellable<T: Send>(py: Python<'_>, work: impl FnOnce(&Atomic
     })
 }
 
-/// Does what Ctrl-C may end between environments, where there are enough of them that somebody waits.
+/// Runs work that Ctrl-C can stop between environments; for fewer than [`MANY_ENVS`] it always runs to the end.
 pub(crate) fn run_between_envs<T: Send>(
     py: Python<'_>,
     num_envs: usize,
@@ -75,7 +74,7 @@ pub(crate) fn run_between_envs<T: Send>(
     Ok(run_cancellable(py, |stop| work(&|| !stop.load(Ordering::Relaxed)))??)
 }
 
-/// Does work that cannot be ended from outside: after Ctrl-C it is left to itself, and what it comes to is dropped.
+/// Runs work that cannot be cancelled: after Ctrl-C it continues in the background and its result is dropped.
 pub(crate) fn run_detached<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> T + Send + 'static,
@@ -84,7 +83,7 @@ pub(crate) fn run_detached<T: Send + 'static>(
     spawn(py, move || pool.install(work))
 }
 
-/// The same on one thread, which is not among the workers.
+/// Like [`run_detached`], on one thread outside the pool.
 pub(crate) fn spawn<T: Send + 'static>(py: Python<'_>, work: impl FnOnce() -> T + Send + 'static) -> PyResult<T> {
     let (done, ended) = mpsc::channel();
     let worker = thread::spawn(move || {
@@ -96,12 +95,12 @@ pub(crate) fn spawn<T: Send + 'static>(py: Python<'_>, work: impl FnOnce() -> T 
     result.map_or_else(|panic| std::panic::resume_unwind(panic), Ok)
 }
 
-/// Waits until the other end is gone, or for a signal.
+/// Waits until the sender is dropped; fails if a signal handler raises first.
 fn wait(py: Python<'_>, ended: &Mutex<Receiver<()>>) -> PyResult<()> {
     loop {
         let look = py.detach(|| {
             let ended = ended.lock().unwrap_or_else(PoisonError::into_inner);
-            ended.recv_timeout(LOOK)
+            ended.recv_timeout(SIGNAL_INTERVAL)
         });
         match look {
             Err(RecvTimeoutError::Timeout) => py.check_signals()?,

@@ -1,5 +1,5 @@
-//! L2Explorer's three channels of JSON messages: what a client asks of a running world, and what it is sent. How
-//! messages travel, what time it is and where files go is the caller's: nothing here reads or writes anything.
+//! L2Explorer's three channels of JSON messages: a client's requests to a running world, and the answers. Does no I/O: the
+//! caller handles transport, time and files.
 
 mod category;
 mod exchange;
@@ -16,11 +16,11 @@ use strum::VariantArray;
 /// One of the three channels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, strum::IntoStaticStr, strum::VariantArray)]
 pub enum Channel {
-    /// New worlds, and new objects in the world there is.
+    /// New worlds, and new objects in the current world.
     Reset,
     /// Parts of the world, sent after each step to clients that asked for them.
     State,
-    /// Pictures, and remarks on what goes on.
+    /// Screenshots and debug messages.
     Debug,
 }
 
@@ -33,7 +33,7 @@ impl Channel {
         self.into()
     }
 
-    /// The identifier by which the original's client knows it.
+    /// The channel's UUID in the original client.
     pub fn guid(self) -> &'static str {
         match self {
             Self::Reset => "621f0a70-4f87-11ea-a6bf-784f4387d1f7",
@@ -42,7 +42,7 @@ impl Channel {
         }
     }
 
-    /// What can be asked on it.
+    /// The actions that the channel accepts.
     pub fn actions(self) -> &'static [&'static str] {
         match self {
             Self::Reset => &["reset_environment", "object_create"],
@@ -51,13 +51,13 @@ impl Channel {
         }
     }
 
-    /// The channel of this name, in any case, or of this identifier.
+    /// Finds a channel by its name, ignoring case, or by its UUID.
     pub fn from_name(name: &str) -> Option<Self> {
         let named = |channel: &Self| channel.name().eq_ignore_ascii_case(name) || channel.guid() == name.to_lowercase();
         Self::ALL.iter().copied().find(named)
     }
 
-    /// The channel on which an action can be asked.
+    /// The channel that accepts an action.
     pub fn for_action(action: &str) -> Option<Self> {
         let takes = |channel: &Self| channel.actions().contains(&action);
         Self::ALL.iter().copied().find(takes)

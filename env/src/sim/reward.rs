@@ -1,10 +1,14 @@
-//! What a step pays by the world's rules: per step, per second, and by the shaping's potential. What objects pay is in
-//! `interactions.rs`.
+//! What a step pays by the world's rules: per step, per second and by shaping. `interactions.rs` adds what objects pay.
 
 use driftworld_spec::World;
 
 use super::state::SimState;
 use super::termination::pays_now;
+
+/// What every step pays.
+pub(super) fn per_step(world: &World) -> f64 {
+    world.rules.step_reward
+}
 
 /// What every second pays, for one time step.
 pub(super) fn per_tick(world: &World) -> f64 {

@@ -1,6 +1,5 @@
-//! The page: one HTML file that needs nothing else, with a chapter per lifetime.
-//!
-//! Not here: figures, see `figure`; files and dates, which are the caller's.
+//! Builds the report: one self-contained HTML page with a chapter per lifetime. The caller draws the figures, writes the file
+//! and passes the date.
 
 mod chapter;
 mod metric_table;
@@ -24,7 +23,7 @@ use crate::words::shown;
 /// Most lifetimes on one page.
 pub const MAX_LIFETIMES: usize = 40;
 
-/// A page that someone tampered with loads nothing, either.
+/// Content security policy: even a tampered page loads nothing.
 const POLICY: &str =
     "default-src 'none'; style-src 'unsafe-inline'; img-src data:; form-action 'none'; base-uri 'none'";
 
@@ -33,23 +32,23 @@ const STYLE: &str = include_str!("style.css");
 /// Everything that is on a page.
 #[derive(Debug, Clone, Default)]
 pub struct Report {
-    /// The headline; default the lifetime's name, or how many lifetimes there are.
+    /// The heading; by default the lifetime's name, or the number of lifetimes.
     pub title: Option<String>,
-    /// The lifetimes, each drawn already.
+    /// One rendered chapter per lifetime.
     pub chapters: Vec<Chapter>,
-    /// Values over all lifetimes; default none, and then no such section.
+    /// Metrics over all lifetimes; the section is left out if there are none.
     pub overall: Vec<RepeatedMetric>,
-    /// How the intervals of both were made; default the metrics' own.
+    /// How the intervals of `overall` and `comparisons` were bootstrapped.
     pub intervals: BootstrapOptions,
-    /// Comparisons of two agents; default none, and then no such section.
+    /// Comparisons of two agents; the section is left out if there are none.
     pub comparisons: Vec<Comparison>,
-    /// Warnings about all of it; those of one lifetime stand in its chapter.
+    /// Warnings about the whole report; those about one lifetime are in its chapter.
     pub warnings: Vec<String>,
     /// The command that made the page; default none.
     pub command: Option<String>,
     /// The options used, as a JSON object, such as `serde_json::to_value(&options)` gives.
     pub options: Value,
-    /// When the report was made, in words; default left out, so that the same lifetimes give the same bytes.
+    /// The report's date as text; left out by default, so that the same lifetimes give the same bytes.
     pub date: Option<String>,
 }
 
@@ -83,7 +82,7 @@ impl Report {
                     meta http-equiv="Content-Security-Policy" content=(POLICY);
                     meta name="color-scheme" content="light dark";
                     meta name="generator" content=(concat!("driftworld ", env!("CARGO_PKG_VERSION")));
-                    // A browser asks for a picture of the page unless it is told that there is none.
+                    // Keeps browsers from requesting a favicon.
                     link rel="icon" href="data:,";
                     title { (title) " · lifelong-learning report" }
                     style { (PreEscaped(style)) }
@@ -112,7 +111,7 @@ impl Report {
         Ok(page.into_string())
     }
 
-    /// A lifetime's section. One that stands alone is named by the page's headline; its own is for those who hear the page.
+    /// A lifetime's section. If it is the only one, its heading repeats the page's title and is for screen readers only.
     fn life(&self, number: usize, chapter: &Chapter) -> Markup {
         let alone = self.chapters.len() == 1;
         let (id, name) = (format!("life-{number}"), format!("life-{number}-name"));
@@ -124,7 +123,7 @@ impl Report {
         }
     }
 
-    /// Where the lifetimes are, if there are several.
+    /// Links to the lifetimes, if there are several.
     fn index(&self) -> Markup {
         html! {
             @if self.chapters.len() > 1 {
@@ -142,7 +141,7 @@ impl Report {
 
 /// Things that a reader should know before believing the numbers.
 fn warnings(warnings: &[String]) -> Markup {
-    /// More of a kind tell nothing new.
+    /// Most warnings shown.
     const MOST: usize = 50;
     html! {
         @if !warnings.is_empty() {
@@ -150,13 +149,13 @@ fn warnings(warnings: &[String]) -> Markup {
                 @for warning in warnings.iter().take(MOST) {
                     li { "⚠ Warning: " (calm(warning)) }
                 }
-                @if warnings.len() > MOST { li { "⚠ and " (warnings.len() - MOST) " warnings more" } }
+                @if warnings.len() > MOST { li { "⚠ and " (warnings.len() - MOST) " more warnings" } }
             }
         }
     }
 }
 
-/// A drawing as part of the page: with its words, and shown on pages of one width if a class says so.
+/// Inlines an SVG with its alternative text; a class may restrict it to wide or narrow pages.
 fn described(svg: &str, class: Option<&str>, alt: &str) -> Markup {
     let head = html! { title { (alt) } }.into_string();
     let class = class.map_or(String::new(), |class| format!("class=\"{class}\" "));
@@ -167,7 +166,7 @@ fn described(svg: &str, class: Option<&str>, alt: &str) -> Markup {
     })
 }
 
-/// The options, and what is worth knowing of the calculation.
+/// The table of options, with notes on how the metrics were computed.
 fn options_table(options: &Value, command: Option<&str>) -> Markup {
     let rows = options.as_object().into_iter().flatten();
     let does = |name: &str| options.get(name).is_none_or(|method| method != "none");
@@ -181,8 +180,8 @@ fn options_table(options: &Value, command: Option<&str>) -> Markup {
         section.part id="how" aria-labelledby="how-name" {
             h2 id="how-name" { "How it was computed" }
             p {
-                "Complete rows with a number in the scored column form " i { "regimes" } ", one task learned or \
-                 evaluated without a break. "
+                "Complete rows with a number in the scored column form " i { "regimes" } ": uninterrupted \
+                 learning or evaluation of one task. "
                 (prepared) " metric is computed per task and then aggregated over tasks. "
                 "A value that cannot be computed is left out, never guessed."
             }
@@ -202,7 +201,7 @@ fn options_table(options: &Value, command: Option<&str>) -> Markup {
     }
 }
 
-/// A value of an option in words.
+/// An option's value as text.
 fn plain(value: &Value) -> String {
     match value {
         Value::Null => "not given".to_owned(),
@@ -213,9 +212,9 @@ fn plain(value: &Value) -> String {
     }
 }
 
-/// A sentence from outside: longer than a name may be, and as calm.
+/// Sanitises a sentence from outside: control characters become spaces, and it may be longer than a name.
 fn calm(text: &str) -> String {
-    /// Letters of a sentence that are shown.
+    /// Most characters shown.
     const LONGEST: usize = 600;
     let mut calm: String = text
         .chars()
@@ -228,7 +227,7 @@ fn calm(text: &str) -> String {
     calm
 }
 
-/// A number in a table: about four digits, a minus as long as a plus.
+/// A number in a table: about four digits, with a typographic minus sign.
 fn number(value: f64) -> String {
     let digits = match value.abs() {
         size if size >= 1e7 => return format!("{value:.3e}").replace('-', "−"),
@@ -249,7 +248,7 @@ fn number(value: f64) -> String {
     }
 }
 
-/// A count with its thousands apart.
+/// A count with its thousands separated by narrow spaces.
 fn count(value: usize) -> String {
     let digits = value.to_string();
     let mut text = String::new();

@@ -1,4 +1,4 @@
-//! The table of tasks: how much of each was lived, and the metrics of each that are one number.
+//! The table of tasks: how much each was learned and evaluated, and its scalar metrics.
 
 use std::collections::BTreeMap;
 
@@ -8,10 +8,10 @@ use maud::{Markup, html};
 use super::{count, number, verdict};
 use crate::words::shown;
 
-/// Tasks beyond these are in the files of metrics only.
+/// Most rows shown; the metrics files have all tasks.
 const MOST_ROWS: usize = 200;
 
-/// `called` are the tasks' names by those that the log has.
+/// `called` maps a task's log name to its display name.
 pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics, called: &BTreeMap<String, String>) -> Markup {
     let names: Vec<String> = metrics.summary().iter().map(|row| row.name.to_string()).collect();
     let value = |task: &str, name: &str| metrics.task_metrics.get(task).and_then(|values| values.number(name));
@@ -51,12 +51,12 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics, called: &BTr
             }
         }
         @if lifetime.tasks().len() > MOST_ROWS {
-            p.note { "and " (count(lifetime.tasks().len() - MOST_ROWS)) " tasks more: see the file of metrics." }
+            p.note { "and " (count(lifetime.tasks().len() - MOST_ROWS)) " more tasks: see the metrics file." }
         }
     }
 }
 
-/// What a task is called, with the log's own name below it where that is another.
+/// The task's display name, with its log name below if they differ.
 fn heading_of_row(task: &str, called: &BTreeMap<String, String>) -> Markup {
     html! {
         @match called.get(task).filter(|name| *name != task) {
@@ -66,7 +66,7 @@ fn heading_of_row(task: &str, called: &BTreeMap<String, String>) -> Markup {
     }
 }
 
-/// A metric's name over a narrow column.
+/// Heading of a metric's narrow column, in two lines.
 fn heading(name: &str) -> Markup {
     let lines: [&str; 2] = match name {
         "perf_recovery" => ["Recovery", ""],

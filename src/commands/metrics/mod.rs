@@ -15,7 +15,6 @@ use crate::report::FigureOptions;
 use crate::scoring::{Scores, ScoringRequest, score, score_looking};
 use clap::Args;
 
-
 use super::figures::FigureChoice;
 use super::output;
 use super::scoring::{Intervals, Scoring};

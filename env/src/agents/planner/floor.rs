@@ -14,18 +14,19 @@ use crate::sim::SimRef;
 const SIDE: f32 = 0.2;
 
 /// How far the agent's body must keep from walls, and prefers to keep, in metres.
-const LEAST: f32 = 0.04;
-const LIKED: f32 = 0.25;
+const MIN_CLEARANCE: f32 = 0.04;
+const PREFERRED_CLEARANCE: f32 = 0.25;
 
-/// How far it keeps from closed doors, and from objects whose touch is a failure, in metres: farther than the last step is held back.
-const DOOR: f32 = 0.02;
-const FAILING: f32 = 0.15;
+/// Clearance from closed doors, and from objects whose touch is a failure, in metres; wider than the gap at which the last step is
+/// held back.
+const DOOR_CLEARANCE: f32 = 0.02;
+const FAILURE_CLEARANCE: f32 = 0.15;
 
 /// Weights of cells: closed, open ground, beside walls, beside obstacles, beside objects that cost.
-const NOWHERE: u16 = 0;
+const CLOSED: u16 = 0;
 const OPEN: u16 = 1;
 pub(super) const BESIDE: u16 = 2;
-const STANDS: u16 = 6;
+const BESIDE_OBSTACLE: u16 = 6;
 pub(super) const COSTS: u16 = 20;
 
 /// A place this far beyond touching still counts as beside an object, in metres.
@@ -75,7 +76,7 @@ pub(super) struct Floor {
     pub(super) open: Waiting,
     /// The version and the cells that `field` leads to.
     pub(super) leads: Option<(u64, Vec<u32>)>,
-    /// Whether the path followed last enters no zone that costs, as far as it was looked at.
+    /// Whether the checked part of the last path enters no zone that costs.
     pub(super) keeps_out: bool,
     /// The version and what is brought, if `field` leads to where a thing is put down.
     pub(super) brings: Option<(u64, Bringing)>,
@@ -84,7 +85,7 @@ pub(super) struct Floor {
 impl Floor {
     /// Updates the floor to where things are now.
     pub(super) fn update(&mut self, sim: SimRef) {
-        let has_moved = self.look_at_walls(sim.world, sim.scene().arena_size());
+        let has_moved = self.refresh_walls(sim.world, sim.scene().arena_size());
         let standing = standing(sim);
         if !has_moved && standing == self.standing && self.version > 0 {
             return;
@@ -97,9 +98,9 @@ impl Floor {
                 leaf, is_door, weight, ..
             } = self.standing[number];
             let away = match weight {
-                _ if is_door => DOOR,
-                NOWHERE => FAILING,
-                _ => LEAST,
+                _ if is_door => DOOR_CLEARANCE,
+                CLOSED => FAILURE_CLEARANCE,
+                _ => MIN_CLEARANCE,
             };
             let margin = self.body + away;
             let at = leaf.at;
@@ -107,7 +108,7 @@ impl Floor {
             for cell in self.grid.near(at, reach) {
                 if leaf.distance(self.grid.centre(cell)) < margin && self.weight[cell] > 0 {
                     self.weight[cell] = match weight {
-                        NOWHERE => NOWHERE,
+                        CLOSED => CLOSED,
                         dear => self.weight[cell].max(dear),
                     };
                 }
@@ -125,8 +126,8 @@ impl Floor {
             .collect();
     }
 
-    /// Looks at the walls again; whether they have changed.
-    fn look_at_walls(&mut self, world: &World, arena_size: [f32; 2]) -> bool {
+    /// Rebuilds the grid if walls or zones have changed; returns whether they had.
+    fn refresh_walls(&mut self, world: &World, arena_size: [f32; 2]) -> bool {
         let body = world.agent_params.agent_width as f32 / 2.0;
         let regions = || world.obstacles();
         let is_same = !self.bare.is_empty() && (self.arena_size, self.body) == (arena_size, body);
@@ -147,13 +148,14 @@ impl Floor {
             self.bare[cell] = by_room(room - body);
         }
         for corners in regions() {
-            let near = self.grid.near_polygon(corners, body + LIKED);
+            let near = self.grid.near_polygon(corners, body + PREFERRED_CLEARANCE);
             let corners = corners.iter().map(|corner| corner.map(|metres| metres as f32));
             for cell in near {
                 let at = self.grid.centre(cell);
-                if self.bare[cell] > 0 && is_near_or_inside(corners.clone(), at, body + LEAST) {
+                if self.bare[cell] > 0 && is_near_or_inside(corners.clone(), at, body + MIN_CLEARANCE) {
                     self.bare[cell] = 0;
-                } else if self.bare[cell] == OPEN && is_near_or_inside(corners.clone(), at, body + LIKED) {
+                } else if self.bare[cell] == OPEN && is_near_or_inside(corners.clone(), at, body + PREFERRED_CLEARANCE)
+                {
                     self.bare[cell] = BESIDE;
                 }
             }
@@ -283,8 +285,8 @@ impl Floor {
 /// The weight of a cell by the room that walls leave beyond the agent's body.
 fn by_room(metres: f32) -> u16 {
     match metres {
-        room if room < LEAST => 0,
-        room if room < LIKED => BESIDE,
+        room if room < MIN_CLEARANCE => 0,
+        room if room < PREFERRED_CLEARANCE => BESIDE,
         _ => OPEN,
     }
 }
@@ -299,9 +301,9 @@ fn standing(sim: SimRef) -> Vec<Standing> {
         }
         let is_door = object.door.is_some() && object.solid;
         let weight = match (own.reward < 0.0, object.solid) {
-            _ if is_door || fails(sim.world, object) => NOWHERE,
+            _ if is_door || fails(sim.world, object) => CLOSED,
             (true, _) => COSTS,
-            (false, true) => STANDS,
+            (false, true) => BESIDE_OBSTACLE,
             (false, false) => return None,
         };
         Some(Standing {
