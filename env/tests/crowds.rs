@@ -134,7 +134,7 @@ fn a_heap_is_pointed_out_with_its_place_and_size() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(12))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(5, 12)))]
 
     /// What is over a limit is so by where things stand alone: a world that was written down in the midst of a crowd,
     /// whose trees were built in another order, goes on to the last bit, and so does one that came back to a moment.
