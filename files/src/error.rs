@@ -1,55 +1,55 @@
-//! Why a file cannot be read. What the reader wanted of it, the reader says.
+//! [`FileError`]: why a file cannot be opened or read.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use driftworld_text::ShownPath;
 
-/// Why a file cannot be read. Each says the path, what was found, what was expected, and what to do.
+/// Errors of opening or reading a file. Each message gives the path, what was found, what was expected, and what to do.
 #[derive(Debug, thiserror::Error, strum::IntoStaticStr, strum::VariantNames)]
 #[strum(prefix = "files/", serialize_all = "kebab-case")]
 #[non_exhaustive]
 pub enum FileError {
-    /// There is nothing, or the system does not let it be read.
+    /// The file does not exist, or the system refuses to read it.
     #[error("{}: cannot be read: {source}", path.shown())]
     Unreadable {
-        /// Its path.
+        /// The file's path.
         path: PathBuf,
-        /// What the system says.
+        /// The system's error.
         source: std::io::Error,
     },
-    /// There is something else.
+    /// The path is not a regular file.
     #[error("{}: found {found}, expected a regular file; {}", path.shown(), advice(found))]
     NotAFile {
-        /// Its path.
+        /// The file's path.
         path: PathBuf,
-        /// "a folder", "a named pipe", "a link that leads nowhere" and the like.
+        /// Kind of thing found: "a folder", "a named pipe", "a link that leads nowhere" and so on.
         found: &'static str,
     },
     /// The file is too large.
     #[error("{}: found {found} bytes, expected at most {limit}; name a smaller file, or split it", path.shown())]
     TooLarge {
-        /// Its path.
+        /// The file's path.
         path: PathBuf,
-        /// How many bytes it has at least.
+        /// The file's size in bytes, or a lower bound of it.
         found: u64,
-        /// How many it may have.
+        /// Most bytes allowed.
         limit: u64,
     },
-    /// The file is no text.
+    /// The file is not UTF-8 text.
     #[error("{}: byte {at} (line {line}) is not UTF-8, expected UTF-8 text; save it as such", path.shown())]
     NotText {
-        /// Its path.
+        /// The file's path.
         path: PathBuf,
-        /// The first byte that is no text, from 0.
+        /// Offset of the first invalid byte, from 0.
         at: usize,
-        /// The line that it stands in, from 1.
+        /// Line of that byte, from 1.
         line: usize,
     },
 }
 
 impl FileError {
-    /// The path, where there is nothing.
+    /// The path, if the file does not exist.
     pub fn missing(&self) -> Option<&Path> {
         match self {
             Self::Unreadable { path, source } if source.kind() == ErrorKind::NotFound => Some(path),
@@ -57,7 +57,7 @@ impl FileError {
         }
     }
 
-    /// The message without the path, for those who have named the file already.
+    /// The message without the path, for callers that have already named the file.
     pub fn without_path(&self) -> String {
         let path = match self {
             Self::Unreadable { path, .. }
@@ -70,13 +70,13 @@ impl FileError {
         alone.strip_prefix("cannot be read: ").unwrap_or(alone).to_owned()
     }
 
-    /// The stable name of this kind of error.
+    /// Stable code of this kind of error.
     pub fn code(&self) -> &'static str {
         self.into()
     }
 }
 
-/// What to do about something that is no regular file.
+/// Advice for a path that is not a regular file.
 fn advice(found: &str) -> &'static str {
     match found {
         "a folder" => "name a file in it",
@@ -91,7 +91,7 @@ mod tests {
 
     /// Every variant with its message.
     #[test]
-    fn messages_say_what_was_found_what_was_expected_and_what_to_do() {
+    fn messages_state_found_expected_and_advice() {
         let path = || PathBuf::from("a.json");
         let check = |error: FileError, code: &str, expected: &str| {
             assert_eq!((error.code(), error.to_string().as_str()), (code, expected));

@@ -1,14 +1,14 @@
-//! What lies at a path, by name. Opening it is not done here.
+//! Checks that a path is a regular file, and names what it is otherwise.
 
 use std::fs::FileType;
 use std::path::Path;
 
 use crate::FileError;
 
-/// What a link is called that leads to nothing.
+/// Name of a broken link in messages.
 pub const LOST_LINK: &str = "a link that leads nowhere";
 
-/// Refuses what is no regular file.
+/// Refuses anything but a regular file.
 pub(crate) fn check(path: &Path, kind: FileType) -> Result<(), FileError> {
     if kind.is_file() {
         Ok(())

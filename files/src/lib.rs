@@ -1,9 +1,8 @@
-//! Opens every file that a user or a log names: regular files only, and never more of one than a limit. What stands in
-//! a file is its reader's affair; nothing is written here, but a file is opened for additions in the same careful way.
+//! Opens every file that a user or a log names: regular files only, read up to a size limit. Also opens files for appending with
+//! the same care.
 //!
-//! A pipe would be waited for without an end, a device may never end, and a file may be larger than the memory. So a
-//! path is looked at before it is opened, the opened file once more, its length before it is read, and no more is read
-//! than the limit allows.
+//! Reading a named pipe could block forever, a device may never end, and a file may be larger than memory. So the kind is checked
+//! before and after opening, the length before reading, and reading stops at the limit.
 
 mod error;
 mod kind;
@@ -15,24 +14,24 @@ use std::path::Path;
 pub use error::FileError;
 pub use kind::LOST_LINK;
 
-/// A regular file that is open for reading.
+/// A regular file, open for reading.
 #[derive(Debug)]
 pub struct Opened {
     /// The file, at its start.
     pub file: File,
-    /// Its length in bytes when it was opened; 0 for files that the system makes while they are read.
+    /// Its length in bytes when it was opened; 0 for files whose content the system generates on reading.
     pub length: u64,
 }
 
-/// Opens a regular file of at most `limit` bytes; links are followed.
+/// Opens a regular file of at most `limit` bytes; follows links.
 ///
 /// # Errors
-/// [`FileError::Unreadable`], also where there is nothing; [`FileError::NotAFile`] for a folder, a device, a named
-/// pipe, a socket and a link that leads nowhere; [`FileError::TooLarge`].
+/// [`FileError::Unreadable`], also if the file does not exist; [`FileError::NotAFile`] for a folder, a device, a named pipe, a
+/// socket or a broken link; [`FileError::TooLarge`].
 pub fn open(path: &Path, limit: u64) -> Result<Opened, FileError> {
     check(path)?;
     let file = without_waiting(path).map_err(unreadable(path))?;
-    // Another file may have taken its place meanwhile.
+    // Another file may have replaced it since the first check.
     let found = file.metadata().map_err(unreadable(path))?;
     kind::check(path, found.file_type())?;
     let length = found.len();
@@ -58,10 +57,10 @@ fn within(path: &Path, found: u64, limit: u64) -> Result<(), FileError> {
     })
 }
 
-/// Looks whether a regular file is there, and opens nothing; links are followed.
+/// Checks that a path is a regular file without opening it; follows links.
 ///
 /// # Errors
-/// [`FileError::Unreadable`], also where there is nothing; [`FileError::NotAFile`].
+/// [`FileError::Unreadable`], also if the file does not exist; [`FileError::NotAFile`].
 pub fn check(path: &Path) -> Result<(), FileError> {
     let found = fs::metadata(path).map_err(|source| match source.kind() {
         ErrorKind::NotFound if path.is_symlink() => kind::error(path, LOST_LINK),
@@ -70,7 +69,7 @@ pub fn check(path: &Path) -> Result<(), FileError> {
     kind::check(path, found.file_type())
 }
 
-/// The bytes of a regular file of at most `limit` bytes.
+/// Reads a regular file of at most `limit` bytes.
 ///
 /// # Errors
 /// As [`open`]; [`FileError::TooLarge`] also for a file that grows beyond the limit while it is read.
@@ -88,7 +87,7 @@ pub fn check(path: &Path) -> Result<(), FileError> {
 pub fn read(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
     let Opened { file, length } = open(path, limit)?;
     let mut bytes = Vec::new();
-    // One more, so that the end is seen without making room again.
+    // One byte more than the length, so that reading the end needs no reallocation.
     let room = usize::try_from(length).unwrap_or(usize::MAX).saturating_add(1);
     bytes
         .try_reserve_exact(room)
@@ -100,10 +99,10 @@ pub fn read(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
     Ok(bytes)
 }
 
-/// The text of a regular file of at most `limit` bytes, without the byte order mark that some editors put in front.
+/// Reads a UTF-8 text file of at most `limit` bytes, and drops the byte order mark that some editors write.
 ///
 /// # Errors
-/// As [`read`]; [`FileError::NotText`] with the place of the first byte that is no UTF-8.
+/// As [`read`]; [`FileError::NotText`] with the place of the first byte that is not UTF-8.
 pub fn text(path: &Path, limit: u64) -> Result<String, FileError> {
     let mut text = String::from_utf8(read(path, limit)?).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
@@ -120,11 +119,11 @@ pub fn text(path: &Path, limit: u64) -> Result<String, FileError> {
     Ok(text)
 }
 
-/// Opens a file for additions, made if need be. A named pipe that nobody reads is refused, and one whose reader is slow
-/// is not waited for: what it does not take is an error of the writing.
+/// Opens a file for appending; creates it if necessary. A named pipe without a reader is refused. If a pipe's reader is slow,
+/// writing fails instead of blocking.
 ///
 /// # Errors
-/// What the system says.
+/// The system's error.
 pub fn append(path: &Path) -> std::io::Result<File> {
     let mut options = OpenOptions::new();
     options.append(true).create(true);
@@ -136,7 +135,8 @@ pub fn append(path: &Path) -> std::io::Result<File> {
     options.open(path)
 }
 
-/// Opens for reading. A pipe that has just taken the file's place is not waited for, and no terminal is taken over.
+/// Opens for reading without blocking: a named pipe that has just replaced the file is not waited for, and no terminal becomes
+/// the controlling one.
 #[cfg(unix)]
 fn without_waiting(path: &Path) -> std::io::Result<File> {
     use std::os::unix::fs::OpenOptionsExt;
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_is_read_up_to_the_limit_and_not_beyond() {
+    fn read_stops_at_the_limit() {
         let folder = folder();
         let path = folder.path().join("file");
         fs::write(&path, [7; 1000]).expect("it can be written");
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn the_place_of_what_is_no_text_is_told_and_a_byte_order_mark_is_not() {
+    fn text_reports_place_of_invalid_utf8_and_drops_bom() {
         let folder = folder();
         let path = folder.path().join("file");
         let with = |bytes: &[u8]| {
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn where_there_is_nothing_the_system_says_so() {
+    fn missing_file_gives_system_error() {
         let folder = folder();
         let error = read(&folder.path().join("absent"), 9).expect_err("there is nothing");
         assert_eq!(error.missing(), Some(folder.path().join("absent").as_path()));
@@ -202,7 +202,7 @@ mod tests {
 
     #[test]
     #[cfg(unix)]
-    fn what_is_no_regular_file_is_refused_before_it_is_opened() {
+    fn non_regular_files_are_refused_before_opening() {
         use std::os::unix::{fs::symlink, net::UnixListener};
         let folder = folder();
         let at = |name: &str| folder.path().join(name);
@@ -231,10 +231,10 @@ mod tests {
         assert!(matches!(error, FileError::Unreadable { .. }), "{error}");
     }
 
-    /// What takes the place of a file between the two looks at it.
+    /// A pipe may replace the file between the two checks.
     #[test]
     #[cfg(unix)]
-    fn a_pipe_that_nobody_writes_to_is_opened_without_waiting() {
+    fn opening_a_pipe_without_writer_does_not_block() {
         let folder = folder();
         let pipe = folder.path().join("pipe");
         let made = std::process::Command::new("mkfifo").arg(&pipe).status();
@@ -246,10 +246,10 @@ mod tests {
         assert!(append(&pipe).is_err(), "nobody reads it");
     }
 
-    /// Files that the system makes while they are read say that they are empty.
+    /// Files whose content the system generates on reading report length 0.
     #[test]
     #[cfg(target_os = "linux")]
-    fn a_file_without_a_length_is_read_up_to_the_limit() {
+    fn file_of_reported_length_0_is_read_up_to_the_limit() {
         let path = Path::new("/proc/self/status");
         assert!(!read(path, 1 << 20).expect("it is short").is_empty());
         assert!(matches!(read(path, 10), Err(FileError::TooLarge { found: 11, .. })));
