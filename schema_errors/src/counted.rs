@@ -1,5 +1,5 @@
-//! JSON values that count the errors found in them, so that a schema stops listing after a few hundred in any one list
-//! or object: its errors take a kilobyte each, and a wrong list may have millions of items.
+//! JSON values that count the errors found in them, so that validation stops after a few hundred in one list or object: each
+//! error takes about a kilobyte, and a bad list may have millions of items.
 
 use std::borrow::Cow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
@@ -8,17 +8,17 @@ use jsonschema::JsonType;
 use jsonschema::json::{Array, Json, Node, NodeIdentity, Object};
 use serde_json::{Map, Number, Value};
 
-/// The representation, for validators.
+/// The JSON representation for validators.
 pub(super) struct Counting;
 
-/// What has been counted so far.
+/// The counters.
 pub(super) struct Tally {
-    /// Errors of one list or object after which no more of it is looked at.
+    /// Errors in one list or object after which the rest of it is skipped.
     limit: usize,
     errors: AtomicUsize,
-    /// How often anything was asked of a value.
+    /// Number of times a value was accessed.
     looks: AtomicUsize,
-    /// Whether a list or an object was left before its end.
+    /// Whether a list or object was left before its end.
     stopped: AtomicBool,
 }
 
@@ -38,7 +38,7 @@ impl Tally {
     }
 }
 
-/// A value of a document; a text that stands in none counts nothing.
+/// A value of a document; text from outside the document has no counter.
 #[derive(Clone, Copy)]
 pub(super) struct Counted<'a> {
     value: &'a Value,
@@ -59,12 +59,12 @@ impl<'a> Counted<'a> {
         self.tally.map_or(0, |tally| tally.looks.load(Relaxed))
     }
 
-    /// Most errors that are listed of one list or object.
+    /// Most errors listed for one list or object.
     fn limit(&self) -> usize {
         self.tally.map_or(usize::MAX, |tally| tally.limit)
     }
 
-    /// The value, of which something is asked.
+    /// The value; counts the access.
     fn looked_at(&self) -> &'a Value {
         if let Some(tally) = self.tally {
             tally.looks.fetch_add(1, Relaxed);
@@ -139,9 +139,8 @@ impl<'a> Node<'a, Counting> for Counted<'a> {
         jsonschema::json::cmp::equal(self.looked_at(), expected)
     }
 
-    /// Every error asks for the value that it is about: so they are counted. It gets none, for some errors keep a copy
-    /// of their own: readers look the value up by its place. Names are no part of the document, and are handed
-    /// out.
+    /// Every error asks for the value that it is about, which is how errors are counted. It gets `null`, because some errors keep
+    /// a copy: readers find the value by its path. Names are not part of the document and are returned as they are.
     fn to_value(&self) -> Cow<'a, Value> {
         match self.tally {
             Some(tally) => {
@@ -157,13 +156,13 @@ impl<'a> Node<'a, Counting> for Counted<'a> {
     }
 }
 
-/// Items or members up to a few hundred errors in them, or a few hundred members of which nothing was asked: those are
-/// keys that may not be there, which are listed by their names.
+/// Items or members, until a few hundred errors are found in them. Members that were never accessed are unknown keys, which
+/// errors list by name: it also stops after a few hundred of those.
 pub(super) struct UntilFull<'a, I> {
     inner: I,
     holder: Counted<'a>,
     before: usize,
-    /// What was asked when the last member was handed out, and how many before it were of no interest.
+    /// The access count when the last member was returned, and the number of earlier members that were never accessed.
     looks: usize,
     unseen: usize,
 }
@@ -189,7 +188,7 @@ impl<'a, I> UntilFull<'a, I> {
 }
 
 impl<I: ExactSizeIterator> UntilFull<'_, I> {
-    /// Hands out no more; what is left is not looked at.
+    /// Ends the iteration; the rest is skipped.
     fn stop<T>(&self) -> Option<T> {
         if let Some(tally) = self.holder.tally.filter(|_| self.inner.len() > 0) {
             tally.stopped.store(true, Relaxed);

@@ -1,5 +1,5 @@
-//! Lists what a JSON Schema does not allow in a value, in bounded memory. A crate of its own, because it compiles the
-//! whole validator a second time, for values that count: unoptimised here, since it runs for wrong documents alone.
+//! Lists the errors of a JSON value against a JSON Schema in bounded memory. A separate crate, because it compiles the whole
+//! validator a second time, for values that count. It runs for invalid documents only, so it is not optimised.
 
 mod counted;
 
@@ -8,26 +8,26 @@ use serde_json::Value;
 
 use counted::{Counted, Counting, Tally};
 
-/// A schema, ready to list errors.
+/// A compiled schema that lists errors.
 pub struct BoundedErrors {
     validator: Validator<Counting>,
     limit: usize,
 }
 
 impl BoundedErrors {
-    /// Lists about `limit` errors of any one list or object; its other items are not looked at.
+    /// Lists about `limit` errors of any one list or object; the other items are skipped.
     ///
     /// # Errors
     ///
-    /// When the schema is not a valid JSON Schema.
+    /// If the schema is not a valid JSON Schema.
     pub fn new(schema: &Value, limit: usize) -> Result<Self, ValidationError<'static>> {
         let validator = jsonschema::options_for::<Counting>().build(schema)?;
         Ok(Self { validator, limit })
     }
 
-    /// Hands the errors in a value to `read`. Returns what it makes of them, and whether there may be more errors.
+    /// Passes the errors of a value to `read`. Returns the result of `read`, and whether there may be more errors.
     ///
-    /// Errors hold no copies of what they are about: `null` stands for it, and their paths tell where it is.
+    /// Errors hold no copies of the value: they hold `null` instead, and their paths locate it.
     pub fn list<T>(&self, value: &Value, read: impl FnOnce(ErrorIterator<'_>) -> T) -> (T, bool) {
         let tally = Tally::new(self.limit);
         let made = read(self.validator.iter_errors(Counted::new(value, &tally)));
