@@ -1,15 +1,14 @@
-//! Cells of tables for spreadsheets, which take what begins in certain ways for a formula and run it. Commas and quotes
-//! are the writer's.
+//! Guards cells of tables against spreadsheets, which run text that starts like a formula. The writer handles commas and quotes.
 
 use std::borrow::Cow;
 
-/// How texts of others stand in a table for spreadsheets.
+/// How to write untrusted text into tables for spreadsheets.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Cells {
-    /// Guarded, see [`cell`].
+    /// Guarded by [`cell`].
     #[default]
     Guarded,
-    /// As they are.
+    /// Unchanged.
     Raw,
 }
 
@@ -23,11 +22,11 @@ impl Cells {
     }
 }
 
-/// A cell that no spreadsheet takes for a formula.
+/// A cell that no spreadsheet reads as a formula.
 ///
-/// A text that begins with `=`, `+`, `-`, `@`, a tab or a line end and is no number has an apostrophe before it, as
-/// OWASP advises against CSV injection; so has one that begins with an apostrophe before one of these. [`unguarded`]
-/// gives back the text, [`Cells::Raw`] is the way around it.
+/// Text that begins with `=`, `+`, `-`, `@`, a tab or a line end, and is not a number, gets an apostrophe in front, as OWASP
+/// advises against CSV injection. So does text that begins with apostrophes before one of these. [`unguarded`] restores the text;
+/// [`Cells::Raw`] disables the guard.
 ///
 /// # Example
 /// ```
@@ -37,9 +36,9 @@ impl Cells {
 /// assert_eq!(cell("red"), "red");
 /// ```
 pub fn cell(text: &str) -> Cow<'_, str> {
-    // Full-width forms of the four are taken for them where East Asian languages are set.
+    // Full-width forms of the four also start formulas in East Asian locales.
     let starts = ['=', '+', '-', '@', '\t', '\n', '\r', '＝', '＋', '－', '＠'];
-    // What looks guarded already gets a guard, too: taking one away gives back what was there.
+    // Text that looks guarded gets another guard, so that removing one always restores the original.
     let is_formula = text.trim_start_matches('\'').starts_with(starts);
     if is_formula && text.parse::<f64>().is_err() {
         Cow::Owned(format!("'{text}"))
@@ -48,7 +47,7 @@ pub fn cell(text: &str) -> Cow<'_, str> {
     }
 }
 
-/// What a [`cell`] stands for: without the apostrophe that guards it, if one does.
+/// The text of a [`cell`], without the guarding apostrophe if there is one.
 ///
 /// # Example
 /// ```
@@ -94,7 +93,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_cell_begins_a_formula_and_the_text_comes_back(
+        fn guarded_cells_start_no_formula_and_round_trip(
             start in "['=+@\t\r\n-]{0,3}", rest in "(?s).{0,8}"
         ) {
             let text = start + &rest;

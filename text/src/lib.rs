@@ -1,10 +1,8 @@
-//! Text that others wrote, on its way to a terminal, a table or a file name: documents, logs, settings and names of
-//! files may say anything.
+//! Prepares untrusted text for terminals, tables and file names: documents, logs, settings and file names may contain anything.
 //!
-//! Seven ideas, a file each: `printable.rs` shows characters that a terminal obeys or hides, `cell.rs` guards what a
-//! spreadsheet would take for a formula, `name.rs` says what variants, tasks and groups may be called, `number.rs`
-//! leaves the noise of rounding out of numbers, `unbroken.rs` keeps together what no line breaks, `phrases.rs` counts and lists things,
-//! `removed.rs` lists the words that are no longer taken, `json/` reads JSON. Files and printing are not here.
+//! One file per task: `printable.rs` escapes characters that a terminal obeys or hides, `cell.rs` guards against formulas in
+//! spreadsheets, `name.rs` checks names of variants, tasks and groups, `number.rs` rounds numbers for reading, `unbroken.rs`
+//! keeps words together on one line, `phrases.rs` counts and lists things, `removed.rs` lists removed words, `json/` reads JSON.
 
 mod cell;
 pub mod json;

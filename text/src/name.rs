@@ -1,5 +1,5 @@
-//! What variants, tasks, groups and scenarios may be called: one grammar, whose names are safe as names of files and of
-//! logs everywhere. Which names are taken already is the documents' to know.
+//! Checks names of variants, tasks, groups and scenarios by one grammar, which makes them safe as names of files and logs on
+//! every system. Uniqueness is checked by the documents.
 
 use std::fmt;
 
@@ -8,52 +8,52 @@ use unicode_normalization::is_nfc;
 
 use crate::printable::{is_unprintable, quoted};
 
-/// The longest name, in characters.
+/// Longest name in characters.
 pub const MAX_NAME_CHARACTERS: usize = 100;
 
-/// The longest name in bytes of UTF-8: file systems take 255, and endings and numbers follow.
+/// Longest name in bytes of UTF-8: file systems allow 255, and extensions and numbers follow.
 pub const MAX_NAME_BYTES: usize = 200;
 
-/// A name as far as a pattern of JSON Schema can say it. The rest is [`check_name`]'s: its length in bytes,
-/// normalisation, names of devices.
+/// The part of the grammar that a JSON Schema pattern can express. [`check_name`] checks the rest: length in bytes,
+/// normalisation, device names.
 ///
-/// Beyond ASCII it leaves out white space, general punctuation and unprintable characters, and so takes a few symbols
-/// that are refused later.
+/// Beyond ASCII it excludes white space, general punctuation and unprintable characters, and so accepts a few symbols that are
+/// refused later.
 pub const NAME_PATTERN: &str = concat!(
     r"^[^\x00-\x2f\x3a-\x40\x5b-\x5e\x60\x7b-\xa9\u2000-\u206f\u3000-\u3003\ufeff]",
     r"(?:[^\x00-\x2a\x2c\x2f\x3a-\x40\x5b-\x5e\x60\x7b-\xa9\u2000-\u206f\u3000-\u3003\ufeff]*",
     r"[^\x00-\x2a\x2c\x2e\x2f\x3a-\x40\x5b-\x5e\x60\x7b-\xa9\u2000-\u206f\u3000-\u3003\ufeff])?$"
 );
 
-/// The narrower form that tasks and parameters keep to, for they stand in expressions and in l2logger's `TASK_VARIANT`.
+/// The narrower form for tasks and parameters, which appear in expressions and in l2logger's `TASK_VARIANT`.
 pub const IDENTIFIER_PATTERN: &str = "^[a-z][a-z0-9_]*$";
 
-/// Names that Windows keeps for devices, whatever ending follows and in capitals or not.
+/// Names that Windows reserves for devices, with any extension and in any case.
 const DEVICES: [&str; 4] = ["con", "prn", "aux", "nul"];
 
-/// What is wrong with a name.
+/// Why a name is invalid.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum NameFault {
-    /// It has no character.
+    /// The name is empty.
     Empty,
-    /// It has more characters, or more bytes, than there may be.
+    /// The name has too many characters or bytes.
     TooLong {
-        /// How many characters.
+        /// Number of characters.
         characters: usize,
-        /// How many bytes of UTF-8.
+        /// Number of bytes in UTF-8.
         bytes: usize,
     },
-    /// A character that no name has.
+    /// A character that names may not contain.
     Character(char),
-    /// A character that a name does not begin with.
+    /// A character that names may not start with.
     Start(char),
-    /// It ends with a dot, which Windows drops.
+    /// The name ends with a dot, which Windows drops.
     EndsWithDot,
-    /// Composed characters are written as several, or in an order that is not the usual one: two names could look like
-    /// one.
+    /// The name is not in NFC: composed characters are written as several, or in another order, so that two names could look the
+    /// same.
     NotNormalised,
-    /// Windows keeps it for a device.
+    /// Windows reserves the name for a device.
     Device,
 }
 
@@ -87,12 +87,12 @@ impl NameFault {
 
 /// Checks a name of a variant, a group or a scenario.
 ///
-/// A name has 1 to 100 characters and at most 200 bytes. It begins with a letter, a digit or `_`; then come letters,
-/// digits, marks on letters, `_`, `-`, `+` and `.`; it does not end with `.`. Letters and digits are those of any
-/// script, in the form NFC. What Windows keeps for devices (`con`, `nul.txt`, `COM1`) is no name.
+/// A name has 1 to 100 characters and at most 200 bytes. It begins with a letter, a digit or `_`; then come letters, digits,
+/// marks on letters, `_`, `-`, `+` and `.`; it does not end with `.`. Letters and digits may be of any script, in the form NFC.
+/// Device names of Windows (`con`, `nul.txt`, `COM1`) are refused.
 ///
 /// # Errors
-/// The first fault, from the beginning of the name.
+/// The first fault, counted from the beginning of the name.
 ///
 /// # Example
 /// ```
@@ -134,7 +134,7 @@ fn may_begin(letter: char) -> bool {
 }
 
 fn may_follow(letter: char) -> bool {
-    // Marks that take no place: they choose a picture for the letter before them.
+    // Marks of zero width: variation selectors choose a glyph for the letter before them.
     let is_selector = matches!(letter, '\u{fe00}'..='\u{fe0f}' | '\u{e0100}'..='\u{e01ef}');
     let is_mark = is_combining_mark(letter) && !is_unprintable(letter) && !is_selector;
     may_begin(letter) || matches!(letter, '-' | '+' | '.') || is_mark
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn names_of_files_everywhere_are_names() {
+    fn portable_file_names_are_names() {
         for name in [
             "red",
             "look-red-0.5",
@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn what_harms_a_terminal_a_file_system_or_a_spreadsheet_is_not() {
+    fn names_unsafe_for_terminals_files_or_spreadsheets_are_refused() {
         check("", &Err(NameFault::Empty));
         for letter in
             "\0\t\n\r\x1b\x7f\u{9b}\u{202e}\u{200b}\u{feff} \u{a0}/\\:*?\"<>|#%,;=@&$'`~()[]{}!^→😀\u{fe0f}".chars()
@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fault_says_what_was_found_and_what_was_expected() {
+    fn fault_states_found_and_expected() {
         let fault = NameFault::Character('\u{202e}');
         assert_eq!(fault.to_string(), "the character \"\\u{202e}\"");
         assert!(!fault.expected().is_empty());
@@ -225,7 +225,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_name_can_be_that_of_a_file_a_log_and_a_cell(name in prop_oneof!["[ -~]{0,6}", "\\PC{0,6}", "(?s).{0,6}", "[a-z.+_-]{0,6}"]) {
+        fn accepted_names_work_as_files_logs_and_cells(name in prop_oneof!["[ -~]{0,6}", "\\PC{0,6}", "(?s).{0,6}", "[a-z.+_-]{0,6}"]) {
             if check_name(&name).is_ok() {
                 let path = std::path::Path::new(&name);
                 prop_assert_eq!(path.components().count(), 1);

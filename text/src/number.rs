@@ -1,15 +1,13 @@
-//! Numbers as people read them: without the digits that only rounding put there. Files keep every digit; that is not
-//! decided here.
+//! Formats numbers for people: without the digits that are rounding noise. Files keep every digit.
 
-/// Places behind the point, at most.
+/// Most decimal places.
 const PLACES: usize = 6;
 
-/// Digits of a number that a sum of many keeps, at most.
+/// Most significant digits of a number with decimals, so that long sums show no noise.
 const DIGITS: usize = 13;
 
-/// A number without the noise of its last bits: at most six places behind the point and, where it has some, thirteen
-/// digits in all; no zeros at their end, and no sign before zero. Numbers from 1e15 on, which have no places, have
-/// all their digits.
+/// A number without the noise of its last bits: at most six decimal places and, if it has any, thirteen significant digits; no
+/// trailing zeros, and no sign before zero. Numbers from 1e15 on, which have no decimals, keep all their digits.
 ///
 /// ```
 /// # use driftworld_text::amount;
@@ -38,7 +36,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn what_rounding_added_is_gone() {
+    fn rounding_noise_is_removed() {
         for (number, expected) in [
             (100.729_999_999_999_99, "100.73"),
             (0.1 + 0.2, "0.3"),
@@ -57,9 +55,9 @@ mod tests {
     }
 
     proptest! {
-        /// Tenths, hundredths, and so on, come back as they were written, however many were added up to them.
+        /// Sums of tenths, hundredths and so on read as their exact value, however many terms they have.
         #[test]
-        fn a_sum_reads_as_its_exact_value(
+        fn sums_read_as_their_exact_value(
             parts in prop::collection::vec(-100_000i64..100_000, 1..400),
             places in 0u32..=4,
         ) {
@@ -73,9 +71,9 @@ mod tests {
             prop_assert_eq!(amount(sum), if exact == 0 { "0" } else { expected });
         }
 
-        /// What is read is what was there, but for half a unit of its last place; and it says no more than it reads as.
+        /// The text is within half a unit of its last place of the number, and formatting it again changes nothing.
         #[test]
-        fn nothing_but_noise_is_left_out(number in prop::num::f64::NORMAL | prop::num::f64::ZERO) {
+        fn only_rounding_noise_is_dropped(number in prop::num::f64::NORMAL | prop::num::f64::ZERO) {
             let text = amount(number);
             let read: f64 = text.parse().unwrap();
             prop_assert!((read - number).abs() <= 0.5e-6_f64.max(number.abs() * 1e-12), "{} reads as {}", number, text);

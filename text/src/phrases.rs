@@ -1,6 +1,6 @@
-//! Phrases of which messages and tables are made: so many of a thing, and lists that stay short.
+//! Phrases for messages and tables: counts with plurals, and lists cut to a length.
 
-/// So many of a thing.
+/// A number with its noun, in the plural unless it is 1.
 ///
 /// ```
 /// # use driftworld_text::counted;
@@ -10,7 +10,7 @@ pub fn counted(number: usize, what: &str) -> String {
     format!("{number} {what}{}", if number == 1 { "" } else { "s" })
 }
 
-/// The parts with `separator` between them, or what stands for no parts.
+/// The parts joined by `separator`, or `none` if there are none.
 pub fn joined_or<S: AsRef<str>>(parts: &[S], separator: &str, none: &str) -> String {
     let parts: Vec<&str> = parts.iter().map(AsRef::as_ref).collect();
     if parts.is_empty() {
@@ -34,7 +34,7 @@ pub fn first_of<S: AsRef<str>>(names: &[S], most: usize) -> String {
     }
 }
 
-/// A text as a message shows it: its first characters, at most so many.
+/// A text for a message, cut to its first `most` characters.
 ///
 /// ```
 /// # use driftworld_text::shortened;
@@ -47,7 +47,7 @@ pub fn shortened(text: &str, most: usize) -> String {
     }
 }
 
-/// Words that are said in some cases alone.
+/// The words if a condition holds, else nothing.
 pub fn when(is_said: bool, words: impl FnOnce() -> String) -> String {
     if is_said { words() } else { String::new() }
 }

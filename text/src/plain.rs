@@ -1,8 +1,8 @@
-//! What a reader of JSON says of a value, without the words of its program: `struct ScalesFile` is an object to who wrote the file.
+//! Rewords serde's error messages without names of Rust types: `struct ScalesFile` is an object to the user.
 
 use std::fmt::Display;
 
-/// Kinds of values as programs call them, and as people do.
+/// Kinds of values in serde's words and in plain words.
 const KINDS: [(&str, &str); 12] = [
     ("u8", "a whole number"),
     ("u16", "a whole number"),
@@ -18,7 +18,7 @@ const KINDS: [(&str, &str); 12] = [
     ("map", "an object"),
 ];
 
-/// The same message in plain words; what stands in quotes stays as it is.
+/// The message in plain words; quoted parts stay as they are.
 ///
 /// # Example
 /// ```
@@ -34,7 +34,7 @@ pub fn in_plain_words(message: impl Display) -> String {
             continue;
         }
         let mut words: Vec<&str> = part.split(' ').collect();
-        // `struct Name`, `internally tagged enum Name`: the name follows.
+        // In `struct Name` and `internally tagged enum Name` the type's name follows.
         while let Some(at) = words.iter().position(|word| ["struct", "enum"].contains(word)) {
             let of_tag = words[..at]
                 .iter()
@@ -64,7 +64,7 @@ mod tests {
     use super::in_plain_words;
 
     #[test]
-    fn kinds_of_values_are_said_as_people_say_them() {
+    fn serde_kinds_become_plain_words() {
         for (said, expected) in [
             (
                 "invalid type: map, expected u64 at line 2",

@@ -1,17 +1,14 @@
-//! Characters that a terminal obeys or does not show, written so that they are seen. Which of them a name may have is
-//! `name.rs`'s.
+//! Escapes characters that a terminal obeys or does not show.
 
 use std::borrow::Cow;
 use std::fmt::{self, Display, Write};
 use std::path::Path;
 
-/// Characters that are controls by nature, turn the direction of text, or take no place on the screen, as ranges in
-/// rising order.
+/// Ranges, in rising order, of control characters, characters that change the direction of text, and characters of zero width.
 ///
-/// C0, DEL and C1; the soft hyphen; the bidirectional marks, embeddings, overrides and isolates (Unicode Standard Annex
-/// 9); joiners, fillers and other characters of no width; line and paragraph separators; interlinear marks; tags.
-/// Of the variation selectors those that choose between a letter and a picture (U+FE0E, U+FE0F) are shown; texts can be
-/// hidden in the others.
+/// C0, DEL and C1; the soft hyphen; the bidirectional marks, embeddings, overrides and isolates (Unicode Standard Annex 9);
+/// joiners, fillers and other characters of zero width; line and paragraph separators; interlinear marks; tags. Of the variation
+/// selectors, the two that choose between text and emoji style (U+FE0E, U+FE0F) are printable; the others can hide text.
 const UNPRINTABLE: [(char, char); 27] = [
     ('\0', '\u{1f}'),
     ('\u{7f}', '\u{9f}'),
@@ -42,7 +39,7 @@ const UNPRINTABLE: [(char, char); 27] = [
     ('\u{e0000}', '\u{e01ef}'),
 ];
 
-/// Whether a character is one that a terminal obeys or does not show. Line feed and tab are among them.
+/// Whether a terminal obeys this character or does not show it. Includes line feed and tab.
 pub fn is_unprintable(letter: char) -> bool {
     // Almost all text is ASCII.
     if matches!(letter, ' '..='~') {
@@ -52,11 +49,11 @@ pub fn is_unprintable(letter: char) -> bool {
     behind > 0 && letter <= UNPRINTABLE[behind - 1].1
 }
 
-/// The text in one line: every unprintable character as Rust and Swift write it, `\u{202e}`, and `\n`, `\r`, `\t` for
-/// those three.
+/// The text in one line: every unprintable character in the notation of Rust and Swift, `\u{202e}`, except `
+/// `, `\r` and `\t`.
 ///
-/// For text of others inside a sentence: it cannot end the line and begin one that looks like ours. What is escaped
-/// already stays as it is.
+/// For untrusted text inside a sentence: it cannot end the line and forge one of ours. Text that is already escaped stays as it
+/// is.
 ///
 /// # Example
 /// ```
@@ -73,7 +70,7 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     })
 }
 
-/// Text of several lines: as [`printable`], but line feeds and tabs stay.
+/// Text of several lines: like [`printable`], but line feeds and tabs stay.
 ///
 /// For whole messages, right before they are printed.
 pub fn printable_lines(text: &str) -> Cow<'_, str> {
@@ -81,16 +78,16 @@ pub fn printable_lines(text: &str) -> Cow<'_, str> {
     escaped(text, hostile, braces)
 }
 
-/// A text of JSON: as [`printable_lines`], but with the escapes of JSON, so that it means what it meant.
+/// A JSON text: like [`printable_lines`], but with JSON escapes, so that its meaning does not change.
 ///
-/// In valid JSON such characters stand in texts only, where an escape is the same character.
+/// In valid JSON such characters occur only in strings, where an escape means the same character.
 ///
 /// # Example
 /// ```
 /// assert_eq!(driftworld_text::printable_json("{\"a\":\"\u{202e}\"}"), r#"{"a":"\u202e"}"#);
 /// ```
 pub fn printable_json(json: &str) -> Cow<'_, str> {
-    // Between values a carriage return is white space, and an escape is not.
+    // Between values a carriage return is white space, and an escape would be an error.
     let hostile = |letter: char| is_unprintable(letter) && !matches!(letter, '\n' | '\t' | '\r');
     escaped(json, hostile, |out, letter| {
         for unit in letter.encode_utf16(&mut [0; 2]) {
@@ -99,7 +96,7 @@ pub fn printable_json(json: &str) -> Cow<'_, str> {
     })
 }
 
-/// Whatever can be displayed, in one line as [`printable`] has it, without a copy.
+/// Displays any value in one line like [`printable`], without a copy.
 ///
 /// # Example
 /// ```
@@ -109,9 +106,9 @@ pub fn one_line<T: Display>(shown: T) -> OneLine<T> {
     OneLine(shown)
 }
 
-/// Paths in messages.
+/// Paths for messages.
 pub trait ShownPath {
-    /// The path in one line. In place of `Path::display`, which shows names of files as they are.
+    /// The path in one line. Use it instead of `Path::display`, which does not escape file names.
     ///
     /// # Example
     /// ```
@@ -137,13 +134,13 @@ pub fn quoted(text: &str) -> String {
     printable(&format!("{text:?}")).into_owned()
 }
 
-/// Shows in one line what is inside, see [`one_line`].
+/// Displays the inner value in one line, see [`one_line`].
 #[derive(Clone, Copy, Debug)]
 pub struct OneLine<T>(T);
 
 impl<T: Display> Display for OneLine<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        /// Passes on what is written to it, escaped.
+        /// Forwards what is written to it, escaped.
         struct Escaping<'a, 'f>(&'a mut fmt::Formatter<'f>);
         impl Write for Escaping<'_, '_> {
             fn write_str(&mut self, text: &str) -> fmt::Result {
@@ -158,7 +155,7 @@ fn braces(out: &mut String, letter: char) {
     write!(out, "\\u{{{:x}}}", u32::from(letter)).expect("writing to a String does not fail");
 }
 
-/// The text with some of its letters written otherwise; no copy where it has none of them.
+/// The text with hostile characters replaced; borrowed if there are none.
 fn escaped(text: &str, is_hostile: impl Fn(char) -> bool, write: impl Fn(&mut String, char)) -> Cow<'_, str> {
     let Some(first) = text.find(&is_hostile) else {
         return Cow::Borrowed(text);
@@ -181,7 +178,7 @@ mod tests {
 
     use super::*;
 
-    /// Texts in which characters that matter are as frequent as others.
+    /// Texts in which special characters are as frequent as others.
     fn texts() -> impl Strategy<Value = String> {
         let hostile = (0..UNPRINTABLE.len(), any::<u8>()).prop_map(|(range, offset)| {
             let (first, last) = UNPRINTABLE[range];
@@ -193,14 +190,14 @@ mod tests {
     }
 
     #[test]
-    fn the_ranges_rise_and_do_not_touch() {
+    fn unprintable_ranges_are_sorted_and_disjoint() {
         for pair in UNPRINTABLE.windows(2) {
             assert!(pair[0].0 <= pair[0].1 && pair[0].1 < pair[1].0, "{pair:?}");
         }
     }
 
     #[test]
-    fn what_a_terminal_obeys_or_hides_is_unprintable_and_writing_is_not() {
+    fn control_and_invisible_characters_are_unprintable_and_letters_are_not() {
         for hostile in
             "\0\x07\x08\t\n\r\x1b\x7f\u{80}\u{9b}\u{9f}\u{ad}\u{61c}\u{200b}\u{200d}\u{200e}\u{200f}\u{2028}\u{2029}\
                         \u{202a}\u{202e}\u{2060}\u{2066}\u{2069}\u{206f}\u{feff}\u{e0041}"
@@ -211,7 +208,7 @@ mod tests {
         for plain in " ~aZ0é한語ש\u{5b0}ش₂→×°½▀…«”‰\u{2027}\u{202f}\u{fe0f}😀".chars() {
             assert!(!is_unprintable(plain), "{plain:?}");
         }
-        // The one by the table is the one by Unicode's own word for it, as far as the standard library has it.
+        // Agrees with Unicode's own categories as far as the standard library has them.
         for letter in '\0'..=char::MAX {
             assert!(!letter.is_control() || is_unprintable(letter), "{letter:?}");
         }
@@ -219,7 +216,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn nothing_unprintable_is_left_and_nothing_else_is_touched(text in texts()) {
+        fn escaping_removes_all_unprintable_and_keeps_the_rest(text in texts()) {
             let line = printable(&text);
             prop_assert!(!line.contains(is_unprintable));
             prop_assert_eq!(printable(&line), line.as_ref());
@@ -227,7 +224,7 @@ mod tests {
             prop_assert_eq!(display.as_str(), line.as_ref());
             let lines = printable_lines(&text);
             prop_assert!(!lines.contains(|c| is_unprintable(c) && c != '\n' && c != '\t'));
-            // Letter by letter, an independent way.
+            // An independent implementation, character by character.
             let expected: String = text.chars().map(|c| match c {
                 '\n' => "\\n".to_owned(),
                 '\r' => "\\r".to_owned(),

@@ -1,21 +1,21 @@
-//! Words that earlier releases took, and what to use instead.
+//! Words that earlier releases accepted, with their replacements.
 
 use WordKind::{By, Command, Format, Measure, Option as Flag, Order};
 
-/// What a word that a user types stands for.
+/// What kind of word the user typed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WordKind {
-    /// A command, with the commands before it: `bench metrics`.
+    /// A command, with its parent commands: `bench metrics`.
     Command,
-    /// An option, behind its command: `convert --to`.
+    /// An option, after its command: `convert --to`.
     Option,
-    /// The ending of a file's name, or a format by its own name.
+    /// A file extension, or the name of a format.
     Format,
-    /// What variants and worlds are compared by: `--by`, `compare_by`, `by=`.
+    /// A way to compare variants and worlds: `--by`, `compare_by`, `by=`.
     By,
-    /// How the values of a parameter are compared: `compare.measure` of a task spec.
+    /// A way to compare the values of a parameter: `compare.measure` of a task spec.
     Measure,
-    /// How variants are put into an order: `--order`, `method=`.
+    /// A way to order variants: `--order`, `method=`.
     Order,
 }
 
@@ -65,7 +65,7 @@ const REMOVED: &[(WordKind, &str, &str)] = &[
     (Order, "typical-last", "given, with the most typical variant named last"),
 ];
 
-/// What a message says of a removed word, `removed in 0.3; use …`; `None` for any other word.
+/// The message for a removed word, `removed in 0.3; use …`; `None` for any other word.
 ///
 /// ```
 /// # use driftworld_text::{WordKind, removed};

@@ -1,10 +1,9 @@
-//! What belongs together in a line, such as a number and its unit: until it is shown, its blanks are no-break spaces. Where lines
-//! are broken is the business of those who lay texts out.
+//! Keeps words together on one line, such as a number and its unit: their spaces are no-break spaces until the text is shown.
 
-/// Stands for a blank at which no line is broken.
+/// Replaces a space at which a line must not break.
 pub const NO_BREAK: char = '\u{a0}';
 
-/// A text that belongs together.
+/// The text with no-break spaces.
 ///
 /// # Example
 /// ```
@@ -16,7 +15,7 @@ pub fn whole(text: &str) -> String {
     text.replace(' ', "\u{a0}")
 }
 
-/// A text as it is shown: with a blank for each no-break space.
+/// The text for display, with plain spaces again.
 pub fn with_blanks(text: &str) -> String {
     text.replace(NO_BREAK, " ")
 }

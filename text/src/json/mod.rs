@@ -1,4 +1,4 @@
-//! JSON as documents and logs have it: its value within limits, what is wrong with it in words, and where things stand in it.
+//! Reads JSON documents and logs: values within limits, errors in plain words, and the places of values in the text.
 
 mod places;
 mod value;
@@ -6,14 +6,13 @@ mod value;
 pub use places::{Wanted, escape, last_key, offsets, repeated};
 pub use value::{Repeats, Stop, parse};
 
-/// The longest key, in bytes. Longer ones would stand in every pointer to what is below them.
+/// Longest key in bytes. Longer ones would appear in every pointer to a value below them.
 pub const MAX_KEY_BYTES: usize = 400;
 
-/// How deep lists and objects may stand in each other: `serde_json`'s limit, which keeps a hostile text from taking the
-/// whole stack.
+/// Greatest depth of nested lists and objects: `serde_json`'s limit, which keeps hostile text from overflowing the stack.
 pub const MAX_DEPTH: usize = 127;
 
-/// Why a text is not JSON, in words with advice.
+/// Why a text is not JSON, in plain words with advice.
 pub fn reason(text: &str, error: &serde_json::Error) -> String {
     let message = error.to_string();
     let mut reason = message.split(" at line ").next().unwrap_or_default().to_owned();
@@ -36,7 +35,7 @@ pub fn reason(text: &str, error: &serde_json::Error) -> String {
     reason
 }
 
-/// Lines and columns of offsets, in one walk through the text however many they are.
+/// Lines and columns of offsets, in one pass through the text for any number of offsets.
 pub fn lines_and_columns(text: &str, offsets: &[usize]) -> Vec<(usize, usize)> {
     let mut order: Vec<usize> = (0..offsets.len()).collect();
     order.sort_by_key(|index| offsets[*index]);

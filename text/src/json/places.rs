@@ -1,5 +1,5 @@
-//! Where things stand in a JSON text, found in one walk along its words: nothing of it is taken into memory, so that a
-//! large document with problems costs no more than one without. What is wrong is said elsewhere.
+//! Finds the places of values in a JSON text in one pass that stores no values, so that reporting problems in a large document
+//! needs no extra memory.
 
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
@@ -13,22 +13,22 @@ pub fn escape(key: &str) -> String {
     key.replace('~', "~0").replace('/', "~1")
 }
 
-/// The key that a JSON pointer ends with.
+/// The last key of a JSON pointer.
 pub fn last_key(pointer: &str) -> String {
     let key = pointer.rsplit('/').next().unwrap_or_default();
     key.replace("~1", "/").replace("~0", "~")
 }
 
-/// A pointer whose place is wanted.
+/// A pointer to locate.
 #[derive(Clone, Copy, Debug)]
 pub struct Wanted<'p> {
     /// The pointer.
     pub pointer: &'p str,
-    /// Wanted is the key in front of the value.
+    /// Locate the key in front of the value.
     pub at_key: bool,
 }
 
-/// Where the values of pointers begin, or those of their nearest parents that are there.
+/// Offsets of the values of pointers; for a missing one, of its nearest existing parent.
 pub fn offsets(text: &str, wanted: &[Wanted]) -> Vec<usize> {
     let mut tree = Tree::default();
     let ways: Vec<Vec<usize>> = wanted.iter().map(|wanted| tree.way(wanted.pointer)).collect();
@@ -43,7 +43,7 @@ pub fn offsets(text: &str, wanted: &[Wanted]) -> Vec<usize> {
     wanted.iter().zip(&ways).map(offset).collect()
 }
 
-/// The pointers of keys that stand twice in one object, the first `most` of them, in the order of the text.
+/// Pointers of repeated keys within one object, at most `most`, in the order of the text.
 pub fn repeated(text: &str, most: usize) -> Vec<String> {
     let mut open: Vec<Level> = Vec::new();
     let mut found = Vec::new();
@@ -76,7 +76,7 @@ pub fn repeated(text: &str, most: usize) -> Vec<String> {
     found
 }
 
-/// An open object with its keys so far and the last of them, or an open list with the number of its items so far.
+/// An open object with its keys so far and the last one, or an open list with the number of items so far.
 enum Level<'t> {
     Object(HashSet<Cow<'t, str>>, Cow<'t, str>),
     List(usize),
@@ -86,20 +86,20 @@ fn pointer(open: &[Level]) -> String {
     open.iter().fold(String::new(), |mut pointer, level| {
         match level {
             Level::Object(_, key) => pointer.extend(["/", &escape(key)]),
-            // The item that is being read counts already.
+            // Includes the item being read.
             Level::List(items) => write!(pointer, "/{}", items.saturating_sub(1)).expect("a String takes any text"),
         }
         pointer
     })
 }
 
-/// What a walk comes by.
+/// An event of a walk.
 enum Event<'t> {
-    /// A key, and where it begins.
+    /// A key and its offset.
     Key(Cow<'t, str>, usize),
-    /// A value begins here; an object or a list goes on until it is closed.
+    /// The start of a value; objects and lists last until they are closed.
     Value(usize, Option<Kind>),
-    /// The innermost open value ends.
+    /// The end of the innermost open value.
     Close,
 }
 
@@ -109,7 +109,7 @@ enum Kind {
     List,
 }
 
-/// Walks along a text that is known to be JSON, as long as whoever is told wishes.
+/// Walks through a text that is valid JSON, until `tell` returns false.
 fn walk<'t>(text: &'t str, mut tell: impl FnMut(Event<'t>) -> bool) {
     let mut scanner = Scanner::new(text, &ScannerOptions::default());
     let mut open: Vec<Kind> = Vec::new();
@@ -148,34 +148,34 @@ fn walk<'t>(text: &'t str, mut tell: impl FnMut(Event<'t>) -> bool) {
     }
 }
 
-/// Where a value and the key in front of it begin; of an item of a list both are the same.
+/// Offsets of a value and of its key; the same for an item of a list.
 #[derive(Clone, Copy)]
 struct Place {
     key: usize,
     value: usize,
 }
 
-/// The pointers that are wanted, as a tree of their steps; and how far the walk is in it.
+/// The wanted pointers as a tree of their steps, and the position of the walk in it.
 struct Tree {
     nodes: Vec<Node>,
     open: Vec<Branch>,
-    /// Of the value that comes next in an object: its node, if it is on the way to anything, and where its key begins.
+    /// Of the next value in an object: its node, if it leads to a wanted pointer, and the offset of its key.
     keyed: (Option<usize>, usize),
 }
 
 #[derive(Default)]
 struct Node {
     keys: HashMap<String, usize>,
-    /// The same by numbers, for items of lists.
+    /// Like `keys`, but by index, for items of lists.
     items: HashMap<usize, usize>,
     place: Option<Place>,
 }
 
 /// An open value.
 struct Branch {
-    /// Its node, if it is on the way to anything.
+    /// Its node, if it leads to a wanted pointer.
     node: Option<usize>,
-    /// Of a list the number of the next item.
+    /// For a list, the index of the next item.
     item: Option<usize>,
 }
 
@@ -190,7 +190,7 @@ impl Default for Tree {
 }
 
 impl Tree {
-    /// The nodes on the way to a pointer, made if need be.
+    /// The nodes along a pointer; creates missing ones.
     fn way(&mut self, pointer: &str) -> Vec<usize> {
         let mut way = vec![0];
         let mut node = 0;
@@ -212,7 +212,7 @@ impl Tree {
         way
     }
 
-    /// Takes what the walk comes by.
+    /// Handles an event.
     fn see(&mut self, event: Event) {
         match event {
             Event::Key(key, start) => {
@@ -247,7 +247,7 @@ impl Tree {
         }
     }
 
-    /// Of two values of one key the last counts, also for what stands in them.
+    /// Of repeated keys the last counts, including everything below it.
     fn forget(&mut self, node: usize) {
         if self.nodes[node].place.take().is_some() {
             let below: Vec<usize> = self.nodes[node].keys.values().copied().collect();
@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn values_and_keys_are_found_by_their_pointers() {
+    fn values_and_keys_are_found_by_pointer() {
         let text = r#" {"a": [10, {"b/c": true, "d": []}], "e": "}", "f~": 1}"#;
         let check = |pointer: &str, at_key: bool, rest: &str| {
             assert!(text[at(text, pointer, at_key)..].starts_with(rest), "{pointer}");
@@ -280,21 +280,21 @@ mod tests {
         check("/a/1/d", true, "\"d\"");
         check("/e", false, "\"}\"");
         check("/f~0", false, "1}");
-        // What is not there is at its nearest parent.
+        // A missing value is reported at its nearest parent.
         check("/a/1/d/7", false, "[]}");
         check("/a/x", false, "[10");
         check("/nothing", false, "{\"a\"");
     }
 
     #[test]
-    fn of_two_values_of_one_key_the_last_counts() {
+    fn last_of_repeated_keys_counts() {
         let text = r#"{"a": {"b": 1}, "a": [2]}"#;
         assert_eq!(at(text, "/a", false), text.find("[2]").unwrap());
         assert_eq!(at(text, "/a/b", false), text.find("[2]").unwrap());
     }
 
     #[test]
-    fn keys_that_stand_twice_are_named_in_the_order_of_the_text() {
+    fn repeated_keys_are_listed_in_text_order() {
         let text = r#"{"a": {"b": [0, {"c": 1, "c": 2}], "b": 3}, "x": {"c": 1}, "a": 4, "a": 5}"#;
         assert_eq!(repeated(text, 9), ["/a/b/1/c", "/a/b", "/a", "/a"]);
         assert_eq!(repeated(text, 2), ["/a/b/1/c", "/a/b"]);

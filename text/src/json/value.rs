@@ -1,5 +1,5 @@
-//! Builds the value of a JSON text within limits: so many values, keys so long, and no key twice in one object. What is
-//! built takes no more room than it needs: a document of lists within lists would take ten times as much otherwise.
+//! Parses JSON within limits on the number of values, the length of keys and repeated keys. Reserves no more memory than it
+//! needs: otherwise nested lists would take ten times as much.
 
 use std::cell::{Cell, RefCell};
 use std::fmt;
@@ -9,30 +9,30 @@ use serde_json::{Map, Value};
 
 use super::MAX_KEY_BYTES;
 
-/// Why a text was not read to its end.
+/// Why parsing stopped early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
-    /// A key stands twice in one object.
+    /// A key is repeated in one object.
     Repeated,
     /// There are more values than allowed.
     TooMany,
-    /// A key is longer than any that a document has.
+    /// A key is longer than any known key.
     LongKey,
 }
 
-/// Whether a key may stand twice in one object.
+/// How to treat a key that is repeated in one object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Repeats {
-    /// It is where reading ends.
+    /// Stop parsing.
     Stop,
-    /// The last counts.
+    /// The last one counts.
     LastCounts,
 }
 
-/// The value of a text of at most `most` values.
+/// Parses a text of at most `most` values.
 ///
 /// # Errors
-/// The parser's, and why it was stopped if it was.
+/// The parser's error, and the reason if a limit stopped it.
 pub fn parse(text: &str, most: usize, repeats: Repeats) -> Result<Value, (serde_json::Error, Option<Stop>)> {
     let builder = Builder {
         left: Cell::new(most),
@@ -48,12 +48,12 @@ pub fn parse(text: &str, most: usize, repeats: Repeats) -> Result<Value, (serde_
 }
 
 struct Builder {
-    /// How many values there may be yet, the outermost among them.
+    /// Values still allowed, including the outermost.
     left: Cell<usize>,
     most: usize,
     stop: Cell<Option<Stop>>,
     repeats: Repeats,
-    /// The entries of the objects that are open: an object is made when it is known how many it has.
+    /// Entries of the open objects: an object is built once its size is known.
     entries: RefCell<Vec<(String, Value)>>,
 }
 
@@ -123,7 +123,7 @@ impl<'de> Visitor<'de> for AnyValue<'_> {
         let mut list: Vec<Value> = Vec::new();
         while let Some(item) = items.next_element_seed(self)? {
             if list.len() == list.capacity() {
-                // Long lists grow by an eighth: there is not room for them twice.
+                // Long lists grow by an eighth: doubling would need twice the memory.
                 let more = if list.len() < LONG {
                     list.len().max(4)
                 } else {
@@ -133,7 +133,7 @@ impl<'de> Visitor<'de> for AnyValue<'_> {
             }
             list.push(item);
         }
-        // In a small document the room left over does not matter, and giving it back takes time.
+        // In a small document the spare capacity does not matter, and shrinking takes time.
         if self.0.has_read_much() {
             list.shrink_to_fit();
         }
@@ -164,7 +164,7 @@ impl<'de> Visitor<'de> for AnyValue<'_> {
         }
         drop(open);
         if is_long {
-            // The rest of a long one is not kept twice.
+            // Repeated entries of a long object are not stored twice.
             while let Some(key) = entries.next_key::<String>()? {
                 if key.len() > MAX_KEY_BYTES {
                     return Err(builder.stop(Stop::LongKey));
@@ -179,7 +179,7 @@ impl<'de> Visitor<'de> for AnyValue<'_> {
     }
 }
 
-/// From so many items or entries on, a list or object is a long one.
+/// Number of items or entries from which a list or object counts as long.
 const LONG: usize = 4096;
 
 #[cfg(test)]
@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn every_value_counts_and_keys_do_not() {
+    fn values_count_towards_the_limit_and_keys_do_not() {
         let text = r#"{"a": [1, {}, "x"], "b": null}"#;
         assert_eq!(stopped(text, 6), None);
         assert_eq!(stopped(text, 5), Some(Stop::TooMany));
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn a_key_that_stands_twice_or_is_long_ends_the_reading() {
+    fn repeated_or_long_key_stops_parsing() {
         assert_eq!(stopped(r#"{"a": 1, "b": {"a": 1}}"#, 9), None);
         assert_eq!(stopped(r#"{"b": {"a": 1, "a": 1}}"#, 9), Some(Stop::Repeated));
         let many: Vec<String> = (0..5000).map(|key| format!("\"{key}\":0")).collect();
@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn what_follows_a_value_is_refused() {
+    fn text_after_the_value_is_refused() {
         assert!(parse("{} 1", 9, Repeats::Stop).is_err());
         assert!(parse("", 9, Repeats::Stop).is_err());
     }
@@ -247,9 +247,9 @@ mod tests {
     }
 
     proptest! {
-        /// The parser's own values are the second opinion.
+        /// The parser's own values serve as the oracle.
         #[test]
-        fn values_are_those_of_the_parser(value in any_json()) {
+        fn values_agree_with_serde_json(value in any_json()) {
             let text = value.to_string();
             let read = parse(&text, 1000, Repeats::Stop).map_err(|(error, _)| error.to_string());
             prop_assert_eq!(read, Ok(serde_json::from_str::<Value>(&text).unwrap()));
