@@ -1,11 +1,11 @@
-//! Scripts of agents, played in a small world.
+//! Law of agent scripts: an accepted script can be played in a small world.
 
 use driftworld_env::{Agent, Environment, ScriptedAgent};
 use driftworld_spec::World;
 
 use crate::{refusal, world};
 
-/// Steps that are played.
+/// Steps to play.
 const STEPS: usize = 8;
 
 const WORLD: &str = r#"{ "environment_params": { "map_size": [20, 20], "walls": [{ "polygon": [[2, 2], [4, 2], [4, 4]] }] },
@@ -13,7 +13,7 @@ const WORLD: &str = r#"{ "environment_params": { "map_size": [20, 20], "walls": 
     "objects": [{ "class": "ball", "coordinates": [0, 5], "tag": "a", "unique_name": "one" },
                 { "class": "cube", "coordinates": [-5, 0], "tag": "b", "unique_name": "two", "pushable": { "mass": 1 } }] }"#;
 
-/// A script that is taken says what to do in every step.
+/// An accepted script gives an action for every step.
 pub(crate) fn check(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     let mut agent = match ScriptedAgent::parse("a.txt", &text) {

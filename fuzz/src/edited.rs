@@ -1,25 +1,25 @@
-//! JSON texts out of bytes: the bytes as they are, or a known document with the changes that the bytes describe, since
-//! plain bytes seldom get past a parser.
+//! Turns fuzzer bytes into JSON: either the bytes as they are, or a known document with the edits that the bytes describe,
+//! because random bytes seldom get past a parser.
 
 use std::collections::BTreeSet;
 
 use arbitrary::Unstructured;
 use serde_json::{Map, Number, Value};
 
-/// The first byte of bytes that describe changes.
+/// First byte of an input that describes edits.
 pub(crate) const MARK: u8 = b'~';
 
-/// The most changes of a document.
+/// Most edits of one document.
 const MOST_CHANGES: usize = 12;
 
-/// Documents to begin with, and the words that may be put into them.
+/// Seed documents, and the words that edits may insert.
 pub(crate) struct Known {
     documents: Vec<Value>,
     words: Vec<String>,
 }
 
 impl Known {
-    /// Some documents, and the JSON Schema that says which keys and words there are.
+    /// Takes the documents; keys and words come from them and from the JSON Schema.
     pub(crate) fn new(documents: Vec<Value>, schema: &str) -> Self {
         let mut words = BTreeSet::new();
         for document in &documents {
@@ -34,7 +34,7 @@ impl Known {
         }
     }
 
-    /// The text that the bytes stand for.
+    /// The text that the bytes describe.
     pub(crate) fn text(&self, bytes: &[u8]) -> String {
         match bytes.split_first() {
             Some((&MARK, rest)) => self.edited(&mut Unstructured::new(rest)).to_string(),
@@ -42,7 +42,7 @@ impl Known {
         }
     }
 
-    /// A known document with changes.
+    /// A known document with edits.
     pub(crate) fn edited(&self, bytes: &mut Unstructured) -> Value {
         let mut document = self.any_document(bytes).clone();
         for _ in 0..MOST_CHANGES {
@@ -55,12 +55,12 @@ impl Known {
     }
 
     fn any_document(&self, bytes: &mut Unstructured) -> &Value {
-        // Where the bytes are spent, the first will do.
+        // Once the bytes are used up, takes the first document.
         let at = bytes.choose_index(self.documents.len()).unwrap_or_default();
         &self.documents[at]
     }
 
-    /// Walks to a place and changes what stands there.
+    /// Walks to a random place and changes the value there.
     fn change(&self, value: &mut Value, bytes: &mut Unstructured) {
         let stop = byte(bytes).is_multiple_of(4);
         match value {
@@ -158,7 +158,7 @@ impl Known {
     }
 }
 
-/// The next byte, or 0 where they are spent.
+/// The next byte, or 0 once they are used up.
 pub(crate) fn byte(bytes: &mut Unstructured) -> u8 {
     bytes.arbitrary().unwrap_or_default()
 }

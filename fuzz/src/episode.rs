@@ -1,4 +1,4 @@
-//! Worlds that are run: behind a length stand changes of a known world of that length, then what the agent does.
+//! Law of episodes in edited worlds. Input: a length, that many bytes of edits of a known world, then the agent's actions.
 
 use arbitrary::Unstructured;
 use driftworld_env::{Action, Environment, Step};
@@ -7,14 +7,14 @@ use driftworld_spec::World;
 use crate::edited::byte;
 use crate::{refusal, world};
 
-/// The most objects of a world that is run: what a thousand do, other tests say.
+/// Most objects of a world that is run; larger worlds are covered by other tests.
 const MOST_OBJECTS: usize = 32;
 
-/// The most steps of an episode.
+/// Most steps of an episode.
 const MOST_STEPS: usize = 16;
 
-/// The same world and actions give the same episode, whose numbers are finite; a world that is written down goes on as
-/// it would have.
+/// The same world and actions give the same episode, and all its numbers are finite. A world that is saved and loaded continues
+/// in the same way.
 pub(crate) fn check(bytes: &[u8]) {
     let (length, rest) = bytes
         .split_first()
@@ -29,7 +29,7 @@ pub(crate) fn check(bytes: &[u8]) {
         world.objects.truncate(MOST_OBJECTS);
         world.agent_params.observation_size = 8;
     });
-    // What is left of it must be a world still.
+    // What remains must still be a valid world.
     let Ok(start) = start else {
         return;
     };
@@ -74,7 +74,7 @@ fn step(environment: &mut Environment, action: Action) -> Option<Step> {
     }
 }
 
-/// Where everything is, and what has been paid.
+/// The position of everything and the reward so far, as text.
 fn moment(environment: &Environment) -> String {
     let agent = format!("{:?}", environment.agent());
     assert!(!agent.contains("NaN") && !agent.contains("inf"), "{agent}");

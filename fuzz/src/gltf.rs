@@ -1,5 +1,5 @@
-//! Models as glTF files. Behind [`MARK`](crate::edited::MARK) stand a length, changes of a known file of that length,
-//! and changes of the numbers in its buffer.
+//! Law of glTF models. Input behind [`MARK`](crate::edited::MARK): a length, that many bytes of edits of a known file, then edits
+//! of the numbers in its buffer.
 
 use std::sync::OnceLock;
 
@@ -23,7 +23,7 @@ fn known() -> &'static Known {
 const CORNERS: [[f32; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 const INDICES: [u16; 12] = [0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3];
 
-/// The buffer beside the file.
+/// The buffer file next to the glTF file.
 fn buffer() -> Vec<u8> {
     let corners = CORNERS.as_flattened().iter().flat_map(|number| number.to_le_bytes());
     corners
@@ -51,7 +51,7 @@ fn tetrahedron() -> Value {
     })
 }
 
-/// What is imported is a sound model of a library, whose bytes read the same.
+/// An imported model is valid in a library, and its bytes round-trip.
 pub(crate) fn check(bytes: &[u8]) {
     let mut beside = buffer();
     let mut file = bytes.to_vec();

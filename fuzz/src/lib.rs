@@ -1,8 +1,7 @@
-//! What must hold of everything that Driftworld reads, whatever its bytes are: a law for each kind of document, file
-//! and message.
+//! Laws that hold for everything that Driftworld reads, whatever its bytes: one law per kind of document, file and message.
 //!
-//! `tests/replay.rs` checks the laws on the seeds and on small changes of them; `scripts/fuzz.sh` lets libFuzzer look
-//! for bytes that break them. Not here: what a sound document may say, which the tests of each crate say.
+//! `tests/replay.rs` checks the laws on the seeds and on small changes of them; `scripts/fuzz.sh` lets libFuzzer search for bytes
+//! that break them.
 
 mod agent_script;
 mod edited;
@@ -21,16 +20,16 @@ mod settings;
 mod task;
 mod world;
 
-/// What bytes are handed to, and what must hold then.
+/// A fuzz target: a law, and the folder of its seeds.
 #[derive(Clone, Copy, Debug)]
 pub struct Target {
-    /// The name of its folder of seeds.
+    /// Name of its folder of seeds.
     pub name: &'static str,
-    /// Panics where the bytes break the law.
+    /// The law: panics if the bytes break it.
     pub law: fn(&[u8]),
 }
 
-/// Every target, in the order of the alphabet.
+/// All targets in alphabetical order.
 pub const TARGETS: [Target; 14] = [
     target("agent_script", agent_script::check),
     target("episode", episode::check),

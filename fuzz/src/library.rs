@@ -1,15 +1,15 @@
-//! Libraries of assets. Behind the first byte [`SEALED`] stands what comes behind the header, so that the checksum
-//! stops nobody.
+//! Law of asset libraries. Input that starts with [`SEALED`] gets a valid header in front, so that the checksum does not stop the
+//! fuzzer.
 
 use driftworld_env::Library;
 use sha2::{Digest, Sha256};
 
 use crate::refusal;
 
-/// The first byte of what is put behind a header that fits.
+/// First byte of an input that gets a valid header.
 pub(crate) const SEALED: u8 = b'S';
 
-/// A library that is read can be written, and is the same bytes.
+/// A library that can be read can be written, and gives the same bytes.
 pub(crate) fn check(bytes: &[u8]) {
     let sealed;
     let bytes = match bytes.split_first() {

@@ -1,6 +1,4 @@
-//! What must hold of every log, whatever its files hold: written, read, scored and resumed.
-//!
-//! Not here: where the bytes come from.
+//! Laws of logs, whatever their files hold: writing, reading, scoring and resuming.
 
 use std::fs;
 use std::path::Path;
@@ -11,10 +9,10 @@ use driftworld_metrics::{
     validate_log,
 };
 
-/// What stands between the files of a log in one piece of bytes.
+/// Separates the files of a log in the input.
 const BETWEEN: &[u8] = b"\n%%\n";
 
-/// The files, in the order of the bytes; `%` stands for one that is not there.
+/// The files in the order of the input; `%` marks a missing one.
 const FILES: [&str; 4] = [
     "logger_info.json",
     "scenario_info.json",
@@ -22,7 +20,7 @@ const FILES: [&str; 4] = [
     "w/0-train/data-log.tsv",
 ];
 
-/// Lays out the log that the bytes describe, and checks every law.
+/// Writes the log that the bytes describe, and checks every law.
 pub(crate) fn check(bytes: &[u8]) {
     let base = tempfile::tempdir().expect("there is room for a small log");
     let dir = base.path().join("log");
@@ -81,7 +79,7 @@ fn reads_alike_with_texts(dir: &Path, log: &Log) {
     );
 }
 
-/// A row in words that are equal where rows are: not a number is one, and columns have no order.
+/// A row as text that is equal for equal rows: all NaNs are equal, and columns have no order.
 fn shown(row: Row<'_>) -> String {
     let mut record = row.to_record();
     record.metrics.sort_keys();
@@ -94,7 +92,7 @@ fn sorted_rows(log: &Log) -> Vec<String> {
     rows
 }
 
-/// No score is not a number, and none is infinite; what cannot be scored says why.
+/// Scores are finite or missing; a missing score comes with a reason.
 fn scores_without_nan(log: &Log) {
     let experts: Vec<SteLog> = SteLog::new(log.clone()).into_iter().collect();
     let mut choices = vec![Options::default(); 3];
@@ -122,7 +120,7 @@ fn scores_without_nan(log: &Log) {
     }
 }
 
-/// The words of a value without what stands in quotes.
+/// A message without its quoted parts.
 fn without_quoted(text: &str) -> String {
     let mut found = String::new();
     let (mut quoted, mut escaped) = (false, false);
@@ -138,7 +136,7 @@ fn without_quoted(text: &str) -> String {
     found
 }
 
-/// What was read can be written, if its rows keep the rules of a writer, and reads the same.
+/// A log that was read can be written if its rows keep the writer's rules, and reads back the same.
 fn writes_back(dir: &Path, log: &Log) {
     let info = LoggerInfo::new(log.logger_info.metrics_columns()).expect("they were taken before");
     let mut writer = LogWriter::create(dir, &info, &log.scenario_info).expect("the folder is new");
@@ -163,7 +161,7 @@ fn writes_back(dir: &Path, log: &Log) {
     LogWriter::resume(dir).expect("what is written can be continued");
 }
 
-/// A log that is taken up can be read, and what could be read before is all there.
+/// A resumed log can be read, and keeps everything that could be read before.
 fn resumes(dir: &Path, log: Option<&Log>) {
     if LogWriter::resume(dir).is_err() {
         return;

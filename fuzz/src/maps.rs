@@ -1,4 +1,4 @@
-//! Maps files.
+//! Law of maps files.
 
 use std::sync::OnceLock;
 
@@ -22,7 +22,7 @@ fn known() -> &'static Known {
     })
 }
 
-/// A layout that is taken makes sound worlds.
+/// A layout that is accepted gives valid worlds.
 pub(crate) fn check(bytes: &[u8]) {
     let text = known().text(bytes);
     let library = match MapLibrary::from_json("m.json", &text) {

@@ -1,13 +1,13 @@
-//! Distance matrices as CSV and JSON; the first byte says which.
+//! Law of distance matrices in CSV and JSON; the first byte chooses the format.
 
 use driftworld_similarity::DistanceMatrix;
 
 use crate::refusal;
 
-/// The most items of a matrix that is written again.
+/// Most items of a matrix that is written again.
 const MOST_ITEMS: usize = 64;
 
-/// A matrix that is read can be written in each form, and reads the same.
+/// A matrix that can be read can be written in each format, and reads back the same.
 pub(crate) fn check(bytes: &[u8]) {
     let Some((form, bytes)) = bytes.split_first() else {
         return;

@@ -1,14 +1,14 @@
-//! Files of networks, by which an agent acts in a small world.
+//! Law of network files: an accepted network can act in a small world.
 
 use driftworld_env::{Agent, Environment, NetworkAgent};
 use driftworld_spec::World;
 
 use crate::refusal;
 
-/// Steps that are played.
+/// Steps to play.
 const STEPS: usize = 2;
 
-/// A network that is taken chooses actions that can be carried out.
+/// An accepted network chooses valid actions.
 pub(crate) fn check(bytes: &[u8]) {
     let mut agent = match NetworkAgent::parse("a.safetensors", bytes) {
         Ok(agent) => agent,

@@ -1,5 +1,5 @@
-//! Messages of ML-Agents clients: as they travel, or behind [`MARK`](crate::edited::MARK) as a step with a world to
-//! reset to, or another text, on the channel for resets.
+//! Law of ML-Agents messages. Input: raw messages, or behind [`MARK`](crate::edited::MARK) a step with text on the Reset channel:
+//! an edited world or anything else.
 
 use arbitrary::Unstructured;
 use driftworld_spec::World;
@@ -13,18 +13,18 @@ use serde_json::json;
 use crate::edited::{MARK, byte};
 use crate::{refusal, world};
 
-/// The Reset channel's identifier, as it travels.
+/// Bytes of the Reset channel's identifier.
 const RESET: [u8; 16] = [
     0x70, 0x0a, 0x1f, 0x62, 0x87, 0x4f, 0xea, 0x11, 0xa6, 0xbf, 0x78, 0x4f, 0x43, 0x87, 0xd1, 0xf7,
 ];
 
-/// What gRPC accepts where nobody says otherwise.
+/// gRPC's default limit of a message in bytes.
 const LONGEST_ANSWER: usize = 4 << 20;
 
-/// The longest message on the Reset channel: worlds of more objects are run by other tests.
+/// Longest message on the Reset channel; larger worlds are run by other tests.
 const LONGEST_TEXT: usize = 16_000;
 
-/// A session in a small world, whose screenshots go nowhere that is kept.
+/// A session in a small world. Its screenshots go to a temporary folder.
 fn session() -> (Session, tempfile::TempDir) {
     let folder = tempfile::tempdir().expect("there is room for screenshots");
     let world = World::default().edit(|world| world.agent_params.observation_size = 8);
@@ -37,7 +37,7 @@ fn session() -> (Session, tempfile::TempDir) {
     (session, folder)
 }
 
-/// A session answers or refuses each message, within the limits of its transport, and goes on.
+/// A session answers or refuses each message within the limits of its transport, and continues.
 pub(crate) fn check(bytes: &[u8]) {
     let input = match bytes.split_first() {
         Some((&MARK, rest)) => made(rest),
@@ -56,7 +56,7 @@ pub(crate) fn check(bytes: &[u8]) {
     assert!(answer(&mut session, &reset), "the session goes on");
 }
 
-/// Whether there was an answer.
+/// Whether the session answered.
 fn answer(session: &mut Session, input: &UnityRlInputProto) -> bool {
     match session.answer(input) {
         Ok(Turn::Output(output)) => {

@@ -1,5 +1,5 @@
-//! Files of recorded episodes: the bytes as they are, or the lines of a known file with the changes that the bytes
-//! describe, packed and under sound checksums, since plain bytes seldom get past these.
+//! Law of files of recorded episodes. Input: raw bytes, or edits of the lines of a known file, which are then packed and get
+//! valid checksums, because random bytes seldom get past these.
 
 use std::fs;
 use std::io::Write;
@@ -20,14 +20,14 @@ use serde_json::{Value, json};
 use crate::edited::Known;
 use crate::{refusal, world};
 
-/// The most objects of a world that is run, and the most steps that are.
+/// Most objects of a world that is run, and most steps.
 const MOST_OBJECTS: usize = 32;
 const MOST_STEPS: usize = 16;
 
-/// The most bytes that an edited file packs: copies of copies grow.
+/// Most bytes to pack in an edited file: repeated copies grow quickly.
 const MOST_PACKED: usize = 1 << 20;
 
-/// Files, each a list of lines: a world is itself where a file has it packed, and actions are their bytes.
+/// Known files, each as a list of lines. Packed parts are unpacked: a world is JSON, and actions are lists of bytes.
 fn known() -> &'static Known {
     static KNOWN: OnceLock<Known> = OnceLock::new();
     KNOWN.get_or_init(|| {
@@ -61,7 +61,7 @@ fn known() -> &'static Known {
     })
 }
 
-/// What a text packs, or itself.
+/// Deflates an object's text or a list of bytes into base64; leaves other values as they are.
 fn packed(value: Value) -> Value {
     let bytes = match &value {
         Value::Object(_) => value.to_string().into_bytes(),
@@ -74,7 +74,7 @@ fn packed(value: Value) -> Value {
     Value::from(STANDARD.encode(deflated.expect("writing into memory cannot fail")))
 }
 
-/// A line as a file has it.
+/// A line in the file's format, with its checksum.
 fn sealed(mut line: Value) -> String {
     if let Some(world) = line.get_mut("world") {
         *world = packed(world.take());
@@ -104,8 +104,8 @@ fn file(bytes: &[u8]) -> Vec<u8> {
     }
 }
 
-/// Whatever the file holds, it is read to its end; what is made out of it can be written, reads the same, and is run
-/// once more without a fault; a log goes on behind it, or refuses it and leaves it alone.
+/// Any file is read to its end. Each recording in it can be written, reads back the same, and replays without an error. A log
+/// appends to the file, or refuses it and leaves it unchanged.
 pub(crate) fn check(bytes: &[u8]) {
     let file = file(bytes);
     let recordings = read(&file);
@@ -116,7 +116,7 @@ pub(crate) fn check(bytes: &[u8]) {
     on_disk(&file);
 }
 
-/// Every episode that can be made out.
+/// All episodes that can be recovered.
 fn read(file: &[u8]) -> Vec<Recording> {
     let mut reader = match RecordingReader::new(file) {
         Ok(reader) => reader,
@@ -152,7 +152,7 @@ fn comes_back(recording: &Recording) {
     assert_eq!(format!("{again:?}"), format!("{recording:?}"));
 }
 
-/// Runs it twice, to the same end.
+/// Runs it twice and compares the ends.
 fn runs(recording: &Recording) {
     let worlds = recording.edits.iter().map(|edit| &edit.world);
     if worlds
@@ -183,7 +183,7 @@ fn runs(recording: &Recording) {
     assert_eq!(end(), end(), "the same recording");
 }
 
-/// What is done with a file where a log keeps it.
+/// Reads and appends to the file in a log's folder.
 fn on_disk(file: &[u8]) {
     const WORKER: &str = "w";
     let log = tempfile::tempdir().expect("there is room for a small log");
@@ -224,7 +224,7 @@ fn on_disk(file: &[u8]) {
         }
         Err(error) => {
             refusal::message(&error.to_string());
-            // A file of the law's own, not by driftworld-files: nobody names it.
+            // Not through driftworld-files: the test's own file, which no user named.
             let left = fs::read(&path).expect("it is there");
             assert_eq!(left, file, "what is refused is left alone");
         }

@@ -1,13 +1,13 @@
-//! What must hold of every error about a text: it says something, at a place that is there, does not fill the screen,
-//! and holds nothing that a terminal would obey or hide.
+//! Laws of errors about a text: the message is not empty, points to an existing place, is of bounded length, and contains no
+//! unprintable characters.
 
 use driftworld_spec::SpecError;
 use driftworld_text::is_unprintable;
 
-/// The longest message, in bytes: fifty problems of a few hundred letters.
+/// Longest message in bytes: fifty problems of a few hundred characters.
 const LONGEST: usize = 100_000;
 
-/// The law of an error of ours about a document.
+/// Law of a [`SpecError`] about a document.
 pub(crate) fn check(error: &SpecError, text: &str) {
     message(&error.to_string());
     let lines = text.split('\n').count();
@@ -17,7 +17,7 @@ pub(crate) fn check(error: &SpecError, text: &str) {
     }
 }
 
-/// The law of any message.
+/// Law of any message.
 pub(crate) fn message(text: &str) {
     assert!(!text.trim().is_empty(), "an error says something");
     assert!(text.len() <= LONGEST, "{} bytes", text.len());
@@ -25,7 +25,7 @@ pub(crate) fn message(text: &str) {
     assert!(!text.chars().any(|letter| raw(&letter)), "{text:?}");
 }
 
-/// The law of several messages.
+/// Law of several messages.
 pub(crate) fn messages<T: std::fmt::Display>(shown: impl IntoIterator<Item = T>) {
     for one in shown {
         message(&one.to_string());

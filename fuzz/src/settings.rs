@@ -1,4 +1,4 @@
-//! Settings by which lifetimes are scored.
+//! Law of the settings of metrics.
 
 use std::sync::OnceLock;
 
@@ -23,7 +23,7 @@ fn known() -> &'static Known {
     })
 }
 
-/// A small log with two tasks.
+/// A small log of two tasks.
 fn lifetime() -> &'static Log {
     static LIFETIME: OnceLock<Log> = OnceLock::new();
     LIFETIME.get_or_init(|| {
@@ -34,12 +34,12 @@ fn lifetime() -> &'static Log {
     })
 }
 
-/// Settings that are taken are written as they were read, and no score by them is not a number.
+/// Accepted settings round-trip, and no score under them is NaN.
 pub(crate) fn check(bytes: &[u8]) {
     let text = known().text(bytes);
     let options: Options = match serde_json::from_str(&text) {
         Ok(options) => options,
-        // What serde says quotes the text as it is: who prints it escapes it.
+        // serde's message quotes the text unescaped; the caller that prints it escapes it.
         Err(error) => return refusal::message(&printable(&error.to_string())),
     };
     let written = serde_json::to_value(&options).expect("options serialise");

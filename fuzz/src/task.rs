@@ -1,4 +1,4 @@
-//! Task specs, their variants, and the first worlds of these.
+//! Law of task specs, their variants and first worlds.
 
 use std::sync::OnceLock;
 
@@ -19,7 +19,7 @@ pub(crate) const EXAMPLES: [&str; 7] = [
     include_str!("../../examples/tasks/settlement.json"),
 ];
 
-/// The most variants of a task whose worlds are drawn.
+/// Most variants per task of which worlds are drawn.
 const MOST_VARIANTS: usize = 2;
 
 fn known() -> &'static Known {
@@ -30,7 +30,7 @@ fn known() -> &'static Known {
     })
 }
 
-/// A task that is read can be written, and reads the same; its worlds are sound, and the same when drawn again.
+/// A task that can be read can be written, and reads back the same. Its worlds are valid, and the same when drawn again.
 pub(crate) fn check(bytes: &[u8]) {
     let text = known().text(bytes);
     let task = match TaskSpec::from_json("t.json", &text) {

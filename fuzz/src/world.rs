@@ -1,4 +1,4 @@
-//! Worlds, in our form and in L2Explorer's.
+//! Law of worlds, in Driftworld's format and L2Explorer's.
 
 use std::sync::OnceLock;
 
@@ -8,7 +8,7 @@ use serde_json::Value;
 use crate::edited::Known;
 use crate::{refusal, task};
 
-/// Worlds to begin with: one of each kind of task, and one by hand.
+/// Seed worlds: one of each kind of task, and one written by hand.
 pub(crate) fn known() -> &'static Known {
     static KNOWN: OnceLock<Known> = OnceLock::new();
     KNOWN.get_or_init(|| {
@@ -20,7 +20,7 @@ pub(crate) fn known() -> &'static Known {
                 documents.push(json(&world.to_json()));
             }
         }
-        // Small ones first: what is small is read often.
+        // Small ones first: they are read often.
         documents.sort_by_key(|document| document.to_string().len());
         Known::new(documents, include_str!("../../schemas/world.schema.json"))
     })
@@ -30,7 +30,7 @@ pub(crate) fn json(text: &str) -> Value {
     serde_json::from_str(text).expect("a document of ours is JSON")
 }
 
-/// A world that is read can be written, and reads the same; one of L2Explorer's becomes one of ours.
+/// A world that can be read can be written, and reads back the same; a world of L2Explorer's can be converted.
 pub(crate) fn check(bytes: &[u8]) {
     let text = known().text(bytes);
     match World::from_json("w.json", &text) {

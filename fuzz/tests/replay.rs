@@ -1,5 +1,4 @@
-//! The seeds of the fuzzer, and what becomes of them by small changes, keep the laws. The fuzzer itself needs a nightly
-//! compiler.
+//! Checks the laws on the fuzzer's seeds and on small changes of them. The fuzzer itself needs a nightly compiler.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +7,7 @@ use driftworld_fuzz::{TARGETS, Target};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 
-/// Every seed of a target in the order of their names.
+/// Every seed of a target, ordered by name.
 fn seeds(target: &Target) -> Vec<Vec<u8>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("seeds").join(target.name);
     let entries = fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
@@ -26,7 +25,7 @@ enum Change {
     Flip(prop::sample::Index, u8),
     Cut(prop::sample::Index, usize),
     Insert(prop::sample::Index, &'static str),
-    /// Puts a piece of the text in at another place.
+    /// Copies a piece of the text to another place.
     Copy(prop::sample::Index, prop::sample::Index, usize),
 }
 
@@ -60,7 +59,7 @@ fn change() -> impl Strategy<Value = Change> {
 
 fn changed(mut text: Vec<u8>, changes: &[Change]) -> Vec<u8> {
     for change in changes {
-        // One place more than there are bytes: the end is a place, too.
+        // One place more than there are bytes: the end counts too.
         let at = |index: &prop::sample::Index| index.index(text.len() + 1);
         match change {
             Change::Flip(index, byte) => {
@@ -88,7 +87,7 @@ fn changed(mut text: Vec<u8>, changes: &[Change]) -> Vec<u8> {
     text
 }
 
-/// The law of one target, on its seeds and on small changes of them.
+/// Checks one target's law on its seeds and on small changes of them.
 fn check(name: &str, cases: u32) {
     let target = TARGETS
         .iter()

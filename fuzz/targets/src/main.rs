@@ -1,4 +1,4 @@
-//! Hands libFuzzer's bytes to the law that the variable `DRIFTWORLD_FUZZ_TARGET` names.
+//! Passes libFuzzer's bytes to the law that the environment variable `DRIFTWORLD_FUZZ_TARGET` names.
 
 #![no_main]
 
