@@ -1,5 +1,4 @@
-//! Places in the cells of a layout: which cells fit what is asked, and which of them an object or the agent gets. Distances to
-//! walls and to other objects are `placement.rs`'s.
+//! Finds the cells of a layout that fit a request, and assigns them to objects and the agent.
 
 use std::collections::BTreeSet;
 
@@ -7,42 +6,42 @@ use driftworld_spec::{CellKind, CellRoom, Distribution, Doorway, Layout, Legend,
 
 use crate::stream::Rng;
 
-/// How many cells are tried at random before they are gone through one by one.
+/// Number of cells to try at random before going through them one by one.
 const RANDOM_TRIES: usize = 32;
 
-/// How many places are tried in a cell where they stray from its middle; the last try is the middle.
+/// Number of places to try in a cell with jitter; the last is the middle.
 const TRIES_IN_CELL: usize = 8;
 
-/// A cell or a doorway of a plan, by its number.
+/// A cell or a doorway of a plan, by index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Spot {
     Cell(usize),
     Doorway(usize),
 }
 
-/// Where something can stand.
+/// A place where something can stand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FreePlace {
     pub(crate) place: [f64; 2],
-    /// The cell or doorway that it takes, if it was asked for one.
+    /// The cell or doorway that it takes, if one was requested.
     pub(crate) spot: Option<Spot>,
-    /// Where it faces in degrees, if that is said: in a doorway.
+    /// Heading in degrees; only in a doorway.
     pub(crate) heading: Option<f64>,
 }
 
-/// The cells or doorways that fit what is asked, and which of them are taken.
+/// The cells or doorways that fit a request, and which of them are taken.
 pub(crate) struct Cells<'a> {
     plan: &'a Plan,
     fitting: Vec<FreePlace>,
     jitter: f64,
     taken: BTreeSet<usize>,
-    /// What was asked, and how many fit, for messages.
+    /// The request and the number of fitting cells, for messages.
     asked: String,
 }
 
 impl<'a> Cells<'a> {
-    /// The cells of a layout that fit a distribution of cells, for a group of this name and an agent that starts at this
-    /// place; else why none does.
+    /// The cells of a layout that fit a distribution of cells, for a group of this name and an agent that starts at this place;
+    /// else the reason why none fits.
     pub(crate) fn find(
         plan: Option<&'a Plan>,
         layout: Option<&Layout>,
@@ -86,7 +85,7 @@ impl<'a> Cells<'a> {
                 (room == CellRoom::SameAsAgent) == is_own
             });
             let by_walk = metres.as_ref().zip(*walk).is_none_or(|(metres, [least, most])| {
-                // A way of 4 cells of 2.5 m is one of 10 m, whatever is rounded.
+                // Tolerates rounding: a path of 4 cells of 2.5 m counts as 10 m.
                 (least - 1e-6..=most + 1e-6).contains(&metres[*number])
             });
             by_letter && by_group && by_room && by_walk
@@ -148,14 +147,14 @@ impl<'a> Cells<'a> {
         })
     }
 
-    /// Leaves the cells that others have taken.
+    /// Excludes the cells that others have taken.
     pub(crate) fn leave(&mut self, taken: &BTreeSet<Spot>) {
         let fitting = self.fitting.iter().enumerate();
         let gone = fitting.filter(|(_, found)| found.spot.is_some_and(|spot| taken.contains(&spot)));
         self.taken.extend(gone.map(|(number, _)| number));
     }
 
-    /// Leaves the cells that a text has letters for, where there are others.
+    /// Excludes the cells that a text layout marks with letters, unless there are no others.
     pub(crate) fn leave_letters(&mut self) {
         let has_letter =
             |found: &FreePlace| matches!(found.spot, Some(Spot::Cell(cell)) if self.plan.cells[cell].letter.is_some());
@@ -170,15 +169,15 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// Whether every cell that fits and is free satisfies a condition on its middle.
+    /// Whether the middle of every free fitting cell satisfies a condition.
     pub(crate) fn all(&self, is: impl Fn([f64; 2]) -> bool) -> bool {
         let fitting = self.fitting.iter().enumerate();
         let mut free = fitting.filter(|(number, _)| !self.taken.contains(number));
         free.all(|(_, found)| is(found.place))
     }
 
-    /// A place in a free cell that nothing is said against, whose cell it then takes: cells at random, then all in turn. `is_free` gets a
-    /// place and the middle of its cell. Else how many places were tried, and what was asked.
+    /// Takes a free cell and returns a place in it that `is_free` accepts: tries cells at random, then all in turn. `is_free`
+    /// gets a place and the middle of its cell. On failure returns the number of tries and the request.
     pub(crate) fn take(
         &mut self,
         rng: &mut Rng,

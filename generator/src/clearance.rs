@@ -1,15 +1,15 @@
-//! [`FreeSpace`]: the clearance of a place, its distance to walls and regions. Where objects are placed is decided in `placement.rs`.
+//! [`FreeSpace`]: the clearance of a place, which is its distance to walls and regions.
 
 use std::sync::Arc;
 
 use driftworld_spec::{Plan, WorldDraft};
 
-/// The free space of an arena, as far as walls and regions go.
+/// The free space of an arena, considering walls and regions only.
 #[derive(Debug)]
 pub(crate) struct FreeSpace {
     half: [f64; 2],
     regions: Vec<Region>,
-    /// What the layout comes to.
+    /// The layout's plan.
     pub(crate) plan: Option<Arc<Plan>>,
 }
 
@@ -23,7 +23,7 @@ struct Region {
 impl FreeSpace {
     pub(crate) fn new(world: &WorldDraft) -> Self {
         let environment = &world.environment_params;
-        // A layout that cannot be drawn out is refused when the world is checked.
+        // An invalid layout has no plan; the check of the world refuses it.
         let plan = world.layout_problems().is_empty().then(|| world.plan()).flatten();
         let map = environment.regions().into_iter().map(<[[f64; 2]]>::to_vec);
         let walls = environment.walls.iter().map(|wall| wall.polygon.clone());
@@ -59,7 +59,7 @@ impl Region {
         Self { corners, low, high }
     }
 
-    /// Distance to the polygon, negative inside; anything above `enough` where it is farther than that.
+    /// Distance to the polygon, negative inside; any value above `enough` if it is farther than that.
     fn clearance(&self, [x, y]: [f64; 2], enough: f64) -> f64 {
         let beyond = (self.low[0] - x)
             .max(x - self.high[0])
@@ -73,7 +73,7 @@ impl Region {
         let mut from = self.corners[self.corners.len() - 1];
         for &to in &self.corners {
             least = least.min(distance_to_segment([x, y], from, to));
-            // Even–odd rule: also right for polygons that touch themselves.
+            // Even–odd rule, which is also correct for polygons that touch themselves.
             if (from[1] > y) != (to[1] > y) && x < (to[0] - from[0]) * (y - from[1]) / (to[1] - from[1]) + from[0] {
                 inside = !inside;
             }

@@ -1,8 +1,8 @@
-//! Draws from the declared distributions. Numbers come from `stream.rs`, laws from the spec.
+//! Draws values and places from the declared distributions.
 //!
 //! Numbers are drawn by inversion: one random number through the distribution's quantile. Two variants under one seed share
-//! random numbers: where one draws high, so does the other. Points of discs and rings come from `rand_distr`, whose
-//! rejection needs no transcendental function; all else goes through `libm`, so that the bits are the same everywhere.
+//! random numbers: where one draws high, so does the other. Points of discs and rings come from `rand_distr`, whose rejection
+//! needs no transcendental function; everything else uses `libm`, so that the bits are the same on every platform.
 
 use std::borrow::Cow;
 
@@ -22,7 +22,7 @@ pub(crate) fn draw<'a>(distribution: &'a Distribution, rng: &mut Rng) -> Cow<'a,
             Cow::Owned(Value::Vector(shares(alpha, &units)))
         }
         colors if colors.draws_colors() => {
-            // All three numbers, also where one decides: a variant whose channels stray together shares its first.
+            // Always draws all three numbers: a variant whose channels vary together then shares its first with other variants.
             let units = [rng.unit(), rng.unit(), rng.unit()];
             Cow::Owned(Value::Color(
                 colors.color_at(units).expect("three random numbers decide a colour"),
@@ -37,7 +37,7 @@ pub(crate) fn draw<'a>(distribution: &'a Distribution, rng: &mut Rng) -> Cow<'a,
     }
 }
 
-/// Shares that sum to 1: each takes its part of what those before have left (stick breaking).
+/// Shares that sum to 1: each takes its part of what the earlier ones left (stick breaking).
 fn shares(alpha: &[f64], units: &[f64]) -> Vec<f64> {
     let mut rest: f64 = alpha.iter().sum();
     let mut left = 1.0;
@@ -58,15 +58,15 @@ fn shares(alpha: &[f64], units: &[f64]) -> Vec<f64> {
     shares
 }
 
-/// A place on the ground, and what its distribution demands beside it.
+/// A place on the ground, with the spacing that its distribution requires.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place {
     pub(crate) at: [f64; 2],
-    /// Least distance to objects of the same group; 0 but for Poisson-disc sampling.
+    /// Least distance to objects of the same group; above 0 only for Poisson-disc sampling.
     pub(crate) own_distance: f64,
 }
 
-/// Draws a place; the distribution is a planar one. `number` is the object's: lists are taken in turn.
+/// Draws a place from a planar distribution. `number` is the object's index, which selects from lists that are taken in turn.
 pub(crate) fn place(distribution: &Distribution, number: u64, rng: &mut Rng) -> Place {
     let mut own_distance = 0.0;
     let at = match distribution {

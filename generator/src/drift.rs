@@ -1,4 +1,4 @@
-//! [`Drift`]: the variants between two variants of a task. How far apart two variants are is `similarity`'s to say.
+//! [`Drift`]: the variants on the way from one variant to another.
 
 use driftworld_spec::{Domain, DriftSchedule, DriftSwitch, RegimeDrift, Value, Variant};
 
@@ -6,7 +6,7 @@ use crate::GeneratorError;
 use crate::interpolation::interpolate;
 use crate::stream::Stream;
 
-/// How values that have nothing between them change: texts, true and false, numbers out of a list.
+/// How values that cannot be interpolated change: texts, booleans, numbers from a list.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Switch {
     /// At the fraction that the parameter declares as `switch_at`; a half where it declares none.
@@ -17,19 +17,20 @@ pub enum Switch {
         /// The seed.
         seed: u64,
     },
-    /// By one coin for the whole variant: at fraction t of the drift a world is of the second variant with probability t, drawn under
-    /// this seed, and else of the first. Nothing is between the two, not of numbers either; they may be of two tasks.
+    /// One coin for the whole variant: at fraction t of the drift a world belongs to the second variant with probability t, drawn
+    /// under this seed, else to the first. Nothing is interpolated, not even numbers; the variants may be of two tasks.
     Task {
         /// The seed.
         seed: u64,
     },
 }
 
-/// The way from one variant to another: of one task, or of any two where whole variants [switch](Switch::Task).
+/// The way from one variant to another: of one task, or of any two tasks if whole variants [switch](Switch::Task).
 ///
-/// Numbers, points, vectors and the numbers of distributions of one family go straight; headings take the shorter way round, or the way through their range;
-/// colours, those of distributions too, go straight in Oklab, so that they change evenly to the eye; distributions of different families are mixed; whatever
-/// has nothing in between switches. At 0 and 1 the variants are those that were given.
+/// Numbers, points, vectors and the numbers of distributions of one family are interpolated linearly; headings take the shorter
+/// way round, or the way through their range; colours, including those of distributions, are interpolated in Oklab, so that they
+/// change evenly to the eye; distributions of different families are mixed; everything else switches. At 0 and 1 the variants are
+/// the given ones.
 ///
 /// # Example
 /// ```
@@ -59,7 +60,7 @@ pub fn drift(from: &Variant, to: &Variant, t: f64) -> Result<Variant, GeneratorE
 }
 
 impl Drift {
-    /// The way from one variant to another of the same task, linear, switching at points.
+    /// A linear drift between two variants of the same task, with switches at points.
     ///
     /// # Errors
     /// [`GeneratorError::DifferentTasks`].
@@ -79,8 +80,8 @@ impl Drift {
         }
     }
 
-    /// The way from one variant to another, of any task, that is of worlds of the two alone: of the second with the probability that
-    /// the drift has come to, drawn under a seed.
+    /// A drift between two variants, of any tasks, whose worlds each belong to one of the two: to the second with a probability
+    /// equal to the drift's progress, drawn under a seed.
     ///
     /// # Example
     /// ```
@@ -102,8 +103,8 @@ impl Drift {
         }
     }
 
-    /// The way that a regime of a scenario declares, from its variant to the one that its drift leads to; mixing switches
-    /// draw under the regime's seed.
+    /// The drift that a scenario's regime declares, from its variant to the drift's; mixing switches draw under the regime's
+    /// seed.
     ///
     /// # Errors
     /// [`GeneratorError::DifferentTasks`].
@@ -116,25 +117,25 @@ impl Drift {
         Ok(Self::new(from, to)?.with_schedule(drift.schedule).with_switch(switch))
     }
 
-    /// Goes by another schedule.
+    /// Uses another schedule.
     #[must_use]
     pub fn with_schedule(mut self, schedule: DriftSchedule) -> Self {
         self.schedule = schedule;
         self
     }
 
-    /// Switches in another way.
+    /// Uses another way of switching.
     #[must_use]
     pub fn with_switch(mut self, switch: Switch) -> Self {
         self.switch = switch;
         self
     }
 
-    /// The variant when `progress`, 0..=1, has passed, for world number `index`, which only mixing switches look at.
+    /// The variant at `progress`, 0..=1, for world number `index`, which only mixing switches use.
     ///
     /// # Errors
     /// [`GeneratorError::Between`] if a variant on the way breaks a requirement or cannot be drawn from;
-    /// [`GeneratorError::DifferentTasks`] of two tasks if it does not switch whole variants.
+    /// [`GeneratorError::DifferentTasks`] for two tasks without whole-variant switches.
     pub fn at(&self, progress: f64, index: u64) -> Result<Variant, GeneratorError> {
         let t = self.schedule.at(progress);
         if t == 0.0 {

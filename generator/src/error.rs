@@ -1,15 +1,15 @@
-//! What can keep a world from being drawn.
+//! [`GeneratorError`]: errors of sampling a world, interpolating variants and searching for a distance.
 
 use std::fmt::{Display, Formatter, Result};
 
 use driftworld_spec::SpecError;
 
-/// Everything that can go wrong in this crate.
+/// Errors of this crate.
 #[derive(Debug, Clone, PartialEq, thiserror::Error, strum::IntoStaticStr, strum::VariantNames)]
 #[strum(prefix = "generator/", serialize_all = "kebab-case")]
 #[non_exhaustive]
 pub enum GeneratorError {
-    /// A draw fell outside what its place in the world allows.
+    /// A draw fell outside the range allowed at its place in the world.
     #[error(
         "{world} ({place}): drew {found}, expected a number in {low}..{high}; use a bounded distribution, such as \
          truncated_normal"
@@ -19,14 +19,14 @@ pub enum GeneratorError {
         world: WorldId,
         /// Where the value was to go: a pointer into the spec.
         place: String,
-        /// What was drawn.
+        /// The drawn number.
         found: f64,
-        /// The least number that may stand there.
+        /// Least number allowed there.
         low: f64,
-        /// The greatest number that may stand there.
+        /// Greatest number allowed there.
         high: f64,
     },
-    /// An object found no place within the tries it has.
+    /// No free place was found for an object within its number of tries.
     #[error(
         "{world}: group {group:?}, object {object} of {count}: found no free place in {}; {reason}",
         tried(*tries)
@@ -38,11 +38,11 @@ pub enum GeneratorError {
         group: String,
         /// The object's number within the group, from 1.
         object: u32,
-        /// How many objects the group was to have.
+        /// Number of objects that the group was to have.
         count: u32,
-        /// How many places were tried.
+        /// Number of places tried.
         tries: u32,
-        /// What most places failed, the closest miss, and which field to loosen.
+        /// The condition that most places failed, the closest miss, and which field to loosen.
         reason: String,
     },
     /// The agent starts outside the arena or in a region that cannot be entered.
@@ -55,9 +55,9 @@ pub enum GeneratorError {
     NoStart {
         /// The world.
         world: WorldId,
-        /// The last start that was tried, in metres.
+        /// The last start tried, in metres.
         start: [f64; 2],
-        /// How many were tried.
+        /// Number of starts tried.
         tries: u32,
     },
     /// The layout has no cell in which the agent can start.
@@ -65,10 +65,10 @@ pub enum GeneratorError {
     NoStartCell {
         /// The world.
         world: WorldId,
-        /// What was asked, and how many cells there are.
+        /// The request, and the number of cells.
         reason: String,
     },
-    /// A condition that the task states holds in none of the tries.
+    /// One of the task's requirements failed in every try.
     #[error(
         "{world}: found no values in {tries} tries for which {requirement:?} holds, as \"require\" states; the last were \
          {values}; widen the distributions, or relax the requirement"
@@ -76,46 +76,46 @@ pub enum GeneratorError {
     Requirement {
         /// The world.
         world: WorldId,
-        /// The condition.
+        /// The requirement.
         requirement: String,
-        /// The last values that it was tried with.
+        /// The values of the last try.
         values: String,
-        /// How often the values were drawn.
+        /// Number of tries.
         tries: u32,
     },
-    /// The groups together have more objects than a world holds.
+    /// All groups together have more objects than a world can hold.
     #[error("{world}: found {found} objects, expected at most {limit}; lower the counts")]
     TooMany {
         /// The world.
         world: WorldId,
-        /// How many objects were drawn.
+        /// Number of objects drawn.
         found: usize,
-        /// How many a world holds.
+        /// Most objects of a world.
         limit: usize,
     },
-    /// Values were drawn that a world cannot have at once, as large pictures with much supersampling.
+    /// The drawn values do not fit together in one world, such as large images with much supersampling.
     #[error("{world}: drew values that do not go together: {source}")]
     Clash {
         /// The world.
         world: WorldId,
-        /// What is wrong with the world.
+        /// The problem with the world.
         source: SpecError,
     },
-    /// Two variants of different tasks have nothing between them.
+    /// Two variants of different tasks cannot be interpolated.
     #[error(
         "found {from} and {to}, expected two variants of one task; a drift stays within a task, a curriculum switches \
          between tasks"
     )]
     DifferentTasks {
-        /// The one.
+        /// The first variant.
         from: String,
-        /// The other.
+        /// The second variant.
         to: String,
     },
-    /// A variant on the way of a drift does not exist.
+    /// A variant on the way of a drift is invalid.
     #[error("on the way of the drift: {0}")]
     Between(#[source] SpecError),
-    /// A wanted distance has no parameter to change.
+    /// A search for a distance has no parameter to change.
     #[error(
         "{variant}: found no {asked}, expected at least one variant parameter to change; name parameters, or another \
          element"
@@ -123,39 +123,39 @@ pub enum GeneratorError {
     NothingToVary {
         /// The variant.
         variant: String,
-        /// What was asked for.
+        /// What was requested.
         asked: String,
     },
-    /// No variant is as far as wanted.
+    /// No variant is as far away as requested.
     #[error(
         "{variant}: found at most {farthest:.6} ({values}), expected a distance of {target}; ask for less, or vary \
          more parameters"
     )]
     TooFar {
-        /// The variant that the distance is from.
+        /// The variant from which the distance is measured.
         variant: String,
-        /// The wanted distance.
+        /// The requested distance.
         target: f64,
-        /// The greatest that was reached.
+        /// The greatest distance reached.
         farthest: f64,
-        /// Where it was reached.
+        /// The values that reached it.
         values: String,
     },
-    /// The choices leave a gap around the wanted distance.
+    /// The choices leave a gap around the requested distance.
     #[error(
         "{variant}: found {nearest:.6} at the nearest ({values}), expected a distance of {target} within {tolerance}; \
          widen the tolerance, or vary a parameter with a range"
     )]
     NoneBetween {
-        /// The variant that the distance is from.
+        /// The variant from which the distance is measured.
         variant: String,
-        /// The wanted distance.
+        /// The requested distance.
         target: f64,
-        /// How far off it may be.
+        /// The tolerance.
         tolerance: f64,
-        /// The nearest that was reached.
+        /// The nearest distance reached.
         nearest: f64,
-        /// Where it was reached.
+        /// The values that reached it.
         values: String,
     },
 }
@@ -168,14 +168,14 @@ fn tried(tries: u32) -> String {
     }
 }
 
-/// A world: what it is drawn from.
+/// Identifies a world: variant, seed and index.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WorldId {
     /// The variant, as `task#variant`.
     pub variant: String,
     /// The seed.
     pub seed: u64,
-    /// The number of the world under the seed.
+    /// Index of the world under the seed.
     pub index: u64,
 }
 
@@ -187,7 +187,7 @@ impl Display for WorldId {
 }
 
 impl GeneratorError {
-    /// The stable name of this kind of error.
+    /// Stable code of this kind of error.
     pub fn code(&self) -> &'static str {
         self.into()
     }

@@ -1,10 +1,10 @@
-//! What lies between two values, and between two distributions. Which values a drift takes when is in `drift.rs`.
+//! Interpolates between two values, and between two distributions.
 
 use driftworld_spec::{
     ChannelSpread, Channels, Color, Distribution, Number, Parameter, ParameterType, Spread, Value, Variant,
 };
 
-/// The value between two, or `None` if there is nothing between them. `listed`: the domain is a list of choices.
+/// The value between two, or `None` if they cannot be interpolated. `listed`: the domain is a list of choices.
 pub(crate) fn interpolate(
     parameter: &Parameter,
     listed: bool,
@@ -47,7 +47,7 @@ pub(crate) fn interpolate(
     }
 }
 
-/// Distributions of one family interpolate number by number; others are mixed, where both draw numbers, points or colours.
+/// Distributions of one family interpolate number by number; others become a mixture if both draw numbers, points or colours.
 fn between_distributions(from: &Distribution, to: &Distribution, t: f64) -> Option<Distribution> {
     let (from, to) = (comparable(from, to), comparable(to, from));
     if skeleton(&from) == skeleton(&to) {
@@ -64,7 +64,7 @@ fn between_distributions(from: &Distribution, to: &Distribution, t: f64) -> Opti
         return Some(colored(whole(between), &from, &to, t));
     }
     let alike = if from.draws_cells() || to.draws_cells() {
-        // Cells are drawn by themselves.
+        // Distributions of cells cannot be part of a mixture.
         false
     } else if from.draws_colors() || to.draws_colors() {
         from.yields(ParameterType::Color) && to.yields(ParameterType::Color)
@@ -77,8 +77,8 @@ fn between_distributions(from: &Distribution, to: &Distribution, t: f64) -> Opti
     })
 }
 
-/// A distribution as the other is written, where its family can be written in several ways: a Gaussian by its covariance, a
-/// spread of channels for each of them, the ends that are meant where none are given.
+/// Rewrites a distribution in the form of the other if its family has several: a Gaussian by its covariance, one spread per
+/// channel, default ends written out.
 fn comparable(distribution: &Distribution, other: &Distribution) -> Distribution {
     let each = |spread: &ChannelSpread| ChannelSpread::Each(spread.to_array());
     match (distribution, other) {
@@ -121,7 +121,7 @@ fn comparable(distribution: &Distribution, other: &Distribution) -> Distribution
     }
 }
 
-/// A distribution of colours between two of its family: its colours in Oklab, its hues the shorter way round.
+/// Corrects a distribution of colours between two of its family: interpolates colours in Oklab, and hues the shorter way round.
 fn colored(between: Distribution, from: &Distribution, to: &Distribution, t: f64) -> Distribution {
     use Distribution::{ColorHsv, ColorNormal, ColorPerturb, ColorUniform, Mixture};
     let color = |a: &Channels, b: &Channels| {
@@ -167,7 +167,7 @@ fn colored(between: Distribution, from: &Distribution, to: &Distribution, t: f64
             let (middle, other) = (f64::midpoint(*a, *b), f64::midpoint(*c, *d));
             let turn = (other - middle + 180.0).rem_euclid(360.0) - 180.0;
             let (middle, half) = (middle + turn * t, 0.5 * ((b - a) + ((d - c) - (b - a)) * t));
-            // Where a document may have them, which is within a turn of 0..360.
+            // Into the range that documents allow, which is within a turn of 0..360.
             let middle = middle.rem_euclid(360.0);
             ColorHsv {
                 hue: Some([middle - half, middle + half]),
@@ -195,12 +195,12 @@ fn map<T>(distribution: &Distribution, mut f: impl FnMut(f64) -> T) -> Distribut
     }
 }
 
-/// The distribution but for its numbers.
+/// The distribution with all numbers blanked, for comparing forms.
 fn skeleton(distribution: &Distribution) -> Distribution {
     map(distribution, |_| 0.0)
 }
 
-/// Rounds the numbers that a family wants whole.
+/// Rounds the numbers that a family needs as integers.
 fn whole(distribution: Distribution) -> Distribution {
     match distribution {
         Distribution::IntegerUniform { low, high } => Distribution::IntegerUniform {

@@ -1,4 +1,4 @@
-//! Variant, seed and index to a concrete world; the variants between two variants, and those at a wanted distance.
+//! Turns a variant, a seed and an index into a concrete world; interpolates variants, and finds variants at a wanted distance.
 
 mod at_distance;
 mod cells;
@@ -22,7 +22,7 @@ pub use error::{GeneratorError, WorldId};
 pub use sampler::Sampler;
 pub use sequence::Sequence;
 
-/// World number `index` of a variant under a seed. Who draws many prepares a [`Sampler`] once.
+/// World number `index` of a variant under a seed. To draw many worlds, prepare a [`Sampler`] once.
 ///
 /// # Errors
 /// As [`Sampler::world`].

@@ -1,4 +1,4 @@
-//! Placing objects: a free place for each. Candidates are drawn in `draw.rs`; the distance to walls is in `clearance.rs`.
+//! Finds a free place for each object. Candidates are drawn in `draw.rs`; the distance to walls is in `clearance.rs`.
 
 use std::collections::BTreeSet;
 
@@ -11,38 +11,38 @@ use crate::draw::{self, Place};
 use crate::spatial_hash::SpatialHash;
 use crate::stream::Rng;
 
-/// How many places are tried for one object; where places are taken in turn and stray in their cells, so many in its own cell, and as
-/// many again in all others together.
+/// Most places to try for one object. If places are taken in turn with jitter in their cells: most in its own cell, and as many
+/// again in all others together.
 pub(crate) const TRIES: u32 = 1000;
 
-/// What placing an object looks at: free space, the agent's start, and the objects placed before.
+/// Everything that placing an object depends on: free space, the agent's start, and the objects placed before.
 pub(crate) struct PlacementContext<'a> {
     free_space: &'a FreeSpace,
     agent: [f64; 2],
     everything: SpatialHash,
-    /// For each group the places of its objects.
+    /// For each group, the places of its objects.
     groups: Vec<SpatialHash>,
-    /// The cells and doorways that objects were given.
+    /// Cells and doorways already assigned to objects.
     taken: BTreeSet<Spot>,
-    /// The middles of doorways.
+    /// Centres of doorways.
     doorways: SpatialHash,
 }
 
-/// What a place must keep clear of, in metres.
+/// Distances that a place must keep, in metres.
 #[derive(Clone, Debug)]
 pub(crate) struct Margins {
     pub(crate) separation: f64,
     pub(crate) walls: f64,
     pub(crate) agent: f64,
-    /// Groups by number, with the distance to keep from each.
+    /// Groups by index, with the distance to keep from each.
     pub(crate) groups: Vec<(usize, f64)>,
 }
 
-/// The middle that a placement is relative to.
+/// The origin that a placement is relative to.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Anchor {
     pub(crate) at: [f64; 2],
-    /// Heading in degrees that the placement turns with; 0 leaves it as it is.
+    /// Heading in degrees by which the placement is rotated; 0 for no rotation.
     pub(crate) heading: f64,
 }
 
@@ -52,7 +52,7 @@ impl Anchor {
         heading: 0.0,
     };
 
-    /// A place relative to the anchor as one of the world.
+    /// Converts a place relative to the anchor into world coordinates.
     fn world(self, [x, y]: [f64; 2]) -> [f64; 2] {
         if self.heading == 0.0 {
             return [self.at[0] + x, self.at[1] + y];
@@ -64,20 +64,20 @@ impl Anchor {
     }
 }
 
-/// What an object is placed by.
+/// The inputs for placing one object.
 pub(crate) struct Request<'a> {
     pub(crate) placement: &'a Distribution,
     pub(crate) margins: &'a Margins,
     pub(crate) anchor: Anchor,
-    /// The group's number.
+    /// The group's index.
     pub(crate) group: usize,
-    /// Metres from the middle of a doorway within which it would stand in the way; 0 for what bars none.
+    /// Distance in metres from a doorway's centre within which the object would block it; 0 for objects that block nothing.
     pub(crate) mouth: f64,
-    /// The object's number around its anchor: lists of places are taken in turn, as [`Turns`] says.
+    /// The object's index around its anchor: lists of places are taken in turn, see [`Turns`].
     pub(crate) number: u64,
 }
 
-/// A condition that a place can break.
+/// A condition that a place can fail.
 #[derive(Clone, Copy, Debug, PartialEq, strum::VariantArray)]
 enum Condition {
     Wall,
@@ -123,7 +123,7 @@ impl Condition {
     }
 }
 
-/// A condition broken by a place: what it has and what it needs, in metres.
+/// A condition that a place failed, with the found and required distance in metres.
 #[derive(Clone, Copy)]
 struct Miss {
     condition: Condition,
@@ -146,17 +146,18 @@ impl<'a> PlacementContext<'a> {
         }
     }
 
-    /// Takes a place, so that later objects keep their separation from it.
+    /// Marks a place as taken, so that later objects keep their separation from it.
     pub(crate) fn occupy(&mut self, place: [f64; 2]) {
         self.everything.push(place);
     }
 
-    /// What the layout comes to.
+    /// The layout's plan.
     pub(crate) fn plan(&self) -> Option<&'a Plan> {
         self.free_space.plan.as_deref()
     }
 
-    /// Whether a place keeps these distances in metres: to walls, and to the objects placed so far and the agent's start.
+    /// Whether a place keeps these distances in metres: `walls` from walls, `others` from the objects placed so far and the
+    /// agent's start.
     pub(crate) fn is_clear(&self, place: [f64; 2], walls: f64, others: f64) -> bool {
         self.free_space.clearance(place, walls) >= walls
             && distance(place, self.agent) >= others
@@ -168,9 +169,9 @@ impl<'a> PlacementContext<'a> {
         &self.groups[number]
     }
 
-    /// A free place for an object, which it takes; else how many were tried, and why none was free.
+    /// Finds and takes a free place for an object; else returns the number of tries, and why no place was free.
     ///
-    /// `turns` are the places of a `points` or `grid` in turn that the objects before it left around the same anchor.
+    /// `turns` tracks which places of a `points` or `grid` in turn are left by earlier objects around the same anchor.
     pub(crate) fn find(
         &mut self,
         request: &Request,
@@ -188,7 +189,7 @@ impl<'a> PlacementContext<'a> {
         };
         let mixed = request.placement.needs_group();
         for turn in 0..tries {
-            // Among other distributions a list goes on from the object's own place once half of the tries came to nothing.
+            // In a mixture, a list moves on from the object's own place once half of the tries have failed.
             let on = if mixed { turn.saturating_sub(TRIES / 2) } else { 0 };
             if let Some(at) = self.try_at(request, request.number + u64::from(on), rng, &mut tried) {
                 return Ok(at);
@@ -197,7 +198,7 @@ impl<'a> PlacementContext<'a> {
         Err(tried.failure())
     }
 
-    /// The cells that fit a distribution of cells, for a group of this name; else why none does.
+    /// The cells that fit a distribution of cells, for a group of this name; else the reason why none fits.
     pub(crate) fn cells(
         &self,
         layout: Option<&Layout>,
@@ -209,8 +210,8 @@ impl<'a> PlacementContext<'a> {
         Ok(cells)
     }
 
-    /// Whether a placement in cells asks for the ways through doorways: by itself, by letters, or because nothing else is left. Those of
-    /// other kinds say where things stand in metres.
+    /// Whether a placement in cells explicitly uses the ways through doorways: by its kind, by letters, or because no other cells
+    /// are left. Placements of other kinds give coordinates in metres, which counts as explicit.
     pub(crate) fn asks_for_doorways(&self, placement: &Distribution, cells: Option<&Cells>, mouth: f64) -> bool {
         match placement {
             Distribution::Cells {
@@ -224,7 +225,7 @@ impl<'a> PlacementContext<'a> {
         }
     }
 
-    /// As [`PlacementContext::find`], in a cell of a layout. The middle of a cell is never too near to a wall.
+    /// Like [`PlacementContext::find`], in a cell of a layout. The middle of a cell is never too near to a wall.
     pub(crate) fn find_in_cells(
         &mut self,
         request: &Request,
@@ -260,7 +261,7 @@ impl<'a> PlacementContext<'a> {
         }
     }
 
-    /// As [`PlacementContext::find`], where places are taken in turn: the object's own, then the next ones on.
+    /// Like [`PlacementContext::find`], if places are taken in turn: tries the object's own place, then the following ones.
     fn find_in_turn(&mut self, request: &Request, turns: &mut Turns, rng: &mut Rng) -> Result<[f64; 2], (u32, String)> {
         let strays = matches!(request.placement, Distribution::Grid { jitter, .. } if jitter.unwrap_or(0.0) > 0.0);
         let others = request.placement.num_turns().unwrap_or(1).clamp(2, TRIES as usize) as u32 - 1;
@@ -281,7 +282,7 @@ impl<'a> PlacementContext<'a> {
         Ok(at)
     }
 
-    /// Draws a place and takes it if it is free; `number` is that of the place, where places are taken in turn.
+    /// Draws a place and takes it if it is free; `number` is the index of the place, if places are taken in turn.
     fn try_at(&mut self, request: &Request, number: u64, rng: &mut Rng, tried: &mut Tried) -> Option<[f64; 2]> {
         let Place { at, own_distance } = draw::place(request.placement, number, rng);
         let at = request.anchor.world(at);
@@ -300,7 +301,7 @@ impl<'a> PlacementContext<'a> {
         None
     }
 
-    /// The first condition that a place breaks.
+    /// The first condition that a place fails.
     fn miss(&self, place: [f64; 2], own_distance: f64, request: &Request) -> Option<Miss> {
         let margins = request.margins;
         let miss = |condition, wants: f64, has: Option<f64>| has.map(|has| Miss { condition, has, wants });
@@ -331,7 +332,7 @@ impl<'a> PlacementContext<'a> {
     }
 }
 
-/// What the places that were tried lacked.
+/// Statistics of the places tried.
 #[derive(Default)]
 struct Tried {
     failed: [u32; Condition::VARIANTS.len()],
@@ -339,11 +340,11 @@ struct Tried {
 }
 
 impl Tried {
-    /// How many were tried, and why none was free.
+    /// The number of tries, and why none was free.
     fn failure(self) -> (u32, String) {
         let tries = self.failed.iter().sum();
         if tries == 0 {
-            // Only where places are taken in turn, and others that found theirs taken went on to those that were left.
+            // Only if places are taken in turn and all were already taken.
             let reason = "every place in the list is taken; add places, or lower the count".to_owned();
             return (tries, reason);
         }

@@ -1,37 +1,38 @@
-//! [`Sequence`]: how the random numbers behind randomized parameters are spread over many worlds. What is drawn with them is in `draw.rs`.
+//! [`Sequence`]: how the random numbers behind randomized parameters are spread over many worlds.
 
 use std::sync::OnceLock;
 
 use crate::stream::{Stream, unit};
 
-/// The most dimensions that Sobol's sequence is used for; further ones are drawn independently.
+/// Most dimensions of Sobol's sequence; parameters beyond them are drawn independently.
 pub(crate) const MAX_DIMENSIONS: usize = 100;
 
-/// How randomized parameters cover what they can be, over the worlds of a variant.
+/// How the worlds of a variant cover the ranges of randomized parameters.
 ///
-/// Randomized parameters that up to three random numbers decide take part, colours with one for each channel. They take
-/// dimensions in the order in which the task declares them, so that one declared before another shifts its dimension. Choices, mixtures, Dirichlet shares and what is drawn inside groups
-/// stay independent draws, as do parameters beyond 100 dimensions and worlds that a requirement has drawn again.
+/// Applies to randomized parameters that up to three random numbers decide; colours take one per channel. They take dimensions in
+/// the task's order of declaration, so that a new parameter shifts the dimensions of those declared after it. Choices, mixtures,
+/// Dirichlet shares and draws inside groups stay independent, as do parameters beyond 100 dimensions and worlds that are drawn
+/// again because of a requirement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sequence {
-    /// Each world draws on its own.
+    /// Each world draws independently.
     #[default]
     Independent,
-    /// World `index` has point number `index` of Sobol's sequence, scrambled by the seed: any 2^k worlds from a multiple of 2^k
-    /// on spread evenly in each parameter, and in most pairs of them.
+    /// World `index` is point number `index` of Sobol's sequence, scrambled by the seed: any 2^k worlds starting at a multiple of
+    /// 2^k spread evenly in each parameter, and in most pairs of parameters.
     Sobol,
-    /// A Latin hypercube over the worlds `first..first + count`: each parameter has one world in each of `count` equal shares
-    /// of its probability.
+    /// A Latin hypercube over the worlds `first..first + count`: each parameter has exactly one world in each of `count` equal
+    /// shares of its probability.
     LatinHypercube {
         /// The first world.
         first: u64,
-        /// How many worlds, above 0.
+        /// Number of worlds, above 0.
         count: u64,
     },
 }
 
 impl Sequence {
-    /// The number in 0..1 of a dimension for a world; `None` if it is to be drawn.
+    /// The number in 0..1 of a dimension for a world; `None` if it is to be drawn independently.
     pub(crate) fn unit(self, stream: &Stream, dimension: usize, index: u64) -> Option<f64> {
         match self {
             Self::Independent => None,
@@ -50,7 +51,7 @@ impl Sequence {
     }
 }
 
-/// Point `index` of Sobol's sequence along a dimension, 64 bits of it; the directions are Joe's and Kuo's (2008).
+/// Point `index` of Sobol's sequence along a dimension, as 64 bits; the direction numbers are those of Joe and Kuo (2008).
 fn sobol(dimension: usize, index: u64) -> u64 {
     static DIRECTIONS: OnceLock<Vec<Vec<u64>>> = OnceLock::new();
     let directions = DIRECTIONS.get_or_init(|| {
@@ -65,7 +66,7 @@ fn sobol(dimension: usize, index: u64) -> u64 {
     point
 }
 
-/// Owen's scrambling by hashing from the highest bit down: nets stay nets.
+/// Owen's scrambling by hashing from the highest bit down, which preserves nets.
 ///
 /// Source: Laine and Karras 2011, in the form of Burley 2020, widened to 64 bits.
 fn scramble(point: u64, seed: u64) -> u64 {
@@ -78,7 +79,7 @@ fn scramble(point: u64, seed: u64) -> u64 {
     x.reverse_bits()
 }
 
-/// Where a keyed permutation of `0..count` sends a number: a Feistel network, walked until it lands inside.
+/// The image of a number under a keyed permutation of `0..count`: a Feistel network with cycle walking.
 fn permute(number: u64, count: u64, seed: u64) -> u64 {
     let bits = (64 - count.saturating_sub(1).leading_zeros())
         .max(2)
@@ -107,7 +108,7 @@ mod tests {
 
     /// The first points of `scipy.stats.qmc.Sobol(d=4, scramble=False)` (scipy 1.17).
     #[test]
-    fn the_sequence_is_that_of_joe_and_kuo() {
+    fn sobol_points_agree_with_scipy() {
         let points: Vec<[f64; 4]> = (0..6)
             .map(|index| std::array::from_fn(|dimension| sobol(dimension, index) as f64 / 2_f64.powi(64)))
             .collect();
@@ -125,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn scrambled_points_still_fall_one_into_each_share() {
+    fn scrambled_points_keep_one_per_share() {
         let stream = Stream::new("t", 7, "coverage");
         for dimension in [0, 1, 17, 99] {
             let mut shares: Vec<u64> = (256..512)
@@ -137,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn a_latin_hypercube_has_one_world_in_each_share() {
+    fn latin_hypercube_has_one_world_per_share() {
         for count in [1, 2, 3, 100, 1000] {
             let stream = Stream::new("t", 7, "coverage");
             let cube = Sequence::LatinHypercube { first: 50, count };

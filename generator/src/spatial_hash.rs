@@ -1,22 +1,22 @@
-//! [`SpatialHash`]: places that are taken, and the distance to the nearest of them. Which places are free is decided in `placement.rs`.
+//! [`SpatialHash`]: taken places, and the distance to the nearest of them.
 
-/// Up to so many places are looked at one by one; more are sorted into cells.
+/// Up to this many places are searched one by one; more are sorted into cells.
 const FEW: usize = 48;
 
 /// Side of the cells in metres.
 const CELL: f64 = 4.0;
 
-/// Cells along each side: they cover a square of 300 m around the origin, and its border cells what lies beyond.
+/// Cells per side: they cover a square of 300 m around the origin; border cells also hold everything beyond.
 const SIDE: i32 = 75;
 
-/// No place.
+/// Marks the end of a list.
 const NONE: u32 = u32::MAX;
 
 /// Places on the ground.
 #[derive(Default)]
 pub(crate) struct SpatialHash {
     places: Vec<[f64; 2]>,
-    /// For each cell the last place in it, for each place the one before it in its cell.
+    /// Linked lists: for each cell its last place, for each place the previous one in the same cell.
     cells: Option<(Vec<u32>, Vec<u32>)>,
 }
 
@@ -68,7 +68,7 @@ impl SpatialHash {
                 least = (squared, Some(other));
             }
         };
-        // The farthest two places of a world are from each other is less than this.
+        // No two places of a world are this far apart.
         let span = (reach.min(1000.0) / CELL).ceil() as i32;
         match &self.cells {
             Some((cells, before)) if (2 * i64::from(span) + 1).pow(2) < self.places.len() as i64 * 4 => {
@@ -89,7 +89,7 @@ impl SpatialHash {
     }
 }
 
-/// The cell of a place. Border cells also hold what lies beyond them: clamping brings no two cells farther apart.
+/// The cell of a place. Border cells also hold everything beyond them: clamping never increases the distance of two cells.
 fn cell(place: [f64; 2]) -> [i32; 2] {
     place.map(|metres| ((metres / CELL).floor() as i32 + SIDE / 2).clamp(0, SIDE - 1))
 }
@@ -101,7 +101,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_nearest_is_what_looking_at_all_finds(
+        fn nearest_agrees_with_linear_search(
             places in prop::collection::vec([-200.0..200.0_f64, -200.0..200.0_f64], 0..200),
             at in [-200.0..200.0_f64, -200.0..200.0_f64],
             reach in 0.0..40.0_f64,

@@ -1,4 +1,4 @@
-//! Random streams: every source of numbers has one of its own, addressed by world and object. What is drawn from them is in `draw.rs`.
+//! Random streams: each source of random numbers has its own stream, addressed by world and object.
 
 use std::convert::Infallible;
 
@@ -8,8 +8,8 @@ use sha2::{Digest, Sha256};
 
 /// One named stream of a task under a seed.
 ///
-/// The numbers are Philox's under a key from the SHA-256 of task, seed and name; world, object and attempt are its counter.
-/// Any of them can be had without any other.
+/// The numbers are Philox's under a key from the SHA-256 of task, seed and name; world, object and attempt form the counter.
+/// Access is random: any number can be computed without the others.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stream {
     key: [u64; 2],
@@ -30,7 +30,7 @@ impl Stream {
         }
     }
 
-    /// The numbers of one object in one world; `attempt` counts how often the world was drawn again.
+    /// The random numbers of one object in one world; `attempt` counts how often the world was drawn again.
     pub(crate) fn at(&self, index: u64, object: u64, attempt: u32) -> Rng {
         Rng {
             key: self.key,
@@ -40,12 +40,12 @@ impl Stream {
         }
     }
 
-    /// A seed of number `number`: a whole number up to [`MAX_SEED`].
+    /// Seed number `number`: an integer up to [`MAX_SEED`].
     pub(crate) fn seed(&self, number: u64) -> u64 {
         philox(self.key, [number, 0, 0, 0])[0] & MAX_SEED
     }
 
-    /// As [`Stream::seed`], of a world that was drawn again `attempt` times.
+    /// Like [`Stream::seed`], for a world that was drawn again `attempt` times.
     pub(crate) fn seed_at(&self, number: u64, attempt: u32) -> u64 {
         philox(self.key, [number, 0, 0, u64::from(attempt)])[0] & MAX_SEED
     }
@@ -75,23 +75,23 @@ impl Rng {
         self.numbers[self.used - 1]
     }
 
-    /// A number above 0 and below 1, 52 bits of it random.
+    /// A number strictly between 0 and 1, with 52 random bits.
     pub(crate) fn unit(&mut self) -> f64 {
         unit(self.next())
     }
 
-    /// A whole number below `bound`, which is at least 1.
+    /// An integer below `bound`, which is at least 1.
     pub(crate) fn below(&mut self, bound: usize) -> usize {
         ((self.unit() * bound as f64) as usize).min(bound - 1)
     }
 }
 
-/// 64 bits as a number above 0 and below 1.
+/// 64 bits as a number strictly between 0 and 1.
 pub(crate) fn unit(bits: u64) -> f64 {
     ((bits >> 12) as f64 + 0.5) * (1.0 / (1_u64 << 52) as f64)
 }
 
-/// So that the distributions of `rand_distr` can draw from it.
+/// Lets the distributions of `rand_distr` draw from it.
 impl TryRng for Rng {
     type Error = Infallible;
 
@@ -116,7 +116,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_address_has_numbers_of_its_own() {
+    fn every_address_has_its_own_numbers() {
         let stream = Stream::new("task", 7, "parameter/light");
         let first = |stream: &Stream, index, object, attempt| stream.at(index, object, attempt).next();
         let all = [
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn a_unit_number_lies_inside() {
+    fn unit_number_is_strictly_between_0_and_1() {
         assert!(unit(0) > 0.0 && unit(u64::MAX) < 1.0);
     }
 }

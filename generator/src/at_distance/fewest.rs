@@ -1,5 +1,4 @@
-//! The answer that changes the fewest parameters, and of those the one that changes them least. Finding any answer is `mod.rs`'s and
-//! `scan.rs`'s.
+//! Finds the answer that changes the fewest parameters, and among those the one with the smallest changes.
 
 use driftworld_spec::{Domain, ParameterType, Value, Variant};
 
@@ -8,27 +7,27 @@ use super::reach::{Reach, Way};
 use super::space::Space;
 use super::{Found, FreeParameters, Search};
 
-/// The most variants that are looked at by straight ways, the most where requirements cut them, both for each number of parameters, and
-/// how many it may be before larger numbers are not tried any more.
+/// Budgets in measured variants: most on straight ways and most in scans behind requirements, each per number of changed
+/// parameters, and the total beyond which no larger number of changes is tried.
 const MOST_LOOKS: usize = 24_000;
 const MOST_SCANNED: usize = 24_000;
 const MOST_IN_ALL: usize = 200_000;
 
-/// The fewest variants that are looked at for each set of parameters whose straight way is cut.
+/// Fewest variants to measure for each set of parameters whose straight way is cut off.
 const FEWEST_SCANNED: usize = 500;
 
-/// The most points that are worked out where distances add up, for each number of parameters; the most and the fewest for each way.
+/// Most points to compute where distances add up, per number of changed parameters; most and fewest per way.
 const MOST_ON_LEVELS: usize = 40_000;
 const MOST_POINTS: usize = 400;
 const FEWEST_POINTS: usize = 24;
 
-/// The most variants that are looked at for a better answer once there is one.
+/// Most variants to measure in search of a better answer once there is one.
 const MOST_FOR_BETTER: usize = 6_000;
 
-/// Shares of ranges that differ by less are equal.
+/// Shares of ranges that differ by less count as equal.
 const EQUAL: f64 = 1e-6;
 
-/// The best of all answers, if any was found.
+/// The best answer, if any was found.
 pub(super) fn fewest<'a, D: FnMut(&Variant) -> f64>(
     search: &mut Search<'a, D>,
     free: &FreeParameters<'a>,
@@ -46,7 +45,7 @@ pub(super) fn fewest<'a, D: FnMut(&Variant) -> f64>(
     None
 }
 
-/// The best answer found that changes so many parameters.
+/// The best answer that changes `size` parameters.
 fn of_size<'a, D: FnMut(&Variant) -> f64>(
     search: &mut Search<'a, D>,
     reach: &mut Reach<'a>,
@@ -83,7 +82,7 @@ fn of_size<'a, D: FnMut(&Variant) -> f64>(
     None
 }
 
-/// Goes every way straight; returns those that are cut off.
+/// Searches every way in a straight line; returns those that are cut off.
 fn straight<'w, 'a, D: FnMut(&Variant) -> f64>(
     search: &mut Search<'a, D>,
     ways: &'w [Way<'a>],
@@ -132,7 +131,7 @@ fn straight<'w, 'a, D: FnMut(&Variant) -> f64>(
     cut
 }
 
-/// The same without the changes that it meets the target without, those first that nothing reads.
+/// Drops changes without which the answer still meets the target, starting with those that nothing reads.
 fn without_idle_changes<D: FnMut(&Variant) -> f64>(search: &mut Search<D>, found: Found) -> Found {
     let mut names = changed(search.from, &found.variant);
     names.sort_by_key(|name| found.variant.reads(name));
@@ -149,14 +148,14 @@ fn without_idle_changes<D: FnMut(&Variant) -> f64>(search: &mut Search<D>, found
     kept
 }
 
-/// The parameters in which a variant differs from another.
+/// Names of the parameters in which two variants differ.
 fn changed(from: &Variant, to: &Variant) -> Vec<String> {
     let values = to.values().iter();
     let different = values.filter(|(name, value)| from.value(name) != Some(*value));
     different.map(|(name, _)| name.clone()).collect()
 }
 
-/// By how much of their ranges parameters differ, summed; another choice counts 1.
+/// Sum of the changes of parameters as shares of their ranges; another choice counts 1.
 fn total_change(from: &Variant, to: &Variant) -> f64 {
     let share = |name: &String| {
         let parameter = from.task().parameters().get(name)?;

@@ -1,6 +1,6 @@
-//! Several numbers that move at once, of which one adds its distance to that of all others: points that make the wanted sum are worked
-//! out, and the task is asked for each whether it allows it. Where no number adds its distance, or what is allowed is too narrow to be
-//! hit, `scan.rs` goes on.
+//! Moves several numbers at once, one of which adds its distance to that of the others: computes points with the wanted sum, and
+//! asks the task whether it allows each. `scan.rs` takes over if no number adds its distance, or the allowed region is too narrow
+//! to hit.
 
 use std::collections::HashMap;
 
@@ -10,19 +10,19 @@ use super::reach::Way;
 use super::space::Space;
 use super::{Changes, Found, Free, Search, with};
 
-/// Parts that a number's range is measured at, and each range of a vector.
+/// Parts in which the range of a number is measured, and those of each range of a vector.
 const PARTS: usize = 128;
 const PARTS_OF_VECTOR: usize = 6;
 
-/// Halvings of a part in which the sum is the wanted one.
+/// Bisection steps within a part.
 const HALVINGS: u32 = 40;
 
-/// A parameter's places from end to end, and how far each is.
+/// Places of a parameter from end to end of its range, each with its distance.
 struct Profile {
     places: Vec<(Vec<f64>, f64)>,
 }
 
-/// The profiles of the parameters that were asked for.
+/// The profiles measured so far, by parameter.
 #[derive(Default)]
 pub(super) struct Profiles(HashMap<String, Profile>);
 
@@ -57,7 +57,7 @@ impl Profiles {
 }
 
 impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
-    /// A point of a way that makes the wanted sum and is allowed, out of about so many; `None` if there is none among them.
+    /// An allowed point of a way with the wanted sum, out of about `points` candidates; `None` if there is none among them.
     pub(super) fn on_level(&mut self, way: &Way<'a>, profiles: &mut Profiles, points: usize) -> Option<Found> {
         for free in &way.smooth {
             profiles.measure(self, *free);
@@ -104,7 +104,7 @@ impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
         None
     }
 
-    /// An allowed place of a number that adds what a sum lacks.
+    /// An allowed value of the last number that supplies the rest of the sum.
     fn meet(&mut self, last: Free<'a>, profile: &Profile, changes: &Changes, sum: f64) -> Option<Found> {
         let space = Space::new(self.from, &[last]);
         let lack = self.target - sum;
@@ -118,7 +118,7 @@ impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
             let mut share = if near == far { 0.0 } else { (lack - near) / (far - near) };
             for _ in 0..HALVINGS {
                 let at = if share == 0.0 { low } else { low + (high - low) * share };
-                // What is not allowed here is not allowed a hair's breadth away either.
+                // If this value is not allowed, neighbouring values are not either.
                 let Some(found) = self.look(with(changes, &space.changes(&[at]))) else {
                     break;
                 };

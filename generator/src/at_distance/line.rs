@@ -1,19 +1,19 @@
-//! One number that moves alone, by a distance that depends on no other: where it makes the wanted distance, and whether the task allows
-//! that. Several numbers are `scan.rs`'s.
+//! Moves a single number whose distance depends on no other: finds where it gives the wanted distance, and checks whether the
+//! task allows that.
 
 use driftworld_spec::{ParameterType, Variant};
 
 use super::space::Space;
 use super::{Changes, Found, Free, Search, with};
 
-/// Halvings of a stretch.
+/// Bisection steps per interval.
 const HALVINGS: u32 = 60;
 
-/// Parts of the tolerance that the wanted distance is tried with: where a requirement ends just there, one of them is allowed.
+/// Offsets of the target to try, as shares of the tolerance: if a requirement ends exactly at the target, one of them is allowed.
 const TRIED: [f64; 3] = [0.0, -0.95, 0.95];
 
 impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
-    /// Every place of a number that meets the target beside some choices, and is allowed.
+    /// All allowed values of a number that, together with some choices, meet the target.
     pub(super) fn along_a_line(&mut self, choices: &Changes, moving: Free<'a>) -> Vec<Found> {
         let space = Space::new(self.from, &[moving]);
         let [axis] = &space.axes[..] else { return Vec::new() };
@@ -57,7 +57,7 @@ impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
         found
     }
 
-    /// Where on a stretch the distance is the wanted one. `is_rising`: it grows from its beginning to its end.
+    /// Bisects an interval for the wanted distance. `is_rising`: the distance grows from start to end.
     fn halved(
         &mut self,
         stretch: &[f64],

@@ -1,4 +1,4 @@
-//! A variant at a wanted distance from another. The distance is handed in; what it measures is `similarity`'s to say.
+//! Finds a variant at a wanted distance from another. The caller passes the distance function.
 
 mod fewest;
 mod level;
@@ -17,35 +17,35 @@ use space::Space;
 pub use subject::Subject;
 use subject::{Free, FreeParameters, parameters_of};
 
-/// The most combinations of choices that are tried.
+/// Most combinations of choices to try.
 const MOST_COMBINATIONS: usize = 4096;
 
-/// The most variants that are looked at where requirements cut off the straight way, and the fewest for each combination.
+/// Most variants to measure where requirements cut off the straight way, and fewest per combination.
 const MOST_LOOKS: usize = 60_000;
 const FEWEST_LOOKS: usize = 1500;
 
-/// A variant that was found, and how far it is.
+/// A found variant with its distance.
 #[derive(Clone, Debug)]
 pub struct Found {
     /// The variant.
     pub variant: Variant,
-    /// Its distance from the one that was given.
+    /// Its distance from the given variant.
     pub distance: f64,
 }
 
-/// Finds a variant whose distance from `from` is `target` within `tolerance`, by as few changed parameters as will do.
+/// Finds a variant whose distance from `from` is `target` within `tolerance`, with as few changed parameters as possible.
 ///
-/// All that the task's requirements leave of the subject's choices and ranges is searched: for each combination of choices the numbers move
-/// together towards the ends of their ranges that lie farthest, and where requirements cut that way off, or a number decides what is
-/// read, each number moves by itself. Of the answers that change as few parameters, the one that changes them least is taken, as a share of
-/// their ranges. A parameter that nothing reads in the answer stays as it is in `from`, unless a requirement forbids that. The
-/// same arguments always find the same variant. `distance` is asked some hundred times; where requirements cut, some ten thousand
-/// times. It returns numbers from 0, which is that of `from`.
+/// Searches everything that the task's requirements leave of the subject's choices and ranges. For each combination of choices
+/// the numbers move together towards the farthest ends of their ranges. If requirements cut that way off, or a number decides
+/// what is read, each number moves separately. Among answers that change equally few parameters, takes the one with the smallest
+/// changes as shares of their ranges. A parameter that nothing reads in the answer stays as it is in `from`, unless a requirement
+/// forbids that. The same arguments always find the same variant. Calls `distance` some hundred times; some ten thousand times if
+/// requirements cut ways off. `distance` must return numbers from 0, and 0 for `from`.
 ///
 /// # Errors
 /// [`GeneratorError::NothingToVary`] if the subject has no parameter that could change; [`GeneratorError::TooFar`] with the
-/// farthest variant that the task allows if that is nearer than `target`; [`GeneratorError::NoneBetween`] with the nearest miss if the
-/// choices leave a gap around `target`, or there was too much to look through.
+/// farthest variant that the task allows if that is nearer than `target`; [`GeneratorError::NoneBetween`] with the nearest miss
+/// if the choices leave a gap around `target`, or the search ran out of budget.
 ///
 /// # Example
 /// ```
@@ -88,10 +88,10 @@ pub fn at_distance(
     search.finish()
 }
 
-/// Values that differ from those of the variant that was given.
+/// Changed values, by parameter name.
 type Changes = Vec<(String, Value)>;
 
-/// Every combination of choices, those with fewer changes first, and whether that is all of them: they are bounded.
+/// All combinations of choices, fewest changes first, and whether the list is complete: its length is limited.
 fn combinations(from: &Variant, listed: &[Free]) -> (Vec<Changes>, bool) {
     let mut all: Vec<Changes> = vec![Vec::new()];
     let mut are_all = true;
@@ -124,24 +124,24 @@ fn with(changes: &Changes, more: &Changes) -> Changes {
 
 struct Search<'a, D> {
     from: &'a Variant,
-    /// What variants on the way are called.
+    /// Name of the variants on the way.
     name: String,
     target: f64,
     tolerance: f64,
     distance: D,
-    /// The nearest of the part that is being looked through.
+    /// The nearest variant in the part being searched.
     nearest: Option<Found>,
     nearest_of_all: Option<Found>,
     farthest: Option<Found>,
     num_looks: usize,
-    /// How many variants the task did not allow.
+    /// Number of variants that the task did not allow.
     num_refused: u64,
-    /// Whether all there is has been looked through.
+    /// Whether the search has covered everything.
     is_complete: bool,
 }
 
 impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
-    /// Looks through every combination of choices and all of the ranges, until the target is met.
+    /// Searches every combination of choices and all of the ranges until the target is met.
     fn whole(&mut self, free: &FreeParameters<'a>) {
         let (combinations, are_all) = combinations(self.from, &free.listed);
         self.is_complete = are_all;
@@ -166,7 +166,7 @@ impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
         self.is_complete &= cut.len() <= most;
     }
 
-    /// Looks through a combination of choices in every direction; true if the target was met.
+    /// Searches one combination of choices in every direction; true if the target was met.
     fn scan(&mut self, space: &Space<'a>, combination: &Changes, budget: usize) -> bool {
         let scan = Scan {
             search: self,
@@ -177,12 +177,12 @@ impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
         scan.run()
     }
 
-    /// Whether the nearest variant so far is near enough.
+    /// Whether the nearest variant so far meets the target.
     fn is_met(&self) -> bool {
         self.nearest.as_ref().is_some_and(|nearest| self.meets(nearest))
     }
 
-    /// Measures a variant and remembers it; `None` if the task does not allow it.
+    /// Measures a variant and records it; `None` if the task does not allow it.
     fn look(&mut self, changes: Changes) -> Option<Found> {
         self.num_looks += 1;
         let Ok(variant) = self.from.with(&self.name, changes) else {
@@ -207,7 +207,7 @@ impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
         Some(found)
     }
 
-    /// The distance of a variant that need not meet the requirements; `None` if nothing could be drawn from it.
+    /// The distance of a variant that need not meet the requirements; `None` if its worlds cannot be drawn.
     fn beyond(&mut self, changes: Changes) -> Option<f64> {
         self.num_looks += 1;
         let variant = self.from.beyond_requirements(&self.name, changes).ok()?;
@@ -218,7 +218,7 @@ impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
         (found.distance - self.target).abs() <= self.tolerance
     }
 
-    /// The nearest variant if it meets the target, else what came of the search.
+    /// The nearest variant if it meets the target, else the error that describes the search's outcome.
     fn finish(&mut self) -> Result<Found, GeneratorError> {
         let (target, variant) = (self.target, self.from.id());
         let (Some(nearest), Some(farthest)) = (self.nearest_of_all.clone(), self.farthest.clone()) else {
@@ -250,7 +250,7 @@ impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
     }
 }
 
-/// The values in which a variant differs from another.
+/// The values in which a variant differs from another, as text.
 fn shown(from: &Variant, to: &Variant) -> String {
     let different = to
         .values()

@@ -1,8 +1,8 @@
-//! How far each parameter reaches by itself, and which sets of parameters and choices can make a wanted distance up. Requirements have no
-//! part in it: they are met, or not, by the variants that `fewest.rs` then looks at.
+//! Measures the greatest distance that each parameter can reach by itself, and lists the sets of parameters and choices that can
+//! add up to a wanted distance. Ignores requirements: `fewest.rs` checks them on the variants.
 //!
-//! Distances of parameters that have nothing to do with each other add up, and each grows with its number. Whether they add up is asked
-//! of every pair; where they do not, all values of the pair are measured together.
+//! Distances of independent parameters add up, and each grows with its number. Every pair is tested for this; if the distances do
+//! not add up, all values of the pair are measured together.
 
 use std::collections::HashMap;
 
@@ -12,30 +12,30 @@ use super::space::Space;
 use super::straight::ends_of;
 use super::{Changes, Free, FreeParameters, MOST_COMBINATIONS, Search, with};
 
-/// The widest range of whole numbers that are chosen one by one.
+/// Widest range of integers that are tried one by one.
 const WIDEST_LIST: f64 = 128.0;
 
-/// The most sets of parameters that are thought of for one size.
+/// Most sets of parameters to consider per size.
 const MOST_SETS: usize = 100_000;
 
-/// Sums that differ by less are equal.
+/// Sums that differ by less count as equal.
 const ROUNDING: f64 = 1e-9;
 
-/// Part of a distance that may lie beyond the last point of a way that something can be drawn at.
+/// Share by which the reach of a way may exceed the distance of its last point from which worlds can be drawn.
 const NEARLY: f64 = 1e-4;
 
-/// Parts that the range of a number is measured at that may decide what is read, and each range of two.
+/// Parts in which the range of a number that may decide what is read is measured; and those of each of two such ranges.
 const PARTS: usize = 32;
 const PARTS_OF_TWO: usize = 8;
 
-/// A parameter that may change, with the distance of each choice, or how far its number reaches.
+/// A parameter that may change, with the distance of each choice, or the reach of its number.
 struct Candidate<'a> {
     free: Free<'a>,
-    /// The choices other than where it is; none if it moves smoothly.
+    /// The other choices with their distances; empty if the parameter moves smoothly.
     choices: Vec<(Value, f64)>,
     ends: Vec<Value>,
-    /// Values from end to end of a number that may decide what is read, and how much farther it may reach between them; none and
-    /// infinity where there are too many.
+    /// For a number that may decide what is read: values from end to end, and how much farther it may reach between them; none
+    /// and infinity if there would be too many.
     between: (Vec<Value>, f64),
     least: f64,
     most: f64,
@@ -43,23 +43,23 @@ struct Candidate<'a> {
     is_tied: bool,
 }
 
-/// Parameters that all change: the listed ones to these choices, the smooth ones to whatever meets the target.
+/// Parameters that all change: listed ones to these choices, smooth ones to whatever meets the target.
 pub(super) struct Way<'a> {
     pub(super) choices: Changes,
     pub(super) smooth: Vec<Free<'a>>,
     /// The sum of the choices' distances; `None` if some distance depends on another parameter.
     pub(super) sum: Option<f64>,
-    /// Whether another parameter's value decides how far each of the smooth ones is.
+    /// For each smooth parameter, whether its distance depends on another parameter.
     pub(super) are_tied: Vec<bool>,
 }
 
-/// All that may change.
+/// All parameters that may change.
 pub(super) struct Reach<'a> {
     candidates: Vec<Candidate<'a>>,
     spans: JointSpans,
 }
 
-/// How near and how far parameters are that were measured together, by their names and choices.
+/// Least and greatest distance of parameters that were measured together, by their names and choices.
 type JointSpans = HashMap<String, Option<(f64, f64)>>;
 
 impl<'a> Reach<'a> {
@@ -81,7 +81,7 @@ impl<'a> Reach<'a> {
                 }
             }
         }
-        // Those that reach farthest first: where all sets are too many, it is theirs that are thought of.
+        // Sorted by reach: if there are too many sets, those of the farthest-reaching parameters are considered.
         candidates.sort_by(|a, b| b.most.total_cmp(&a.most));
         Self {
             candidates,
@@ -89,12 +89,12 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// How many parameters there are.
+    /// Number of parameters.
     pub(super) fn len(&self) -> usize {
         self.candidates.len()
     }
 
-    /// Every way that may meet the target by so many changes; bounded.
+    /// All ways with `size` changes that may meet the target; their number is limited.
     pub(super) fn ways<D: FnMut(&Variant) -> f64>(&mut self, search: &mut Search<'a, D>, size: usize) -> Vec<Way<'a>> {
         let (mut ways, mut num_sets) = (Vec::new(), 0);
         let mut set: Vec<usize> = (0..size).collect();
@@ -105,7 +105,7 @@ impl<'a> Reach<'a> {
             }
             let members: Vec<&Candidate> = set.iter().map(|index| &self.candidates[*index]).collect();
             ways_of(&members, search, &mut self.spans, &mut ways);
-            // The next set of this size, in lexical order.
+            // The next set of this size in lexical order.
             let Some(place) = (0..size).rev().find(|place| set[*place] < self.len() - size + place) else {
                 break;
             };
@@ -118,7 +118,7 @@ impl<'a> Reach<'a> {
     }
 }
 
-/// The ways of one set of parameters.
+/// Adds the ways of one set of parameters.
 fn ways_of<'a, D: FnMut(&Variant) -> f64>(
     members: &[&Candidate<'a>],
     search: &mut Search<'a, D>,
@@ -148,7 +148,7 @@ fn ways_of<'a, D: FnMut(&Variant) -> f64>(
             continue;
         };
         let (from, to) = (nearest - ROUNDING, farthest + moving + ROUNDING);
-        // What is still to come of the choices can only add to a sum.
+        // The remaining choices can only increase the sum.
         for (choices, sum) in products(&listed, |sum| sum + from <= high) {
             if sum + to >= low {
                 ways.push(Way {
@@ -165,7 +165,7 @@ fn ways_of<'a, D: FnMut(&Variant) -> f64>(
     }
 }
 
-/// Every combination of choices with the sum of their distances, of those sums that may be.
+/// All combinations of choices with the sums of their distances, as far as `may_be` accepts the sums.
 fn products(members: &[&Candidate], may_be: impl Fn(f64) -> bool) -> Vec<(Changes, f64)> {
     let mut all = vec![(Changes::new(), 0.0)];
     for member in members {
@@ -185,7 +185,7 @@ fn products(members: &[&Candidate], may_be: impl Fn(f64) -> bool) -> Vec<(Change
     all
 }
 
-/// The least and the greatest distance that numbers tied to each other and to choices make together; `None` if the choices cannot be.
+/// Least and greatest distance of numbers that are tied to each other and to choices; `None` if the choices are impossible.
 fn reach_together<D: FnMut(&Variant) -> f64>(
     search: &mut Search<D>,
     choices: &Changes,
@@ -215,7 +215,7 @@ fn reach_together<D: FnMut(&Variant) -> f64>(
     let mut farthest: f64 = 0.0;
     for corner in corners {
         let ends: Changes = corner[choices.len()..].to_vec();
-        // Where nothing can be drawn at a corner, it is as near to it as something can.
+        // If a corner cannot be drawn, takes the nearest point to it that can.
         if let Some((distance, _)) = search.towards(choices, ends, Search::beyond) {
             farthest = farthest.max(distance * (1.0 + NEARLY));
         }
@@ -269,7 +269,7 @@ impl<'a> Candidate<'a> {
         }
     }
 
-    /// Values from end to end, and how much farther the number may reach between two of them.
+    /// Values from end to end, and how much farther the number may reach between two neighbouring ones.
     fn between(&self, from: &Variant) -> (Vec<Value>, f64) {
         if !self.choices.is_empty() {
             return (Vec::new(), 0.0);
@@ -292,7 +292,7 @@ impl<'a> Candidate<'a> {
         )
     }
 
-    /// Values that stand for all when it is asked whether distances add up.
+    /// Representative values for testing whether distances add up.
     fn some(&self) -> Vec<&Value> {
         let ends = [self.choices.first(), self.choices.last()];
         self.ends
@@ -301,14 +301,14 @@ impl<'a> Candidate<'a> {
             .collect()
     }
 
-    /// Whether the distance of both changed is the sum of both.
+    /// Whether changing both gives the sum of the two distances.
     fn adds_up_with<D: FnMut(&Variant) -> f64>(&self, other: &Self, search: &mut Search<D>) -> bool {
         let change = |candidate: &Self, value: &Value| vec![(candidate.free.0.to_owned(), value.clone())];
         for a in self.some() {
             for b in other.some() {
                 let (a, b) = (change(self, a), change(other, b));
                 let both = search.beyond(with(&a, &b));
-                // Where one of them alone cannot be drawn from, it says nothing about the other.
+                // If one of them alone cannot be drawn, the pair gives no evidence.
                 let (Some(a), Some(b)) = (search.beyond(a), search.beyond(b)) else {
                     continue;
                 };

@@ -1,38 +1,37 @@
-//! Looking through all that a task's requirements leave of the ranges, where the straight way to their ends is cut off. Which
-//! variants are compared and when a search ends is in `mod.rs`.
+//! Scans everything that a task's requirements leave of the ranges, for cases where the straight way to their ends is cut off.
 //!
-//! Lines along every axis are walked through the whole box; where a line leaves what is allowed, its border is found by halving, and so
-//! is the wanted distance between two points on either side of it. From the points that came nearest it goes on in all directions by
-//! ever smaller steps. Nothing is drawn by chance: the same arguments find the same variant.
+//! Walks lines along every axis through the whole box. Where a line leaves the allowed region, bisects for its border; between
+//! two points on either side of the wanted distance, bisects for that distance. From the nearest points it continues in all
+//! directions with ever smaller steps. Deterministic: the same arguments find the same variant.
 
 use driftworld_spec::Variant;
 
 use super::space::{Axis, Point, Space};
 use super::{Changes, Search, with};
 
-/// Points on each line but the first.
+/// Points on each line, except the first.
 const PARTS: usize = 32;
 
-/// A budget that does not last for a close look at every line: then all of the box is looked at coarsely first.
+/// A budget below this is too small to search every line closely: then the whole box is searched coarsely first.
 const LITTLE: usize = 3000;
 const PARTS_OF_LITTLE: usize = 3;
 
-/// Halvings towards a border, and towards the wanted distance.
+/// Bisection steps towards a border, and towards the wanted distance.
 const HALVINGS: u32 = 48;
 
-/// From how many points the search goes on in small steps.
+/// Number of points from which the search continues in small steps.
 const STARTS: usize = 12;
 
-/// How often the small steps are halved.
+/// Number of times the small steps are halved.
 const FINENESS: u32 = 30;
 
-/// How many pairs of points on either side of the wanted distance are tried.
+/// Number of pairs of points on either side of the wanted distance to try.
 const PAIRS: usize = 24;
 
-/// The most axes whose diagonals are tried, too.
+/// Most axes for which diagonals are also tried.
 const MOST_DIAGONAL: usize = 8;
 
-/// The directions of small steps: along each axis, and along the diagonals of each pair of few.
+/// Directions of small steps: along each axis and, if there are few axes, along the diagonals of each pair.
 fn directions(axes: usize) -> Vec<Vec<(usize, f64)>> {
     let mut found = Vec::new();
     for a in 0..axes {
@@ -45,7 +44,7 @@ fn directions(axes: usize) -> Vec<Vec<(usize, f64)>> {
     found
 }
 
-/// A point that the task allows, and its distance.
+/// An allowed point, and its distance.
 type Seen = (Point, f64);
 
 /// A search through one combination of choices.
@@ -53,17 +52,17 @@ pub(super) struct Scan<'s, 'a, D> {
     pub(super) search: &'s mut Search<'a, D>,
     pub(super) space: &'s Space<'a>,
     pub(super) combination: &'s Changes,
-    /// How many variants it may still look at.
+    /// Number of variants that it may still measure.
     pub(super) budget: usize,
 }
 
-/// The search is over: the wanted distance was met, or there was too much to look at.
+/// Ends the search: the wanted distance was met, or the budget is used up.
 struct Over;
 
 impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
-    /// Looks through it all; true if the wanted distance was met.
+    /// Scans the whole box; true if the wanted distance was met.
     pub(super) fn run(mut self) -> bool {
-        // Whether it was met or was too much is what the search remembers of the nearest variant.
+        // The search's nearest variant shows which of the two it was.
         let _over = self.all();
         let is_met = self.search.is_met();
         self.search.is_complete &= is_met || self.budget > 0;
@@ -87,7 +86,7 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
         for along in 0..self.space.axes.len() {
             self.line(&here, along, 4 * PARTS, &mut seen)?;
         }
-        // First from what lies around, which is most often enough, then through all of the box.
+        // First from the neighbourhood, which usually suffices, then through the whole box.
         self.nearer(&mut seen, 1)?;
         if self.space.axes.len() == 1 {
             return Ok(());
@@ -100,7 +99,7 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
         self.nearer(&mut seen, STARTS)
     }
 
-    /// Goes on from the points that came nearest.
+    /// Continues from the nearest points.
     fn nearer(&mut self, seen: &mut [Seen], starts: usize) -> Result<(), Over> {
         self.pairs(seen)?;
         let target = self.search.target;
@@ -150,7 +149,7 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
         Ok(())
     }
 
-    /// Goes from a point inside towards one that is not allowed, as far as it may.
+    /// Moves from an allowed point towards one that is not, as far as possible.
     fn border(&mut self, inside: (&[f64], f64), outside: &[f64], seen: &mut Vec<Seen>) -> Result<(), Over> {
         let (mut low, mut high) = (0.0, 1.0);
         let mut last = None;
@@ -172,7 +171,7 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
         Ok(())
     }
 
-    /// Halves the stretch between two points on either side of the wanted distance.
+    /// Bisects between two points on either side of the wanted distance.
     fn between(&mut self, a: (&[f64], f64), b: (&[f64], f64)) -> Result<(), Over> {
         let target = self.search.target;
         if (a.1 < target) == (b.1 < target) {
@@ -181,7 +180,7 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..HALVINGS {
             let t = f64::midpoint(low, high);
-            // Where nothing is allowed in between, the two are not on one way.
+            // Without an allowed point between them, the two are not connected.
             let Some(distance) = self.look(&between(a.0, b.0, t))? else {
                 return Ok(());
             };
@@ -194,7 +193,7 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
         Ok(())
     }
 
-    /// Tries the straight ways between points that are nearer and points that are farther than wanted.
+    /// Tries straight lines between points nearer and points farther than wanted.
     fn pairs(&mut self, seen: &[Seen]) -> Result<(), Over> {
         let target = self.search.target;
         let side = |far: bool| {
@@ -214,7 +213,7 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
         Ok(())
     }
 
-    /// Goes from a point by ever smaller steps in whatever direction brings it nearer to the wanted distance.
+    /// From a point, takes ever smaller steps in any direction that brings it nearer to the wanted distance.
     fn climb(&mut self, (start, distance): Seen) -> Result<(), Over> {
         let target = self.search.target;
         let directions = directions(self.space.axes.len());
@@ -248,7 +247,7 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
     }
 }
 
-/// The nearest points, of which no two lie close together.
+/// The nearest points, no two of them close together.
 fn spread(sorted: &[Seen], space: &Space, most: usize) -> Vec<Seen> {
     let mut kept: Vec<Seen> = Vec::new();
     for (point, distance) in sorted {

@@ -1,4 +1,4 @@
-//! [`Space`]: the numbers that may move, and what a point of them changes. Who looks at which points is not its matter.
+//! [`Space`]: the numbers that may move, and the changes that a point of them stands for.
 
 use driftworld_spec::{Domain, ParameterType, Value, Variant};
 
@@ -6,7 +6,7 @@ use super::{Changes, Free};
 
 /// One number that may move.
 pub(super) struct Axis {
-    /// The parameter, by its place among those that move.
+    /// Index of its parameter among those that move.
     owner: usize,
     place: Option<usize>,
     pub(super) here: f64,
@@ -16,7 +16,7 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// A number so many parts of the way from the low end to the high one.
+    /// The number `part` of `parts` steps from the low end to the high end.
     pub(super) fn at(&self, part: usize, parts: usize) -> f64 {
         if part == parts {
             return self.high;
@@ -25,7 +25,7 @@ impl Axis {
     }
 }
 
-/// The numbers that may move, and the parameters that they are of.
+/// The numbers that may move, and the parameters that they belong to.
 pub(super) struct Space<'a> {
     from: &'a Variant,
     owners: Vec<Free<'a>>,
@@ -58,7 +58,7 @@ impl<'a> Space<'a> {
                         axis(Some(place), *here, high);
                     }
                 }
-                // An arc may lead across north: along it, from its low end.
+                // An arc may cross north: measured along it, from its low end.
                 Value::Number(here) if parameter.kind == ParameterType::Heading => {
                     let arc = (high - low).min(360.0);
                     axis(None, low + (here - low).rem_euclid(360.0).min(arc), low + arc);
@@ -77,7 +77,7 @@ impl<'a> Space<'a> {
         self.axes.iter().map(|axis| axis.here).collect()
     }
 
-    /// What a point changes.
+    /// The changes that a point stands for.
     pub(super) fn changes(&self, point: &[f64]) -> Changes {
         let mut changes = Changes::new();
         for (axis, number) in self.axes.iter().zip(point) {
@@ -100,7 +100,7 @@ impl<'a> Space<'a> {
         changes
     }
 
-    /// How many different numbers an axis is looked at by: all of a short range of whole numbers.
+    /// Number of steps along an axis: at most `most`, and no more than a short integer range has.
     pub(super) fn parts(&self, axis: usize, most: usize) -> usize {
         let Axis {
             low, high, is_whole, ..
@@ -116,15 +116,15 @@ impl<'a> Space<'a> {
         self.axes[axis].at(part, parts)
     }
 
-    /// Points that lines along one axis lead through: those of a grid over all other axes, coarser the more axes there are.
-    /// `most`: parts of each axis at the most.
+    /// Points through which to draw lines along one axis: a grid over all other axes, coarser the more axes there are. `most`:
+    /// most parts per axis.
     pub(super) fn anchors(&self, along: usize, most: usize) -> Vec<Point> {
         let most = most.min(match self.axes.len() {
             0..=2 => 16,
             3 => 6,
             4 => 3,
             5 => 2,
-            // Too many for a grid: the axes through where the variant is, and through the middle and both corners.
+            // Too many for a grid: lines through the variant itself, the middle and both corners.
             _ => {
                 let of = |part: usize| (0..self.axes.len()).map(|axis| self.at(axis, part, 2)).collect();
                 return vec![of(0), of(1), of(2)];

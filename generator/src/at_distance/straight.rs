@@ -1,17 +1,17 @@
-//! The straight way from a variant to ends of its ranges, where all numbers move together. What is found on it is remembered in `mod.rs`.
+//! Searches the straight way from a variant to ends of its ranges, on which all numbers move together.
 
 use driftworld_spec::{Domain, Parameter, ParameterType, Value, Variant};
 
 use super::{Changes, Found, Free, Search, with};
 use crate::interpolation::interpolate;
 
-/// The most corners of the ranges that are gone to where distances do not add up.
+/// Most corners of the ranges to try if distances do not add up.
 const MOST_CORNERS: usize = 81;
 
-/// Halvings towards a border of what is allowed.
+/// Bisection steps towards the border of the allowed region.
 const HALVINGS_TO_BORDER: u32 = 24;
 
-/// Halvings of a stretch before it is given up.
+/// Bisection steps per interval.
 const HALVINGS: u32 = 80;
 
 impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
@@ -30,7 +30,8 @@ impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
         self.straight_to(combination, &base, &ends)
     }
 
-    /// As [`Self::straight`], to one corner after the other, the farthest first: where numbers decide together how far they reach.
+    /// Like [`Self::straight`], to one corner after the other, the farthest first: for numbers whose joint reach is not the sum
+    /// of their reaches.
     pub(super) fn straight_to_corners(&mut self, combination: &Changes, smooth: &[Free]) -> bool {
         let Some(base) = self.look(combination.clone()) else {
             return false;
@@ -65,7 +66,7 @@ impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
         })
     }
 
-    /// How far it is at some ends beside a combination of choices, or, where those are not allowed, as near to them as may be.
+    /// The distance at some ends together with a combination of choices or, if that is not allowed, as near to them as possible.
     pub(super) fn towards(
         &mut self,
         combination: &Changes,
@@ -87,7 +88,7 @@ impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
         last
     }
 
-    /// A part of the way from where the variant is to some ends.
+    /// A point at share `t` of the way from the variant to some ends.
     fn on_the_way(&self, ends: &Changes, t: f64) -> Changes {
         let between = ends.iter().map(|(name, end)| {
             let parameter = &self.from.task().parameters()[name];
@@ -106,7 +107,7 @@ impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
         self.meets(&end) || (crosses && self.halve(combination, ends))
     }
 
-    /// The ends of the ranges that lie farthest beside a combination of choices, taken parameter by parameter.
+    /// The farthest ends of the ranges together with a combination of choices, chosen one parameter at a time.
     fn farthest_ends(&mut self, combination: &Changes, smooth: &[Free]) -> Changes {
         let mut ends = Changes::new();
         for (name, parameter) in smooth {
@@ -126,7 +127,7 @@ impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
         ends
     }
 
-    /// Halves the stretch to the ends until it meets the target; false if it cannot.
+    /// Bisects the way to the ends until it meets the target; false if it cannot.
     fn halve(&mut self, combination: &Changes, ends: &Changes) -> bool {
         let (mut low, mut high) = (0.0, 1.0);
         let Some(start) = self.look(combination.clone()) else {
@@ -149,8 +150,8 @@ impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
     }
 }
 
-/// What a number could be at the most: the ends of its range; of a heading also the opposite direction, of a vector the corner that lies
-/// farthest.
+/// Extreme values of a number: the ends of its range; for a heading also the opposite direction, for a vector the farthest
+/// corner.
 pub(super) fn ends_of(from: &Variant, name: &str, parameter: &Parameter) -> Vec<Value> {
     let Some(Domain::Range([low, high])) = parameter.domain() else {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! [`Subject`]: what may change on the way to a wanted distance. The search is in `mod.rs`.
+//! [`Subject`]: what may change on the way to a wanted distance.
 
 use driftworld_spec::{Domain, Element, Parameter, ParameterType, Role, Variant, nearest};
 
@@ -7,14 +7,14 @@ use crate::GeneratorError;
 /// What may change on the way to a wanted distance.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Subject {
-    /// The variant parameters that affect this element of the decision process, and no other.
+    /// The variant parameters that affect only this element of the decision process.
     Element(Element),
     /// These variant parameters.
     Parameters(Vec<String>),
 }
 
 impl Subject {
-    /// The names of the parameters that may change, in the order of the task.
+    /// Names of the parameters that may change, in the task's order.
     pub fn parameters<'a>(&self, from: &'a Variant) -> Vec<&'a str> {
         self.free(from).map(|(name, _)| name).collect()
     }
@@ -37,16 +37,17 @@ fn declared(from: &Variant) -> impl Iterator<Item = Free<'_>> {
     parameters.filter(|(_, parameter)| parameter.role == Role::Variant)
 }
 
-/// A parameter that may change: its name, and how it is declared.
+/// A parameter that may change: its name and declaration.
 pub(super) type Free<'a> = (&'a str, &'a Parameter);
 
-/// The parameters that may change: those that move smoothly, and those that are chosen from a list.
+/// The parameters that may change: those that move smoothly, and those with a list of choices.
 pub(super) struct FreeParameters<'a> {
     pub(super) smooth: Vec<Free<'a>>,
     pub(super) listed: Vec<Free<'a>>,
-    /// Those that decide what is read, or are read under a condition.
+    /// Parameters that decide what is read, or are read only under a condition.
     pub(super) tied: Vec<&'a str>,
-    /// Whether the distance may fail to grow evenly where all numbers move together: one decides what is read, or goes in whole steps.
+    /// Whether the distance may not grow evenly when all numbers move together: one decides what is read, or moves in integer
+    /// steps.
     pub(super) is_bent: bool,
 }
 

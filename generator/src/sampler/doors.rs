@@ -1,5 +1,4 @@
-//! Doors in the doorways of rooms, and their keys, as plain objects of the sampled world. Where the doorways are is the
-//! layout's; what doors and keys do is the simulator's.
+//! Puts doors into the doorways of rooms, and places their keys, as plain objects of the sampled world.
 
 use std::collections::BTreeSet;
 
@@ -14,22 +13,22 @@ use crate::stream::Rng;
 /// The tag of every door.
 const DOOR: &str = "door";
 
-/// The colours of locked doors, all of which differ much. Doors share them where there are more, and then their keys open
-/// each of them.
+/// The colours of locked doors, all clearly different. If there are more doors, several share a colour, and their keys open each
+/// of them.
 const COLORS: [&str; 8] = ["red", "blue", "yellow", "lime", "magenta", "cyan", "orange", "white"];
 
-/// How far a key stays from walls, and from objects and the agent, in metres; less in cells that are smaller.
+/// Least distance of a key from walls, and from objects and the agent, in metres; less in smaller cells.
 const FROM_WALLS: f64 = 0.4;
 const FROM_OTHERS: f64 = 0.8;
 
-/// How many cells are tried at random before they are gone through one by one.
+/// Number of cells to try at random before going through them one by one.
 const RANDOM_TRIES: usize = 32;
 
-/// How many places are tried in a cell: its middle first.
+/// Number of places to try in a cell, the middle first.
 const TRIES_IN_CELL: usize = 8;
 
 impl Sampler {
-    /// A door for every doorway of the layout's rooms, in the order of the doorways; none where the rooms have none.
+    /// One door per doorway of the layout's rooms, in the order of the doorways; none if the layout asks for none.
     pub(super) fn doors(&self, world: &WorldDraft, free_space: &FreeSpace, index: u64) -> Vec<Object> {
         let kind = doors_of(world);
         let Some(plan) = free_space.plan.as_deref().filter(|_| kind != RoomDoors::None) else {
@@ -56,8 +55,8 @@ impl Sampler {
         plan.doorways.iter().enumerate().map(door).collect()
     }
 
-    /// The keys of these doors, those of the world's doorways. No key lies behind its own door: from the agent's start on, all
-    /// doors can be opened one after the other.
+    /// The keys of these doors, which are those of the world's doorways. No key lies behind its own door: from the agent's start,
+    /// all doors can be opened one after the other.
     pub(super) fn keys(&self, doors: &[Object], draft: &mut Draft) -> Result<Vec<Object>, GeneratorError> {
         let locked = |door: &Object| door.door.as_ref().and_then(|door| door.key.clone());
         let plan = draft
@@ -89,7 +88,7 @@ impl Sampler {
             draft.context.occupy(coordinates);
             keys.push(Object {
                 color: door.color,
-                // It never bars a way.
+                // Keys never block the way.
                 solid: false,
                 tag: locked(door),
                 portable: Some(Portable::default()),
@@ -100,7 +99,7 @@ impl Sampler {
     }
 }
 
-/// What stands in the doorways of a world's rooms.
+/// Which doors a world's rooms have.
 fn doors_of(world: &WorldDraft) -> RoomDoors {
     let layout: Option<&Layout> = world.environment_params.layout.as_ref();
     let rooms = layout.and_then(|layout| layout.rooms.as_ref());
@@ -132,13 +131,13 @@ fn colors(rng: &mut Rng) -> [&'static str; COLORS.len()] {
 struct Order {
     /// The cells in the order in which they are reached.
     cells: Vec<usize>,
-    /// The doors by number, each with how many of the cells are reached before it is opened.
+    /// The doors by index, each with the number of cells reached before it is opened.
     doors: Vec<(usize, usize)>,
 }
 
 impl Order {
     fn drawn(plan: &Plan, start: usize, rng: &mut Rng) -> Self {
-        // The cells on either side: a doorway is in the middle of one side of each.
+        // The cells on both sides: a doorway is in the middle of one side of each.
         let sides: Vec<[Option<usize>; 2]> = plan
             .doorways
             .iter()
@@ -194,7 +193,7 @@ impl Order {
     }
 }
 
-/// A place in one of these cells that is clear of walls, objects and the agent: cells at random, then all in turn.
+/// A place in one of these cells that is clear of walls, objects and the agent: tries cells at random, then all in turn.
 fn free_place(plan: &Plan, cells: &[usize], draft: &Draft, rng: &mut Rng) -> Option<[f64; 2]> {
     let least = plan.cell[0].min(plan.cell[1]);
     let (walls, others) = (FROM_WALLS.min(least / 4.0), FROM_OTHERS.min(least / 2.0));

@@ -1,5 +1,4 @@
-//! The objects of a group: how many there are, what each is, where it stands and looks. Free places are found in
-//! `placement.rs`.
+//! Samples the objects of a group: their number, kinds, places and headings. Free places are found in `placement.rs`.
 
 use driftworld_spec::{Distribution, Turns, Value, WorldDraft};
 
@@ -20,7 +19,7 @@ impl Sampler {
         draft: &mut Draft,
     ) -> Result<(), GeneratorError> {
         let index = draft.index;
-        // Each anchor has numbers of its own, so that one more object around it moves nothing around another.
+        // Each anchor has its own random numbers, so that one more object around it moves nothing around another.
         let first = anchor_number << 32;
         let count = count_of(group, first, draft);
         let found = draft.world.objects.len().saturating_add(count as usize);
@@ -49,7 +48,8 @@ impl Sampler {
                 object.seed = object.seed.or_else(|| Some(seeds.seed(first + turn)));
             }
             let mut rng = group.placement.stream.at(index, first + turn, 0);
-            // Between it and the wall the agent must get through: a body is about as wide as its scale, walls are thinner than agents.
+            // The agent must fit between the object and the wall: a body is about as wide as its scale, walls are thinner than
+            // agents.
             let mouth = 1.5 * draft.world.agent_params.agent_width + object.scale / 2.0;
             let is_free = !object.solid || draft.context.asks_for_doorways(asked, cells.as_ref(), mouth);
             let request = Request {
@@ -77,7 +77,7 @@ impl Sampler {
             object.coordinates = place;
             object.heading = along.unwrap_or(object.heading);
             if place.iter().any(|metres| metres.abs() > 300.0) {
-                // Only where no wall is kept out of: the arena itself is smaller.
+                // Only if no distance to walls is kept, so that the arena itself is the limit.
                 return Err(self.out_of_range(
                     index,
                     &format!("group/{}/placement", group.name),
@@ -105,7 +105,7 @@ impl Sampler {
     }
 }
 
-/// A world on its way.
+/// A world under construction.
 pub(super) struct Draft<'a, 'g> {
     pub(super) index: u64,
     pub(super) values: &'a [Value],
@@ -113,7 +113,7 @@ pub(super) struct Draft<'a, 'g> {
     pub(super) world: &'a mut WorldDraft,
 }
 
-/// How many objects of a group stand around an anchor; the first has this number.
+/// The number of objects of a group around an anchor; the first has index `first`.
 fn count_of(group: &Group, first: u64, draft: &Draft<'_, '_>) -> u32 {
     match &group.count {
         GroupCount::Fixed(count) => *count,
@@ -121,16 +121,16 @@ fn count_of(group: &Group, first: u64, draft: &Draft<'_, '_>) -> u32 {
     }
 }
 
-/// A drawn count; what does not fit is as good as too many.
+/// A drawn count; saturates, because a count beyond `u32` is too many in any case.
 fn whole(value: &Value) -> u32 {
     value
         .as_integer()
         .map_or(0, |count| u32::try_from(count.max(0)).unwrap_or(u32::MAX))
 }
 
-/// The heading in degrees that looks from one place to another.
+/// The heading in degrees from one place to another.
 fn heading([x, y]: [f64; 2], [to_x, to_y]: [f64; 2]) -> f64 {
     let turned = libm::atan2(to_x - x, to_y - y).to_degrees().rem_euclid(360.0);
-    // A tiny negative angle would be rounded up to 360 itself.
+    // A tiny negative angle would be rounded up to 360.
     if turned >= 360.0 { 0.0 } else { turned }
 }

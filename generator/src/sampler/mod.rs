@@ -1,4 +1,4 @@
-//! [`Sampler`]: a variant under a seed, compiled so that any of its worlds can be drawn at once.
+//! [`Sampler`]: a variant under a seed, compiled so that any of its worlds can be drawn directly.
 
 mod doors;
 mod groups;
@@ -18,14 +18,13 @@ use crate::{GeneratorError, WorldId};
 use doors::stands_in_door;
 use groups::Draft;
 
-/// How often the randomized parameters of a world are drawn before a requirement that never holds is an error.
+/// Most draws of a world's randomized parameters; then an unmet requirement is an error.
 pub(crate) const ATTEMPTS: u32 = 1000;
 
-/// Draws the worlds of one variant under one seed, any of them at once.
+/// Draws the worlds of one variant under one seed, with random access.
 ///
-/// World `index` is a pure function of the task's name, the variant's values, the seed and the index. Two variants of a
-/// task draw the same numbers under the same seed and index: what differs between their worlds is what differs between
-/// the variants.
+/// World `index` is a pure function of the task's name, the variant's values, the seed and the index. Two variants of a task draw
+/// the same numbers under the same seed and index: their worlds differ only where the variants differ.
 ///
 /// # Example
 /// ```
@@ -46,14 +45,14 @@ pub struct Sampler {
     requirements: Vec<Requirement>,
     sequence: Sequence,
     sequence_stream: Stream,
-    /// Where worlds have their seeds from.
+    /// The stream of the worlds' seeds.
     seeds: Stream,
-    /// Where layouts that have none have their seeds from.
+    /// The stream of seeds for layouts without their own.
     layouts: Stream,
-    /// The doors and keys of rooms.
+    /// The stream of the rooms' doors and keys.
     doors: Stream,
     maps: Option<Arc<MapLibrary>>,
-    /// The free space, where it is the same in every world.
+    /// The free space, if it is the same in every world.
     free_space: Option<FreeSpace>,
     /// Whether the agent's start or the free space varies between worlds.
     start_varies: bool,
@@ -94,14 +93,14 @@ impl Sampler {
         sampler
     }
 
-    /// Spreads the randomized parameters over many worlds.
+    /// Spreads the randomized parameters evenly over many worlds.
     #[must_use]
     pub fn with_sequence(mut self, sequence: Sequence) -> Self {
         self.sequence = sequence;
         self
     }
 
-    /// Takes the layouts of predefined maps from a library; each world carries the one it has.
+    /// Takes the layouts of predefined maps from a library; each world contains its own.
     #[must_use]
     pub fn with_maps(mut self, maps: Arc<MapLibrary>) -> Self {
         self.maps = Some(maps);
@@ -109,7 +108,7 @@ impl Sampler {
         self
     }
 
-    /// Prepares the map and the free space once, if no world can have another.
+    /// Prepares the map and the free space once, if they are the same in every world.
     fn settle_free_space(&mut self) {
         let keys = ["predefined_map", "map_size", "map_regions", "walls", "layout"];
         let shapes = keys.map(|key| format!("/environment_params/{key}"));
@@ -142,17 +141,17 @@ impl Sampler {
         self.seed
     }
 
-    /// The randomized parameters of world number `index`, in the order in which the task declares them.
+    /// The randomized parameters of world number `index`, in the task's order of declaration.
     ///
     /// # Errors
-    /// [`GeneratorError::Requirement`] if the task's requirements hold in none of the tries, [`GeneratorError::NoStart`] if the
-    /// agent's start lies in free space in none, [`GeneratorError::OutOfRange`] for a draw that cannot stand in the world.
+    /// [`GeneratorError::Requirement`] if the task's requirements fail in every try, [`GeneratorError::NoStart`] if the agent's
+    /// start is never in free space, [`GeneratorError::OutOfRange`] for a draw that the world does not allow.
     pub fn values(&self, index: u64) -> Result<Vec<(&str, Value)>, GeneratorError> {
         let names = self.compiled.parameters.iter().map(|parameter| parameter.name.as_str());
         Ok(names.zip(self.empty_world(index)?.1).collect())
     }
 
-    /// The randomized parameters from the first attempt on, counted from `first`, for which the requirements hold; and that
+    /// The randomized parameters of the first attempt, counted from `first`, that meets the requirements, and the number of that
     /// attempt.
     fn draw_values(&self, index: u64, first: u32) -> Result<(Vec<Value>, u32), GeneratorError> {
         for attempt in first..ATTEMPTS {
@@ -194,7 +193,7 @@ impl Sampler {
         unreachable!("callers begin below the last attempt, which returns")
     }
 
-    /// The free space of all worlds, or a world's own.
+    /// The free space of all worlds, or the world's own.
     fn free_space_of<'a>(&'a self, own: Option<&'a FreeSpace>) -> &'a FreeSpace {
         self.free_space
             .as_ref()
@@ -202,8 +201,8 @@ impl Sampler {
             .expect("a world has its own where there is none for all")
     }
 
-    /// The world but for its objects, with its free space where that is its own. The agent's start lies in free space: a
-    /// start that is drawn is drawn again, together with the parameters, until it is.
+    /// The world without its objects, and its free space unless that is shared. If a drawn start is not in free space, it is
+    /// drawn again together with the parameters.
     fn empty_world(&self, index: u64) -> Result<(WorldDraft, Vec<Value>, Option<FreeSpace>), GeneratorError> {
         let mut first = 0;
         loop {
@@ -249,8 +248,8 @@ impl Sampler {
     /// World number `index`.
     ///
     /// # Errors
-    /// [`GeneratorError`] if an object or the agent finds no place, a draw falls out of its range, draws do not go together, a
-    /// requirement never holds, or there are too many objects.
+    /// [`GeneratorError`] if no place is found for an object or the agent, a draw is out of range, draws do not fit together, a
+    /// requirement is never met, or there are too many objects.
     pub fn world(&self, index: u64) -> Result<World, GeneratorError> {
         let (mut world, values, own_free_space) = self.empty_world(index)?;
         world.seed = Some(self.seeds.seed(index));
@@ -272,7 +271,7 @@ impl Sampler {
             context: &mut context,
             world: &mut world,
         };
-        // For each group, where its objects stand in the world's list.
+        // For each group, the range of its objects in the world's list.
         let mut ranges = Vec::with_capacity(self.compiled.groups.len());
         for (number, group) in self.compiled.groups.iter().enumerate() {
             let first = draft.world.objects.len();
@@ -298,7 +297,7 @@ impl Sampler {
             world.objects.extend(doors.into_iter().chain(keys));
             self.check_count(world.objects.len(), index)?;
         }
-        // Loading the task and `fill` hold each value in its range; whether values go together is seen here alone.
+        // Loading the task and `fill` check each value by itself; only this check sees whether values fit together.
         world
             .check_in_range_with(free_space.plan.clone())
             .map_err(|source| GeneratorError::Clash {
@@ -341,7 +340,7 @@ impl Sampler {
         Ok(target)
     }
 
-    /// Which world this is, for errors.
+    /// Identifies the world in errors.
     fn id(&self, index: u64) -> WorldId {
         WorldId {
             variant: self.variant.id(),
@@ -350,7 +349,7 @@ impl Sampler {
         }
     }
 
-    /// An error for more objects than a world may have.
+    /// The error for more objects than a world may have.
     fn check_count(&self, found: usize, index: u64) -> Result<(), GeneratorError> {
         if found <= MAX_OBJECTS {
             return Ok(());
@@ -376,7 +375,7 @@ impl Sampler {
     }
 }
 
-/// Whether a layout is an open field: the arena without one, to the last bit.
+/// Whether a layout is an open field: bit for bit the arena without a layout.
 fn is_open(layout: &Layout) -> bool {
     layout.walls.as_ref().is_some_and(Vec::is_empty)
 }

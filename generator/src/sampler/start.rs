@@ -1,4 +1,5 @@
-//! The agent's start in a cell of a layout. Starts that are a point or a distribution of points are holes of the world.
+//! Places the agent in a cell of a layout. Starts that are a point or a distribution of points are filled in elsewhere, as holes
+//! of the world.
 
 use driftworld_spec::{CellKind, Distribution, Legend, WorldDraft};
 
@@ -9,7 +10,7 @@ use crate::clearance::FreeSpace;
 use crate::compiled::Start;
 
 impl Sampler {
-    /// Puts the agent into a cell: where the task or the letters of the layout say, else into any if the task says nothing.
+    /// Places the agent in a cell: where the task or the letters of the layout say, else in any cell.
     pub(super) fn start_in_cell(
         &self,
         world: &mut WorldDraft,
