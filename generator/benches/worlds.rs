@@ -1,4 +1,4 @@
-//! How long it takes to draw a world. Reading worlds is measured in spec/benches/documents.rs.
+//! Benchmarks of drawing worlds. Reading worlds is measured in spec/benches/documents.rs.
 
 use std::hint::black_box;
 use std::sync::Arc;

@@ -1,4 +1,5 @@
-//! Laws of variants at a wanted distance where requirements cut the ranges: whatever a grid of what is allowed finds is found.
+//! Laws of variants at a wanted distance if requirements cut the ranges: every distance that a grid search of the allowed region
+//! finds is found.
 
 use std::sync::Arc;
 
@@ -6,15 +7,15 @@ use driftworld_generator::{GeneratorError, Subject, at_distance};
 use driftworld_spec::{TaskSpec, Variant};
 use proptest::prelude::*;
 
-/// How far off a found distance may be.
+/// Tolerance of a found distance.
 const TOLERANCE: f64 = 1e-3;
 
-/// A task of numbers in 0..1 with requirements over them; the first values are the defaults.
+/// A task of numbers in 0..1 with requirements on them; the first values are the defaults.
 #[derive(Clone, Debug)]
 struct Case {
     defaults: Vec<f64>,
     require: Vec<String>,
-    /// The distance is the mean of the differences, else the greatest of them.
+    /// Whether the distance is the mean of the differences, else their maximum.
     is_mean: bool,
 }
 
@@ -27,13 +28,13 @@ impl Case {
                 r#""{name}": {{ "role": "variant", "type": "number", "affects": ["T"], "range": [0, 1], "default": {default} }}"#
             )
         }).collect();
-        // Plain texts in a list look the same in JSON.
+        // Debug output of a list of plain texts is valid JSON.
         let require = format!("{:?}", self.require);
         let text = format!(
             r#"{{ "name": "t", "parameters": {{ {} }}, "require": {require}, "variants": {{ "here": {{}} }} }}"#,
             parameters.join(", ")
         );
-        // Where the defaults break a requirement there is no variant to go from.
+        // If the defaults break a requirement, there is no variant to start from.
         TaskSpec::from_json("t", &text).ok()
     }
 
@@ -56,7 +57,7 @@ impl Case {
         }
     }
 
-    /// The distances of a grid over what is allowed, by asking for every point of it.
+    /// The distances of all allowed points of a grid.
     fn on_a_grid(&self, from: &Variant, parts: usize) -> Vec<f64> {
         let axes = self.defaults.len();
         let mut found = Vec::new();
@@ -75,7 +76,7 @@ impl Case {
     }
 }
 
-/// A requirement over two of the numbers and a constant.
+/// A requirement on two of the numbers and a constant.
 fn requirement(axes: usize) -> impl Strategy<Value = String> {
     (0..axes, 0..axes, 0.05_f64..0.95, 0..7).prop_map(|(a, b, x, form)| {
         let (a, b) = (NAMES[a], NAMES[b]);
@@ -107,7 +108,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 120)))]
 
     #[test]
-    fn every_distance_that_a_grid_of_what_is_allowed_has_is_found(case in case(), which in any::<prop::sample::Index>()) {
+    fn every_distance_of_a_grid_of_allowed_points_is_found(case in case(), which in any::<prop::sample::Index>()) {
         let Some(task) = case.task() else { return Ok(()) };
         let from = task.variant("here").expect("it is declared");
         let axes = case.defaults.len();
@@ -129,7 +130,7 @@ proptest! {
 }
 
 #[test]
-fn a_way_that_a_requirement_cuts_off_is_gone_as_far_as_it_may() {
+fn way_cut_by_a_requirement_is_followed_to_its_border() {
     let text = r#"{ "name": "chase", "require": ["wolf_speed < agent_speed"], "variants": { "calm": {} }, "parameters": {
         "wolf_speed": { "role": "variant", "type": "number", "affects": ["T"], "range": [0, 10], "default": 1 },
         "agent_speed": { "role": "variant", "type": "number", "affects": ["T"], "range": [0, 10], "default": 5 } } }"#;
@@ -142,7 +143,7 @@ fn a_way_that_a_requirement_cuts_off_is_gone_as_far_as_it_may() {
         f64::midpoint(apart("wolf_speed"), apart("agent_speed"))
     };
     let subject = Subject::Element(driftworld_spec::Element::T);
-    // Agent at 10 and wolf just below: (0.9 + 0.5) / 2 is never reached, but whatever lies below is.
+    // Agent at 10 and wolf just below: (0.9 + 0.5) / 2 is never reached, but everything below is.
     for target in [0.05, 0.25, 0.3, 0.45, 0.6, 0.699] {
         let found =
             at_distance(&from, &subject, target, 1e-4, distance).unwrap_or_else(|error| panic!("{target}: {error}"));
@@ -157,7 +158,7 @@ fn a_way_that_a_requirement_cuts_off_is_gone_as_far_as_it_may() {
 }
 
 #[test]
-fn what_is_forbidden_is_never_found() {
+fn forbidden_variant_is_never_found() {
     let text = r#"{ "name": "t", "require": ["good != bad", "distance(good, bad) >= 0.2"], "variants": { "base": {} }, "parameters": {
         "good": { "role": "variant", "type": "color", "affects": ["O"], "choices": ["red", "green", "crimson"], "default": "green" },
         "bad": { "role": "variant", "type": "color", "affects": ["O"], "choices": ["red", "green", "blue"], "default": "red" } } }"#;
@@ -169,7 +170,7 @@ fn what_is_forbidden_is_never_found() {
     };
     let subject = Subject::Element(driftworld_spec::Element::O);
     let found = at_distance(&from, &subject, 0.5, 0.01, changed).unwrap().variant;
-    // Green and green, crimson and red are too alike; what is left is to make the bad ones blue.
+    // Green and green, crimson and red are too similar; the remaining answer makes the bad ones blue.
     assert_eq!(found.value("bad").unwrap().to_string(), "blue");
     assert_eq!(found.value("good").unwrap().to_string(), "green");
 }

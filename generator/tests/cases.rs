@@ -1,4 +1,5 @@
-//! Look-ups: the laws of worlds whose values depend on other values, over drawn tasks. Messages about them are in the spec's tests.
+//! Laws of look-ups, tested on random tasks: worlds whose values depend on other values. Error messages about look-ups are tested
+//! in the spec crate.
 
 use std::sync::Arc;
 
@@ -16,7 +17,7 @@ fn worlds(task: &Arc<TaskSpec>, variant: &str, seed: u64) -> Vec<Json> {
     (0..12).map(|index| world(&sampler, index)).collect()
 }
 
-/// A world, or why it is refused: drawn walls may leave no place for all objects.
+/// A world, or the error: random walls may leave no place for all objects.
 fn world(sampler: &Sampler, index: u64) -> Json {
     match sampler.world(index) {
         Ok(world) => serde_json::to_value(world).expect("a world serialises"),
@@ -29,10 +30,10 @@ fn case(of: &str, red: &Json, blue: &Json) -> Json {
     json!({ "case": { "param": of }, "of": { "red": red, "blue": blue } })
 }
 
-/// What stands at each of the places that a look-up may be at, once for `red` and once for `blue`.
+/// The content of each place that allows a look-up, for `red` and for `blue`.
 type Fillings = [[Json; 2]; 8];
 
-/// A task with these fillings in a world, a group, a parameter and a distribution; `cue` is declared as given.
+/// A task with these fillings in a world, a group, a parameter and a distribution, and this declaration of `cue`.
 fn filled(cue: &Json, [light, color, heading, count, placement, pay, high, layout]: &[Json; 8]) -> Json {
     json!({
         "version": 2, "name": "t",
@@ -107,9 +108,9 @@ fn looked_up(fillings: &Fillings, of: &str) -> [Json; 8] {
 }
 
 proptest! {
-    /// Over a variant parameter it is what writing the case at its place is: worlds and distributions, to the byte.
+    /// A look-up over a variant parameter equals its case written out in place: worlds and distributions agree to the byte.
     #[test]
-    fn a_look_up_over_a_variant_parameter_is_as_if_its_case_stood_there(fillings in fillings(), seed in 0..9u64) {
+    fn look_up_over_variant_parameter_equals_its_case_written_out(fillings in fillings(), seed in 0..9u64) {
         let looked_up = task(&filled(&variant_cue(), &looked_up(&fillings, "cue")));
         for (number, name) in ["red", "blue"].into_iter().enumerate() {
             let mut written = fillings.each_ref().map(|both| both[number].clone());
@@ -130,9 +131,9 @@ proptest! {
         }
     }
 
-    /// Over a drawn parameter each world is the one that has the case of its cue written out.
+    /// With a look-up over a drawn parameter, each world equals the one with the case of its cue written out.
     #[test]
-    fn a_look_up_over_a_drawn_parameter_is_in_each_world_as_if_its_case_stood_there(fillings in fillings(), seed in 0..9u64) {
+    fn look_up_over_drawn_parameter_equals_its_case_in_each_world(fillings in fillings(), seed in 0..9u64) {
         let drawn = task(&filled(&drawn_cue(), &looked_up(&fillings, "cue")));
         let by_variant = task(&filled(&variant_cue(), &looked_up(&fillings, "cue")));
         let sampler = Sampler::new(&drawn.variant("default").expect("it is always there"), seed);
@@ -146,21 +147,21 @@ proptest! {
         }
     }
 
-    /// Any world at once, in any order, and by a sampler that has drawn no other.
+    /// Worlds can be drawn in any order, also by a fresh sampler.
     #[test]
-    fn worlds_with_look_ups_are_drawn_one_by_one_and_in_any_order(fillings in fillings(), seed in 0..9u64, index in 0..12u64) {
+    fn worlds_with_look_ups_can_be_drawn_in_any_order(fillings in fillings(), seed in 0..9u64, index in 0..12u64) {
         let drawn = task(&filled(&drawn_cue(), &looked_up(&fillings, "cue")));
         let variant = drawn.variant("default").expect("it is always there");
         let alone = world(&Sampler::new(&variant, seed), index);
         prop_assert_eq!(&alone, &worlds(&drawn, "default", seed)[index as usize]);
-        // Read from what it writes, it is the same task.
+        // The task round-trips through its own JSON.
         let again = TaskSpec::from_json("again.json", &drawn.to_json()).expect("it was written by us");
         prop_assert_eq!(worlds(&again, "default", seed), worlds(&drawn, "default", seed));
     }
 
-    /// One look-up more, at one place, changes that place alone.
+    /// Adding a look-up at one place changes only that place.
     #[test]
-    fn a_look_up_more_disturbs_no_other_draw(fillings in fillings(), seed in 0..9u64) {
+    fn added_look_up_disturbs_no_other_draw(fillings in fillings(), seed in 0..9u64) {
         let mut plain = fillings.each_ref().map(|[red, _]| red.clone());
         if plain[5].is_number() {
             plain[5] = json!({ "constant": { "value": plain[5] } });
@@ -186,9 +187,9 @@ proptest! {
         }
     }
 
-    /// What is said of a look-up by itself is how often each of its values is drawn.
+    /// The distribution of a look-up says how often each of its values is drawn.
     #[test]
-    fn a_look_up_is_distributed_as_the_mixture_of_its_cases(weight in 1..9i32, chance in 0.1..0.9f64, seed in 0..99u64) {
+    fn look_up_is_distributed_as_the_mixture_of_its_cases(weight in 1..9i32, chance in 0.1..0.9f64, seed in 0..99u64) {
         let task = task(&json!({ "version": 2, "name": "t", "parameters": {
             "pay": { "role": "randomized", "type": "number", "affects": ["R"], "distribution":
                 { "case": { "param": "hot" }, "of": { "true": { "case": { "param": "cue" }, "of": { "red": 1 }, "else": 2 }, "false": 3 } } },
@@ -221,7 +222,7 @@ proptest! {
 }
 
 #[test]
-fn names_of_choices_choose_too() {
+fn look_up_cases_may_be_names_of_choices() {
     let task = task(&json!({ "version": 2, "name": "t",
         "parameters": { "map": { "role": "variant", "type": "layout", "affects": ["S"], "default": "open", "choices": {
             "open": { "walls": [] }, "rooms": { "rooms": { "grid": [2, 2], "room": [8, 8], "doorway": 2 } } } } },

@@ -6,7 +6,7 @@ use driftworld_generator::{Sampler, drift};
 use driftworld_spec::{Object, Plan, TaskSpec, World};
 use proptest::prelude::*;
 
-/// A task with a layout, an agent that is placed so, and a group of coins that is.
+/// A task with a layout, the agent's start, and a group of coins with this placement.
 fn task(layout: &str, start: &str, count: u32, placement: &str) -> Arc<TaskSpec> {
     let placement = if placement.is_empty() {
         String::new()
@@ -32,7 +32,7 @@ fn worlds(task: &Arc<TaskSpec>, count: u64) -> Vec<World> {
     (0..count).map(world).collect()
 }
 
-/// The plan of a world, the agent's cell, and those of its objects.
+/// The plan of a world, the agent's cell, and the cells of its objects.
 fn cells(world: &World) -> (&Plan, usize, Vec<usize>) {
     let plan = world.plan().expect("the world has a layout");
     let cell_of = |place: [f64; 2]| plan.cell_at(place).expect("it lies in a cell");
@@ -48,7 +48,7 @@ fn said(task: &Arc<TaskSpec>) -> String {
 }
 
 #[test]
-fn dead_ends_corridors_and_junctions_are_what_they_are_called() {
+fn dead_ends_corridors_and_junctions_are_classified() {
     for (kind, sides) in [
         ("dead_end", 1..2),
         ("corridor", 2..3),
@@ -72,7 +72,7 @@ fn dead_ends_corridors_and_junctions_are_what_they_are_called() {
 }
 
 #[test]
-fn rooms_are_those_of_the_agent_or_others() {
+fn room_selects_the_agents_or_other_rooms() {
     for (room, is_same) in [("same_as_agent", true), ("other_than_agent", false)] {
         let task = task(
             ROOMS,
@@ -108,14 +108,14 @@ fn groups_stand_at_their_letters_and_the_agent_at_its_own() {
 }
 
 #[test]
-fn a_start_that_is_said_is_kept() {
+fn explicit_start_is_kept() {
     let text = r#"{ "text": ["*****", "*A c*", "*****"], "legend": { "c": { "group": "coin" } } }"#;
     let task = task(text, r#", "coordinates": [0, 0]"#, 1, "");
     assert_eq!(worlds(&task, 1)[0].agent_params.coordinates, [0.0, 0.0]);
 }
 
 #[test]
-fn what_does_not_fit_is_said_with_how_many_cells_there_are() {
+fn unsatisfiable_request_reports_number_of_cells() {
     let none = |layout: &str, start: &str, placement: &str| said(&task(layout, start, 2, placement));
     let braided = r#"{ "maze": { "cells": [4, 4], "braid": 1, "seed": 3 } }"#;
     let found = none(braided, ANY_START, r#"{ "cells": { "kind": "dead_end" } }"#);
@@ -156,7 +156,7 @@ fn what_does_not_fit_is_said_with_how_many_cells_there_are() {
 }
 
 #[test]
-fn tasks_in_which_cells_mean_nothing_are_refused() {
+fn placements_in_cells_are_refused_where_they_have_no_meaning() {
     let said = |world: &str, group: &str| {
         let text = format!(
             r#"{{ "name": "t", "world": {world}, "groups": [
@@ -189,7 +189,7 @@ fn tasks_in_which_cells_mean_nothing_are_refused() {
 }
 
 #[test]
-fn the_way_to_walk_is_a_parameter_and_drifts() {
+fn walking_distance_is_a_parameter_and_drifts() {
     let text = r#"{ "name": "t", "parameters": { "way": { "role": "variant", "type": "vector", "affects": ["S"], "range": [0, 40], "default": [0, 4] } },
       "world": { "environment_params": { "layout": { "maze": { "cells": [8, 8], "cell": 2 } } }, "agent_params": { "agent_width": 0.5, "coordinates": { "cells": {} } } },
       "groups": [{ "name": "goal", "count": 1, "object": { "class": "geometric" }, "keep_out": { "agent": 0 },
@@ -207,7 +207,7 @@ fn the_way_to_walk_is_a_parameter_and_drifts() {
             assert!((least - 1e-6..=most + 1e-6).contains(&metres), "{metres} m");
         }
     }
-    // What both variants draw alike is alike: mazes and starts.
+    // Both variants share all other draws: mazes and starts.
     let [a, b] = [&near, &far].map(|variant| Sampler::new(variant, 2).world(7).unwrap());
     assert_eq!(
         (a.plan(), a.agent_params.coordinates),
@@ -218,7 +218,7 @@ fn the_way_to_walk_is_a_parameter_and_drifts() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// World i is the same whatever was drawn before; places that stray stay in their cells and off the walls.
+    /// World i does not depend on what was drawn before; jittered places stay in their cells and off the walls.
     #[test]
     fn worlds_are_drawn_by_random_access_and_stay_in_their_cells(index in 0_u64..1000, jitter in 0.0..1.0_f64) {
         let task = task(MAZE, ANY_START, 4, &format!(r#"{{ "cells": {{ "jitter": {jitter} }} }}"#));
@@ -243,10 +243,10 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 300)))]
 
-    /// Who says nothing of the start has one in a cell that no letter is in; no cell is given twice, and no way through a doorway is
-    /// barred by what is solid.
+    /// Without a start, the agent starts in a cell without a letter; no cell is assigned twice, and no solid object blocks the
+    /// way through a doorway.
     #[test]
-    fn cells_are_given_once_and_ways_through_doorways_stay_free(
+    fn cells_are_assigned_once_and_doorways_stay_free(
         layout in prop_oneof![
             (1_u32..6, 2_u32..6).prop_map(|(a, b)| format!(r#"{{ "maze": {{ "cells": [{a}, {b}], "cell": 2 }} }}"#)),
             (1_u32..4, 2_u32..4).prop_map(|(a, b)| format!(r#"{{ "rooms": {{ "grid": [{a}, {b}], "room": [6, 6] }} }}"#)),
@@ -261,7 +261,7 @@ proptest! {
         let task = TaskSpec::from_json("t", &text).unwrap();
         let world = Sampler::new(&task.variant("default").unwrap(), 5).world(index);
         let world = match world {
-            // Small rooms, with things astray, can have no place that is off the doorways.
+            // Small rooms with jitter may have no place off the doorways.
             Err(error) if error.to_string().contains("in the way of a doorway") => return Ok(()),
             world => world.unwrap(),
         };
@@ -331,7 +331,7 @@ fn doorways_hold_one_object_each_turned_along_the_wall() {
 }
 
 #[test]
-fn letters_for_floor_that_the_legend_names_are_found() {
+fn floor_letters_named_in_the_legend_are_found() {
     let layout =
         r########"{ "text": ["#######", "#P.w.w#", "#######"], "cell": 2, "legend": { "w": "floor" } }"########;
     let task = task(layout, "", 2, r#"{ "cells": { "letter": "w" } }"#);
@@ -345,9 +345,9 @@ fn letters_for_floor_that_the_legend_names_are_found() {
     }
 }
 
-/// 0.1 + 0.2 is more than 0.3 in binary digits.
+/// 0.1 + 0.2 exceeds 0.3 in binary.
 #[test]
-fn a_doorway_and_a_wall_may_fill_a_side() {
+fn doorway_and_wall_may_fill_a_side() {
     for (room, doorway, wall) in [(0.3, 0.1, 0.2), (0.7, 0.1, 0.6), (1.1, 0.8, 0.3)] {
         let rooms = format!(
             r#"{{ "rooms": {{ "grid": [2, 2], "room": [{room}, {room}], "doorway": {doorway}, "wall": {wall} }} }}"#

@@ -1,15 +1,15 @@
-//! Colours out of a continuum are drawn as declared: channel by channel, under every sequence, on the way of a drift, and in groups.
-//! The laws themselves are tested in the spec.
+//! Colours from continuous distributions are drawn as declared: per channel, under every sequence, along drifts, and in groups.
+//! The laws themselves are tested in the spec crate.
 
 use std::sync::Arc;
 
 use driftworld_generator::{Sampler, Sequence, drift};
 use driftworld_spec::{ChannelSpread, Channels, Color, Distribution, TaskSpec, Value, Variant};
 
-/// Draws of each law.
+/// Draws per law.
 const DRAWS: u64 = 20_000;
 
-/// Kolmogorov's statistic is above this in one of a thousand samples of the right law.
+/// Kolmogorov's statistic exceeds this in one of a thousand samples of the right law.
 const KOLMOGOROV: f64 = 1.95;
 
 fn task(parameters: &str, variants: &str) -> Arc<TaskSpec> {
@@ -52,7 +52,7 @@ fn kolmogorov(mut drawn: Vec<f64>, cdf: impl Fn(f64) -> f64) -> f64 {
     gaps.fold(0.0, f64::max) * n.sqrt()
 }
 
-/// Means, and every entry of the covariance, within five standard errors.
+/// Checks the means and every entry of the covariance within five standard errors.
 #[track_caller]
 fn check_moments(name: &str, law: &Distribution, drawn: &[[f64; 3]]) {
     let moments = law.color_moments().expect("it draws colours");
@@ -78,7 +78,7 @@ fn check_moments(name: &str, law: &Distribution, drawn: &[[f64; 3]]) {
 }
 
 #[test]
-fn every_channel_has_its_law() {
+fn every_channel_follows_its_law() {
     for distribution in [
         r#"{ "color_uniform": { "from": "darkgreen", "to": [0.9, 0.1, 1] } }"#,
         r#"{ "color_uniform": { "from": "darkgreen", "to": [0.9, 0.1, 1], "channels": "together" } }"#,
@@ -102,7 +102,7 @@ fn every_channel_has_its_law() {
 }
 
 #[test]
-fn what_is_cut_off_stands_at_the_limits_as_often_as_the_law_says() {
+fn clipped_channels_reach_the_limits_with_the_right_frequency() {
     let distribution = r#"{ "color_perturb": { "value": [0.1, 0.5, 1], "noise": 0.4, "high": [1, 0.7, 1] } }"#;
     let variant = default(&task(&drawn_by(distribution), ""));
     let drawn = colors(&Sampler::new(&variant, 5), DRAWS);
@@ -116,7 +116,7 @@ fn what_is_cut_off_stands_at_the_limits_as_often_as_the_law_says() {
     }
 }
 
-/// Hue in degrees, saturation and value, as Python's `colorsys.rgb_to_hsv` has them.
+/// Hue in degrees, saturation and value, as computed by Python's `colorsys.rgb_to_hsv`.
 fn hsv([red, green, blue]: [f64; 3]) -> [f64; 3] {
     let (most, least) = (red.max(green).max(blue), red.min(green).min(blue));
     let width = most - least;
@@ -131,7 +131,7 @@ fn hsv([red, green, blue]: [f64; 3]) -> [f64; 3] {
 }
 
 #[test]
-fn hues_saturations_and_values_are_uniform_between_their_ends() {
+fn hue_saturation_and_value_are_uniform_between_their_ends() {
     let distribution = r#"{ "color_hsv": { "hue": [-40, 110], "saturation": [0.2, 0.9], "value": [0.5, 1] } }"#;
     let variant = default(&task(&drawn_by(distribution), ""));
     let drawn = colors(&Sampler::new(&variant, 3), DRAWS);
@@ -145,7 +145,7 @@ fn hues_saturations_and_values_are_uniform_between_their_ends() {
 }
 
 #[test]
-fn a_world_has_its_colour_whatever_was_drawn_before_and_declared_beside() {
+fn colour_does_not_depend_on_earlier_draws_or_other_parameters() {
     let own = drawn_by(r#"{ "color_normal": { "mean": "teal", "std": 0.2 } }"#);
     let beside =
         r#""first": { "role": "randomized", "type": "color", "affects": ["O"], "distribution": { "color_hsv": {} } },"#;
@@ -165,7 +165,7 @@ fn a_world_has_its_colour_whatever_was_drawn_before_and_declared_beside() {
 }
 
 #[test]
-fn two_variants_under_one_seed_share_their_chance_channel_by_channel() {
+fn variants_share_random_numbers_channel_by_channel() {
     let parameters = r#"
         "middle": { "role": "variant", "type": "color", "affects": ["O"], "choices": ["black", "white", [0.25, 0.5, 0.75]], "default": "black" },
         "spread": { "role": "variant", "type": "number", "affects": ["O"], "range": [0, 1], "default": 0.1 },
@@ -198,7 +198,7 @@ fn two_variants_under_one_seed_share_their_chance_channel_by_channel() {
 }
 
 #[test]
-fn coverages_give_each_channel_one_world_in_every_share() {
+fn sequences_give_each_channel_one_world_per_share() {
     let own = drawn_by(r#"{ "color_uniform": { "from": "black", "to": "white" } }"#);
     let beside = r#""n": { "role": "randomized", "type": "number", "affects": ["S"], "distribution": { "uniform": { "low": 0, "high": 1 } } },"#;
     let variant = default(&task(&format!("{beside}{own}"), ""));
@@ -234,7 +234,7 @@ const OF_LAWS: &str = r#"
     "line": { "law": { "color_uniform": { "from": "red", "to": "blue", "channels": "together" } } }"#;
 
 #[test]
-fn a_drift_between_two_laws_goes_through_oklab_and_round_the_shorter_way_of_hues() {
+fn drift_between_laws_goes_through_oklab_and_the_shorter_way_of_hues() {
     let task = task(LAWS, OF_LAWS);
     let of = |name: &str| task.variant(name).expect("it is declared");
     let at = |from: &str, to: &str, t: f64| {
@@ -244,7 +244,7 @@ fn a_drift_between_two_laws_goes_through_oklab_and_round_the_shorter_way_of_hues
     let Distribution::ColorNormal { mean, std } = at("sure", "loose", 0.5) else {
         panic!("two of one family have one between them")
     };
-    // The purple that CSS Color 4 gives for color-mix(in oklab, red, blue).
+    // The purple of CSS Color 4's color-mix(in oklab, red, blue).
     let near = mean
         .0
         .iter()
@@ -255,7 +255,7 @@ fn a_drift_between_two_laws_goes_through_oklab_and_round_the_shorter_way_of_hues
     let Distribution::ColorHsv { hue, saturation, value } = at("before", "after", 0.5) else {
         panic!("two of one family have one between them")
     };
-    // From around 350 over red to around 20: by way of 5.
+    // From about 350 across red to about 20, via 5.
     assert_eq!(hue, Some([-10.0, 20.0]));
     assert_eq!((saturation, value), (Some([0.0, 1.0]), Some([0.25, 0.75])));
     let Distribution::ColorPerturb { value, high, .. } = at("noisy", "cut", 0.5) else {
@@ -294,7 +294,7 @@ fn every_variant_of_a_drift_between_laws_can_be_drawn() {
 }
 
 #[test]
-fn each_object_of_a_group_has_a_colour_of_its_own() {
+fn each_object_of_a_group_has_its_own_colour() {
     let text = r#"{ "version": 2, "name": "woods", "parameters": {
             "leaf": { "role": "variant", "type": "color", "affects": ["O"], "choices": ["green", "darkgoldenrod"], "default": "green" } },
         "groups": [{ "name": "trees", "count": 40, "placement": { "box": { "low": [-40, -40], "high": [40, 40] } },
@@ -312,7 +312,7 @@ fn each_object_of_a_group_has_a_colour_of_its_own() {
             .iter()
             .map(|tree| {
                 let color = tree.color.expect("every tree has one").0;
-                // Of both the second channel is never cut off.
+                // The second channel of both is never clipped.
                 let shade = color[1] - middle[1];
                 let off = |k: usize| color[k] - (middle[k] + shade).clamp(0.0, 1.0);
                 assert!((0..3).all(|k| off(k).abs() < 1e-12), "{color:?}");

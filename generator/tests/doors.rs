@@ -1,4 +1,4 @@
-//! Doors and keys in the doorways of rooms: laws over drawn rooms.
+//! Laws of doors and keys in doorways, tested on random rooms.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -46,8 +46,8 @@ fn beside(plan: &Plan, doorway: usize) -> [usize; 2] {
     })
 }
 
-/// The cells that are reached when only doors are opened whose key was reached before, written without regard to how the
-/// doors were made: by looking at everything again until nothing changes.
+/// The cells that can be reached by opening only doors whose key was reached before. An independent implementation: checks
+/// everything again until nothing changes.
 fn reached(world: &World) -> BTreeSet<usize> {
     let (plan, doors, keys) = (world.plan().expect("it has rooms"), doors(world), keys(world));
     let start = plan
@@ -111,13 +111,13 @@ proptest! {
             let distinct: BTreeSet<String> = colors(&doors).into_iter().collect();
             prop_assert_eq!(distinct.len(), doors.len().min(8));
             for door in &doors {
-                // A key of the door's tag has the door's colour.
+                // A key with the door's tag has the door's colour.
                 let own = keys.iter().filter(|key| key.tag == door.door.as_ref().unwrap().key);
                 prop_assert!(own.clone().count() > 0 && own.clone().all(|key| key.color == door.color));
             }
         }
         prop_assert_eq!(reached(&world).len(), plan.cells.len());
-        // Keys lie in free space, off each other, off the coins and off the agent.
+        // Keys lie in free space, away from each other, the coins and the agent.
         for (place, key) in keys.iter().enumerate() {
             prop_assert!(world.enclosure(key.coordinates).is_none());
             let start = world.agent_params.coordinates;
@@ -127,7 +127,7 @@ proptest! {
                 prop_assert!(libm::hypot(away[0], away[1]) >= 0.79, "{:?} and {other:?}", key.coordinates);
             }
         }
-        // The world's document says all of it.
+        // The world round-trips through JSON.
         prop_assert_eq!(&World::from_json("w", &world.to_json()).unwrap(), &world);
     }
 
@@ -139,7 +139,7 @@ proptest! {
         };
         let [without, keyed] = ["none", "keyed"].map(with);
         prop_assert!(doors(&without).is_empty() && keys(&without).is_empty());
-        // The start is drawn again where a door is.
+        // A start in a door is drawn again.
         prop_assume!(without.agent_params.coordinates == keyed.agent_params.coordinates);
         prop_assert_eq!(&without.objects[..], &keyed.objects[..3]);
         prop_assert_eq!((without.plan(), without.seed), (keyed.plan(), keyed.seed));
@@ -147,7 +147,7 @@ proptest! {
 }
 
 #[test]
-fn worlds_differ_in_where_keys_lie_and_in_colours() {
+fn worlds_differ_in_key_places_and_colours() {
     let task = task(r#"{ "rooms": { "grid": [2, 2], "doors": "keyed", "seed": 4 } }"#, "[]");
     let worlds: Vec<World> = (0..10).map(|index| world(&task, 7, index)).collect();
     let first = |world: &World| format!("{:?}", keys(world)[0].coordinates);
@@ -173,7 +173,7 @@ fn some_keys_lie_behind_other_doors() {
 }
 
 #[test]
-fn an_agent_does_not_start_in_a_door() {
+fn agent_does_not_start_in_a_door() {
     let text = r#"{ "name": "t", "world": { "environment_params": { "layout": { "rooms": { "grid": [2, 1], "room": [4, 4],
         "doors": "closed" } } }, "agent_params": { "agent_width": 0.6,
         "coordinates": { "box": { "low": [-0.3, -1.5], "high": [0.3, 1.5] } } } } }"#;
@@ -187,7 +187,7 @@ fn an_agent_does_not_start_in_a_door() {
 }
 
 #[test]
-fn where_no_cell_is_left_for_a_key_the_error_says_so() {
+fn missing_cell_for_a_key_is_an_error() {
     let task = task(
         r#"{ "rooms": { "grid": [2, 1], "room": [2, 2], "doorway": 1, "doors": "keyed" } }"#,
         r#"[{ "name": "coin", "count": 32, "object": { "class": "geometric" }, "keep_out": { "walls": 0, "agent": 0 },

@@ -1,4 +1,4 @@
-//! Layouts of sampled worlds: drawn for each by itself, in free space, and written down with their seeds.
+//! Layouts of sampled worlds: each world has its own, objects are in free space, and the seed is saved.
 
 use std::sync::Arc;
 
@@ -24,12 +24,12 @@ fn world(sampler: &Sampler, index: u64) -> World {
 }
 
 #[test]
-fn a_maze_is_drawn_for_each_world_and_written_down() {
+fn each_world_has_its_own_maze_and_saves_its_seed() {
     let task = task(r#"{ "maze": { "cells": [8, 8], "braid": 0.2 } }"#, "");
     let all = sampler(&task, "default", 7);
     let worlds: Vec<World> = (0..20).map(|index| world(&all, index)).collect();
     for (index, drawn) in worlds.iter().enumerate().rev() {
-        // Any world by itself, and from its text.
+        // Random access, and a round trip through JSON.
         assert_eq!(*drawn, world(&sampler(&task, "default", 7), index as u64));
         let read = World::from_json("w.json", &drawn.to_json()).expect("a sampled world is sound");
         assert_eq!(read.plan(), drawn.plan());
@@ -49,14 +49,14 @@ fn a_maze_is_drawn_for_each_world_and_written_down() {
 }
 
 #[test]
-fn a_layout_with_a_seed_is_the_same_in_every_world() {
+fn layout_with_a_seed_is_the_same_in_every_world() {
     let task = task(r#"{ "maze": { "seed": 5 } }"#, "");
     let all = sampler(&task, "default", 7);
     assert_eq!(world(&all, 0).plan(), world(&all, 1).plan());
 }
 
 #[test]
-fn variants_share_their_mazes_and_a_parameter_takes_walls_away() {
+fn variants_share_mazes_and_a_parameter_removes_walls() {
     let parameters = r#""parameters": { "standing": { "role": "variant", "type": "number", "affects": ["T"],
         "range": [0, 1], "default": 1 } }, "variants": { "open": { "standing": 0 }, "half": { "standing": 0.5 } },"#;
     let task = task(r#"{ "maze": {}, "standing": { "param": "standing" } }"#, parameters);
@@ -73,7 +73,7 @@ fn variants_share_their_mazes_and_a_parameter_takes_walls_away() {
 }
 
 #[test]
-fn numbers_that_make_no_layout_are_an_error_of_the_draw() {
+fn drawn_numbers_that_make_no_layout_are_an_error() {
     let task = task(
         r#"{ "maze": { "cells": [2, 2], "seed": 1, "wall": { "uniform": { "low": 2, "high": 4 } } } }"#,
         "",

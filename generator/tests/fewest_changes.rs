@@ -1,5 +1,5 @@
-//! Laws of variants at a wanted distance: every distance that a search of everything finds is found, by no more changes, and nothing
-//! idle changes. Tasks have parameters of every type; where numbers alone are cut by requirements is in `at_distance.rs`.
+//! Laws of variants at a wanted distance, with parameters of every type: every distance that an exhaustive search finds is found,
+//! by no more changes, and nothing idle changes. Numbers alone, cut by requirements, are tested in `at_distance.rs`.
 
 use std::collections::BTreeMap;
 
@@ -8,13 +8,13 @@ use driftworld_spec::{Domain, Element, ParameterType, TaskSpec, Value, Variant};
 
 use crate::drawn_task::{Drawn, Numbers};
 
-/// How far off a found distance may be.
+/// Tolerance of a found distance.
 const TOLERANCE: f64 = 1e-3;
 
-/// Distances that each task is asked for.
+/// Distances to request per task.
 const DISTANCES: usize = 24;
 
-/// The values that a grid asks a parameter for: all choices, whole numbers and ends, and where the variant is.
+/// The values of a parameter on a grid: all choices, integers and ends, and the variant's own value.
 fn grid_of(from: &Variant, name: &str, parts: usize) -> Vec<Value> {
     let parameter = &from.task().parameters()[name];
     let here = from.value(name).expect("it has a value").clone();
@@ -39,7 +39,7 @@ fn grid_of(from: &Variant, name: &str, parts: usize) -> Vec<Value> {
     values
 }
 
-/// How far apart two variants are in a parameter, as a share of its range; words and truth values are equal or 1 apart.
+/// The difference of two variants in a parameter, as a share of its range; words and booleans are equal or 1 apart.
 fn apart(from: &Variant, to: &Variant, name: &str) -> f64 {
     let parameter = &from.task().parameters()[name];
     let [low, high] = parameter.range.unwrap_or([0.0, 1.0]);
@@ -65,7 +65,7 @@ fn apart(from: &Variant, to: &Variant, name: &str) -> f64 {
     }
 }
 
-/// The Wasserstein-1 distance of the uniform laws from `lo` to `hi`, which count by what is drawn from them.
+/// The Wasserstein-1 distance of the uniform laws from `lo` to `hi`, which are compared by what is drawn from them.
 fn drawn_apart(from: &Variant, to: &Variant) -> f64 {
     let number = |variant: &Variant, name| variant.value(name).and_then(Value::as_number);
     let ends = |name| Some(number(from, name)? - number(to, name)?);
@@ -79,7 +79,7 @@ fn drawn_apart(from: &Variant, to: &Variant) -> f64 {
     (low * low + high * high) / (2.0 * (low.abs() + high.abs()))
 }
 
-/// The sum over all parameters, as `similarity` has it.
+/// The sum over all parameters, as in `similarity`.
 fn distance(from: &Variant, to: &Variant, names: &[String]) -> f64 {
     let by_value = names.iter().filter(|name| *name != "lo" && *name != "hi");
     by_value.map(|name| apart(from, to, name)).sum::<f64>() + drawn_apart(from, to)
@@ -89,14 +89,14 @@ fn changed<'a>(from: &Variant, to: &Variant, names: &'a [String]) -> Vec<&'a Str
     names.iter().filter(|name| from.value(name) != to.value(name)).collect()
 }
 
-/// Distances to nine digits.
+/// Distances rounded to nine digits.
 type Digits = u64;
 
 fn digits(distance: f64) -> Digits {
     (distance * 1e9).round() as Digits
 }
 
-/// Every distance of a grid over what the task allows, with the fewest parameters that it is reached by.
+/// Every distance on a grid of allowed variants, with the fewest changes that reach it.
 fn on_a_grid(from: &Variant, names: &[String]) -> BTreeMap<Digits, usize> {
     let smooth = |name: &&String| {
         let parameter = &from.task().parameters()[*name];
@@ -127,7 +127,7 @@ fn on_a_grid(from: &Variant, names: &[String]) -> BTreeMap<Digits, usize> {
     found
 }
 
-/// The least above 0, the largest, and others evenly in between, each a little off.
+/// The smallest above 0, the largest, and others spread evenly between, each slightly off.
 fn asked(grid: &BTreeMap<Digits, usize>, numbers: &mut Numbers, most: usize) -> Vec<Digits> {
     let all: Vec<Digits> = grid.keys().copied().filter(|distance| *distance > 0).collect();
     if all.len() <= most {
@@ -140,7 +140,7 @@ fn asked(grid: &BTreeMap<Digits, usize>, numbers: &mut Numbers, most: usize) -> 
     asked
 }
 
-/// What is wrong with the answer for a distance that the grid reaches by so many changes.
+/// What is wrong with the answer for a distance that the grid reaches by `fewest` changes.
 fn fault(from: &Variant, names: &[String], target: f64, fewest: usize) -> Option<String> {
     let measure = |other: &Variant| distance(from, other, names);
     let found = match at_distance(from, &Subject::Parameters(names.to_vec()), target, TOLERANCE, measure) {
@@ -171,7 +171,7 @@ fn fault(from: &Variant, names: &[String], target: f64, fewest: usize) -> Option
     idle.map(|name| format!("{target}: nothing reads {name}, and nothing forbids that it stays"))
 }
 
-/// Whether the error beyond all that there is names no less than the grid's farthest.
+/// Whether the error for a distance beyond reach names at least the grid's farthest.
 fn fault_beyond(from: &Variant, names: &[String], farthest: f64) -> Option<String> {
     let measure = |other: &Variant| distance(from, other, names);
     match at_distance(from, &Subject::Parameters(names.to_vec()), 50.0, TOLERANCE, measure) {
@@ -181,19 +181,19 @@ fn fault_beyond(from: &Variant, names: &[String], farthest: f64) -> Option<Strin
     }
 }
 
-/// Asks so many drawn tasks for many distances each; what is wrong with the answers.
+/// Requests many distances of each of `tasks` random tasks; returns what is wrong with the answers.
 fn faults(seed: u64, tasks: usize, most: usize) -> Vec<String> {
     let mut numbers = Numbers(seed);
     let (mut found, mut checked) = (Vec::new(), 0);
     while checked < tasks {
         let Drawn { text, names } = Drawn::new(&mut numbers);
-        // Where the variant breaks a requirement there is none to go from.
+        // If the variant breaks a requirement, there is none to start from.
         let Ok(task) = TaskSpec::from_json("t", &text) else {
             continue;
         };
         let from = task.variant("here").expect("it is declared");
         let grid = on_a_grid(&from, &names);
-        // Nothing but the variant itself is allowed.
+        // Only the variant itself is allowed.
         if grid.len() < 2 {
             continue;
         }
@@ -224,7 +224,7 @@ fn check(seed: u64, tasks: usize, most: usize) {
     );
 }
 
-/// Tests of so many tasks each, which run side by side.
+/// Declares tests of a number of tasks each, which run in parallel.
 macro_rules! drawn_tasks {
     ($tasks:literal: $($name:ident: $seed:literal,)*) => {
         $(
@@ -236,7 +236,7 @@ macro_rules! drawn_tasks {
     };
 }
 
-/// What a search of everything finds is found, by as few changes.
+/// Everything that an exhaustive search finds is found, with no more changes.
 mod what_a_grid_finds_is_found_by_as_few_changes {
     drawn_tasks! {
         4:
@@ -254,7 +254,7 @@ mod what_a_grid_finds_is_found_by_as_few_changes {
 }
 
 #[test]
-fn the_parameter_that_alone_will_do_is_changed_alone() {
+fn single_sufficient_parameter_is_changed_alone() {
     let text = r#"{ "name": "t", "require": ["a <= 0.6"], "variants": { "here": {} }, "parameters": {
         "a": { "role": "variant", "type": "number", "affects": ["T"], "range": [0, 1], "default": 0.2 },
         "b": { "role": "variant", "type": "number", "affects": ["T"], "range": [0, 1], "default": 0.5 },
@@ -275,7 +275,7 @@ fn the_parameter_that_alone_will_do_is_changed_alone() {
 }
 
 #[test]
-fn a_vector_goes_to_the_corner_that_lies_farthest() {
+fn vector_moves_to_its_farthest_corner() {
     let text = r#"{ "name": "t", "variants": { "here": {} }, "parameters": {
         "pays": { "role": "variant", "type": "vector", "affects": ["T"], "range": [-10, 10], "default": [8, -8] } } }"#;
     let task = TaskSpec::from_json("t", text).expect("it is sound");
@@ -294,7 +294,7 @@ fn a_vector_goes_to_the_corner_that_lies_farthest() {
 }
 
 #[test]
-fn a_number_that_decides_what_is_read_is_moved_for_the_sake_of_another() {
+fn number_that_decides_what_is_read_moves_for_the_sake_of_another() {
     let text = r#"{ "name": "t", "variants": { "here": { "hi": 0.4, "m": 1, "word": "x" } }, "parameters": {
         "lo": { "role": "variant", "affects": ["T"], "type": "number", "range": [0, 1], "default": 0.1 },
         "hi": { "role": "variant", "affects": ["T"], "type": "number", "range": [0, 1], "default": 0.4 },
@@ -308,6 +308,6 @@ fn a_number_that_decides_what_is_read_is_moved_for_the_sake_of_another() {
     let task = TaskSpec::from_json("t", text).expect("it is sound");
     let from = task.variant("here").expect("it is declared");
     let names = ["lo", "hi", "m", "arc", "word", "law"].map(str::to_owned);
-    // 1 for the word, 0.7 for the law, 0.05 for lo at 0, which m is read for: five whole steps of eleven; the rest for the arc.
+    // 1 for the word, 0.7 for the law, 0.05 for lo at 0, under which m is read: five whole steps of eleven; the rest for the arc.
     assert_eq!(fault(&from, &names, 2.482_323_232, 5), None);
 }

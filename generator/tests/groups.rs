@@ -1,5 +1,5 @@
-//! Groups around each other, what they keep clear of and where they look; requirements, sequence, and maps from files. How
-//! places scatter is tested by statistics of their own.
+//! Groups around each other, their distances and headings; requirements, sequences, and maps from files. Statistics of places are
+//! tested separately.
 
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 
@@ -36,7 +36,7 @@ fn distance(a: &Object, b: &Object) -> f64 {
     (a.coordinates[0] - b.coordinates[0]).hypot(a.coordinates[1] - b.coordinates[1])
 }
 
-/// Houses with fences around them that look at them, trees that keep away from houses, rocks that look at the nearest tree.
+/// Houses with fences around and facing them, trees that keep away from houses, rocks that face the nearest tree.
 fn village(fences: &str) -> Arc<TaskSpec> {
     load(&format!(
         r#"{{ "version": 2, "name": "village", "groups": [
@@ -54,7 +54,7 @@ fn village(fences: &str) -> Arc<TaskSpec> {
     ))
 }
 
-/// How far a heading is off the direction from one place to another, in degrees.
+/// Difference of a heading from the direction between two places, in degrees.
 fn off(object: &Object, to: [f64; 2]) -> f64 {
     let [x, y] = object.coordinates;
     let wanted = (to[0] - x).atan2(to[1] - y).to_degrees();
@@ -62,7 +62,7 @@ fn off(object: &Object, to: [f64; 2]) -> f64 {
 }
 
 #[test]
-fn groups_stand_around_others_keep_clear_and_look_where_they_are_told() {
+fn groups_around_others_keep_their_distances_and_headings() {
     for index in 0..50 {
         let world = world(&village("3"), index);
         let (houses, trees) = (tagged(&world, "houses"), tagged(&world, "trees"));
@@ -94,7 +94,7 @@ fn groups_stand_around_others_keep_clear_and_look_where_they_are_told() {
 }
 
 #[test]
-fn one_more_around_each_moves_nothing_around_another() {
+fn one_more_object_around_each_moves_nothing_around_another() {
     let (few, more) = (world(&village("3"), 5), world(&village("4"), 5));
     let fences = |world: &World, around: usize, of: usize| -> Vec<Object> {
         let all = tagged(world, "fences");
@@ -164,7 +164,7 @@ const SPREAD: &str = r#"{ "version": 2, "name": "spread", "parameters": {
     "start": { "role": "randomized", "type": "point", "affects": ["S"], "distribution": { "box": { "low": [0, 0], "high": [16, 16] } } },
     "model": { "role": "randomized", "type": "string", "affects": ["S"], "distribution": { "choice": { "values": ["1", "2"] } } } } }"#;
 
-/// For each share of a parameter's range how many of the worlds fall into it.
+/// The number of worlds in each share of a parameter's range.
 fn shares(
     sampler: &Sampler,
     worlds: std::ops::Range<u64>,
@@ -179,7 +179,7 @@ fn shares(
 }
 
 #[test]
-fn coverage_spreads_numbers_and_points_evenly_and_stays_random_access() {
+fn sequences_spread_numbers_and_points_evenly_with_random_access() {
     let task = load(SPREAD);
     let light = |values: &[(&str, Value)]| (values[0].1.as_number().expect("a number") * 16.0) as usize;
     let cell = |values: &[(&str, Value)]| match values[2].1 {
@@ -197,7 +197,7 @@ fn coverage_spreads_numbers_and_points_evenly_and_stays_random_access() {
     assert_eq!(shares(&cube, 10..74, light, 64), vec![1; 64]);
     let independent = sampler(&task, 3);
     assert_ne!(shares(&independent, 64..128, light, 64), vec![1; 64]);
-    // Choices are no scalars: they are drawn as ever.
+    // Choices are not scalar: they are drawn independently.
     let model = |sampler: &Sampler, index| sampler.values(index).expect("nothing is required")[3].1.clone();
     assert!((0..64).all(|index| model(&sobol, index) == model(&independent, index)));
     let again = sampler(&task, 3).with_sequence(Sequence::Sobol);
@@ -214,7 +214,7 @@ fn coverage_spreads_numbers_and_points_evenly_and_stays_random_access() {
     );
 }
 
-/// Turns of a polygon around a point, by angles: an oracle of its own kind. Odd inside, also where it touches itself.
+/// Winding number of a polygon around a point, by angles: an independent oracle. Odd inside, also if the polygon touches itself.
 fn turns(polygon: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
     let next = polygon.iter().cycle().skip(1);
     let angles = polygon.iter().zip(next).map(|(a, b)| {
@@ -225,7 +225,7 @@ fn turns(polygon: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
 }
 
 #[test]
-fn a_maps_file_replaces_the_built_in_layouts_and_nothing_stands_in_its_regions() {
+fn maps_file_replaces_built_in_layouts_and_keeps_its_regions_free() {
     let default = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/reference");
     let root = std::env::var("DRIFTWORLD_REFERENCE").unwrap_or_else(|_| default.to_owned());
     let path = format!("{root}/l2explorer/predefined_maps.json");
@@ -298,7 +298,7 @@ fn an_agent_never_starts_inside_a_region_that_cannot_be_entered() {
     assert!(matches!(error, GeneratorError::NoStart { tries: 1000, .. }), "{error}");
 }
 
-/// A row of stalls that are placed in turn, with a fixture in the way of some.
+/// A row of stalls that are placed in turn, with fixtures in the way of some.
 fn row(placement: &str, count: u32, fixtures: &str) -> Arc<TaskSpec> {
     load(&format!(
         r#"{{ "version": 2, "name": "row", "world": {{ "environment_params": {{ "map_size": [60, 60] }}, "objects": [{fixtures}],
@@ -316,7 +316,7 @@ fn places(world: &World) -> Vec<[f64; 2]> {
 }
 
 #[test]
-fn an_object_whose_place_in_turn_is_taken_takes_the_next_free_one() {
+fn object_whose_place_in_turn_is_taken_takes_the_next_free_one() {
     let list = r#"{ "points": { "values": [[0, 0], [4, 0], [8, 0], [12, 0]] } }"#;
     let blocked = r#"{ "class": "rock", "coordinates": [4, 1] }"#;
     assert_eq!(
@@ -327,7 +327,7 @@ fn an_object_whose_place_in_turn_is_taken_takes_the_next_free_one() {
         places(&world(&row(list, 3, blocked), 0)),
         [[0.0, 0.0], [8.0, 0.0], [12.0, 0.0]]
     );
-    // The last goes on from the beginning of the list; where all is taken, it says so.
+    // The last one wraps around to the beginning of the list; if all places are taken, that is an error.
     let late = r#"{ "class": "rock", "coordinates": [0, 1] }"#;
     assert_eq!(
         places(&world(&row(list, 3, late), 0)),
@@ -338,7 +338,7 @@ fn an_object_whose_place_in_turn_is_taken_takes_the_next_free_one() {
         panic!("{error}")
     };
     assert_eq!(*object, 4, "{error}");
-    // The same on a grid, whose cells are the places; with jitter, each in its cell first.
+    // The same on a grid, whose cells are the places; with jitter, each tries its own cell first.
     let grid = r#"{ "grid": { "low": [-2, -2], "high": [14, 2], "columns": 4, "rows": 1 } }"#;
     assert_eq!(
         places(&world(&row(grid, 3, blocked), 0)),
@@ -353,7 +353,7 @@ fn an_object_whose_place_in_turn_is_taken_takes_the_next_free_one() {
 }
 
 #[test]
-fn a_list_that_cannot_hold_its_group_is_refused_when_the_task_is_loaded() {
+fn list_too_short_for_its_group_is_refused_on_loading() {
     let said = |placement: &str, count: &str| {
         let text = format!(
             r#"{{ "version": 2, "name": "row", "groups": [{{ "name": "stalls", "count": {count}, "object": {{ "class": "table" }},

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use driftworld_generator::{Sampler, drift};
 use driftworld_spec::{Layout, Maze, ParameterType, Plan, TaskSpec, Value, Variant, World};
 
-/// A task whose layout is a parameter of variants; `more` are further keys of the parameter.
+/// A task whose layout is a variant parameter; `more` adds keys of the parameter.
 fn task(more: &str) -> Arc<TaskSpec> {
     let text = format!(
         r#"{{ "name": "t", "parameters": {{ "map": {{ "role": "variant", "type": "layout", "affects": ["T"], {more}
@@ -35,7 +35,7 @@ fn plan(world: &World) -> &Plan {
 }
 
 #[test]
-fn variants_have_their_layouts_and_a_task_that_is_written_has_them_too() {
+fn variants_keep_their_layouts_through_json() {
     let task = task("");
     let again = TaskSpec::from_json("again", &task.to_json()).unwrap();
     assert_eq!(task.parameters()["map"].kind, ParameterType::Layout);
@@ -47,7 +47,7 @@ fn variants_have_their_layouts_and_a_task_that_is_written_has_them_too() {
         again.variant("large").unwrap().hash(),
         task.variant("large").unwrap().hash()
     );
-    // The same numbers in another order of keys, defaults left out.
+    // The same numbers with keys in another order and without defaults.
     assert_eq!(
         task.variant("small").unwrap().value("map"),
         Some(
@@ -59,7 +59,7 @@ fn variants_have_their_layouts_and_a_task_that_is_written_has_them_too() {
 }
 
 #[test]
-fn from_an_open_field_to_a_maze_walls_appear_along_the_way_which_stays_open() {
+fn drift_from_open_field_to_maze_adds_walls_and_keeps_the_way_open() {
     let task = task("");
     let [open, small] = ["open", "small"].map(|name| task.variant(name).unwrap());
     let mut walls = Vec::new();
@@ -86,7 +86,7 @@ fn from_an_open_field_to_a_maze_walls_appear_along_the_way_which_stays_open() {
     );
 }
 
-/// The longer side of the box around a wall.
+/// The longer side of a wall's bounding box.
 fn length(polygon: &[[f64; 2]]) -> f64 {
     let side = |axis: usize| {
         let along = polygon.iter().map(|corner| corner[axis]);
@@ -96,7 +96,7 @@ fn length(polygon: &[[f64; 2]]) -> f64 {
 }
 
 #[test]
-fn between_layouts_of_one_kind_numbers_go_straight_and_whole_ones_are_rounded() {
+fn layouts_of_one_kind_interpolate_linearly_and_round_integers() {
     let task = task("");
     let [small, large, rooms] = ["small", "large", "rooms"].map(|name| task.variant(name).unwrap());
     let at = |from: &Variant, to: &Variant, t: f64| match drift(from, to, t).unwrap().value("map") {
@@ -127,7 +127,7 @@ fn between_layouts_of_one_kind_numbers_go_straight_and_whole_ones_are_rounded() 
 }
 
 #[test]
-fn numbers_in_a_layout_are_parameters_of_their_own_and_sizes_are_swept() {
+fn numbers_in_a_layout_are_parameters_and_sizes_can_be_swept() {
     let text = r#"{ "name": "t", "parameters": {
         "size": { "role": "variant", "type": "vector", "affects": ["T"], "range": [2, 9], "default": [4, 3] },
         "loops": { "role": "variant", "type": "number", "affects": ["T"], "range": [0, 1], "default": 0 } },
@@ -147,7 +147,7 @@ fn numbers_in_a_layout_are_parameters_of_their_own_and_sizes_are_swept() {
 }
 
 #[test]
-fn layouts_that_cannot_be_drawn_out_are_refused_where_they_are_written() {
+fn invalid_layouts_are_refused_at_their_place() {
     let said = |parameter: &str| {
         let text = format!(
             r#"{{ "name": "t", "parameters": {{ "map": {parameter} }},

@@ -1,5 +1,5 @@
-//! Drifts that switch whole variants: every world is one of the first variant or of the second, drawn by the same stream, and
-//! the share of the second is how far the drift has come.
+//! Drifts that switch whole variants: every world belongs to the first or the second variant, drawn from the same stream, and the
+//! share of the second equals the drift's progress.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use proptest::prelude::*;
 
 const TASKS: [&str; 3] = ["find_objects", "get_to_goal", "moving_object"];
 
-/// Worlds that shares are taken of.
+/// Number of worlds for estimating shares.
 const WORLDS: u64 = 400;
 
 fn variants() -> Vec<Variant> {
@@ -33,7 +33,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn every_world_is_of_one_of_the_two_and_the_share_is_the_progress(
+    fn every_world_is_of_one_variant_and_the_share_is_the_progress(
         a in any::<prop::sample::Index>(),
         b in any::<prop::sample::Index>(),
         seed in 0..1_u64 << 53,
@@ -65,7 +65,7 @@ proptest! {
 }
 
 #[test]
-fn the_coin_of_a_world_falls_for_good_as_the_drift_goes_on() {
+fn world_that_switched_stays_switched() {
     let all = variants();
     let drift = Drift::mixing(all[0].clone(), all[1].clone(), 5).with_schedule(DriftSchedule::Linear);
     let is_second = |progress: f64, index: u64| {

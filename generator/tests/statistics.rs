@@ -1,5 +1,5 @@
-//! What is drawn has the law it is declared with: numbers, headings and shares at fixed seeds. Places are tested in
-//! `statistics_of_places.rs`, the laws themselves in the spec.
+//! Numbers, headings and shares are drawn with their declared laws, tested at fixed seeds. Places are tested in
+//! `statistics_of_places.rs`, the laws themselves in the spec crate.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use driftworld_generator::Sampler;
 use driftworld_spec::{Distribution, TaskSpec, Value};
 use rand::SeedableRng;
 
-/// Draws of each law.
+/// Draws per law.
 const DRAWS: u64 = 20_000;
 
 fn sampler(kind: &str, distribution: &str, seed: u64) -> (Sampler, Distribution) {
@@ -34,7 +34,7 @@ fn numbers(kind: &str, distribution: &str) -> (Vec<f64>, Distribution) {
     (drawn.collect(), law)
 }
 
-/// The largest gap between the cumulative function of draws and a true one, times √n: Kolmogorov's statistic.
+/// Kolmogorov's statistic: the largest gap between the empirical and the true cumulative function, times √n.
 fn kolmogorov(drawn: &[f64], cdf: impl Fn(f64) -> f64) -> f64 {
     let mut sorted = drawn.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -48,10 +48,10 @@ fn kolmogorov(drawn: &[f64], cdf: impl Fn(f64) -> f64) -> f64 {
     gaps.fold(0.0, f64::max) * n.sqrt()
 }
 
-/// The statistic is above this in one of a thousand samples of the right law.
+/// The statistic exceeds this in one of a thousand samples of the right law.
 const KOLMOGOROV: f64 = 1.95;
 
-/// Mean and variance within five standard errors; that of the variance from the draws' fourth moment.
+/// Checks mean and variance within five standard errors; the error of the variance comes from the fourth moment of the draws.
 fn check_moments(name: &str, drawn: &[f64], mean: f64, variance: f64) {
     let n = drawn.len() as f64;
     let found = drawn.iter().sum::<f64>() / n;
@@ -85,7 +85,7 @@ fn check_continuous(distribution: &str) {
     );
 }
 
-/// Chi-square over whole numbers, rare ones joined; the bound is five standard deviations above its mean.
+/// Chi-square test over integers, rare ones merged; the bound is five standard deviations above the mean.
 #[track_caller]
 fn check_discrete(kind: &str, distribution: &str) {
     let (drawn, law) = numbers(kind, distribution);
@@ -142,7 +142,7 @@ fn continuous_laws_are_drawn_as_declared() {
 }
 
 #[test]
-fn whole_numbers_are_drawn_as_declared() {
+fn integers_are_drawn_as_declared() {
     for distribution in [
         r#"{ "integer_uniform": { "low": -3, "high": 3 } }"#,
         r#"{ "binomial": { "n": 12, "p": 0.3 } }"#,
@@ -158,7 +158,7 @@ fn whole_numbers_are_drawn_as_declared() {
 }
 
 #[test]
-fn a_law_that_is_a_little_off_would_be_noticed() {
+fn slightly_wrong_law_is_detected() {
     let (drawn, _) = numbers("number", r#"{ "normal": { "mean": 2, "std": 3 } }"#);
     let other = Distribution::Normal { mean: 2.15, std: 3.0 };
     assert!(kolmogorov(&drawn, |x| other.cdf(x).expect("numbers")) > KOLMOGOROV);
@@ -167,7 +167,7 @@ fn a_law_that_is_a_little_off_would_be_noticed() {
 }
 
 #[test]
-fn what_is_cut_off_gathers_at_the_limits() {
+fn clipped_draws_accumulate_at_the_limits() {
     let (drawn, _) = numbers("number", r#"{ "perturb": { "value": 3, "noise": 2, "high": 4 } }"#);
     let share = drawn.iter().filter(|x| **x == 4.0).count() as f64 / DRAWS as f64;
     assert!(
@@ -216,7 +216,7 @@ fn shares_sum_to_1_and_each_is_a_beta() {
     }
 }
 
-/// Two samples of one law: ours by inversion, theirs by whatever `rand_distr` does. An oracle of its own.
+/// Two samples of one law: ours by inversion, theirs by `rand_distr`. An independent oracle.
 #[track_caller]
 fn check_against<T: Copy + Into<f64>>(distribution: &str, theirs: impl rand_distr::Distribution<T>) {
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(3);
@@ -225,7 +225,7 @@ fn check_against<T: Copy + Into<f64>>(distribution: &str, theirs: impl rand_dist
     let mut sorted = theirs;
     sorted.sort_by(f64::total_cmp);
     let share = |x: f64| sorted.partition_point(|other| *other <= x) as f64 / DRAWS as f64;
-    // Two samples of n are as far apart as one of n / 2 from the truth.
+    // Two samples of size n differ as much as one of size n / 2 differs from the truth.
     let mut ours = ours;
     ours.sort_by(f64::total_cmp);
     let own = |x: f64| ours.partition_point(|other| *other <= x) as f64 / DRAWS as f64;
@@ -263,7 +263,7 @@ fn draws_agree_with_those_of_rand_distr() {
 }
 
 #[test]
-fn neighbours_and_seeds_have_nothing_to_do_with_each_other() {
+fn neighbouring_worlds_and_seeds_are_uncorrelated() {
     let draws = |seed| {
         let (sampler, _) = sampler("number", r#"{ "uniform": { "low": -1, "high": 1 } }"#, seed);
         values(&sampler)

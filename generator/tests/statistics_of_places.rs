@@ -1,11 +1,11 @@
-//! Where objects stand has the law it is declared with. Numbers are tested in `statistics.rs`.
+//! Objects are placed with the declared law. Numbers are tested in `statistics.rs`.
 
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 
 use driftworld_generator::Sampler;
 use driftworld_spec::{Distribution, TaskSpec, World};
 
-/// Samples of a group that keeps clear of nothing, in an arena that is wide enough for all.
+/// Samples of a group that keeps no distances, in an arena wide enough for all.
 fn sampler(placement: &str, count: u32, more: &str) -> (Sampler, Distribution) {
     let text = format!(
         r#"{{ "version": 2, "name": "places", "world": {{ "environment_params": {{ "map_size": [300, 300] }} }},
@@ -84,7 +84,7 @@ fn places_have_the_moments_of_their_law() {
     }
 }
 
-/// Chi-square of places over cells of equal probability; the bound is five standard deviations above its mean.
+/// Chi-square test of places over cells of equal probability; the bound is five standard deviations above the mean.
 fn check_cells(name: &str, cells: &[usize], count: usize) {
     let expected = cells.len() as f64 / count as f64;
     let mut found = vec![0.0; count];
@@ -107,7 +107,7 @@ fn boxes_discs_and_rings_are_filled_evenly() {
         .map(|[x, y]| (x / 10.0) as usize * 4 + (y / 10.0) as usize)
         .collect();
     check_cells("box", &cells, 32);
-    // Eight rings of equal area by eight sectors.
+    // Eight rings of equal area times eight sectors.
     for (placement, inner) in [
         (r#"{ "disc": { "center": [0, 0], "radius": 50 } }"#, 0.0_f64),
         (r#"{ "annulus": { "center": [0, 0], "inner": 30, "outer": 50 } }"#, 30.0),
@@ -154,7 +154,7 @@ fn lists_and_grids_are_taken_in_turn() {
 }
 
 #[test]
-fn poisson_discs_keep_their_distance_within_the_group_only() {
+fn poisson_discs_keep_distance_within_the_group_only() {
     let (discs, _) = sampler(
         r#"{ "poisson_disc": { "low": [-50, -50], "high": [50, 50], "distance": 8 } }"#,
         60,
@@ -182,7 +182,7 @@ fn poisson_discs_keep_their_distance_within_the_group_only() {
 }
 
 #[test]
-fn counts_around_each_object_have_their_law_and_placements_turn_with_it() {
+fn counts_around_each_object_follow_their_law_and_placements_rotate_with_it() {
     let text = r#"{ "version": 2, "name": "around", "world": { "environment_params": { "map_size": [300, 300] } }, "groups": [
         { "name": "houses", "count": 20, "object": { "class": "building" }, "facing": "random",
           "placement": { "box": { "low": [-120, -120], "high": [120, 120] } } },
@@ -201,7 +201,7 @@ fn counts_around_each_object_have_their_law_and_placements_turn_with_it() {
         let mut rest = &around[..];
         for house in middle {
             houses += 1;
-            // Ahead of the house: 5, 6 and 7 m along its heading, which grows clockwise from north.
+            // In front of the house: 5, 6 and 7 m along its heading, which grows clockwise from north.
             let ahead = |metres: f64| {
                 let angle = house.heading.to_radians();
                 [

@@ -1,4 +1,4 @@
-//! Variants between variants, and at wanted distances. The worlds drawn from variants are tested in `worlds.rs`.
+//! Interpolated variants, and variants at wanted distances. Worlds are tested in `worlds.rs`.
 
 use std::sync::Arc;
 
@@ -57,7 +57,7 @@ fn number(variant: &Variant, name: &str) -> f64 {
 }
 
 #[test]
-fn numbers_go_straight_headings_the_short_way_and_counts_in_whole_steps() {
+fn numbers_interpolate_linearly_headings_the_short_way_and_counts_in_integers() {
     let half = between("a", "b", 0.5);
     assert_eq!((number(&half, "light"), number(&half, "pay")), (2.0, 0.0));
     assert_eq!(number(&half, "look"), 10.0, "from 350 over north to 30");
@@ -75,19 +75,19 @@ fn numbers_go_straight_headings_the_short_way_and_counts_in_whole_steps() {
 }
 
 #[test]
-fn colours_go_through_oklab_and_may_leave_the_list_of_choices() {
+fn colours_interpolate_in_oklab_and_may_leave_the_list_of_choices() {
     let half = between("a", "b", 0.5);
     let Some(Value::Color(Color([red, green, blue]))) = half.value("color") else {
         panic!("a colour stays one")
     };
-    // The purple that CSS Color 4 gives for color-mix(in oklab, red, blue).
+    // The purple of CSS Color 4's color-mix(in oklab, red, blue).
     for (found, expected) in [(red, 0.548_6), (green, 0.324_4), (blue, 0.635_4)] {
         assert!((found - expected).abs() < 0.002, "{found}, expected {expected}");
     }
 }
 
 #[test]
-fn what_has_nothing_between_switches_where_it_is_declared_or_by_chance() {
+fn values_without_interpolation_switch_at_a_point_or_by_chance() {
     assert_eq!(between("a", "b", 0.24).value("model"), Some(&Value::Text("1".into())));
     assert_eq!(between("a", "b", 0.25).value("model"), Some(&Value::Text("3".into())));
     assert_eq!(between("a", "b", 0.49).value("solid"), Some(&Value::Boolean(true)));
@@ -117,7 +117,7 @@ fn distributions_of_two_families_are_mixed_and_gaussians_meet_in_their_covarianc
 }
 
 #[test]
-fn a_drift_begins_and_ends_with_the_variants_it_was_given() {
+fn drift_starts_and_ends_with_the_given_variants() {
     for schedule in [
         DriftSchedule::Linear,
         DriftSchedule::Cosine,
@@ -138,7 +138,7 @@ fn a_drift_begins_and_ends_with_the_variants_it_was_given() {
     ));
 }
 
-/// A distance with a known shape: of each number its share of the range, of each other value 0 or 1, by fixed weights.
+/// A distance with a known shape: a weighted sum of shares of ranges for numbers, and 0 or 1 for other values.
 fn distance(from: &Variant) -> impl Fn(&Variant) -> f64 + '_ {
     let parts = [("light", 4.0, 0.3), ("pay", 200.0, 0.2), ("count", 10.0, 0.2)];
     move |other| {
@@ -156,7 +156,7 @@ fn distance(from: &Variant) -> impl Fn(&Variant) -> f64 + '_ {
 }
 
 #[test]
-fn a_variant_is_found_at_the_wanted_distance_by_changing_what_may_change() {
+fn variant_at_wanted_distance_changes_only_its_subject() {
     let a = variant("a");
     let found = at_distance(&a, &Subject::Element(Element::R), 0.1, 1e-9, distance(&a)).expect("half of the range");
     assert!((number(&found.variant, "pay") - 0.0).abs() < 1e-5);
@@ -170,7 +170,7 @@ fn a_variant_is_found_at_the_wanted_distance_by_changing_what_may_change() {
     assert_eq!(changed, ["pay"]);
     let again = at_distance(&a, &Subject::Element(Element::R), 0.1, 1e-9, distance(&a)).expect("as before");
     assert_eq!(again.variant.values(), found.variant.values());
-    // More than light alone can do: the colour changes too, and light makes up the rest.
+    // More than light alone can reach: the colour changes too, and light makes up the rest.
     let both = at_distance(&a, &Subject::Element(Element::O), 0.4, 1e-6, distance(&a)).expect("colour and light");
     assert!((both.distance - 0.4).abs() <= 1e-6 && both.variant.value("color") != a.value("color"));
 }
@@ -204,9 +204,9 @@ proptest! {
     }
 }
 
-/// Names of choices stand for their values: a task that has them draws the worlds of the one that lists these.
+/// Names of choices stand for their values: a task with names draws the same worlds as one with the values listed.
 #[test]
-fn named_choices_draw_the_worlds_of_listed_ones() {
+fn named_choices_draw_the_same_worlds_as_listed_ones() {
     let (open, maze) = (r#"{ "walls": [] }"#, r#"{ "maze": { "cells": [4, 4], "cell": 5 } }"#);
     let (near, far) = (
         r#"{ "disc": { "center": [0, 0], "radius": 5 } }"#,
@@ -264,7 +264,7 @@ fn named_choices_draw_the_worlds_of_listed_ones() {
 }
 
 #[test]
-fn mistakes_in_named_choices_are_named_by_their_names() {
+fn errors_in_named_choices_quote_the_names() {
     let said = |kind: &str, choices: &str, default: &str, own: &str| {
         let text = format!(
             r#"{{ "version": 2, "name": "t", "parameters": {{ "p": {{ "role": "variant", "type": "{kind}", "affects": ["S"],

@@ -1,4 +1,4 @@
-//! Sampled worlds: the same as ever, valid, independent where they should be, alike where they should be.
+//! Sampled worlds: reproducible, valid, independent or shared as specified.
 
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 
@@ -30,9 +30,9 @@ fn tagged<'a>(world: &'a World, tag: &str) -> Vec<&'a Object> {
         .collect()
 }
 
-/// `DRIFTWORLD_UPDATE_GOLDEN=1` rewrites the files: a value-breaking change.
+/// `DRIFTWORLD_UPDATE_GOLDEN=1` rewrites the files; that is a breaking change of values.
 #[test]
-fn golden_worlds_are_drawn_as_they_were() {
+fn golden_worlds_are_reproduced() {
     for (task, variant, index) in [
         ("find_objects", "red", 0),
         ("find_objects", "red", 12_345),
@@ -53,7 +53,7 @@ fn golden_worlds_are_drawn_as_they_were() {
 }
 
 #[test]
-fn any_order_of_drawing_gives_the_same_worlds() {
+fn worlds_do_not_depend_on_the_order_of_drawing() {
     let task = example("find_objects");
     let sampler = Sampler::new(&task.variant("red").expect("red is a variant"), 3);
     let forwards: Vec<String> = (0..20)
@@ -67,7 +67,7 @@ fn any_order_of_drawing_gives_the_same_worlds() {
 }
 
 #[test]
-fn variants_share_their_chance() {
+fn variants_share_random_numbers() {
     let task = example("find_objects");
     let (blue, penalty) = (world(&task, "red", 7, 5), world(&task, "penalty", 7, 5));
     let mut paid = blue.into_draft();
@@ -81,7 +81,7 @@ fn variants_share_their_chance() {
 }
 
 #[test]
-fn a_new_parameter_group_or_object_moves_nothing_that_was_there() {
+fn new_parameter_group_or_object_moves_nothing_else() {
     let text = std::fs::read_to_string(format!(
         "{}/../examples/tasks/find_objects.json",
         env!("CARGO_MANIFEST_DIR")
@@ -148,7 +148,7 @@ fn nothing_stands_in_a_region_that_cannot_be_entered() {
         for object in &world(&load(&text), "default", 5, 0).objects {
             let [x, y] = object.coordinates;
             for region in maps::excluded_regions(map).iter().map(|region| &region.0) {
-                // Winding number by crossing: an oracle of its own kind.
+                // Winding number by crossings: an independent oracle.
                 let turns: f64 = region
                     .iter()
                     .zip(region.iter().cycle().skip(1))
@@ -234,7 +234,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 48), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn every_world_is_one_that_the_strict_reader_accepts(seed in any::<u64>(), index in 0..u64::MAX) {
+    fn every_world_passes_the_strict_reader(seed in any::<u64>(), index in 0..u64::MAX) {
         for name in ["find_objects", "get_to_goal"] {
             let task = example(name);
             for variant in task.all_variants() {

@@ -1,6 +1,6 @@
-//! Tasks drawn for tests: a few parameters of any type, requirements over them, and one that is read under a condition only.
+//! Random tasks for tests: a few parameters of any type, requirements on them, and one that is read only under a condition.
 
-/// Numbers that are as good as random and the same every time: Vigna's splitmix64.
+/// Deterministic pseudo-random numbers: Vigna's splitmix64.
 pub(crate) struct Numbers(pub(crate) u64);
 
 impl Numbers {
@@ -26,7 +26,7 @@ impl Numbers {
     }
 }
 
-/// A parameter that may be drawn: its name, its declaration, and values that it starts from.
+/// A parameter that may be chosen: its name, its declaration, and candidate default values.
 type Candidate = (&'static str, &'static str, &'static [&'static str]);
 
 const CANDIDATES: [Candidate; 17] = [
@@ -97,7 +97,7 @@ const CANDIDATES: [Candidate; 17] = [
             r#"{ "uniform": { "low": 0, "high": 1 } }"#,
         ],
     ),
-    // Stands for the two ends of a law that a randomized parameter is drawn from.
+    // Stands for the two ends of a law from which a randomized parameter is drawn.
     ("ends", "", &["0"]),
 ];
 
@@ -167,7 +167,7 @@ impl Drawn {
     }
 }
 
-/// Two or one of the names that are of this kind, and the scale of their values.
+/// One of the names whose values are numbers, with the scale of its values.
 fn number(numbers: &mut Numbers, names: &[&str]) -> Option<(String, f64)> {
     let scale = |name: &str| match name {
         "a" | "lo" | "hi" => Some((name.to_owned(), 1.0)),
@@ -182,7 +182,7 @@ fn number(numbers: &mut Numbers, names: &[&str]) -> Option<(String, f64)> {
     (!all.is_empty()).then(|| numbers.one_of(&all).clone())
 }
 
-/// Something that is true or false, of one parameter.
+/// A random condition on one parameter.
 fn condition(numbers: &mut Numbers, names: &[&str]) -> String {
     if numbers.below(2) == 0
         && let Some((name, scale)) = number(numbers, names)
@@ -214,7 +214,7 @@ fn condition(numbers: &mut Numbers, names: &[&str]) -> String {
         "law" => "true".to_owned(),
         other => {
             let (name, scale) = number(numbers, &[other]).expect("all others are numbers");
-            // That one real number is meant and no other is found by accident only, by a grid, too.
+            // A search, even one on a grid, meets an exact real number only by accident.
             let sign = if matches!(other, "n" | "m") { "!=" } else { "<=" };
             format!("{name} {sign} {}", (scale / 2.0).round())
         }
