@@ -1,4 +1,4 @@
-//! [`Case`]: a look-up, which says what stands at a place by the value of a parameter. Making it is `task/scope.rs`'s job.
+//! [`Case`]: a look-up, which selects a value by the value of a parameter.
 
 use std::borrow::Cow;
 
@@ -8,22 +8,22 @@ use serde::{Deserialize, Serialize};
 
 use super::reference::{Number, ParamRef};
 
-/// What stands at a place, by the value of a parameter: `{ "case": { "param": "cue" }, "of": { "red": 50 }, "else": 0 }`.
+/// Selects a value by the value of a parameter: `{ "case": { "param": "cue" }, "of": { "red": 50 }, "else": 0 }`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, bound(deserialize = "T: Deserialize<'de>"))]
 pub struct Case<T> {
-    /// The parameter by whose value it chooses, of any role.
+    /// The parameter that selects; it may have any role.
     #[serde(rename = "case")]
     pub by: ParamRef,
-    /// What it comes to, by the values of the parameter as texts: words, names of choices or colours, numbers, `true`, `false`.
+    /// The results by the values of the parameter as texts: words, names of choices or colours, numbers, `true`, `false`.
     pub of: IndexMap<String, T>,
-    /// What it comes to at all other values; nothing where every value has a case.
+    /// The result for all other values; `None` if every value has a case.
     #[serde(rename = "else", default, skip_serializing_if = "Option::is_none")]
     pub otherwise: Option<T>,
 }
 
 impl<T> Case<T> {
-    /// The cases with their keys in the document, the last of them `else`.
+    /// The cases with their keys in the document; `else` comes last.
     pub(crate) fn entries(&self) -> impl Iterator<Item = (String, &T)> {
         let of = self
             .of
@@ -44,7 +44,7 @@ impl JsonSchema for Case<Number> {
     }
 }
 
-/// The schema of a look-up whose cases have a schema.
+/// The schema of a look-up, given the schema of its cases.
 pub(crate) fn schema(generator: &mut SchemaGenerator, description: &str, case: &Schema) -> Schema {
     let parameter = generator.subschema_for::<ParamRef>();
     let of = "The cases, by the values of the parameter as texts: words, names of choices or colours, numbers, `true`, `false`.";

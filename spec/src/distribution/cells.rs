@@ -1,4 +1,4 @@
-//! What is asked of the cells of a layout in which things are placed. Which cells there are is the plan's to say.
+//! Kinds and rooms of layout cells that a placement can request.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -21,7 +21,7 @@ pub enum CellKind {
 }
 
 impl CellKind {
-    /// Whether a cell that can be left by so many sides is one.
+    /// Whether a cell with `open_sides` open sides is of this kind.
     pub fn has(self, open_sides: u32) -> bool {
         match self {
             Self::Any => true,
@@ -32,7 +32,7 @@ impl CellKind {
         }
     }
 
-    /// What messages call so many of them.
+    /// The plural for messages.
     pub fn describe(self) -> &'static str {
         match self {
             Self::Any => "cells",

@@ -1,4 +1,4 @@
-//! [`Channels`]: the colour in a distribution, whose channels may be references. Colours of worlds are in `crate::color`.
+//! [`Channels`]: a colour in a distribution, whose channels may be references.
 
 use std::borrow::Cow;
 
@@ -9,12 +9,12 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use super::reference::{Number, ParamRef};
 use crate::Color;
 
-/// A number that can be a channel of a colour: [`Number`] in a spec, `f64` once a variant has settled it.
+/// A number that can be a channel of a colour: [`Number`] in a spec, `f64` in a variant.
 pub trait Channel: From<f64> {
-    /// The channels of the colour that a parameter has; `None` where there are no references.
+    /// The channels that refer to a parameter's colour; `None` if this type has no references.
     fn of_parameter(reference: &ParamRef) -> Option<[Self; 3]>;
 
-    /// The parameter whose colour these channels are, all three of it.
+    /// The parameter whose whole colour these channels refer to, if they do.
     fn parameter_of(channels: &[Self; 3]) -> Option<ParamRef>;
 }
 
@@ -51,7 +51,7 @@ impl Channel for Number {
 
 /// A colour in a distribution: red, green and blue in 0..=1, sRGB.
 ///
-/// Reads `[r, g, b]`, a CSS name, or `{ "param": NAME }` of a parameter that is a colour; writes a list, or the reference.
+/// Reads `[r, g, b]`, a CSS name, or `{ "param": NAME }` of a colour parameter; writes a list or the reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channels<N = f64>(pub [N; 3]);
 
@@ -127,7 +127,7 @@ pub enum ChannelSpread<N = f64> {
 }
 
 impl ChannelSpread {
-    /// The number of each channel.
+    /// The channels as numbers.
     pub fn to_array(&self) -> [f64; 3] {
         match self {
             Self::Same(spread) => [*spread; 3],
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn a_colour_is_a_list_a_name_or_a_parameter() {
+    fn colour_is_a_list_a_name_or_a_parameter() {
         check("[0, 0.5, 1]", Some("[0.0,0.5,1.0]"));
         check("\"red\"", Some("[1.0,0.0,0.0]"));
         check(r#"{"param": "leaf"}"#, Some(r#"{"param":"leaf"}"#));
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn where_all_is_settled_there_are_no_references() {
+    fn settled_channels_have_no_references() {
         let red: Channels = serde_json::from_str("\"red\"").expect("a CSS name");
         assert_eq!(red, Channels::from(Color([1.0, 0.0, 0.0])));
         assert!(serde_json::from_str::<Channels>(r#"{"param": "leaf"}"#).is_err());

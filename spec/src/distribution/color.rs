@@ -1,12 +1,11 @@
-//! The distributions that draw colours: which colour chance decides. Their means and covariances are in
-//! `color_moments.rs`.
+//! Distributions that draw colours: maps random numbers to colours. Means and covariances are in `color_moments.rs`.
 
 use super::{ChannelChance, Distribution};
 use crate::Color;
 use crate::value::Value;
 
 impl<N> Distribution<N> {
-    /// Whether it, or a part of it, draws colours out of a continuum: `color_uniform`, `color_normal`, `color_perturb` or
+    /// Whether it or one of its parts draws colours from a continuum: `color_uniform`, `color_normal`, `color_perturb` or
     /// `color_hsv`.
     pub fn draws_colors(&self) -> bool {
         match self {
@@ -21,17 +20,17 @@ impl<N> Distribution<N> {
 }
 
 impl Distribution<f64> {
-    /// The colour that three numbers of chance in `0..1` decide; of channels that stray together, and of a constant, fewer do.
+    /// The colour for three random numbers in `0..1`; fewer are used if the channels vary together, and none for a constant.
     ///
-    /// Each channel rises with its number, so that variants under one seed share their chance; of `color_hsv` the numbers are
-    /// those of hue, saturation and value. The same bits on every platform. `None` for choices and mixtures, which draw first
-    /// what they take, and for distributions of anything else.
+    /// Each channel increases with its number, so that variants under one seed share random numbers; for `color_hsv` the numbers
+    /// are those of hue, saturation and value. The same bits on every platform. `None` for choices and mixtures, which first draw
+    /// a value or part, and for distributions of anything else.
     pub fn color_at(&self, units: [f64; 3]) -> Option<Color> {
         let (inside, limits) = match self {
             Self::Constant { value } => return value.as_color(),
             Self::ColorUniform { from, to, channels } => {
                 let colour = match channels {
-                    // From the lesser to the greater end, whichever is named first.
+                    // From the lesser to the greater end, in whichever order they are given.
                     ChannelChance::Apart => [0, 1, 2].map(|k| {
                         let (low, high) = (from.0[k].min(to.0[k]), from.0[k].max(to.0[k]));
                         low + (high - low) * units[k]
@@ -72,10 +71,10 @@ impl Distribution<f64> {
         Some(Color([0, 1, 2].map(|k| inside[k].clamp(limits[0][k], limits[1][k]))))
     }
 
-    /// The distributions of red, green and blue, each by itself: numbers in `0..=1`.
+    /// The distributions of red, green and blue separately: numbers in `0..=1`.
     ///
-    /// `None` for `color_hsv`, whose channels have no law with a name, for what holds it, and for distributions of anything
-    /// but colours. Whether the channels stray together they do not say.
+    /// `None` for `color_hsv`, whose channels have no named law, for anything that contains it, and for distributions of anything
+    /// but colours. They do not say whether the channels vary together.
     pub fn color_channels(&self) -> Option<[Self; 3]> {
         let number = |number: f64| Self::Constant {
             value: Value::Number(number),
@@ -137,7 +136,7 @@ impl Distribution<f64> {
         })
     }
 
-    /// Whether each channel has chance of its own, so that [`Distribution::color_channels`] says all of the distribution.
+    /// Whether the channels are independent, so that [`Distribution::color_channels`] describes the distribution completely.
     pub fn has_independent_channels(&self) -> bool {
         match self {
             Self::ColorUniform { channels, .. } | Self::ColorPerturb { channels, .. } => {
@@ -149,7 +148,7 @@ impl Distribution<f64> {
         }
     }
 
-    /// The least and greatest hue in degrees, saturation and value of a `color_hsv`.
+    /// Least and greatest hue in degrees, saturation and value of a `color_hsv`.
     pub(super) fn hsv_ends(&self) -> Option<[[f64; 2]; 3]> {
         let Self::ColorHsv { hue, saturation, value } = self else {
             return None;
@@ -161,7 +160,7 @@ impl Distribution<f64> {
         ])
     }
 
-    /// Corners of a box in sRGB that holds all colours that a continuous law draws; `None` for any other distribution.
+    /// Corners of a box in sRGB that contains all colours of a continuous law; `None` for any other distribution.
     pub(super) fn color_box(&self) -> Option<[Color; 2]> {
         let ends = match self {
             Self::ColorUniform { from, to, .. } => {
@@ -190,8 +189,8 @@ impl Distribution<f64> {
     }
 }
 
-/// How far a hue in degrees takes a channel (0 red, 1 green, 2 blue) down from the value: 0 not at all, 1 as far as the
-/// saturation goes.
+/// By how much a hue in degrees lowers a channel (0 red, 1 green, 2 blue) below the value: from 0, not at all, to 1, as far as
+/// the saturation allows.
 pub(super) fn dip(channel: usize, hue: f64) -> f64 {
     let turned = (5.0 - 2.0 * channel as f64 + hue / 60.0).rem_euclid(6.0);
     turned.min(4.0 - turned).clamp(0.0, 1.0)
@@ -216,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn units_decide_a_colour() {
+    fn color_at_maps_units_to_a_colour() {
         let between = r#"{"color_uniform": {"from": "red", "to": [0, 0, 0.5]}}"#;
         check(between, [0.25, 0.5, 0.5], [0.25, 0.0, 0.25]);
         let line = r#"{"color_uniform": {"from": "red", "to": [0, 0, 0.5], "channels": "together"}}"#;
@@ -231,9 +230,9 @@ mod tests {
         check(noisy, [1.0, 0.0, 0.0], [0.25, 0.75, 0.75]);
     }
 
-    /// The six corners of the colour circle, and the values that Python's `colorsys.hsv_to_rgb` gives.
+    /// The six corners of the colour circle, with the values of Python's `colorsys.hsv_to_rgb`.
     #[test]
-    fn hues_saturations_and_values_are_those_of_hsv() {
+    fn color_hsv_agrees_with_colorsys() {
         let circle = ["red", "yellow", "lime", "cyan", "blue", "magenta", "red"];
         for (k, name) in circle.into_iter().enumerate() {
             let expected = Color::from_name(name).expect("a CSS name").0;
@@ -243,7 +242,7 @@ mod tests {
         let all = r#"{"color_hsv": {}}"#;
         check(all, [0.1, 0.5, 0.8], [0.8, 0.64, 0.4]);
         check(all, [0.55, 0.25, 0.9], [0.675, 0.8325, 0.9]);
-        // Across red, by degrees below 0 or above 360.
+        // A range across red may use degrees below 0 or above 360.
         let reds = r#"{"color_hsv": {"hue": [-30, 30], "saturation": [1, 1], "value": [1, 1]}}"#;
         check(reds, [0.0, 0.0, 0.0], [1.0, 0.0, 0.5]);
         check(reds, [1.0, 0.0, 0.0], [1.0, 0.5, 0.0]);
@@ -254,10 +253,10 @@ mod tests {
         );
     }
 
-    /// Three trees of a map that the original's generator made: its template adds one uniform noise to all channels and cuts
-    /// off what leaves 0..1.
+    /// Three trees of a map that the original's generator made: its template adds one uniform noise to all channels and clips to
+    /// 0..1.
     #[test]
-    fn the_originals_template_of_a_tree_is_noise_of_channels_together() {
+    fn originals_tree_template_is_noise_of_joint_channels() {
         let template = law(r#"{"color_perturb": {"value": [0, 0.5, 0.5], "noise": 0.25, "channels": "together"}}"#);
         for tree in [
             [0.0, 0.358_542_129_941_070_4, 0.358_542_129_941_070_4],

@@ -1,12 +1,11 @@
-//! [`Moments`]: means and covariances of the distributions that draw colours. Which colour they draw is in `color.rs`, moments of
-//! numbers are in `moments.rs`.
+//! [`Moments`] of distributions that draw colours: mean and covariance.
 
 use super::color::dip;
 use super::{Distribution, Moments};
 use crate::value::Value;
 
 impl Distribution<f64> {
-    /// Mean and covariance of red, green and blue, exact but for rounding; `None` if it draws anything but colours.
+    /// Mean and covariance of red, green and blue, exact up to rounding; `None` if it draws anything but colours.
     pub fn color_moments(&self) -> Option<Moments<3>> {
         if self.has_independent_channels() {
             let laws = self.color_channels()?;
@@ -28,7 +27,7 @@ impl Distribution<f64> {
                 Some(Moments::mixed(&parts, weights.as_deref()))
             }
             Self::ColorHsv { .. } => self.hsv_moments(),
-            // One number of chance moves all channels, each along straight lines between its knots.
+            // One random number moves all channels, each piecewise linearly between its knots.
             _ => {
                 let knots = self.knots()?;
                 let at = |u: f64| self.color_at([u; 3]).map_or([0.0; 3], |color| color.0);
@@ -40,7 +39,7 @@ impl Distribution<f64> {
         }
     }
 
-    /// The numbers of chance in `0..=1` between which channels that stray together go straight.
+    /// The knots in `0..=1` of the random number between which channels that vary together are linear.
     fn knots(&self) -> Option<Vec<f64>> {
         let mut knots = vec![0.0, 1.0];
         match self {
@@ -66,12 +65,12 @@ impl Distribution<f64> {
         Some(knots)
     }
 
-    /// A channel is `v − v s d` for a dip `d` that the hue decides; hue, saturation and value do not depend on each other.
+    /// A channel is `v − v s d` for a dip `d` that depends on the hue; hue, saturation and value are independent.
     fn hsv_moments(&self) -> Option<Moments<3>> {
         let [hue, saturation, value] = self.hsv_ends()?;
         let mean_of = |[low, high]: [f64; 2]| f64::midpoint(low, high);
         let square_of = |[low, high]: [f64; 2]| (low * low + low * high + high * high) / 3.0;
-        // The dips go straight between multiples of 60 degrees.
+        // The dips are linear between multiples of 60 degrees.
         let mut knots = vec![hue[0], hue[1]];
         let (first, last) = ((hue[0] / 60.0).ceil() as i32, (hue[1] / 60.0).floor() as i32);
         knots.extend((first..=last).map(|sixth| 60.0 * f64::from(sixth)));
@@ -94,7 +93,7 @@ impl Distribution<f64> {
     }
 }
 
-/// The integral over pieces between knots of a function that is a polynomial of degree 3 or less on each: Simpson's rule.
+/// The integral, between knots, of a function that is a polynomial of degree 3 or less on each piece: Simpson's rule.
 fn integral(knots: &[f64], of: impl Fn(f64) -> f64) -> f64 {
     let piece = |low: f64, high: f64| (high - low) / 6.0 * (of(low) + 4.0 * of(f64::midpoint(low, high)) + of(high));
     knots.windows(2).map(|ends| piece(ends[0], ends[1])).sum()
@@ -109,9 +108,9 @@ mod tests {
         serde_json::from_str(text).unwrap_or_else(|error| panic!("{text}: {error}"))
     }
 
-    /// The moments are those of a fine grid of chance.
+    /// Agrees with the moments over a fine grid of random numbers.
     #[test]
-    fn moments_are_those_of_what_is_drawn() {
+    fn color_moments_agree_with_a_grid_of_draws() {
         for text in [
             r#"{"color_uniform": {"from": "red", "to": [0.2, 0.4, 0.5]}}"#,
             r#"{"color_uniform": {"from": "red", "to": [0.2, 0.4, 0.5], "channels": "together"}}"#,
@@ -148,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mixture_lies_between_its_parts() {
+    fn mixture_mean_lies_between_its_parts() {
         let text = r#"{"mixture": {"parts": [{"constant": {"value": "red"}}, {"color_normal": {"mean": "blue", "std": 0}},
             {"choice": {"values": ["lime", "lime"]}}], "weights": [1, 1, 2]}}"#;
         let law = law(text);

@@ -1,8 +1,8 @@
-//! Laws of counts: binomial, Poisson, geometric. Which distribution has which law is said in `cumulative.rs` and `quantile.rs`.
+//! Laws of counts: binomial, Poisson and geometric.
 
 use super::special::{beta_below, gamma_above, normal_quantile};
 
-/// Means up to this are gone through count by count; beyond, the cumulative function is searched.
+/// Largest mean for which counts are summed one by one; beyond it the cumulative function is searched.
 const SHORT_WALK: f64 = 64.0;
 
 /// Probability of at most `k` successes in `n` tries.
@@ -17,7 +17,7 @@ pub(super) fn binomial_cdf(k: f64, n: f64, p: f64) -> f64 {
     }
 }
 
-/// Probability of at most `k` events where `mean` are expected.
+/// Probability of at most `k` events if `mean` are expected.
 pub(super) fn poisson_cdf(k: f64, mean: f64) -> f64 {
     let k = k.floor();
     if k < 0.0 {
@@ -41,7 +41,7 @@ pub(super) fn geometric_cdf(k: f64, p: f64) -> f64 {
     }
 }
 
-/// The least number of successes that at most so many have a probability of at least `u`.
+/// The `u` quantile of the number of successes in `n` tries.
 pub(super) fn binomial_quantile(u: f64, n: f64, p: f64) -> f64 {
     if p == 0.0 || n == 0.0 {
         return 0.0;
@@ -58,10 +58,10 @@ pub(super) fn binomial_quantile(u: f64, n: f64, p: f64) -> f64 {
     search(u, n * p, deviation, n, |k| binomial_cdf(k, n, p))
 }
 
-/// The least number of events that at most so many have a probability of at least `u`.
+/// The `u` quantile of the number of events if `mean` are expected.
 pub(super) fn poisson_quantile(u: f64, mean: f64) -> f64 {
     if mean <= SHORT_WALK {
-        // Beyond mean + 40 deviations nothing is left of a probability in 53 bits.
+        // Beyond mean + 40 deviations the remaining probability is below 53 bits.
         let most = mean + 40.0 * (mean + 1.0).sqrt();
         return walk(u, libm::exp(-mean), most.ceil(), |k| mean / (k + 1.0));
     }
@@ -69,14 +69,14 @@ pub(super) fn poisson_quantile(u: f64, mean: f64) -> f64 {
     search(u, mean, mean.sqrt(), most.ceil(), |k| poisson_cdf(k, mean))
 }
 
-/// The least number of failures that at most so many have a probability of at least `u`.
+/// The `u` quantile of the number of failures before the first success.
 pub(super) fn geometric_quantile(u: f64, p: f64) -> f64 {
     if p == 1.0 || u <= 0.0 {
         return 0.0;
     }
     let u = u.min(1.0 - f64::EPSILON / 2.0);
     let count = (libm::log1p(-u) / libm::log1p(-p) - 1.0).ceil().max(0.0);
-    // Where u is one of the cumulative probabilities, rounding may have led one too far.
+    // If u equals a cumulative probability, rounding may have gone one too far.
     if count >= 1.0 && geometric_cdf(count - 1.0, p) >= u {
         count - 1.0
     } else {
@@ -84,7 +84,7 @@ pub(super) fn geometric_quantile(u: f64, p: f64) -> f64 {
     }
 }
 
-/// Adds up probabilities from 0 on until they reach `u`; `step(k)` leads from that of `k` to that of `k + 1`.
+/// Sums probabilities from 0 until they reach `u`; `step(k)` is the ratio of the probability of `k + 1` to that of `k`.
 fn walk(u: f64, none: f64, most: f64, step: impl Fn(f64) -> f64) -> f64 {
     let (mut k, mut probability, mut sum) = (0.0, none, none);
     while sum < u && k < most {
@@ -95,7 +95,7 @@ fn walk(u: f64, none: f64, most: f64, step: impl Fn(f64) -> f64) -> f64 {
     k
 }
 
-/// The least whole number at which a cumulative function reaches `u`, sought around where a normal one would.
+/// The least integer at which a cumulative function reaches `u`; starts near the quantile of a normal distribution.
 fn search(u: f64, mean: f64, deviation: f64, most: f64, cdf: impl Fn(f64) -> f64) -> f64 {
     let inner = u.clamp(1e-300, 1.0 - f64::EPSILON / 2.0);
     let mut high = (mean + deviation * normal_quantile(inner)).round().clamp(0.0, most);
@@ -110,7 +110,7 @@ fn search(u: f64, mean: f64, deviation: f64, most: f64, cdf: impl Fn(f64) -> f64
         low -= stride;
         stride *= 2.0;
     }
-    // cdf(low) < u <= cdf(high), with -1 standing for «below everything».
+    // cdf(low) < u <= cdf(high), where -1 stands for «below everything».
     low = low.max(-1.0);
     while high - low > 1.0 {
         let middle = f64::midpoint(low, high).floor();
@@ -128,7 +128,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_quantile_is_the_least_count_whose_cumulative_probability_reaches_it() {
+    fn quantile_is_the_least_count_that_reaches_the_probability() {
         for k in 0..400 {
             let u = f64::from(k) / 400.0;
             for (n, p) in [(4.0, 0.5), (30.0, 0.1), (1000.0, 0.3), (100_000.0, 0.9), (7.0, 1.0)] {

@@ -1,4 +1,4 @@
-//! Distributions as people read them: `normal(mean 2, std spread)`. Documents have them as JSON.
+//! Displays distributions for people: `normal(mean 2, std spread)`. Documents use JSON.
 
 use std::fmt::{Display, Formatter, Result};
 
@@ -22,7 +22,7 @@ fn one(json: &Json) -> String {
             let index = map.get("index").map_or_else(String::new, |index| format!("[{index}]"));
             format!("{}{index}", map["param"].as_str().unwrap_or_default())
         }
-        // What a distribution of JSON lists.
+        // The values of a distribution of JSON.
         Json::Object(map) if map.len() != 1 || !map.values().all(Json::is_object) => json.to_string(),
         Json::Object(map) => {
             let forms = map.iter().map(|(name, fields)| {
@@ -45,7 +45,7 @@ mod tests {
     use crate::distribution::Number;
 
     #[test]
-    fn a_distribution_reads_as_a_call() {
+    fn distribution_displays_as_a_call() {
         let text = r#"{ "gaussian": { "mean": [0, 0], "std": { "param": "spread" }, "correlation": 0.5 } }"#;
         let distribution: Distribution<Number> = serde_json::from_str(text).unwrap();
         assert_eq!(

@@ -1,14 +1,14 @@
-//! What is wrong with a distribution's numbers. References and types are checked in `task/check/`.
+//! Checks the numbers of a distribution. References and types are checked in `task/check/`.
 
 use std::ops::RangeInclusive;
 
 use super::{ChannelSpread, Channels, Distribution, Spread};
 
-/// What was found, and what was expected.
+/// What was found and what was expected.
 type Fault = Option<(String, &'static str)>;
 
 impl Distribution<f64> {
-    /// What is wrong with the numbers, as (found, expected); nothing if all can be drawn from.
+    /// The first fault in the numbers, as (found, expected); `None` if the distribution can be drawn from.
     pub fn fault(&self) -> Fault {
         match self {
             Self::Constant { .. } | Self::Points { .. } => None,
@@ -199,7 +199,7 @@ impl Distribution<f64> {
         }
     }
 
-    /// Numbers of a place that lie beyond any arena, where squares would overflow.
+    /// The fault of coordinates beyond any arena, whose squares would overflow.
     fn far_fault(&self) -> Fault {
         let mut far = None;
         let mapped: Result<Self, std::convert::Infallible> = self.try_map(&mut |number| {
@@ -217,7 +217,7 @@ fn unless(fine: bool, found: String, expected: &'static str) -> Fault {
     (!fine).then_some((found, expected))
 }
 
-/// The fault of a number that lies outside its limits.
+/// The fault of a number outside its limits.
 fn outside(limits: RangeInclusive<f64>, name: &str, number: f64, expected: &'static str) -> Fault {
     unless(limits.contains(&number), format!("{name} {number}"), expected)
 }
@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_cannot_be_drawn_from_are_faults() {
+    fn invalid_numbers_are_faults() {
         let probability = Some("a probability in 0..1");
         let weights = Some("one weight per value, none negative, not all 0");
         check(r#"{"uniform": {"low": 0, "high": 1}}"#, None);
@@ -338,7 +338,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_that_are_none_are_faults() {
+    fn invalid_colours_are_faults() {
         let color = Some("a colour with channels in 0..1");
         let spread = Some("a spread of channels in 0..10");
         check(r#"{"color_uniform": {"from": "red", "to": "blue"}}"#, None);

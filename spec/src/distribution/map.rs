@@ -1,10 +1,10 @@
-//! Passing every number of a distribution through a function: how references are settled and variants interpolated.
+//! Maps every number of a distribution through a function; used for settling references and interpolating variants.
 
 use super::{ChannelSpread, Channels, Distribution, Spread};
 
 type Map<'a, N, M, E> = &'a mut dyn FnMut(&N) -> Result<M, E>;
 
-/// A distribution of the same family: each field is made as stated behind its name.
+/// Builds a distribution of the same family, with each field from the expression after its name.
 macro_rules! same_family {
     ($from:expr => $($family:ident { $($field:ident: $made:expr),+ $(,)? })+) => {
         match $from {
@@ -17,7 +17,7 @@ impl<N> Distribution<N> {
     /// The same distribution with every number passed through `f`, in the order of the text.
     ///
     /// # Errors
-    /// The first that `f` returns.
+    /// The first error of `f`.
     pub fn try_map<M, E>(&self, f: Map<N, M, E>) -> Result<Distribution<M>, E> {
         Ok(same_family! { self =>
             Constant { value: value.clone() }

@@ -1,4 +1,4 @@
-//! [`Distribution`]: how values scatter, as data with its laws. Drawing from it is the generator's job, comparing two `similarity`'s.
+//! [`Distribution`]: a probability distribution as data, with its laws.
 
 pub(crate) mod case;
 mod cells;
@@ -378,16 +378,16 @@ pub enum Distribution<N = f64> {
 }
 
 impl<N> Distribution<N> {
-    /// The name as documents write it.
+    /// Its name in documents.
     pub fn name(&self) -> &'static str {
         self.into()
     }
 
-    /// The names of the distributions that place objects, as messages list them.
+    /// The names of the distributions that place objects, for messages.
     pub const PLANAR: &'static str =
         "box, disc, annulus, gaussian, points, grid, poisson_disc, cells, or a mixture of them";
 
-    /// Whether it draws points, so that objects can be placed by it.
+    /// Whether it draws points, so that it can place objects.
     pub fn is_planar(&self) -> bool {
         match self {
             Self::Box { .. }
@@ -405,7 +405,7 @@ impl<N> Distribution<N> {
         }
     }
 
-    /// Whether what it draws depends on the objects before: places taken in turn, or kept apart. Only groups have such.
+    /// Whether its draws depend on earlier objects: places taken in turn, or kept apart. Allowed in groups only.
     pub fn needs_group(&self) -> bool {
         match self {
             Self::Points { order, .. } | Self::Grid { order, .. } => *order == Order::Turn,
@@ -415,7 +415,7 @@ impl<N> Distribution<N> {
         }
     }
 
-    /// Whether it draws cells of a layout, or a part of it does.
+    /// Whether it or one of its parts draws cells of a layout.
     pub fn draws_cells(&self) -> bool {
         match self {
             Self::Cells { .. } => true,
@@ -424,7 +424,7 @@ impl<N> Distribution<N> {
         }
     }
 
-    /// The cells whose letters the legend of a layout gives to a group.
+    /// The cells whose letters a layout's legend assigns to a group.
     pub(crate) fn cells_of_group() -> Self {
         Self::Cells {
             kind: CellKind::Any,

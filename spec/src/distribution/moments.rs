@@ -1,5 +1,4 @@
-//! Mean and variance of the distributions that draw numbers; [`Moments`] of those that draw several at once. Which those are for
-//! points is in `planar.rs`, for colours in `color_moments.rs`.
+//! Mean and variance of the distributions that draw numbers, and the type [`Moments`] for those that draw points or colours.
 
 use std::array;
 
@@ -17,7 +16,7 @@ pub struct Moments<const N: usize> {
 }
 
 impl<const N: usize> Moments<N> {
-    /// Of a single place.
+    /// The moments of a single point.
     pub(super) fn point(mean: [f64; N]) -> Self {
         Self::of(mean, |_, _| 0.0)
     }
@@ -27,7 +26,7 @@ impl<const N: usize> Moments<N> {
         Self { mean, covariance }
     }
 
-    /// Of a mixture of parts, which weigh the same where no weights are given.
+    /// The moments of a mixture of parts, equally weighted if no weights are given.
     pub(super) fn mixed(parts: &[Self], weights: Option<&[f64]>) -> Self {
         let weight = |k: usize| weights.map_or(1.0, |weights| weights[k]);
         let total: f64 = (0..parts.len()).map(weight).sum();
@@ -43,14 +42,14 @@ impl<const N: usize> Moments<N> {
 }
 
 impl Distribution<f64> {
-    /// The mean of what it draws; of a Bernoulli its `p`, of headings the mean direction in degrees.
+    /// The mean; of a Bernoulli its `p`, of headings the mean direction in degrees.
     ///
-    /// `None` if it draws no numbers. Closed forms all.
+    /// `None` if it draws no numbers. All are closed forms.
     pub fn mean(&self) -> Option<f64> {
         self.mean_and_variance().map(|(mean, _)| mean)
     }
 
-    /// The variance of what it draws, in the square of its unit; of a Bernoulli p (1 − p).
+    /// The variance, in the square of the unit; of a Bernoulli p (1 − p).
     ///
     /// `None` if it draws no numbers, and for `von_mises`.
     pub fn variance(&self) -> Option<f64> {
@@ -117,7 +116,7 @@ pub(super) fn ends(low: Option<f64>, high: Option<f64>) -> (f64, f64) {
     (low, high.unwrap_or(1.0) - low)
 }
 
-/// A number cut off at limits.
+/// Clips a number to limits.
 pub(super) fn cut(x: f64, low: Option<f64>, high: Option<f64>) -> f64 {
     x.max(low.unwrap_or(f64::NEG_INFINITY))
         .min(high.unwrap_or(f64::INFINITY))
@@ -127,7 +126,7 @@ fn square(x: f64) -> f64 {
     x * x
 }
 
-/// Mean and variance of a mixture of parts with their own.
+/// Mean and variance of a mixture, given those of its parts.
 fn weighted(parts: &[(f64, f64)], weights: Option<&[f64]>) -> (f64, f64) {
     let parts = parts
         .iter()
@@ -139,13 +138,13 @@ fn weighted(parts: &[(f64, f64)], weights: Option<&[f64]>) -> (f64, f64) {
 fn truncated(mean: f64, std: f64, low: f64, high: f64) -> (f64, f64) {
     let (a, b) = ((low - mean) / std, (high - mean) / std);
     if a > 0.0 {
-        // The upper tail loses its digits beside 1: the mirror image has them.
+        // The upper tail loses digits next to 1; its mirror image keeps them.
         let (mirrored, variance) = truncated(-mean, std, -high, -low);
         return (-mirrored, variance);
     }
     let mass = normal_cdf(b) - normal_cdf(a);
     if mass <= 0.0 {
-        // So narrow that the density is flat: nothing is left of the difference.
+        // So narrow that the density is flat and the difference vanishes in rounding.
         return (f64::midpoint(low, high), square(high - low) / 12.0);
     }
     let (at_a, at_b) = (normal_density(a), normal_density(b));
@@ -155,7 +154,7 @@ fn truncated(mean: f64, std: f64, low: f64, high: f64) -> (f64, f64) {
     (mean + std * shift, (std * std * variance).max(0.0))
 }
 
-/// A uniform number around a value, cut off at limits: a flat part between two atoms.
+/// A uniform number around a value, clipped to limits: a flat part between two atoms.
 fn clipped(value: f64, noise: f64, low: Option<f64>, high: Option<f64>) -> (f64, f64) {
     let cut = |x: f64| cut(x, low, high);
     if noise == 0.0 {

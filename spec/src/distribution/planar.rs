@@ -1,5 +1,4 @@
-//! Of the distributions that draw points: their spread and order, the point that two numbers decide, mean and covariance. Those of numbers are in
-//! `quantile.rs` and `moments.rs`.
+//! Distributions that draw points: their spread and order, maps from random numbers to points, means and covariances.
 
 use std::f64::consts::TAU;
 
@@ -44,8 +43,8 @@ impl Moments<2> {
 }
 
 impl Distribution<f64> {
-    /// The point that two numbers in 0..1 decide; of `poisson_disc` without its distance. `None` for distributions that more
-    /// or fewer numbers decide.
+    /// The point for two random numbers in 0..1; for `poisson_disc` without its spacing. `None` for distributions that take more
+    /// or fewer numbers.
     #[inline]
     pub fn point_at(&self, [u, v]: [f64; 2]) -> Option<[f64; 2]> {
         let ring = |[x, y]: [f64; 2], inner: f64, outer: f64| {
@@ -72,7 +71,7 @@ impl Distribution<f64> {
         })
     }
 
-    /// Mean and covariance, exact; of places taken in turn those of one round, of `poisson_disc` those without its distance.
+    /// Mean and covariance, exact; for places taken in turn those of one round, for `poisson_disc` those without its spacing.
     /// `None` if it draws no points.
     pub fn planar_moments(&self) -> Option<Moments<2>> {
         let points = |points: &[[f64; 2]], weights: Option<&[f64]>| {
@@ -108,7 +107,7 @@ impl Distribution<f64> {
                 ..
             } => {
                 let moments = Moments::rectangle(*low, *high);
-                // Cell centres have (n² − 1)/n² of the rectangle's variance; jitter gives some of the rest back.
+                // Cell centres have (n² − 1)/n² of the rectangle's variance; jitter restores some of the rest.
                 let jitter = jitter.unwrap_or(0.0);
                 let axis = |variance: f64, n: f64| variance * (1.0 - (1.0 - jitter * jitter) / (n * n));
                 let [[x, _], [_, y]] = moments.covariance;

@@ -1,4 +1,4 @@
-//! The inverse of the cumulative function: worlds are drawn by it, so that variants under one seed share their chance.
+//! Quantiles: worlds are drawn through them, so that variants under one seed share random numbers.
 
 use super::moments::{cut, ends};
 use super::special::{beta_quantile, normal_cdf, normal_quantile};
@@ -6,11 +6,11 @@ use super::{Distribution, discrete, von_mises};
 use crate::value::{ParameterType, Value};
 
 impl Distribution<f64> {
-    /// The least number up to which it draws with a probability of at least `p`, which lies in `0..=1`.
+    /// The least number up to which a draw falls with probability at least `p`, in `0..=1`.
     ///
-    /// The same bits on every platform. Closed forms; `beta`, `von_mises` and mixtures by root finding to the last bits.
-    /// Infinite at 0 or 1 where the distribution has no end there; headings lie in `mean − 180..=mean + 180` degrees.
-    /// `None` if it draws no numbers.
+    /// The same bits on every platform. Closed forms; `beta`, `von_mises` and mixtures by root finding to the last bits. Infinite
+    /// at 0 or 1 if the distribution is unbounded there; headings lie in `mean − 180..=mean + 180` degrees. `None` if it draws no
+    /// numbers.
     pub fn quantile(&self, p: f64) -> Option<f64> {
         let p = p.clamp(0.0, 1.0);
         Some(match self {
@@ -99,15 +99,15 @@ impl Distribution<f64> {
         }
     }
 
-    /// The value that it draws where chance is `p` in `0..1`, if one number of chance decides it: whole numbers for counts,
-    /// true or false for a Bernoulli, any value for a constant or a choice.
+    /// The value for a random number `p` in `0..1`, if one random number is enough: integers for counts, a boolean for a
+    /// Bernoulli, any value for a constant or a choice.
     pub fn value_at(&self, p: f64) -> Option<Value> {
         Some(match self {
             Self::Constant { value } => value.clone(),
             Self::Choice { values, weights } => values[chosen(values.len(), weights.as_deref(), p)].clone(),
             Self::Bernoulli { p: odds } => Value::Boolean(p > 1.0 - odds),
             Self::IntegerUniform { low, high } => {
-                // Not through the quantile: `floor` of p gives each value its half-open share.
+                // Not through the quantile: `floor` gives each value a half-open share of p.
                 Value::Integer((low + ((high - low + 1.0) * p).floor()).min(*high) as i64)
             }
             Self::Binomial { .. } | Self::Poisson { .. } | Self::Geometric { .. } => {
@@ -122,7 +122,7 @@ impl Distribution<f64> {
 }
 
 impl<N> Distribution<N> {
-    /// Whether one number of chance decides what it draws, so that [`Distribution::value_at`] gives it.
+    /// Whether one random number decides the draw, so that [`Distribution::value_at`] gives it.
     pub fn is_scalar(&self) -> bool {
         !self.is_planar() && !self.draws_colors() && !matches!(self, Self::Mixture { .. } | Self::Dirichlet { .. })
             || matches!(self, Self::Constant { .. } | Self::Choice { .. })
@@ -130,8 +130,8 @@ impl<N> Distribution<N> {
 }
 
 impl Distribution<f64> {
-    /// The number of the part of a mixture, or of the value of a choice, that is taken where chance is `p` in `0..1`; 0 for
-    /// any other distribution.
+    /// Index of the part of a mixture, or of the value of a choice, for a random number `p` in `0..1`; 0 for any other
+    /// distribution.
     pub fn chosen_at(&self, p: f64) -> usize {
         match self {
             Self::Choice { values, weights } => chosen(values.len(), weights.as_deref(), p),
@@ -141,7 +141,7 @@ impl Distribution<f64> {
     }
 }
 
-/// Which of `count` values is chosen where chance is `p` in `0..1`.
+/// Index of the value, out of `count`, for a random number `p` in `0..1`.
 fn chosen(count: usize, weights: Option<&[f64]>, p: f64) -> usize {
     let Some(weights) = weights else {
         return ((count as f64 * p) as usize).min(count - 1);
@@ -160,7 +160,7 @@ fn chosen(count: usize, weights: Option<&[f64]>, p: f64) -> usize {
 fn truncated(p: f64, mean: f64, std: f64, low: f64, high: f64) -> f64 {
     let z = |x: f64| (x - mean) / std;
     if z(low) > 0.0 {
-        // The upper tail loses its digits beside 1: the mirror image has them.
+        // The upper tail loses digits next to 1; its mirror image keeps them.
         return -truncated(1.0 - p, -mean, std, -high, -low);
     }
     let (below, above) = (normal_cdf(z(low)), normal_cdf(z(high)));

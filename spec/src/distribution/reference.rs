@@ -1,4 +1,4 @@
-//! [`Number`]: a number in a distribution, or a reference to a parameter that has one. Settling it is `task/variant.rs`'s job.
+//! [`Number`]: a number in a distribution, or a reference to a numeric parameter.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -32,7 +32,7 @@ impl Distribution<Number> {
 }
 
 impl Number {
-    /// The parameters that it names, look-ups included.
+    /// The parameters that it names, including those in look-ups.
     pub(crate) fn names(&self) -> Vec<&str> {
         match self {
             Self::Literal(_) => Vec::new(),
@@ -67,7 +67,7 @@ pub struct ParamRef {
     pub index: Option<usize>,
 }
 
-/// As people read it: `light`, or `shares[1]`.
+/// For people to read: `light`, or `shares[1]`.
 impl std::fmt::Display for ParamRef {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         match self.index {

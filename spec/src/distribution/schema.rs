@@ -1,8 +1,8 @@
-//! What the schema of distributions says beyond their types: limits of items, and keys that go together or exclude each other.
+//! Additions to the schema of distributions: limits of items, and keys that require or exclude each other.
 
 use serde_json::json;
 
-/// A literal number is at least 0, alone or in a list; one that a parameter gives is checked when a variant settles it.
+/// Requires a literal number to be at least 0, alone or in a list; a parameter's number is checked when a variant settles it.
 pub(super) fn none_negative(schema: &mut schemars::Schema) {
     if schema.get("items").is_none() {
         schema.insert("minimum".to_owned(), json!(0));
@@ -14,7 +14,7 @@ pub(super) fn shapes(schema: &mut schemars::Schema) {
     limit_items(schema, &json!({ "minimum": 0.001, "maximum": 1_000_000 }));
 }
 
-/// A literal spread of channels is in 0..10, alone or in a list.
+/// Requires a literal spread of channels to be in 0..10, alone or in a list.
 pub(super) fn small_spread(schema: &mut schemars::Schema) {
     let limits = json!({ "minimum": 0, "maximum": 10 });
     for (key, limit) in limits.as_object().into_iter().flatten() {
@@ -27,7 +27,7 @@ pub(super) fn up_to_1(schema: &mut schemars::Schema) {
     limit_items(schema, &json!({ "minimum": 0, "maximum": 1 }));
 }
 
-/// Adds limits to the items of a list, beside what they are.
+/// Adds limits to the items of a list.
 fn limit_items(schema: &mut schemars::Schema, limits: &serde_json::Value) {
     let mut items = schema.remove("items").unwrap_or_else(|| json!({}));
     if let (Some(items), Some(limits)) = (items.as_object_mut(), limits.as_object()) {

@@ -1,10 +1,10 @@
-//! Special functions behind the laws, through `libm` alone, so that they give the same bits on every platform.
+//! Special functions behind the laws, computed with `libm` alone, so that they give the same bits on every platform.
 //!
-//! No library is used: those at hand call the platform's mathematics, and quantiles decide what worlds are drawn.
+//! Written here because the available libraries call the platform's mathematics, and quantiles decide which worlds are drawn.
 
 use std::f64::consts::{PI, SQRT_2};
 
-/// Probability of a standard normal number up to `z`. Relative error below 1e-14, far tails included.
+/// Probability of a standard normal number up to `z`. Relative error below 1e-14, including the far tails.
 pub(super) fn normal_cdf(z: f64) -> f64 {
     0.5 * libm::erfc(-z / SQRT_2)
 }
@@ -14,7 +14,7 @@ pub(super) fn normal_density(z: f64) -> f64 {
     libm::exp(-0.5 * z * z) / (2.0 * PI).sqrt()
 }
 
-/// The number up to which a standard normal one lies with probability `p`; infinite at 0 and 1.
+/// Standard normal quantile of probability `p`; infinite at 0 and 1.
 ///
 /// Source: Wichura 1988, algorithm AS 241 (PPND16); relative error about 1e-16.
 pub(super) fn normal_quantile(p: f64) -> f64 {
@@ -74,10 +74,10 @@ const TAIL: Ratio = (
      7.86869131145613259100e-4, 1.84631831751005468180e-5, 1.42151175831644588870e-7, 2.04426310338993978564e-15],
 );
 
-/// Smallest number that a denominator of a continued fraction is let become.
+/// Least magnitude of a denominator in a continued fraction.
 const TINY: f64 = 1e-300;
 
-/// The share of the gamma integral of shape `a` above `x`: Q(a, x). Relative error about 1e-12.
+/// The regularised upper incomplete gamma function Q(a, x). Relative error about 1e-12.
 ///
 /// Source: DLMF 8.7.1 (series) and 8.9.2 (continued fraction, by Lentz's method).
 pub(super) fn gamma_above(a: f64, x: f64) -> f64 {
@@ -156,14 +156,14 @@ fn away_from_0(x: f64) -> f64 {
     if x.abs() < TINY { TINY } else { x }
 }
 
-/// The `x` in `0..=1` with I(x; a, b) = `p`, by bisection sped up by Newton's steps.
+/// The `x` in `0..=1` with I(x; a, b) = `p`, by bisection accelerated by Newton's steps.
 pub(super) fn beta_quantile(p: f64, a: f64, b: f64) -> f64 {
     let log_beta = libm::lgamma(a) + libm::lgamma(b) - libm::lgamma(a + b);
     let density = |x: f64| libm::exp((a - 1.0) * libm::log(x) + (b - 1.0) * libm::log1p(-x) - log_beta);
     root(p, [0.0, 1.0], a / (a + b), |x| beta_below(x, a, b), density)
 }
 
-/// The `x` between the ends at which a rising function reaches `p`; `density` is its derivative.
+/// The `x` between the ends at which an increasing function reaches `p`; `density` is its derivative.
 pub(super) fn root(
     p: f64,
     [mut low, mut high]: [f64; 2],
@@ -213,7 +213,7 @@ mod tests {
 
     /// Values of `scipy.stats.norm`, `scipy.special.gammaincc`, `betainc` and `betaincinv` (scipy 1.17).
     #[test]
-    fn the_functions_have_the_values_of_scipy() {
+    fn special_functions_agree_with_scipy() {
         check(normal_quantile(1e-300), -37.047_096_299_361_2);
         check(normal_quantile(1e-5), -4.264_890_793_922_825);
         check(normal_quantile(0.3), -0.524_400_512_708_040_9);
@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn quantiles_undo_the_cumulative_functions() {
+    fn quantiles_invert_the_cumulative_functions() {
         for k in 1..200 {
             let p = f64::from(k) / 200.0;
             check(normal_cdf(normal_quantile(p)), p);

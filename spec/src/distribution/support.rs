@@ -1,17 +1,17 @@
-//! Which values a distribution can draw, and of what type. How likely they are is said in `cumulative.rs`.
+//! Types and ranges of the values that a distribution can draw.
 
 use super::Distribution;
 use super::moments::cut;
 use crate::value::{ParameterType, Value};
 
-/// The most values that are listed of a distribution or a parameter.
+/// Most values to list for a distribution or a parameter.
 pub(crate) const MOST_ATOMS: usize = 1000;
 
 impl<N> Distribution<N> {
-    /// Whether all it draws can stand where this type is wanted.
+    /// Whether all its draws fit a place of this type.
     pub fn yields(&self, kind: ParameterType) -> bool {
         match self {
-            // Only what is listed can be checked where it stands.
+            // Only listed values can be checked at their place.
             Self::Constant { .. } | Self::Choice { .. } if kind == ParameterType::Json => true,
             Self::Constant { value } => value.cast(kind).is_some(),
             Self::Choice { values, .. } => values.iter().all(|value| value.cast(kind).is_some()),
@@ -29,7 +29,7 @@ impl<N> Distribution<N> {
         }
     }
 
-    /// How many entries the vectors have that it draws; `None` if it draws none, or of different lengths.
+    /// The length of the vectors that it draws; `None` if it draws none, or vectors of different lengths.
     pub fn vector_length(&self) -> Option<usize> {
         let common = |mut lengths: Vec<Option<usize>>| {
             lengths.dedup();
@@ -48,8 +48,8 @@ impl<N> Distribution<N> {
 }
 
 impl Distribution<f64> {
-    /// The least and greatest number it can draw, corners of a box around its points or colours, or all values of a choice;
-    /// `None` where that has no bounds.
+    /// Its least and greatest number, corners of a box around its points or colours, or all values of a choice; `None` if
+    /// unbounded.
     pub fn support(&self) -> Option<Vec<Value>> {
         let numbers = |low: f64, high: f64| Some(vec![Value::Number(low), Value::Number(high)]);
         let counts = |low: f64, high: f64| Some(vec![Value::Integer(low as i64), Value::Integer(high as i64)]);
@@ -71,7 +71,7 @@ impl Distribution<f64> {
             Self::IntegerUniform { low, high } => counts(*low, *high),
             Self::Binomial { n, .. } => counts(0.0, *n),
             Self::Bernoulli { .. } => Some(vec![Value::Boolean(false), Value::Boolean(true)]),
-            // The corners: one share takes all.
+            // The corners: one share is 1.
             Self::Dirichlet { alpha } => {
                 let corner =
                     |all: usize| Value::Vector((0..alpha.len()).map(|k| f64::from(u8::from(k == all))).collect());
@@ -105,7 +105,7 @@ impl Distribution<f64> {
         }
     }
 
-    /// The values that it can draw with their probabilities, where it draws from a list of at most [`MOST_ATOMS`].
+    /// Its values with their probabilities, if it draws from a list of at most [`MOST_ATOMS`].
     pub(crate) fn atoms(&self) -> Option<Vec<(Value, f64)>> {
         let shares = |count: usize, weights: &Option<Vec<f64>>| {
             let weights = weights.clone().unwrap_or_else(|| vec![1.0; count]);
@@ -137,7 +137,7 @@ impl Distribution<f64> {
         (atoms.len() <= MOST_ATOMS).then_some(atoms)
     }
 
-    /// Some value it can draw, to try a template with.
+    /// Some value that it can draw, to test a template with.
     pub(crate) fn example(&self) -> Value {
         match self {
             Self::Poisson { .. } | Self::Geometric { .. } => Value::Integer(0),
@@ -158,13 +158,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_choice_yields_the_type_that_all_its_values_have() {
+    fn choice_yields_the_type_of_all_its_values() {
         let colors: Distribution = serde_json::from_str(r#"{"choice": {"values": ["red", [0, 0, 1]]}}"#).unwrap();
         assert!(colors.yields(ParameterType::Color) && !colors.yields(ParameterType::String));
     }
 
     #[test]
-    fn headings_come_from_numbers_and_from_directions() {
+    fn headings_come_from_numbers_and_directions() {
         let von_mises: Distribution = serde_json::from_str(r#"{"von_mises": {"mean": 0, "kappa": 1}}"#).unwrap();
         let uniform: Distribution = serde_json::from_str(r#"{"uniform": {"low": 0, "high": 360}}"#).unwrap();
         assert!(von_mises.yields(ParameterType::Heading) && !von_mises.yields(ParameterType::Number));

@@ -1,21 +1,20 @@
-//! Places that a group takes in turn: which one an object takes when its own is not free, and whether there are enough of them. Drawing
-//! and the rest of the world are the generator's.
+//! Places that a group takes in turn: which one an object takes if its own is not free, and whether there are enough.
 
 use std::collections::HashMap;
 
 use super::{Distribution, Order};
 
-/// The most places that one object is tried at.
+/// Most places to try for one object.
 const TRIES: usize = 1000;
 
-/// The most tries of a check whether a group fits; what takes longer is left to whoever draws.
+/// Most tries of a check whether a group fits; beyond that, drawing decides.
 const MOST_CHECKED: usize = 200_000;
 
-/// Which of the places of a `points` or `grid` in turn are taken by the objects of one group around one anchor.
+/// Tracks which places of a `points` or `grid` in turn are taken by the objects of one group around one anchor.
 ///
-/// Object number `n` of a group has place `n` of the list, round and round. Where it is not free, the object takes the next one
-/// that is, in the order of the list and on from its beginning; a place that another object has taken in this round is not free. No
-/// object is tried at more than 1,000 places.
+/// Object number `n` of a group has place `n` of the list, round and round. If it is not free, the object takes the next free
+/// one, in the order of the list and wrapping around; a place that another object has taken in this round is not free. At most
+/// 1,000 places are tried per object.
 ///
 /// # Example
 /// ```
@@ -28,12 +27,12 @@ const MOST_CHECKED: usize = 200_000;
 #[derive(Clone, Debug)]
 pub struct Turns {
     places: usize,
-    /// How many objects took each place; none of it while every object took its own.
+    /// Number of objects at each place; `None` as long as every object took its own.
     taken: Option<Vec<u32>>,
 }
 
 impl Turns {
-    /// So many places, from 1 on, none of them taken.
+    /// `places` places, at least 1, all free.
     pub fn new(places: usize) -> Self {
         Self {
             places: places.max(1),
@@ -41,19 +40,19 @@ impl Turns {
         }
     }
 
-    /// The places that an object is tried at, in order.
+    /// The places to try for an object, in order.
     pub fn candidates(&self, number: u64) -> impl Iterator<Item = usize> + '_ {
         let places = self.places as u64;
         let (own, round) = ((number % places) as usize, number / places);
         let free = move |place: &usize| match &self.taken {
-            // Those before it took their own: in this round the places before its own.
+            // All earlier objects took their own: in this round, the places before this object's.
             None => *place >= own,
             Some(taken) => u64::from(taken[*place]) <= round,
         };
         (own..self.places).chain(0..own).filter(free).take(TRIES)
     }
 
-    /// Object `number`, which comes after all those before it, takes a place.
+    /// Object `number` takes a place; all earlier objects must have taken theirs.
     pub fn take(&mut self, number: u64, place: usize) {
         let places = self.places as u64;
         if self.taken.is_none() && place as u64 == number % places {
@@ -68,7 +67,7 @@ impl Turns {
 }
 
 impl Distribution {
-    /// How many places there are, where they are taken in turn; `None` for every other distribution.
+    /// The number of places, if they are taken in turn; `None` for every other distribution.
     pub fn num_turns(&self) -> Option<usize> {
         match self {
             Self::Points {
@@ -85,7 +84,7 @@ impl Distribution {
         }
     }
 
-    /// Place `number` of a `points` or `grid` in turn, in metres; `None` where places are not certain.
+    /// Place `number` of a `points` or `grid` in turn, in metres; `None` if places are random.
     fn certain_place(&self, number: usize) -> Option<[f64; 2]> {
         match self {
             Self::Points { values, .. } => values.get(number).copied(),
@@ -105,8 +104,8 @@ impl Distribution {
         }
     }
 
-    /// How many of `count` objects find a place in turn on an empty field, at least `separation` metres apart; `None` where that is
-    /// not certain, or takes too long to find out.
+    /// How many of `count` objects find a place in turn on an empty field, at least `separation` metres apart; `None` if that is
+    /// random, or takes too long to compute.
     pub(crate) fn room_in_turn(&self, count: u64, separation: f64) -> Option<u64> {
         let places = self.num_turns()?;
         self.certain_place(0)?;
@@ -131,7 +130,7 @@ impl Distribution {
     }
 }
 
-/// Points in square cells as wide as the distance that is kept.
+/// Points in square cells with the required distance as their side.
 struct Field {
     separation: f64,
     cells: HashMap<[i64; 2], Vec<[f64; 2]>>,
@@ -153,7 +152,7 @@ impl Field {
         self.cells.entry(self.cell(at)).or_default().push(at);
     }
 
-    /// Whether a point is nearer than the distance.
+    /// Whether another point is nearer than the required distance.
     fn is_near(&self, [x, y]: [f64; 2]) -> bool {
         let [column, row] = self.cell([x, y]);
         let around = (-1..=1).flat_map(|a| (-1..=1).map(move |b| [column.saturating_add(a), row.saturating_add(b)]));
@@ -167,7 +166,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The rule in the plainest way: counts of every place from the beginning.
+    /// The rule in its simplest form: recounts every place from the beginning.
     struct Plain(Vec<u64>);
 
     impl Plain {
@@ -198,7 +197,7 @@ mod tests {
         }
 
         #[test]
-        fn as_many_fit_as_a_plain_search_finds(
+        fn room_agrees_with_a_plain_search(
             points in prop::collection::vec([-4_i32..4, -4..4], 1..12), count in 0_u64..16, separation in 0.0_f64..3.0,
         ) {
             let values: Vec<[f64; 2]> = points.iter().map(|point| point.map(f64::from)).collect();
@@ -218,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn a_grid_has_room_for_its_cells_and_no_more() {
+    fn grid_has_room_for_its_cells_and_no_more() {
         let grid = |jitter| Distribution::Grid {
             low: [-6.0, -4.0],
             high: [6.0, 4.0],

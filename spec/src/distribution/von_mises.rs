@@ -1,10 +1,10 @@
-//! The von Mises law of headings, by quadrature: it has no closed form. Angles here are radians from the mean.
+//! The von Mises law of headings, by quadrature, because it has no closed form. Angles are in radians from the mean.
 
 use std::f64::consts::PI;
 
 use super::special::normal_quantile;
 
-/// Abscissae and weights of Gauss–Legendre quadrature with ten points, the positive half.
+/// Positive half of the abscissae and weights of ten-point Gauss–Legendre quadrature.
 #[expect(clippy::excessive_precision, reason = "the numbers as published")]
 const GAUSS: [(f64, f64); 5] = [
     (0.148_874_338_981_631_21, 0.295_524_224_714_752_87),
@@ -14,22 +14,22 @@ const GAUSS: [(f64, f64); 5] = [
     (0.973_906_528_517_171_72, 0.066_671_344_308_688_14),
 ];
 
-/// Stretches that a half turn is cut into.
+/// Number of intervals that a half turn is split into.
 const STRETCHES: u32 = 8;
 
-/// Half the range outside which less than 1e-17 of the probability lies.
+/// Half-width of the range outside which the probability is below 1e-17.
 fn reach(kappa: f64) -> f64 {
     (9.0 / kappa.sqrt()).min(PI)
 }
 
-/// The density but for a factor: 1 at the mean.
+/// The density up to a factor: 1 at the mean.
 fn shape(angle: f64, kappa: f64) -> f64 {
     // cos θ − 1 = −2 sin²(θ/2) keeps its digits near the mean.
     let half = libm::sin(angle / 2.0);
     libm::exp(-2.0 * kappa * half * half)
 }
 
-/// ∫ shape(θ) dθ between two angles, cut into so many stretches.
+/// ∫ shape(θ) dθ between two angles, split into `stretches` intervals.
 fn integral([from, to]: [f64; 2], stretches: u32, kappa: f64) -> f64 {
     let half = (to - from) / f64::from(stretches) / 2.0;
     (0..stretches)
@@ -48,16 +48,16 @@ fn side(kappa: f64) -> f64 {
     integral([0.0, reach(kappa)], STRETCHES, kappa)
 }
 
-/// Probability of an angle from −π up to `angle`, which lies in −π..=π. Absolute error below 1e-12.
+/// Probability of an angle from −π up to `angle`, in −π..=π. Absolute error below 1e-12.
 pub(super) fn cdf(angle: f64, kappa: f64) -> f64 {
     let within = integral([0.0, angle.abs().min(reach(kappa))], STRETCHES, kappa);
     let share = within / side(kappa) / 2.0;
     if angle < 0.0 { 0.5 - share } else { 0.5 + share }
 }
 
-/// The angle in −π..=π up to which an angle lies with probability `p`.
+/// The angle in −π..=π up to which an angle falls with probability `p`.
 ///
-/// Newton's method on one side; from step to step only what lies between the two angles is integrated.
+/// Newton's method on one side; each step integrates only between the two latest angles.
 pub(super) fn quantile(p: f64, kappa: f64) -> f64 {
     let (side, reach) = (side(kappa), reach(kappa));
     let share = (2.0 * p - 1.0).abs();
@@ -65,7 +65,7 @@ pub(super) fn quantile(p: f64, kappa: f64) -> f64 {
         return if p < 0.5 { -PI } else { PI };
     }
     let target = share * side;
-    // A normal of the same concentration, or a flat line where there is none, is near.
+    // Starts from a normal quantile of the same concentration, or from a uniform one if the concentration is low.
     let start = if kappa > 1.0 {
         normal_quantile(0.5 + share / 2.0) / kappa.sqrt()
     } else {
@@ -106,7 +106,7 @@ mod tests {
 
     /// Values of `scipy.stats.vonmises` (scipy 1.17).
     #[test]
-    fn the_law_has_the_values_of_scipy() {
+    fn von_mises_agrees_with_scipy() {
         for (angle, kappa, expected) in [
             (0.5, 1.0, 0.664_076_474_604_995_6),
             (-1.0, 4.0, 0.033_225_820_901_453_484),
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn the_law_is_symmetric_and_rises_from_0_to_1() {
+    fn von_mises_is_symmetric_and_rises_from_0_to_1() {
         for kappa in [0.0, 0.1, 3.0, 200.0, 10_000.0] {
             assert!(cdf(-PI, kappa).abs() < 1e-12 && (cdf(PI, kappa) - 1.0).abs() < 1e-12);
             for k in 1..20 {
