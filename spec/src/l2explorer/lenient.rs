@@ -1,5 +1,4 @@
-//! What single values of a file may look like beside the plain form: numbers as text, colours in 0..255, words in any case.
-//! Which key holds which kind of value is said by `read.rs`; this holds no key of the original.
+//! Reads single values leniently: numbers as text, colours in 0..255, words in any case.
 
 use serde_json::{Map, Value as Json, json};
 
@@ -7,7 +6,7 @@ use super::read::Reader;
 use crate::describe::describe;
 
 impl Reader {
-    /// Numbers that were written as text, alone or in a list.
+    /// Numbers written as text, alone or in a list.
     pub(super) fn number(&mut self, at: &str, map: &mut Map<String, Json>, key: &str) {
         let Some(value) = map.get_mut(key) else { return };
         let mut found = Vec::new();
@@ -15,20 +14,20 @@ impl Reader {
             Json::Array(items) => items.iter_mut().for_each(|item| found.extend(to_number(item))),
             other => found.extend(to_number(other)),
         }
-        // Two items that say the same are one remark.
+        // Two items with the same text give one warning.
         found.dedup();
         for text in found {
             self.warn(format!("{at}/{key}"), format!("the text {text:?} is read as a number"));
         }
     }
 
-    /// Whole numbers that were written as text or with a decimal point; the point says nothing and is not warned about.
+    /// Integers written as text or with a decimal point; the point alone gives no warning.
     pub(super) fn whole(&mut self, at: &str, map: &mut Map<String, Json>, key: &str) {
         self.number(at, map, key);
         drop_decimal_point(map, key);
     }
 
-    /// Headings of any size, turned into 0..360.
+    /// Headings of any size, wrapped into 0..360.
     pub(super) fn heading(&mut self, at: &str, map: &mut Map<String, Json>) {
         let Some(heading) = map.get("heading").and_then(Json::as_f64) else {
             return;
@@ -43,8 +42,8 @@ impl Reader {
         }
     }
 
-    /// Lists of stimuli: names in any case, with or without underscores; a single name for a list of one. Other words for them
-    /// are read with a warning, and what names none is left out with one.
+    /// Lists of stimuli: names in any case, with or without underscores; a single name counts as a list of one. Synonyms are
+    /// accepted with a warning; unknown names are dropped with a warning.
     pub(super) fn stimuli(&mut self, at: &str, map: &mut Map<String, Json>, key: &str) {
         let Some(value) = map.get_mut(key) else { return };
         let place = format!("{at}/{key}");
@@ -68,7 +67,7 @@ impl Reader {
                     self.warn(format!("{place}/{index}"), text);
                 }
                 Some(name) => {
-                    // Its own name, but for case and underscores, says nothing new.
+                    // A name that differs only in case and underscores needs no warning.
                     if !word.replace('_', "").eq_ignore_ascii_case(name) {
                         self.warn(at, format!("{found} is read as {name:?}"));
                     }
@@ -83,7 +82,7 @@ impl Reader {
         map.insert(key.to_owned(), json!(names));
     }
 
-    /// Colours in 0..255, which is taken to be so where a channel is above 1.
+    /// Colours in 0..255, which is assumed if a channel is above 1.
     pub(super) fn color(&mut self, at: &str, map: &mut Map<String, Json>, key: &str) {
         self.number(at, map, key);
         word(map, key);
@@ -104,7 +103,7 @@ impl Reader {
     }
 }
 
-/// Where an item of a list stands; a list of one may be written as the item alone.
+/// The place of an item of a list; a list of one may be written as the item alone.
 fn place_of(list: &str, index: usize, len: usize) -> String {
     if len == 1 {
         list.to_owned()
@@ -113,7 +112,7 @@ fn place_of(list: &str, index: usize, len: usize) -> String {
     }
 }
 
-/// Turns text that is a number into that number and hands back the text.
+/// Converts text to a number if possible, and returns the text.
 fn to_number(value: &mut Json) -> Option<String> {
     let text = value.as_str()?.to_owned();
     let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite())?;
@@ -122,7 +121,7 @@ fn to_number(value: &mut Json) -> Option<String> {
     Some(text)
 }
 
-/// Turns a whole number with a decimal point into one without.
+/// Removes the decimal point from an integer.
 pub(super) fn drop_decimal_point(map: &mut Map<String, Json>, key: &str) {
     if let Some(value) = map.get_mut(key) {
         without_decimal_point(value);
@@ -138,8 +137,8 @@ fn without_decimal_point(value: &mut Json) {
     }
 }
 
-/// Words in any case, alone or in a list. The words of the original are ASCII; other letters stay as they are, so that a
-/// word keeps its length.
+/// Words in any case, alone or in a list. The original's words are ASCII; other letters stay as they are, so that a word keeps
+/// its length.
 pub(super) fn word(map: &mut Map<String, Json>, key: &str) {
     let lower = |value: &mut Json| {
         if let Json::String(text) = value {

@@ -1,6 +1,5 @@
-//! What becomes of entries of the original's keys that no leniency can read: empty, missing, or of another type. Each gets the
-//! default, or what of it can be read, and a warning that says so. What is out of range, and our own keys, are none of its
-//! business: they are checked as in a document of ours.
+//! Repairs entries of the original's keys that are empty, missing or of another type: each gets the default, or its readable
+//! part, with a warning. Values out of range and our own keys are not repaired; they are checked as in our documents.
 
 use serde_json::{Map, Value as Json, json};
 
@@ -11,16 +10,16 @@ use crate::describe::describe;
 use crate::schema::part;
 use crate::world::World;
 
-/// What an entry must be.
+/// The required form of an entry.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Entry {
     /// A number within limits.
     Number(f64, f64),
-    /// A whole number within limits.
+    /// An integer within limits.
     Whole(f64, f64),
     /// Two numbers within limits.
     Pair(f64, f64),
-    /// One of some words.
+    /// One of a list of words.
     Word(Vec<String>),
     /// A colour: three numbers in 0..1, or a name.
     Color,
@@ -30,14 +29,14 @@ pub(super) enum Entry {
     Model,
 }
 
-/// The longest text, in letters.
+/// Longest text in letters.
 const MOST_LETTERS: usize = 100;
 
-/// The largest number of a model.
+/// Largest number of a model.
 const MOST_MODELS: u64 = 1_000_000;
 
 impl Entry {
-    /// What the schema of a world says of a property; `None` for parts and for lists of words.
+    /// The form that a world's schema requires of a property; `None` for parts and for lists of words.
     pub(super) fn of(property: &Json) -> Option<Self> {
         let named = property["anyOf"].get(0).unwrap_or(property)["$ref"].as_str();
         match named.and_then(|path| path.rsplit('/').next()) {
@@ -65,14 +64,14 @@ impl Entry {
 }
 
 impl Reader {
-    /// Mends the entries of a part of the file.
+    /// Repairs the entries of a part of the file.
     pub(super) fn mend(&mut self, at: &str, map: &mut Map<String, Json>, part: &Part) {
         for (key, entry) in &part.entries {
             self.mend_entry(at, map, (*key, entry), part.defaults.get(*key));
         }
     }
 
-    /// Mends one entry, whose default is known if it has one.
+    /// Repairs one entry; `default` is its default, if it has one.
     pub(super) fn mend_entry(
         &mut self,
         at: &str,
@@ -107,10 +106,10 @@ impl Reader {
         );
     }
 
-    /// A part of the file, if it is one; whatever else stands there is left out with a warning.
+    /// A part of the file, if it is an object; anything else is dropped with a warning.
     pub(super) fn part(&mut self, map: &mut Map<String, Json>, key: &str) -> Option<Map<String, Json>> {
         match map.get_mut(key)? {
-            // What is made of it takes its place.
+            // The caller puts the repaired part in its place.
             Json::Object(part) => Some(std::mem::take(part)),
             other => {
                 self.warn_instead(format!("/{key}"), other, "an object; its defaults are assumed");
@@ -134,7 +133,7 @@ impl Entry {
         }
     }
 
-    /// What is assumed for a value, the same where it is right; `None` where nothing can be made of it.
+    /// The repaired value, equal to the original if that is valid; `None` if nothing can be recovered.
     fn mended(&self, value: &Json, default: Option<&Json>) -> Option<Json> {
         match self {
             Self::Number(..) => value.is_number().then(|| value.clone()),
@@ -152,7 +151,7 @@ impl Entry {
     }
 }
 
-/// A whole number; of others the nearest one.
+/// A number, rounded to an integer.
 fn whole(value: &Json) -> Option<Json> {
     let number = value.as_f64()?;
     let has_fraction = number.fract() != 0.0;
@@ -163,7 +162,7 @@ fn whole(value: &Json) -> Option<Json> {
     })
 }
 
-/// Whether two values are the same, numbers by what they are worth.
+/// Whether two values are equal, comparing numbers by value.
 fn is_same(a: &Json, b: &Json) -> bool {
     match (a, b) {
         (Json::Number(x), Json::Number(y)) => x.as_f64() == y.as_f64(),
@@ -172,7 +171,7 @@ fn is_same(a: &Json, b: &Json) -> bool {
     }
 }
 
-/// The first two numbers of a list, the default's in place of what is no number. Nothing if none is one.
+/// The first two numbers of a list, with defaults in place of anything else. `None` if neither is a number.
 fn pair(value: &Json, default: Option<&Json>) -> Option<Json> {
     let items = value.as_array()?;
     let number = |axis: usize| items.get(axis).filter(|item| item.is_number());
@@ -185,7 +184,7 @@ fn pair(value: &Json, default: Option<&Json>) -> Option<Json> {
     )
 }
 
-/// The first three numbers of a list; a name that is known.
+/// The first three numbers of a list, or a known name.
 fn color(value: &Json) -> Option<Json> {
     match value {
         Json::String(name) => Color::from_name(name).map(|_| value.clone()),
@@ -197,7 +196,7 @@ fn color(value: &Json) -> Option<Json> {
     }
 }
 
-/// A text that is not empty; a number as it is written.
+/// A text that is not empty; a number as text.
 fn text(value: &Json) -> Option<Json> {
     let text = match value {
         Json::String(text) => text.clone(),
@@ -207,7 +206,7 @@ fn text(value: &Json) -> Option<Json> {
     (!text.is_empty()).then(|| json!(text))
 }
 
-/// A value as people write it: whole numbers without a point.
+/// A value for people to read: integers without a decimal point.
 fn plain(value: &Json) -> String {
     match value {
         Json::Number(number) => number

@@ -1,10 +1,8 @@
-//! The dialect of L2Explorer's reset files: its keys, and what is said where it and a [`World`](crate::World) differ.
-//! Reading it is in `read.rs`, its objects in `read_objects.rs`, with the leniency for single values in `lenient.rs`
-//! and what is assumed in place of entries that say nothing in `mend.rs`. Its scenario files, which name such reset
-//! files, are read in `read_scenario.rs`.
+//! Reads L2Explorer's files. Reset files are read in `read.rs`, their objects in `read_objects.rs`, single values leniently in
+//! `lenient.rs`; `mend.rs` repairs unusable entries. Scenario files, which name reset files, are read in `read_scenario.rs`.
 //!
-//! Every file of the dialect becomes a world, with a [`Warning`](crate::Warning) for whatever is not taken as it stands. A
-//! number of a predefined map means the original's regions, which are written into the world.
+//! Every reset file becomes a [`World`](crate::World), with a [`Warning`](crate::Warning) for everything that is not taken
+//! literally. The number of a predefined map stands for the original's regions, which are written into the world.
 
 mod lenient;
 mod mend;
@@ -20,18 +18,18 @@ use serde_json::{Map, Value as Json};
 use crate::world::{AgentParams, EnvironmentParams, Field, Fields, ImageParams, Object, Rules, World, WorldDraft};
 use mend::Entry;
 
-/// What the table of fields says of one part of a reset file.
+/// The table of fields for one part of a reset file.
 struct Part {
-    /// The original's keys, then those that only our worlds have, then those of early files, which the reader turns into others.
+    /// The original's keys, then those that only our worlds have, then those of early files, which the reader converts.
     keys: Vec<&'static str>,
-    /// What the values of the original's keys must be; lists and parts are read by themselves.
+    /// The required forms of the original's keys; lists and parts are read separately.
     entries: Vec<(&'static str, Entry)>,
-    /// What entries are where nothing is said, by key.
+    /// Defaults by key.
     defaults: Map<String, Json>,
 }
 
 impl Part {
-    /// The part that is made as a `T`, and whose schema this is; `old` are its keys of early files.
+    /// The part that becomes a `T` with this schema; `old` are its keys in early files.
     fn of<T: Fields + Serialize>(default: &T, schema: &Json, old: &[&'static str]) -> Self {
         let fields = T::ROWS.iter().map(|row| row.field);
         let (original, ours): (Vec<Field>, Vec<Field>) = fields
@@ -56,7 +54,7 @@ struct Parts {
     environment: Part,
     agent: Part,
     image: Part,
-    /// Nothing of the rules is known to the original.
+    /// The original has no rules.
     rules: Part,
     object: Part,
 }
@@ -75,12 +73,12 @@ static PARTS: LazyLock<Parts> = LazyLock::new(|| {
     }
 });
 
-/// How fast an object of the original moves, in metres per second: its documents do not say. It is what the balls of the
-/// built-in `moving_object` do, a fifth of what the agent can.
+/// Speed of the original's moving objects in metres per second, which its documents do not give: as the balls of the built-in
+/// `moving_object`, a fifth of the agent's speed.
 const ASSUMED_SPEED: f64 = 2.0;
 
-/// Whether black on this class (in lower case) is a choice; on all others it is the default and means the asset's own
-/// colours.
+/// Whether black is a deliberate colour for this class (in lower case); for all others it is the default and means the asset's
+/// own colours.
 fn black_is_chosen(class: &str) -> bool {
     matches!(class, "geometric" | "cube" | "icosphere")
 }

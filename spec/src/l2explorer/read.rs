@@ -1,5 +1,4 @@
-//! Reading the dialect of L2Explorer's reset files into a [`World`], with a warning for everything that was not plain.
-//! How a single value may be written is in `lenient.rs`; our own form of a world is read, strictly, in `world/mod.rs`.
+//! Reads L2Explorer's reset files into a [`World`], with a warning for everything that is not in plain form.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,35 +16,35 @@ use crate::warning::{Remarks, Warning};
 use crate::world::{Enclosure, Object, World, WorldDraft};
 
 impl World {
-    /// Reads a reset file of the original: words in any case, numbers as strings, colours in 0..255, old keys.
+    /// Reads a reset file of the original leniently: words in any case, numbers as strings, colours in 0..255, old keys.
     ///
-    /// A colour of (0, 0, 0) is the original's default; on anything but `geometric`, `cube` and `icosphere` it is read as
-    /// the asset's own colours.
+    /// The original's default colour is (0, 0, 0); on anything but `geometric`, `cube` and `icosphere` it is read as the asset's
+    /// own colours.
     ///
-    /// Entries of the original's keys that are empty or of another type get their defaults, or what of them can be read, each
-    /// with a warning that says what is assumed: an object without a place stands at (0, 0), one that moves
-    /// goes at 2 m/s unless our own key `speed` says otherwise. Objects outside the arena and inside walls stay where they are,
-    /// and are named. Predefined maps are the original's, written into the world as `map_regions`.
+    /// Entries of the original's keys that are empty or of another type get their defaults, or their readable part, each with a
+    /// warning that says what is assumed: an object without a place is put at (0, 0), a moving object gets 2 m/s unless our own
+    /// key `speed` is given. Objects outside the arena or inside walls stay where they are, with a warning. Predefined maps are
+    /// the original's, written into the world as `map_regions`.
     ///
     /// # Errors
-    /// [`SpecError`] where the file is not JSON or no object, has a number out of range or more objects than a world may hold, or
-    /// has keys of ours whose values no world can have.
+    /// [`SpecError`] if the file is not a JSON object, has a number out of range or more objects than a world may hold, or has
+    /// keys of ours with invalid values.
     pub fn from_l2explorer(name: &str, text: &str) -> Result<(Self, Vec<Warning>), SpecError> {
         Self::from_l2explorer_with(name, text, &MapLibrary::default())
     }
 
-    /// The same, with the layouts of a library in place of the original's: as [`World::with_maps`] writes them, before it is seen
-    /// which objects stand inside walls.
+    /// Like [`World::from_l2explorer`], with the layouts of a library in place of the original's. They are written into the world
+    /// as by [`World::with_maps`], before the check for objects inside walls.
     ///
     /// # Errors
-    /// Those of [`World::from_l2explorer`].
+    /// As [`World::from_l2explorer`].
     pub fn from_l2explorer_with(name: &str, text: &str, maps: &MapLibrary) -> Result<(Self, Vec<Warning>), SpecError> {
         let (mut document, repeated) = Document::parse_leniently(name, text, MAX_WORLD_VALUES)?;
         let mut reader = Reader::default();
         for pointer in repeated {
             reader.warn(pointer, "the key stands twice; the last one counts");
         }
-        // Part by part what was read takes the place of what stood there: a large world is not there twice.
+        // Each part is replaced as soon as it is read, so that a large world is not in memory twice.
         document.value = reader.world(std::mem::take(&mut document.value));
         let kept = std::mem::take(&mut reader.kept);
         let spelled = reader.spelled.clone();
@@ -70,7 +69,7 @@ impl World {
             let Some(mut text) = world.out_of_reach(object) else {
                 continue;
             };
-            // The file has no regions: they are those of its map.
+            // The regions are not in the file: they come from its map.
             if let (false, Some(Enclosure::OwnRegion { index })) = (is_told, world.enclosure(object.coordinates)) {
                 let (map, count) = (world.environment_params.map(), world.environment_params.regions().len());
                 let name = maps.name(map).unwrap_or_else(|| maps::name(map));
@@ -85,10 +84,10 @@ impl World {
 }
 
 impl Object {
-    /// Reads one object as the original writes it, as [`World::from_l2explorer`] reads the objects of a world.
+    /// Reads one object in the original's form, as [`World::from_l2explorer`] reads the objects of a world.
     ///
     /// # Errors
-    /// [`SpecError`] where the text is not JSON, has no class, or holds a value that no leniency can make sense of.
+    /// [`SpecError`] if the text is not JSON, has no class, or holds a value that cannot be read even leniently.
     ///
     /// # Example
     /// ```
@@ -112,7 +111,7 @@ impl Object {
     }
 }
 
-/// Objects were skipped on reading: names the place in the file of a place in the world.
+/// Maps a place in the world to its place in the file, whose skipped objects shift the indices.
 fn original_pointer(pointer: &str, kept: &[usize]) -> String {
     let mut tokens: Vec<String> = pointer.split('/').map(str::to_owned).collect();
     if let [_, list, index, ..] = &mut tokens[..]
@@ -124,7 +123,7 @@ fn original_pointer(pointer: &str, kept: &[usize]) -> String {
     tokens.join("/")
 }
 
-/// Keys may be spelled otherwise in the file: the place there of a place under our names.
+/// Maps a place under our names to its place in the file, where keys may be spelled otherwise.
 fn as_spelled(pointer: String, spelled: &BTreeMap<String, String>) -> String {
     let ends = pointer.match_indices('/').map(|(end, _)| end).chain([pointer.len()]);
     let longest_known = ends
@@ -141,7 +140,7 @@ pub(super) struct Reader {
     warnings: Remarks,
     /// For each object of the world, its index in the file.
     pub(super) kept: Vec<usize>,
-    /// Places of entries under our names, whose keys the file spells otherwise: the places in the file.
+    /// Places of entries whose keys the file spells otherwise: from our names to the places in the file.
     pub(super) spelled: BTreeMap<String, String>,
 }
 
@@ -150,7 +149,7 @@ impl Reader {
         self.warnings.push(as_spelled(pointer.into(), &self.spelled), text);
     }
 
-    /// Warns that something else was found. `expected` says what was expected, and what is assumed.
+    /// Warns that something else was found. `expected` says what was expected and what is assumed.
     pub(super) fn warn_instead(&mut self, pointer: impl Into<String>, found: &Json, expected: &str) {
         self.warn(pointer, format!("found {}, expected {expected}", describe(found)));
     }
@@ -199,7 +198,7 @@ impl Reader {
         Json::Object(world)
     }
 
-    /// The entries with their keys as we write them; keys that are not known are left out with a warning.
+    /// The entries under our names of the keys; unknown keys are dropped with a warning.
     fn keys(&mut self, pointer: &str, map: Map<String, Json>, known: &Part) -> Map<String, Json> {
         let plain = |key: &str| key.replace('_', "").to_lowercase();
         let mut renamed = Map::new();
@@ -230,7 +229,7 @@ impl Reader {
         renamed
     }
 
-    /// The entries of a part; values of the original's keys are read in any of the forms that they may have.
+    /// The entries of a part; values of the original's keys are accepted in any of their forms.
     pub(super) fn entries(&mut self, at: &str, map: Map<String, Json>, part: &Part) -> Map<String, Json> {
         let mut map = self.keys(at, map, part);
         for (key, entry) in &part.entries {
@@ -246,7 +245,7 @@ impl Reader {
         map
     }
 
-    /// What the agent has beside the entries of every part.
+    /// The agent's entries that need more than the common rules.
     fn agent(&mut self, at: &str, agent: &mut Map<String, Json>) {
         for key in ["modalities", "actions"] {
             word(agent, key);
@@ -272,7 +271,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn words_in_any_case_numbers_as_text_and_byte_colours_are_read_with_warnings() {
+    fn lenient_words_numbers_and_colours_are_read_with_warnings() {
         let (world, warnings) = read(
             r#"{ "environment_params": { "bounding_wall_color": [0, 100, 255], "lightIntensity": 3.5, "predefined_map": "1" },
   "agent_params": { "action_model": "ByVelocity", "initial_coordinates": [1, 2], "pickup_range": 5, "heading": -90 } }"#,
@@ -299,7 +298,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn words_of_every_kind_are_read_in_any_case_and_whole_numbers_with_a_point() {
+    fn words_in_any_case_and_integers_with_a_point_are_read() {
         let (world, warnings) = read(
             r#"{ "game_mode": "Collect_Images", "max_steps": 300.0, "environment_params": { "map_size": ["50", 60.5] },
   "agent_params": { "action_model": "OnRails", "observation_size": "64", "modalities": ["RGB"], "actions": "Continuous" },
@@ -336,7 +335,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn what_our_own_keys_hold_is_checked_as_in_a_world_of_ours() {
+    fn our_own_keys_are_checked_strictly() {
         let text = r#"{ "objects": [{}, { "class": "tree", "coordinates": [1, 1], "scale": "large" }] }"#;
         let error = World::from_l2explorer("map.json", text).unwrap_err();
         assert_eq!(
@@ -349,7 +348,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn entries_that_say_nothing_get_defaults_with_a_warning_each() {
+    fn unusable_entries_get_defaults_with_a_warning_each() {
         let (world, warnings) = read(
             r#"{ "max_steps": "", "game_mode": null, "image_params": [], "environment_params": { "map_size": [null, 50], "predefined_map": {}, "lightIntensity": "bright" },
   "agent_params": { "observation_size": 9.7, "heading": {}, "agent_height": "", "coordinates": ["here", 4] },

@@ -1,5 +1,4 @@
-//! The objects of a reset file, read: which are skipped, what early keys and missing entries become. What all parts of a file have in
-//! common is in `read.rs`.
+//! Reads the objects of a reset file: skips unusable ones, and converts early keys and missing entries.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +13,7 @@ use crate::limits::MAX_OBJECTS;
 
 impl Reader {
     pub(super) fn objects(&mut self, objects: Vec<Json>) -> Vec<Json> {
-        // So many are refused by the schema; before, each is made whole.
+        // The schema refuses too many objects: does not build each of them first.
         if objects.len() > MAX_OBJECTS {
             return objects;
         }
@@ -80,7 +79,7 @@ impl Reader {
         object
     }
 
-    /// What moves by itself does so at some speed, which the original's files do not say.
+    /// Gives objects that move by themselves a speed, which the original's files do not have.
     fn own_speed(&mut self, at: &str, object: &mut Map<String, Json>) {
         if object.get("speed").is_some_and(Json::is_null) {
             object.shift_remove("speed");
@@ -95,7 +94,7 @@ impl Reader {
         object.insert("speed".into(), json!(ASSUMED_SPEED));
     }
 
-    /// The keys of early files: `collectible`, `reward_on`, `interaction_distance`.
+    /// Converts the keys of early files: `collectible`, `reward_on`, `interaction_distance`.
     fn old_reward(&mut self, at: &str, object: &mut Map<String, Json>) {
         let distance = Entry::Number(0.0, 1000.0);
         self.mend_entry(at, object, ("interaction_distance", &distance), None);
@@ -183,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn objects_inside_walls_and_regions_are_named_with_the_wall() {
+    fn objects_inside_walls_and_regions_get_a_warning_with_the_wall() {
         let (world, warnings) = read(
             r#"{ "environment_params": { "predefined_map": 2, "walls": [{ "polygon": [[0, 0], [9, 0], [9, 9]] }] },
   "objects": [{}, { "class": "tree", "coordinates": [-20, 70] }, { "class": "bag", "coordinates": [8, 1] },

@@ -1,5 +1,4 @@
-//! The original's scenario files, read into a [`Scenario`] whose regimes name world files. The worlds in those files are read in
-//! `read.rs`.
+//! Reads the original's scenario files into a [`Scenario`] whose regimes name world files.
 //!
 //! ```text
 //! { "logging_base_dir": "logs", "scenario": [{ "type": "train", "regimes":
@@ -18,15 +17,15 @@ use crate::limits::MAX_SCENARIO_VALUES;
 use crate::scenario::{Block, BlockKind, MAX_EXPERIENCES, Regime, Scenario};
 use crate::warning::{Remarks, Warning};
 
-/// The most steps that a regime may allow, as our own documents have it.
+/// Most steps that a regime may allow, as in our own documents.
 const MAX_STEPS: u64 = 1_000_000_000;
 
 impl Scenario {
-    /// Reads a scenario file of the original. Each map becomes the world file of a regime, and its name without folder and
-    /// ending the regime's variant.
+    /// Reads a scenario file of the original. Each map becomes the world file of a regime; its name without folder and extension
+    /// becomes the regime's variant.
     ///
     /// # Errors
-    /// [`SpecError`] where the file is not JSON, or lacks what a regime must say.
+    /// [`SpecError`] if the file is not JSON, or a regime lacks a required key.
     ///
     /// # Example
     /// ```
@@ -52,10 +51,10 @@ impl Scenario {
 struct Reader {
     warnings: Remarks,
     problems: Vec<Problem>,
-    /// The variant that each map of a task has become, and by task the plain names that are taken.
+    /// The variant of each map of a task, and by task the names already taken, in plain form.
     variants: BTreeMap<(String, String), String>,
     taken: BTreeMap<String, BTreeSet<String>>,
-    /// The number behind the last name made from a stem, by task and stem.
+    /// The last number appended to a stem, by task and stem.
     numbers: BTreeMap<(String, String), u32>,
 }
 
@@ -85,8 +84,7 @@ impl Reader {
             .take(100)
             .map(|letter| if fits(letter) { letter } else { '_' })
             .collect();
-        // What no file can be called: a dot or a hyphen at the beginning, a dot at the end, a word that Windows keeps
-        // for a device.
+        // Invalid names of files: a dot or hyphen at the beginning, a dot at the end, a device name of Windows.
         if name.starts_with(['.', '-']) {
             name.replace_range(..1, "_");
         }
@@ -149,7 +147,7 @@ impl Reader {
         Regime::new(task, "map", count as u32)
     }
 
-    /// The variant that a task's map becomes: the file's name, with a number where two would be one in a log.
+    /// The variant of a task's map: the file's name, with a number appended if two would be the same in a log.
     fn variant(&mut self, task: &str, world: &str) -> String {
         let key = (task.to_owned(), world.to_owned());
         if let Some(known) = self.variants.get(&key) {
@@ -163,7 +161,7 @@ impl Reader {
         let taken = self.taken.entry(task.to_owned()).or_default();
         let number = self.numbers.entry((task.to_owned(), stem.clone())).or_insert(1);
         let mut name = stem.clone();
-        // What was taken once stays taken: the search goes on where it ended for the last map of this name.
+        // Taken names stay taken: the search continues where it ended for the last map of this name.
         while taken.contains(&plain(&name)) {
             *number += 1;
             name = format!("{stem}-v{number}");
@@ -202,9 +200,9 @@ impl Reader {
         number.map(|number| number as u64)
     }
 
-    /// A key that is missing, or whose value will not do.
+    /// Reports a key that is missing or has an invalid value.
     fn wrong(&mut self, at: &str, map: &Map<String, Json>, key: &str, expected: &str) {
-        // More are not listed.
+        // More would not be listed.
         if self.problems.len() > MAX_PROBLEMS {
             return;
         }
@@ -228,7 +226,7 @@ impl Reader {
     }
 }
 
-/// The name of a file without folders and ending.
+/// The name of a file without folders and extension.
 fn stem(path: &str) -> String {
     let file = path.rsplit(['/', '\\']).next().unwrap_or(path);
     let stem = file.rsplit_once('.').map_or(file, |(stem, _)| stem);
@@ -250,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_regime_lacks_is_named_with_its_place() {
+    fn missing_regime_keys_are_reported_with_their_place() {
         let check = |regime: &str, expected: &str| {
             let said = refused(&file(regime));
             assert!(said.ends_with(expected), "{said}");
@@ -282,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_meaning_here_is_warned_about() {
+    fn unsupported_keys_give_warnings() {
         let text = file(r#""task": "a", "count": 2.0, "params": { "map": "m.json", "fog": 1 }"#)
             .replace("\"logs\"", "\"my logs\"");
         let (scenario, warnings) = Scenario::from_l2explorer("s.json", &text).unwrap();
@@ -296,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn maps_of_one_name_become_variants_of_two() {
+    fn maps_of_one_name_become_two_variants() {
         let one = |map: &str| format!(r#"{{ "task": "a", "count": 1, "params": {{ "map": "{map}" }} }}"#);
         let regimes = ["x/m_1.json", "y/m_1.json", "x/m_1.json", "m1"].map(one).join(", ");
         let text =
@@ -315,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn thousands_of_maps_of_one_name_are_told_apart_at_once() {
+    fn thousands_of_maps_of_one_name_are_disambiguated_fast() {
         let one = |number: u32| format!(r#"{{ "task": "a", "count": 1, "params": {{ "map": "{number}/m.json" }} }}"#);
         let regimes: Vec<String> = (1..=20_000).map(one).collect();
         let text = format!(
