@@ -1,4 +1,4 @@
-//! [`Classes`]: which classes and models of objects a reader of documents knows. The models themselves are `env`'s.
+//! [`Classes`]: the classes and models of objects that a reader of documents knows.
 
 use std::sync::Arc;
 
@@ -6,10 +6,10 @@ use crate::error::Problem;
 use crate::suggest::nearest;
 use crate::world::{Model, Object};
 
-/// The most classes or models that a message lists.
+/// Most classes or models that a message lists.
 const LISTED: usize = 40;
 
-/// The classes that objects may be of. Capitals do not matter.
+/// The classes that objects may have. Case is ignored.
 ///
 /// # Example
 /// ```
@@ -27,9 +27,9 @@ pub struct Classes {
     advice: Option<String>,
 }
 
-/// The models of classes. Capitals do not matter.
+/// The models of classes. Case is ignored.
 pub trait Models: std::fmt::Debug + Send + Sync {
-    /// Whether a class has a model of this name or number.
+    /// Whether a class has a model with this name or number.
     fn has(&self, class: &str, model: &Model) -> bool;
 
     /// The names of a class's models.
@@ -37,7 +37,7 @@ pub trait Models: std::fmt::Debug + Send + Sync {
 }
 
 impl Classes {
-    /// These classes.
+    /// Knows these classes, and any models of them.
     pub fn new<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> Self {
         let mut names: Vec<String> = names.into_iter().map(|name| plain(name.as_ref())).collect();
         names.sort();
@@ -55,19 +55,19 @@ impl Classes {
         self
     }
 
-    /// Says beside every unknown class what makes it known, such as how a library is named.
+    /// Adds advice to every report of an unknown class, such as how to name a library.
     #[must_use]
     pub fn with_advice(mut self, advice: impl Into<String>) -> Self {
         self.advice = Some(advice.into());
         self
     }
 
-    /// Whether a class is one of them.
+    /// Whether a class is known.
     pub fn has(&self, class: &str) -> bool {
         self.names.binary_search(&plain(class)).is_ok()
     }
 
-    /// What is wrong with a class that is none of them.
+    /// The problem with an unknown class.
     pub(crate) fn problem(&self, pointer: impl Into<String>, class: &str) -> Option<Problem> {
         if self.has(class) {
             return None;
@@ -78,7 +78,7 @@ impl Classes {
         Some(self.advise(problem, near))
     }
 
-    /// What is wrong with a model that a class does not have; nothing where the class or its models are not known.
+    /// The problem with a model that its class does not have; `None` if the class or its models are not known.
     pub(crate) fn model_problem(&self, pointer: impl Into<String>, class: &str, model: &Model) -> Option<Problem> {
         let models = self.models.as_ref().filter(|_| self.has(class))?;
         if models.has(class, model) {
@@ -95,7 +95,7 @@ impl Classes {
         Some(self.advise(problem, nearest(&model.0, &names).filter(|_| !is_counted)))
     }
 
-    /// What is wrong with the class and the models of an object.
+    /// The problems with the class and the models of an object.
     pub(crate) fn problems(&self, pointer: &str, object: &Object) -> impl Iterator<Item = Problem> + use<> {
         let class = self.problem(format!("{pointer}/class"), &object.class);
         let models = [
@@ -116,13 +116,13 @@ impl Classes {
     }
 }
 
-/// The first of some names, and how many more there are.
+/// The first names, and how many more there are.
 fn one_of(names: &[String]) -> String {
     format!("one of {}", driftworld_text::first_of(names, LISTED))
 }
 
 impl Classes {
-    /// The class that a word of everyday language means, where there is one.
+    /// The class that an everyday word means, if any.
     fn called_otherwise(&self, word: &str) -> Option<String> {
         let near = nearest(word, OTHER_WORDS.map(|(other, _)| other))?;
         let meant = OTHER_WORDS.iter().find(|(other, _)| *other == near)?.1;
@@ -130,7 +130,7 @@ impl Classes {
     }
 }
 
-/// What things are called where they are not called by their class, each with the class.
+/// Everyday words, each with the class that it means.
 const OTHER_WORDS: [(&str, &str); 22] = [
     ("ball", "icosphere"),
     ("barrier", "roadblock"),
@@ -165,7 +165,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_word_of_everyday_language_is_told_the_class_that_it_means() {
+    fn everyday_word_gets_advice_with_its_class() {
         let classes = Classes::new(["shrub", "rock"]);
         let near = |class: &str| classes.problem("/", class).and_then(|problem| problem.advice);
         assert_eq!(near("bushh").as_deref(), Some("did you mean \"shrub\"?"));

@@ -1,4 +1,4 @@
-//! Colours as documents write them: `[r, g, b]` in 0..1 or a CSS name. Distances between colours live in `similarity`.
+//! [`Color`]: a colour in a document, as `[r, g, b]` in 0..1 or a CSS name.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -9,7 +9,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 /// An sRGB colour: red, green and blue, each in 0..=1, gamma-encoded as in an image file.
 ///
-/// Reads `[r, g, b]` or a CSS name in lower case (`"green"` is `(0, 128, 0)`, as CSS has it); always writes `[r, g, b]`.
+/// Reads `[r, g, b]` or a lower-case CSS name (`"green"` is `(0, 128, 0)`, as in CSS); always writes `[r, g, b]`.
 ///
 /// # Example
 /// ```
@@ -20,7 +20,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 pub struct Color(pub [f64; 3]);
 
 impl Color {
-    /// The colour that CSS gives this name (lower case), if there is one.
+    /// The colour with this CSS name in lower case, if there is one.
     pub fn from_name(name: &str) -> Option<Self> {
         palette::named::from_str(name).map(|c| Self([c.red, c.green, c.blue].map(|channel| f64::from(channel) / 255.0)))
     }
@@ -32,18 +32,18 @@ impl Color {
         names
     }
 
-    /// The three channels as `f32`, as the renderer takes them.
+    /// The three channels as `f32`, for the renderer.
     pub fn to_f32(self) -> [f32; 3] {
         self.0.map(|channel| channel as f32)
     }
 
-    /// The colour as six hexadecimal digits, rounded to 8 bits a channel: `ff8000`.
+    /// Six hexadecimal digits, rounded to 8 bits per channel: `ff8000`.
     pub fn hex(self) -> String {
         let [red, green, blue] = self.0.map(|channel| (channel * 255.0).round() as u8);
         format!("{red:02x}{green:02x}{blue:02x}")
     }
 
-    /// The CSS name of exactly this colour, or `[r, g, b]` with two decimals: for people to read.
+    /// The CSS name of exactly this colour, else `[r, g, b]` with two decimals: for people to read.
     pub fn describe(self) -> String {
         let name = Self::names()
             .into_iter()
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn names_and_triples_read_and_everything_else_is_refused() {
+    fn names_and_triples_are_read_and_everything_else_is_refused() {
         check("[0, 0.5, 1]", Some([0.0, 0.5, 1.0]));
         check("\"green\"", Some([0.0, 128.0 / 255.0, 0.0]));
         check("\"bleu\"", None);
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn a_colour_describes_itself_by_its_css_name_where_it_has_one() {
+    fn describe_prefers_the_css_name() {
         assert_eq!(Color([0.0, 0.0, 1.0]).describe(), "blue");
         assert_eq!(Color([0.1, 0.2, 0.3]).describe(), "[0.10, 0.20, 0.30]");
     }

@@ -1,4 +1,4 @@
-//! [`Element`]: the parts of a decision process. What of a world belongs to which is in `world/fields/comparison.rs`.
+//! [`Element`]: the parts of a decision process.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -33,10 +33,10 @@ pub enum Element {
 }
 
 impl Element {
-    /// The coarse elements, in the order in which tables show them: every distance is in one of these.
+    /// The coarse elements, in the order of tables; every distance belongs to one of them.
     pub const ALL: [Self; 5] = [Self::S, Self::A, Self::T, Self::R, Self::O];
 
-    /// The coarse elements, each followed by its fine one if it has one: what `affects` may list.
+    /// The coarse elements, each followed by its fine one if it has one: the values that `affects` may list.
     pub const WITH_FINE: [Self; 7] = [Self::S, Self::P, Self::A, Self::T, Self::R, Self::O, Self::Phi];
 
     /// The coarse element that this one is, or is part of.
@@ -54,12 +54,12 @@ impl Element {
         }
     }
 
-    /// Whether what changes `other` is allowed for by saying this element: the same, or its fine one.
+    /// Whether declaring this element covers changes of `other`: the same element, or its fine one.
     pub fn covers(self, other: Self) -> bool {
         self == other || self == other.coarse()
     }
 
-    /// The element in a word.
+    /// The element in one word.
     pub fn name(self) -> &'static str {
         match self {
             Self::S => "state",
@@ -72,7 +72,7 @@ impl Element {
         }
     }
 
-    /// The letter, or short word, by which documents name the element: `S`, `A`, `T`, `R`, `O`, `p`, `phi`.
+    /// The letter or short word for the element in documents: `S`, `A`, `T`, `R`, `O`, `p`, `phi`.
     pub fn letter(self) -> &'static str {
         self.into()
     }
@@ -83,7 +83,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_coarse_element_covers_its_fine_one_and_not_the_other_way() {
+    fn coarse_element_covers_its_fine_one_and_not_vice_versa() {
         for (coarse, fine) in [(Element::S, Element::P), (Element::O, Element::Phi)] {
             assert!(coarse.covers(fine) && coarse.covers(coarse) && fine.covers(fine));
             assert!(!fine.covers(coarse));
@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn documents_name_elements_by_their_letters() {
+    fn elements_are_written_as_letters() {
         for element in Element::WITH_FINE {
             assert_eq!(serde_json::to_value(element).ok(), Some(element.letter().into()));
         }

@@ -1,4 +1,4 @@
-//! What can be wrong with a document, said so that its author can mend it. Where things stand in a text is found in `document/`.
+//! [`SpecError`]: the problems of a document, worded so that its author can fix them.
 
 use std::fmt;
 
@@ -6,31 +6,31 @@ use driftworld_text::one_line;
 
 use crate::suggest::{did_you_mean, nearest};
 
-/// The most problems of a document that are listed; beyond them is only said that there are more.
+/// Most problems of a document that are listed; beyond it, the error only says that there are more.
 pub const MAX_PROBLEMS: usize = 300;
 
-/// The most problems that one message shows.
+/// Most problems shown in one message.
 const SHOWN: usize = 20;
 
-/// The most characters of a value that a message shows.
+/// Most characters of a value shown in a message.
 const SHOWN_CHARACTERS: usize = 100;
 
-/// One thing wrong in a document: where, what was found, what was expected, what to do.
+/// One problem of a document: where it is, what was found, what was expected, what to do.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
-    /// A stable name for this kind of problem, such as `spec/unknown-key`.
+    /// Stable code of this kind of problem, such as `spec/unknown-key`.
     pub code: &'static str,
     /// JSON pointer to the value, such as `/objects/3/color`; empty for the document itself.
     pub pointer: String,
-    /// Line in the text, from 1; 0 while the place is not known.
+    /// Line in the text, from 1; 0 if unknown.
     pub line: usize,
-    /// Column in the line, in characters from 1; 0 while the place is not known.
+    /// Column in the line, in characters from 1; 0 if unknown.
     pub column: usize,
-    /// What stands there.
+    /// What was found there.
     pub found: String,
-    /// What should stand there.
+    /// What was expected there.
     pub expected: String,
-    /// What to do about it, where more can be said.
+    /// What to do about it, if there is advice.
     pub advice: Option<String>,
 }
 
@@ -48,7 +48,7 @@ impl Problem {
             pointer: pointer.into(),
             line: 0,
             column: 0,
-            // A text that shows nothing is shown in quotes.
+            // Text without visible characters is shown in quotes.
             found: if found.trim().is_empty() {
                 format!("{found:?}")
             } else {
@@ -59,19 +59,19 @@ impl Problem {
         }
     }
 
-    /// The same of a value that stands at a place.
+    /// Moves the problem to a value below `place`.
     pub(crate) fn within(mut self, place: &str) -> Self {
         self.pointer.insert_str(0, place);
         self
     }
 
-    /// Adds what to do about it.
+    /// Adds advice.
     pub(crate) fn advise(mut self, advice: impl Into<String>) -> Self {
         self.advice = Some(advice.into());
         self
     }
 
-    /// Adds «did you mean …?» when one of the known words is near to the one found.
+    /// Adds «did you mean …?» if one of the known words is similar to the one found.
     pub(crate) fn suggest<S: AsRef<str>>(self, word: &str, known: impl IntoIterator<Item = S>) -> Self {
         match nearest(word, known) {
             Some(near) => self.advise(format!("did you mean {near:?}?")),
@@ -93,7 +93,7 @@ impl fmt::Display for Problem {
     }
 }
 
-/// Everything that can go wrong in this crate.
+/// Errors of this crate.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SpecError {
@@ -106,49 +106,49 @@ pub enum SpecError {
         line: usize,
         /// Column from 1.
         column: usize,
-        /// What is wrong there, and what to do.
+        /// The reason, and what to do.
         reason: String,
     },
-    /// The text is too long to be a document.
+    /// The text is too long for a document.
     #[error("{name}: found {bytes} bytes, expected at most {limit}; split the document", name = one_line(name))]
     TooLarge {
         /// The document's name.
         name: String,
-        /// Its length.
+        /// Its length in bytes.
         bytes: usize,
-        /// The most that is read.
+        /// Most bytes allowed.
         limit: usize,
     },
-    /// The text has too many values to be a document: each takes a hundred bytes or more while it is checked.
+    /// The text has too many values for a document: each takes a hundred bytes or more while it is checked.
     #[error(
         "{name}: found more than {limit} values (numbers, texts, lists, objects), expected at most that; split the document"
     )]
     TooManyValues {
         /// The document's name.
         name: String,
-        /// The most that are read.
+        /// Most values allowed.
         limit: usize,
     },
-    /// A key is longer than any that a document can have.
+    /// A key is longer than any key of a document.
     #[error("{name}:{line}:{column}: found a key of more than {limit} bytes, expected a name; is a quote missing?")]
     LongKey {
         /// The document's name.
         name: String,
         /// Line from 1.
         line: usize,
-        /// Column behind the key, from 1.
+        /// Column after the key, from 1.
         column: usize,
-        /// The longest that is read, in bytes.
+        /// Longest key allowed, in bytes.
         limit: usize,
     },
-    /// The document is JSON, and says something that it must not.
+    /// The document is JSON but invalid.
     #[error("{}", list(name, problems, *more))]
     Document {
         /// The document's name.
         name: String,
-        /// All that is wrong, sorted by place; the first [`MAX_PROBLEMS`] of it.
+        /// Its problems, sorted by place; at most [`MAX_PROBLEMS`].
         problems: Vec<Problem>,
-        /// Whether there is more that is not listed.
+        /// Whether there are more problems than listed.
         more: bool,
     },
     /// A task has no variant of this name.
@@ -161,23 +161,23 @@ pub enum SpecError {
     UnknownVariant {
         /// The task's name.
         task: String,
-        /// The name asked for.
+        /// The requested name.
         found: String,
-        /// The names there are.
+        /// The known names.
         known: Vec<String>,
     },
-    /// A variant cannot have the values asked for.
+    /// A variant cannot have the requested values.
     #[error("{}", list(variant, problems, false))]
     Values {
         /// The variant's name, with its task's.
         variant: String,
-        /// All that is wrong.
+        /// All problems.
         problems: Vec<Problem>,
     },
 }
 
 impl SpecError {
-    /// The stable name of this kind of error; for a document, that of its first problem.
+    /// Stable code of this kind of error; for a document, that of its first problem.
     pub fn code(&self) -> &'static str {
         match self {
             Self::Syntax { .. } => "spec/syntax",
@@ -191,7 +191,7 @@ impl SpecError {
         }
     }
 
-    /// What is wrong with a document or a value, sorted by place.
+    /// The error of a document or value with these problems, sorted by place.
     pub(crate) fn of_document(name: &str, found: impl Into<Listed>) -> Self {
         let Listed { mut problems, more } = found.into();
         let more = more || problems.len() > MAX_PROBLEMS;
@@ -216,11 +216,11 @@ impl SpecError {
     }
 }
 
-/// The problems that were found in a document.
+/// Problems found in a document.
 #[derive(Debug, Default)]
 pub(crate) struct Listed {
     pub(crate) problems: Vec<Problem>,
-    /// Whether a list or an object was so full of them that its rest was not looked at.
+    /// Whether a list or object had so many that the rest of it was skipped.
     pub(crate) more: bool,
 }
 
@@ -246,12 +246,12 @@ fn list(name: &str, problems: &[Problem], more: bool) -> String {
     lines.join("\n")
 }
 
-/// A text as a message shows it: not longer than one can bear.
+/// A text for a message, cut to a limit.
 pub(crate) fn cut(text: &str) -> String {
     driftworld_text::shortened(text, SHOWN_CHARACTERS)
 }
 
-/// Names as a message lists them: the first of them, and how many more there are.
+/// Names for a message: the first of them, and how many more there are.
 pub(crate) fn first_of<S: AsRef<str>>(known: &[S]) -> String {
     driftworld_text::first_of(known, SHOWN)
 }
@@ -261,7 +261,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_message_says_where_what_was_found_what_was_expected_and_what_to_do() {
+    fn message_states_place_found_expected_and_advice() {
         let mut problem =
             Problem::new("spec/value", "/objects/3/color", "\"bleu\"", "a colour").suggest("bleu", ["blue"]);
         (problem.line, problem.column) = (12, 9);

@@ -1,4 +1,4 @@
-//! Defaults of fields that serde asks for by name, and what is not written because it is one.
+//! Default values for serde, and the test that skips defaults in written documents.
 
 pub(crate) fn one() -> f64 {
     1.0
@@ -20,7 +20,7 @@ pub(crate) fn yes() -> bool {
     true
 }
 
-/// Whether a value is 0, false, or whatever else its type begins with.
+/// Whether a value is its type's default.
 pub(crate) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }

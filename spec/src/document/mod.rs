@@ -1,5 +1,4 @@
-//! A JSON text with a memory of where each value stands. What is wrong with a value is said by `schema/` and the
-//! types; how the value is built within limits and where things stand in the text by `driftworld_text::json`.
+//! [`Document`]: a parsed JSON text that knows the line and column of each value, for error messages.
 
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -19,7 +18,7 @@ pub(crate) struct Document<'a> {
 }
 
 impl<'a> Document<'a> {
-    /// Parses a text of at most `most` values: refuses what is not JSON, and keys that stand twice in one object.
+    /// Parses a text of at most `most` values; refuses text that is not JSON, and repeated keys in one object.
     pub(crate) fn parse(name: &'a str, text: &'a str, most: usize) -> Result<Self, SpecError> {
         let (document, repeated) = Self::parse_leniently(name, text, most)?;
         let twice = |pointer: String| {
@@ -35,8 +34,8 @@ impl<'a> Document<'a> {
         Ok(document)
     }
 
-    /// Parses a text as most programs do: of keys that stand twice in one object the last counts. Hands back the
-    /// pointers of those that do, the first of them.
+    /// Parses a text as most programs do: the last of repeated keys in one object counts. Also returns pointers of repeated keys,
+    /// up to a limit.
     pub(crate) fn parse_leniently(name: &'a str, text: &'a str, most: usize) -> Result<(Self, Vec<String>), SpecError> {
         let text = without_mark(text);
         if text.len() > MAX_BYTES {
@@ -59,7 +58,7 @@ impl<'a> Document<'a> {
             },
             Some(Stop::Repeated) | None => syntax_error(name, text, &error),
         };
-        // One pass builds the value and finds out whether a key stands twice; only then are the places looked for.
+        // One pass builds the value and detects repeated keys; places are searched only if there are some.
         let (value, repeated) = match json::parse(text, most, Repeats::Stop) {
             Ok(value) => (value, Vec::new()),
             Err((_, Some(Stop::Repeated))) => {
@@ -71,13 +70,13 @@ impl<'a> Document<'a> {
         Ok((Self { name, text, value }, repeated))
     }
 
-    /// Brings the document to the current version of its form; fails if it is of a newer one.
+    /// Upgrades the document to the current version of its format; fails if it is newer.
     pub(crate) fn upgrade(&mut self, format: &Format) -> Result<(), SpecError> {
         let problem = format.upgrade(&mut self.value);
         self.fail_on(Vec::from_iter(problem))
     }
 
-    /// The typed value; a value that the schema lets pass and the type does not is a problem like any other.
+    /// The typed value; a value that passes the schema but not the type is reported like any other problem.
     pub(crate) fn deserialize<T: DeserializeOwned>(&self) -> Result<T, SpecError> {
         typed(&self.value).map_err(|problem| self.error(vec![problem]))
     }
@@ -92,11 +91,11 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// The error of problems, after finding the place of each.
+    /// The error for these problems, after finding the place of each.
     pub(crate) fn error(&self, found: impl Into<Listed>) -> SpecError {
         let Listed { mut problems, more } = found.into();
         let more = more || problems.len() > MAX_PROBLEMS;
-        // The first ones of a text are found among some more: of a hundred thousand not each is looked up.
+        // Finds places for some more problems than are listed, then sorts: looking up a hundred thousand would take too long.
         problems.truncate(8 * MAX_PROBLEMS);
         let wanted = problems.iter().map(|problem| Wanted {
             pointer: &problem.pointer,
@@ -111,13 +110,13 @@ impl<'a> Document<'a> {
     }
 }
 
-/// The typed value of JSON, or what of it is not of the type.
+/// The JSON as a typed value, or the problem that prevents it.
 pub(crate) fn typed<T: DeserializeOwned>(json: &Value) -> Result<T, Problem> {
     // The plain way is twice as fast as the one that knows where it fails.
     if let Ok(typed) = T::deserialize(json) {
         return Ok(typed);
     }
-    // JSON Schema takes 10.0 for the whole number that it is.
+    // JSON Schema accepts 10.0 as the integer 10.
     if let Ok(typed) = T::deserialize(&with_whole_numbers(json.clone())) {
         return Ok(typed);
     }
@@ -128,14 +127,14 @@ pub(crate) fn typed<T: DeserializeOwned>(json: &Value) -> Result<T, Problem> {
     })
 }
 
-/// Lines and columns of the values of pointers into a JSON text, or of their nearest parents that are there.
+/// Lines and columns of the values of pointers in a JSON text; for a missing value, of its nearest existing parent.
 pub(crate) fn places_in(text: &str, pointers: &[&str]) -> Vec<(usize, usize)> {
     let text = without_mark(text);
     let wanted = pointers.iter().map(|pointer| Wanted { pointer, at_key: false });
     lines_and_columns(text, &json::offsets(text, &wanted.collect::<Vec<_>>()))
 }
 
-/// A text without the byte order mark that some editors put in front: it is no part of the document.
+/// The text without the byte order mark that some editors write: it is not part of the document.
 fn without_mark(text: &str) -> &str {
     text.strip_prefix('\u{feff}').unwrap_or(text)
 }
@@ -161,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn keys_of_wide_objects_are_found_as_those_of_narrow_ones_are() {
+    fn keys_of_wide_and_narrow_objects_are_found_alike() {
         for width in [1, 32, 1000, 10_000] {
             let keys: Vec<String> = (0..width).map(|key| format!("\"k{key}\": 1")).collect();
             let text = format!("{{\n{}\n}}", keys.join(",\n"));
@@ -175,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_json_is_refused_with_its_place() {
+    fn invalid_json_is_refused_with_its_place() {
         check(
             "{\n  \"a\": 1,\n}",
             "d.json:3:1: not valid JSON: trailing comma; remove the comma before the closing bracket",
@@ -197,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn a_key_that_stands_twice_is_refused() {
+    fn repeated_key_is_refused() {
         check(
             "{\"a\": {\"b\": 1,\n \"b\": 2}}",
             "d.json:2:7 (/a/b): found the key \"b\" twice, expected each key once; remove one of the two",
