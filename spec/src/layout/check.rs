@@ -1,14 +1,14 @@
-//! What is wrong with a layout that the schema cannot say, and what is odd about one.
+//! Checks a layout beyond its schema, and remarks on oddities.
 
 use super::walls::present;
 use super::{Kind, Layout, LayoutWall, MAX_CELLS, MAX_LAYOUT_SIDE, Plan};
 use crate::error::Problem;
 
-/// Where a world has its layout.
+/// Pointer to a world's layout.
 pub(crate) const POINTER: &str = "/environment_params/layout";
 
 impl Layout {
-    /// Every problem, with pointers from the world. A layout without any can be drawn out.
+    /// All problems, with pointers from the world. A layout without problems can be planned.
     pub(crate) fn problems(&self) -> Vec<Problem> {
         let kinds = self.kinds();
         let [kind] = kinds.as_slice() else {
@@ -59,7 +59,7 @@ impl Layout {
             Some(Kind::Rooms(rooms)) => {
                 problems.extend(too_many("rooms/grid", rooms.lattice()));
                 let least = rooms.room[0].min(rooms.room[1]);
-                // What fills it exactly may be more by rounding.
+                // A doorway with walls that fills the side exactly may exceed it by rounding.
                 if rooms.doorway + rooms.wall > least * (1.0 + 1e-12) {
                     let found = format!(
                         "doorways of {} m and walls of {} m in rooms of {least} m",
@@ -81,7 +81,7 @@ impl Layout {
         problems
     }
 
-    /// The keys of the kinds that are there.
+    /// The keys of the kinds that are present.
     fn kinds(&self) -> Vec<&'static str> {
         present([
             ("maze", self.maze.is_some()),
@@ -152,7 +152,7 @@ impl Layout {
         problems
     }
 
-    /// What is odd about it, as one sentence without a place; `plan` is what it is drawn out to.
+    /// An oddity of the layout, as one sentence without a place; `plan` is the layout's plan.
     pub(crate) fn remark(plan: &Plan) -> Option<String> {
         let cut_off = plan.cut_off();
         (cut_off > 0).then(|| {

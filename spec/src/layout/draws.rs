@@ -1,29 +1,29 @@
-//! [`Draws`]: the random numbers of a layout, a stream for each purpose. Philox itself is in `philox.rs`.
+//! [`Draws`]: random numbers of a layout, with a separate stream for each purpose.
 
 use crate::philox::philox;
 
-/// What the key of a layout's seed is filled up with.
+/// The second word of a layout's Philox key.
 const DOMAIN: u64 = 0x6c61_796f_7574_2031;
 
-/// What a layout draws for.
+/// What random numbers are used for.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Purpose {
-    /// The way through a maze, or which rooms are joined.
+    /// The spanning tree of a maze, or of joined rooms.
     Tree = 1,
-    /// Which dead ends are opened, and where; which further walls of rooms have doorways.
+    /// Which dead ends are opened, and where; which further walls of rooms get doorways.
     Loops = 2,
-    /// Where in its wall a doorway is.
+    /// The place of a doorway in its wall.
     Doorways = 3,
-    /// The order in which walls are taken away.
+    /// The order in which walls are removed.
     Standing = 4,
 }
 
-/// One stream of whole numbers.
+/// A stream of integers.
 pub(super) struct Draws {
     key: [u64; 2],
     counter: [u64; 4],
     numbers: [u64; 4],
-    /// How many halves of `numbers` are used.
+    /// How many 32-bit halves of `numbers` are used.
     used: usize,
 }
 
@@ -37,7 +37,7 @@ impl Draws {
         }
     }
 
-    /// A whole number below `bound`, by the high half of a product: biased by less than `bound / 2³²`.
+    /// An integer below `bound`, by the high half of a product; the bias is below `bound / 2³²`.
     pub(super) fn below(&mut self, bound: usize) -> usize {
         if self.used == 8 {
             self.numbers = philox(self.key, self.counter);
@@ -49,7 +49,7 @@ impl Draws {
         ((half * bound as u64) >> 32) as usize
     }
 
-    /// Puts items into a random order (Fisher and Yates).
+    /// Shuffles items (Fisher and Yates).
     pub(super) fn shuffle<T>(&mut self, items: &mut [T]) {
         for last in (1..items.len()).rev() {
             items.swap(last, self.below(last + 1));
@@ -57,7 +57,7 @@ impl Draws {
     }
 }
 
-/// How many of `all` a share in 0..1 is, to the nearest.
+/// A share in 0..1 of `all`, rounded to the nearest integer.
 pub(super) fn share_of(share: f64, all: usize) -> usize {
     ((share * all as f64).round() as usize).min(all)
 }
@@ -77,7 +77,7 @@ mod tests {
     }
 
     #[test]
-    fn seeds_and_purposes_have_numbers_of_their_own() {
+    fn seeds_and_purposes_have_separate_streams() {
         let first = |seed, purpose| Draws::new(seed, purpose).below(1 << 31);
         let all = [
             first(1, Purpose::Tree),

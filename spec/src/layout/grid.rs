@@ -1,10 +1,10 @@
-//! [`Grid`]: cells between thin walls, as mazes and rooms have them: which sides are open, and how the walls become
-//! polygons. Which sides are opened is said in `maze.rs` and `rooms.rs`; walls as thick as cells are in `text.rs`.
+//! [`Grid`]: cells between thin walls, for mazes and rooms; turns the walls into polygons. Walls as thick as cells are in
+//! `text.rs`.
 
 use super::draws::{Draws, Purpose, share_of};
 use super::plan::{Doorway, EAST, NORTH, Plan, PlanCell, PlanWall, SOUTH, WEST};
 
-/// What is between two cells.
+/// What separates two cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
     Open,
@@ -13,15 +13,15 @@ pub(super) enum Side {
     Doorway,
 }
 
-/// What is between each cell and those to its east and north.
+/// For each cell, what separates it from its eastern and northern neighbours.
 pub(super) struct Grid {
     /// Columns and rows.
     pub(super) lattice: [usize; 2],
-    /// What is to the east and to the north of each cell, row by row from the south-west.
+    /// The eastern and northern sides of each cell, row by row from the south-west.
     pub(super) sides: [Vec<Side>; 2],
 }
 
-/// How a grid stands in the arena.
+/// The dimensions of a grid in the arena.
 pub(super) struct Scale {
     /// Sides of the arena in metres.
     pub(super) size: [f64; 2],
@@ -33,11 +33,11 @@ pub(super) struct Scale {
     pub(super) height: Option<f64>,
 }
 
-/// A side between two cells: that to the east (0) or to the north (1) of a cell.
+/// A side between two cells: the eastern (0) or northern (1) side of a cell.
 pub(super) type SideOf = (usize, usize);
 
 impl Grid {
-    /// All sides are of one kind.
+    /// A grid whose sides are all of one kind.
     pub(super) fn new(lattice: [usize; 2], side: Side) -> Self {
         let sides = vec![side; lattice[0] * lattice[1]];
         Self {
@@ -46,7 +46,7 @@ impl Grid {
         }
     }
 
-    /// The cells beside a cell, each with the side between.
+    /// The neighbours of a cell, each with the side between.
     pub(super) fn beside(&self, cell: usize) -> impl Iterator<Item = (usize, SideOf)> + use<> {
         let [columns, rows] = self.lattice;
         let (column, row) = (cell % columns, cell / columns);
@@ -57,7 +57,7 @@ impl Grid {
         [east, north, west, south].into_iter().flatten()
     }
 
-    /// Every side between two cells.
+    /// All sides between two cells.
     pub(super) fn between_cells(&self) -> impl Iterator<Item = SideOf> + use<> {
         let [columns, rows] = self.lattice;
         (0..columns * rows).flat_map(move |cell| {
@@ -67,8 +67,8 @@ impl Grid {
         })
     }
 
-    /// Opens sides so that all cells hang together by one way each (a spanning tree, depth first). Each opened side
-    /// becomes `as_what`.
+    /// Opens sides so that exactly one path connects any two cells (a spanning tree, depth first). Each opened side becomes
+    /// `as_what`.
     pub(super) fn open_tree(&mut self, as_what: Side, draws: &mut Draws) {
         let count = self.sides[0].len();
         let mut seen = vec![false; count];
@@ -94,7 +94,7 @@ impl Grid {
         }
     }
 
-    /// Takes walls away so that a share of them stands; those of a smaller share are among those of a larger one.
+    /// Removes walls until a share of them is left; the walls left for a smaller share are a subset of those for a larger one.
     pub(super) fn let_stand(&mut self, share: f64, seed: u64) {
         if share >= 1.0 {
             return;
@@ -108,7 +108,7 @@ impl Grid {
         }
     }
 
-    /// The bits of the sides by which each cell can be left.
+    /// The open sides of each cell, as bits.
     fn ways_out(&self) -> Vec<u8> {
         let mut ways = vec![0; self.sides[0].len()];
         for (cell, axis) in self
@@ -121,12 +121,12 @@ impl Grid {
         ways
     }
 
-    /// How far a cell's number is from those of the cells to its east and north.
+    /// The steps in a cell's index to its eastern and northern neighbours.
     fn strides(&self) -> [usize; 2] {
         [1, self.lattice[0]]
     }
 
-    /// The plan of the grid; `room_of` says which room a cell, by column and row, belongs to.
+    /// The plan of the grid; `room_of` gives the room of a cell by column and row.
     pub(super) fn plan(&self, scale: &Scale, seed: u64, room_of: impl Fn([usize; 2]) -> u32) -> Plan {
         let ways = self.ways_out();
         let place = |cell: usize| [cell % self.lattice[0], cell / self.lattice[0]];
@@ -184,18 +184,18 @@ impl Grid {
     }
 }
 
-/// The point at these places across and along a line; `across` is the axis across it.
+/// The point at these coordinates across and along a line; `across` is the axis across it.
 fn point(across: usize, on_it: f64, along: f64) -> [f64; 2] {
     if across == 0 { [on_it, along] } else { [along, on_it] }
 }
 
-/// A straight wall that is being drawn out along a line.
+/// A straight wall under construction along a line.
 struct Run<'a> {
     scale: &'a Scale,
-    /// The axis across the line, and the line's place on it.
+    /// The axis across the line, and the line's coordinate on it.
     across: usize,
     middle: f64,
-    /// Half the arena along the line: no wall goes beyond.
+    /// Half the arena's length along the line, where every wall ends.
     end: f64,
     start: Option<f64>,
     walls: &'a mut Vec<PlanWall>,
@@ -217,7 +217,7 @@ impl Run<'_> {
             corner(from, half),
         ];
         if self.across == 0 {
-            // Counterclockwise, as the others.
+            // Counterclockwise, like the others.
             polygon.reverse();
         }
         self.walls.push(PlanWall {

@@ -1,4 +1,4 @@
-//! [`Maze`]: cells between walls, with one way from each to each, or more where dead ends are opened.
+//! [`Maze`]: cells between walls, with one path between any two, or more if dead ends are opened.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -81,7 +81,7 @@ impl Maze {
         draws.shuffle(&mut ends);
         for cell in &ends[..share_of(self.braid, ends.len())] {
             let (sides, number, open) = closed(grid, *cell);
-            // The number is drawn for each, so that which walls fall does not depend on the share.
+            // Drawn for each dead end, so that which walls fall does not depend on the share.
             let choice = draws.below(number.max(1));
             if open == 1 && number > 0 {
                 let (cell, axis) = sides[choice];

@@ -1,5 +1,4 @@
-//! [`Layout`]: rooms, mazes and walls of an arena as a value, and the [`Plan`] that it is drawn out to. What is wrong with
-//! one is said in `check.rs`. Who walks, looks and is placed in it is not known here.
+//! [`Layout`]: rooms, mazes and walls of an arena as a value, and the [`Plan`] made from it.
 
 mod check;
 mod draws;
@@ -28,16 +27,16 @@ use crate::world::Region;
 use crate::world::fields::{Place, fields};
 use text::TextMap;
 
-/// The most cells of a layout, those of walls included.
+/// Most cells of a layout, including those of walls.
 pub const MAX_CELLS: usize = 10_000;
 
-/// The longest side of a layout in metres, which is that of an arena.
+/// Longest side of a layout in metres, which is that of an arena.
 pub const MAX_LAYOUT_SIDE: f64 = 300.0;
 
-/// The side of a predefined map in metres.
+/// Side of a predefined map in metres.
 const MAP_SIDE: f64 = 200.0;
 
-/// The side of a cell of a text without a word about it, in metres.
+/// Default side of a cell of a text layout, in metres.
 const TEXT_CELL: f64 = 2.0;
 
 fields! {
@@ -111,7 +110,7 @@ enum Kind<'a> {
 }
 
 impl Layout {
-    /// Which kind it is: the first that is there.
+    /// The kind: the first one present.
     fn kind(&self) -> Option<Kind<'_>> {
         if let Some(maze) = &self.maze {
             return Some(Kind::Maze(maze));
@@ -133,7 +132,7 @@ impl Layout {
         self.walls.as_deref().map(Kind::Walls)
     }
 
-    /// Side lengths of the arena in metres; `None` for walls one by one, which leave them to the world.
+    /// Side lengths of the arena in metres; `None` for a list of walls, which leaves them to the world.
     pub fn size(&self) -> Option<[f64; 2]> {
         match self.kind()? {
             Kind::Maze(maze) => Some(maze.size()),
@@ -144,12 +143,12 @@ impl Layout {
         }
     }
 
-    /// Whether it is drawn, and has no seed of its own.
+    /// Whether it is random and has no seed of its own.
     pub fn is_drawn(&self) -> bool {
         (self.maze.is_some() || self.rooms.is_some()) && self.seed().is_none()
     }
 
-    /// The layout with this seed, if it is drawn and has none of its own.
+    /// Sets the seed if the layout is random and has none of its own.
     pub fn set_seed(&mut self, seed: u64) {
         if let Some(maze) = &mut self.maze {
             maze.seed.get_or_insert(seed);
@@ -159,7 +158,7 @@ impl Layout {
         }
     }
 
-    /// The seed of its own, if it has one.
+    /// Its own seed, if it has one.
     pub fn seed(&self) -> Option<u64> {
         self.maze
             .as_ref()
@@ -167,7 +166,7 @@ impl Layout {
             .or_else(|| self.rooms.as_ref().and_then(|rooms| rooms.seed))
     }
 
-    /// The regions of a predefined map as walls of the arena that it is fitted to; of a share the first ones stand.
+    /// The regions of a predefined map as walls, scaled to the arena; with a share below 1, only the first ones.
     fn map_plan(&self, regions: &[Region]) -> Plan {
         let size = self.size.unwrap_or([MAP_SIDE; 2]);
         let factor = size.map(|side| side / MAP_SIDE);
@@ -184,7 +183,7 @@ impl Layout {
         plan
     }
 
-    /// What a letter of its text stands for; `None` for a letter that has no meaning, and in a layout that is no text.
+    /// The meaning of a letter of its text; `None` for an unknown letter, and for a layout without text.
     pub fn meaning(&self, letter: char) -> Option<Legend> {
         match self.kind()? {
             Kind::Text(text) => text.meaning(letter),
@@ -192,9 +191,9 @@ impl Layout {
         }
     }
 
-    /// Draws the layout out. `seed` counts where the layout has none of its own: that of the world.
+    /// Makes the plan. `seed` is the world's, used if the layout has no seed of its own.
     ///
-    /// The same layout and seed give the same plan, to the last bit, on every machine.
+    /// The same layout and seed give bit for bit the same plan on every machine.
     ///
     /// # Example
     /// ```
@@ -208,13 +207,13 @@ impl Layout {
         self.plan_with(seed, maps::excluded_regions(self.predefined.unwrap_or(0)))
     }
 
-    /// As [`Layout::plan`], with these regions as those of its predefined map.
+    /// Like [`Layout::plan`], with these regions in place of its predefined map's.
     pub(crate) fn plan_with(&self, seed: u64, regions: &[Region]) -> Plan {
         let seed = self.seed().unwrap_or(seed);
         match self.kind() {
             Some(Kind::Maze(maze)) => maze.plan(self.standing, seed),
             Some(Kind::Rooms(rooms)) => rooms.plan(self.standing, seed),
-            // A text is not drawn: the order in which its walls are taken away is always the same.
+            // A text is not random: its walls are always removed in the same order.
             Some(Kind::Text(text)) => text.plan(self.standing, 0),
             Some(Kind::Walls(walls)) => walls::plan(walls, self.standing, 0),
             Some(Kind::Predefined) => self.map_plan(regions),

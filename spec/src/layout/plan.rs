@@ -1,5 +1,4 @@
-//! [`Plan`]: what a layout comes to: walls, free cells and doorways, in metres. How it is drawn is said in the files
-//! beside this one, one for each kind of layout.
+//! [`Plan`]: the walls, free cells and doorways of a layout, in metres. Each kind of layout makes its plan in its own file.
 
 use std::collections::VecDeque;
 
@@ -9,13 +8,13 @@ pub(super) const NORTH: u8 = 2;
 pub(super) const WEST: u8 = 4;
 pub(super) const SOUTH: u8 = 8;
 
-/// No cell of the lattice.
+/// No cell at this place of the lattice.
 const NONE: u32 = u32::MAX;
 
-/// A layout drawn out: where its walls stand, and where one can be.
+/// The plan of a layout: where its walls are, and where an object can be.
 ///
-/// Made by [`Layout::plan`](crate::Layout::plan); a checked [`World`](crate::World) keeps that of its layout. Places are in
-/// metres, x east, y north, the middle of the arena at the origin.
+/// Made by [`Layout::plan`](crate::Layout::plan); a checked [`World`](crate::World) keeps that of its layout. Coordinates are in
+/// metres, x east, y north, with the origin in the middle of the arena.
 ///
 /// # Example
 /// ```
@@ -29,30 +28,30 @@ const NONE: u32 = u32::MAX;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// Side lengths of the arena along x and y in metres; `[0, 0]` for a layout that leaves them to the world: one of walls.
+    /// Side lengths of the arena along x and y in metres; `[0, 0]` for a list of walls, which leaves them to the world.
     pub size: [f64; 2],
-    /// The seed that it was drawn with.
+    /// The seed it was made with.
     pub seed: u64,
-    /// The walls within the arena, without the one around it.
+    /// The walls inside the arena, without the outer one.
     pub walls: Vec<PlanWall>,
-    /// The cells that one can be in, row by row from the south-west; none for a predefined map and for walls.
+    /// The free cells, row by row from the south-west; empty for a predefined map and for a list of walls.
     pub cells: Vec<PlanCell>,
-    /// The least width between two of its walls in metres: of corridors and doorways; infinite where that is not known.
+    /// The least width of corridors and doorways in metres; infinite if unknown.
     pub corridor: f64,
-    /// Where one passes from room to room, in the order of their walls.
+    /// Passages between rooms, in the order of their walls.
     pub doorways: Vec<Doorway>,
-    /// Columns and rows of the lattice that the cells lie in; `[0, 0]` without cells.
+    /// Columns and rows of the lattice of cells; `[0, 0]` without cells.
     pub lattice: [usize; 2],
     /// Side lengths of a cell along x and y in metres.
     pub cell: [f64; 2],
-    /// For each place of the lattice, row by row from the south-west, the number of its cell.
+    /// For each place of the lattice, row by row from the south-west, the index of its cell.
     index: Vec<u32>,
 }
 
 /// A wall of a plan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlanWall {
-    /// Its corners in metres, in order; convex but for the polygons of a layout of walls.
+    /// Its corners in metres, in order; convex except for polygons from a list of walls.
     pub polygon: Vec<[f64; 2]>,
     /// Its height in metres; the arena's `wall_height` if absent.
     pub height: Option<f64>,
@@ -60,21 +59,21 @@ pub struct PlanWall {
     pub color: Option<crate::Color>,
 }
 
-/// A cell that one can be in.
+/// A free cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanCell {
-    /// Its middle in metres.
+    /// Its centre in metres.
     pub center: [f64; 2],
-    /// The number of its room, from 0; a maze is one room.
+    /// Index of its room, from 0; a maze is one room.
     pub room: u32,
-    /// The sides by which it can be left: 1 east, 2 north, 4 west, 8 south, added up.
+    /// Its open sides, added up: 1 east, 2 north, 4 west, 8 south.
     pub sides: u8,
-    /// What stands for it in a text; none in other layouts, and for the plain letters of walls and floor.
+    /// Its letter in a text layout; `None` in other layouts, and for the plain letters of walls and floor.
     pub letter: Option<char>,
 }
 
 impl PlanCell {
-    /// By how many sides it can be left: 1 is a dead end, 2 a corridor or a corner, 3 and 4 a junction.
+    /// Number of open sides: 1 is a dead end, 2 a corridor or a corner, 3 and 4 a junction.
     pub fn open_sides(&self) -> u32 {
         self.sides.count_ones()
     }
@@ -83,15 +82,15 @@ impl PlanCell {
 /// A gap in a wall between two rooms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Doorway {
-    /// Its middle in metres.
+    /// Its centre in metres.
     pub center: [f64; 2],
-    /// The direction in which it is passed, from the first room to the second, in degrees: 0 is north, 90 east.
+    /// The direction from the first room to the second, in degrees: 0 is north, 90 east.
     pub heading: f64,
     /// Its width in metres.
     pub width: f64,
-    /// How deep it is along its heading in metres: the thickness of its wall.
+    /// Its depth along its heading in metres: the thickness of its wall.
     pub depth: f64,
-    /// The numbers of its rooms: the one to the south or west, and the one to the north or east.
+    /// Indices of its rooms: the southern or western one, then the northern or eastern one.
     pub rooms: [u32; 2],
 }
 
@@ -102,8 +101,8 @@ impl Default for Plan {
 }
 
 impl Plan {
-    /// A plan without walls of an arena of these sides whose cells lie in a lattice: `cell_at` says of each place of it,
-    /// row by row from the south-west, what is there.
+    /// A plan without walls, with cells in a lattice over an arena of these sides: `cell_at` returns the cell at each place, row
+    /// by row from the south-west, or `None`.
     pub(super) fn of_cells(
         size: [f64; 2],
         lattice: [usize; 2],
@@ -140,7 +139,7 @@ impl Plan {
         }
     }
 
-    /// The cell that a point in metres lies in.
+    /// The cell that contains a point in metres.
     pub fn cell_at(&self, point: [f64; 2]) -> Option<usize> {
         let [column, row] = [0, 1].map(|axis| {
             let along = (point[axis] + self.size[axis] / 2.0) / self.cell[axis];
@@ -157,16 +156,16 @@ impl Plan {
             .map(|number| *number as usize)
     }
 
-    /// The place of a cell in the lattice: its column from the west and its row from the south.
+    /// A cell's column from the west and row from the south.
     pub fn column_and_row(&self, cell: usize) -> [usize; 2] {
         let center = self.cells[cell].center;
         [0, 1].map(|axis| ((center[axis] + self.size[axis] / 2.0) / self.cell[axis]) as usize)
     }
 
-    /// The cells that are reached from a cell in one step.
+    /// The cells one step from a cell.
     ///
     /// # Panics
-    /// Where there is no such cell.
+    /// If the cell does not exist.
     pub fn neighbours(&self, cell: usize) -> impl Iterator<Item = usize> {
         let [column, row] = self.column_and_row(cell);
         let columns = self.lattice[0];
@@ -183,15 +182,16 @@ impl Plan {
             .filter_map(|(_, place)| self.at(place))
     }
 
-    /// The metres that one walks from the middle of a cell to that of each, from middle to middle; infinite where no way is.
+    /// Walking distances in metres from the centre of a cell to the centre of every cell, through centres of neighbours; infinite
+    /// if there is no path.
     ///
     /// # Panics
-    /// Where there is no such cell.
+    /// If the cell does not exist.
     pub fn walking_distances(&self, from: usize) -> Vec<f64> {
         let mut metres = vec![f64::INFINITY; self.cells.len()];
         metres[from] = 0.0;
         let mut open = VecDeque::from([from]);
-        // Cells need not be square, so that a way of fewer steps may be the longer one: whoever gets nearer goes on again.
+        // Cells need not be square, so a path with fewer steps may be longer: a cell whose distance shrinks is visited again.
         while let Some(cell) = open.pop_front() {
             let here = self.cells[cell].center;
             for next in self.neighbours(cell) {
@@ -206,14 +206,14 @@ impl Plan {
         metres
     }
 
-    /// How many cells cannot be reached from the others: those outside the largest part that hangs together.
+    /// Number of cells outside the largest connected part.
     pub fn cut_off(&self) -> usize {
         let mut seen = vec![false; self.cells.len()];
         let parts = (0..self.cells.len()).map(|first| self.reach(first, &mut seen, |_, _| true));
         self.cells.len() - parts.max().unwrap_or(0)
     }
 
-    /// Marks the cells that are reached from one, itself included, by steps that may be taken; says how many are new.
+    /// Marks the cells reachable from a cell, including itself, by steps that `may_step` allows; returns how many are new.
     pub(crate) fn reach(&self, from: usize, seen: &mut [bool], may_step: impl Fn(usize, usize) -> bool) -> usize {
         if std::mem::replace(&mut seen[from], true) {
             return 0;

@@ -69,13 +69,13 @@ impl Rooms {
         [0, 1].map(|axis| f64::from(self.grid[axis]) * self.room[axis])
     }
 
-    /// How many cells a room has along x and y: each leaves room for a doorway between two walls.
+    /// Number of cells of a room along x and y: each is wide enough for a doorway between two walls.
     fn cells_of_room(&self) -> [usize; 2] {
         self.room
             .map(|side| ((side / (self.doorway + self.wall) + 1e-9) as usize).max(1))
     }
 
-    /// Columns and rows of cells in all.
+    /// Columns and rows of cells in total.
     pub(super) fn lattice(&self) -> [usize; 2] {
         let cells = self.cells_of_room();
         [0, 1].map(|axis| self.grid[axis] as usize * cells[axis])
@@ -86,7 +86,7 @@ impl Rooms {
         let (cells, lattice) = (self.cells_of_room(), self.lattice());
         let mut grid = Grid::new(lattice, Side::Open);
         let mut draws = Draws::new(seed, Purpose::Doorways);
-        // Where the doorway of a wall is does not depend on which walls have one.
+        // The place of a doorway in its wall does not depend on which walls have one.
         for (room, axis) in joined.between_cells() {
             let [column, row] = [room % joined.lattice[0], room / joined.lattice[0]];
             let has_doorway = joined.sides[axis][room] == Side::Doorway;
@@ -115,7 +115,7 @@ impl Rooms {
         })
     }
 
-    /// The rooms as cells, with doorways between those that are joined.
+    /// The rooms as cells of a grid, with doorways between those that are joined.
     fn joined(&self, seed: u64) -> Grid {
         let mut joined = Grid::new(self.grid.map(|count| count as usize), Side::Wall);
         joined.open_tree(Side::Doorway, &mut Draws::new(seed, Purpose::Tree));

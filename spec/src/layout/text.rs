@@ -1,4 +1,4 @@
-//! A layout drawn with letters: each is a cell, a wall as thick as it or a place that one can be in.
+//! A layout drawn with letters: each is a cell, either wall or free.
 
 use std::collections::BTreeMap;
 
@@ -26,8 +26,7 @@ pub enum Legend {
 }
 
 impl Legend {
-    /// What a letter stands for where the legend does not say it: `#` and `*` a wall, a space, `.` and `_` floor, `A` and
-    /// `P` a start, `D` a doorway.
+    /// The default meaning of a letter: `#` and `*` a wall, a space, `.` and `_` floor, `A` and `P` a start, `D` a doorway.
     pub fn of_letter(letter: char) -> Option<Self> {
         match letter {
             '#' | '*' => Some(Self::Wall),
@@ -48,7 +47,7 @@ pub(super) struct TextMap<'a> {
     pub(super) height: Option<f64>,
 }
 
-/// What is in a cell of a text.
+/// The content of a cell.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Square {
     Wall,
@@ -57,7 +56,7 @@ enum Square {
 }
 
 impl TextMap<'_> {
-    /// Columns and rows; the first row decides how long all are.
+    /// Columns and rows; the first row sets the length of all.
     pub(super) fn lattice(&self) -> [usize; 2] {
         let columns = self.rows.first().map_or(0, |row| row.chars().count());
         [columns, self.rows.len()]
@@ -67,14 +66,14 @@ impl TextMap<'_> {
         self.lattice().map(|count| count as f64 * self.cell)
     }
 
-    /// What a letter stands for.
+    /// The meaning of a letter.
     pub(super) fn meaning(&self, letter: char) -> Option<Legend> {
         let mut buffer = [0; 4];
         let own = self.legend.get(&*letter.encode_utf8(&mut buffer));
         own.cloned().or_else(|| Legend::of_letter(letter))
     }
 
-    /// Whether a letter says more of a cell than that it is floor; a letter for floor that the legend names does.
+    /// Whether a letter carries more information than plain floor; a floor letter that the legend names does.
     fn says_more(&self, letter: char) -> bool {
         match self.meaning(letter) {
             Some(Legend::Wall) => false,
@@ -124,7 +123,7 @@ impl TextMap<'_> {
     }
 }
 
-/// The places beside one: to the east, north, west and south, as far as they lie in the text.
+/// The eastern, northern, western and southern neighbours of a place, as far as they are inside the text.
 fn beside(place: usize, columns: usize, count: usize) -> [Option<usize>; 4] {
     let (column, row) = (place % columns, place / columns);
     [
@@ -135,7 +134,7 @@ fn beside(place: usize, columns: usize, count: usize) -> [Option<usize>; 4] {
     ]
 }
 
-/// The sides by which a place can be left.
+/// The open sides of a place.
 fn sides(squares: &[Square], columns: usize, place: usize) -> u8 {
     let ways = beside(place, columns, squares.len());
     ways.into_iter()
@@ -144,7 +143,7 @@ fn sides(squares: &[Square], columns: usize, place: usize) -> u8 {
         .fold(0, |all, (_, side)| all | side)
 }
 
-/// Takes walls away so that a share of those within the outermost ring stands.
+/// Removes walls until a share of those inside the outermost ring is left.
 fn let_stand(squares: &mut [Square], [columns, rows]: [usize; 2], share: f64, seed: u64) {
     if share >= 1.0 {
         return;
@@ -162,7 +161,7 @@ fn let_stand(squares: &mut [Square], [columns, rows]: [usize; 2], share: f64, se
     }
 }
 
-/// The rooms of places: what hangs together without passing a doorway. A doorway belongs to the first room beside it.
+/// The room of each place: a connected part without doorways. A doorway belongs to the first room beside it.
 fn rooms(squares: &[Square], columns: usize) -> Vec<u32> {
     const NONE: u32 = u32::MAX;
     let mut rooms = vec![NONE; squares.len()];
@@ -204,7 +203,7 @@ fn doorways(squares: &[Square], columns: usize, rooms: &[u32], plan: &Plan, cell
         .map(|(place, center)| {
             let [east, north, west, south] = beside(place, columns, squares.len());
             let is_floor = |next: &Option<usize>| next.is_some_and(|next| squares[next] != Square::Wall);
-            // Passed along the axis on which more of its neighbours are floor; to the north where both have as many.
+            // Passed along the axis on which more neighbours are floor; northwards if both have as many.
             let count = |pair: [Option<usize>; 2]| pair.iter().filter(|next| is_floor(next)).count();
             let along_x = count([west, east]) > count([south, north]);
             let [before, beyond] = if along_x { [west, east] } else { [south, north] };
@@ -223,8 +222,8 @@ fn doorways(squares: &[Square], columns: usize, rooms: &[u32], plan: &Plan, cell
         .collect()
 }
 
-/// The walls as few rectangles that do not overlap, `[west, south, east, north]` in cells: straight runs from west to
-/// east, and those that lie above each other as one.
+/// The walls as a few disjoint rectangles, `[west, south, east, north]` in cells: runs from west to east, with equal ones in
+/// adjacent rows merged.
 fn rectangles(squares: &[Square], [columns, rows]: [usize; 2]) -> Vec<[usize; 4]> {
     let mut done: Vec<[usize; 4]> = Vec::new();
     let mut open: Vec<[usize; 4]> = Vec::new();

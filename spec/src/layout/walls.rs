@@ -1,4 +1,4 @@
-//! [`LayoutWall`]: walls one by one, as segments, circles and polygons.
+//! [`LayoutWall`]: single walls, as segments, circles and polygons.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -8,7 +8,7 @@ use super::plan::{Plan, PlanWall};
 use crate::Color;
 use crate::world::fields::fields;
 
-/// How thick a segment is without a word about it, in metres.
+/// Default thickness of a segment in metres.
 const THICKNESS: f64 = 0.3;
 
 /// Corners of a circle.
@@ -68,14 +68,14 @@ fields! {
     }
 }
 
-/// The keys that are there.
+/// The keys that are present.
 pub(super) fn present<const N: usize>(keys: [(&'static str, bool); N]) -> Vec<&'static str> {
     let present = keys.into_iter().filter(|(_, is_there)| *is_there);
     present.map(|(key, _)| key).collect()
 }
 
 impl LayoutWall {
-    /// Which forms it has, by their keys.
+    /// The keys of its forms.
     pub(super) fn forms(&self) -> Vec<&'static str> {
         present([
             ("from", self.from.is_some() || self.to.is_some()),
@@ -108,7 +108,7 @@ impl LayoutWall {
     }
 }
 
-/// The plan of walls of which a share stands; the order in which they are taken away is that of seed 0.
+/// The plan with a share of the walls; the order in which they are removed is that of seed 0.
 pub(super) fn plan(walls: &[LayoutWall], standing: f64, seed: u64) -> Plan {
     let mut order: Vec<usize> = (0..walls.len()).collect();
     Draws::new(0, Purpose::Standing).shuffle(&mut order);

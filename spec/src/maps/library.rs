@@ -1,4 +1,4 @@
-//! [`MapLibrary`]: layouts read from files, in place of the built-in ones. Finding the files is the command line's job.
+//! [`MapLibrary`]: layouts read from files, in place of the built-in ones.
 
 use std::sync::LazyLock;
 
@@ -84,17 +84,17 @@ fn whole_arena() -> [f64; 2] {
     [-100.0, 100.0]
 }
 
-/// Layouts by their numbers.
+/// Layouts by number.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MapLibrary {
     maps: BTreeMap<u8, MapLayout>,
 }
 
 impl MapLibrary {
-    /// Reads a maps file, strictly. `name` is what messages call the document, usually its path.
+    /// Reads a maps file strictly. `name` is the document's name in messages, usually its path.
     ///
     /// # Errors
-    /// [`SpecError::Document`] with every problem of the text at once, sorted by place.
+    /// [`SpecError::Document`] with all problems of the text, sorted by place.
     ///
     /// # Example
     /// ```
@@ -115,22 +115,22 @@ impl MapLibrary {
         })
     }
 
-    /// Takes over the layouts of another library; those of the same number replace ours.
+    /// Adds the layouts of another library; they replace ours with the same number.
     pub fn extend(&mut self, other: Self) {
         self.maps.extend(other.maps);
     }
 
-    /// The name of the layout of a map, if there is one.
+    /// The name of a map's layout, if there is one.
     pub(crate) fn name(&self, map: u8) -> Option<&str> {
         Some(&self.maps.get(&map)?.name)
     }
 
-    /// The layouts in the order of their numbers.
+    /// The layouts ordered by number.
     pub fn layouts(&self) -> impl Iterator<Item = &MapLayout> {
         self.maps.values()
     }
 
-    /// Writes the layout of the world's predefined map into the world, if there is one: the world then needs no library.
+    /// Writes the layout of the world's predefined map into the world, if the library has it; the world then needs no library.
     pub fn apply(&self, world: &mut WorldDraft) {
         let environment = &mut world.environment_params;
         if let Some(map) = self.maps.get(&environment.map()) {
@@ -139,7 +139,7 @@ impl MapLibrary {
     }
 }
 
-/// What the schema cannot say: numbers that stand twice, arenas of another size, corners outside.
+/// Checks beyond the schema: repeated numbers, arenas of another size, corners outside.
 fn problems(maps: &[MapLayout]) -> Vec<Problem> {
     let mut problems = Vec::new();
     for (index, map) in maps.iter().enumerate() {
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn a_layout_that_cannot_stand_in_its_place_is_refused() {
+    fn layout_that_does_not_fit_its_arena_is_refused() {
         check(
             r#"[{ "id": 1, "name": "a", "excluded_regions": [] }, { "id": 1, "name": "b", "excluded_regions": [] }]"#,
             "maps.json:1:70 (/maps/1/id): found 1, which map 0 has too, expected a number of its own",

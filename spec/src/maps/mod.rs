@@ -1,6 +1,6 @@
 //! The four built-in layouts: regions of a 200 × 200 m arena that cannot be entered. They are ours, in `builtin.json`; only names
-//! and numbers are the original's. Those of the original, for worlds in its dialect, are in `l2explorer.json`, under the licence
-//! beside it. Layouts from files are read in `library.rs`.
+//! and numbers are the original's. The original's own layouts, for worlds in its dialect, are in `l2explorer.json`, under the
+//! licence next to it.
 
 mod library;
 
@@ -12,14 +12,14 @@ pub use library::{MapLayout, MapLibrary};
 use crate::world::Region;
 
 /// 1 backslash: a broken ridge from the north-west corner to the south-east one, with two passes; 2 village: twelve houses around
-/// a square and two lanes; 3 craters: six round pits; 4 bisected: a wall from west to east with a gate at either third.
+/// a square and two lanes; 3 craters: six round pits; 4 bisected: a wall from west to east with a gate at each third.
 fn built_in(predefined_map: u8) -> Option<&'static MapLayout> {
     static MAPS: LazyLock<MapsDocument> =
         LazyLock::new(|| serde_json::from_str(include_str!("builtin.json")).expect("the built-in layouts are sound"));
     MAPS.maps.iter().find(|map| map.id == predefined_map)
 }
 
-/// The original's layouts of its maps 1 to 4: what worlds in its dialect have.
+/// The original's layouts of its maps 1 to 4, used for worlds in its dialect.
 pub fn of_l2explorer() -> &'static MapLibrary {
     static MAPS: LazyLock<MapLibrary> = LazyLock::new(|| {
         MapLibrary::from_json("l2explorer.json", include_str!("l2explorer.json")).expect("the layouts are sound")
@@ -27,7 +27,7 @@ pub fn of_l2explorer() -> &'static MapLibrary {
     &MAPS
 }
 
-/// Regions of a predefined map that cannot be entered. 0 (and any number without a layout) has none.
+/// Regions of a predefined map that cannot be entered; empty for 0 and any number without a layout.
 pub fn excluded_regions(predefined_map: u8) -> &'static [Region] {
     built_in(predefined_map).map_or(&[], |map| &map.excluded_regions)
 }
@@ -42,7 +42,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_layout_lies_in_its_arena_and_leaves_the_middle_of_each_side_reachable() {
+    fn every_layout_fits_its_arena_and_keeps_the_middle_of_each_side_reachable() {
         for map in 1..=4 {
             assert!(!excluded_regions(map).is_empty(), "{}", name(map));
             for corner in excluded_regions(map).iter().flat_map(|region| &region.0) {
@@ -52,7 +52,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_without_a_layout_is_empty() {
+    fn unknown_map_number_has_no_regions() {
         assert!(excluded_regions(0).is_empty() && excluded_regions(9).is_empty());
     }
 }
