@@ -1,4 +1,4 @@
-//! What to do about values that come near to what was meant: names, numbers and truths in the wrong dress. Colours are in `color.rs`.
+//! Advice for values that are nearly right: misspelt names, and numbers or booleans written as text.
 
 use driftworld_text::{WordKind, removed};
 use serde_json::Value;
@@ -6,7 +6,7 @@ use serde_json::Value;
 use crate::Element;
 use crate::suggest::nearest;
 
-/// The advice for a word that earlier releases took at a place.
+/// Advice for a word that earlier releases accepted at this place.
 pub(super) fn for_removed(pointer: &str, value: &Value) -> Option<String> {
     let kind = match pointer.rsplit('/').next()? {
         "measure" => WordKind::Measure,
@@ -16,7 +16,7 @@ pub(super) fn for_removed(pointer: &str, value: &Value) -> Option<String> {
     removed(kind, value.as_str()?)
 }
 
-/// The advice for a value where these types of JSON Schema may stand.
+/// Advice for a value at a place that allows these JSON Schema types.
 pub(super) fn for_types(value: &Value, allows: impl Fn(&str) -> bool) -> Option<String> {
     let text = value.as_str()?.trim();
     if allows("number") || allows("integer") {
@@ -30,7 +30,7 @@ pub(super) fn for_types(value: &Value, allows: impl Fn(&str) -> bool) -> Option<
     allows("boolean").then(|| format!("write {truth}, without quotes"))
 }
 
-/// The advice for the word of an element of the decision process where its letter is wanted: `R` for `reward`.
+/// Advice for an element of the decision process written as a word instead of its letter: `R` for `reward`.
 pub(super) fn for_element(value: &Value) -> Option<String> {
     let word = value.as_str()?.to_lowercase();
     let named = |element: &Element| nearest(&word, [element.name()]).is_some();
@@ -38,7 +38,7 @@ pub(super) fn for_element(value: &Value) -> Option<String> {
     Some(format!("did you mean {:?}?", element.letter()))
 }
 
-/// The advice for a word that stands alone where a list of such words is wanted.
+/// Advice for a single word where a list of such words is expected.
 pub(super) fn for_word_of_list(value: &Value, words: &[&str]) -> Option<String> {
     let near = nearest(value.as_str()?, words)?;
     Some(format!("write [{near:?}]"))
@@ -57,7 +57,7 @@ fn finite(text: &str) -> Option<f64> {
     text.parse().ok().filter(|number: &f64| number.is_finite())
 }
 
-/// A name in lower-case letters, digits and underscores for one that was written otherwise: `max_steps` for `maxSteps` and `max-steps`.
+/// The name in lower-case letters, digits and underscores: `max_steps` for `maxSteps` and `max-steps`.
 pub(super) fn snake_case(name: &str) -> Option<String> {
     let mut snake = String::new();
     let mut after_small = false;
@@ -76,7 +76,7 @@ pub(super) fn snake_case(name: &str) -> Option<String> {
     (starts && rest && snake != name).then_some(snake)
 }
 
-/// The known word that one may stand for that begins alike: `param` for `parameter`.
+/// The known word that shares its beginning with the given one: `param` for `parameter`.
 pub(super) fn begins_alike<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     let alike =
         |known: &&&str| word.len().min(known.len()) >= 4 && (word.starts_with(**known) || known.starts_with(word));
@@ -88,7 +88,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_brought_into_lower_case_with_underscores_where_that_is_all_they_lack() {
+    fn snake_case_converts_names_that_differ_only_in_style() {
         assert_eq!(snake_case("max-steps").as_deref(), Some("max_steps"));
         assert_eq!(snake_case("FindObjects").as_deref(), Some("find_objects"));
         assert_eq!(snake_case("RGB light").as_deref(), Some("rgb_light"));
@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_in_quotes_are_taken_out_of_them() {
+    fn quoted_numbers_get_advice_without_quotes() {
         assert_eq!(for_number("+1.50").as_deref(), Some("drop the quotes: 1.5"));
         assert_eq!(for_number("2 m").as_deref(), Some("write the number alone: 2"));
         assert_eq!(for_number("many"), None);

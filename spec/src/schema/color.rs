@@ -1,4 +1,4 @@
-//! What is wrong with a value that was meant as a colour. What a colour is, is said in `crate::color`.
+//! Explains why a value is not a valid colour.
 
 use serde_json::Value;
 
@@ -6,10 +6,10 @@ use crate::Color;
 use crate::describe::describe;
 use crate::error::Problem;
 
-/// What messages call a colour.
+/// Wording of a colour in messages.
 pub(super) const EXPECTED: &str = "a CSS colour name or [r, g, b] in 0..1";
 
-/// The problem of a text or list that is no colour; `None` for a triple of which single channels are wrong.
+/// The problem with a text or list that is not a colour; `None` for a triple with single invalid channels.
 pub(super) fn problem(pointer: &str, value: &Value) -> Option<Problem> {
     let problem = Problem::new("spec/value", pointer, describe(value), EXPECTED);
     let advised = match value {
@@ -33,7 +33,7 @@ pub(super) fn problem(pointer: &str, value: &Value) -> Option<Problem> {
     Some(advised)
 }
 
-/// The numbers of a list that has nothing else, and three or four of them.
+/// The numbers of a list of three or four numbers.
 fn channels(items: &[Value]) -> Option<Vec<f64>> {
     let numbers: Vec<f64> = items.iter().map(Value::as_f64).collect::<Option<_>>()?;
     matches!(numbers.len(), 3 | 4).then_some(numbers)
@@ -43,7 +43,7 @@ fn in_bytes(channels: &[f64]) -> bool {
     channels.iter().all(|channel| (0.0..=255.0).contains(channel)) && channels.iter().any(|channel| *channel >= 2.0)
 }
 
-/// The colour of `#f00` or `#ff0000`, the hash left out or not.
+/// The colour of `#f00` or `#ff0000`, with or without the hash.
 fn from_hex(text: &str) -> Option<[f64; 3]> {
     let digits = text.trim().trim_start_matches('#');
     if !digits.chars().all(|c| c.is_ascii_hexdigit()) {
@@ -70,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_of_other_notations_are_given_in_ours() {
+    fn other_colour_notations_get_advice_in_ours() {
         check(&json!("#ff0000"), Some("write [1, 0, 0]"));
         check(&json!("#0f8"), Some("write [0, 1, 0.533]"));
         check(&json!("bleu"), Some("did you mean \"blue\"?"));

@@ -1,4 +1,4 @@
-//! [`DocumentSchema`]: the schema of a document type, made from the Rust type, and what it finds wrong in a value.
+//! [`DocumentSchema`]: the schema of a document type, generated from the Rust type; finds the problems of a value.
 
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
@@ -12,27 +12,27 @@ use serde_json::{Value, json};
 use super::explain;
 use crate::error::{Listed, MAX_PROBLEMS};
 
-/// Values that lie deeper in a schema are written on one line: the keys of a definition stand here.
+/// Depth beyond which values of a schema are written on one line; the keys of definitions are at this depth.
 const DEEPEST_BREAK: usize = 4;
 
-/// So many bytes are written on one line.
+/// Most bytes written on one line.
 const SHORT_LINE: usize = 100;
 
-/// One document type's schema, ready to check values.
+/// The schema of one document type, ready to check values.
 pub struct DocumentSchema {
     json: Value,
     validator: Validator,
-    /// Lists errors: only for documents that have some.
+    /// Lists errors; compiled only for invalid documents.
     listing: OnceLock<BoundedErrors>,
 }
 
 impl DocumentSchema {
-    /// The schema of a Rust type under a title and an identifier of its own.
+    /// The schema of a Rust type with this title and identifier.
     pub(crate) fn of<T: JsonSchema>(id: &str, title: &str) -> Self {
         Self::new(of_type::<T>(id, title))
     }
 
-    /// A schema that is JSON already.
+    /// A schema given as JSON.
     pub(crate) fn new(json: Value) -> Self {
         let validator = jsonschema::validator_for(&json).expect("the schema is made from our own types and is tested");
         Self {
@@ -47,21 +47,21 @@ impl DocumentSchema {
         &self.json
     }
 
-    /// The schema as text: a line for each key of a definition.
+    /// The schema as text, with one line for each key of a definition.
     pub fn text(&self) -> String {
         let mut text = String::new();
         write_lines(&self.json, 0, &mut text);
         text + "\n"
     }
 
-    /// Whether the schema allows a value.
+    /// Whether a value is valid.
     pub(crate) fn allows(&self, value: &Value) -> bool {
         self.validator.is_valid(value)
     }
 
-    /// What in a value the schema does not allow; of any one list or object about [`MAX_PROBLEMS`] of it.
+    /// The problems of a value; of any one list or object about [`MAX_PROBLEMS`].
     pub(crate) fn problems(&self, value: &Value) -> Listed {
-        // Nearly every document is sound, and the short answer is much faster than the list.
+        // Nearly every document is valid, and this check is much faster than listing errors.
         if self.allows(value) {
             return Listed::default();
         }
@@ -73,7 +73,7 @@ impl DocumentSchema {
     }
 }
 
-/// Writes a value on one line if it is short or deep inside, else with a line for each entry.
+/// Writes a value on one line if it is short or deeply nested, else with one line per entry.
 fn write_lines(value: &Value, depth: usize, text: &mut String) {
     let line = value.to_string();
     let entries: Vec<(String, &Value)> = match value {
@@ -98,7 +98,7 @@ fn write_lines(value: &Value, depth: usize, text: &mut String) {
     text.extend(["\n", &" ".repeat(depth), close]);
 }
 
-/// The schema of a Rust type under a title and an identifier of its own.
+/// The schema of a Rust type with this title and identifier.
 pub(crate) fn of_type<T: JsonSchema>(id: &str, title: &str) -> Value {
     let schema: Schema = SchemaSettings::draft2020_12()
         .into_generator()
@@ -115,7 +115,7 @@ pub(crate) fn of_type<T: JsonSchema>(id: &str, title: &str) -> Value {
     json
 }
 
-/// The examples that a type has beside its declaration stand behind all else.
+/// Moves the examples, which the type's declaration puts elsewhere, to the end.
 fn put_examples_last(part: &mut Value) {
     if let Some(map) = part.as_object_mut()
         && let Some(examples) = map.shift_remove("examples")
@@ -124,7 +124,7 @@ fn put_examples_last(part: &mut Value) {
     }
 }
 
-/// Takes out definitions that nothing refers to: those that templates have opened and written out.
+/// Removes unused definitions: those that templates have inlined.
 fn drop_unused(schema: &mut Value) {
     let mut used = BTreeSet::new();
     let mut next = schema.clone();
@@ -162,7 +162,7 @@ fn references(part: &Value) -> Vec<String> {
     }
 }
 
-/// A form that is one key says what it is beside the form; editors look for it beside the key.
+/// Copies the description of a form with a single key to that key, where editors look for it.
 fn describe_forms(part: &mut Value) {
     match part {
         Value::Object(map) => {

@@ -1,4 +1,4 @@
-//! From the errors of a schema to problems that an author can mend. Values that may take several forms are `forms.rs`'s.
+//! Turns errors of a schema into problems that an author can fix. Values with several allowed forms are explained in `forms.rs`.
 
 use std::collections::BTreeMap;
 
@@ -14,20 +14,20 @@ use crate::error::{MAX_PROBLEMS, Problem};
 use crate::version;
 use crate::world::TEXT_PATTERN;
 
-/// A problem, and how sure it is that nothing narrower can be said.
+/// A problem, with a measure of how specific it is.
 pub(super) struct Finding {
     pub(super) problem: Problem,
-    /// How many forms it offers, where a value has none of them; 0 for every other problem.
+    /// The number of forms on offer, if the value matches none; 0 for every other problem.
     pub(super) forms: usize,
 }
 
 impl Finding {
-    /// Of two findings about one value the lower says it all; `None` for those that stand beside every other.
+    /// Rank among findings about one value, of which the lowest is kept; `None` for findings that are always kept.
     fn rank(&self) -> Option<usize> {
         match (self.problem.code, self.forms) {
             ("spec/name" | "spec/missing-key", _) => None,
             ("spec/unknown-key", _) => Some(0),
-            // That a value is of the wrong kind is worth more than that it lies outside its limits.
+            // A wrong type matters more than a value outside its limits.
             (_, 1) => Some(1),
             (_, 0) => Some(2),
             (_, forms) => Some(forms + 1),
@@ -41,7 +41,7 @@ impl From<Problem> for Finding {
     }
 }
 
-/// Everything that a schema's errors say about a document, each once, and of what is said of one value only the narrowest.
+/// All problems behind the schema's errors, without duplicates; of several about one value only the most specific.
 pub(super) fn problems<'a>(
     schema: &Value,
     document: &Value,
@@ -59,22 +59,22 @@ pub(super) fn problems<'a>(
     let kept = findings.iter().enumerate().filter(|(index, finding)| {
         let pointer = finding.problem.pointer.as_str();
         let narrowest = finding.rank().is_none_or(|rank| {
-            // Two rules may forbid one key; once is enough.
+            // Two rules may forbid the same key; report it once.
             best.get(pointer)
                 .is_none_or(|(least, first)| rank == *least && (rank > 0 || first == index))
         });
-        // What stands inside a value of the wrong kind, or under a key that may not be there, does not matter.
+        // Problems inside a value of the wrong type, or under an unknown key, do not matter.
         narrowest && !parents(pointer).any(|parent| best.get(parent).is_some_and(|(least, _)| *least <= 1))
     });
     kept.map(|(_, finding)| finding.problem.clone()).collect()
 }
 
-/// The pointers of all values around that of a pointer.
+/// The pointers of all parents of a value.
 fn parents(pointer: &str) -> impl Iterator<Item = &str> {
     pointer.match_indices('/').map(|(slash, _)| &pointer[..slash])
 }
 
-/// Explains errors of a schema about a document.
+/// Explains a schema's errors about a document.
 pub(super) struct Explainer<'a> {
     pub(super) schema: &'a Value,
     pub(super) document: &'a Value,
@@ -105,7 +105,7 @@ impl Explainer<'_> {
             | ValidationErrorKind::OneOfNotValid { context }
             | ValidationErrorKind::OneOfMultipleValid { context } => self.alternatives(error, context),
             ValidationErrorKind::PropertyNames { error: name } => vec![self.name(pointer, name).into()],
-            // Where a text must have characters, an empty one has been reported.
+            // An empty text has already been reported where `minLength` requires characters.
             ValidationErrorKind::Pattern { .. }
                 if self.instance(error).as_str() == Some("") && self.parent(error).get("minLength").is_some() =>
             {
@@ -115,20 +115,20 @@ impl Explainer<'_> {
         }
     }
 
-    /// The value that an error is about, which the error itself does not know.
+    /// The value that an error is about, which the error does not store.
     pub(super) fn instance(&self, error: &ValidationError) -> &Value {
         let place = error.instance_path();
         self.document.pointer(place.as_str()).unwrap_or(&Value::Null)
     }
 
-    /// The part of the schema that holds the keyword at fault.
+    /// The part of the schema that contains the violated keyword.
     pub(super) fn parent(&self, error: &ValidationError) -> &Value {
         let place = error.schema_path().as_str();
         let parent = place.rfind('/').map_or("", |slash| &place[..slash]);
         self.schema.pointer(parent).unwrap_or(&Value::Null)
     }
 
-    /// The problem of an error about the value alone.
+    /// The problem for an error about the value alone.
     fn plain(&self, error: &ValidationError) -> Finding {
         let value = self.instance(error);
         let problem = Problem::new(
@@ -163,7 +163,7 @@ impl Explainer<'_> {
         }
     }
 
-    /// The problem of a key that is not formed as names are.
+    /// The problem for an invalid name used as a key.
     fn name(&self, pointer: &str, error: &ValidationError) -> Problem {
         let name = error.instance().as_str().unwrap_or_default();
         let place = format!("{pointer}/{}", escape(name));
@@ -172,7 +172,7 @@ impl Explainer<'_> {
         Problem { advice, ..problem }
     }
 
-    /// The keys that the object at fault may have.
+    /// The keys allowed in the object.
     fn known_keys(&self, error: &ValidationError) -> Vec<String> {
         let keys = self.parent(error).get("properties").and_then(Value::as_object);
         keys.into_iter()
@@ -182,7 +182,7 @@ impl Explainer<'_> {
             .collect()
     }
 
-    /// The part of a world that has a key which stands beside it.
+    /// The sibling part of a world that has this key.
     fn part_with(&self, error: &ValidationError, key: &str) -> Option<&'static str> {
         let parts = ["environment_params", "agent_params", "image_params", "rules"];
         let has = |part: &&str| {
@@ -192,7 +192,7 @@ impl Explainer<'_> {
         parts.into_iter().find(has)
     }
 
-    /// The problem of a key that may not stand beside another, or not beside what that says.
+    /// The problem for a key that is not allowed beside another key, or beside that key's value.
     fn forbidden_key(&self, error: &ValidationError) -> Problem {
         let pointer = error.instance_path().as_str();
         let (parent, key) = pointer.rsplit_once('/').unwrap_or(("", pointer));
@@ -232,7 +232,7 @@ impl Explainer<'_> {
         problem(format!("no such key beside {condition:?}: {found}"), advice.to_owned())
     }
 
-    /// The roles whose parameters may have a key, by the rules beside the one that forbids it.
+    /// The roles whose parameters may have a key, according to the rules next to the one that forbids it.
     fn roles_with(&self, rule: &str, key: &str) -> Vec<String> {
         let rules = rule
             .split("/allOf/")
@@ -247,7 +247,7 @@ impl Explainer<'_> {
     }
 }
 
-/// The problem of a key that is not there; `key` with its quotes.
+/// The problem for a missing key; `key` includes quotes.
 pub(super) fn missing_key(pointer: &str, key: &str) -> Problem {
     Problem::new("spec/missing-key", pointer, "nothing", format!("the key {key}"))
 }
@@ -264,7 +264,7 @@ fn unknown_key(pointer: &str, key: &str, known: &[String]) -> Problem {
         format!("the unknown key {key:?}"),
         expected,
     );
-    // Keys of version 1 of the task spec, in one that says it is of version 2.
+    // Keys of version 1 in a task spec that claims version 2.
     let known_now = version::OLD_MARGINS.iter().find(|(old, _)| *old == key);
     match known_now.filter(|_| known.iter().any(|key| key == "keep_out")) {
         Some((_, new)) => problem.advise(format!("write \"keep_out\": {{ {new:?}: … }}")),
@@ -272,14 +272,14 @@ fn unknown_key(pointer: &str, key: &str, known: &[String]) -> Problem {
     }
 }
 
-/// What a text may have been meant to be that a sign cannot show.
+/// Advice for text that a sign cannot show.
 fn in_capitals(value: &Value) -> Option<String> {
     let text = value.as_str()?;
     let capitals = text.to_uppercase();
     (capitals != text).then(|| format!("write {capitals:?}"))
 }
 
-/// What a name may have been meant to be, where its pattern wants another.
+/// Advice for a name that does not match its pattern.
 fn renamed(value: &Value) -> Option<String> {
     let near = advice::snake_case(value.as_str()?)?;
     Some(format!("did you mean {near:?}?"))

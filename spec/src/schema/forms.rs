@@ -1,4 +1,4 @@
-//! Values that may take one of several forms: which one their author meant, or which there are. Other errors are `explain.rs`'s.
+//! Explains values that match none of several allowed forms: which form the author meant, or which ones exist.
 
 use jsonschema::ValidationError;
 use jsonschema::error::ValidationErrorKind;
@@ -11,18 +11,18 @@ use crate::describe::describe;
 use crate::error::Problem;
 use crate::suggest::nearest;
 
-/// The definitions that messages call by a name of their own rather than by what they consist of.
+/// Definitions that messages name rather than describe.
 const NAMED: [&str; 5] = ["Color", "ParamRef", "Case", "NumberCase", "Distribution"];
 
-/// One form that a value may take, and what keeps this value from having it.
+/// One allowed form of a value, and the errors of this value against it.
 struct Form<'a, 'e> {
-    /// Its schema, all references followed.
+    /// Its schema, with references resolved.
     schema: &'a Value,
-    /// The definition that it belongs to, if messages know that by name.
+    /// The name of its definition, if messages use it.
     name: Option<&'a str>,
-    /// What it is called if it is a list.
+    /// Its description if it is a list.
     list: String,
-    /// The words that may stand in it, if it is a list of words.
+    /// The allowed words, if it is a list of words.
     listed: Vec<&'a str>,
     errors: Vec<&'e ValidationError<'static>>,
 }
@@ -40,13 +40,13 @@ impl Form<'_, '_> {
         }
     }
 
-    /// Whether the value is of another JSON type than this form.
+    /// Whether the value has a different JSON type.
     fn is_of_another_type(&self, own: &str) -> bool {
         let wrong = |kind: &ValidationErrorKind| matches!(kind, ValidationErrorKind::Type { .. });
         self.errors_at(own).any(|error| wrong(error.kind()))
     }
 
-    /// Whether the value is another word than this form has.
+    /// Whether the value is a word that this form does not allow.
     fn is_another_word(&self, own: &str) -> bool {
         use ValidationErrorKind as Kind;
         let wrong = |kind: &Kind| matches!(kind, Kind::Constant { .. } | Kind::Enum { .. });
@@ -64,7 +64,7 @@ impl Form<'_, '_> {
         self.schema["properties"].as_object()
     }
 
-    /// The one key that tells this form of an object from others: `uniform` of `{ "uniform": … }`.
+    /// The single key that distinguishes this object form from others: `uniform` of `{ "uniform": … }`.
     fn tag(&self) -> Option<&str> {
         if self.is_case() {
             return Some("case");
@@ -76,18 +76,18 @@ impl Form<'_, '_> {
         }
     }
 
-    /// Whether it is a look-up, which messages do not offer beside what it chooses from.
+    /// Whether it is a look-up, which messages do not offer beside the forms of its cases.
     fn is_case(&self) -> bool {
         self.is("Case") || self.is("NumberCase")
     }
 
-    /// Whether it is a list of three: a colour whose channels may be parameters, or a number for each channel.
+    /// Whether it is a list of three: a colour with parameters as channels, or one number per channel.
     fn is_a_triple(&self) -> bool {
         let of_words = !self.listed.is_empty();
         self.name.is_none() && self.has_type("array") && self.schema["maxItems"] == 3 && !of_words
     }
 
-    /// The words that this form consists of.
+    /// The words that this form allows.
     fn words(&self) -> Vec<&str> {
         let options = self.schema["enum"].as_array().into_iter().flatten();
         options
@@ -96,7 +96,7 @@ impl Form<'_, '_> {
             .collect()
     }
 
-    /// Its name in a list of forms, with the place that this has there; `None` for what needs no mention.
+    /// Its label in a list of forms, with its rank there; `None` if it need not be mentioned.
     fn label(&self, beside_text: bool) -> Option<(usize, String)> {
         let of_numbers = self.schema.pointer("/items/type").is_some_and(|kind| kind == "number");
         let label = match self.name {
@@ -127,7 +127,7 @@ impl Form<'_, '_> {
 }
 
 impl Explainer<'_> {
-    /// What to say of a value that has none of several forms, or several of them.
+    /// The findings for a value that matches none of several forms, or more than one.
     pub(super) fn alternatives(
         &self,
         error: &ValidationError,
@@ -169,7 +169,7 @@ impl Explainer<'_> {
         }
     }
 
-    /// Of objects that need one of several keys: none of these is there, or too many.
+    /// The finding for an object that needs exactly one of several keys and has none or more.
     fn one_of_the_keys(
         &self,
         error: &ValidationError,
@@ -206,7 +206,7 @@ impl Explainer<'_> {
         Some(vec![problem.into()])
     }
 
-    /// Gathers the forms behind branches, those of nested choices too.
+    /// Collects the forms of all branches, including nested choices.
     fn unfold<'a, 'e>(
         &'a self,
         own: &str,
@@ -249,7 +249,7 @@ impl Explainer<'_> {
     }
 }
 
-/// The form that a value which is no object was meant to have: of those of its type, that which it misses least.
+/// The form that a non-object value was meant to have: the one of its type with the fewest errors.
 fn meant_value<'f, 'a, 'e>(own: &str, of_its_type: &[&'f Form<'a, 'e>]) -> Option<&'f Form<'a, 'e>> {
     let fitting: Vec<_> = of_its_type
         .iter()
@@ -260,11 +260,11 @@ fn meant_value<'f, 'a, 'e>(own: &str, of_its_type: &[&'f Form<'a, 'e>]) -> Optio
         .iter()
         .copied()
         .min_by_key(|form| (form.errors_at(own).count(), form.errors.len()))?;
-    // A list that is too long or too short for each of several forms has none of them in particular.
+    // A list whose length fits none of several forms matches none in particular.
     (fitting.len() == 1 || best.errors_at(own).count() == 0).then_some(best)
 }
 
-/// The form that an object was meant to have, by its keys; else that it has several at once.
+/// The form that an object was meant to have, by its keys; an error if it has several at once.
 fn meant_object<'f, 'a, 'e>(
     own: &str,
     object: &Map<String, Value>,
@@ -280,7 +280,7 @@ fn meant_object<'f, 'a, 'e>(
             .iter()
             .filter(|form| form.has_type("object") && form.tag().is_none())
     };
-    // A key of a plain object can also be the tag of another form, as `grid` is.
+    // A key of a plain object can also be the tag of another form, such as `grid`.
     let plain = |key: &str| structs().find(|form| form.properties().is_some_and(|known| known.contains_key(key)));
     match &present[..] {
         [(key, form)] => Ok(Some(plain(key).unwrap_or(form))),
@@ -301,7 +301,7 @@ fn meant_object<'f, 'a, 'e>(
     }
 }
 
-/// Says which forms a value could have had, when it has the form of none.
+/// The problem that lists all forms, for a value that matches none.
 fn none_of(own: &str, value: &Value, forms: &[Form]) -> Finding {
     let words: Vec<&str> = forms
         .iter()
@@ -345,7 +345,7 @@ fn none_of(own: &str, value: &Value, forms: &[Form]) -> Finding {
     }
 }
 
-/// What to do about a value that has none of these forms, where it shows what was meant.
+/// Advice for a value that matches none of these forms, if the intention is clear.
 fn advice_for(value: &Value, forms: &[Form], words: &[&str]) -> Option<String> {
     let tags: Vec<&str> = forms.iter().filter_map(Form::tag).collect();
     match value {
@@ -389,7 +389,7 @@ fn advice_for(value: &Value, forms: &[Form], words: &[&str]) -> Option<String> {
     }
 }
 
-/// The tag of a form whose inside has just these keys.
+/// The tag of a form whose inner object has exactly these keys.
 fn holds<'f>(form: &'f Form, object: &Map<String, Value>) -> Option<&'f str> {
     let tag = form.tag()?;
     let inside = form.properties()?.get(tag)?;

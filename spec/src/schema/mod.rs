@@ -1,4 +1,4 @@
-//! The JSON Schemas of the documents, made from the Rust types, and what they find wrong. Checks over several values are the types' own.
+//! The JSON Schemas of the documents, generated from the Rust types, and explanations of their errors.
 
 mod advice;
 mod color;
@@ -15,7 +15,7 @@ use crate::scenario::Scenario;
 use crate::task::TaskDocument;
 use crate::world::World;
 
-/// The schemas of all document types with their file names.
+/// The schemas of all document types, each after its file name.
 pub fn all() -> [(&'static str, &'static DocumentSchema); 4] {
     [
         ("world.schema.json", World::schema()),

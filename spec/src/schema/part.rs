@@ -1,8 +1,8 @@
-//! Parts of a schema, found by pointers into the values that it describes.
+//! Finds parts of a schema by pointers into the values that it describes.
 
 use serde_json::Value;
 
-/// What a part of a schema refers to, or the part itself.
+/// Follows a reference; returns other parts unchanged.
 pub(crate) fn resolve<'a>(schema: &'a Value, part: &'a Value) -> &'a Value {
     match part.get("$ref").and_then(Value::as_str) {
         Some(reference) => schema.pointer(reference.trim_start_matches('#')).unwrap_or(part),
@@ -10,13 +10,12 @@ pub(crate) fn resolve<'a>(schema: &'a Value, part: &'a Value) -> &'a Value {
     }
 }
 
-/// The part of a schema that a pointer into the values of another part of it leads to; any number, or `*`, is that of an
-/// item.
+/// The part of a schema for a pointer into the values of another part; any number, or `*`, means an item.
 pub(crate) fn at<'a>(schema: &'a Value, part: &'a Value, pointer: &str) -> Option<&'a Value> {
     property(schema, part, pointer).map(|property| whole(schema, property))
 }
 
-/// The same as it is declared there, with its default, and references not resolved.
+/// Like [`at`], but as declared, with its default and with references unresolved.
 pub(crate) fn property<'a>(schema: &'a Value, part: &'a Value, pointer: &str) -> Option<&'a Value> {
     pointer.split('/').skip(1).try_fold(part, |part, key| {
         let part = whole(schema, part);
@@ -27,7 +26,7 @@ pub(crate) fn property<'a>(schema: &'a Value, part: &'a Value, pointer: &str) ->
     })
 }
 
-/// A part that may be absent without its `null`, references resolved.
+/// The part without the `null` of an optional value, references resolved.
 fn whole<'a>(schema: &'a Value, part: &'a Value) -> &'a Value {
     let part = resolve(schema, part);
     match part["anyOf"].as_array().map(Vec::as_slice) {

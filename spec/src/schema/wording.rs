@@ -1,4 +1,4 @@
-//! How messages word what a schema asks for: types, limits, patterns. Which error is worth a message is decided in `explain.rs`.
+//! Words the expectations of a schema for messages: types, limits, patterns.
 
 use driftworld_text::{IDENTIFIER_PATTERN, NAME_PATTERN, counted};
 use jsonschema::ValidationError;
@@ -20,11 +20,11 @@ pub(super) fn code_of(kind: &ValidationErrorKind) -> &'static str {
     }
 }
 
-/// What an error says was expected; `schema` is the part of the schema, `root`, that holds the keyword at fault.
+/// What an error expected; `schema` is the part of `root` that contains the violated keyword.
 pub(super) fn expected(error: &ValidationError, root: &Value, schema: &Value) -> String {
     match error.kind() {
         ValidationErrorKind::Type { kind } => {
-            // Null stands for an absent key, which nobody who wrote a value wants to hear of.
+            // Null stands for an absent key, which is of no interest to an author who wrote a value.
             let is_one = matches!(kind, TypeKind::Single(_));
             let kinds = types(kind).into_iter().filter(|kind| is_one || kind != "null");
             let word = |kind: String| match kind.as_str() {
@@ -59,7 +59,7 @@ pub(super) fn expected(error: &ValidationError, root: &Value, schema: &Value) ->
     }
 }
 
-/// The names of the types that a schema allows.
+/// The names of the allowed types.
 pub(super) fn types(kind: &TypeKind) -> Vec<String> {
     match kind {
         TypeKind::Single(kind) => vec![kind.to_string()],
@@ -67,7 +67,7 @@ pub(super) fn types(kind: &TypeKind) -> Vec<String> {
     }
 }
 
-/// The patterns of our schemas in words.
+/// A pattern of our schemas in words.
 fn letters(pattern: &str) -> String {
     match pattern {
         IDENTIFIER_PATTERN => "lower-case letters, digits and underscores, starting with a letter".to_owned(),
@@ -77,14 +77,14 @@ fn letters(pattern: &str) -> String {
     }
 }
 
-/// A limit as people write it: 360 rather than 360.0.
+/// A limit for people to read: 360 rather than 360.0.
 fn plain(limit: &Value) -> String {
     limit
         .as_f64()
         .map_or_else(|| limit.to_string(), |number| number.to_string())
 }
 
-/// A type of JSON Schema as people call it.
+/// A JSON Schema type in plain words.
 pub(super) fn article(kind: &str) -> String {
     match kind {
         "integer" => "a whole number".to_owned(),
@@ -96,7 +96,7 @@ pub(super) fn article(kind: &str) -> String {
     }
 }
 
-/// The words that a part of a schema allows, where it allows nothing else.
+/// The words that a part of a schema allows, if it allows nothing else.
 pub(super) fn words_of<'a>(root: &'a Value, part: &'a Value) -> Vec<&'a str> {
     let part = part::resolve(root, part);
     let forms = part
@@ -113,7 +113,7 @@ pub(super) fn words_of<'a>(root: &'a Value, part: &'a Value) -> Vec<&'a str> {
     words.collect::<Option<Vec<_>>>().unwrap_or_default().concat()
 }
 
-/// A list of a schema, by what stands in it.
+/// Describes a list by its items.
 pub(super) fn list(root: &Value, schema: &Value) -> String {
     let items = part::resolve(root, &schema["items"]);
     let words = words_of(root, items);
@@ -132,7 +132,7 @@ pub(super) fn list(root: &Value, schema: &Value) -> String {
     }
 }
 
-/// An object of a schema, by the keys that it must have.
+/// Describes an object by its required keys.
 pub(super) fn object(schema: &Value) -> String {
     let required = schema["required"].as_array().into_iter().flatten();
     let keys: Vec<&str> = required.filter_map(Value::as_str).collect();
