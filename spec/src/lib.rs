@@ -1,7 +1,7 @@
 //! The typed documents of Driftworld: worlds, task specs with their variants, scenarios, and their JSON Schemas.
 //!
-//! Read, checked and handed on as plain values; nothing here samples, measures or runs anything. Start with [`World`].
-//! Units everywhere are SI; headings are degrees clockwise from +y; colours are sRGB in 0..1; x is east, y north, z up.
+//! Documents are read, checked and returned as plain values. Start with [`World`]. Units everywhere are SI; headings are degrees
+//! clockwise from +y; colours are sRGB in 0..1; x is east, y north, z up.
 
 mod classes;
 mod color;

@@ -1,18 +1,18 @@
-//! What is wrong with a name, as a problem of its document. The grammar itself is `driftworld-text`'s, which the
-//! schemas repeat as far as they can.
+//! Reports invalid names as problems of a document. The grammar is in `driftworld-text`; the schemas repeat as much of it as they
+//! can.
 
 use driftworld_text::{check_name, quoted};
 
 use crate::error::Problem;
 
-/// The problem of a name of a task, a variant, a group, a regime or a scenario; none for a sound one.
+/// The problem with the name of a task, a variant, a group, a regime or a scenario; `None` if it is valid.
 pub(crate) fn problem(pointer: impl Into<String>, name: &str) -> Option<Problem> {
     let fault = check_name(name).err()?;
     let found = format!("the name {} with {fault}", quoted(name));
     Some(Problem::new("spec/name", pointer, found, fault.expected()))
 }
 
-/// Checks a name that someone wants to give: as [`driftworld_text::check_name`], with the fault in words.
+/// Checks a name that a user wants to give: like [`driftworld_text::check_name`], with the fault in words.
 ///
 /// # Errors
 /// What was found and what was expected, as one sentence.

@@ -1,18 +1,18 @@
-//! [`Oklab`]: colours where Euclidean distance follows the eye, through `libm`, so that every platform has the same bits.
-//! Other measures of colours are `similarity`'s.
+//! [`Oklab`]: a colour space whose Euclidean distance follows perception. Uses `libm`, so that every platform gives the same
+//! bits.
 
 use crate::Color;
 
 type Matrix = [[f64; 3]; 3];
 
-/// Linear sRGB to the answers of the eye's three kinds of cones.
+/// From linear sRGB to the responses of the eye's three kinds of cones.
 const CONES_FROM_LINEAR: Matrix = [
     [0.412_221_470_8, 0.536_332_536_3, 0.051_445_992_9],
     [0.211_903_498_2, 0.680_699_545_1, 0.107_396_956_6],
     [0.088_302_461_9, 0.281_718_837_6, 0.629_978_700_5],
 ];
 
-/// The cube roots of those to lightness, green to red, blue to yellow.
+/// From the cube roots of those to lightness, green to red, blue to yellow.
 const LAB_FROM_ROOTS: Matrix = [
     [0.210_454_255_3, 0.793_617_785_0, -0.004_072_046_8],
     [1.977_998_495_1, -2.428_592_205_0, 0.450_593_709_9],
@@ -33,7 +33,7 @@ const LINEAR_FROM_CONES: Matrix = [
 
 /// A colour in Oklab: lightness 0 to 1, a from green to red, b from blue to yellow, both about ±0.3 for sRGB.
 ///
-/// Made once per colour, so that matrices of distances do not convert again.
+/// Converted once per colour, so that distance matrices do not convert again.
 ///
 /// Source: Ottosson 2020, "A perceptual color space for image processing", with the matrices of 2021.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,14 +53,14 @@ impl Oklab {
         Self(times(&LAB_FROM_ROOTS, times(&CONES_FROM_LINEAR, rgb).map(libm::cbrt)))
     }
 
-    /// Euclidean distance to another colour: 0 for equal ones, about 0.02 just noticeable.
+    /// Euclidean distance to another colour: 0 if equal, about 0.02 just noticeable.
     #[inline]
     pub fn distance(self, other: Self) -> f64 {
         let [x, y, z] = std::array::from_fn(|k| self.0[k] - other.0[k]);
         (x * x + y * y + z * z).sqrt()
     }
 
-    /// The colour in sRGB; each channel is cut off at what a screen can show.
+    /// The colour in sRGB, with each channel clipped to what a screen can show.
     fn to_srgb(self) -> Color {
         let cones = times(&ROOTS_FROM_LAB, self.0).map(|root| root * root * root);
         Color(times(&LINEAR_FROM_CONES, cones).map(|light| srgb_from_linear(light).clamp(0.0, 1.0)))
@@ -68,8 +68,8 @@ impl Oklab {
 }
 
 impl Color {
-    /// Euclidean distance in [`Oklab`]: 0 for equal colours, about 0.02 just noticeable, 1 between black and white, which no two
-    /// colours exceed.
+    /// Euclidean distance in [`Oklab`]: 0 for equal colours, about 0.02 just noticeable, 1 between black and white, which is the
+    /// largest.
     ///
     /// # Example
     /// ```
@@ -82,8 +82,8 @@ impl Color {
         Oklab::from(self).distance(Oklab::from(other))
     }
 
-    /// The colour at fraction `t` of the straight line to another in [`Oklab`]; where that leaves what a screen can show, each
-    /// channel is cut off.
+    /// The colour at fraction `t` of the straight line to another in [`Oklab`]; each channel is clipped to what a screen can
+    /// show.
     #[must_use]
     pub fn mix(self, other: Self, t: f64) -> Self {
         let (from, to) = (Oklab::from(self).0, Oklab::from(other).0);
@@ -91,7 +91,7 @@ impl Color {
     }
 }
 
-/// The amount of light of an sRGB channel: its curve undone (IEC 61966-2-1). Both are in 0..=1.
+/// The amount of light of an sRGB channel: inverts its transfer curve (IEC 61966-2-1). Both are in 0..=1.
 #[inline]
 pub fn linear_from_srgb(channel: f64) -> f64 {
     if channel <= 0.040_45 {
@@ -121,7 +121,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_ends_come_back_and_the_middle_of_black_and_white_is_middle_grey() {
+    fn mix_keeps_the_ends_and_black_with_white_is_middle_grey() {
         let colors = ["red", "green", "blue", "white", "black", "gold", "rebeccapurple"];
         for color in colors.map(|name| Color::from_name(name).unwrap()) {
             let back = color.mix(color, 0.3);

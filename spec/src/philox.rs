@@ -1,8 +1,7 @@
-//! Philox4x64-10: a counter-based generator, four numbers of 64 bits for each counter. What is drawn from it is in
-//! `layout/draws.rs`, and in `generator`'s `stream.rs`.
+//! Philox4x64-10: a counter-based random number generator with four 64-bit numbers per counter.
 //!
-//! Source: Salmon et al. 2011, «Parallel random numbers: as easy as 1, 2, 3». Written here because no maintained crate has it
-//! and it is one screen; it gives the published test vectors.
+//! Source: Salmon et al. 2011, «Parallel random numbers: as easy as 1, 2, 3». Written here because no maintained crate has it and
+//! it fits on one screen; it passes the published test vectors.
 
 /// The numbers of one counter under a key: Philox4x64-10.
 ///
@@ -32,9 +31,9 @@ pub fn philox([mut k0, mut k1]: [u64; 2], [mut c0, mut c1, mut c2, mut c3]: [u64
 mod tests {
     use super::*;
 
-    /// The known answers that come with the authors' Random123 library.
+    /// Known answers from the authors' Random123 library.
     #[test]
-    fn the_published_test_vectors_come_out() {
+    fn philox_reproduces_the_published_test_vectors() {
         assert_eq!(
             philox([0; 2], [0; 4]),
             [

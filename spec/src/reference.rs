@@ -1,12 +1,12 @@
-//! The reference of every key of a world, as Markdown: what the table of fields and the schema say of it. The committed
-//! pages are in `docs/reference/`; `cargo xtask schemas` writes them.
+//! Writes the reference of every key of a world as Markdown, from the table of fields and the schema. The committed pages are in
+//! `docs/reference/`; `cargo xtask schemas` updates them.
 
 use serde_json::Value as Json;
 
 use crate::schema::part;
 use crate::world::{Compared, Comparison, FieldPlace, World};
 
-/// The parts of a world, a table each: the title, and the pointer to the part.
+/// The parts of a world, one table each: the title, and the pointer to the part.
 const PARTS: [(&str, &str); 7] = [
     ("The world as a whole", ""),
     ("The arena and its light", "/environment_params"),
@@ -41,7 +41,7 @@ by `driftworld elements`. `cargo xtask schemas` generates this page.
 |---|---|---|
 ";
 
-/// The pages with their file names.
+/// The pages, each after its file name.
 pub fn pages() -> Vec<(&'static str, String)> {
     let all = keys();
     let part_of = |key: &FieldPlace| {
@@ -70,7 +70,7 @@ fn is_below(pointer: &str, part: &str) -> bool {
     pointer.strip_prefix(part).is_some_and(|rest| rest.starts_with('/'))
 }
 
-/// The keys in the order of the table, and those of progress, of which it has only the whole.
+/// The keys in the order of the table, with those inside progress, which the table has only as a whole.
 fn keys() -> Vec<FieldPlace> {
     let mut keys = Vec::new();
     for place in World::places().iter().filter(|place| place.is_key) {
@@ -82,7 +82,7 @@ fn keys() -> Vec<FieldPlace> {
     keys
 }
 
-/// The keys in a place that the table knows as a whole, as the schema has them.
+/// Adds the keys below a place that the table has only as a whole, from the schema.
 fn add_inside(place: &FieldPlace, pointer: &str, keys: &mut Vec<FieldPlace>) {
     let root = World::schema().json();
     let part = part::at(root, root, pointer).unwrap_or(&Json::Null);
@@ -129,7 +129,7 @@ fn row(key: &FieldPlace, part: &str) -> String {
     format!("| {} |\n", cells.join(" | "))
 }
 
-/// Whether a key has to be there wherever what it stands in is.
+/// Whether a key is required wherever its parent is present.
 fn is_required(pointer: &str) -> bool {
     let root = World::schema().json();
     let (part, key) = pointer.rsplit_once('/').unwrap_or_default();
@@ -137,13 +137,13 @@ fn is_required(pointer: &str) -> bool {
     required.into_iter().flatten().any(|required| *required == key)
 }
 
-/// What may stand there, in words.
+/// The allowed types, in words.
 fn type_of(own: &Json, value: &Json) -> String {
     let named = own["anyOf"].get(0).unwrap_or(own)["$ref"].as_str();
     if named.is_some_and(|name| name.ends_with("/Color")) {
         return "colour, `[r, g, b]` in 0..1 or a CSS name".to_owned();
     }
-    // Whole numbers without a point.
+    // Integers without a decimal point.
     let limits = |value: &Json| match [value["minimum"].as_f64(), value["maximum"].as_f64()] {
         [Some(low), Some(high)] => format!(" from {low} to {high}"),
         _ => String::new(),
@@ -166,7 +166,7 @@ fn type_of(own: &Json, value: &Json) -> String {
     }
 }
 
-/// The words that may stand there, and the keys of other forms.
+/// The allowed words, and the keys of other forms.
 fn forms(value: &Json) -> String {
     let forms = value["oneOf"].as_array().into_iter().flatten();
     let words = forms.filter_map(|form| {
@@ -182,7 +182,7 @@ fn forms(value: &Json) -> String {
     }
 }
 
-/// The type of the parameter that sets it, or why none does.
+/// The type of parameter that sets the key, or why none can.
 fn parameter(key: &FieldPlace) -> String {
     if let Some(reason) = key.field.fixed {
         return format!("none: {reason}");

@@ -1,15 +1,15 @@
-//! "Did you mean …?": the known word nearest to a misspelt one.
+//! "Did you mean …?": finds the known word most similar to a misspelt one.
 
 use crate::limits::MAX_KEY_BYTES;
 
-/// The end of a message about a misspelt word, `; did you mean "red"?`; empty where no known word is near.
+/// The end of a message about a misspelt word, `; did you mean "red"?`; empty if no known word is similar.
 pub fn did_you_mean<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S>) -> String {
     nearest(word, known).map_or_else(String::new, |near| format!("; did you mean {near:?}?"))
 }
 
 /// The known word that a misspelt one most likely stands for.
 pub fn nearest<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S>) -> Option<String> {
-    // No name is so long, and comparing takes room for both words multiplied.
+    // No name is this long, and comparing takes memory proportional to the product of the lengths.
     if word.len() > MAX_KEY_BYTES {
         return None;
     }
@@ -18,7 +18,7 @@ pub fn nearest<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S>) ->
     let near = known.into_iter().filter_map(|candidate| {
         let name = candidate.as_ref();
         let length = name.chars().count();
-        // One that is much longer or shorter is far.
+        // A word of a very different length is not similar.
         if name.len() > MAX_KEY_BYTES || length.abs_diff(letters) > 2 + length / 4 {
             return None;
         }
@@ -34,7 +34,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_nearest_word_is_found_and_a_far_one_is_not() {
+    fn nearest_word_is_found_unless_it_is_too_different() {
         assert_eq!(nearest("bleu", ["blue", "red"]).as_deref(), Some("blue"));
         assert_eq!(
             nearest("maxsteps", ["max_steps", "objects"]).as_deref(),

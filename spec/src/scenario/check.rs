@@ -1,4 +1,4 @@
-//! What a schema cannot see in a scenario: what its blocks say together, and what the tasks that it names allow.
+//! Checks of a scenario beyond its schema: rules across blocks, and the tasks that it names.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use crate::names;
 use crate::task::TaskSpec;
 use crate::value::Value;
 
-/// Each regime with its block and the pointer to it.
+/// Each regime with its block and its pointer.
 fn regimes(scenario: &Scenario) -> impl Iterator<Item = (String, &Block, &Regime)> {
     scenario.blocks.iter().enumerate().flat_map(|(b, block)| {
         let regimes = block.regimes.iter().enumerate();
@@ -19,10 +19,10 @@ fn regimes(scenario: &Scenario) -> impl Iterator<Item = (String, &Block, &Regime
     })
 }
 
-/// A variant as a regime or its drift makes it.
+/// The start or end variant of a regime.
 struct Made<'a> {
     pointer: String,
-    /// The key that names what it is made of.
+    /// The key that names the variant.
     key: &'static str,
     task: &'a str,
     variant: &'a str,
@@ -31,7 +31,7 @@ struct Made<'a> {
     world: Option<&'a str>,
 }
 
-/// The variant that a regime begins with, and the one that its drift leads to.
+/// The variant that a regime starts with, and the one that its drift leads to.
 fn made<'a>(pointer: &str, regime: &'a Regime) -> impl Iterator<Item = Made<'a>> {
     let start = Made {
         pointer: pointer.to_owned(),
@@ -86,14 +86,14 @@ impl<'a> Made<'a> {
     }
 }
 
-/// Everything wrong in a scenario that needs no task to be seen.
+/// All problems of a scenario that can be found without its tasks.
 pub(super) fn alone(scenario: &Scenario) -> Vec<Problem> {
     let mut problems = phases(scenario);
     problems.extend(budgets(scenario));
     problems.extend(names::problem("/name", &scenario.name));
     let mut called: BTreeMap<(&str, &str), Made> = BTreeMap::new();
     for (pointer, _, regime) in regimes(scenario) {
-        // Other names are those of a task's, which has the grammar; a world file has no task.
+        // Names elsewhere refer to tasks, which follow the grammar; a world file has no task.
         if regime.world.is_some() {
             problems.extend(names::problem(format!("{pointer}/task"), &regime.task));
             problems.extend(names::problem(format!("{pointer}/variant"), &regime.variant));
@@ -167,7 +167,8 @@ fn phases(scenario: &Scenario) -> Vec<Problem> {
     scenario.blocks.iter().enumerate().filter(late).map(problem).collect()
 }
 
-/// Budgets where the number of experiences has to be known: evaluations are compared, and a drift comes to its end with the last.
+/// Step budgets where the number of experiences must be known: evaluations are compared, and a drift ends with the last
+/// experience.
 fn budgets(scenario: &Scenario) -> impl Iterator<Item = Problem> {
     regimes(scenario).filter_map(|(pointer, block, regime)| {
         let is_fixed = block.kind == BlockKind::Evaluation || regime.drift.is_some();
@@ -178,14 +179,14 @@ fn budgets(scenario: &Scenario) -> impl Iterator<Item = Problem> {
     })
 }
 
-/// Everything in a scenario that the tasks it names do not allow. A task that cannot be found is asked for once.
+/// All problems of a scenario with the tasks that it names. Each task is requested once, even if it is not found.
 pub(super) fn against_tasks(scenario: &Scenario, mut find: impl FnMut(&str) -> Option<Arc<TaskSpec>>) -> Vec<Problem> {
     let mut tasks: BTreeMap<&str, Option<Arc<TaskSpec>>> = BTreeMap::new();
     let mut problems = Vec::new();
     for (pointer, _, regime) in regimes(scenario).filter(|(.., regime)| regime.world.is_none()) {
         let mut found = |name| tasks.entry(name).or_insert_with(|| find(name)).clone();
         let (task, end_task) = (found(&regime.task), found(regime.end_task()));
-        // Each takes time: variants are looked up, and near names looked for.
+        // Each one takes time: variants and similar names are looked up.
         if problems.len() > MAX_PROBLEMS {
             break;
         }
@@ -199,7 +200,7 @@ pub(super) fn against_tasks(scenario: &Scenario, mut find: impl FnMut(&str) -> O
     problems
 }
 
-/// An error about a variant as problems of the document that names the variant under `key`.
+/// Turns an error about a variant into problems of the document that names the variant under `key`.
 fn placed(error: SpecError, pointer: &str, key: &str) -> Vec<Problem> {
     match error {
         SpecError::UnknownVariant { task, found, known } => {
@@ -255,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn values_and_a_name_go_together_and_a_name_means_one_variant() {
+    fn values_need_a_name_and_a_name_means_one_variant() {
         let dim = r#"{ "task": "t", "variant": "day", "values": { "light": 1 }, "name": "dim", "count": 1 }"#;
         check(dim, "");
         check(&format!("{dim}, {dim}"), "");
@@ -281,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn the_end_of_a_drift_is_named_as_every_other_variant_is() {
+    fn end_of_a_drift_follows_the_rules_of_names() {
         let drift = |end: &str| format!(r#"{{ "task": "t", "variant": "day", "drift": {{ {end} }}, "count": 1 }}"#);
         let dim = drift(r#""to": "day", "values": { "light": 1 }, "name": "dim""#);
         check(&dim, "");
@@ -301,7 +302,7 @@ mod tests {
             &drift(r#""to": "day", "task": "u""#),
             "(/blocks/0/regimes/0/drift/task): found \"u\", expected \"switch\": \"task\" beside it; between two tasks",
         );
-        // A name is of a task, not of all.
+        // A name belongs to one task, not to all.
         check(
             &drift(r#""to": "day", "values": { "light": 1 }, "name": "day", "task": "u", "switch": "task""#),
             "",
@@ -315,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn a_world_file_is_lived_as_it_is() {
+    fn world_file_allows_no_drift_and_needs_valid_names() {
         let world = r#"{ "task": "t", "variant": "yard", "world": "maps/yard.json", "max_steps": 20, "count": 1 }"#;
         check(world, "");
         check(
@@ -337,7 +338,7 @@ mod tests {
     }
 
     #[test]
-    fn variants_values_and_drifts_are_those_that_the_task_has() {
+    fn variants_values_and_drifts_are_checked_against_the_task() {
         check(r#"{ "task": "elsewhere.json", "variant": "any", "count": 1 }"#, "");
         check(
             r#"{ "task": "t", "variant": "dask", "count": 1 }"#,
@@ -358,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn blocks_before_deployment_come_first() {
+    fn pre_deployment_blocks_come_first() {
         let block = |phase: &str| {
             format!(r#"{{ "type": "learning"{phase}, "regimes": [{{ "task": "t", "variant": "day", "count": 1 }}] }}"#)
         };

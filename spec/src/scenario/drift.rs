@@ -1,4 +1,4 @@
-//! [`RegimeDrift`]: what a document says of a drift from one variant to another. Drawing the variants between is the generator's job.
+//! [`RegimeDrift`]: a drift from one variant to another, as declared in a scenario.
 
 use driftworld_text::NAME_PATTERN;
 use indexmap::IndexMap;
@@ -71,8 +71,8 @@ pub enum DriftSchedule {
 }
 
 impl DriftSchedule {
-    /// How far the drift has come, 0..=1, when its surroundings have come `progress`, 0..=1. Cosine: (1 − cos π·progress) / 2.
-    /// Of steps, the first is taken at `1 / (steps + 1)` of the way, the last at `steps / (steps + 1)`.
+    /// The progress of the drift, 0..=1, at `progress`, 0..=1, of its regime. Cosine: (1 − cos π·progress) / 2. With steps, the
+    /// first is at `1 / (steps + 1)` of the way, the last at `steps / (steps + 1)`.
     pub fn at(self, progress: f64) -> f64 {
         let progress = progress.clamp(0.0, 1.0);
         match self {
@@ -103,7 +103,7 @@ pub enum DriftSwitch {
 }
 
 impl RegimeDrift {
-    /// The whole way to a variant, evenly.
+    /// A complete, even drift to a variant.
     pub fn to(variant: impl Into<String>) -> Self {
         Self {
             to: variant.into(),
@@ -117,14 +117,14 @@ impl RegimeDrift {
         }
     }
 
-    /// What the variant that it leads to is called in tables and logs: its name if it has one, else the variant's.
+    /// Name of the end variant in tables and logs: the drift's name if it has one, else the variant's.
     pub fn variant_name(&self) -> &str {
         self.name.as_deref().unwrap_or(&self.to)
     }
 
     /// The drift's progress, 0..=1, at experience number `experience`, from 0, of a regime of `count`.
     ///
-    /// Evenly from `from` at the first to `until` at the last; in the middle of both where there is only one.
+    /// Linear from `from` at the first to `until` at the last; halfway between them if there is only one.
     ///
     /// # Example
     /// ```
@@ -148,7 +148,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_drift_may_go_backwards_and_never_leaves_its_stretch() {
+    fn drift_may_go_backwards_and_stays_within_its_bounds() {
         let back = RegimeDrift {
             from: 1.0,
             until: 0.25,
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn a_drift_is_written_without_what_goes_without_saying() {
+    fn defaults_of_a_drift_are_not_written() {
         let json = |drift: &RegimeDrift| serde_json::to_string(drift).unwrap();
         assert_eq!(json(&RegimeDrift::to("dusk")), r#"{"to":"dusk"}"#);
         let all = r#"{"to":"dusk","values":{"light":0.5},"name":"dim","schedule":{"steps":4},"switch":"mixture","from":0.25,"until":0.75}"#;
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn schedules_begin_at_0_and_end_at_1() {
+    fn schedules_start_at_0_and_end_at_1() {
         for schedule in [
             DriftSchedule::Linear,
             DriftSchedule::Cosine,

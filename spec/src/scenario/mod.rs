@@ -1,4 +1,4 @@
-//! [`Scenario`]: a curriculum as a document: learning and evaluation blocks. Designing and running one is `curriculum`'s job.
+//! [`Scenario`]: a curriculum as a document, with learning and evaluation blocks.
 
 mod check;
 mod drift;
@@ -24,7 +24,7 @@ use crate::task::TaskSpec;
 use crate::version;
 use crate::version::SCENARIO_VERSION;
 
-/// The most experiences that one regime may hold.
+/// Most experiences of one regime.
 pub const MAX_EXPERIENCES: u32 = 10_000_000;
 
 /// A lifetime: blocks of learning and evaluation, in order.
@@ -189,7 +189,7 @@ pub enum Phase {
 }
 
 impl Block {
-    /// A block of the lifetime itself.
+    /// A block of the deployment phase.
     pub fn new(kind: BlockKind, regimes: Vec<Regime>) -> Self {
         Self {
             kind,
@@ -199,7 +199,7 @@ impl Block {
         }
     }
 
-    /// How many experiences it has.
+    /// Number of experiences.
     pub fn num_experiences(&self) -> u64 {
         self.regimes.iter().map(|regime| u64::from(regime.count)).sum()
     }
@@ -213,7 +213,7 @@ impl Scenario {
         &SCHEMA
     }
 
-    /// A scenario of the current version that says nothing but its name and blocks.
+    /// A scenario of the current version with only a name and blocks.
     pub fn new(name: impl Into<String>, blocks: Vec<Block>) -> Self {
         Self {
             schema: None,
@@ -229,20 +229,20 @@ impl Scenario {
         }
     }
 
-    /// Reads a scenario, strictly. `name` is what messages call the document, usually its path.
+    /// Reads a scenario strictly. `name` is the document's name in messages, usually its path.
     ///
     /// # Errors
-    /// [`SpecError::Document`] with every problem of the text at once, sorted by place.
+    /// [`SpecError::Document`] with all problems of the text, sorted by place.
     pub fn from_json(name: &str, text: &str) -> Result<Self, SpecError> {
         Self::from_json_with(name, text, |_| None)
     }
 
-    /// Reads a scenario, strictly, and checks its variants and their values against the tasks that can be found.
+    /// Reads a scenario strictly, and checks its variants and their values against the tasks that can be found.
     ///
-    /// `task` is asked once for each task that the scenario names; where it has none, nothing of that task is checked.
+    /// `task` is called once for each task that the scenario names; if it returns none, that task is not checked.
     ///
     /// # Errors
-    /// [`SpecError::Document`] with every problem of the text at once, sorted by place.
+    /// [`SpecError::Document`] with all problems of the text, sorted by place.
     ///
     /// # Example
     /// ```
@@ -277,7 +277,7 @@ impl Scenario {
         text
     }
 
-    /// How many experiences the whole lifetime has.
+    /// Number of experiences in the whole lifetime.
     pub fn num_experiences(&self) -> u64 {
         self.blocks.iter().map(Block::num_experiences).sum()
     }

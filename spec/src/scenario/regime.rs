@@ -1,4 +1,4 @@
-//! [`Regime`]: a stretch of experiences of one variant, as a document has it. Living one is `curriculum`'s job.
+//! [`Regime`]: a sequence of experiences of one variant, as declared in a scenario.
 
 use std::sync::Arc;
 
@@ -64,7 +64,7 @@ pub struct Regime {
     pub drift: Option<RegimeDrift>,
 }
 
-/// Values by parameter. What each may be is for the task to say: the schema only knows what can be a value at all.
+/// Values by parameter. Only the task knows what each may be, so the schema accepts anything that can be a value.
 pub(super) fn values_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
     schemars::json_schema!({
         "type": "object",
@@ -84,15 +84,15 @@ impl Regime {
         }
     }
 
-    /// What its variant is called in tables and logs: its name if it has one, else the variant's.
+    /// Name of its variant in tables and logs: the regime's name if it has one, else the variant's.
     pub fn variant_name(&self) -> &str {
         self.name.as_deref().unwrap_or(&self.variant)
     }
 
-    /// The variant that its worlds are drawn from, with its values laid over; where it drifts, the one that the drift begins at.
+    /// The variant from which its worlds are drawn, with its values applied; for a drift, the start variant.
     ///
     /// # Errors
-    /// [`SpecError::UnknownVariant`]; [`SpecError::Values`] if it cannot have the values.
+    /// [`SpecError::UnknownVariant`]; [`SpecError::Values`] if the variant cannot have the values.
     ///
     /// # Example
     /// ```
@@ -110,13 +110,13 @@ impl Regime {
         laid_over(task, &self.variant, &self.values, self.variant_name())
     }
 
-    /// The task of the variant that its drift leads to, as the scenario calls it; its own if it does not drift.
+    /// The task of the drift's end variant, as the scenario names it; the regime's own task without a drift.
     pub fn end_task(&self) -> &str {
         let of_drift = self.drift.as_ref().and_then(|drift| drift.task.as_deref());
         of_drift.unwrap_or(&self.task)
     }
 
-    /// The variant of [`end_task`](Self::end_task) that its drift leads to; `None` if it does not drift.
+    /// The variant of [`end_task`](Self::end_task) that its drift leads to; `None` without a drift.
     ///
     /// # Errors
     /// As [`Regime::resolve`].
