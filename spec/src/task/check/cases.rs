@@ -1,4 +1,5 @@
-//! Look-ups: whether what they read is known and can be listed, every value has a case, and none reads itself.
+//! Checks look-ups: the parameters that they read are known and have listable values, every value has a case, and there are no
+//! cycles.
 
 use std::collections::BTreeSet;
 
@@ -12,8 +13,7 @@ use crate::error::{Problem, first_of};
 use crate::value::{ParameterType, Value};
 
 impl Check<'_> {
-    /// Reports randomized parameters whose look-ups read each other in a circle, and takes them for unsound, with all that
-    /// read them.
+    /// Reports randomized parameters whose look-ups form a cycle, and marks them, and everything that reads them, as unsound.
     pub(super) fn cycles(&mut self) {
         let parameters = self.parameters;
         let reads = |name: &str| -> Vec<String> {
@@ -24,7 +24,7 @@ impl Check<'_> {
         };
         let (mut cyclic, mut done) = (Vec::new(), BTreeSet::new());
         for start in parameters.keys() {
-            // A way of names, each with what it still has to be followed to.
+            // A path of names, each with the names still to follow from it.
             let mut way = vec![(start.clone(), reads(start))];
             while let Some((_, next)) = way.last_mut() {
                 let Some(name) = next.pop() else {
@@ -57,7 +57,7 @@ impl Check<'_> {
         }
     }
 
-    /// Whether every look-up of a source reads what it can, and has a case for each of its values.
+    /// Whether every look-up of a source reads valid parameters and has a case for each value.
     pub(super) fn cases(&mut self, pointer: &str, source: &Source) -> bool {
         let before = self.problems.len();
         for (place, case) in source.cases() {
@@ -66,7 +66,7 @@ impl Check<'_> {
         self.problems.len() == before
     }
 
-    /// Whether what a look-up makes of draws can be gone through in every variant.
+    /// Whether the outcomes of a look-up over drawn values can be enumerated in every variant.
     pub(super) fn has_outcomes(&mut self, pointer: &str, source: &Source) -> bool {
         let fault = self.variants.iter().find_map(|(name, values)| {
             match Scope::new(self.parameters, values).outcomes(source) {
@@ -79,7 +79,7 @@ impl Check<'_> {
         false
     }
 
-    /// A look-up of numbers in a distribution or margin.
+    /// Checks a look-up of numbers in a distribution or margin.
     pub(super) fn number_case(&mut self, pointer: &str, case: &Case<Number>) {
         self.case(pointer, case);
         for (_, number) in case.entries() {
@@ -110,7 +110,7 @@ impl Check<'_> {
         drawn.is_none()
     }
 
-    /// A distribution that is the value of a parameter: its look-ups read nothing that is drawn.
+    /// Checks a distribution that is the value of a parameter: its look-ups must not read drawn values.
     pub(super) fn settled_distribution(&mut self, pointer: &str, distribution: &Distribution<Number>) {
         if self.distribution(pointer, distribution) {
             let numbers = distribution.numbers();
@@ -170,7 +170,7 @@ impl Check<'_> {
         }
     }
 
-    /// Every value that a parameter can have, each once; `None` where they cannot be listed.
+    /// Every value that a parameter can have, without duplicates; `None` if they cannot be listed.
     fn listed(&self, parameter: &Parameter) -> Option<Vec<Value>> {
         let mut all: Vec<Value> = Vec::new();
         match (&parameter.choices, parameter.range, &parameter.distribution) {

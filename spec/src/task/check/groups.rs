@@ -1,4 +1,4 @@
-//! Groups: their counts, placements, distances, and the groups that they refer to.
+//! Checks groups: counts, placements, distances, and references to other groups.
 
 use serde_json::{Value as Json, json};
 
@@ -14,7 +14,7 @@ use crate::distribution::{Distribution, Number};
 use crate::error::{Problem, first_of};
 use crate::value::{ParameterType, Value};
 
-/// The most placements of a group that are looked at for room: families have thousands of variants.
+/// Most placements of a group to check for room: families have thousands of variants.
 const MOST_CASES: usize = 64;
 
 impl Check<'_> {
@@ -104,7 +104,7 @@ impl Check<'_> {
         }
     }
 
-    /// Cells of a layout: by themselves, in a world that has a layout, and not around anything.
+    /// Checks cells of a layout: not mixed with other placements, in a world with a layout, and not around anything.
     fn cells(&mut self, root: &str, group: &Group) {
         let all = self.distributions_of(&group.placement);
         if !all.iter().any(Distribution::draws_cells) {
@@ -132,7 +132,7 @@ impl Check<'_> {
         }
     }
 
-    /// Whether places that are taken in turn are enough for the fewest objects that the group can have, on an empty field.
+    /// Checks that places taken in turn suffice for the group's minimum number of objects on an empty field.
     fn room(&mut self, root: &str, group: &Group, count: Option<&Count>) {
         let Some(count) = count else { return };
         let mut seen: Vec<(Distribution, u64, f64)> = Vec::new();
@@ -164,7 +164,7 @@ impl Check<'_> {
         }
     }
 
-    /// The fewest objects that a group can have in a variant, where that is known.
+    /// The minimum number of objects of a group in a variant, if known.
     fn least(&self, count: &Count, scope: Scope) -> Option<u64> {
         let source = match count {
             Count::Fixed(count) => return Some(u64::from(*count)),
@@ -186,7 +186,7 @@ impl Check<'_> {
         least.is_finite().then_some(least.max(0.0) as u64)
     }
 
-    /// The number of an earlier group of this name; reports that there is none.
+    /// Index of an earlier group with this name; reports a missing one.
     fn earlier(&mut self, pointer: &str, name: &str, earlier: &[Group]) -> Option<usize> {
         let found = earlier.iter().position(|group| group.name == name);
         if found.is_none() {
@@ -202,7 +202,7 @@ impl Check<'_> {
         found
     }
 
-    /// The number of the group that it faces.
+    /// Index of the group that it faces.
     fn facing(&mut self, root: &str, group: &Group, earlier: &[Group]) -> Option<usize> {
         let wanted = "a group to be placed around";
         if group.turned && group.around.is_none() {
@@ -226,7 +226,7 @@ impl Check<'_> {
         None
     }
 
-    /// The margins, and the earlier groups that distance is kept from.
+    /// The margins, and the earlier groups to keep distance from.
     fn keep_out(&mut self, root: &str, group: &Group, earlier: &[Group]) -> Vec<(usize, Number)> {
         self.number(&format!("{root}/separation"), &group.separation, [0.0, 300.0]);
         self.number(&format!("{root}/keep_out/walls"), &group.keep_out.walls, [0.0, 300.0]);
@@ -243,7 +243,7 @@ impl Check<'_> {
         groups
     }
 
-    /// A number in metres, or a reference to one, that lies in a range in every variant.
+    /// Checks that a number in metres, or a reference to one, is in a range in every variant.
     fn number(&mut self, pointer: &str, number: &Number, [low, high]: [f64; 2]) {
         let before = self.problems.len();
         let names = number.names();

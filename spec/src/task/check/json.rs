@@ -1,5 +1,5 @@
-//! Values that only the schema of the place where they stand can judge: parameters of type JSON, and draws from lists with
-//! objects, lists or `null` in them.
+//! Checks values that only the schema of their place can judge: parameters of type JSON, and draws from lists that contain
+//! objects, lists or `null`.
 
 use super::super::layouts;
 use super::super::template::{Hole, Source};
@@ -9,7 +9,7 @@ use crate::distribution::{Distribution, Number};
 use crate::value::{ParameterType, Value};
 
 impl Check<'_> {
-    /// Whether what a source gives is for the schema of its place to judge.
+    /// Whether only the schema of its place can judge a source's values.
     pub(super) fn is_json(&self, source: &Source, place: ParameterType) -> bool {
         match source {
             Source::Case(_) => source.leaves().iter().any(|(_, leaf)| self.is_json(leaf, place)),
@@ -30,7 +30,7 @@ impl Check<'_> {
         }
     }
 
-    /// Every value that such a source can give; reports those that cannot stand at the place.
+    /// Every value that such a source can give; reports those that its place does not allow.
     pub(super) fn json_candidates<T>(&mut self, place: &str, source: &Source, hole: &Hole<T>) -> Vec<Value> {
         let mut candidates = Vec::new();
         let problems = hole.checker();
@@ -55,7 +55,7 @@ impl Check<'_> {
         candidates
     }
 
-    /// Reports what is wrong with layouts that a source draws.
+    /// Reports the problems of layouts that a source draws.
     pub(super) fn drawn_layouts(&mut self, place: &str, source: &Source) {
         for (pointer, value) in self.json_values(place, source) {
             let found = layouts::problems(&value.to_json());
@@ -64,7 +64,7 @@ impl Check<'_> {
         }
     }
 
-    /// The values that a source can give, with the places in the document where they are written.
+    /// The values that a source can give, with their places in the document.
     fn json_values(&self, place: &str, source: &Source) -> Vec<(String, Value)> {
         let mut found = Vec::new();
         match source {
@@ -84,12 +84,12 @@ impl Check<'_> {
                     let pointer = format!("{pointer}/{key}");
                     let is_choice = key.starts_with("choices/");
                     match value {
-                        // A name stands for a choice.
+                        // Skips the name of a choice: the choice itself is listed.
                         _ if !is_choice && parameter.choices.iter().any(|choices| choices.named(value).is_some()) => {}
                         Value::Distribution(own) if parameter.kind == ParameterType::Distribution => {
                             listed(own, &pointer, &mut found);
                         }
-                        // A default is one of the choices.
+                        // Skips a default that is one of the choices.
                         _ if key == "default" && found.iter().any(|(_, known)| known == value) => {}
                         _ => found.push((pointer, value.clone())),
                     }
@@ -104,8 +104,8 @@ impl Check<'_> {
     }
 }
 
-/// Whether only the schema of a place can judge what a distribution draws: what is listed, where that is no plain value, or
-/// the place takes no plain ones.
+/// Whether only the schema of a place can judge a distribution's draws: they are listed, and either not plain values, or the
+/// place accepts no plain values.
 fn is_for_schema(distribution: &Distribution<Number>, place: ParameterType) -> bool {
     let mut values = Vec::new();
     listed(distribution, "", &mut values);

@@ -1,4 +1,4 @@
-//! From a task's document to a checked task: references, types and ranges that the schema cannot see.
+//! Turns a task's document into a checked task: checks references, types and ranges, which the schema cannot.
 
 mod cases;
 mod groups;
@@ -26,9 +26,9 @@ use crate::error::Problem;
 use crate::value::{ParameterType, Value};
 pub(super) use partial::Unsound;
 
-/// The checked task, or everything that is wrong with it; `classes` are those that objects may be of, where they are known.
+/// The checked task, or all problems; `classes` are the known classes of objects, if any are given.
 ///
-/// Checks go on behind what is wrong, as far as it does not matter to them: `unsound` is what the schema has refused already.
+/// Continues after problems with everything that does not depend on them: `unsound` lists the parts that the schema has refused.
 pub(super) fn compile(
     document: TaskDocument,
     classes: Option<&Classes>,
@@ -79,7 +79,7 @@ pub(super) fn compile(
         groups.into_iter().collect(),
         unfolded,
     ) else {
-        // It hangs on what was refused before: that is the problem.
+        // It depends on a part that was refused; that problem is reported instead.
         return Err(Vec::new());
     };
     let task = TaskSpec {
@@ -100,7 +100,8 @@ fn fail_on(problems: Vec<Problem>) -> Result<(), Vec<Problem>> {
     if problems.is_empty() { Ok(()) } else { Err(problems) }
 }
 
-/// Parameters that only draws read are compared by what is drawn: a measure of their own would not be used.
+/// Reports measures of parameters that only draws read: variants are compared by the drawn values, so the measure would not be
+/// used.
 fn compared_by_draws(task: &TaskSpec) -> Vec<Problem> {
     let compared = task.parameters().iter().filter(|(_, own)| own.compare.is_some());
     let problem = |(name, parameter): (&String, &Parameter)| {
@@ -116,7 +117,7 @@ fn compared_by_draws(task: &TaskSpec) -> Vec<Problem> {
     compared.filter_map(problem).collect()
 }
 
-/// Names that a schema takes and the grammar does not; those of a family's variants are checked where it is unfolded.
+/// Names that pass the schema but not the grammar; those of a family's variants are checked when it is unfolded.
 fn names(document: &TaskDocument) -> impl Iterator<Item = Problem> {
     let variants = document
         .variants
@@ -149,7 +150,7 @@ fn reserved_names(parameters: &IndexMap<String, Parameter>) -> impl Iterator<Ite
 /// Whether a variant, or one that it extends, is among these.
 fn is_built_on(variants: &Variants, name: &str, unsound: &BTreeSet<String>) -> bool {
     let mut next = Some(name);
-    // One that bites its own tail, too, is longer than a chain may be.
+    // A cycle also exceeds the longest chain allowed.
     for _ in 0..=variant_spec::MAX_EXTENDED {
         let Some(name) = next else { return false };
         let declared = variants.get(name);
@@ -161,14 +162,14 @@ fn is_built_on(variants: &Variants, name: &str, unsound: &BTreeSet<String>) -> b
     next.is_some()
 }
 
-/// A check of one document: gathers problems on its way.
+/// A check of one document, which collects problems.
 struct Check<'a> {
     parameters: &'a IndexMap<String, Parameter>,
-    /// The values of every variant, by name; the default variant first. Without those that something is wrong with.
+    /// The values of every valid variant, by name; the default variant comes first.
     variants: Vec<(String, IndexMap<String, Value>)>,
-    /// The classes that objects may be of, where they are known.
+    /// The known classes of objects, if any are given.
     classes: Option<&'a Classes>,
-    /// Whether the task's world says anything of a layout.
+    /// Whether the task's world mentions a layout.
     has_layout: bool,
     unsound: Unsound,
     problems: Vec<Problem>,
@@ -195,7 +196,7 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// Whether a source depends on a parameter that something is wrong with: then nothing can be said of it.
+    /// Whether a source depends on an unsound parameter, so that nothing can be said about it.
     fn is_unsound(&self, source: &Source) -> bool {
         if self.unsound.parameters.is_empty() {
             return false;
@@ -204,7 +205,7 @@ impl<'a> Check<'a> {
         is_named || self.distributions_of(source).iter().any(|law| self.has_unsound(law))
     }
 
-    /// Whether a distribution has a number of a parameter that something is wrong with.
+    /// Whether a distribution refers to an unsound parameter.
     fn has_unsound(&self, distribution: &Distribution<Number>) -> bool {
         let numbers = distribution.numbers();
         let mut names = numbers.iter().flat_map(Number::names);
@@ -215,7 +216,7 @@ impl<'a> Check<'a> {
         self.problems.push(problem);
     }
 
-    /// Parameters that are, or are drawn from, distributions: their numbers and what they yield.
+    /// Checks parameters that are, or are drawn from, distributions: their numbers and their type.
     fn parameters(&mut self) {
         for (name, parameter) in self.parameters {
             if self.unsound.parameters.contains(name) {
@@ -235,7 +236,7 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// Whether a randomized parameter's distribution yields its type.
+    /// Checks that a randomized parameter's distribution yields its type.
     fn randomized(&mut self, parameter_pointer: &str, parameter: &Parameter, source: &Source) {
         let pointer = &format!("{parameter_pointer}/distribution");
         let is_plain = matches!(source, Source::Param(_));
@@ -266,7 +267,7 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// Whether the measure of a parameter drawn from another that is a distribution takes all that this one may be.
+    /// Checks that the measure of a parameter fits all distributions of the parameter from which it is drawn.
     fn compared_by(&mut self, pointer: &str, parameter: &Parameter, source: &Source) {
         let Some(measure) = parameter.compare.as_ref().and_then(|compare| compare.measure) else {
             return;
@@ -278,7 +279,7 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// The requirements that can be read and make sense.
+    /// The valid requirements.
     fn requirements(&mut self, texts: &[String]) -> Vec<Requirement> {
         let mut requirements = Vec::new();
         for (index, text) in texts.iter().enumerate() {
@@ -292,7 +293,7 @@ impl<'a> Check<'a> {
         requirements
     }
 
-    /// The conditions under which parameters are read that can be read themselves and make sense.
+    /// The valid conditions of `read_if`.
     fn read_conditions(&mut self) -> IndexMap<String, Requirement> {
         let mut conditions = IndexMap::new();
         for (name, parameter) in self.parameters {
@@ -308,14 +309,14 @@ impl<'a> Check<'a> {
         conditions
     }
 
-    /// A condition read from a text; reports what is wrong with the text.
+    /// Parses a condition; reports a syntax error.
     fn parsed(&mut self, pointer: &str, text: &str) -> Option<Requirement> {
         let parsed = Requirement::parse(text);
         let problem = |expected| Problem::new("spec/requirement", pointer, format!("{text:?}"), expected);
         parsed.map_err(|expected| self.report(problem(expected))).ok()
     }
 
-    /// Whether a requirement speaks of parameters that it can compare, and is true or false for them.
+    /// Whether a requirement compares comparable parameters and gives true or false.
     fn requirement(&mut self, pointer: &str, requirement: &Requirement) -> bool {
         if requirement
             .names()
@@ -353,7 +354,7 @@ impl<'a> Check<'a> {
         true
     }
 
-    /// Whether every declared variant meets the requirements that chance has no part in.
+    /// Checks that every declared variant meets the requirements on non-random parameters.
     fn variants_meet(&mut self, requirements: &[Requirement], variants: &Variants) {
         for (name, values) in self.variants.iter().filter(|(name, _)| variants.contains_key(name)) {
             if let Some((requirement, shown)) = variant::broken(requirements, values) {

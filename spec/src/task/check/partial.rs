@@ -1,5 +1,5 @@
-//! What is sound in a task's document beside what the schema refuses, so that all that is wrong is told at once: checks go on with the rest,
-//! and say nothing that only follows from what was refused. The checks themselves are in `mod.rs`.
+//! Checks the valid rest of a task document that the schema refuses, so that all problems are reported at once, without problems
+//! that merely follow from others.
 
 use std::collections::BTreeSet;
 
@@ -11,16 +11,16 @@ use crate::classes::Classes;
 use crate::describe::escape;
 use crate::error::Problem;
 
-/// Parts of a document that something is wrong with already.
+/// Invalid parts of a document.
 #[derive(Clone, Debug, Default)]
 pub(in crate::task) struct Unsound {
-    /// Parameters: nothing is known of what refers to them.
+    /// Invalid parameters: references to them are not checked.
     pub(in crate::task) parameters: BTreeSet<String>,
-    /// Variants: nothing is known of what extends them.
+    /// Invalid variants: variants that extend them are not checked.
     pub(in crate::task) variants: BTreeSet<String>,
 }
 
-/// All that is wrong with a document that the schema refuses: that, and what the other checks find in the rest.
+/// All problems of a document that the schema refuses: those of the schema, and those that the other checks find in the rest.
 pub(in crate::task) fn problems(document: &Json, refused: Vec<Problem>, classes: Option<&Classes>) -> Vec<Problem> {
     let mut rest = Rest {
         json: document.clone(),
@@ -42,24 +42,24 @@ pub(in crate::task) fn problems(document: &Json, refused: Vec<Problem>, classes:
     refused.iter().cloned().chain(more).collect()
 }
 
-/// What is left of a document.
+/// The valid rest of a document.
 struct Rest {
     json: Json,
     unsound: Unsound,
-    /// The parts of which nothing more is said.
+    /// Pointers below which nothing more is reported.
     silent: Vec<String>,
 }
 
 impl Rest {
-    /// Leaves out what a problem is about; `None` if nothing sensible would be left.
+    /// Removes the subject of a problem; `None` if nothing useful would be left.
     fn leave_out(&mut self, problem: &Problem) -> Option<()> {
         let words: Vec<String> = problem.pointer.split('/').skip(1).map(plain).collect();
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
         let is_stray = problem.code == "spec/unknown-key" && words.len() != 2;
-        // A refused value spoils the variant that gives it to a parameter.
+        // An invalid value makes its whole variant unsound.
         let is_value_of_variant = matches!(words[..], ["variants", _, _]);
         match words.as_slice() {
-            // A key that is not there: of the top ones only the name has to be.
+            // A missing key: at the top level only the name is required.
             [] | ["name"] => self.put("", "name", json!("task")),
             ["parameters" | "variants" | "groups" | "world"] => None,
             [.., key] if is_stray && !is_value_of_variant => {
@@ -111,7 +111,7 @@ impl Rest {
         }
     }
 
-    /// Puts something sound where something was refused, of which nothing more is said.
+    /// Puts a valid value in place of a refused one, below which nothing more is reported.
     fn replace(&mut self, pointer: String, sound: Json) -> Option<()> {
         *self.json.pointer_mut(&pointer)? = sound;
         self.silent.push(pointer);
@@ -119,7 +119,7 @@ impl Rest {
     }
 
     fn remove(&mut self, parent: &str, key: &str) {
-        // Two problems may be about one part: the second finds it gone.
+        // Two problems may concern the same part: the second finds it already removed.
         if let Some(map) = self.json.pointer_mut(parent).and_then(Json::as_object_mut) {
             map.shift_remove(key);
         }
@@ -134,7 +134,7 @@ impl Rest {
     }
 }
 
-/// A word of a pointer as it stands in the document.
+/// Unescapes a key of a JSON pointer.
 fn plain(word: &str) -> String {
     word.replace("~1", "/").replace("~0", "~")
 }

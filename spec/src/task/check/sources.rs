@@ -1,4 +1,4 @@
-//! Where values come from: whether references are known, yield the wanted type, and stay in range.
+//! Checks sources of values: references are known, yield the required type, and stay in range.
 
 use super::super::parameter::{Domain, Parameter, Role};
 use super::super::scope::{Scope, Unsettled};
@@ -10,7 +10,7 @@ use crate::error::{Problem, first_of};
 use crate::value::{ParameterType, Value};
 
 impl Check<'_> {
-    /// Whether a distribution's references name numbers, and whether every variant can draw from it.
+    /// Whether a distribution's references name numbers, and every variant can draw from it.
     pub(super) fn distribution(&mut self, pointer: &str, distribution: &Distribution<Number>) -> bool {
         let before = self.problems.len();
         let mut references = Vec::new();
@@ -50,7 +50,7 @@ impl Check<'_> {
         self.problems.len() == before
     }
 
-    /// A colour in a distribution may be a fixed or variant colour, or three numbers.
+    /// Checks a colour in a distribution: a fixed or variant colour, or three numbers.
     fn color_reference(&mut self, pointer: &str, first_channel: &ParamRef) {
         let odd = self.parameters.get(&first_channel.param).filter(|parameter| {
             let is_color = parameter.kind == ParameterType::Color;
@@ -68,7 +68,7 @@ impl Check<'_> {
         self.report(Problem::new("spec/type", pointer, found, "a parameter of type color"));
     }
 
-    /// A number in a distribution, or a group's margin, may refer to a fixed or variant number only.
+    /// Checks a number in a distribution or a group's margin: it may refer only to a fixed or variant number.
     pub(super) fn number_reference(&mut self, pointer: &str, reference: &ParamRef) {
         let name = &reference.param;
         let Some(parameter) = self.parameters.get(name) else {
@@ -87,7 +87,7 @@ impl Check<'_> {
         }
     }
 
-    /// The type of what a reference to a known parameter yields; reports an index that leads nowhere.
+    /// The type of a reference to a known parameter; reports an index out of range.
     fn kind_at(&mut self, pointer: &str, reference: &ParamRef) -> Option<ParameterType> {
         let parameter = self.parameters.get(&reference.param)?;
         let Some(index) = reference.index else {
@@ -98,7 +98,7 @@ impl Check<'_> {
             ParameterType::Color => Some(3),
             ParameterType::Vector => parameter.vector_length().or_else(|| {
                 let source = parameter.distribution.as_ref()?;
-                // The shortest that it can be.
+                // The shortest possible length.
                 let lengths = self.distributions_of(source).into_iter().map(|law| law.vector_length());
                 lengths.min().flatten()
             }),
@@ -121,7 +121,7 @@ impl Check<'_> {
     }
 
     pub(super) fn unknown_parameter(&mut self, pointer: &str, name: &str) {
-        // One that was refused is there all the same.
+        // A refused parameter still exists.
         let refused = self
             .unsound
             .parameters
@@ -142,7 +142,7 @@ impl Check<'_> {
         self.report(problem.suggest(name, known));
     }
 
-    /// Whether a source is known and yields the type that its place wants.
+    /// Whether a source is known and yields the type of its place.
     pub(super) fn source(&mut self, pointer: &str, source: &Source, kind: ParameterType) -> bool {
         match source {
             Source::Case(_) => {
@@ -185,7 +185,7 @@ impl Check<'_> {
         }
     }
 
-    /// Whether what a source draws looks at no objects before: places in turn, or kept apart, are for groups.
+    /// Whether a source's draws are independent of earlier objects: places taken in turn or kept apart are for groups only.
     fn stands_alone(&mut self, pointer: &str, source: &Source) -> bool {
         let grouped = self
             .distributions_of(source)
@@ -216,7 +216,7 @@ impl Check<'_> {
         fits
     }
 
-    /// Every distribution that a source can be drawn from: its own, or those that a parameter may be.
+    /// All distributions of a source: its own, or those that a parameter may be.
     pub(super) fn distributions_of(&self, source: &Source) -> Vec<Distribution<Number>> {
         match source {
             Source::Case(_) => {
@@ -234,8 +234,7 @@ impl Check<'_> {
         }
     }
 
-    /// Every value that a source is known to be able to give at a place of this type: ends of ranges and supports, choices,
-    /// defaults.
+    /// All values that a source is known to give at a place of this type: ends of ranges and supports, choices, defaults.
     pub(super) fn candidates(&self, source: &Source, kind: ParameterType) -> Vec<Value> {
         let turned = |value: Value| {
             if kind == ParameterType::Heading {
@@ -263,7 +262,7 @@ impl Check<'_> {
         }
     }
 
-    /// Every value that a parameter is known to be able to have.
+    /// All values that a parameter is known to have.
     pub(super) fn candidates_of_parameter(&self, parameter: &Parameter) -> Vec<Value> {
         let typed = |value: &Value| parameter.typed(value);
         let mut values: Vec<Value> = parameter
@@ -283,7 +282,7 @@ impl Check<'_> {
         values
     }
 
-    /// The ends of what the distributions of a source can draw, in every variant.
+    /// The extreme values drawn from a source's distributions, over all variants.
     fn drawn(&self, source: &Source) -> Vec<Value> {
         let distributions = self.distributions_of(source);
         let sources = distributions.into_iter().map(|law| Source::Distribution(Box::new(law)));
@@ -298,7 +297,7 @@ impl Check<'_> {
         values.collect()
     }
 
-    /// Whether all that a source can give lies in the range of its place.
+    /// Whether everything that a source can give is in the range of its place.
     pub(super) fn in_range(&mut self, pointer: &str, candidates: &[Value], [low, high]: [f64; 2]) -> bool {
         let numbers = candidates.iter().flat_map(|value| match value {
             Value::Point(_) | Value::Vector(_) => value.as_vector().unwrap_or_default().to_vec(),
@@ -319,10 +318,10 @@ impl Check<'_> {
     }
 }
 
-/// Where the agent starts.
+/// Pointer to the agent's start.
 const START: &str = "/world/agent_params/coordinates";
 
-/// Whether a distribution draws cells without a look at the agent or a group.
+/// Whether a distribution draws cells independently of the agent and of groups.
 fn is_of_cells(law: &Distribution<Number>) -> bool {
     matches!(
         law,
@@ -335,7 +334,7 @@ fn is_of_cells(law: &Distribution<Number>) -> bool {
     )
 }
 
-/// The references after the first three, where those are the channels of one parameter, as its name alone stands for.
+/// The references after the first three, if those are the channels of one colour parameter.
 fn after_whole_color(references: &[ParamRef]) -> Option<&[ParamRef]> {
     let (channels, rest) = references.split_first_chunk::<3>()?;
     let of_one = |(k, channel): (usize, &ParamRef)| channel.param == channels[0].param && channel.index == Some(k);

@@ -1,4 +1,4 @@
-//! Templates of worlds and objects: whether each hole is one that may vary, and takes every value that it can be given.
+//! Checks templates of worlds and objects: each hole is allowed to vary, and accepts every value that it can be given.
 
 use indexmap::IndexMap;
 use serde_json::Value as Json;
@@ -12,13 +12,13 @@ use crate::error::Problem;
 use crate::value::Value;
 use crate::world::{Model, Object, Place, World, WorldDraft};
 
-/// The texts among some values.
+/// The texts among the values.
 fn texts(values: &[Value]) -> Vec<String> {
     values.iter().filter_map(Value::as_text).map(str::to_owned).collect()
 }
 
 impl Check<'_> {
-    /// The world's template and those of the objects it holds.
+    /// The templates of the world and of its objects.
     pub(super) fn world(&mut self, json: &Json) -> (Option<Template<WorldDraft>>, Vec<Option<Template<Object>>>) {
         let mut json = if json.is_null() {
             Json::Object(serde_json::Map::new())
@@ -49,7 +49,7 @@ impl Check<'_> {
         Some(template)
     }
 
-    /// Whether the classes that an object can be of are known, and the models that it can have of them.
+    /// Checks that all possible classes of an object are known, and all its models within them.
     fn known_class(&mut self, root: &str, template: &Template<Object>) {
         let Some(classes) = self.classes else { return };
         let hole_at = |key: &str| template.holes.iter().find(|hole| hole.pointer == key);
@@ -80,7 +80,7 @@ impl Check<'_> {
                 found.extend(of_any(&all, &models));
                 continue;
             };
-            // Variants choose which models meet which classes; yet each model is one of some class.
+            // Variants choose which models meet which classes, but each model must exist in at least one class.
             let nobodys = |model: &&String| all.iter().all(|class| unknown(class, model).is_some());
             let nobodys = models
                 .iter()
@@ -97,14 +97,14 @@ impl Check<'_> {
         self.problems.extend(found);
     }
 
-    /// The texts that a source can give in a variant of these values.
+    /// The texts that a source can give in a variant with these values.
     fn texts_in(&self, values: &IndexMap<String, Value>, source: &Source) -> Vec<String> {
         let outcomes = Scope::new(self.parameters, values).outcomes(source).unwrap_or_default();
         let drawn = |(law, _): &(Distribution, f64)| law.support().unwrap_or_else(|| vec![law.example()]);
         texts(&outcomes.iter().flat_map(drawn).collect::<Vec<_>>())
     }
 
-    /// A template: each hole checked, and the rest read with an example in each hole.
+    /// A template: checks each hole, and reads the rest with an example in each hole.
     fn template<T: Place + Clone>(&mut self, root: &str, json: &Json, schema: &'static Json) -> Option<Template<T>> {
         let before = self.problems.len();
         let mut example = json.clone();
@@ -151,7 +151,7 @@ impl Check<'_> {
         let base: T = match typed(&example) {
             Ok(base) => base,
             Err(mut problem) => {
-                // «invalid length 2, expected an array of length 3»: the first half is what was found.
+                // «invalid length 2, expected an array of length 3»: the first half says what was found.
                 let expected = problem.expected.split_once(", expected ");
                 let expected = expected.map(|(_, expected)| expected.to_owned());
                 problem.expected = expected.unwrap_or(problem.expected);
@@ -166,7 +166,7 @@ impl Check<'_> {
         })
     }
 
-    /// Whether each hole takes each value that it may be given, as a text that must name something.
+    /// Checks that each hole accepts every value that it may be given, such as texts that must name something.
     fn fillable<T: Clone>(&mut self, root: &str, base: &T, holes: &[(Hole<T>, Vec<Value>)]) {
         for (hole, candidates) in holes {
             let mut trial = base.clone();
