@@ -1,5 +1,4 @@
-//! [`By`]: the names of what variants and worlds are compared by. The measures are `similarity`'s, what is compared is drawn and run
-//! by the crates above it.
+//! [`By`]: names of the ways to compare variants and worlds, each a subject and a measure.
 
 use driftworld_text::{WordKind, removed};
 use schemars::JsonSchema;
@@ -98,26 +97,26 @@ pub enum By {
 }
 
 impl By {
-    /// The name that documents, the command and Python have for it.
+    /// Its name in documents, on the command line and in Python.
     pub fn name(self) -> &'static str {
         self.into()
     }
 
-    /// What is compared, without the measure: `"occupancy"` of `occupancy:jaccard`.
+    /// The subject without the measure: `"occupancy"` of `occupancy:jaccard`.
     pub fn subject(self) -> &'static str {
         let name = self.name();
         name.split_once(':').map_or(name, |(subject, _)| subject)
     }
 
-    /// All names, those of one subject together, the first of them its usual measure.
+    /// All names, grouped by subject, each subject's default measure first.
     pub fn names() -> &'static [&'static str] {
         Self::VARIANTS
     }
 
-    /// The one of this name; `behaviour` is `behavior`.
+    /// Finds it by name; `behaviour` is accepted for `behavior`.
     ///
     /// # Errors
-    /// What was found, and the names there are.
+    /// What was found, and the known names.
     pub fn from_name(name: &str) -> Result<Self, String> {
         let american = name.replacen("behaviour", "behavior", 1);
         american.parse().map_err(|_| {
@@ -135,7 +134,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn documents_and_arguments_have_one_name() {
+    fn documents_and_arguments_use_the_same_name() {
         for name in By::names() {
             let by = By::from_name(name).unwrap();
             assert_eq!(serde_json::to_value(by).unwrap(), *name);

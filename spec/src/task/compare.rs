@@ -1,4 +1,4 @@
-//! [`Compare`]: what a task says of how its variants are compared: by which measure, at which weight. The measures are `similarity`'s.
+//! [`Compare`]: how a task compares its variants: measures and weights of parameters.
 
 use std::collections::BTreeSet;
 
@@ -91,12 +91,12 @@ pub enum MeasureName {
 }
 
 impl MeasureName {
-    /// The name as documents write it.
+    /// Its name in documents.
     pub fn name(self) -> &'static str {
         self.into()
     }
 
-    /// What measures there are for what a distribution draws; `None` if this is one. `kind` is the parameter's type.
+    /// The measures that fit a distribution; `None` if this one does. `kind` is the parameter's type.
     pub(super) fn misfit_of_draws(self, drawn: &Distribution<Number>, kind: ParameterType) -> Option<&'static str> {
         let is_color = self.is_of_colors();
         let overlaps = matches!(self, Self::TotalVariation | Self::Hellinger | Self::JensenShannon);
@@ -146,7 +146,7 @@ impl MeasureName {
         )
     }
 
-    /// What parameters must be for this measure; `None` if this one is.
+    /// The kind of parameter that this measure needs; `None` if the given one fits.
     fn misfit(self, parameter: &Parameter) -> Option<&'static str> {
         let by_distribution = parameter.role == Role::Randomized || parameter.kind == ParameterType::Distribution;
         let of_numbers = !by_distribution && matches!(parameter.kind, ParameterType::Number | ParameterType::Integer);
@@ -188,8 +188,8 @@ impl MeasureName {
     }
 }
 
-/// The distributions that a parameter may be drawn from, as far as it declares them: its own, or those that it may be.
-/// Where another parameter is its distribution, the measure is checked against that one's.
+/// The distributions that a parameter declares: its own, or its possible values. If another parameter is its distribution, the
+/// measure is checked against that one's.
 fn distributions(parameter: &Parameter) -> impl Iterator<Item = &Distribution<Number>> {
     let own = match &parameter.distribution {
         Some(Source::Distribution(distribution)) => Some(&**distribution),
@@ -198,7 +198,7 @@ fn distributions(parameter: &Parameter) -> impl Iterator<Item = &Distribution<Nu
     own.into_iter().chain(parameter.distributions())
 }
 
-/// What a distribution draws, as far as measures care.
+/// The kind of value that a distribution draws, as far as measures distinguish it.
 #[derive(PartialEq)]
 enum Draws {
     Numbers,
@@ -242,7 +242,7 @@ fn always_positive(parameter: &Parameter) -> bool {
 }
 
 impl Compare {
-    /// What the schema cannot say: a measure that does not fit the parameter, costs that are none.
+    /// Checks beyond the schema: the measure fits the parameter, and the costs are a distance.
     pub(crate) fn problems(&self, pointer: &str, parameter: &Parameter) -> Vec<Problem> {
         let mut problems = Vec::new();
         if let Some(measure) = self.measure
@@ -263,7 +263,7 @@ impl Compare {
     }
 }
 
-/// The first thing that is wrong with a table of costs.
+/// The first problem of a table of costs.
 fn cost_problem(costs: &[Vec<f64>], parameter: &Parameter, pointer: &str) -> Option<Problem> {
     let wrong = |at: String, found: String, expected: &str| Some(Problem::new("spec/compare", at, found, expected));
     let Some(choices) = &parameter.choices else {

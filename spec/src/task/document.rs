@@ -1,4 +1,4 @@
-//! [`TaskDocument`]: a task spec as its text has it, and its schema. What is checked beyond the schema is in `check/`.
+//! [`TaskDocument`]: a task spec as written, and its schema.
 
 use std::sync::LazyLock;
 
@@ -84,7 +84,7 @@ fn variants_schema(generator: &mut SchemaGenerator) -> Schema {
     by_name::<VariantSpec>(generator, names)
 }
 
-/// The schema of things by their names, with that of the names.
+/// The schema of an object with named entries, with the schema of the names.
 fn by_name<T: JsonSchema>(generator: &mut SchemaGenerator, names: Json) -> Schema {
     let mut schema = generator.subschema_for::<IndexMap<String, T>>();
     schema.insert("propertyNames".to_owned(), names);

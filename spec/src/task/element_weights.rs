@@ -1,4 +1,4 @@
-//! [`ElementWeights`]: what each element of the decision process weighs in a task's distances. The elements are in `element.rs`.
+//! [`ElementWeights`]: the weight of each element of the decision process in a task's distances.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

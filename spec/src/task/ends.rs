@@ -1,4 +1,4 @@
-//! What the declared ranges and choices of a task can make of a distribution, whatever variants it has.
+//! The distributions that a task's declared ranges and choices allow, whatever variants it has.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -11,15 +11,14 @@ use super::variant::{DEFAULT_VARIANT, Variant, broken};
 use crate::distribution::Distribution;
 use crate::value::{ParameterType, Value};
 
-/// The most combinations of values that are looked at.
+/// Most combinations of values.
 const MOST_ENDS: usize = 256;
 
 impl TaskSpec {
-    /// The distributions that a parameter can have at the ends of the ranges and at the choices of all parameters that
-    /// it is drawn by, together, each once; where that is more than 256 combinations, at those of each parameter alone,
-    /// the others at their defaults. Left out is what cannot be drawn from, and what breaks a requirement that speaks
-    /// of these and of fixed parameters alone. No variant but the defaults has a part in it. None for a parameter that
-    /// is not drawn.
+    /// The distributions of a parameter at the ends of the ranges and at the choices of all parameters behind it, in all
+    /// combinations, without duplicates; beyond 256 combinations each parameter varies alone, with the others at their defaults.
+    /// Leaves out distributions that cannot be drawn from, and combinations that break a requirement on these and fixed
+    /// parameters alone. Declared variants play no part. Empty for a parameter that is not drawn.
     ///
     /// # Example
     /// ```
@@ -51,7 +50,7 @@ impl TaskSpec {
         found
     }
 
-    /// A parameter, and all that its distribution is made of.
+    /// A parameter, and everything that its distribution depends on.
     fn drawn_by<'a>(&'a self, parameter: &'a str) -> BTreeSet<&'a str> {
         let mut found = BTreeSet::from([parameter]);
         loop {
@@ -92,8 +91,7 @@ impl TaskSpec {
     }
 }
 
-/// The ends of a range or all choices; of the numbers of a vector every corner, or, where these are many, the first and
-/// the last.
+/// The ends of a range or all choices; for a vector every corner or, if there are too many, the first and the last.
 fn ends_of(parameter: &Parameter) -> Vec<Value> {
     match parameter.domain() {
         Some(Domain::Choices(choices)) => choices,
@@ -113,7 +111,7 @@ fn ends_of(parameter: &Parameter) -> Vec<Value> {
     }
 }
 
-/// Every value with every other, or each alone.
+/// All combinations of values, or one value at a time.
 fn combinations(ends: &[(&String, Vec<Value>)]) -> Vec<IndexMap<String, Value>> {
     let count = ends
         .iter()

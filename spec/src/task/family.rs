@@ -1,4 +1,4 @@
-//! Families of variants: a grid or a sweep in a document declares many at once, with names that stay. One variant is in `variant.rs`.
+//! Families of variants: a grid or a sweep declares many variants at once, with stable names.
 
 use indexmap::IndexMap;
 use schemars::JsonSchema;
@@ -12,13 +12,13 @@ use crate::error::Problem;
 use crate::names;
 use crate::value::{ParameterType, Value};
 
-/// The most variants that one task may declare, families unfolded.
+/// Most variants of one task, with families unfolded.
 const MAX_VARIANTS: usize = 10_000;
 
-/// The most values that all variants of a task have together: variants times parameters.
+/// Most values of all variants of a task together: variants times parameters.
 const MAX_VARIANT_VALUES: usize = 400_000;
 
-/// The longest name of a variant in characters, as scenarios have room for.
+/// Longest name of a variant in characters, as in scenarios.
 const MAX_NAME: usize = 100;
 
 /// Evenly spaced values of one number.
@@ -50,7 +50,8 @@ pub enum Spacing {
 }
 
 impl Sweep {
-    /// The values in order; to 12 digits, so that 0.1 + 0.2 is 0.3. `None` if a logarithmic sweep has an end at or below 0.
+    /// The values in order, rounded to 12 digits, so that 0.1 + 0.2 is 0.3. `None` if a logarithmic sweep has an end at or below
+    /// 0.
     pub fn values(&self) -> Option<Vec<f64>> {
         let last = f64::from(self.steps.max(2) - 1);
         let share = |k: u32| f64::from(k) / last;
@@ -70,23 +71,23 @@ fn rounded(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
 }
 
-/// A variant of a family or one that stands alone, ready to be resolved.
+/// A single variant or a member of a family, ready to be resolved.
 #[derive(Clone, Debug)]
 pub(crate) struct Declared {
     pub(crate) extends: Option<String>,
     pub(crate) description: Option<String>,
     pub(crate) values: IndexMap<String, Value>,
-    /// The name that the document declares it under: its own, or its family's.
+    /// The key that declares it: its own name, or its family's.
     pub(crate) origin: String,
 }
 
-/// All variants of a task by name, families unfolded.
+/// All variants of a task by name, with families unfolded.
 pub(crate) type Variants = IndexMap<String, Declared>;
 
-/// One axis of a family: a parameter and the values that it takes in turn.
+/// One axis of a family: a parameter with its values in order.
 type Axis<'a> = (&'a String, Vec<Value>);
 
-/// What is found and expected of a task of so many variants, where those or their values are more than can be looked through.
+/// What was found and expected if a task has too many variants, or too many values in them.
 fn too_many(variants: usize, parameters: usize) -> Option<(String, String)> {
     if variants > MAX_VARIANTS {
         return Some((format!("{variants} variants"), format!("at most {MAX_VARIANTS} in all")));
@@ -97,7 +98,7 @@ fn too_many(variants: usize, parameters: usize) -> Option<(String, String)> {
     })
 }
 
-/// Whether a document has no more variants, and no more values of them, than can be looked through.
+/// Fails if a document has too many variants, or too many values in them.
 pub(crate) fn fits(document: &TaskDocument) -> Result<(), Vec<Problem>> {
     let too_many = too_many(document.variants.len(), document.parameters.len());
     too_many.map_or(Ok(()), |(found, expected)| {
@@ -173,7 +174,7 @@ fn value_of(parameter: Option<&Parameter>, number: f64) -> Value {
     }
 }
 
-/// The axes of a family, or what is wrong with them.
+/// The axes of a family, or its problems.
 fn axes_of<'a>(
     parameters: &IndexMap<String, Parameter>,
     spec: &'a VariantSpec,
@@ -211,14 +212,14 @@ fn axes_of<'a>(
     if problems.is_empty() { Ok(axes) } else { Err(problems) }
 }
 
-/// A piece of what a family calls its members.
+/// A piece of the name pattern of a family's members.
 enum Piece<'a> {
     Text(&'a str),
-    /// The value on the axis of this number.
+    /// The value on the axis with this index.
     Value(usize),
 }
 
-/// What a family calls its members, in pieces; nothing where it does not say, and what is wrong with it.
+/// The name pattern of a family's members, in pieces; `None` if the family gives none. Fails with the problem of an invalid one.
 fn pattern_of<'a>(spec: &'a VariantSpec, axes: &[Axis], pointer: &str) -> Result<Option<Vec<Piece<'a>>>, Problem> {
     let Some(name) = spec.name.as_deref() else {
         return Ok(None);
@@ -262,7 +263,7 @@ fn pattern_of<'a>(spec: &'a VariantSpec, axes: &[Axis], pointer: &str) -> Result
     }
 }
 
-/// Member number `member` of a family, the last axis running fastest: its name, and what it declares.
+/// Member number `member` of a family, with the last axis varying fastest: its name and its declaration.
 fn member_of(
     name: &str,
     pattern: Option<&[Piece]>,
@@ -299,7 +300,7 @@ fn member_of(
     (own, declared)
 }
 
-/// A value as part of a name: letters, digits, `.`, `+`, `_` only.
+/// A value as part of a name: only letters, digits, `.`, `+` and `_`.
 fn word(value: &Value, index: usize) -> String {
     let numbers = |numbers: &[f64]| numbers.iter().map(f64::to_string).collect::<Vec<_>>().join("_");
     match value {
@@ -323,7 +324,7 @@ fn word(value: &Value, index: usize) -> String {
     }
 }
 
-/// JSON as part of a name: a word, a number or a list of words as it is, anything else by its first key and its number.
+/// JSON as part of a name: a word, a number or a list of words as it is, anything else by its first key and its index.
 fn word_of_json(json: &serde_json::Value, index: usize) -> String {
     use serde_json::Value as Json;
     match json {
@@ -342,7 +343,7 @@ fn word_of_json(json: &serde_json::Value, index: usize) -> String {
     }
 }
 
-/// What is wrong with the values on a family's axes, with their places.
+/// The problems of the values on a family's axes, with their places.
 pub(crate) fn problems(
     parameters: &IndexMap<String, Parameter>,
     name: &str,
@@ -400,7 +401,7 @@ mod tests {
     }
 
     #[test]
-    fn a_family_may_say_what_its_members_are_called() {
+    fn family_may_give_a_name_pattern() {
         let named = |name: &str| {
             format!(r#"{{ "look": {{ "name": "{name}", "grid": {{ "color": ["red", "blue"], "light": [0.5] }} }} }}"#)
         };
@@ -416,7 +417,7 @@ mod tests {
     }
 
     #[test]
-    fn a_grid_unfolds_into_every_combination_the_last_axis_fastest() {
+    fn grid_unfolds_into_all_combinations_with_the_last_axis_fastest() {
         assert_eq!(
             family(r#"{ "look": { "grid": { "color": ["red", [0.1, 0.2, 0.3]], "light": [0.5, 2] } } }"#),
             ["look-red-0.5", "look-red-2", "look-1a334d-0.5", "look-1a334d-2"]
@@ -424,7 +425,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sweep_has_both_ends_and_round_numbers() {
+    fn sweep_includes_both_ends_and_rounds_numbers() {
         assert_eq!(
             family(r#"{ "dim": { "sweep": { "light": { "from": 0.1, "to": 0.5, "steps": 5 } } } }"#),
             ["dim-0.1", "dim-0.2", "dim-0.3", "dim-0.4", "dim-0.5"]

@@ -1,4 +1,4 @@
-//! A group of objects that are made alike and placed by chance, as a spec declares it. Placing them is the generator's job.
+//! A group of similar objects with random places, as declared in a task spec.
 
 use driftworld_text::NAME_PATTERN;
 use indexmap::IndexMap;

@@ -1,4 +1,4 @@
-//! Layouts as values of parameters: what is wrong with one, and what lies between two.
+//! Layouts as values of parameters: checks and interpolation.
 
 use std::sync::LazyLock;
 
@@ -9,7 +9,7 @@ use crate::layout::POINTER;
 use crate::schema::document::DocumentSchema;
 use crate::{Layout, SpecError};
 
-/// What is wrong with JSON that is to be a layout; places are within it.
+/// The problems of JSON as a layout, with pointers into it.
 pub(super) fn problems(json: &Json) -> Vec<Problem> {
     static SCHEMA: LazyLock<DocumentSchema> = LazyLock::new(|| DocumentSchema::of::<Layout>("layout", "Layout"));
     let refused = SCHEMA.problems(json).problems;
@@ -19,7 +19,7 @@ pub(super) fn problems(json: &Json) -> Vec<Problem> {
     serde_json::from_value::<Layout>(json.clone()).map_or_else(|_| Vec::new(), |layout| beyond_schema(&layout))
 }
 
-/// What is wrong with a layout that the schema cannot say; places are within it.
+/// The problems of a layout beyond its schema, with pointers into it.
 pub(super) fn beyond_schema(layout: &Layout) -> Vec<Problem> {
     let mut problems = layout.problems();
     for problem in &mut problems {
@@ -29,10 +29,10 @@ pub(super) fn beyond_schema(layout: &Layout) -> Vec<Problem> {
 }
 
 impl Layout {
-    /// Checks a layout that was built in code by the rules that layouts of a document obey.
+    /// Checks a layout built in code by the rules for layouts in documents.
     ///
     /// # Errors
-    /// [`SpecError::Document`] under the name `layout`, with every problem.
+    /// [`SpecError::Document`] under the name `layout`, with all problems.
     ///
     /// # Example
     /// ```
@@ -51,8 +51,9 @@ impl Layout {
 
     /// The layout at fraction `t`, 0..=1, of the way to another.
     ///
-    /// Between two of one kind that differ in numbers alone, numbers go straight, and whole ones are rounded. Between others
-    /// the walls of the first fall one by one up to the half, and then those of the second rise, so that the way stays open.
+    /// Two layouts of one kind that differ only in numbers are interpolated linearly, with integers rounded. Otherwise the walls
+    /// of the first are removed one by one up to the halfway point, and then those of the second are added, so that the way stays
+    /// open.
     ///
     /// # Example
     /// ```
@@ -66,7 +67,7 @@ impl Layout {
     pub fn toward(&self, other: &Self, t: f64) -> Self {
         let [mine, theirs] = [self, other].map(|layout| serde_json::to_value(layout).expect("a layout serialises"));
         let straight = between(&mine, &theirs, t).and_then(|json| serde_json::from_value::<Self>(json).ok());
-        // Two numbers that are sound at both ends can be too large together in between.
+        // Two numbers that are valid at both ends can be too large together in between.
         if let Some(straight) = straight.filter(|layout| layout.problems().is_empty()) {
             return straight;
         }
@@ -82,7 +83,7 @@ impl Layout {
     }
 }
 
-/// The JSON between two that differ in numbers alone, but for seeds and the numbers of maps.
+/// Interpolates JSON that differs only in numbers, except seeds and map numbers.
 fn between(from: &Json, to: &Json, t: f64) -> Option<Json> {
     match (from, to) {
         (Json::Object(from), Json::Object(to)) if from.len() == to.len() => {

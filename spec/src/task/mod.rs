@@ -1,4 +1,4 @@
-//! [`TaskSpec`]: typed parameters, a world template that refers to them, and named variants. Drawing worlds is the generator's job.
+//! [`TaskSpec`]: typed parameters, a world template that refers to them, and named variants.
 
 mod by;
 mod check;
@@ -51,8 +51,8 @@ use scope::{Scope, Unsettled};
 
 /// A task: what its worlds have in common, and exactly what varies between them.
 ///
-/// Loading checks everything that can be checked before a world is drawn: types, domains, references, distributions of
-/// every variant, the chain of every `extends`.
+/// Loading checks everything that can be checked before a world is drawn: types, domains, references, distributions of every
+/// variant, and every chain of `extends`.
 ///
 /// # Example
 /// ```
@@ -75,51 +75,51 @@ pub struct TaskSpec {
     fixtures: Vec<Template<Object>>,
     groups: Vec<PlacedGroup>,
     requirements: Vec<Requirement>,
-    /// The conditions under which parameters are read, by their names.
+    /// The conditions of `read_if`, by parameter.
     read_conditions: IndexMap<String, Requirement>,
-    /// Who reads each parameter, once that is asked.
+    /// The readers of each parameter, computed on first use.
     readers: OnceLock<BTreeMap<String, Readers>>,
 }
 
-/// A group of a checked task: its declaration, and its count and object as templates.
+/// A group of a checked task: its declaration, with count and object as templates.
 #[derive(Debug)]
 pub struct PlacedGroup {
     /// The group as declared.
     pub spec: Group,
-    /// How many objects.
+    /// The number of objects.
     pub count: Count,
-    /// What each object is.
+    /// The template of its objects.
     pub object: Template<Object>,
-    /// The number of the group that it is placed around.
+    /// Index of the group around which it is placed.
     pub around: Option<usize>,
-    /// The number of the group that it faces.
+    /// Index of the group that it faces.
     pub facing_group: Option<usize>,
-    /// The numbers of the groups that it keeps distance from, with the distances in metres.
+    /// Indices of the groups from which it keeps distance, with the distances in metres.
     pub keep_groups: Vec<(usize, Number)>,
 }
 
-/// How many objects a group has.
+/// The number of objects of a group.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Count {
-    /// As many.
+    /// A fixed number.
     Fixed(u32),
-    /// As many as a parameter or a draw says.
+    /// Given by a parameter or a draw.
     Drawn(Source),
 }
 
-/// The longest document, in bytes, in which more is looked for than what the schema refuses.
+/// Longest document, in bytes, for which problems beyond the schema's are searched if the schema refuses it.
 const MOST_COPIED: usize = 1 << 17;
 
 impl TaskSpec {
-    /// Reads and checks a task spec. `name` is what messages call the document, usually its path.
+    /// Reads and checks a task spec. `name` is the document's name in messages, usually its path.
     ///
     /// # Errors
-    /// [`SpecError::Document`] with every problem of the text at once, sorted by place.
+    /// [`SpecError::Document`] with all problems of the text, sorted by place.
     pub fn from_json(name: &str, text: &str) -> Result<Arc<Self>, SpecError> {
         Self::from_json_with(name, text, None)
     }
 
-    /// As [`TaskSpec::from_json`], and refuses objects whose classes or models are none of these, if there are any.
+    /// Like [`TaskSpec::from_json`]; if classes are given, also refuses objects with other classes or models.
     ///
     /// # Errors
     /// As [`TaskSpec::from_json`].
@@ -129,7 +129,7 @@ impl TaskSpec {
         document.upgrade(&version::TASK)?;
         let refused = TaskDocument::schema().problems(&document.value);
         if !refused.problems.is_empty() {
-            // What else is wrong is looked for in a copy, of which a large document takes too much.
+            // Other problems are searched in a copy, which would take too much memory for a large document.
             let Listed { mut problems, more } = refused;
             if text.len() <= MOST_COPIED {
                 problems = check::partial::problems(&document.value, problems, classes);
@@ -144,9 +144,9 @@ impl TaskSpec {
         })
     }
 
-    /// Every object whose class or model is, or can be, none of these.
+    /// All objects whose class or model is, or can be, unknown.
     pub fn unknown_classes(&self, classes: &Classes) -> Vec<Problem> {
-        // All else has been found sound.
+        // Everything else has already been found valid.
         check::compile(self.document.clone(), Some(classes), check::Unsound::default())
             .err()
             .unwrap_or_default()
@@ -157,7 +157,7 @@ impl TaskSpec {
         &self.document.name
     }
 
-    /// What the task is.
+    /// The task's description.
     pub fn description(&self) -> &str {
         &self.document.description
     }
@@ -167,7 +167,7 @@ impl TaskSpec {
         &self.document.parameters
     }
 
-    /// Whether another task says the same, word for word but for spaces and the order of keys.
+    /// Whether another task has the same document, apart from white space and the order of keys.
     pub fn is_same_as(&self, other: &Self) -> bool {
         std::ptr::eq(self, other) || self.document == other.document
     }
@@ -177,37 +177,37 @@ impl TaskSpec {
         self.document.element_weights
     }
 
-    /// What variants are compared by where nobody says: what the task declares, or parameters.
+    /// The default comparison of variants: what the task declares, or parameters.
     pub fn compare_by(&self) -> By {
         self.document.compare_by.unwrap_or(By::Parameters)
     }
 
-    /// The world's template; its objects are [`TaskSpec::fixtures`].
+    /// The world's template; its objects are in [`TaskSpec::fixtures`].
     pub fn world(&self) -> &Template<WorldDraft> {
         &self.world
     }
 
-    /// The templates of objects that stand at places of their own.
+    /// The templates of objects with their own places.
     pub fn fixtures(&self) -> &[Template<Object>] {
         &self.fixtures
     }
 
-    /// The groups in the order in which they are placed.
+    /// The groups in the order of placement.
     pub fn groups(&self) -> &[PlacedGroup] {
         &self.groups
     }
 
-    /// Whether it says where the agent starts.
+    /// Whether it gives the agent's start.
     pub fn says_start(&self) -> bool {
         self.document.world.pointer("/agent_params/coordinates").is_some()
     }
 
-    /// The conditions that every variant and every world meets.
+    /// The conditions that every variant and every world must meet.
     pub fn requirements(&self) -> &[Requirement] {
         &self.requirements
     }
 
-    /// The names of the declared variants in the order of the document, families unfolded; [`DEFAULT_VARIANT`] alone if there
+    /// The names of the declared variants in the order of the document, with families unfolded; only [`DEFAULT_VARIANT`] if there
     /// are none.
     pub fn variant_names(&self) -> Vec<&str> {
         let declared: Vec<&str> = self.variants.keys().map(String::as_str).collect();
@@ -218,7 +218,7 @@ impl TaskSpec {
         }
     }
 
-    /// The names of the variants of a family, which a grid or a sweep declares, in order; `None` if there is none of this name.
+    /// The names of the variants in a family, which a grid or a sweep declares, in order; `None` if there is no such family.
     pub fn family(&self, name: &str) -> Option<Vec<&str>> {
         let spec = self.document.variants.get(name)?;
         let is_family = !spec.grid.is_empty() || !spec.sweep.is_empty();
@@ -226,22 +226,22 @@ impl TaskSpec {
         is_family.then(|| members.map(|(member, _)| member.as_str()).collect())
     }
 
-    /// The names of its families, in the order of the document.
+    /// The names of the families in the order of the document.
     pub fn family_names(&self) -> Vec<&str> {
         let names = self.document.variants.keys().map(String::as_str);
         names.filter(|name| self.family(name).is_some()).collect()
     }
 
-    /// The document as text: [`TaskSpec::from_json`] reads the same task from it.
+    /// The document as text, from which [`TaskSpec::from_json`] reads the same task.
     pub fn to_json(&self) -> String {
         let mut json = serde_json::to_value(&self.document).expect("a document that was read serialises");
         if let Some(map) = json.as_object_mut() {
-            // Where a task says nothing of its world, nothing stands there: `null` would be refused.
+            // A task without a world has no such key: `null` would be refused.
             map.retain(|key, value| key != "world" || !value.is_null());
         }
         let parameters = json.get_mut("parameters").and_then(Json::as_object_mut);
         for parameter in parameters.into_iter().flat_map(|map| map.values_mut()) {
-            // A parameter that changes has to say what it touches, nothing too.
+            // A parameter that changes must list what it affects, even if that is nothing.
             if let Some(parameter) = parameter.as_object_mut().filter(|map| map["role"] != "fixed") {
                 parameter.entry("affects").or_insert_with(|| Json::Array(Vec::new()));
             }
@@ -249,15 +249,15 @@ impl TaskSpec {
         json.to_string()
     }
 
-    /// What a variant's author says of it.
+    /// The author's description of a variant.
     pub fn variant_description(&self, name: &str) -> Option<&str> {
         self.variants.get(name)?.description.as_deref()
     }
 
-    /// The variant of this name. [`DEFAULT_VARIANT`], with every parameter at its default, is always there.
+    /// The variant with this name. [`DEFAULT_VARIANT`], with every parameter at its default, always exists.
     ///
     /// # Errors
-    /// [`SpecError::UnknownVariant`] with the names there are; [`SpecError::Values`] if the defaults break a requirement.
+    /// [`SpecError::UnknownVariant`] with the known names; [`SpecError::Values`] if the defaults break a requirement.
     pub fn variant(self: &Arc<Self>, name: &str) -> Result<Variant, SpecError> {
         if !self.variants.contains_key(name) && name != DEFAULT_VARIANT {
             let known: Vec<&str> = match self.family(name) {
@@ -272,7 +272,7 @@ impl TaskSpec {
         }
         let values = variant_spec::values_of(&self.document.parameters, &self.variants, name)
             .expect("loading the task checked every chain of extends");
-        // Declared variants were checked on loading; the defaults, which nobody may ever ask for, were not.
+        // Declared variants were checked on loading, but not the defaults, which may never be needed.
         let problems = if self.variants.contains_key(name) {
             Vec::new()
         } else {
@@ -292,7 +292,7 @@ impl TaskSpec {
         names.into_iter().filter_map(|name| self.variant(name).ok()).collect()
     }
 
-    /// The document in one way of writing it, without what changes no world and no distance: descriptions, and the variants.
+    /// The document in canonical form, without parts that change neither worlds nor distances: descriptions and variants.
     pub(crate) fn canonical(&self) -> Json {
         let mut json = serde_json::to_value(&self.document).expect("a document that was read serialises");
         if let Some(map) = json.as_object_mut() {
@@ -302,7 +302,7 @@ impl TaskSpec {
         json
     }
 
-    /// What keeps a variant with these values from being drawn: distributions with a fault, requirements that do not hold.
+    /// Reasons why a variant with these values cannot be drawn: faulty distributions and broken requirements.
     pub(crate) fn problems_of(&self, values: &IndexMap<String, Value>) -> Vec<Problem> {
         if let Some((requirement, shown)) = variant::broken(&self.requirements, values) {
             let expected = format!("what \"require\" states: {requirement}");
@@ -313,12 +313,13 @@ impl TaskSpec {
         self.faults_of(values)
     }
 
-    /// What keeps a variant with these values from being drawn beside requirements: distributions with a fault, margins out of range.
+    /// Reasons, other than requirements, why a variant with these values cannot be drawn: faulty distributions and margins out of
+    /// range.
     pub(crate) fn faults_of(&self, values: &IndexMap<String, Value>) -> Vec<Problem> {
         let mut problems = Vec::new();
         let scope = Scope::new(&self.document.parameters, values);
         let mut check = |pointer: &dyn Fn() -> String, source: &Source| {
-            // A parameter that is drawn, or is no distribution, is sound by itself.
+            // A randomized parameter, or one that is not a distribution, is checked elsewhere.
             if let Source::Param(reference) = source
                 && !matches!(values.get(&reference.param), Some(Value::Distribution(_)))
             {
@@ -395,7 +396,7 @@ impl TaskSpec {
     }
 }
 
-/// The first value that stands too deep in others.
+/// The first value nested too deeply.
 fn too_deep(json: &Json, pointer: &str, depth: usize) -> Option<Problem> {
     if depth > MAX_TASK_DEPTH {
         let found = format!("more than {MAX_TASK_DEPTH} lists and objects in each other");

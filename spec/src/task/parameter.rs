@@ -1,4 +1,4 @@
-//! One declared parameter: its role, type and domain. The values that variants give it are in `variant.rs`.
+//! [`Parameter`]: the role, type and domain of a declared parameter.
 
 use std::sync::LazyLock;
 
@@ -91,23 +91,24 @@ pub struct Parameter {
 /// The values that a variant parameter may have.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Domain {
-    /// One of these.
+    /// One of these values.
     Choices(Vec<Value>),
-    /// Any number from the first to the second, both included.
+    /// Any number in the range, both ends included.
     Range([f64; 2]),
 }
 
-/// A value that is there may be `null`, which JSON takes for what is absent.
+/// Reads a value that may be `null`, which serde would otherwise treat as absent.
 fn given<'de, D: Deserializer<'de>>(value: D) -> Result<Option<Value>, D::Error> {
     Value::deserialize(value).map(Some)
 }
 
-/// Any JSON: which of it, hangs on the type of a parameter.
+/// Any JSON; the parameter's type decides which.
 fn any_value(_: &mut SchemaGenerator) -> Schema {
     Schema::from(true)
 }
 
-/// `if` this role or type, `then` these keys: what an editor that knows JSON Schema reports while the author types.
+/// Schema rules of the form `if` this role or type, `then` these keys, so that editors with JSON Schema report errors while the
+/// author types.
 fn require_what_the_role_needs(schema: &mut schemars::Schema) {
     let role = |role: &str, needs: serde_json::Value, not: &[&str]| {
         let mut then = needs;
@@ -175,7 +176,7 @@ fn require_what_the_role_needs(schema: &mut schemars::Schema) {
     schema.insert("allOf".to_owned(), json!(rules));
 }
 
-/// The one place where two values of the same build differ; `None` where they differ as wholes, or in more than one.
+/// The only place where two values of the same structure differ; `None` if they differ as a whole, or in more than one place.
 fn only_difference(found: &serde_json::Value, choice: &serde_json::Value, pointer: &str) -> Option<Problem> {
     use serde_json::Value as Json;
     let inner: Vec<(String, Option<&Json>, Option<&Json>)> = match (found, choice) {
@@ -211,12 +212,12 @@ fn only_difference(found: &serde_json::Value, choice: &serde_json::Value, pointe
 }
 
 impl Parameter {
-    /// Whether it touches this element, or its fine one, and no other.
+    /// Whether it affects this element, or its fine one, and no other.
     pub fn affects_only(&self, element: Element) -> bool {
         !self.affects.is_empty() && self.affects.iter().all(|touched| element.covers(*touched))
     }
 
-    /// The values it may have, if it is a variant parameter.
+    /// The possible values of a variant parameter.
     pub fn domain(&self) -> Option<Domain> {
         let choices = || {
             Some(Domain::Choices(
@@ -230,13 +231,13 @@ impl Parameter {
         self.range.map(Domain::Range).or_else(choices)
     }
 
-    /// A value, or the one that it names, as one of the parameter's type.
+    /// A value, or the choice that it names, converted to the parameter's type.
     pub fn typed(&self, value: &Value) -> Option<Value> {
         let named = self.choices.as_ref().and_then(|choices| choices.named(value));
         named.unwrap_or(value).cast(self.kind)
     }
 
-    /// The name of a choice, where choices have names.
+    /// The name of a choice, if choices have names.
     pub fn name_of(&self, value: &Value) -> Option<&str> {
         let choices = self.choices.as_ref().filter(|choices| !choices.names().is_empty())?;
         let place = choices
@@ -245,12 +246,12 @@ impl Parameter {
         choices.names().get(place).map(String::as_str)
     }
 
-    /// A value as messages show it: by its name, where choices have names.
+    /// A value for messages: by name, if choices have names.
     pub(super) fn shown(&self, value: &Value) -> String {
         self.name_of(value).map_or_else(|| value.to_string(), str::to_owned)
     }
 
-    /// The value with the parameter's type if it lies in the domain; else what was expected.
+    /// The value with the parameter's type if it is in the domain; else what was expected.
     pub(crate) fn accept(&self, value: &Value) -> Result<Value, String> {
         let typed = self.accept_typed(value)?;
         match self.domain() {
@@ -266,7 +267,7 @@ impl Parameter {
         }
     }
 
-    /// What is wrong with a value that stands at a pointer, as narrowly as its type and the choices can say.
+    /// The problems of a value at a pointer, as specific as its type and the choices allow.
     pub(crate) fn value_problems(&self, pointer: &str, value: &Value) -> Vec<Problem> {
         let Err(expected) = self.accept(value) else {
             return Vec::new();
@@ -295,7 +296,7 @@ impl Parameter {
         vec![Problem::new("spec/value", pointer, value.to_string(), expected).suggest(word, choices)]
     }
 
-    /// What keeps JSON from being of this type, where the type has parts; places are within the value.
+    /// The problems of JSON as a value of this type, if the type has parts; pointers are within the value.
     fn type_problems(&self, json: &serde_json::Value) -> Vec<Problem> {
         static DISTRIBUTION: LazyLock<DocumentSchema> =
             LazyLock::new(|| DocumentSchema::of::<Distribution<Number>>("distribution", "Distribution"));
@@ -314,7 +315,7 @@ impl Parameter {
         }
     }
 
-    /// As [`Parameter::accept`], but a value may lie between the choices, where there is anything between two.
+    /// Like [`Parameter::accept`], but also accepts a value between the choices, if the type can be interpolated.
     pub(crate) fn accept_between(&self, value: &Value) -> Result<Value, String> {
         match self.kind {
             ParameterType::Json => self.accept(value),
@@ -336,7 +337,7 @@ impl Parameter {
             return Ok(typed);
         };
         let inside = match (&typed, self.kind) {
-            // The range of a heading is an arc, clockwise from low to high, and may lead across north.
+            // The range of a heading is an arc, clockwise from low to high, and may cross north.
             (_, ParameterType::Heading) => typed
                 .as_number()
                 .is_some_and(|degrees| (degrees - low).rem_euclid(360.0) <= high - low),
@@ -355,23 +356,23 @@ impl Parameter {
         }
     }
 
-    /// How many numbers a vector has: as many as the first of its value, default and choices.
+    /// The length of a vector: that of its value, default or first choice.
     pub fn vector_length(&self) -> Option<usize> {
         self.declared().next()?.as_vector().map(<[f64]>::len)
     }
 
-    /// Whether a value is as long as this parameter's vectors; true of other types.
+    /// Whether a value has the length of this parameter's vectors; true for other types.
     fn is_as_long(&self, value: &Value) -> bool {
         self.kind != ParameterType::Vector || value.as_vector().map(<[f64]>::len) == self.vector_length()
     }
 
-    /// Its value, its default and its choices, as it declares them.
+    /// Its value, its default and its choices, as declared.
     fn declared(&self) -> impl Iterator<Item = &Value> {
         let alone = self.value.iter().chain(&self.default);
         alone.chain(self.choices.iter().flatten())
     }
 
-    /// Its choices, its value and its default, each with the keys that lead to it.
+    /// Its choices, its value and its default, each with its keys in the document.
     pub(super) fn entries(&self) -> impl Iterator<Item = (String, &Value)> {
         let choices = self.choices.iter().flat_map(Choices::entries);
         let alone = [("value", &self.value), ("default", &self.default)].into_iter();
@@ -389,7 +390,7 @@ impl Parameter {
         })
     }
 
-    /// What the schema cannot say about one parameter alone.
+    /// Checks of a single parameter beyond the schema.
     pub(crate) fn problems(&self, name: &str) -> Vec<Problem> {
         let pointer = format!("/parameters/{}", escape(name));
         let at = |key: &str| format!("{pointer}/{key}");

@@ -1,5 +1,5 @@
-//! Who reads a parameter: the worlds of a task, or only the draws of other parameters; and whether anything reads it in
-//! a variant, as its `read_if` says. What nothing reads counts nothing in a distance.
+//! Finds the readers of a parameter: the worlds of a task, or only the draws of other parameters; and whether anything reads it
+//! in a variant, by its `read_if`. A parameter that nothing reads does not count in distances.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -13,26 +13,25 @@ use super::parameter::Role;
 use super::variant::Variant;
 use crate::value::Value;
 
-/// Who reads a parameter.
+/// The readers of a parameter.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Readers {
-    /// Whether a world or a group reads it, or what a fixed parameter is.
+    /// Whether a world, a group or the value of a fixed parameter reads it.
     pub worlds: bool,
-    /// The randomized parameters whose distributions read it, and those of type distribution of which a choice does, in
-    /// the order of the task.
+    /// The randomized parameters whose distributions read it, and parameters of type distribution with a choice that does, in the
+    /// task's order.
     pub draws: Vec<String>,
 }
 
 impl Readers {
-    /// Whether it is read, and only by distributions that are parameters or their draws: then it changes nothing but
-    /// those.
+    /// Whether it is read only by distributions that are parameters or draw parameters, so that it changes nothing else.
     pub fn are_draws_alone(&self) -> bool {
         !self.worlds && !self.draws.is_empty()
     }
 }
 
 impl TaskSpec {
-    /// Who reads a parameter; nobody where there is none of this name.
+    /// The readers of a parameter; none for an unknown name.
     ///
     /// # Example
     /// ```
@@ -63,7 +62,7 @@ impl TaskSpec {
         for (name, other) in &document.parameters {
             in_worlds.extend(names_in(&other.value));
             let read = names_in(&(&other.distribution, &other.choices, &other.default));
-            // What a look-up makes of another draw is more than how it is distributed by itself.
+            // A look-up over another draw depends on that draw, not only on its distribution.
             let is_drawn = |name: &String| {
                 document
                     .parameters
@@ -84,7 +83,7 @@ impl TaskSpec {
     }
 }
 
-/// The names that stand anywhere in a part of a document as `{ "param": NAME }`.
+/// The names that occur anywhere in a part of a document as `{ "param": NAME }`.
 fn names_in(part: &impl Serialize) -> BTreeSet<String> {
     fn walk(json: &Json, found: &mut BTreeSet<String>) {
         match json {
@@ -103,15 +102,15 @@ fn names_in(part: &impl Serialize) -> BTreeSet<String> {
 }
 
 impl Variant {
-    /// Whether anything reads a parameter in this variant: what its `read_if` says, and yes where it has none.
+    /// Whether anything reads a parameter in this variant: decided by its `read_if`, and true without one.
     pub fn reads(&self, parameter: &str) -> bool {
         let value_of = |name: &str| self.value(name).cloned();
         let condition = self.task().read_conditions.get(parameter);
         condition.is_none_or(|condition| condition.holds(value_of) != Some(false))
     }
 
-    /// The variant as far as it matters: parameters that nothing reads in it stand at their defaults, and so does what
-    /// they make of distributions, if those can be drawn from. It may break a requirement.
+    /// The variant reduced to what matters: parameters that nothing reads in it are at their defaults, unless a distribution
+    /// could then not be drawn from. It may break a requirement.
     #[must_use]
     pub fn as_read(&self) -> Self {
         let mut read = self.values().clone();
@@ -132,8 +131,8 @@ impl Variant {
         }
     }
 
-    /// The value of a fixed or variant parameter as far as it matters: its default where nothing reads it in this
-    /// variant. `None` for a randomized or unknown one.
+    /// The value of a fixed or variant parameter as far as it matters: the default if nothing reads it in this variant. `None`
+    /// for a randomized or unknown one.
     pub fn value_as_read(&self, parameter: &str) -> Option<Cow<'_, Value>> {
         let value = self.value(parameter)?;
         if self.reads(parameter) {
@@ -165,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn a_parameter_that_nothing_reads_stands_at_its_default() {
+    fn parameter_that_nothing_reads_is_at_its_default() {
         let task = TaskSpec::from_json("t", &text("trigger == 'near'")).unwrap();
         let read = |variant: &str| {
             task.variant(variant)
@@ -187,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn a_condition_speaks_of_what_variants_settle() {
+    fn read_if_may_name_only_settled_parameters() {
         let said = |read_if: &str| {
             TaskSpec::from_json("t", &text(read_if)).map_or_else(|error| error.to_string(), |_| String::new())
         };

@@ -1,4 +1,4 @@
-//! [`Scope`]: the values that are known of a task's parameters, and what sources and their look-ups come to among them.
+//! [`Scope`]: known values of a task's parameters, with which sources and look-ups are resolved.
 
 use indexmap::IndexMap;
 
@@ -9,10 +9,10 @@ use crate::distribution::{Case, Distribution, Number};
 use crate::error::first_of;
 use crate::value::{ParameterType, Value};
 
-/// The most ways in which the draws that a look-up reads can fall out.
+/// Most combinations of the draws that a look-up reads.
 const MOST_WAYS: usize = 4096;
 
-/// The values that are known of a task's parameters: those of a variant, and of what is drawn as far as it is known.
+/// Known values of a task's parameters: those of a variant, and those of drawn parameters as far as known.
 #[derive(Clone, Copy)]
 pub(crate) struct Scope<'a> {
     pub(crate) parameters: &'a IndexMap<String, Parameter>,
@@ -20,14 +20,14 @@ pub(crate) struct Scope<'a> {
     pub(crate) drawn: &'a [(&'a str, Value)],
 }
 
-/// Why a source comes to nothing.
+/// Why a source cannot be resolved.
 #[derive(Debug)]
 pub(crate) enum Unsettled {
     /// A look-up reads this randomized parameter, whose value is not known.
     Drawn(String),
     /// A look-up has no case for a value: what was found and expected.
     NoCase(String, String),
-    /// What look-ups read cannot be gone through, or a reference names no number.
+    /// The draws that look-ups read cannot be enumerated, or a reference names no number.
     Unknown,
 }
 
@@ -82,12 +82,12 @@ impl<'a> Scope<'a> {
         }
     }
 
-    /// A distribution with every number settled.
+    /// A distribution with every number resolved.
     pub(crate) fn settle(&self, distribution: &Distribution<Number>) -> Result<Distribution, Unsettled> {
         distribution.try_map(&mut |number| self.number(number))
     }
 
-    /// What a source comes to.
+    /// Resolves a source.
     pub(crate) fn resolve(&self, source: &Source) -> Result<Resolved, Unsettled> {
         match source {
             Source::Case(case) => self.resolve(self.choose(case)?),
@@ -101,7 +101,7 @@ impl<'a> Scope<'a> {
         }
     }
 
-    /// What a source draws, all draws that its look-ups read gone through: distributions, each once, with their
+    /// The distributions of a source over all outcomes of the draws that its look-ups read: without duplicates, with their
     /// probabilities.
     pub(crate) fn outcomes(&self, source: &Source) -> Result<Vec<(Distribution, f64)>, Unsettled> {
         let mut outcomes = Outcomes::default();
@@ -123,7 +123,7 @@ impl<'a> Scope<'a> {
             Err(Unsettled::Drawn(name)) => name,
             Err(other) => return Err(other),
         };
-        // What it reads may itself be a look-up: the first draw on the way comes first.
+        // The parameter may itself have a look-up: resolves the earliest draw first.
         for _ in 0..self.parameters.len() {
             let (parameter, own) = distribution_of(&unsettled)?;
             let atoms = match self.resolve(own) {
@@ -148,7 +148,7 @@ impl<'a> Scope<'a> {
     }
 }
 
-/// What a source was found to draw, each once with its probability, and in how many ways.
+/// The distributions found, without duplicates, with their probabilities, and the number of combinations.
 #[derive(Default)]
 struct Outcomes {
     found: Vec<(Distribution, f64)>,
@@ -168,7 +168,7 @@ impl Outcomes {
     }
 }
 
-/// Adds a weight to what is listed, or lists it.
+/// Adds the weight to an existing entry, or adds an entry.
 fn weigh<T: PartialEq>(found: &mut Vec<(T, f64)>, new: T, weight: f64) {
     match found.iter_mut().find(|(known, _)| *known == new) {
         Some((_, known)) => *known += weight,
@@ -176,7 +176,7 @@ fn weigh<T: PartialEq>(found: &mut Vec<(T, f64)>, new: T, weight: f64) {
     }
 }
 
-/// One distribution for all outcomes: a list where all are lists, else a mixture.
+/// One distribution for all outcomes: a list if all are lists, else a mixture.
 pub(crate) fn mixed(mut outcomes: Vec<(Distribution, f64)>) -> Distribution {
     if outcomes.len() == 1 {
         return outcomes.remove(0).0;

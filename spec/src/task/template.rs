@@ -1,4 +1,4 @@
-//! Templates: a world or an object with holes that parameters and distributions fill. Filling them is the generator's job.
+//! Templates: a world or an object with holes that parameters and distributions fill.
 
 use std::borrow::Cow;
 use std::sync::LazyLock;
@@ -43,7 +43,7 @@ impl JsonSchema for Case<Source> {
 }
 
 impl Source {
-    /// Reads `{ "param": … }`, a look-up or a distribution; `None` if the JSON is none of them.
+    /// Reads `{ "param": … }`, a look-up or a distribution; `None` for any other JSON.
     pub(crate) fn read(json: &Json) -> Option<Self> {
         let map = json.as_object()?;
         if map.contains_key("case") {
@@ -58,7 +58,7 @@ impl Source {
         serde_json::from_value(json.clone()).ok().map(Self::Distribution)
     }
 
-    /// All that it can come to by look-ups, with the places in it: itself, or each case.
+    /// All possible results of look-ups, with their places inside: itself, or each case.
     pub(crate) fn leaves(&self) -> Vec<(String, &Self)> {
         let Self::Case(case) = self else {
             return vec![(String::new(), self)];
@@ -70,7 +70,7 @@ impl Source {
         inside.collect()
     }
 
-    /// Its look-ups, with the places in it.
+    /// Its look-ups, with their places inside.
     pub(crate) fn cases(&self) -> Vec<(String, &Case<Self>)> {
         let Self::Case(own) = self else { return Vec::new() };
         let inside = own.entries().flat_map(|(key, case)| {
@@ -80,7 +80,7 @@ impl Source {
         std::iter::once((String::new(), &**own)).chain(inside).collect()
     }
 
-    /// The parameters that it names, look-ups and numbers included.
+    /// The parameters that it names, including those in look-ups and numbers.
     pub fn names(&self) -> Vec<String> {
         let mut names: Vec<String> = self.cases().iter().map(|(_, case)| case.by.param.clone()).collect();
         for (_, leaf) in self.leaves() {
@@ -97,26 +97,26 @@ impl Source {
     }
 }
 
-/// A place to be filled, and with what.
+/// A place to be filled, with its source.
 #[derive(Clone, Debug)]
 pub struct Hole<T> {
     /// JSON pointer from the template.
     pub pointer: String,
-    /// What fills it.
+    /// The source of its values.
     pub source: Source,
-    /// The type of value that goes there.
+    /// The type of value at this place.
     pub kind: ParameterType,
-    /// The numbers that may stand there, both ends included.
+    /// The numbers allowed there, both ends included.
     pub range: [f64; 2],
-    /// The schema of what may stand there, without its definitions.
+    /// The schema of the place, without its definitions.
     schema: Option<&'static Json>,
-    /// The way to it in a `T`.
+    /// The path to it in a `T`.
     steps: Vec<usize>,
     set: Setter<T>,
 }
 
 impl<T> Hole<T> {
-    /// A value as it is written there: counts are whole.
+    /// A value in the form of the place: counts are integers.
     pub(crate) fn written(&self, value: &Value) -> Json {
         let counts = self.schema.is_some_and(|schema| schema["items"]["type"] == "integer");
         match value.as_vector().filter(|_| counts) {
@@ -125,7 +125,7 @@ impl<T> Hole<T> {
         }
     }
 
-    /// Finds what keeps values from standing there, as the schema of the place has it; places are within the value.
+    /// Returns a function that checks values by the schema of the place; pointers are within the value.
     pub(crate) fn checker(&self) -> impl Fn(&Value) -> Vec<Problem> + use<T> {
         let schema = self.schema.map(|schema| {
             let mut own = schema.clone();
@@ -144,7 +144,7 @@ impl<T> Hole<T> {
         }
     }
 
-    /// Puts a value there. `None` if a value of its type cannot stand there, as a text that names nothing.
+    /// Sets the value. `None` if it is not allowed there, such as a text that names nothing.
     pub fn fill(&self, target: &mut T, value: &Value) -> Option<()> {
         (self.set)(target, &self.steps, value)
     }
@@ -159,10 +159,10 @@ pub struct Template<T> {
     pub holes: Vec<Hole<T>>,
 }
 
-/// A hole before it is known to fit: its pointer and what it holds.
+/// A hole before it is checked: its pointer and source.
 pub(crate) type Opening = (String, Source);
 
-/// Every `{ "param": … }` and inline distribution in a template, in the order of the text.
+/// All `{ "param": … }` and inline distributions in a template, in the order of the text.
 pub(crate) fn openings(template: &Json) -> Vec<Opening> {
     let mut found = Vec::new();
     walk(template, &mut String::new(), &mut found);
@@ -191,7 +191,7 @@ fn walk(json: &Json, pointer: &mut String, found: &mut Vec<Opening>) {
     }
 }
 
-/// The hole at a pointer into a `T`, whose schema this is.
+/// The hole at a pointer into a `T` with this schema.
 pub(crate) fn hole<T: Place>((pointer, source): &Opening, schema: &'static Json) -> Option<Hole<T>> {
     let words: Vec<&str> = pointer.split('/').skip(1).collect();
     let mut steps = Vec::new();
@@ -220,8 +220,8 @@ fn range_at(part: &Json, pointer: &str) -> [f64; 2] {
     [end("minimum", f64::MIN), end("maximum", f64::MAX)]
 }
 
-/// The schemas of the two kinds of template, made from those of the concrete documents: at each slot the value may also
-/// be a parameter or a distribution.
+/// The schemas of the two kinds of template, derived from those of the concrete documents: each open place also accepts a
+/// parameter or a distribution.
 struct TemplateSchemas {
     world: Json,
     object: Json,
@@ -254,8 +254,7 @@ static SCHEMAS: LazyLock<TemplateSchemas> = LazyLock::new(|| {
     }
 });
 
-/// A copy of a schema in which references to what has parts are replaced by what they refer to, so that it can be
-/// changed.
+/// A copy of a schema with references to structured definitions replaced by the definitions, so that it can be changed.
 fn inline(schema: &Json, node: &Json) -> Json {
     let target = part::resolve(schema, node);
     let is_part = |form: &Json| form.get("properties").is_some() || form["type"] == "array";
@@ -267,13 +266,13 @@ fn inline(schema: &Json, node: &Json) -> Json {
     if let (true, Some(description)) = (has_parts, node.get("description")) {
         copy["description"] = description.clone();
     }
-    // An example of the whole says nothing of a template, and would be repeated at every place.
+    // An example of the whole is no help for a template, and would be repeated at every place.
     if let Some(map) = copy.as_object_mut() {
         map.shift_remove("examples");
     }
     if let Some(properties) = copy.get_mut("properties").and_then(Json::as_object_mut) {
         for property in properties.values_mut() {
-            // A default that spells out a whole struct says nothing beside the defaults of its fields.
+            // The default of a whole struct repeats the defaults of its fields.
             if let Some(map) = property.as_object_mut()
                 && map.get("default").is_some_and(Json::is_object)
             {
@@ -295,10 +294,10 @@ fn inline(schema: &Json, node: &Json) -> Json {
     copy
 }
 
-/// Lets each of the places that a value can be set at also be a parameter or a distribution.
+/// Lets each open place also accept a parameter or a distribution.
 fn open(schema: &mut Json, places: &[FieldPlace]) {
     let open = places.iter().filter(|place| place.kind.is_some());
-    // What is in a place stands behind it: it is opened first, and the place around it.
+    // Inner places come after outer ones, so in reverse order they are opened first.
     for place in open.rev().filter(|place| !place.pointer.starts_with("/objects/")) {
         let node = place.pointer.split('/').skip(1).fold(&mut *schema, inner);
         let value = node.take();
@@ -312,7 +311,7 @@ fn open(schema: &mut Json, places: &[FieldPlace]) {
 
 /// The schema of a key of an object, or of the items of a list.
 fn inner<'a>(node: &'a mut Json, key: &str) -> &'a mut Json {
-    // An optional struct is `anyOf: [struct, null]`: the struct comes first.
+    // An optional struct is `anyOf: [struct, null]`, with the struct first.
     let node = if node.get("anyOf").is_some() {
         &mut node["anyOf"][0]
     } else {
@@ -328,7 +327,7 @@ fn inner<'a>(node: &'a mut Json, key: &str) -> &'a mut Json {
     }
 }
 
-/// Makes the definitions that templates refer to known to a generator.
+/// Registers the definitions that templates refer to.
 fn define(generator: &mut SchemaGenerator) {
     generator.subschema_for::<ParamRef>();
     generator.subschema_for::<Case<Source>>();
@@ -348,7 +347,7 @@ pub(crate) fn world_schema(generator: &mut SchemaGenerator) -> Schema {
     Schema::try_from(SCHEMAS.world.clone()).expect("a schema stays one when leaves are opened")
 }
 
-/// The schema of the object in a group: where it stands is the placement's to say.
+/// The schema of the object in a group; the group's placement gives its coordinates.
 pub(crate) fn object_schema(generator: &mut SchemaGenerator) -> Schema {
     define(generator);
     let mut schema = SCHEMAS.object.clone();

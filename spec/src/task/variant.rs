@@ -1,4 +1,4 @@
-//! One variant of a task: every fixed and variant parameter has its value. Drawing the randomized ones is the generator's job.
+//! [`Variant`]: one variant of a task, in which every fixed and variant parameter has its value.
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ use crate::distribution::{Distribution, Number, ParamRef};
 use crate::error::{Problem, SpecError};
 use crate::value::Value;
 
-/// The name of the variant in which every parameter has its default, unless the task declares one of this name.
+/// Name of the variant in which every parameter has its default, unless the task declares one with this name.
 pub const DEFAULT_VARIANT: &str = "default";
 
 /// One variant of a task, ready to be sampled and compared. Cheap to clone.
@@ -27,14 +27,14 @@ pub struct Variant {
     values: Arc<IndexMap<String, Value>>,
 }
 
-/// What a source comes to in a variant.
+/// What a source resolves to in a variant.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Resolved {
     /// The same value in every world.
     Value(Value),
-    /// The value of this randomized parameter, or the number at a place of it.
+    /// The value of this randomized parameter, or one of its components.
     Randomized(ParamRef),
-    /// A draw of its own.
+    /// A separate draw.
     Draw(Distribution),
 }
 
@@ -47,13 +47,13 @@ impl Variant {
         }
     }
 
-    /// The name by which every command knows it: `find_objects#red`.
+    /// Its name on the command line: `find_objects#red`.
     pub fn id(&self) -> String {
         format!("{}#{}", self.task.name(), self.name)
     }
 
-    /// A hash of everything that its worlds and its distances are made from: the task's document in the current version without
-    /// descriptions and without the other variants, and the values of this one. Variants of one hash have the same worlds.
+    /// A hash of everything that determines its worlds and distances: the task's document in the current version without
+    /// descriptions and variants, and the values of this variant. Variants with the same hash have the same worlds.
     ///
     /// # Example
     /// ```
@@ -76,7 +76,7 @@ impl Variant {
         hexadecimal(&Sha256::digest(whole.to_string()))
     }
 
-    /// The task that it is a variant of.
+    /// The task of this variant.
     pub fn task(&self) -> &Arc<TaskSpec> {
         &self.task
     }
@@ -86,7 +86,7 @@ impl Variant {
         &self.name
     }
 
-    /// The values of all fixed and variant parameters, typed, in the order in which the task declares them.
+    /// The values of all fixed and variant parameters, typed, in the task's order of declaration.
     pub fn values(&self) -> &IndexMap<String, Value> {
         &self.values
     }
@@ -96,8 +96,8 @@ impl Variant {
         self.values.get(parameter)
     }
 
-    /// The distribution of a randomized parameter, or the one that a parameter of type distribution is, with all its numbers
-    /// settled; `None` for any other parameter.
+    /// The distribution of a randomized parameter, or the value of a parameter of type distribution, with all numbers resolved;
+    /// `None` for any other parameter.
     pub fn distribution(&self, parameter: &str) -> Option<Distribution> {
         if let Some(Value::Distribution(distribution)) = self.values.get(parameter) {
             return Some(self.settle(distribution));
@@ -110,7 +110,7 @@ impl Variant {
         }
     }
 
-    /// What a source comes to in this variant; where its look-ups read what is drawn, a draw that mixes all their cases.
+    /// Resolves a source; if its look-ups read drawn values, to a draw that mixes all cases.
     pub fn resolve(&self, source: &Source) -> Resolved {
         self.resolve_with(source, &[]).unwrap_or_else(|| {
             let outcomes = self.scope().outcomes(source);
@@ -120,8 +120,7 @@ impl Variant {
         })
     }
 
-    /// What a source comes to in a world in which randomized parameters have these values; `None` where its look-ups read
-    /// others.
+    /// Resolves a source in a world with these values of randomized parameters; `None` if its look-ups read others.
     pub fn resolve_with(&self, source: &Source, drawn: &[(&str, Value)]) -> Option<Resolved> {
         let scope = Scope { drawn, ..self.scope() };
         match scope.resolve(source) {
@@ -147,20 +146,20 @@ impl Variant {
         settled.expect("loading the task checked that every reference names a number")
     }
 
-    /// A variant like this one under another name, with some parameters at other values.
+    /// A variant like this one with another name and some changed values.
     ///
-    /// Each value has its parameter's type and lies in its range; where the domain is a list of choices, it may lie between
-    /// them, as the colours of a drift do.
+    /// Each value must have its parameter's type and be in its range; if the domain is a list of choices, it may be between them,
+    /// like the colours of a drift.
     ///
     /// # Errors
     /// [`SpecError::Values`] with every parameter that cannot have its value, a distribution that cannot be drawn from, or a
-    /// requirement that does not hold.
+    /// broken requirement.
     pub fn with(&self, name: &str, changes: impl IntoIterator<Item = (String, Value)>) -> Result<Self, SpecError> {
         self.changed(name, changes, TaskSpec::problems_of)
     }
 
-    /// As [`Variant::with`], but the task's requirements need not hold: how far apart two variants are can then be asked of what they
-    /// forbid, too. Nothing should be drawn from it.
+    /// Like [`Variant::with`], but without checking the task's requirements, so that distances to forbidden variants can be
+    /// measured. Do not draw worlds from it.
     ///
     /// # Errors
     /// [`SpecError::Values`] with every parameter that cannot have its value, or a distribution that cannot be drawn from.
@@ -219,7 +218,7 @@ fn accepted(parameters: &IndexMap<String, Parameter>, name: &str, value: &Value)
         .map_err(|expected| Problem::new("spec/value", format!("/{name}"), value.to_string(), expected))
 }
 
-/// The first requirement that speaks of settled parameters only and does not hold, with the values it fails for.
+/// The first broken requirement on settled parameters only, with the values that break it.
 pub(crate) fn broken<'a>(
     requirements: &'a [Requirement],
     values: &IndexMap<String, Value>,

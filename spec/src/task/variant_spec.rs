@@ -1,5 +1,5 @@
-//! [`VariantSpec`]: a variant as a document declares it, its values over those that it extends, and what is wrong with them. The
-//! variants of a checked task are in `variant.rs`, families in `family.rs`.
+//! [`VariantSpec`]: a variant as declared in a document. Applies its values over those of the variants that it extends, and
+//! checks them.
 
 use driftworld_text::IDENTIFIER_PATTERN;
 use indexmap::IndexMap;
@@ -49,7 +49,7 @@ pub struct VariantSpec {
     pub values: IndexMap<String, Value>,
 }
 
-/// The keys that a variant has beside its parameters' names.
+/// The keys of a variant besides parameters' names.
 pub(crate) const RESERVED: [&str; 5] = ["extends", "description", "name", "grid", "sweep"];
 
 fn values_of_parameters(schema: &mut schemars::Schema) {
@@ -66,7 +66,7 @@ fn values_of_parameters(schema: &mut schemars::Schema) {
     }
 }
 
-/// For each parameter a list of values, of any kind: which, is its type's to say.
+/// For each parameter a list of values; the parameter's type decides which.
 fn grid_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
     schemars::json_schema!({
         "type": "object",
@@ -76,12 +76,12 @@ fn grid_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
     })
 }
 
-/// The most variants that extend each other in a row.
+/// Longest chain of variants that extend each other.
 pub(crate) const MAX_EXTENDED: usize = 100;
 
-/// The values of a variant: its own over those that it extends over the defaults.
+/// The values of a variant: its own over those of the variants that it extends, over the defaults.
 ///
-/// `Err` where the chain of `extends` breaks or bites its own tail; wrong values are [`problems`]' to find.
+/// `Err` if the chain of `extends` is broken or a cycle; invalid values are found by [`problems`].
 pub(crate) fn values_of(
     parameters: &IndexMap<String, Parameter>,
     variants: &Variants,
@@ -140,7 +140,7 @@ fn unknown_parent(origin: &str, parent: &str, variants: &Variants) -> Problem {
     .suggest(parent, known)
 }
 
-/// Everything wrong with what the variants say, but for values of parameters of which nothing is known.
+/// All problems of variants, except values of unknown parameters.
 pub(crate) fn problems(
     parameters: &IndexMap<String, Parameter>,
     document: &IndexMap<String, VariantSpec>,
@@ -175,7 +175,7 @@ pub(crate) fn problems(
     problems
 }
 
-/// The names of the parameters that variants set, and what is expected where another stands.
+/// The parameters that variants may set, and what to expect instead of another name.
 pub(super) fn variant_parameters(parameters: &IndexMap<String, Parameter>) -> (Vec<&String>, String) {
     let settable = parameters
         .iter()

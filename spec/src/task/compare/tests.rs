@@ -1,4 +1,4 @@
-//! Which measures fit which parameters, and which tables of costs are distances.
+//! Tests which measures fit which parameters, and which tables of costs are distances.
 
 use crate::TaskSpec;
 
@@ -15,7 +15,7 @@ const NUMBER: &str = r#""role": "variant", "type": "number", "range": [0, 1], "d
 const WORDS: &str = r#""role": "variant", "type": "string", "choices": ["a", "b", "c"], "default": "a""#;
 
 #[test]
-fn a_measure_fits_the_parameter_that_it_compares() {
+fn measure_must_fit_its_parameter() {
     check(r#"{ "measure": "difference", "weight": 3 }"#, NUMBER, "");
     check(r#"{ "measure": "same_or_not" }"#, WORDS, "");
     check(
@@ -73,7 +73,7 @@ fn a_measure_fits_the_parameter_that_it_compares() {
 }
 
 #[test]
-fn drawn_colours_are_compared_by_how_far_they_are_apart() {
+fn drawn_colours_need_a_measure_with_distances() {
     let drawn =
         r#""role": "randomized", "type": "color", "distribution": { "color_normal": { "mean": "red", "std": 0.1 } }"#;
     let law = r#""role": "variant", "type": "distribution", "choices": [{ "color_hsv": {} }], "default": { "color_hsv": {} }"#;
@@ -110,7 +110,7 @@ fn drawn_colours_are_compared_by_how_far_they_are_apart() {
 }
 
 #[test]
-fn a_measure_that_would_not_be_used_is_refused() {
+fn unused_measure_is_refused() {
     let drawn = |kind: &str, distribution: &str| {
         format!(r#""role": "randomized", "type": "{kind}", "distribution": {{ {distribution} }}"#)
     };
@@ -150,7 +150,7 @@ fn a_measure_that_would_not_be_used_is_refused() {
 }
 
 #[test]
-fn a_measure_looks_at_the_distributions_that_another_parameter_may_be() {
+fn measure_is_checked_against_the_distributions_of_another_parameter() {
     let text = r#"{ "name": "t", "parameters": {
         "law": { "role": "variant", "type": "distribution", "affects": ["O"], "choices": [{ "color_hsv": {} }], "default": { "color_hsv": {} } },
         "p": { "role": "randomized", "type": "color", "affects": ["O"], "distribution": { "param": "law" },
@@ -163,7 +163,7 @@ fn a_measure_looks_at_the_distributions_that_another_parameter_may_be() {
 }
 
 #[test]
-fn costs_are_distances_among_the_choices() {
+fn costs_must_be_distances_among_the_choices() {
     check(r#"{ "costs": [[0, 1, 2], [1, 0, 1.5], [2, 1.5, 0]] }"#, WORDS, "");
     let wrong = |costs: &str, at: &str, said: &str| {
         check(

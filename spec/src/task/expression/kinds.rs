@@ -1,4 +1,4 @@
-//! What kind of thing each part of a condition is, and where parts of unlike kinds meet. Values have no part in it.
+//! Checks the types of a condition's parts, without their values, and finds parts of incompatible types.
 
 use super::{Binary, Made, Node, Operator, Requirement, Term, Unary};
 use crate::Color;
@@ -7,20 +7,20 @@ use crate::suggest::nearest;
 use crate::task::parameter::{Parameter, Role};
 use crate::value::{ParameterType, Value};
 
-/// What a name stands for.
+/// The type of a name.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::task) enum Kind {
     Number,
     Truth,
-    /// A text, with all that it can be where that is known.
+    /// A text, with all its possible values if they are known.
     Text(Option<Vec<String>>),
     Color,
-    /// So many numbers, of which one can be asked for: `start[0]`. The word is what messages call it.
+    /// A list of this length, whose numbers have an index: `start[0]`. The word is its name in messages.
     List(&'static str, Option<usize>),
 }
 
 impl Kind {
-    /// What a parameter stands for; `None` for distributions, layouts and JSON.
+    /// The type of a parameter; `None` for distributions, layouts and JSON.
     pub(in crate::task) fn of(parameter: &Parameter) -> Option<Self> {
         let texts = || {
             let choices = parameter.choices.as_ref().filter(|_| parameter.role == Role::Variant)?;
@@ -47,7 +47,7 @@ impl Kind {
         }
     }
 
-    /// Whether it is a colour, or a text that can only be the name of one.
+    /// Whether it is a colour, or a text whose every possible value is a colour's name.
     fn is_color(&self) -> bool {
         match self {
             Self::Color => true,
@@ -57,11 +57,12 @@ impl Kind {
     }
 }
 
-/// What was found, and what was expected.
+/// What was found and what was expected.
 pub(in crate::task) type Misfit = (String, String);
 
 impl Requirement {
-    /// Where it does not come to true or false, or compares what cannot be compared. `kind_of`: what a name stands for; `None` passes.
+    /// The first part that cannot be compared, or the whole if it is not true or false. `kind_of` gives the type of a name;
+    /// `None` is not checked.
     pub(in crate::task) fn misfit(&self, kind_of: impl Fn(&str) -> Option<Kind>) -> Option<Misfit> {
         let check = Check {
             names: &self.names,
@@ -84,7 +85,7 @@ struct Check<'a, F> {
 }
 
 impl<F: Fn(&str) -> Option<Kind>> Check<'_, F> {
-    /// The kind of a part; `None` where a name in it stands for nothing that is known.
+    /// The type of a part; `None` if it contains an unknown name.
     fn kind(&self, node: &Node) -> Result<Option<Kind>, Misfit> {
         match node {
             Node::Constant(term) => Ok(Some(match term {
@@ -166,7 +167,7 @@ impl<F: Fn(&str) -> Option<Kind>> Check<'_, F> {
         Ok(Kind::Truth)
     }
 
-    /// Whether two things can be equal: things of one kind, a colour and the name of one, a text and one that it can be.
+    /// Whether two things can be equal: things of one type, a colour and a colour's name, a text and one of its possible values.
     fn alike(&self, a: (&Node, &Kind), b: (&Node, &Kind), symbol: &str) -> Result<(), Misfit> {
         match (a.1, b.1) {
             (Kind::Text(Some(first)), Kind::Text(Some(second))) => {
@@ -188,7 +189,7 @@ impl<F: Fn(&str) -> Option<Kind>> Check<'_, F> {
         }
     }
 
-    /// Refuses a text in quotes that a name never is.
+    /// Refuses a quoted text that is not among a name's possible values.
     fn is_choice(&self, text: &Node, (other, all): (&Node, &[String])) -> Result<(), Misfit> {
         let (Node::Constant(Term::Text(text)), Node::Name(name, _)) = (text, other) else {
             return Ok(());
@@ -204,7 +205,7 @@ impl<F: Fn(&str) -> Option<Kind>> Check<'_, F> {
         Err((format!("'{text}' beside {name}"), expected))
     }
 
-    /// Whether all parts fit; else the first that does not.
+    /// Succeeds if all parts fit; else the error names the first that does not.
     fn all(&self, nodes: &[&Node], symbol: &str, expected: &str, fits: impl Fn(&Kind) -> bool) -> Result<(), Misfit> {
         for node in nodes {
             let Some(kind) = self.kind(node)? else { continue };
@@ -218,7 +219,7 @@ impl<F: Fn(&str) -> Option<Kind>> Check<'_, F> {
         Ok(())
     }
 
-    /// A part as messages show it.
+    /// A part, for messages.
     fn shown(&self, node: &Node, kind: &Kind) -> String {
         match node {
             Node::Constant(Term::Text(text)) => format!("'{text}'"),

@@ -1,7 +1,7 @@
-//! [`Requirement`]: a condition over parameters that a task states: its grammar, reading and evaluating it.
+//! [`Requirement`]: parses and evaluates a condition over parameters that a task states.
 //!
-//! Written here because the crates at hand do not serve (docs/decisions/0005-requirements.md): this one needs no memory beyond
-//! its text, cannot loop, and says at which character a text goes wrong.
+//! Written here because existing crates do not fit (docs/decisions/0005-requirements.md): this one needs no memory beyond its
+//! text, cannot loop, and reports the character at which a text is wrong.
 
 mod kinds;
 mod token;
@@ -13,27 +13,27 @@ use crate::value::Value;
 pub(super) use kinds::Kind;
 use token::{Token, tokens};
 
-/// The longest text, in characters.
+/// Longest text in characters.
 const MAX_CHARACTERS: usize = 500;
 
-/// The most brackets and signs that may stand inside each other.
+/// Greatest nesting of brackets and signs.
 const MAX_DEPTH: usize = 32;
 
 /// A condition over parameters, such as `min_size < max_size and (count <= 5 or light >= 1)`.
 ///
-/// Numbers, `true`, `false`, texts in single quotes, and parameters of type number, integer, heading, boolean, string or color, or
-/// `name[0]` of a vector or point; `+ - * / %`, `min(a, b, …)`, `max(a, b, …)`, `abs(a)`, `< <= > >= == !=`, `and`, `or`,
-/// `not` and brackets. Colours are equal or not, to each other and to CSS names in quotes, and `distance(a, b)` is how far two are
-/// apart in Oklab ([`Color::distance`](crate::Color::distance)). It can neither loop nor read or write anything.
+/// Numbers, `true`, `false`, texts in single quotes, and parameters of type number, integer, heading, boolean, string or color,
+/// or `name[0]` of a vector or point; `+ - * / %`, `min(a, b, …)`, `max(a, b, …)`, `abs(a)`, `< <= > >= == !=`, `and`, `or`,
+/// `not` and brackets. Colours can only be equal or not, to each other and to CSS names in quotes; `distance(a, b)` is the
+/// distance of two colours in Oklab ([`Color::distance`](crate::Color::distance)). A condition cannot loop, and does no I/O.
 #[derive(Clone, Debug)]
 pub struct Requirement {
     text: String,
-    /// Each once, in the order of the text.
+    /// Without duplicates, in the order of the text.
     names: Vec<String>,
     root: Node,
 }
 
-/// What an expression comes to.
+/// The value of an expression.
 #[derive(Clone, Debug, PartialEq)]
 enum Term {
     Number(f64),
@@ -43,7 +43,7 @@ enum Term {
 }
 
 impl Term {
-    /// The colour that it is, or that CSS gives its name to.
+    /// The colour that it is or names.
     fn color(&self) -> Option<Color> {
         match self {
             Self::Color(color) => Some(*color),
@@ -56,7 +56,7 @@ impl Term {
 #[derive(Clone, Debug)]
 enum Node {
     Constant(Term),
-    /// The value of a name, or the number at a place of it.
+    /// The value of a name, or one of its components.
     Name(usize, Option<usize>),
     Unary(Unary, Box<Node>),
     Binary(&'static Binary, Box<Node>, Box<Node>),
@@ -69,20 +69,20 @@ enum Unary {
     Not,
 }
 
-/// What an operator between two parts does.
+/// The operation of a binary operator.
 #[derive(Clone, Copy, Debug)]
 enum Operator {
-    /// Joins conditions.
+    /// Combines conditions.
     Join(fn(bool, bool) -> bool),
     /// Compares numbers.
     Compare(fn(f64, f64) -> bool),
-    /// Whether two things of one kind are equal, or are not.
+    /// Whether two things of one type are equal, or are not.
     Equal(bool),
-    /// Calculates.
+    /// Arithmetic.
     Calculate(fn(f64, f64) -> f64),
 }
 
-/// The symbol of an operator, how tightly it binds, and what it does.
+/// Symbol, binding strength and operation of an operator.
 type Binary = (&'static str, u8, Operator);
 
 /// The operators.
@@ -102,15 +102,15 @@ static BINARY: [Binary; 13] = [
     ("%", 6, Operator::Calculate(|a, b| a % b)),
 ];
 
-/// What a function makes of its values.
+/// The operation of a function.
 #[derive(Clone, Copy, Debug)]
 enum Made {
     OfNumbers(fn(&[f64]) -> f64),
-    /// How far two colours are apart.
+    /// The distance of two colours.
     Distance,
 }
 
-/// A function: its name, how many values it takes, as a number and in words (`None` for any number), and what it computes.
+/// A function: its name, its number of arguments, as a number and in words (`None` for any number), and its operation.
 type Function = (&'static str, Option<(usize, &'static str)>, Made);
 
 /// The functions.
@@ -125,20 +125,20 @@ static FUNCTIONS: [Function; 4] = [
         None,
         Made::OfNumbers(|all| all.iter().copied().fold(f64::NEG_INFINITY, f64::max)),
     ),
-    // The parser lets one value through, no more and no fewer.
+    // The parser guarantees exactly one value.
     ("abs", Some((1, "one value")), Made::OfNumbers(|all| all[0].abs())),
     ("distance", Some((2, "two colours")), Made::Distance),
 ];
 
-/// How tightly `not` binds: looser than a comparison.
+/// Binding strength of `not`: weaker than a comparison.
 const NOT: u8 = 3;
-/// How tightly comparisons bind; they do not chain.
+/// Binding strength of comparisons; they do not chain.
 const COMPARISON: u8 = 4;
-/// How tightly a sign binds.
+/// Binding strength of a sign.
 const SIGN: u8 = 7;
 
 impl Requirement {
-    /// Reads a condition; else what was expected, where, and what was found.
+    /// Parses a condition; the error says what was expected, where, and what was found.
     pub(crate) fn parse(text: &str) -> Result<Self, String> {
         if text.chars().count() > MAX_CHARACTERS {
             return Err(format!("at most {MAX_CHARACTERS} characters"));
@@ -168,12 +168,12 @@ impl Requirement {
         &self.text
     }
 
-    /// The parameters that it speaks of, each once, in the order of the text.
+    /// The parameters that it names, without duplicates, in the order of the text.
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
-    /// Whether it holds for the given values; `None` where a value is missing, or an operator has no meaning for its operands.
+    /// Whether it holds for the given values; `None` if a value is missing, or an operator is undefined for its operands.
     pub fn holds(&self, value_of: impl Fn(&str) -> Option<Value>) -> Option<bool> {
         let values = self
             .names()
@@ -186,7 +186,7 @@ impl Requirement {
         }
     }
 
-    /// The values that it speaks of, as messages show them: `a = 1, b = 2`.
+    /// The values of its parameters, for messages: `a = 1, b = 2`.
     pub fn describe(&self, value_of: impl Fn(&str) -> Option<Value>) -> String {
         let shown = self.names().iter().map(|name| {
             let value = value_of(name).map_or_else(|| "?".to_owned(), |value| value.to_string());
@@ -256,7 +256,7 @@ impl Operator {
     }
 }
 
-/// The operator that a token is.
+/// The operator of a token.
 fn binary(token: &Token) -> Option<&'static Binary> {
     let symbol = match token {
         Token::Symbol(symbol) => *symbol,
@@ -274,7 +274,7 @@ struct Parser {
 
 impl Parser {
     fn peek(&self) -> (usize, &Token) {
-        // The last token is the end, and nothing goes beyond it.
+        // The last token is the end, beyond which the parser never reads.
         let (at, token) = &self.tokens[self.next];
         (*at, token)
     }
@@ -407,7 +407,7 @@ mod tests {
     }
 
     #[test]
-    fn conditions_compare_calculate_and_join() {
+    fn conditions_compare_calculate_and_combine() {
         check("a < b", Some(true));
         check("a + 3 == b and not (b > 10)", Some(true));
         check("min(a, max(b, 7), 3) * 2 >= max(a, 4) or false", Some(true));
@@ -442,7 +442,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_meaning_or_no_value_holds_neither_way() {
+    fn undefined_or_missing_value_gives_none() {
         check("a + b", None);
         check("order < 3", None);
         check("day and a", None);
@@ -457,7 +457,7 @@ mod tests {
     }
 
     #[test]
-    fn a_text_that_is_no_condition_is_refused_at_the_character_at_fault() {
+    fn syntax_error_reports_its_character() {
         refused("", "a number, a name or a bracket at character 1, found the end");
         refused("a <", "a number, a name or a bracket at character 4, found the end");
         refused("((a)", "\")\" at character 5, found the end");
@@ -479,7 +479,7 @@ mod tests {
     }
 
     #[test]
-    fn hostile_texts_are_refused_and_harm_nothing() {
+    fn hostile_text_is_refused() {
         refused(&"(".repeat(400), "at most 32 brackets or signs inside each other");
         refused(&"-".repeat(400), "at most 32 brackets or signs inside each other");
         refused(&"not ".repeat(100), "at most 32 brackets or signs inside each other");

@@ -1,4 +1,4 @@
-//! A condition cut into tokens. What they mean together is read in `mod.rs`.
+//! Splits a condition into tokens.
 
 /// A piece of the text.
 #[derive(Clone, Debug, PartialEq)]
@@ -7,13 +7,13 @@ pub(super) enum Token {
     Text(String),
     Word(String),
     Symbol(&'static str),
-    /// A character with no meaning here.
+    /// A character without meaning in conditions.
     Odd(char),
     End,
 }
 
 impl Token {
-    /// The token as messages show it.
+    /// The token, for messages.
     pub(super) fn describe(&self) -> String {
         match self {
             Self::Number(number) => format!("{number}"),
@@ -26,12 +26,12 @@ impl Token {
     }
 }
 
-/// Symbols, longer ones before those that they begin with.
+/// Symbols; each comes before those that are its prefixes.
 const SYMBOLS: [&str; 17] = [
     "<=", ">=", "==", "!=", "<", ">", "=", "+", "-", "*", "/", "%", "(", ")", "[", "]", ",",
 ];
 
-/// A text cut into tokens, each with the character it begins at, from 1.
+/// The tokens of a text, each with the position of its first character, from 1.
 pub(super) fn tokens(text: &str) -> Result<Vec<(usize, Token)>, String> {
     let characters: Vec<char> = text.chars().collect();
     let mut tokens = Vec::new();
