@@ -1,4 +1,4 @@
-//! Values of parameters and their types. Where a value may stand in a world is in `world/fields/`.
+//! [`Value`] and [`ParameterType`]: values of parameters and their types.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -38,12 +38,12 @@ pub enum ParameterType {
 }
 
 impl ParameterType {
-    /// The type's name as documents write it.
+    /// The type's name in documents.
     pub fn name(self) -> &'static str {
         self.into()
     }
 
-    /// Whether a value of this type can stand where `other` is wanted.
+    /// Whether a value of this type fits where `other` is required.
     pub fn fits(self, other: Self) -> bool {
         match self {
             Self::Integer => matches!(other, Self::Integer | Self::Number | Self::Heading),
@@ -52,7 +52,7 @@ impl ParameterType {
         }
     }
 
-    /// Whether its values are numbers in an order, so that they may have a range.
+    /// Whether its values are ordered numbers, which may have a range.
     pub fn is_numeric(self) -> bool {
         matches!(self, Self::Number | Self::Integer | Self::Heading | Self::Vector)
     }
@@ -90,8 +90,8 @@ pub enum Value {
 }
 
 impl Value {
-    /// This value as one of the given type, if it can be one: whole numbers are numbers, CSS names are colours, a heading of
-    /// any size is turned into 0..360, and everything is JSON.
+    /// Converts the value to a type if possible: integers are numbers, CSS names are colours, headings of any size are wrapped
+    /// into 0..360, and everything is JSON.
     pub fn cast(&self, kind: ParameterType) -> Option<Self> {
         use ParameterType as P;
         match (kind, self) {
@@ -119,12 +119,12 @@ impl Value {
         }
     }
 
-    /// Whether only a place that takes it as JSON can hold it: a list of words or of lists, an object, or nothing.
+    /// Whether only a place for JSON can hold it: a list of words or of lists, an object, or `null`.
     pub(crate) fn is_json(&self) -> bool {
         matches!(self, Self::Json(_))
     }
 
-    /// The number, if the value is a real or whole one.
+    /// The number, if the value is real or an integer.
     pub fn as_number(&self) -> Option<f64> {
         match self {
             Self::Number(number) => Some(*number),
@@ -141,7 +141,7 @@ impl Value {
         }
     }
 
-    /// The whole number, if the value is one.
+    /// The integer, if the value is one.
     pub fn as_integer(&self) -> Option<i64> {
         let Self::Integer(whole) = self else { return None };
         Some(*whole)
@@ -153,7 +153,7 @@ impl Value {
         Some(text)
     }
 
-    /// The numbers of a vector, or of a point or colour, which are read from JSON where a vector of their length is meant.
+    /// The numbers of a vector, point or colour: JSON may have been read as a point or colour where a vector is meant.
     pub fn as_vector(&self) -> Option<&[f64]> {
         match self {
             Self::Vector(numbers) => Some(numbers),
@@ -163,7 +163,7 @@ impl Value {
         }
     }
 
-    /// The value, or the number at a place of a vector or point.
+    /// The value, or the component at an index of a vector or point.
     pub fn at(&self, index: Option<usize>) -> Option<Self> {
         match index {
             None => Some(self.clone()),
@@ -185,14 +185,14 @@ fn canonical_json<'de, D: serde::Deserializer<'de>>(json: D) -> Result<Box<serde
     serde_json::Value::deserialize(json).map(|json| Box::new(canonical(json)))
 }
 
-/// JSON in the one way of writing it in which equal values have equal texts: keys in order, whole numbers without a point.
+/// Canonical JSON, in which equal values have equal texts: sorted keys, and integers without a decimal point.
 fn canonical(json: serde_json::Value) -> serde_json::Value {
     let mut json = with_whole_numbers(json);
     json.sort_all_objects();
     json
 }
 
-/// The same JSON, in which numbers such as 10.0 and 1e2 are written as the whole ones that they are.
+/// The same JSON with numbers such as 10.0 and 1e2 written as integers.
 pub(crate) fn with_whole_numbers(json: serde_json::Value) -> serde_json::Value {
     use serde_json::Value as Json;
     match json {
@@ -209,18 +209,18 @@ pub(crate) fn with_whole_numbers(json: serde_json::Value) -> serde_json::Value {
     }
 }
 
-/// The whole number that a double is; up to 2⁵³ each has a double of its own.
+/// The integer equal to a double; up to 2⁵³ each integer has its own double.
 fn whole(number: f64) -> Option<i64> {
     (number.fract() == 0.0 && number.abs() <= 9_007_199_254_740_992.0).then_some(number as i64)
 }
 
-/// A heading of any size as one in 0..360: a tiny negative one would be rounded up to 360 itself.
+/// A heading of any size, wrapped into 0..360; a tiny negative one would otherwise be rounded up to 360.
 pub(crate) fn turned(degrees: f64) -> f64 {
     let turned = degrees.rem_euclid(360.0);
     if turned >= 360.0 { 0.0 } else { turned }
 }
 
-/// As people read it: colours by name where they have one.
+/// For people to read: colours by name if they have one.
 impl std::fmt::Display for Value {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         match self {
@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn json_becomes_a_value_of_the_parameters_type_or_none() {
+    fn cast_converts_json_to_the_parameters_type_or_none() {
         let red = || Some(Value::Color(Color([1.0, 0.0, 0.0])));
         check("3", ParameterType::Integer, Some(Value::Integer(3)));
         check("3", ParameterType::Number, Some(Value::Number(3.0)));
@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_json_has_one_text_and_reads_back_as_itself() {
+    fn equal_json_has_one_text_and_round_trips() {
         let json = |text: &str| {
             serde_json::from_str::<Value>(text)
                 .unwrap()
@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn a_distribution_is_a_value_of_its_own_type() {
+    fn distribution_is_a_value_of_its_own_type() {
         let value: Value = serde_json::from_str(r#"{"disc": {"center": [0, 0], "radius": {"param": "r"}}}"#).unwrap();
         assert!(value.cast(ParameterType::Distribution).is_some() && value.cast(ParameterType::Point).is_none());
     }

@@ -1,23 +1,23 @@
-//! Versions of the documents: a newer one is refused, an older one is brought up to date. What a version holds is said by its type.
+//! Versions of the documents: refuses newer ones and upgrades older ones.
 
 use serde_json::{Map, Value as Json, json};
 
 use crate::error::Problem;
 
-/// The version of world documents that is written.
+/// Current version of world documents.
 pub const WORLD_VERSION: u32 = 1;
 
-/// The version of task specs that is current.
+/// Current version of task specs.
 pub const TASK_VERSION: u32 = 2;
 
-/// The version of scenarios that is written.
+/// Current version of scenarios.
 pub const SCENARIO_VERSION: u32 = 1;
 
-/// A kind of document with the history of its form.
+/// A kind of document with its upgrades.
 pub(crate) struct Format {
     name: &'static str,
     current: u32,
-    /// The first leads from version 1 to version 2, and so on.
+    /// The first upgrades version 1 to version 2, and so on.
     upgrades: &'static [fn(&mut Map<String, Json>)],
 }
 
@@ -38,18 +38,18 @@ pub(crate) const SCENARIO: Format = Format {
 };
 
 impl Format {
-    /// Brings a document to the current version. A document that names none is of version 1.
+    /// Upgrades a document to the current version. A document without a version counts as version 1.
     pub(crate) fn upgrade(&self, document: &mut Json) -> Option<Problem> {
         let map = document.as_object_mut()?;
         let found = match map.get("version") {
             None => 1,
-            // Anything but a whole number from 1 on is the schema's to refuse.
+            // The schema refuses anything but an integer from 1.
             Some(version) => version.as_u64().filter(|version| *version >= 1)?,
         };
         if found > u64::from(self.current) {
             let name = self.name;
             let expected = format!("a {name} of version {} or older", self.current);
-            // What nothing else tells apart is read as a world; task specs alone have come so far.
+            // A document of unknown kind is read as a world; only task specs have reached this version.
             let advice = if self.name == "world" && found <= u64::from(TASK.current) {
                 "it may be a task spec, which has a name: {\"version\": 2, \"name\": …}"
             } else {
@@ -69,10 +69,10 @@ impl Format {
     }
 }
 
-/// The margins of version 1 of the task spec, and what version 2 calls them in `keep_out`.
+/// The margins of version 1 of the task spec, with their names under `keep_out` in version 2.
 pub(crate) const OLD_MARGINS: [(&str, &str); 2] = [("wall_margin", "walls"), ("agent_margin", "agent")];
 
-/// Version 1 had `wall_margin` and `agent_margin` beside each other; version 2 has `keep_out`, which also names groups.
+/// Version 1 had `wall_margin` and `agent_margin`; version 2 has `keep_out`, which also names groups.
 fn margins_to_keep_out(task: &mut Map<String, Json>) {
     let groups = task
         .get_mut("groups")
@@ -96,7 +96,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_older_task_is_read_as_what_it_says_today() {
+    fn older_task_is_upgraded() {
         let mut task =
             json!({ "version": 1, "name": "t", "groups": [{ "name": "g", "wall_margin": 3, "agent_margin": 4 }] });
         assert!(TASK.upgrade(&mut task).is_none());
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn a_newer_document_is_refused_and_says_what_to_do() {
+    fn newer_document_is_refused_with_advice() {
         let problem = SCENARIO.upgrade(&mut json!({ "version": 7 })).unwrap();
         assert_eq!(
             problem.to_string(),

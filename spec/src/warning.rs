@@ -1,5 +1,4 @@
-//! What is odd about a document that can be read: [`Warning`]s with their places, the first few hundred of them. What is wrong with a
-//! document is in `error.rs`.
+//! [`Warning`]: an oddity of a readable document, with its place. Only the first few hundred are kept.
 
 use std::fmt;
 
@@ -8,18 +7,18 @@ use driftworld_text::one_line;
 use crate::document::places_in;
 use crate::error::MAX_PROBLEMS;
 
-/// Something of a document that was not taken as it stands.
+/// A part of a document that was not taken literally.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
     /// The document's name.
     pub name: String,
     /// JSON pointer to the value.
     pub pointer: String,
-    /// Line in the text, from 1; 0 where there is no text.
+    /// Line in the text, from 1; 0 if there is no text.
     pub line: usize,
-    /// Column in the line, from 1; 0 where `line` is 0.
+    /// Column in the line, from 1; 0 if `line` is 0.
     pub column: usize,
-    /// What was found, and what was made of it.
+    /// What was found, and how it was read.
     pub text: String,
 }
 
@@ -33,10 +32,10 @@ impl fmt::Display for Warning {
     }
 }
 
-/// What is odd about a document, the first few hundred of it.
+/// The first few hundred oddities of a document.
 #[derive(Debug, Default)]
 pub(crate) struct Remarks {
-    /// Each with the pointer to what it is about.
+    /// Each after the pointer to its subject.
     first: Vec<(String, String)>,
     more: usize,
 }
@@ -50,20 +49,20 @@ impl Remarks {
         }
     }
 
-    /// The remarks in the order of the text that they are about; `name` is what messages call it.
+    /// The remarks sorted by their places in the text; `name` is the document's name in messages.
     pub(crate) fn in_text(self, name: &str, text: &str) -> Vec<Warning> {
         let pointers: Vec<&str> = self.first.iter().map(|(pointer, _)| pointer.as_str()).collect();
         let places = places_in(text, &pointers);
         self.at(name, places)
     }
 
-    /// The remarks on what has no text; `name` is what messages call it.
+    /// The remarks on a document without text; `name` is its name in messages.
     pub(crate) fn without_text(self, name: &str) -> Vec<Warning> {
         let places = vec![(0, 0); self.first.len()];
         self.at(name, places)
     }
 
-    /// The remarks in the order of their lines and columns, one for each.
+    /// The remarks sorted by line and column; `places` has one entry for each.
     fn at(self, name: &str, places: Vec<(usize, usize)>) -> Vec<Warning> {
         let warning = |((pointer, text), (line, column))| Warning {
             name: name.to_owned(),
@@ -85,7 +84,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_warning_without_a_line_names_no_line() {
+    fn warning_without_a_line_shows_no_line() {
         let mut warning = Warning {
             name: "world".into(),
             pointer: "/rules/step_reward".into(),
