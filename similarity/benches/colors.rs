@@ -1,4 +1,4 @@
-//! How long distances of colours, pictures and sets take.
+//! Benchmarks of distances between colours, pictures and sets of colours.
 
 #![expect(clippy::disallowed_methods, reason = "only its speed is measured")]
 
@@ -9,7 +9,7 @@ use driftworld_similarity::picture::{Picture, picture_oklab, structural_similari
 use driftworld_similarity::{Assignment, ColorMeasure, Lab, ciede2000, color_sets_distance, ospa};
 use driftworld_spec::Color;
 
-/// Numbers in 0..1 that look random and are the same on every run: the fractions of multiples of the golden ratio, stirred.
+/// Pseudo-random numbers in 0..1, the same on every run: scrambled fractions of multiples of the golden ratio.
 fn number(index: usize) -> f64 {
     let stirred = (index as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15);
     let stirred = (stirred ^ (stirred >> 29)).wrapping_mul(0xBF58_476D_1CE4_E5B9);

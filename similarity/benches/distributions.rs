@@ -1,4 +1,4 @@
-//! How long distances between distributions take: by closed form, by quadrature, by samples.
+//! Benchmarks of distances between distributions: by closed form, by quadrature, by samples.
 
 use std::hint::black_box;
 

@@ -1,5 +1,5 @@
-//! How many pairs of grids and of points are measured a second: `cargo bench -p driftworld-similarity --bench occupancy`. Inputs by a
-//! fixed chance, as many and as large as those on which the Python tools were measured.
+//! Pairs of grids and of point sets measured per second: `cargo bench -p driftworld-similarity --bench occupancy`. Inputs are
+//! drawn with a fixed seed; their number and sizes are those on which the Python tools were measured.
 
 use std::hint::black_box;
 
@@ -8,7 +8,7 @@ use driftworld_similarity::{
     BitGrid, Grid, GridShape, earth_movers_distance, grid_earth_movers_distance, grid_jaccard_distance,
 };
 
-/// Numbers in 0..1 that are the same every time: splitmix64 of Vigna.
+/// Numbers in 0..1 that are the same on every run: splitmix64 of Vigna.
 struct Chance(u64);
 
 impl Chance {
@@ -25,7 +25,7 @@ fn shape(side: usize) -> GridShape {
     GridShape::new(side, side, 1, 1.0).expect("a small grid of cells of 1 m is sound")
 }
 
-/// Measures every pair of the items once in each round.
+/// Measures every pair of items once per iteration.
 fn pairs<T>(c: &mut Criterion, name: &str, items: &[T], measure: impl Fn(&T, &T) -> f64) {
     let mut group = c.benchmark_group("pairs");
     group.throughput(Throughput::Elements((items.len() * (items.len() - 1) / 2) as u64));

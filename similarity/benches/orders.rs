@@ -1,4 +1,4 @@
-//! How long orders, and maps take. Distances of documents are measured elsewhere.
+//! Benchmarks of orders and maps, from a given matrix of distances.
 
 #![expect(clippy::disallowed_methods, reason = "only its speed is measured")]
 
@@ -7,7 +7,7 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use driftworld_similarity::{DistanceMatrix, Method, OrderOptions, SimilarityError, classical_map, order};
 
-/// Points of a square, the same on every machine.
+/// Points in a square, the same on every machine.
 fn points(n: usize) -> DistanceMatrix {
     let mut state = 1_u64;
     let mut unit = || {

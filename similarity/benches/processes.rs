@@ -1,17 +1,18 @@
-//! How long distances of decision processes and of rewards take. The processes are those of an agent that walks on a grid of cells.
+//! Benchmarks of distances between decision processes and between rewards. The processes model an agent walking on a grid of
+//! cells.
 
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use driftworld_similarity::{Mdp, RewardSamples, bisimulation};
 
-/// Cells of a side, headings, actions: ahead, back, turn left, turn right, stay.
+/// Cells per side, headings, actions: ahead, back, turn left, turn right, stay.
 const SIDE: usize = 60;
 const HEADINGS: usize = 8;
 const ACTIONS: usize = 5;
 const STEPS: [(isize, isize); HEADINGS] = [(0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1)];
 
-/// Where a step leads on a square of so many cells a side; against the edge, or into the wall, it does not.
+/// The cell that a step leads to, on a square with `side` cells per side; `None` if the edge or the wall is in the way.
 fn ahead(side: usize, wall: Option<usize>, cell: usize, heading: usize, back: bool) -> usize {
     let (east, north) = STEPS[(heading + if back { HEADINGS / 2 } else { 0 }) % HEADINGS];
     let x = (cell % side).checked_add_signed(east).filter(|x| *x < side);
@@ -22,7 +23,7 @@ fn ahead(side: usize, wall: Option<usize>, cell: usize, heading: usize, back: bo
         .unwrap_or(cell)
 }
 
-/// A grid to walk on, with a goal that pays 1 and keeps.
+/// A grid to walk on, with an absorbing goal that pays 1.
 fn grid(side: usize, wall: Option<usize>, goal: usize) -> Mdp {
     let (mut next, mut rewards) = (Vec::new(), Vec::new());
     for state in 0..side * side * HEADINGS {

@@ -1,9 +1,8 @@
-//! [`Assignment`]: the cheapest way to pair rows with columns. What the rows and columns are, and what an unpaired one costs, is
-//! said by the measures that use it.
+//! [`Assignment`]: the cheapest way to pair rows with columns.
 //!
-//! Own code, for want of a crate that fits: `lapjv` takes square matrices only, compares costs with one absolute tolerance
-//! and is kept as it is; `pathfinding::kuhn_munkres` wants costs that are `Ord`, which `f64` is not, panics where rows are more than
-//! columns, and takes new memory for every matrix.
+//! Own code, because no crate fits: `lapjv` takes square matrices only, compares costs with one absolute tolerance and is
+//! no longer developed; `pathfinding::kuhn_munkres` needs `Ord` costs, which `f64` is not, panics if there are more rows than columns,
+//! and allocates memory for every matrix.
 
 use crate::SimilarityError;
 use crate::transport::check_costs;
@@ -11,14 +10,14 @@ use crate::transport::check_costs;
 /// Most rows, and most columns, of an assignment.
 pub const MAX_ASSIGNED: usize = 4096;
 
-/// Stands for "paired with none" in the buffers.
+/// Marks "paired with none" in the buffers.
 const NONE: usize = usize::MAX;
 
-/// Pairs rows with columns so that the sum of the costs is least, and keeps its memory for the next matrix.
+/// Pairs rows with columns so that the sum of the costs is least, and reuses its memory for the next matrix.
 ///
-/// Each row and each column is in one pair at most, and there are as many pairs as the shorter side has members. Exact up to the
-/// rounding of `f64`. The same matrix gives the same pairs, also where several pairings are equally cheap.
-/// Time `O(rows · columns · shorter side)` at worst and often far less; takes no memory once it has met the size.
+/// Each row and each column is in at most one pair, and there are as many pairs as the shorter side has members. Exact up to
+/// the rounding of `f64`. Deterministic, even if several pairings are equally cheap. Time `O(rows · columns · shorter side)` at
+/// worst and often far less; allocates nothing for sizes that it has met before.
 ///
 /// Source: Jonker and Volgenant 1987, "A shortest augmenting path algorithm for dense and sparse linear assignment problems"
 /// (without the reduction of columns, which holds for square matrices only); the same sums as
@@ -37,11 +36,11 @@ const NONE: usize = usize::MAX;
 #[derive(Clone, Debug, Default)]
 pub struct Assignment {
     partners: Vec<Option<usize>>,
-    /// The costs with rows and columns exchanged, where there are more rows than columns.
+    /// The transposed costs, if there are more rows than columns.
     exchanged: Vec<f64>,
     column_of: Vec<usize>,
     row_of: Vec<usize>,
-    /// What each column is paid to be taken, at most 0; exactly 0 for columns that are not.
+    /// The price that each column is paid for being taken, at most 0; exactly 0 for columns that are not taken.
     price: Vec<f64>,
     free: Vec<usize>,
     reach: Vec<f64>,
@@ -51,7 +50,7 @@ pub struct Assignment {
 }
 
 impl Assignment {
-    /// With no memory taken yet.
+    /// Allocates no memory yet.
     pub fn new() -> Self {
         Self::default()
     }
@@ -88,12 +87,12 @@ impl Assignment {
             .sum())
     }
 
-    /// For each row of the last matrix solved the column it is paired with; `None` for rows left over.
+    /// For each row of the last matrix solved, the column it is paired with; `None` for unpaired rows.
     pub fn partners(&self) -> &[Option<usize>] {
         &self.partners
     }
 
-    /// Pairs every row; there are at most as many as columns.
+    /// Pairs every row; there are at most as many rows as columns.
     fn pair(&mut self, costs: &[f64], rows: usize, columns: usize) {
         for (buffer, length) in [(&mut self.column_of, rows), (&mut self.row_of, columns)] {
             buffer.clear();
@@ -114,9 +113,9 @@ impl Assignment {
         }
     }
 
-    /// Augmenting row reduction: each row takes the column it likes best and lowers its price until the second best is as
-    /// good; who is driven out bids again. Rows that this does not settle soon are left to `shortest_path`, because with costs
-    /// that are not whole numbers bidding may go on for very long.
+    /// Augmenting row reduction: each row takes its cheapest column and lowers that column's price until the second cheapest is
+    /// as good; a displaced row bids again. Rows not settled soon are left to `shortest_path`, because with costs that are not
+    /// whole numbers bidding may take very long.
     fn bid(&mut self, costs: &[f64], columns: usize) {
         let mut left_over = std::mem::take(&mut self.closed);
         left_over.clear();
@@ -148,19 +147,19 @@ impl Assignment {
         self.closed = std::mem::replace(&mut self.free, left_over);
     }
 
-    /// Finds the cheapest way from a free row to a free column, over pairs that would be exchanged; adjusts the prices.
+    /// Finds the cheapest augmenting path from a free row to a free column, and adjusts the prices.
     fn shortest_path(&mut self, costs: &[f64], columns: usize, start: usize) -> usize {
         self.open.clear();
         self.open.extend(0..columns);
         self.closed.clear();
         self.reach.fill(f64::INFINITY);
-        // How far it is to the row that is looked from, less what its pair costs.
+        // Path length to the current row, less the cost of its pair.
         let (mut row, mut so_far, mut least) = (start, 0.0, f64::NEG_INFINITY);
         loop {
             let line = &costs[row * columns..][..columns];
             let (mut nearest, mut nearest_at, mut nearest_is_free) = (f64::INFINITY, 0, false);
             for (position, &column) in self.open.iter().enumerate() {
-                // No less than `least`, but for rounding.
+                // At least `least`, but for rounding.
                 let reach = (line[column] - self.price[column] + so_far).max(least);
                 if reach < self.reach[column] {
                     self.reach[column] = reach;
@@ -200,7 +199,7 @@ impl Assignment {
     }
 }
 
-/// The two least costs after prices and where they are, the first of equals first. There are at least two.
+/// The two least costs after prices and their columns; ties go to the first. There are at least two columns.
 fn two_least(line: &[f64], price: &[f64]) -> [(f64, usize); 2] {
     let mut least = [(f64::INFINITY, 0), (f64::INFINITY, 0)];
     for (column, (cost, price)) in line.iter().zip(price).enumerate() {
@@ -230,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn small_matrices_have_their_known_sums() {
+    fn small_matrices_have_known_sums() {
         check(&[], 0, 0, 0.0);
         check(&[], 0, 3, 0.0);
         check(&[7.0], 1, 1, 7.0);
@@ -241,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_solved_is_refused() {
+    fn invalid_matrices_are_refused() {
         let mut assignment = Assignment::new();
         let bad = [1.0, 2.0, f64::NAN, 4.0];
         let error = assignment.solve(&bad, 2, 2).unwrap_err();
@@ -285,7 +284,7 @@ mod tests {
     }
 
     fn matrix() -> impl Strategy<Value = (Vec<f64>, usize, usize)> {
-        // Whole numbers from a short range are full of ties.
+        // Whole numbers from a short range produce many ties.
         let cost = prop_oneof![(-3i8..4).prop_map(f64::from), -5.0..5.0];
         (1usize..6, 1usize..6).prop_flat_map(move |(rows, columns)| {
             (
@@ -298,8 +297,8 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_pairing_is_cheaper(first in matrix(), second in matrix()) {
-            // One workspace for both: nothing of the first may be left in the second.
+        fn solution_is_as_cheap_as_the_best_by_brute_force(first in matrix(), second in matrix()) {
+            // One workspace for both: nothing of the first solution may remain in the second.
             let mut assignment = Assignment::new();
             for (costs, rows, columns) in [first, second] {
                 let total = assignment.solve(&costs, rows, columns).unwrap();

@@ -1,8 +1,8 @@
-//! What can keep a distance or an order from being computed.
+//! Errors raised while computing distances and orders.
 
 use driftworld_text::one_line;
 
-/// Everything that can go wrong in this crate.
+/// An error of this crate.
 #[derive(Debug, Clone, PartialEq, thiserror::Error, strum::IntoStaticStr, strum::VariantNames)]
 #[strum(prefix = "similarity/", serialize_all = "kebab-case")]
 #[non_exhaustive]
@@ -17,37 +17,37 @@ pub enum SimilarityError {
         /// The second variant's task.
         b: String,
     },
-    /// A distance is not a number that a distance can be.
+    /// A distance is negative or not finite.
     #[error("distance of {a:?} to {b:?}: found {found}, expected a number from 0 to 1e100")]
     NotADistance {
         /// The first label.
         a: String,
         /// The second label.
         b: String,
-        /// What was found.
+        /// The number found.
         found: f64,
     },
-    /// A mass that nothing can have.
+    /// An invalid mass.
     #[error("mass {index} of {side}: found {found}, expected a number from 0 to 1e200")]
     BadMass {
-        /// Which masses it is among.
+        /// The list that contains it.
         side: &'static str,
-        /// Its place among them, from 0.
+        /// Its index, from 0.
         index: usize,
         /// The mass.
         found: f64,
     },
-    /// A coordinate that no point can have.
+    /// An invalid coordinate.
     #[error("point {index} of {side}: found the coordinate {found}, expected a number of metres from -1e100 to 1e100")]
     BadPoint {
-        /// Which points it is among.
+        /// The list of points that contains it.
         side: &'static str,
-        /// Its place among them, from 0.
+        /// The point's index, from 0.
         index: usize,
         /// The coordinate.
         found: f64,
     },
-    /// Mass cannot be moved to where there is more room, or less, than mass.
+    /// The total masses differ, so one cannot be moved onto the other.
     #[error(
         "masses: found sums of {from} and {to}, expected equal sums; divide each mass by its sum, or use a distance for unequal masses"
     )]
@@ -57,7 +57,7 @@ pub enum SimilarityError {
         /// The sum at the destinations.
         to: f64,
     },
-    /// Grids that are not of one raster.
+    /// Grids of different shapes.
     #[error("grids: found {a} and {b}, expected equal shapes; make both with one raster")]
     GridsDiffer {
         /// The first one's shape.
@@ -65,62 +65,62 @@ pub enum SimilarityError {
         /// The second one's shape.
         b: String,
     },
-    /// A grid would not fit.
+    /// A grid would not fit in memory.
     #[error("grid: found {found} cells, expected at most {limit}; use larger cells, a smaller extent or fewer classes")]
     TooFine {
-        /// How many there are.
+        /// The number found.
         found: usize,
-        /// How many are possible.
+        /// The largest allowed.
         limit: usize,
     },
-    /// A matrix would not fit.
+    /// A matrix would not fit in memory.
     #[error("found {found} items, expected at most {limit}; compare fewer at a time")]
     TooMany {
-        /// How many there are.
+        /// The number found.
         found: usize,
-        /// How many are possible.
+        /// The largest allowed.
         limit: usize,
     },
-    /// A method was asked for more items than it can put into an order.
+    /// More items than a method can order.
     #[error("method {method}: found {found} items, expected at most {limit}; use the method two-opt")]
     TooManyForMethod {
         /// The method.
         method: &'static str,
-        /// How many there are.
+        /// The number found.
         found: usize,
-        /// How many are possible.
+        /// The largest allowed.
         limit: usize,
     },
-    /// An item that an order should begin or end with is not there.
+    /// The requested first or last item does not exist.
     #[error("order: found {found} as the {end} item, expected one of 0 to {most}")]
     NoSuchEnd {
         /// "first" or "last".
         end: &'static str,
         /// The index asked for.
         found: usize,
-        /// The last index there is.
+        /// The largest valid index.
         most: usize,
     },
-    /// One item cannot be at both ends.
+    /// One item was given for both ends.
     #[error("order: found {label:?} as the first item and as the last, expected two different ones")]
     EqualEnds {
         /// The item.
         label: String,
     },
-    /// What was read, or handed in, is no matrix of distances.
+    /// A distance matrix, read or passed in, is invalid.
     #[error("matrix, {place}: found {found}, expected {expected}", place = one_line(place), found = one_line(found), expected = one_line(expected))]
     BadMatrix {
-        /// Where in the text or the matrix.
+        /// The place in the text or the matrix.
         place: String,
-        /// What is there.
+        /// The text or value found.
         found: String,
-        /// What should be.
+        /// The expected text or value.
         expected: String,
     },
-    /// The wanted step is missing or no length.
+    /// The target step is missing or not a length.
     #[error("method target-step: found {found} as the wanted step, expected a finite number of at least 0")]
     BadTargetStep {
-        /// What was found.
+        /// The text or value found.
         found: String,
     },
     /// There are no samples to compare.
@@ -129,13 +129,13 @@ pub enum SimilarityError {
     /// There is nothing to order.
     #[error("order: found no items, expected at least 1")]
     Empty,
-    /// A word that names no method.
+    /// An unknown method.
     #[error("method: found {found:?}, {}", crate::Method::advice_for(found))]
     UnknownMethod {
         /// The word.
         found: String,
     },
-    /// Lists that are to be correlated are not of one length.
+    /// Lists to correlate have different lengths.
     #[error("correlation: found lists of {a} and {b} numbers, expected as many in both")]
     CorrelationLengths {
         /// Numbers in the first list.
@@ -143,27 +143,27 @@ pub enum SimilarityError {
         /// Numbers in the second list.
         b: usize,
     },
-    /// Too few pairs to be correlated.
+    /// Too few pairs to correlate.
     #[error(
         "correlation: found {found} pairs, expected at least {needed}: two always lie on a straight line; measure more"
     )]
     CorrelationTooFew {
-        /// How many there are.
+        /// The number found.
         found: usize,
-        /// How many are needed.
+        /// The number needed.
         needed: usize,
     },
-    /// A number to be correlated is none.
+    /// A number to correlate is not finite.
     #[error("correlation: found {found} at place {place} of the {list} list, expected a finite number")]
     CorrelationNotFinite {
         /// First or second.
         list: &'static str,
-        /// The place in it, from 0.
+        /// Its index, from 0.
         place: usize,
-        /// What was found.
+        /// The number found.
         found: f64,
     },
-    /// A list to be correlated is all one number.
+    /// A list to correlate is constant.
     #[error(
         "correlation: found {found} everywhere in the {list} list, expected numbers that differ: what never changes goes \
          together with nothing"
@@ -174,53 +174,53 @@ pub enum SimilarityError {
         /// The number.
         found: f64,
     },
-    /// A word that names no correlation.
+    /// An unknown correlation.
     #[error("correlation: found {found:?}, expected spearman or pearson")]
     UnknownCorrelation {
         /// The word.
         found: String,
     },
-    /// A pair that a Mantel test cannot take.
+    /// An invalid pair for a Mantel test.
     #[error("mantel test: found a value for the pair {from} to {to} {found}, expected {expected}")]
     MantelPair {
         /// The first item's index.
         from: usize,
         /// The second item's index.
         to: usize,
-        /// What is wrong with it.
+        /// The fault.
         found: &'static str,
-        /// What it should be.
+        /// The expected pair.
         expected: &'static str,
     },
-    /// More or fewer of something than a Mantel test can take.
+    /// A count out of range for a Mantel test.
     #[error("mantel test: found {found} {what}, expected 1 to {limit}")]
     MantelCount {
-        /// What is counted.
+        /// The thing counted.
         what: &'static str,
-        /// How many there are.
+        /// The number found.
         found: u64,
-        /// How many are possible.
+        /// The largest allowed.
         limit: u64,
     },
-    /// A weight that cannot be one.
+    /// An invalid weight.
     #[error("weight of {name}: found {found}, expected a number from 0 to 1000000")]
     BadWeight {
-        /// What it weighs.
+        /// The name of the weighted thing.
         name: String,
         /// The weight.
         found: f64,
     },
-    /// Numbers that do not fill the table they are for, or fill more.
+    /// A table with the wrong number of entries.
     #[error("{of}: found {found} numbers, expected {expected}")]
     Shape {
-        /// What the numbers are.
+        /// The kind of entries.
         of: &'static str,
-        /// How many there are.
+        /// The number found.
         found: usize,
-        /// How many there should be.
+        /// The number expected.
         expected: usize,
     },
-    /// A cost that cannot be added up.
+    /// A cost too large to add up, or not finite.
     #[error(
         "cost in row {row}, column {column}: found {found}, expected a number from -1e200 to 1e200; use a large cost to keep two apart"
     )]
@@ -232,71 +232,71 @@ pub enum SimilarityError {
         /// The cost.
         found: f64,
     },
-    /// A number that is not what it is taken for.
+    /// A number out of range.
     #[error("{of}: found {found}, expected {expected}")]
     BadNumber {
-        /// What the number is.
+        /// The number's meaning.
         of: &'static str,
-        /// The number.
+        /// The number found.
         found: f64,
-        /// What would do.
+        /// The expected range.
         expected: &'static str,
     },
-    /// A table of costs in which one is not a distance.
+    /// A table of costs with an entry that is not a distance.
     #[error("cost of {a:?} to {b:?}: found {found}, expected {expected}")]
     BadTable {
         /// The first choice.
         a: String,
         /// The second choice.
         b: String,
-        /// The cost.
+        /// The cost found.
         found: f64,
-        /// What would do.
+        /// The expected cost.
         expected: String,
     },
-    /// A name that is there more than once.
+    /// A name that occurs more than once.
     #[error("choices: found {name:?} more than once, expected each once; remove one")]
     TwiceNamed {
         /// The name.
         name: String,
     },
-    /// A choice that a table of costs does not have.
+    /// A choice that is not in a table of costs.
     #[error("choice: found {found:?}, expected one of {expected}; add it to the cost table", expected = one_line(expected))]
     UnknownChoice {
-        /// The choice.
+        /// The choice found.
         found: String,
-        /// Those that it has.
+        /// The choices in the table.
         expected: String,
     },
-    /// Two that are to be compared place by place do not have as many places.
+    /// Two things to compare element by element have different sizes.
     #[error("{of}: found {a} and {b} {what}, expected as many in both")]
     SizesDiffer {
-        /// What is compared.
+        /// The things compared.
         of: &'static str,
-        /// What is counted.
+        /// The elements counted.
         what: &'static str,
-        /// How many the first has.
+        /// The first one's number of elements.
         a: usize,
-        /// How many the second has.
+        /// The second one's number of elements.
         b: usize,
     },
-    /// A reward that nothing can pay.
+    /// An invalid reward.
     #[error("reward of {place}: found {found}, expected a number from -1e100 to 1e100")]
     BadReward {
-        /// For what it is paid.
+        /// The event that pays it.
         place: String,
         /// The reward.
         found: f64,
     },
-    /// A state that a decision process does not have.
+    /// A state that is not in the decision process.
     #[error("state of a decision process: found {found}, expected one of 0 to {most}")]
     NoSuchState {
         /// The state.
         found: usize,
-        /// The last there is.
+        /// The largest valid state.
         most: usize,
     },
-    /// Pictures that do not lie on each other.
+    /// Pictures of different sizes.
     #[error(
         "picture: found {found} pixels (height × width), expected {expected} as in the other; render both at one size"
     )]
@@ -306,7 +306,7 @@ pub enum SimilarityError {
         /// The first picture's.
         expected: String,
     },
-    /// Sets of pictures without any.
+    /// Sets without pictures.
     #[error("pictures: found none, expected at least 1 of each world; render from at least one pose")]
     NoPictures,
     /// A picture with a side that is too short or too long.
@@ -314,9 +314,9 @@ pub enum SimilarityError {
     PictureSide {
         /// The side.
         found: usize,
-        /// The least.
+        /// The shortest allowed.
         least: usize,
-        /// The most.
+        /// The longest allowed.
         most: usize,
     },
 }
@@ -327,7 +327,7 @@ impl SimilarityError {
         self.into()
     }
 
-    /// Refuses more items than can be compared at a time.
+    /// Fails if there are more items than can be compared at a time.
     pub(crate) fn check_count(found: usize, limit: usize) -> Result<(), Self> {
         if found > limit {
             return Err(Self::TooMany { found, limit });
@@ -335,7 +335,7 @@ impl SimilarityError {
         Ok(())
     }
 
-    /// Refuses a list of another length than its shape has.
+    /// Fails if a list's length differs from its shape.
     pub(crate) fn check_length(of: &'static str, found: usize, expected: usize) -> Result<(), Self> {
         if found != expected {
             return Err(Self::Shape { of, found, expected });

@@ -1,5 +1,5 @@
-//! [`LayoutShape`]: the walls of a layout as a raster, and the ways that they leave, so that layouts are compared by what
-//! they are and not by how they are written.
+//! [`LayoutShape`]: the walls of a layout as a raster, with the paths between them, so that layouts are compared by geometry
+//! and not by notation.
 
 use std::collections::BTreeSet;
 use std::sync::LazyLock;
@@ -13,30 +13,30 @@ use crate::scalar::relative_difference;
 /// Cells of the raster along each side of the arena.
 const SIDE: usize = 96;
 
-/// Places along each side of the arena between which ways are measured.
+/// Places along each side of the arena between which path lengths are measured.
 const PLACES: usize = 6;
 
-/// Cells of the coarser raster along each side, between which the mass of walls is moved; each is 3 × 3 of the finer.
+/// Cells per side of the coarser raster for wall transport; each covers 3 × 3 fine cells.
 const COARSE: usize = 32;
 
-/// Steps of a way that there is not.
+/// Path length if there is no path.
 const NO_WAY: u32 = (SIDE * SIDE) as u32;
 
-/// What layouts are compared by: a raster of 96 × 96 cells with the heights of the walls that reach into them, how long the ways are
-/// between the cells nearest to 36 places in rows and columns, and what is marked: letters of cells and colours of walls.
-/// Places are shares of the arena's sides: how large it is does not count. What is finer than a cell of the raster is not seen.
+/// A layout prepared for comparison: a raster of 96 × 96 cells with the heights of the walls that reach into them, the path
+/// lengths between the cells nearest to 36 places in rows and columns, and marks: letters of cells and colours of walls. Places
+/// are shares of the arena's sides, so its size does not count. Details smaller than a cell of the raster are ignored.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayoutShape {
-    /// Metres; 0 where no wall is.
+    /// Wall heights in metres; 0 without a wall.
     walls: Vec<f32>,
-    /// Steps from each place to each later one.
+    /// Path lengths in steps, from each place to each later one.
     ways: Vec<u32>,
     /// Letters and colours, each with its place.
     marks: BTreeSet<String>,
 }
 
 impl LayoutShape {
-    /// The shape of a plan in an arena of these sides in metres, where walls without a height are so high. A millisecond.
+    /// The shape of a plan in an arena with these sides in metres; `wall_height` is for walls without one. Takes a millisecond.
     ///
     /// # Example
     /// ```
@@ -52,7 +52,7 @@ impl LayoutShape {
         let mut walls = vec![0.0_f32; SIDE * SIDE];
         for wall in &plan.walls {
             let height = wall.height.unwrap_or(wall_height) as f32;
-            // In cells of the raster.
+            // In raster cells.
             let corners: Vec<[f64; 2]> = wall
                 .polygon
                 .iter()
@@ -77,8 +77,8 @@ impl LayoutShape {
             }
         }
         let ways = ways(&walls);
-        // Whole ten-thousandths of the sides. The irrational offset keeps all ratios of small numbers, where layouts have their
-        // corners, off the borders, at which rounding would decide.
+        // Ten-thousandths of the sides, rounded down. The irrational offset keeps all ratios of small numbers, where layouts
+        // have their corners, away from the borders, at which rounding would decide.
         let whole = |share: f64| (share * 1e4 + std::f64::consts::FRAC_1_SQRT_2).floor();
         let share = |[x, y]: [f64; 2]| format!("{} {}", whole(x / arena[0]), whole(y / arena[1]));
         let letters = plan.cells.iter().filter_map(|cell| Some((cell.letter?, cell.center)));
@@ -101,8 +101,8 @@ impl LayoutShape {
         &OPEN
     }
 
-    /// Jaccard distance of the walls, weighted by their heights: what stands in one alone, as a share of what stands in either,
-    /// 0..1. A metric (Soergel's). Where all walls are as high, it is the share of the cells that walls of one touch alone.
+    /// Jaccard distance of the walls, weighted by their heights: what only one layout has, as a share of what either has, 0..1.
+    /// A metric (Soergel's). If all walls have one height, it is the share of wall cells that only one layout has.
     pub fn walls_distance(&self, other: &Self) -> f64 {
         let pairs = || {
             self.walls
@@ -115,8 +115,8 @@ impl LayoutShape {
         if either > 0.0 { alone / either } else { 0.0 }
     }
 
-    /// How much the ways differ: the mean over all pairs of places of the difference of the two lengths over the larger
-    /// one, 0..1. A metric of ways: 0 where all are as long.
+    /// The difference in paths: the mean, over all pairs of places, of the difference of the two lengths over the larger one,
+    /// 0..1. A metric of path lengths: 0 if all are equal.
     pub fn ways_distance(&self, other: &Self) -> f64 {
         let pairs = self.ways.iter().zip(&other.ways);
         let apart: f64 = pairs
@@ -125,22 +125,22 @@ impl LayoutShape {
         apart / self.ways.len().max(1) as f64
     }
 
-    /// Jaccard distance of the marks: letters of cells and colours of walls that only one of them has there, as a share of those
-    /// that either has, 0..1. A metric.
+    /// Jaccard distance of the marks: letters of cells and colours of walls that only one of them has there, as a share of
+    /// those that either has, 0..1. A metric.
     pub fn marks_distance(&self, other: &Self) -> f64 {
         let either = self.marks.union(&other.marks).count();
         let both = self.marks.intersection(&other.marks).count();
         (either - both) as f64 / either.max(1) as f64
     }
 
-    /// How far the walls have to be moved to stand as the other's: the mean way of their mass, in sides of the arena, 0..√2. The
-    /// earth mover's distance (Wasserstein-1) of rasters of 32 × 32 cells. Each has a mass of 1 in all, spread by how much
-    /// of a cell walls touch, and how high they are.
+    /// Wall transport: the mean distance that the mass of walls has to be moved, in sides of the arena, 0..√2. The earth
+    /// mover's distance (Wasserstein-1) of rasters of 32 × 32 cells. Each layout has a total mass of 1, distributed by how much
+    /// of a cell its walls touch, and their heights.
     ///
-    /// A metric of where walls stand: not of how many, nor of how high all are, which [`LayoutShape::walls_distance`] counts. A
-    /// wall that is moved by a quarter of the arena costs a quarter of its share of the mass, where the Jaccard distance of two
-    /// places that do not overlap is as large however near they are. From a layout without walls, where nothing can be moved,
-    /// each other one is √2 away. It is not part of [`LayoutShape::distance`].
+    /// A metric of wall positions, but not of their number or common height, which [`LayoutShape::walls_distance`] counts.
+    /// Moving a wall by a quarter of the arena costs a quarter of its share of the mass, while the Jaccard distance of two
+    /// positions that do not overlap is the same however near they are. A layout without walls has no mass to move and is √2
+    /// from every other. Not part of [`LayoutShape::distance`].
     ///
     /// Exact, by network simplex.
     ///
@@ -169,7 +169,7 @@ impl LayoutShape {
         }
     }
 
-    /// Where the mass of the walls is, 1 in all, on the coarser raster of an arena whose side is 1.
+    /// The mass of the walls, 1 in total, on the coarser raster of an arena whose side is 1.
     fn coarse(&self) -> Result<Grid, SimilarityError> {
         const FINE: usize = SIDE / COARSE;
         let mut masses = vec![0.0; COARSE * COARSE];
@@ -187,11 +187,11 @@ impl LayoutShape {
     }
 }
 
-/// How much nearer than half a cell, squared, a wall comes to the middle of a cell that it touches: what lies on lines of the
-/// raster touches the cells on its own side alone, whatever rounding made of it.
+/// How much nearer than half a cell, squared, a wall must come to the middle of a cell to touch it: walls on raster lines touch
+/// the cells on their own side only, whatever the rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Whether a polygon holds a point, or comes nearer to it than half a cell.
+/// Whether a polygon contains a point, or comes nearer to it than half a cell.
 fn touches(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     let Some(mut from) = corners.last().copied() else {
         return false;
@@ -211,13 +211,13 @@ fn touches(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     inside || least < 0.25 - ROUNDING
 }
 
-/// Steps from a cell to each over those that `may_enter` allows; [`NO_WAY`] to the others.
+/// Steps from a cell to each other over cells that `may_enter` allows; [`NO_WAY`] to unreachable ones.
 ///
-/// Each layout that is compared asks for dozens of these, and tests for many layouts without optimisation: so no iterators here.
+/// Each layout needs dozens of these, and tests run it for many layouts without optimisation: hence no iterators.
 fn steps(from: usize, may_enter: impl Fn(usize) -> bool) -> Vec<u32> {
     let mut steps = vec![NO_WAY; SIDE * SIDE];
     steps[from] = 0;
-    // Every cell that was come to, nearest first; those before `done` have been gone on from.
+    // Every cell reached, nearest first; those before `done` have been expanded.
     let mut reached = Vec::with_capacity(SIDE * SIDE);
     reached.push(from);
     let mut done = 0;
@@ -247,7 +247,7 @@ fn steps(from: usize, may_enter: impl Fn(usize) -> bool) -> Vec<u32> {
     steps
 }
 
-/// Steps between the free cells that are nearest to the places, from each to each later one.
+/// Path lengths between the free cells nearest to the places, from each to each later one.
 fn ways(walls: &[f32]) -> Vec<u32> {
     let places: Vec<usize> = (0..PLACES * PLACES)
         .map(|number| {
@@ -276,7 +276,7 @@ mod tests {
 
     use super::*;
 
-    /// The cells beside one, within the raster.
+    /// The neighbours of a cell within the raster.
     fn beside(cell: usize) -> impl Iterator<Item = usize> {
         let (column, row) = (cell % SIDE, cell / SIDE);
         [
@@ -290,9 +290,9 @@ mod tests {
     }
 
     proptest! {
-        /// From cell to cell the steps are one more than the least beside it, and where there are none, none leads there.
+        /// A cell's step count is one more than its least neighbour's; a cell without a reached neighbour is unreachable.
         #[test]
-        fn steps_are_one_more_than_the_least_beside(
+        fn steps_are_one_more_than_the_least_neighbour(
             walls in prop::collection::vec(prop::bool::weighted(0.35), SIDE * SIDE),
             from in 0..SIDE * SIDE,
         ) {
@@ -342,7 +342,7 @@ mod tests {
         }
     }
 
-    /// The share of the mass in each cell of the coarser raster, cell by cell.
+    /// The share of the mass in each cell of the coarser raster.
     fn shares(shape: &LayoutShape) -> Vec<[f64; 3]> {
         const FINE: usize = SIDE / COARSE;
         let all: f64 = shape.walls.iter().copied().map(f64::from).sum();
@@ -362,7 +362,7 @@ mod tests {
             .all(|(a, b)| (a[2] - b[2]).abs() < 1e-12)
     }
 
-    /// Wasserstein-1 of the masses seen along one axis, 0 for columns, in sides of the arena.
+    /// Wasserstein-1 of the masses projected onto one axis, 0 for columns, in sides of the arena.
     fn area_between_sums(a: &LayoutShape, b: &LayoutShape, axis: usize) -> f64 {
         let along = |shape: &LayoutShape| {
             let mut sums = vec![0.0; COARSE];
@@ -382,9 +382,10 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(6))]
 
-        /// Along one axis the least work is the area between the sums up to each place, and in the plane no less than either.
+        /// On a line the earth mover's distance is the area between the cumulative sums; in the plane it is at least that of
+        /// each axis.
         #[test]
-        fn along_an_axis_it_is_the_area_between_the_sums(
+        fn transport_on_a_line_is_the_area_between_cumulative_sums(
             rows in prop::array::uniform2(prop::collection::vec(0_u8..9, COARSE)), lines in any::<bool>(), other in layouts(),
         ) {
             let shapes = rows.map(|row| {
@@ -410,7 +411,7 @@ mod tests {
         }
 
         #[test]
-        fn moving_walls_is_a_metric_of_where_they_stand(a in layouts(), b in layouts(), c in layouts(), times in 1_u8..9) {
+        fn wall_transport_is_a_metric_of_wall_positions(a in layouts(), b in layouts(), c in layouts(), times in 1_u8..9) {
             let [a, b, c] = [a, b, c].map(|layout| shape(&layout));
             let between = |a: &LayoutShape, b: &LayoutShape| a.transport_distance(b).expect("heights are finite");
             prop_assert_eq!(between(&a, &a), 0.0);
@@ -419,7 +420,7 @@ mod tests {
             prop_assert!(between(&a, &b) <= std::f64::consts::SQRT_2);
             let stand = a.walls.iter().any(|height| *height > 0.0);
             prop_assert_eq!(between(&a, LayoutShape::open()), if stand { std::f64::consts::SQRT_2 } else { 0.0 });
-            // How high all are does not count, and how they share the mass does.
+            // A common factor of heights does not count; the distribution of mass does.
             let higher = LayoutShape { walls: a.walls.iter().map(|height| height * f32::from(times)).collect(), ..a.clone() };
             prop_assert!(between(&a, &higher) < 1e-12);
             prop_assert_eq!(between(&a, &b) < 1e-12, same_shares(&a, &b));
@@ -430,7 +431,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(24))]
 
         #[test]
-        fn it_is_a_metric(a in layouts(), b in layouts(), c in layouts()) {
+        fn layout_distance_is_a_metric(a in layouts(), b in layouts(), c in layouts()) {
             let [a, b, c] = [a, b, c].map(|layout| shape(&layout));
             prop_assert_eq!(a.distance(&a), 0.0);
             prop_assert_eq!(a.distance(&b).to_bits(), b.distance(&a).to_bits());
@@ -438,11 +439,11 @@ mod tests {
         }
 
         #[test]
-        fn a_wall_that_is_moved_costs_its_way_times_its_share(
+        fn moving_a_wall_costs_distance_times_its_share(
             (still, moved) in (1_u8..6, 1_u8..6), from in [0..32_usize, 0..32_usize], to in [0..32_usize, 0..32_usize],
         ) {
             let all = f64::from(still) + f64::from(moved);
-            // What stays put: no plan is cheaper than one that leaves it.
+            // Common mass stays: no plan is cheaper than one that leaves it.
             let at = |place: [usize; 2]| {
                 let mut walls = vec![0.0_f32; SIDE * SIDE];
                 fill(&mut walls, [7, 9], f32::from(still));
@@ -456,7 +457,7 @@ mod tests {
         }
 
         #[test]
-        fn how_a_layout_is_written_does_not_count(layout in layouts()) {
+        fn notation_of_a_layout_does_not_count(layout in layouts()) {
             let plan = layout.plan(0);
             let walls = plan.walls.iter().map(|wall| LayoutWall {
                 polygon: Some(wall.polygon.clone()),
@@ -468,9 +469,10 @@ mod tests {
             prop_assert_eq!(single.distance(&shape(&layout)), 0.0);
         }
 
-        /// What a cell of a text measures changes nothing, and where the raster has whole cells for every letter it is the text.
+        /// The cell size of a text layout changes nothing, and if the raster has whole cells for every letter it equals the
+        /// text.
         #[test]
-        fn how_large_the_letters_of_a_text_are_does_not_count(
+        fn cell_size_of_a_text_layout_does_not_count(
             (columns, rows) in (prop::sample::select(vec![3_usize, 4, 5, 6, 7, 8, 9, 11, 12, 13, 16, 24, 31, 32, 48, 96]), 2_usize..33),
             walls in prop::collection::vec(any::<bool>(), 96 * 33), metres in 0.1..40.0_f64,
         ) {
@@ -493,7 +495,7 @@ mod tests {
         }
 
         #[test]
-        fn the_fewer_walls_stand_the_farther_is_the_whole(layout in layouts(), more in 0.0..=1.0, less in 0.0..=1.0) {
+        fn distance_grows_as_fewer_walls_stand(layout in layouts(), more in 0.0..=1.0, less in 0.0..=1.0) {
             let standing = |standing| shape(&Layout { standing, ..layout.clone() });
             let (all, many, few) = (standing(1.0), standing(more), standing(more * less));
             prop_assert!(all.walls_distance(&few) >= all.walls_distance(&many));

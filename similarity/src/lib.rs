@@ -1,10 +1,9 @@
-//! How far apart worlds and variants are, element by element of the decision process, and in which order to meet them.
+//! Distances between worlds and between variants, element by element of the decision process, and orders to learn them in.
 //!
-//! [`variant_distance`] compares two variants of a task by what they declare, [`world_distance`] two concrete worlds by what
-//! is in them; both explain themselves part by part. [`DistanceMatrix`] holds all distances among many, [`order`] puts the
-//! many into a path. The measures that they are made of stand alone, too. [`RewardSamples`] compares rewards by what they
-//! ask for, [`bisimulation`] and [`w1_mdp`] finite decision processes by what they pay and where they lead. Nothing here
-//! draws worlds or pictures.
+//! [`variant_distance`] compares two variants of a task by what they declare, [`world_distance`] two concrete worlds; both list
+//! the parts of their result. [`DistanceMatrix`] holds all distances among many items, [`order`] sorts the items into a path.
+//! The underlying measures can be used on their own. [`RewardSamples`] compares rewards up to shaping, [`bisimulation`] and
+//! [`w1_mdp`] compare finite decision processes by rewards and transitions.
 
 mod assignment;
 mod color;

@@ -1,8 +1,8 @@
-//! [`MetricProperties`]: which laws a measure keeps, so that a method that needs them can refuse one that does not.
+//! [`MetricProperties`]: the laws that a measure satisfies, so that methods can refuse measures without the laws they need.
 
 use serde::{Deserialize, Serialize};
 
-/// Which laws a measure of how far things are apart keeps.
+/// The laws that a measure of distance satisfies.
 ///
 /// # Example
 /// ```
@@ -13,24 +13,24 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum MetricProperties {
-    /// 0 for equals, as far there as back, and no detour is shorter than the straight way.
+    /// Zero only between equals, symmetric, and with the triangle inequality.
     Metric,
-    /// As a metric, but unlike things may be 0 apart.
+    /// As a metric, but different things may be 0 apart.
     Pseudometric,
-    /// 0 for equals and as far there as back; a detour may be shorter.
+    /// Zero between equals and symmetric; the triangle inequality may fail.
     #[default]
     Distance,
-    /// 0 for equals only; there may be farther than back.
+    /// Zero only between equals; may be asymmetric.
     Divergence,
 }
 
 impl MetricProperties {
-    /// Whether it is a metric: 0 for equals only, and no detour is shorter.
+    /// Whether it is a metric: zero only between equals, with the triangle inequality.
     pub fn is_metric(self) -> bool {
         self == Self::Metric
     }
 
-    /// Whether the triangle inequality holds: no detour is shorter than the straight way.
+    /// Whether the triangle inequality holds.
     pub fn keeps_triangles(self) -> bool {
         matches!(self, Self::Metric | Self::Pseudometric)
     }

@@ -1,10 +1,10 @@
-//! [`SplitMix64`]: a small portable random number generator. Worlds are not drawn from it.
+//! [`SplitMix64`]: a small portable random number generator.
 
 /// `SplitMix64` (Steele, Lea and Flood 2014): 64 bits of state, the same numbers on every machine.
 pub(crate) struct SplitMix64(pub(crate) u64);
 
 impl SplitMix64 {
-    /// A stream for each pair of a seed and a number.
+    /// An independent stream for each pair of a seed and a number.
     pub(crate) fn keyed(seed: u64, number: u64) -> Self {
         let first = Self(seed).next();
         Self(first ^ Self(number).next().rotate_left(32))
@@ -24,7 +24,7 @@ impl SplitMix64 {
         ((u128::from(self.next()) * u128::from(bound)) >> 64) as u64
     }
 
-    /// A whole number below `bound`, each as likely: numbers from the incomplete last stretch are drawn again.
+    /// A whole number below `bound`, without bias: numbers from the incomplete last stretch are redrawn.
     pub(crate) fn unbiased_below(&mut self, bound: u64) -> u64 {
         let whole = u64::MAX - u64::MAX % bound;
         loop {
@@ -46,7 +46,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_numbers_are_those_of_the_published_generator() {
+    fn numbers_match_the_published_generator() {
         let mut rng = SplitMix64(1_234_567);
         let found: Vec<u64> = (0..5).map(|_| rng.next()).collect();
         // The output of Vigna's splitmix64.c for this seed.
@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn a_draw_stays_below_its_bound_and_reaches_all() {
+    fn draws_stay_below_the_bound_and_reach_all_values() {
         let mut rng = SplitMix64(1);
         let mut seen = [0_u32; 5];
         for _ in 0..5000 {

@@ -1,4 +1,4 @@
-//! The sums of assignments against those that scipy finds. The laws are tested beside the code.
+//! Compares the sums of assignments with scipy's.
 
 use driftworld_similarity::Assignment;
 use serde::Deserialize;
@@ -18,7 +18,7 @@ struct Case {
 }
 
 #[test]
-fn sums_are_those_of_scipy() {
+fn sums_match_scipy() {
     let oracle: Oracle = serde_json::from_str(include_str!("oracle/assignment.json")).expect("the oracle is sound");
     assert!(oracle.cases.len() > 40);
     let mut assignment = Assignment::new();

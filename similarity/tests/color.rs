@@ -1,4 +1,4 @@
-//! Distances between colours against those of scikit-image and colour-science. The laws are tested beside the code.
+//! Compares distances between colours with those of scikit-image and colour-science.
 
 use driftworld_similarity::{ColorMeasure, Lab, cie76, ciede2000, hyab};
 use driftworld_spec::Color;
@@ -28,11 +28,11 @@ fn oracle() -> Oracle {
 }
 
 #[test]
-fn the_pairs_that_sharma_published_are_met() {
+fn pairs_published_by_sharma_are_reproduced() {
     for [l1, a1, b1, l2, a2, b2, expected] in oracle().sharma {
         let (a, b) = (Lab([l1, a1, b1]), Lab([l2, a2, b2]));
         for found in [ciede2000(a, b), ciede2000(b, a)] {
-            // The table has four digits.
+            // The published table has four digits.
             assert!(
                 (found - expected).abs() < 1e-4,
                 "{a:?} to {b:?}: {found}, expected {expected}"
@@ -42,7 +42,7 @@ fn the_pairs_that_sharma_published_are_met() {
 }
 
 #[test]
-fn distances_of_lab_triples_are_those_of_the_oracles() {
+fn lab_distances_match_the_oracles() {
     for pair in oracle().pairs {
         let (a, b) = (Lab(pair.lab_a), Lab(pair.lab_b));
         for (name, found, expected) in [
@@ -59,7 +59,7 @@ fn distances_of_lab_triples_are_those_of_the_oracles() {
 }
 
 #[test]
-fn distances_of_srgb_colors_are_those_of_the_oracles() {
+fn srgb_distances_match_the_oracles() {
     for pair in oracle().pairs {
         let (a, b) = (Color(pair.a), Color(pair.b));
         for (lab, expected) in [(Lab::from(a), pair.lab_a), (Lab::from(b), pair.lab_b)] {
@@ -71,7 +71,7 @@ fn distances_of_srgb_colors_are_those_of_the_oracles() {
             (ColorMeasure::Cie76, pair.cie76, 1e-9),
             (ColorMeasure::Ciede2000, pair.ciede2000, 1e-9),
             (ColorMeasure::Hyab, pair.hyab, 1e-9),
-            // By way of XYZ, with matrices of four to ten digits.
+            // Via XYZ, with matrices of four to ten digits.
             (ColorMeasure::Oklab, pair.oklab, 1e-4),
         ] {
             let found = measure.between(a, b);

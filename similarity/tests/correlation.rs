@@ -1,5 +1,5 @@
-//! Correlations and the Mantel test against scipy, scikit-bio and a full enumeration; `oracle/make_correlation.py` made the
-//! numbers. Laws are tested beside the code.
+//! Compares correlations and the Mantel test with scipy, scikit-bio and a full enumeration; `oracle/make_correlation.py` made
+//! the numbers.
 
 use driftworld_similarity::{
     Correlation, DistanceMatrix, MantelTest, PairValue, SimilarityError, mantel, pearson, spearman,
@@ -33,7 +33,7 @@ fn method(case: &Value) -> Correlation {
 }
 
 #[test]
-fn correlations_are_those_of_scipy() {
+fn correlations_match_scipy() {
     for case in cases(&golden(), "correlations") {
         let (a, b) = (numbers(&case["a"]), numbers(&case["b"]));
         let near = |found: f64, name: &str| {
@@ -45,9 +45,9 @@ fn correlations_are_those_of_scipy() {
     }
 }
 
-/// Exactly the counts of an enumeration, with gaps and with pairs that go one way only.
+/// Exactly the counts of an enumeration, with gaps and one-way pairs.
 #[test]
-fn exact_shares_are_those_of_an_enumeration() {
+fn exact_shares_match_an_enumeration() {
     for case in cases(&golden(), "enumerated") {
         let pairs = case["pairs"].as_array().expect("pairs").iter().map(|pair| PairValue {
             from: number(&pair[0]) as usize,
@@ -73,9 +73,9 @@ fn exact_shares_are_those_of_an_enumeration() {
     }
 }
 
-/// Drawn shares differ from draw to draw: two shares of 19,999 draws lie within 0.02 of each other in all but one of 10,000.
+/// Random shares vary: two shares of 19,999 draws are within 0.02 of each other in all but one of 10,000 cases.
 #[test]
-fn drawn_shares_come_near_those_of_scikit_bio() {
+fn drawn_shares_approximate_scikit_bio() {
     for case in cases(&golden(), "drawn") {
         let other = matrix(&case["b"]);
         let all = (0..other.len()).flat_map(|from| (from + 1..other.len()).map(move |to| (from, to)));

@@ -1,5 +1,4 @@
-//! Distances between distributions against those of scipy and POT, and the laws that they claim. Closed forms are compared
-//! with quadrature beside the code.
+//! Compares distances between distributions with scipy and POT, and checks the laws that they claim.
 
 use driftworld_similarity::distribution::{
     Measured, Method, bures_wasserstein, circular_wasserstein_1, energy, hellinger, jensen_shannon, kullback_leibler,
@@ -63,7 +62,7 @@ fn tolerance(found: Measured) -> f64 {
 }
 
 #[test]
-fn distances_are_those_of_scipy_and_pot() {
+fn distances_match_scipy_and_pot() {
     let pairs = oracle().pairs;
     assert!(pairs.len() > 130);
     let mut wrong = Vec::new();
@@ -71,10 +70,10 @@ fn distances_are_those_of_scipy_and_pot() {
         for (name, expected) in expected {
             let expected = expected.as_f64().unwrap_or(f64::INFINITY);
             let found = measure(&name)(&a, &b).expect("every pair here has this distance");
-            // The oracle's own quadrature is good to 1e-8 or so; roots of small sums to less.
+            // The oracle's own quadrature is accurate to about 1e-8; roots of small sums to less.
             let slack = 1e-7 * expected.max(1.0) + tolerance(found);
             let near = found.value == expected || (found.value - expected).abs() <= slack;
-            // As the docs say, in degrees and otherwise.
+            // The documented accuracy, in degrees and otherwise.
             let most = if name == "circular_wasserstein_1" { 1e-3 } else { 1e-5 };
             if !near || tolerance(found) > most {
                 wrong.push(format!("{name} of {a} and {b}: {found:?}, expected {expected}"));
@@ -85,7 +84,7 @@ fn distances_are_those_of_scipy_and_pot() {
 }
 
 #[test]
-fn samples_are_as_far_as_scipy_and_pot_say() {
+fn sample_distances_match_scipy_and_pot() {
     for case in oracle().samples {
         let choice = |numbers: &[f64]| Distribution::Choice {
             values: numbers.iter().map(|number| Value::Number(*number)).collect(),
@@ -189,7 +188,7 @@ fn places() -> impl Strategy<Value = Distribution> {
     ]
 }
 
-/// The laws of a metric, as far as the tolerances tell.
+/// Checks the laws of a metric, within the tolerances.
 fn is_a_metric(measure: Measure, [a, b, c]: [&Distribution; 3], most: f64) -> Result<(), TestCaseError> {
     let between = |a, b| measure(a, b).expect("there is a distance");
     let (ab, bc, ac, ba) = (between(a, b), between(b, c), between(a, c), between(b, a));
@@ -213,23 +212,23 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 40)))]
 
     #[test]
-    fn distances_of_probabilities_are_metrics(a in numbers(), b in numbers(), c in numbers()) {
+    fn probability_distances_are_metrics(a in numbers(), b in numbers(), c in numbers()) {
         for measure in [total_variation, hellinger, jensen_shannon] {
             is_a_metric(measure, [&a, &b, &c], 1.0)?;
         }
     }
 
     #[test]
-    fn distances_of_numbers_are_metrics(a in numbers(), b in numbers(), c in numbers()) {
+    fn number_distances_are_metrics(a in numbers(), b in numbers(), c in numbers()) {
         for measure in [wasserstein_1, wasserstein_2, energy] {
             is_a_metric(measure, [&a, &b, &c], f64::INFINITY)?;
         }
     }
 
     #[test]
-    fn distances_of_headings_are_metrics(a in headings(), b in headings(), c in headings()) {
+    fn heading_distances_are_metrics(a in headings(), b in headings(), c in headings()) {
         is_a_metric(circular_wasserstein_1, [&a, &b, &c], 180.0)?;
-        // Numbers within one turn are as far along the line as around the circle.
+        // Numbers within one turn have the same distance on the line as on the circle.
         let within = |distribution: &Distribution| match distribution {
             Distribution::Uniform { low, high } => Distribution::Uniform {
                 low: low.abs(),
@@ -265,15 +264,15 @@ proptest! {
 }
 
 proptest! {
-    // Dear ones: hundreds of points or nodes on either side.
+    // Expensive cases: hundreds of points or nodes on either side.
     #![proptest_config(ProptestConfig::with_cases(6))]
 
     #[test]
-    fn distances_of_points_keep_their_bounds(a in places(), b in places()) {
+    fn point_distances_keep_their_bounds(a in places(), b in places()) {
         let of = |measure: Measure| measure(&a, &b).expect("both draw points");
         let (first, second) = (of(planar_wasserstein_1), of(planar_wasserstein_2));
         let least = bures_wasserstein(&a, &b).expect("both draw points");
-        // Samples stand for either within some percent.
+        // Samples represent each distribution within some percent.
         let slack = if matches!(second.method, Method::Samples { .. }) { 0.1 } else { 1e-6 };
         prop_assert!(second.value >= least * (1.0 - slack) - slack, "{second:?}, at least {least}");
         let slack = if first.method == second.method { 1e-6 } else { 0.1 };

@@ -1,4 +1,4 @@
-//! Distances of drawn decision processes against what `SciPy` finds by linear programs. The laws are tested beside the code.
+//! Compares distances of random decision processes with `SciPy`'s linear programs.
 
 use driftworld_similarity::{Mdp, bisimulation, w1_mdp};
 use serde::Deserialize;
@@ -22,9 +22,10 @@ impl Rng {
     }
 }
 
-/// What a case of the oracle holds, in its order: the mean of all bisimulation distances, and for processes of one size W₁-MDP.
+/// The contents of an oracle case, in order: the mean of all bisimulation distances, and for processes of one size W₁-MDP.
 /// Draws in the order of `drawn` in `oracle/make_mdp.py`: 1 to 6 states, in the second as many (one in two) or 1 to 6; 1 to 3
-/// actions; a discount of 0.3, 0.5 or 0.7; both processes; the reward that counts 1, in quarters up to 1; which states count beside
+/// actions; a discount of 0.3, 0.5 or 0.7; both processes; the reward that counts 1, in quarters up to 1; which states count
+/// beside the first (one in two).
 /// the first (one in two).
 fn drawn(seed: u64) -> Vec<f64> {
     let mut rng = Rng(seed);
@@ -60,7 +61,7 @@ fn drawn(seed: u64) -> Vec<f64> {
 }
 
 #[test]
-fn drawn_processes_are_as_far_apart_as_scipy_says() {
+fn random_processes_match_scipy() {
     let oracle: Oracle = serde_json::from_str(include_str!("oracle/mdp.json")).expect("the oracle is sound");
     assert_eq!(oracle.cases.len(), 1000);
     for (seed, expected) in oracle.cases.iter().enumerate() {

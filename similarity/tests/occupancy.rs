@@ -1,4 +1,4 @@
-//! Distances of grids against what scipy, scikit-image and POT find, and their laws.
+//! Compares distances of grids with scipy, scikit-image and POT, and checks their laws.
 
 use driftworld_similarity::{
     BitGrid, Grid, GridShape, SimilarityError, grid_chamfer_distance, grid_earth_movers_distance,
@@ -47,13 +47,13 @@ fn check(what: &str, found: Result<f64, SimilarityError>, expected: f64) {
 }
 
 #[test]
-fn taken_cells_are_as_far_apart_as_scipy_and_scikit_image_say() {
+fn taken_cells_match_scipy_and_scikit_image() {
     for case in oracle().taken {
         let shape = GridShape::new(case.columns, case.rows, 1, case.cell).expect("the shape is sound");
         let grid = |taken: &[usize]| BitGrid::new(shape, (0..shape.num_cells()).map(|cell| taken.contains(&cell)));
         let (a, b) = (grid(&case.a), grid(&case.b));
         check("jaccard", grid_jaccard_distance(&a, &b), case.jaccard);
-        // Where there is no oracle: no ways where nothing stands, the diameter where one grid is empty.
+        // Cases without an oracle: no distances between empty grids, the diameter if one grid is empty.
         let otherwise = if case.a.is_empty() && case.b.is_empty() {
             0.0
         } else {
@@ -73,7 +73,7 @@ fn taken_cells_are_as_far_apart_as_scipy_and_scikit_image_say() {
 }
 
 #[test]
-fn masses_are_as_far_apart_as_scipy_and_pot_say() {
+fn masses_match_scipy_and_pot() {
     let oracle = oracle();
     for case in oracle.masses {
         let shape = GridShape::new(case.columns, case.rows, 1, case.cell).expect("the shape is sound");
@@ -85,7 +85,7 @@ fn masses_are_as_far_apart_as_scipy_and_pot_say() {
 }
 
 #[test]
-fn grids_of_different_shapes_and_masses_are_refused() {
+fn mismatched_grids_are_refused() {
     let grid = |columns, mass| {
         let shape = GridShape::new(columns, 1, 1, 1.0).expect("the shape is sound");
         Grid::new(shape, vec![mass; columns]).expect("the mass is sound")
@@ -101,7 +101,7 @@ fn grids_of_different_shapes_and_masses_are_refused() {
         unequal.to_string(),
         "masses: found sums of 2 and 3, expected equal sums; divide each mass by its sum, or use a distance for unequal masses"
     );
-    // The advice, taken.
+    // Following the error's advice works.
     assert_eq!(
         grid_earth_movers_distance(&light.normalised(), &heavy.normalised()),
         Ok(0.0)
@@ -118,7 +118,7 @@ fn grid() -> impl Strategy<Value = Grid> {
     })
 }
 
-/// Grids that hold 1 in each plane.
+/// Grids with a total of 1 in each plane.
 fn full_grid() -> impl Strategy<Value = Grid> {
     let shape = GridShape::new(4, 3, 2, 2.0).expect("the shape is sound");
     prop::collection::vec(0u8..4, 24).prop_map(move |masses| {
@@ -131,7 +131,7 @@ fn full_grid() -> impl Strategy<Value = Grid> {
 
 type Measure<'a, T> = (&'a str, f64, fn(&T, &T) -> Result<f64, SimilarityError>);
 
-/// 0 for equals, as far there as back, never beyond the bound; with `c`, no detour is shorter.
+/// 0 for equals, symmetric, never beyond the bound; with `c`, also the triangle inequality.
 fn laws<T>((name, bound, measure): Measure<T>, a: &T, b: &T, c: Option<&T>) -> Result<(), TestCaseError> {
     let d = |a: &T, b: &T| measure(a, b).map_err(|error| TestCaseError::fail(error.to_string()));
     prop_assert!(d(a, a)?.abs() < 1e-12, "{} of equals: {}", name, d(a, a)?);
@@ -151,7 +151,7 @@ fn laws<T>((name, bound, measure): Measure<T>, a: &T, b: &T, c: Option<&T>) -> R
 
 proptest! {
     #[test]
-    fn metrics_of_taken_cells_keep_the_axioms(a in grid(), b in grid(), c in grid()) {
+    fn metrics_of_taken_cells_satisfy_the_axioms(a in grid(), b in grid(), c in grid()) {
         let (a, b, c) = (a.taken(), b.taken(), c.taken());
         let diameter = a.shape().diameter();
         let metrics: [Measure<BitGrid>; 2] = [
@@ -167,7 +167,7 @@ proptest! {
     }
 
     #[test]
-    fn metrics_of_equal_masses_keep_the_axioms(a in full_grid(), b in full_grid(), c in full_grid()) {
+    fn metrics_of_equal_masses_satisfy_the_axioms(a in full_grid(), b in full_grid(), c in full_grid()) {
         let most = 2.0 * a.shape().diameter();
         laws(("earth mover's", most, grid_earth_movers_distance), &a, &b, Some(&c))?;
     }

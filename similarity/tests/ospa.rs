@@ -1,4 +1,4 @@
-//! OSPA against its formula around scipy's assignment. The laws are tested beside the code.
+//! Compares OSPA with its formula on top of scipy's assignment.
 
 use driftworld_similarity::ospa;
 use serde::Deserialize;
@@ -18,7 +18,7 @@ struct Case {
 }
 
 #[test]
-fn distances_are_those_of_the_formulas() {
+fn distances_match_the_formula() {
     let oracle: Oracle = serde_json::from_str(include_str!("oracle/ospa.json")).expect("the oracle is sound");
     assert!(oracle.cases.len() > 40);
     for case in oracle.cases {

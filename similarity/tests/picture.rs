@@ -1,4 +1,4 @@
-//! Structural similarities against those of scikit-image. The laws are tested beside the code.
+//! Compares structural similarities with scikit-image.
 
 use driftworld_similarity::picture::{Picture, structural_similarity};
 use serde::Deserialize;
@@ -40,7 +40,7 @@ fn picture((kind, seed): &(String, usize), height: usize, width: usize) -> Vec<u
 }
 
 #[test]
-fn similarities_are_those_of_scikit_image() {
+fn similarities_match_scikit_image() {
     let oracle: Oracle = serde_json::from_str(include_str!("oracle/ssim.json")).expect("the oracle is sound");
     assert!(oracle.cases.len() > 100);
     for case in oracle.cases {

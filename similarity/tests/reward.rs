@@ -1,4 +1,4 @@
-//! EPIC on all transitions against what `NumPy` finds by the definitions of the reference. The laws are tested beside the code.
+//! Compares EPIC on all transitions with `NumPy` results by the reference's definitions.
 
 use driftworld_similarity::{RewardSamples, SampledReward};
 use serde::Deserialize;
@@ -27,7 +27,7 @@ impl Rng {
 const GOAL: [f64; 9] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
 const TO_GOAL: [f64; 9] = [4.0, 3.0, 2.0, 3.0, 2.0, 1.0, 2.0, 1.0, 0.0];
 
-/// The reward of each state and the potential, as in the reference's `gridworld_rewards.py`.
+/// The reward and the potential of each state, as in the reference's `gridworld_rewards.py`.
 fn grid_reward(name: &str) -> ([f64; 9], [f64; 9]) {
     let none = [0.0; 9];
     match name {
@@ -46,8 +46,8 @@ fn grid_reward(name: &str) -> ([f64; 9], [f64; 9]) {
     }
 }
 
-/// Transitions of a state, an action and a next state, each as often as it weighs; all draws, each as often as its action and its
-/// state weigh together.
+/// Transitions of a state, an action and a next state, each repeated by its weight; all draws, each repeated by the product of
+/// its action's and state's weights.
 fn samples(
     transitions: impl Fn(usize, usize, usize) -> usize,
     of_states: &[usize],
@@ -70,7 +70,7 @@ fn on_the_grid(samples: &RewardSamples<usize, usize>, name: &str, discount: f64)
     samples.measure(paid).expect("the rewards are sound")
 }
 
-/// 1 for each move on a 3 × 3 grid: left, right, up, down, stay; against the edge is to stay.
+/// 1 for each move on a 3 × 3 grid: left, right, up, down, stay; moves against the edge stay.
 fn walks() -> Vec<usize> {
     let mut weights = vec![0; 9 * 5 * 9];
     for state in 0..9_usize {
@@ -89,7 +89,7 @@ fn every_step() -> RewardSamples<usize, usize> {
     samples(|_, _, _| 1, &[1; 9], &[1; 5])
 }
 
-/// The oracle's own rounding leaves some 3e-10 of equal rewards; anything else is larger by far.
+/// The oracle's own rounding leaves some 3e-10 between equal rewards; anything else is far larger.
 #[track_caller]
 fn check(what: &str, found: f64, expected: f64) {
     if expected < 1e-9 {
@@ -99,7 +99,7 @@ fn check(what: &str, found: f64, expected: f64) {
 }
 
 #[test]
-fn rewards_of_the_grid_are_as_far_apart_as_the_reference_says() {
+fn grid_rewards_match_the_reference() {
     let oracle = oracle();
     assert_eq!(oracle.names.len(), 11);
     let walks = walks();
@@ -118,7 +118,7 @@ fn rewards_of_the_grid_are_as_far_apart_as_the_reference_says() {
             for (b, expected) in row.iter().enumerate() {
                 let found = measured[a].distance(&measured[b], oracle.discount);
                 let what = format!("{} to {}", oracle.names[a], oracle.names[b]);
-                // The reference divides 0 by 0 for the zero reward; ours lies in the middle.
+                // The reference divides 0 by 0 for the zero reward; ours is halfway.
                 let middle = if a == b { 0.0 } else { 0.5 };
                 check(
                     &what,
@@ -144,9 +144,9 @@ fn equal_goals_are_exactly_0_apart() {
     }
 }
 
-/// Draws in the order of `drawn` in `oracle/make_reward.py`: 2 to 5 states, 1 to 3 actions, a discount in hundredths; whether the
-/// second reward is near the first (one in four); rewards in thousandths, from −1 to 1, and within 0.005 where near; weights of
-/// states and actions of 1 to 3; whether transitions weigh as states and actions do, or 1 to 5.
+/// Draws in the order of `drawn` in `oracle/make_reward.py`: 2 to 5 states, 1 to 3 actions, a discount in hundredths; whether
+/// the second reward is near the first (one in four); rewards in thousandths, from −1 to 1, and within 0.005 if near; weights
+/// of states and actions of 1 to 3; whether transitions weigh as states and actions do, or 1 to 5.
 fn drawn(seed: u64) -> f64 {
     let mut rng = Rng(seed);
     let (states, actions) = (2 + rng.below(4) as usize, 1 + rng.below(3) as usize);
@@ -186,7 +186,7 @@ fn drawn(seed: u64) -> f64 {
 }
 
 #[test]
-fn drawn_rewards_are_as_far_apart_as_numpy_says() {
+fn random_rewards_match_numpy() {
     let expected = oracle().drawn;
     assert_eq!(expected.len(), 1000);
     for (seed, expected) in expected.into_iter().enumerate() {

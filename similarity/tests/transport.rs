@@ -1,4 +1,4 @@
-//! Moving masses and points against what POT finds. The laws are tested beside the code.
+//! Compares the transport of masses and points with POT.
 
 use driftworld_similarity::{earth_movers_distance, optimal_transport};
 use serde::Deserialize;
@@ -36,7 +36,7 @@ fn check(what: &str, found: f64, expected: f64, within: f64) {
 }
 
 #[test]
-fn plans_cost_what_pot_says() {
+fn plans_cost_as_in_pot() {
     let plans = oracle().plans;
     assert!(plans.len() > 30);
     for case in plans {
@@ -46,7 +46,7 @@ fn plans_cost_what_pot_says() {
 }
 
 #[test]
-fn points_are_as_far_apart_as_pot_says() {
+fn point_distances_match_pot() {
     for case in oracle().points {
         let found = earth_movers_distance(&case.a, &case.b).expect("the points are sound");
         check("earth mover's", found, case.earth_movers, 1e-12);

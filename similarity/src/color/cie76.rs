@@ -1,15 +1,15 @@
-//! CIE76: Euclidean distance in L*a*b*. How a colour becomes L*a*b* is in `lab.rs`.
+//! CIE76: Euclidean distance in L*a*b*.
 
 use crate::color::euclidean;
 use crate::color::lab::Lab;
 
-/// The farthest apart that two sRGB colours are: blue and green, where the last is the strong one that CSS calls lime; rounded up.
+/// The largest distance of two sRGB colours, rounded up: from blue to pure green (`lime` in CSS).
 pub(crate) const CIE76_DIAMETER: f64 = 258.680_21;
 
 /// Euclidean distance in CIE L*a*b*: √(ΔL² + Δa² + Δb²). About 2.3 is just noticeable.
 ///
-/// A metric, from 0 to 258.68 within sRGB (blue to green), no unit. Exaggerates differences between strong colours; [`ciede2000`] mends
-/// that and is no metric. A few nanoseconds between colours that are L*a*b* already.
+/// A metric, from 0 to 258.68 within sRGB (blue to green), no unit. Exaggerates differences between strong colours;
+/// [`ciede2000`] corrects that but is no metric. Takes a few nanoseconds for colours already in L*a*b*.
 ///
 /// Source: CIE 15 (1976); the same numbers as `skimage.color.deltaE_cie76` within 1e-9, see `tests/oracle/color.json`.
 ///

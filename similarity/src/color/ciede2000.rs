@@ -1,29 +1,29 @@
-//! CIEDE2000, the industry's formula for small differences of colour. How a colour becomes L*a*b* is in `lab.rs`.
+//! CIEDE2000, the industry's formula for small colour differences.
 
 use crate::color::lab::Lab;
 
-/// The farthest apart that two sRGB colours are: a dark blue (0, 0, 0.4303) and a yellowish green (0.5589, 1, 0); rounded up.
+/// The largest distance of two sRGB colours, rounded up: a dark blue (0, 0, 0.4303) and a yellowish green (0.5589, 1, 0).
 pub(crate) const CIEDE2000_DIAMETER: f64 = 119.484_76;
 
 /// 25 to the 7th.
 const POW_25_7: f64 = 6_103_515_625.0;
 
-/// Product of two chromas below which the hue between them makes no difference: at most 2e-15.
+/// If the product of two chromas is below this, the hue between them changes the result by at most 2e-15.
 const GREY: f64 = 1e-30;
 
-/// Cosine and sine of the angles that the formula turns hues by: 30°, 6°, 63° and 275°.
+/// Cosine and sine of the formula's rotation angles: 30°, 6°, 63° and 275°.
 const TURN_30: [f64; 2] = [0.866_025_403_784_438_6, 0.5];
 const TURN_6: [f64; 2] = [0.994_521_895_368_273_3, 0.104_528_463_267_653_46];
 const TURN_63: [f64; 2] = [0.453_990_499_739_546_8, 0.891_006_524_188_367_9];
 const TURN_275: [f64; 2] = [0.087_155_742_747_658_18, -0.996_194_698_091_745_5];
 
-/// How different two colours look, by CIEDE2000 with all weights 1: about 1 is just noticeable, black to white is 100.
+/// The perceived difference of two colours, by CIEDE2000 with all weights 1: about 1 is just noticeable, black to white is 100.
 ///
-/// A distance, *not a metric*: for about one triple of sRGB colours in 30 a detour is shorter than the straight way, in the worst seen by
-/// half. From 0 to 119.49 within sRGB, no unit. Where the hues of two colours are exactly opposite the formula jumps; the hue of
-/// a grey counts as its partner's.
+/// A distance, *not a metric*: about one triple of sRGB colours in 30 violates the triangle inequality, the worst seen by half.
+/// From 0 to 119.49 within sRGB, no unit. The formula is discontinuous where the hues of two colours are exactly opposite; a
+/// grey takes the hue of the other colour.
 ///
-/// Hues enter through their cosines and sines only, so that no trigonometric function is needed.
+/// Hues enter only through their cosines and sines, so no trigonometric function is needed.
 ///
 /// Source: Sharma, Wu and Dalal 2005, "The CIEDE2000 color-difference formula: implementation notes, supplementary test data,
 /// and mathematical observations"; their 34 pairs within 1e-4, `skimage.color.deltaE_ciede2000` within 1e-9, see
@@ -41,14 +41,14 @@ pub fn ciede2000(a: impl Into<Lab>, b: impl Into<Lab>) -> f64 {
 }
 
 fn between([l1, a1, b1]: [f64; 3], chroma1: f64, [l2, a2, b2]: [f64; 3], chroma2: f64) -> f64 {
-    // Greys are pulled apart in a*.
+    // Stretches greys along a*.
     let stretch = 1.5 - 0.5 * saturation((chroma1 + chroma2) * 0.5);
     let (a1, a2) = (a1 * stretch, a2 * stretch);
     let (c1, c2) = ((a1 * a1 + b1 * b1).sqrt(), (a2 * a2 + b2 * b2).sqrt());
     let mean_chroma = (c1 + c2) * 0.5;
 
     let (product, dot, cross) = (c1 * c2, a1 * a2 + b1 * b2, a1 * b2 - a2 * b1);
-    // The hue of the second from that of the first, on the shorter way round; of opposite ones from the lesser angle to the greater.
+    // The shorter turn from the second hue to the first; for opposite hues, from the lesser angle to the greater.
     let ahead = if b1 > 0.0 || (b1 == 0.0 && a1 > 0.0) { 1.0 } else { -1.0 };
     let sign = if cross > 0.0 {
         1.0
@@ -57,8 +57,8 @@ fn between([l1, a1, b1]: [f64; 3], chroma1: f64, [l2, a2, b2]: [f64; 3], chroma2
     } else {
         ahead
     };
-    // Half of the angle between the hues has the sine `root / (2 √product)` where they are more than a right angle apart, else the
-    // cosine: each where it is exact.
+    // The half angle between the hues has the sine `root / (2 √product)` if they are more than a right angle apart, else that
+    // is its cosine: each is used where it is exact.
     let root = (2.0 * (product + dot.abs())).sqrt();
     let near = dot >= 0.0;
     let grey = product < GREY;
@@ -69,14 +69,14 @@ fn between([l1, a1, b1]: [f64; 3], chroma1: f64, [l2, a2, b2]: [f64; 3], chroma2
         sign * root
     };
     let hue = if grey { 0.0 } else { hue };
-    // The direction between the two hues: their sum, or what is square to their difference.
+    // The direction midway between the two hues: their sum, or the perpendicular of their difference.
     let (across, along) = (a1 * c2 - a2 * c1, b1 * c2 - b2 * c1);
     let cos = if near { a1 * c2 + a2 * c1 } else { -sign * along } * scale;
     let sin = if near { b1 * c2 + b2 * c1 } else { sign * across } * scale;
 
     let from_middle = ((l1 + l2) * 0.5 - 50.0) * ((l1 + l2) * 0.5 - 50.0);
     let middle_root = (20.0 + from_middle).sqrt();
-    // Everything to be divided by, at once.
+    // Combines all divisors into one.
     let (lightness_scale, chroma_scale) = (middle_root + 0.015 * from_middle, 1.0 + 0.045 * mean_chroma);
     let hue_scale = 1.0 + 0.015 * mean_chroma * hue_weight(cos, sin);
     let seventh = seventh_power(mean_chroma);
@@ -105,7 +105,8 @@ fn seventh_power(x: f64) -> f64 {
     square * square * square * x
 }
 
-/// T of the formula: how much a difference of hue counts around this hue. Multiples of the angle are found from its cosine and sine.
+/// T of the formula: the weight of a hue difference around this hue. Multiples of the angle are computed from its cosine and
+/// sine.
 fn hue_weight(cos: f64, sin: f64) -> f64 {
     let (cos_2, sin_2) = (2.0 * cos * cos - 1.0, 2.0 * sin * cos);
     let (cos_3, sin_3) = (cos_2 * cos - sin_2 * sin, sin_2 * cos + cos_2 * sin);
@@ -114,12 +115,12 @@ fn hue_weight(cos: f64, sin: f64) -> f64 {
         - 0.20 * (cos_4 * TURN_63[0] + sin_4 * TURN_63[1])
 }
 
-/// sin(2 Δθ) of the formula: how much chroma and hue turn into each other, a bump 25° wide around the blue at 275°.
+/// sin(2 Δθ) of the formula: the interaction of chroma and hue, a bump 25° wide around the blue at 275°.
 ///
 /// Absolute error below 1e-11.
 fn blue_rotation(cos: f64, sin: f64) -> f64 {
-    // The square of the angle to 275° is a series in 1 − cosine: arccos²(1 − u) = 2 Σ (2u)ⁿ / (n² · (2n choose n)).
-    // Far from 275° too few terms make it too small by at most a sixth, where the bump is below 1e-15.
+    // The square of the angle to 275° is a series in 1 − cosine: arccos²(1 − u) = 2 Σ (2u)ⁿ / (n² · (2n choose n)). Far from
+    // 275° the truncated series is too small by at most a sixth, where the bump is below 1e-15.
     let u = 1.0 - (cos * TURN_275[0] + sin * TURN_275[1]);
     let mut square = 0.0;
     for factor in ARCCOS.iter().rev() {
@@ -134,8 +135,8 @@ fn blue_rotation(cos: f64, sin: f64) -> f64 {
     for _ in 0..6 {
         bump *= bump;
     }
-    // The formula counts hues from 0° to 360° and does not see that 0° is near 275° from behind. A hue of 0° stays one when
-    // rounding turns it to just below 360°.
+    // The formula counts hues from 0° to 360° and ignores that 0° is also near 275° the other way round. A hue of 0° counts as
+    // 0° even if rounding turns it to just below 360°.
     let bump = if sin > -1e-14 && cos > 0.0 { 0.0 } else { bump };
     let angle = bump * std::f64::consts::FRAC_PI_3;
     let mut sine = 0.0;
@@ -191,7 +192,7 @@ mod tests {
         (0.0..=100.0, -110.0..110.0, -110.0..110.0).prop_map(|(l, a, b)| Lab([l, a, b]))
     }
 
-    /// The formula as it is written, with angles.
+    /// The formula as published, with angles.
     fn as_written(x: Lab, y: Lab) -> f64 {
         let ([l1, a1, b1], [l2, a2, b2]) = (x.0, y.0);
         let sin = |degrees: f64| libm::sin(degrees.to_radians());
@@ -238,11 +239,11 @@ mod tests {
     }
 
     #[test]
-    fn greys_and_opposite_hues_are_as_the_formula_has_them() {
+    fn greys_and_opposite_hues_match_the_formula() {
         check([50.0, 0.0, 0.0], [50.0, 0.0, 0.0]);
         check([50.0, 0.0, 0.0], [60.0, 20.0, -30.0]);
         check([50.0, 20.0, -30.0], [60.0, 0.0, 0.0]);
-        // Exactly opposite, both ways round.
+        // Exactly opposite hues, in both orders.
         for (a, b) in [(2.5, 0.0), (0.0, 2.5), (1.5, -2.0), (-1.5, -2.0), (3.0, 4.0)] {
             check([50.0, a, b], [50.0, -a, -b]);
         }
@@ -253,12 +254,12 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_is_the_formula_as_written(a in lab(), b in lab()) {
+        fn fast_form_equals_the_published_formula(a in lab(), b in lab()) {
             prop_assert!((ciede2000(a, b) - as_written(a, b)).abs() < 1e-9);
         }
 
         #[test]
-        fn it_is_symmetric_and_zero_on_itself(a in lab(), b in lab()) {
+        fn ciede2000_is_symmetric_and_zero_on_itself(a in lab(), b in lab()) {
             prop_assert_eq!(ciede2000(a, a), 0.0);
             prop_assert!((ciede2000(a, b) - ciede2000(b, a)).abs() < 1e-9);
             prop_assert!(ciede2000(a, b) >= 0.0);

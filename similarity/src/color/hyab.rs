@@ -1,10 +1,10 @@
-//! `HyAB`: lightness and the rest of a colour, each for itself, in L*a*b*. How a colour becomes L*a*b* is in `lab.rs`.
+//! `HyAB`: the difference in lightness plus the chromatic distance, in L*a*b*.
 
 use crate::color::lab::Lab;
 
-/// Difference of lightness plus Euclidean distance of the rest: |ΔL| + √(Δa² + Δb²). Meant for large differences.
+/// Difference of lightness plus Euclidean distance in a* and b*: |ΔL| + √(Δa² + Δb²). Designed for large differences.
 ///
-/// A metric, from 0 to 308.11 within sRGB (blue to green), no unit. A few nanoseconds between colours that are L*a*b* already.
+/// A metric, from 0 to 308.11 within sRGB (blue to green), no unit. Takes a few nanoseconds for colours already in L*a*b*.
 ///
 /// Source: Abasi, Tehran and Fairchild 2020, "Distance metrics for very large color differences"; the same numbers as colour-science's
 /// `delta_E_HyAB` within 1e-9, see `tests/oracle/color.json`.

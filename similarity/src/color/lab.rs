@@ -1,21 +1,21 @@
-//! [`Lab`]: a colour in CIE L*a*b*, where distances mean more than in sRGB. The distances are in files of their own.
+//! [`Lab`]: a colour in CIE L*a*b*, where distances are closer to perception than in sRGB.
 
 use driftworld_spec::{Color, linear_from_srgb};
 
-/// Linear sRGB to CIE XYZ (ITU-R BT.709 primaries, D65), rounded as scikit-image has it.
+/// Linear sRGB to CIE XYZ (ITU-R BT.709 primaries, D65), rounded as in scikit-image.
 const XYZ_FROM_RGB: [[f64; 3]; 3] = [
     [0.412_453, 0.357_580, 0.180_423],
     [0.212_671, 0.715_160, 0.072_169],
     [0.019_334, 0.119_193, 0.950_227],
 ];
 
-/// XYZ of the white D65, for an eye that looks 2° wide.
+/// XYZ of the D65 white point, for the 2° observer.
 const WHITE: [f64; 3] = [0.950_47, 1.0, 1.088_83];
 
 /// A colour in CIE L*a*b* under D65: lightness 0 to 100, a* from green to red, b* from blue to yellow, both about ±110 for sRGB.
 ///
-/// Made once per colour, so that matrices of distances do not convert again. Numbers must be finite and not above 1e6 in size;
-/// beyond, distances lose their meaning.
+/// Convert each colour once to avoid repeated conversions in matrices of distances. Numbers must be finite and at most 1e6 in
+/// size; beyond, distances lose their meaning.
 ///
 /// Source: CIE 15, with the matrix and the white of scikit-image: the same numbers as `skimage.color.rgb2lab` within 1e-9. (Other tools
 /// round these constants elsewhere and differ by up to 0.02.)
@@ -46,7 +46,7 @@ impl Lab {
     }
 }
 
-/// The cube root, but a straight line near black.
+/// The cube root, but linear near black.
 fn compressed(share: f64) -> f64 {
     if share > 0.008_856 {
         libm::cbrt(share)

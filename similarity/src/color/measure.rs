@@ -1,5 +1,4 @@
-//! [`ColorMeasure`]: which of the distances between colours to take, and how far two colours can be apart by it. The formulas are in
-//! files of their own.
+//! [`ColorMeasure`]: the choice of a distance between colours, with its diameter.
 
 use driftworld_spec::Color;
 use strum::VariantArray;
@@ -11,7 +10,7 @@ use crate::color::lab::Lab;
 use crate::color::srgb::srgb_distance;
 use crate::{MetricProperties, Oklab};
 
-/// A way to say how far two colours are apart.
+/// A distance between colours.
 ///
 /// # Example
 /// ```
@@ -24,28 +23,28 @@ use crate::{MetricProperties, Oklab};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, strum::VariantArray)]
 pub enum ColorMeasure {
-    /// [`srgb_distance`]: the L2Explorer paper's.
+    /// [`srgb_distance`], as in the L2Explorer paper.
     Srgb,
     /// [`cie76`].
     Cie76,
     /// [`ciede2000`]. Not a metric.
     Ciede2000,
-    /// [`Color::distance`]: the default, a metric that follows the eye.
+    /// [`Color::distance`]: the default, a metric close to perception.
     Oklab,
     /// [`hyab`].
     Hyab,
 }
 
 impl ColorMeasure {
-    /// All of them.
+    /// All measures.
     pub const ALL: &[Self] = Self::VARIANTS;
 
-    /// How far two colours are apart, in the measure's own numbers.
+    /// The distance of two colours, in the measure's own unit.
     pub fn between(self, a: Color, b: Color) -> f64 {
         self.between_prepared(self.prepare(a), self.prepare(b))
     }
 
-    /// How far the two sRGB colours that are farthest apart are apart; rounded up in the last place.
+    /// The largest distance of two sRGB colours, with the last place rounded up.
     pub fn diameter(self) -> f64 {
         match self {
             // Black to white.
@@ -58,7 +57,7 @@ impl ColorMeasure {
         }
     }
 
-    /// Which laws it keeps.
+    /// Which laws the measure satisfies.
     pub fn properties(self) -> MetricProperties {
         match self {
             Self::Ciede2000 => MetricProperties::Distance,
@@ -66,7 +65,7 @@ impl ColorMeasure {
         }
     }
 
-    /// The colour in the space that the measure takes it in: each colour is converted once for many pairs.
+    /// The colour in the measure's colour space: each colour is converted once for many pairs.
     pub(crate) fn prepare(self, color: Color) -> [f64; 3] {
         match self {
             Self::Srgb => color.0,
@@ -97,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn the_farthest_colours_are_a_diameter_apart() {
+    fn diameter_is_the_distance_of_the_farthest_colours() {
         let named = |name| Color::from_name(name).expect("a name of CSS");
         for (measure, a, b) in [
             (ColorMeasure::Srgb, named("black"), named("white")),
@@ -116,10 +115,10 @@ mod tests {
     }
 
     #[test]
-    fn a_detour_by_ciede2000_may_be_shorter() {
+    fn ciede2000_can_violate_the_triangle_inequality() {
         let [a, b, c] = [[0.0, 1.0, 0.4], [0.6, 0.8, 0.8], [1.0, 0.0, 1.0]].map(Color);
         let d = |a, b| ColorMeasure::Ciede2000.between(a, b);
-        // By scikit-image: 30.3 and 32.0 instead of 108.4.
+        // scikit-image gives 30.3 and 32.0 instead of 108.4.
         assert!(
             d(a, b) + d(b, c) < 0.58 * d(a, c),
             "{} {} {}",
@@ -131,7 +130,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn they_are_what_they_say(a in color(), b in color(), c in color()) {
+        fn measures_satisfy_their_declared_properties(a in color(), b in color(), c in color()) {
             for &measure in ColorMeasure::ALL {
                 let d = |a, b| (measure.between(a, b) / measure.diameter()).min(1.0);
                 prop_assert_eq!(d(a, a), 0.0);

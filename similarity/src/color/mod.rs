@@ -1,4 +1,4 @@
-//! Distances between colours and between sets of colours. What of a world has a colour is said in `combined/`.
+//! Distances between colours and between sets of colours.
 
 pub(crate) mod cie76;
 pub(crate) mod ciede2000;

@@ -1,4 +1,4 @@
-//! Distance between sets of colours, of equal or different size. The optimal assignment is found in `assignment.rs`.
+//! Distance between sets of colours, of equal or different size.
 
 use driftworld_spec::Color;
 
@@ -6,13 +6,11 @@ use crate::SimilarityError;
 use crate::assignment::Assignment;
 use crate::color::measure::ColorMeasure;
 
-/// How far two sets of colours are apart: the mean distance of the pairs that fit best, each colour without a partner
-/// counting 1.
+/// The distance of two sets of colours: the mean distance of optimally matched pairs, where each unmatched colour counts 1.
 ///
-/// (min Σ d(aᵢ, b₍ᵢ₎) + | |A| − |B| |) / max(|A|, |B|) with d as a share of the [`ColorMeasure::diameter`]; two empty sets are 0
-/// apart, an empty one 1 from any other. In `0..=1`. Of the same nature as the measure: with any but CIEDE2000 a metric between sets
-/// in which a colour may be more than once. Order within a set makes no difference. Time `O(n³)` at worst; up to
-/// [`MAX_ASSIGNED`](crate::MAX_ASSIGNED) colours each.
+/// (min Σ d(aᵢ, b₍ᵢ₎) + | |A| − |B| |) / max(|A|, |B|) with d as a share of the [`ColorMeasure::diameter`]; two empty sets are
+/// 0 apart, an empty one 1 from any other. In `0..=1`. A metric between multisets for every measure except CIEDE2000. Order
+/// within a set does not matter. Time `O(n³)` at worst; up to [`MAX_ASSIGNED`](crate::MAX_ASSIGNED) colours each.
 ///
 /// Source: Schuhmacher, Vo and Vo 2008 (OSPA with order 1 and cut-off 1).
 ///
@@ -31,7 +29,7 @@ use crate::color::measure::ColorMeasure;
 /// ```
 pub fn color_sets_distance(a: &[Color], b: &[Color], measure: ColorMeasure) -> Result<f64, SimilarityError> {
     let (longer, shorter) = (a.len().max(b.len()), a.len().min(b.len()));
-    // Before a table of costs is made.
+    // Checked before allocating the cost matrix.
     SimilarityError::check_count(longer, crate::MAX_ASSIGNED)?;
     if longer == 0 {
         return Ok(0.0);
@@ -40,7 +38,7 @@ pub fn color_sets_distance(a: &[Color], b: &[Color], measure: ColorMeasure) -> R
     let (from, to) = (prepare(a), prepare(b));
     let share = |a, b| {
         let share = measure.between_prepared(a, b) / measure.diameter();
-        // Comparisons, not `min`, which would turn what is not a number into 1.
+        // A comparison, because `min` would turn NaN into 1.
         if share > 1.0 { 1.0 } else { share }
     };
     let costs: Vec<f64> = from
@@ -61,7 +59,7 @@ mod tests {
     }
 
     #[test]
-    fn empty_sets_are_as_far_as_can_be_from_others() {
+    fn empty_set_has_distance_1_from_others() {
         let red = [Color([1.0, 0.0, 0.0])];
         let distance = |a: &[Color], b: &[Color]| color_sets_distance(a, b, ColorMeasure::Oklab).unwrap();
         assert_eq!(distance(&[], &[]), 0.0);
@@ -69,14 +67,14 @@ mod tests {
     }
 
     #[test]
-    fn a_channel_that_is_no_number_is_refused() {
+    fn non_finite_channels_are_refused() {
         let error = color_sets_distance(&[Color([f64::NAN; 3])], &[Color([0.0; 3])], ColorMeasure::Srgb).unwrap_err();
         assert!(matches!(error, SimilarityError::BadCost { .. }), "{error}");
     }
 
     proptest! {
         #[test]
-        fn it_is_a_metric_between_sets(a in colors(), b in colors(), c in colors()) {
+        fn set_distance_is_a_metric(a in colors(), b in colors(), c in colors()) {
             for &measure in ColorMeasure::ALL {
                 let d = |a: &[Color], b: &[Color]| color_sets_distance(a, b, measure).unwrap();
                 let mut turned = a.clone();

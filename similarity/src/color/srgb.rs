@@ -1,12 +1,13 @@
-//! Euclidean distance of sRGB triples. Distances that follow the eye are in the other files.
+//! Euclidean distance of sRGB triples.
 
 use driftworld_spec::Color;
 
 use crate::color::euclidean;
 
-/// Euclidean distance of two sRGB triples, as the L2Explorer paper takes it: √(Δr² + Δg² + Δb²).
+/// Euclidean distance of two sRGB triples, as in the L2Explorer paper: √(Δr² + Δg² + Δb²).
 ///
-/// A metric, in `0..=√3`, no unit. Blind to what people see: black to dark green is as far as black to dark blue. A few nanoseconds.
+/// A metric, in `0..=√3`, no unit. Ignores perception: black is as far from dark green as from dark blue. Takes a few
+/// nanoseconds.
 ///
 /// # Example
 /// ```

@@ -1,21 +1,21 @@
-//! [`Arena`]: where the layouts of a task stand, so that they can be compared as values of a parameter, before any world is drawn.
+//! [`Arena`]: the surroundings in which a task's layouts are compared as parameter values, before any world is drawn.
 
 use std::sync::Arc;
 
 use driftworld_spec::{DEFAULT_VARIANT, EnvironmentParams, Resolved, Source, TaskSpec, Value, Variant, WorldDraft};
 
-/// The arena that a task's world has around a layout which says neither how large it is nor how high its walls are.
+/// The arena around a layout that gives neither its size nor its walls' height.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Arena {
     /// Its sides in metres.
     pub(super) size: [f64; 2],
-    /// The height of walls that have none of their own, in metres.
+    /// Height, in metres, of walls without their own.
     pub(super) wall_height: f64,
 }
 
 impl Arena {
-    /// The arena of a task. Where a parameter says how large it is or how high walls are, its default counts, and of what is drawn
-    /// the mean; so it depends on the task alone, and not on what is compared.
+    /// The arena of a task. A parameter for its size or wall height counts with its default, a drawn value with its mean; so
+    /// the arena depends on the task alone, not on the values compared.
     pub(super) fn of(task: &Arc<TaskSpec>) -> Self {
         let world = task.world();
         let mut draft = WorldDraft {
@@ -39,7 +39,7 @@ impl Arena {
         for hole in world.holes.iter().filter(|hole| counts(&hole.pointer)) {
             let value = default.as_ref().and_then(|variant| typical(variant, &hole.source));
             if let Some(value) = value {
-                // What cannot stand there leaves the example that the template has there.
+                // Values that do not fit leave the template's example in place.
                 let _ = hole.fill(&mut draft, &value);
             }
         }
@@ -50,7 +50,7 @@ impl Arena {
     }
 }
 
-/// The value of a source in a variant, or the mean of what it draws.
+/// A source's value in a variant, or the mean of its distribution.
 fn typical(variant: &Variant, source: &Source) -> Option<Value> {
     match variant.resolve(source) {
         Resolved::Value(value) => Some(value),
@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_that_of_the_task() {
+    fn arena_is_that_of_the_task() {
         assert_arena("", [100.0; 2], 4.0);
         assert_arena(r#", "map_size": [18, 18], "wall_height": 2"#, [18.0; 2], 2.0);
         assert_arena(r#", "map_size": { "param": "side" }"#, [18.0, 24.0], 4.0);
@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn layouts_are_compared_in_it() {
+    fn layouts_are_compared_within_the_arena() {
         let around = r#", "map_size": [18, 18], "wall_height": 2"#;
         let task = task(around);
         let measure = VariantMeasure::new(&task, Weights::default());
@@ -117,7 +117,7 @@ mod tests {
         };
         let shape = LayoutShape::of(&layout.plan(0), [18.0; 2], 2.0);
         assert_eq!(raw(&open, &walls), LayoutShape::open().distance(&shape));
-        // Walls of 8 m are less of the way in an arena of 100 m.
+        // Walls of 8 m block a smaller share of a 100 m arena.
         let large = LayoutShape::of(&layout.plan(0), [100.0; 2], 2.0);
         assert!(LayoutShape::open().distance(&large) < raw(&open, &walls));
     }

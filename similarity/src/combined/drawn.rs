@@ -1,5 +1,4 @@
-//! [`DrawnMeasure`]: how two distributions of a parameter are compared, and what the number is divided by. Values are in
-//! `value.rs`, the measures in `distribution/`.
+//! [`DrawnMeasure`]: compares two distributions of one parameter, and normalises the result.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +13,7 @@ use crate::distribution::{
 use crate::scalar::choice_mismatch;
 use crate::{ColorMeasure, MetricProperties};
 
-/// Of so many distributions all pairs are compared to find the widest.
+/// Up to this number of distributions, all pairs are compared to find the widest.
 const ALL_PAIRS: usize = 24;
 
 /// How two distributions of one parameter are compared.
@@ -22,22 +21,23 @@ const ALL_PAIRS: usize = 24;
 pub(super) struct DrawnMeasure {
     measure: Option<MeasureName>,
     headings: bool,
-    /// The widest distance of two distributions that the task's declared values can make of the parameter.
-    /// `None` where that is infinite: numbers count as they are.
+    /// The largest distance of two distributions that the task's declared values allow. `None` if that is infinite: numbers are
+    /// then not normalised.
     widest: Option<f64>,
     can_differ: bool,
-    /// Whether points are drawn by different families, or colours from lists and densities, between which there are only samples.
+    /// Whether points come from different families, or colours from both lists and densities; these can be compared by samples
+    /// only.
     mixed: bool,
-    /// By which measure the ways of colours are counted, where colours are compared by how far they are apart.
+    /// The measure of single colours, if the distance moves colours.
     colors: Option<ColorMeasure>,
 }
 
-/// A comparison: the measure's name, how its number was found, the number, and the one that counts, which may be above 1.
+/// A comparison: the measure's name, the method, the raw number, and the normalised one, which may be above 1.
 pub(super) type Found = (&'static str, Option<Method>, f64, f64);
 
 impl DrawnMeasure {
-    /// What the parameter asks for, or what its type has; `all` are the distributions that it can have at the ends of what
-    /// the task declares.
+    /// The measure that the parameter asks for, or its type's default; `all` are the distributions at the ends of the declared
+    /// ranges.
     pub(super) fn of(parameter: &Parameter, all: &[Distribution]) -> Self {
         let measure = parameter.compare.as_ref().and_then(|compare| compare.measure);
         let kinds = [false, true].map(|colors| all.iter().any(|own| own.draws_colors() == colors));
@@ -58,9 +58,8 @@ impl DrawnMeasure {
         made
     }
 
-    /// The widest distance among distributions: of all pairs, or, where they are many, from the first to the farthest from
-    /// it and on to the farthest from that, which is half of the widest at least where a detour is never shorter. 0 where all
-    /// are alike.
+    /// The largest distance among distributions: of all pairs, or, if there are many, from the first to its farthest and on to
+    /// the farthest from that, which is at least half of the largest if the triangle inequality holds. 0 if all are alike.
     fn widest_of(&self, all: &[Distribution]) -> f64 {
         let raw = |a: &Distribution, b: &Distribution| self.raw(a, b).2;
         if all.len() <= ALL_PAIRS {
@@ -78,7 +77,8 @@ impl DrawnMeasure {
         }
     }
 
-    /// Which laws it keeps. Between points of different families the triangle inequality may fail by what samples are off.
+    /// Which laws the measure satisfies. Between points of different families the triangle inequality may fail by the sampling
+    /// error.
     pub(super) fn properties(&self) -> MetricProperties {
         match self.measure {
             Some(MeasureName::SameOrNot) => MetricProperties::Metric,
@@ -88,17 +88,17 @@ impl DrawnMeasure {
         }
     }
 
-    /// Whether its number has a bound that the task declares.
+    /// Whether the declared values bound its number.
     pub(super) fn is_bounded(&self) -> bool {
         self.widest.is_some()
     }
 
-    /// Whether what the task declares can make more than one distribution of the parameter.
+    /// Whether the declared values allow more than one distribution of the parameter.
     pub(super) fn can_differ(&self) -> bool {
         self.can_differ
     }
 
-    /// How far two distributions are apart.
+    /// Compares two distributions.
     pub(super) fn between(&self, a: &Distribution, b: &Distribution) -> Found {
         let (name, method, raw) = self.raw(a, b);
         let normalised = if method.is_none() {
@@ -109,7 +109,7 @@ impl DrawnMeasure {
         (name, method, raw, normalised)
     }
 
-    /// The measure's name, how its number was found, and the number; "same or not" has no method.
+    /// The measure's name, the method, and the number; "same or not" has no method.
     fn raw(&self, a: &Distribution, b: &Distribution) -> (&'static str, Option<Method>, f64) {
         let same_or_not = || ("same or not", None, choice_mismatch(a, b));
         if self.measure == Some(MeasureName::SameOrNot) {
@@ -149,12 +149,12 @@ impl DrawnMeasure {
     }
 }
 
-/// Whether numbers can be divided by it.
+/// Whether numbers can be divided by this width.
 fn usable(width: f64) -> bool {
     width > 0.0 && width.is_finite()
 }
 
-/// Whether a measure counts ways, so that colours of lists have them, too.
+/// Whether a measure moves values, so that colours of lists are moved, too.
 fn asks_for_ways(measure: Option<MeasureName>) -> bool {
     use MeasureName::{Cie76, Ciede2000, Hyab, Oklab, Srgb, Wasserstein1, Wasserstein2};
     matches!(
@@ -163,7 +163,7 @@ fn asks_for_ways(measure: Option<MeasureName>) -> bool {
     )
 }
 
-/// What a colour's way is measured by.
+/// The measure by which single colours are compared.
 fn ways_of(measure: Option<MeasureName>) -> ColorMeasure {
     match measure {
         Some(MeasureName::Srgb) => ColorMeasure::Srgb,
@@ -174,7 +174,7 @@ fn ways_of(measure: Option<MeasureName>) -> ColorMeasure {
     }
 }
 
-/// Wasserstein-1 of colours, or Wasserstein-2 where that is asked for.
+/// Wasserstein-1 of colours, or Wasserstein-2 if asked for.
 fn between_colors(
     a: &Distribution,
     b: &Distribution,

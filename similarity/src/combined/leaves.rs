@@ -1,5 +1,5 @@
-//! [`Leaves`]: fields of a world as the numbers and words that their JSON has, so that a small change of one number is
-//! a small distance. Which fields are compared so is said by the table of fields; the sums are made in `parts.rs`.
+//! [`Leaves`]: fields of a world flattened into the numbers and words of their JSON, so that a small change of one number is a
+//! small distance.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -10,32 +10,32 @@ use serde_json::Value as Json;
 use crate::assignment::{Assignment, MAX_ASSIGNED};
 use crate::scalar::relative_difference;
 
-/// Metres between two points that count 1, as between two objects.
+/// Metres between two points that count 1, as for objects.
 const METRES: f64 = 10.0;
 
-/// Numbers and words by the paths at which they stand, in the order of the paths' numbers.
+/// Numbers and words by their paths, in the order of the paths' ids.
 #[derive(Debug, PartialEq)]
 pub(super) struct Leaves {
     all: Vec<(u32, Leaf)>,
-    /// The text that they were read from: equal for equal leaves.
+    /// The JSON text that they were read from: equal texts give equal leaves.
     pub(super) text: Vec<u8>,
 }
 
-/// What stands at a path.
+/// A value at a path.
 #[derive(Clone, Debug, PartialEq, PartialOrd)]
 enum Leaf {
     Number(f64),
     /// A point of a list of points: metres on the ground.
     Point([f64; 2]),
-    /// The number of a word, a truth, or of what is empty.
+    /// The id of a word, a boolean, or an empty value.
     Word(u32),
-    /// A set of words, such as modalities or stimuli: their numbers, each once, in order.
+    /// A set of words, such as modalities or stimuli: their ids, each once, in ascending order.
     WordSet(Vec<u32>),
-    /// Things of which each consists of leaves, whatever their order: walls, regions.
+    /// An unordered collection of things, such as walls or regions, each made of leaves.
     Things(Vec<Vec<(u32, Leaf)>>),
 }
 
-/// Reads leaves, and gives each text, path and word a number that is the same whenever it is met.
+/// Reads leaves, and interns texts, paths and words.
 #[derive(Debug, Default)]
 pub(super) struct LeafReader {
     read: BTreeMap<Vec<u8>, Arc<Leaves>>,
@@ -43,7 +43,7 @@ pub(super) struct LeafReader {
 }
 
 impl LeafReader {
-    /// The leaves of a text of lines of JSON, of which each is a field.
+    /// Reads leaves from lines of JSON, one field a line.
     pub(super) fn read(&mut self, text: &[u8]) -> Arc<Leaves> {
         if let Some(known) = self.read.get(text) {
             return Arc::clone(known);
@@ -55,7 +55,7 @@ impl LeafReader {
             .enumerate()
         {
             let json: Json = serde_json::from_slice(field).expect("fields of a world are JSON");
-            // That there is a struct at all: a key is one by `{}`, which consists of nothing else.
+            // Records that a struct is present: an empty struct, such as a key, is `{}`.
             if json.is_object() {
                 let leaf = Leaf::Word(self.number("{}".to_owned()));
                 all.push((self.number(format!("{line}/")), leaf));
@@ -75,7 +75,7 @@ impl LeafReader {
     fn walk(&mut self, json: &Json, path: &mut String, all: &mut Vec<(u32, Leaf)>) {
         let length = path.len();
         let leaf = match json {
-            // Absent, as a key that a struct leaves out.
+            // Absent, like a key that a struct leaves out.
             Json::Null => return,
             Json::Object(map) => {
                 for (key, child) in map {
@@ -115,7 +115,7 @@ impl LeafReader {
         all.push((path, leaf));
     }
 
-    /// The leaves of one of several things, by their paths within it.
+    /// The leaves of one thing in a collection, by their paths within it.
     fn leaves_of(&mut self, thing: &Json) -> Vec<(u32, Leaf)> {
         let mut all = Vec::new();
         self.walk(thing, &mut String::new(), &mut all);
@@ -130,10 +130,10 @@ impl LeafReader {
 }
 
 impl Leaves {
-    /// How far two are apart: the sum over all paths of the difference of two numbers over the larger in size, of points
-    /// the way between them in tens of metres, up to 2; 1 for another word, 1 for what stands in one only, a struct too; of sets of words, how many have to be changed, added or taken away;
-    /// of things, the sum over those that are matched, as is cheapest, and all that the others consist of. A metric; 0
-    /// for equal ones. Both must come from one reader.
+    /// The distance: a sum over all paths. Numbers count by their difference over the larger in size; points by their distance
+    /// in tens of metres, up to 2; a different word, or a path that only one has, even a struct, 1; sets of words by the number
+    /// of words to change, add or remove; things by the cheapest matching, with unmatched ones in full. A metric; 0 for equal
+    /// leaves. Both must come from the same reader.
     pub(super) fn distance(&self, other: &Self) -> f64 {
         if std::ptr::eq(self, other) {
             return 0.0;
@@ -142,7 +142,7 @@ impl Leaves {
     }
 }
 
-/// Whether it is a thing whose place in a list says nothing: a wall, or a region, which is a list of points.
+/// Whether its place in a list has no meaning: a wall, or a region, which is a list of points.
 fn is_thing(json: &Json) -> bool {
     let is_point = |json: &Json| json.as_array().is_some_and(|list| list.iter().all(Json::is_number));
     json.is_object()
@@ -151,7 +151,7 @@ fn is_thing(json: &Json) -> bool {
             .is_some_and(|list| !list.is_empty() && list.iter().all(is_point))
 }
 
-/// The two numbers of a point.
+/// The two coordinates of a point.
 fn point(json: &Json) -> Option<[f64; 2]> {
     match json.as_array()?.as_slice() {
         [x, y] => Some([x.as_f64()?, y.as_f64()?]),
@@ -159,7 +159,7 @@ fn point(json: &Json) -> Option<[f64; 2]> {
     }
 }
 
-/// The sum over all paths of two lists in the order of their paths.
+/// The sum over all paths of two lists sorted by path.
 fn apart(a: &[(u32, Leaf)], b: &[(u32, Leaf)]) -> f64 {
     let (mut i, mut j, mut sum) = (0, 0, 0.0);
     loop {
@@ -177,13 +177,13 @@ fn apart(a: &[(u32, Leaf)], b: &[(u32, Leaf)]) -> f64 {
     }
 }
 
-/// How far a thing is from nothing.
+/// The distance of a thing from nothing.
 fn size(thing: &[(u32, Leaf)]) -> f64 {
     thing.iter().map(|(_, leaf)| leaf.size()).sum()
 }
 
-/// The cheapest way to match things: those that are in both with themselves, the others as an assignment says. To the
-/// bit the same whatever their order, and as far there as back.
+/// The cheapest matching of things: identical ones are matched with each other, the rest by an assignment. Bit-identical for
+/// any order of the things and of the arguments.
 fn between_things(a: &[Vec<(u32, Leaf)>], b: &[Vec<(u32, Leaf)>]) -> f64 {
     let [mut mine, mut theirs] = [a, b].map(|things| things.iter().collect::<Vec<_>>());
     mine.retain(|thing| match theirs.iter().position(|other| other == thing) {
@@ -201,10 +201,10 @@ fn between_things(a: &[Vec<(u32, Leaf)>], b: &[Vec<(u32, Leaf)>]) -> f64 {
     } else {
         (theirs, mine)
     };
-    // What is left over counts in full: so it is cheapest to match all of the fewer.
+    // Unmatched things count in full, so it is cheapest to match all of the fewer.
     let over = |a: &[(u32, Leaf)], b: &[(u32, Leaf)]| apart(a, b) - size(b);
     let all: f64 = more.iter().map(|thing| size(thing)).sum();
-    // More things than an assignment takes are compared in their order.
+    // Collections too large for an assignment are compared in order.
     let in_order = || fewer.iter().zip(&more).map(|(one, other)| over(one, other)).sum();
     let matched = if more.len() <= MAX_ASSIGNED {
         let costs: Vec<f64> = fewer
@@ -224,7 +224,7 @@ impl Leaf {
     fn distance(&self, other: &Self) -> f64 {
         match (self, other) {
             (Self::Number(a), Self::Number(b)) => relative_difference(*a, *b),
-            // As far as it is by way of no point, at most.
+            // At most the distance by way of nothing.
             (Self::Point(a), Self::Point(b)) => {
                 let [x, y] = [0, 1].map(|axis| a[axis] - b[axis]);
                 ((x * x + y * y).sqrt() / METRES).min(self.size() + other.size())
@@ -232,7 +232,7 @@ impl Leaf {
             (Self::Things(a), Self::Things(b)) => between_things(a, b),
             _ if self == other => 0.0,
             _ => {
-                // Each word takes the place of another, as far as there are any.
+                // A word replaces another as long as both sides have words left.
                 let shared = self.words().iter().filter(|word| other.words().contains(word)).count();
                 self.size().max(other.size()) - shared as f64
             }
@@ -247,7 +247,7 @@ impl Leaf {
         }
     }
 
-    /// How far it is from nothing.
+    /// The distance from nothing.
     fn size(&self) -> f64 {
         match self {
             Self::Number(_) | Self::Point(_) | Self::Word(_) => 1.0,
@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn of_sets_of_words_each_word_counts_alike() {
+    fn set_distance_counts_words_equally() {
         let mut reader = LeafReader::default();
         let mut d = |a: &str, b: &str| reader.read(a.as_bytes()).distance(&reader.read(b.as_bytes()));
         let both = r#"["a","b"]"#;
@@ -293,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn things_are_matched_whatever_their_order() {
+    fn things_are_matched_in_any_order() {
         let mut reader = LeafReader::default();
         let mut d = |a: &str, b: &str| reader.read(a.as_bytes()).distance(&reader.read(b.as_bytes()));
         let walls = r#"[{"polygon":[[1,1],[2,1],[2,2]]},{"polygon":[[5,5],[6,5],[6,8]],"height":2}]"#;
@@ -307,12 +307,12 @@ mod tests {
             "[[[5,5],[6,5],[6,8]],[[1,1],[2,1],[2,2]]]",
         ];
         assert_eq!(d(regions[0], regions[1]), 0.0);
-        // The order of waypoints is the way.
+        // The order of waypoints matters.
         assert!((d("[[1,1],[4,5]]", "[[4,5],[1,1]]") - 1.0).abs() < 1e-12);
     }
 
     #[test]
-    fn points_count_by_the_way_between_them() {
+    fn points_count_by_their_distance() {
         let mut reader = LeafReader::default();
         let mut d = |a: &str, b: &str| reader.read(a.as_bytes()).distance(&reader.read(b.as_bytes()));
         let (here, near, far) = ("[[0,0],[7,7]]", "[[0.004,0],[7,7]]", "[[4,0],[7,7]]");
@@ -343,7 +343,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_is_a_metric(a in texts(), b in texts(), c in texts()) {
+        fn leaves_distance_is_a_metric(a in texts(), b in texts(), c in texts()) {
             let mut reader = LeafReader::default();
             let [a, b, c] = [a, b, c].map(|text| reader.read(text.as_bytes()));
             prop_assert_eq!(a.distance(&a), 0.0);

@@ -1,5 +1,4 @@
-//! Which object of one world is compared with which of the other: once for each class, by everything that objects have at
-//! once. The parts that come of it are in `parts.rs`.
+//! Matches the objects of two worlds within each class, by all their features together.
 
 use std::cell::RefCell;
 use std::cmp::Ordering;
@@ -11,10 +10,10 @@ use crate::combined::kinds::Kinds;
 use crate::combined::parts::{length, turn};
 use crate::combined::sketch::ObjectFeatures;
 
-/// Objects this far apart, in metres, count 1.
+/// Metres between objects that count 1.
 pub(super) const UNIT_OF_PLACE: f64 = 10.0;
 
-/// So many points of reward count 1.
+/// Points of reward that count 1.
 pub(super) const UNIT_OF_REWARD: f64 = 100.0;
 
 impl ObjectFeatures {
@@ -22,7 +21,7 @@ impl ObjectFeatures {
         length(self.place, other.place)
     }
 
-    /// In Oklab; an object with the colours of its asset is 1 from any other.
+    /// In Oklab; an object with its asset's own colours is 1 from any other.
     pub(super) fn color_distance(&self, other: &Self) -> f64 {
         match (self.color, other.color) {
             (Some(a), Some(b)) if a.0 == b.0 => 0.0,
@@ -32,8 +31,7 @@ impl ObjectFeatures {
         }
     }
 
-    /// What it costs to match two objects of one class: how far apart they are in everything but what they pay, which only
-    /// decides between matches that are equally cheap else. A metric.
+    /// The cost of matching two objects of one class: their distance in everything but pay, which only breaks ties. A metric.
     #[cfg(test)]
     fn cost(&self, other: &Self) -> f64 {
         self.cost_of_place(other) + KindDistance::between(self, other).cost
@@ -51,16 +49,15 @@ impl ObjectFeatures {
 struct Buffers {
     costs: Vec<f64>,
     assignment: Assignment,
-    /// Which of the more are matched.
+    /// Which of the larger set are matched.
     is_met: Vec<bool>,
 }
 
-/// Hands out the objects of one class in two worlds, each once: as many as there are in the smaller set with a match, the
-/// rest alone. Of all ways to match them it is one with the least sum of costs; which one hangs on the objects alone and not on
-/// which world is named first.
+/// Visits each object of one class in two worlds once: all of the smaller set with a match, the rest alone. The matching has
+/// the least sum of costs; ties are broken by the objects alone, not by the order of the worlds.
 ///
-/// What objects pay does not decide which are matched unless all else is alike: else a world in which all pay the reverse
-/// would be taken for one in which objects changed their places.
+/// Pay decides only between matchings that are equal otherwise: else a world with all pay reversed would look like one whose
+/// objects changed places.
 pub(super) fn each_match<'a>(
     a: &'a [ObjectFeatures],
     b: &'a [ObjectFeatures],
@@ -88,10 +85,10 @@ pub(super) fn each_match<'a>(
              is_met,
          }| {
             costs.clear();
-            // More objects than an assignment takes are compared in their order: what each would cost is gigabytes, and not asked.
+            // Sets too large for an assignment are compared in order: the cost matrix would take gigabytes.
             let may_solve = more.len() <= MAX_ASSIGNED;
             if may_solve && is_of_one_kind(fewer) && is_of_one_kind(more) {
-                // What the kinds cost is the same whichever are matched.
+                // Costs between kinds are the same for every matching.
                 for one in fewer {
                     costs.extend(more.iter().map(|other| one.cost_of_place(other)));
                 }
@@ -103,7 +100,7 @@ pub(super) fn each_match<'a>(
                     }
                 });
             }
-            // All are finite.
+            // All costs are finite.
             let is_solved = may_solve && assignment.solve(costs, fewer.len(), more.len()).is_ok();
             let partner = |index: usize| {
                 if is_solved {
@@ -132,7 +129,7 @@ fn is_of_one_kind(objects: &[ObjectFeatures]) -> bool {
     objects.windows(2).all(|pair| pair[0].kind == pair[1].kind)
 }
 
-/// Whether a class has fewer objects than the other, or as many that come first.
+/// Whether a class has fewer objects than the other, or as many and precedes it in order.
 fn comes_first(a: &[ObjectFeatures], b: &[ObjectFeatures]) -> bool {
     let by_number = a.len().cmp(&b.len());
     let by_object = || a.iter().zip(b).map(|(a, b)| a.order(b)).find(|order| order.is_ne());
@@ -158,7 +155,7 @@ mod tests {
         Sketcher::default().sketch(&world).objects
     }
 
-    /// The least sum over all ways to match each of the fewer, tried one after the other.
+    /// The least sum over all matchings, by brute force.
     fn least(fewer: &[ObjectFeatures], more: &[ObjectFeatures]) -> f64 {
         let Some((first, rest)) = fewer.split_first() else {
             return 0.0;
@@ -177,7 +174,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn matches_are_as_cheap_as_any_way_to_match(a in objects(), b in objects()) {
+        fn matching_is_as_cheap_as_the_best_by_brute_force(a in objects(), b in objects()) {
             let (a, b) = (features(&a), features(&b));
             let (mut sum, mut alone) = (0.0, 0);
             each_match(&a, &b, |a, b| match (a, b) {

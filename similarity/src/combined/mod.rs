@@ -1,4 +1,4 @@
-//! Distances of whole variants and whole worlds, made of many parts. The measures that the parts are made of are in their own folders.
+//! Distances between whole variants and whole worlds, combined from many parts.
 
 mod arena;
 mod drawn;

@@ -1,5 +1,4 @@
-//! The parts that two sketches of worlds are compared by, found one after the other. What becomes of them, a table or a
-//! sum, is said in `world.rs`; which objects are compared with which, in `matching.rs`.
+//! Computes the parts of the distance between two sketches of worlds, and passes them to a [`Sink`].
 
 use std::sync::Arc;
 
@@ -13,7 +12,7 @@ use crate::combined::weights::Weights;
 use crate::layout_shape::LayoutShape;
 use crate::scalar::relative_difference;
 
-/// Takes the parts as they are found: the comparison, the difference in the unit of the field, and the one that counts.
+/// Receives each part: the comparison, the raw difference in the field's unit, and the normalised one.
 pub(super) trait Sink {
     fn add(&mut self, comparison: Comparison, raw: f64, normalised: f64);
 }
@@ -30,7 +29,7 @@ impl Sink for Parts {
     }
 }
 
-/// Keeps the weighted sum alone.
+/// Keeps only the weighted sum.
 pub(super) struct Sum<'a> {
     pub(super) weights: &'a Weights,
     pub(super) total: f64,
@@ -54,10 +53,10 @@ pub(super) fn compare(a: &Sketch, b: &Sketch, sink: &mut impl Sink) {
 /// Sums over all objects of two worlds.
 #[derive(Default)]
 struct Objects {
-    /// Objects that were matched with none, and what they pay.
+    /// Number of unmatched objects, and their pay.
     alone: f64,
     alone_pays: f64,
-    /// Sums over objects that were matched.
+    /// Sums over matched objects.
     metres: f64,
     turn: f64,
     motion: f64,
@@ -90,7 +89,7 @@ impl Objects {
         self.metres += a.metres(b);
         self.turn += turn(a.heading, b.heading);
         self.scale += relative_difference(a.scale, b.scale);
-        // All else is the same.
+        // Everything else is equal.
         if a.kind == b.kind {
             return;
         }
@@ -105,7 +104,7 @@ impl Objects {
     }
 }
 
-/// The lesser angle between two headings of `0..360`.
+/// The smaller angle between two headings in `0..360`.
 pub(super) fn turn(a: f64, b: f64) -> f64 {
     let turn = (a - b).abs();
     turn.min(360.0 - turn)
@@ -201,12 +200,12 @@ fn observation(a: &Sketch, b: &Sketch, objects: &Objects, sink: &mut impl Sink) 
     );
 }
 
-/// A number that is in its unit already.
+/// A number that needs no normalisation.
 fn as_it_is(comparison: Comparison, number: f64, sink: &mut impl Sink) {
     sink.add(comparison, number, number);
 }
 
-/// Difference of two numbers of at least 0, and its share of the larger one: a metric.
+/// Difference of two numbers of at least 0, as a share of the larger one: a metric.
 fn relative(comparison: Comparison, a: f64, b: f64, sink: &mut impl Sink) {
     let raw = (a - b).abs();
     sink.add(comparison, raw, relative_difference(a, b));

@@ -1,12 +1,12 @@
-//! What the simulator reads of an object: fields that nothing reads stand at their defaults, so that they count nothing.
+//! Resets the fields of an object that the simulator ignores to their defaults, so that they count nothing.
 
 use driftworld_spec::{MotionModel, Object, Stimulus, Style, Surface};
 
-/// The class whose objects say their text.
+/// The class whose objects display their text.
 const SIGN: &str = "sign";
 
-/// The object with everything that nothing reads at its default: what it pays where no stimulus makes it pay, the range of a
-/// stimulus that it does not have, the speed of what stands, what covers it in a world of plain looks, and so on.
+/// The object with all unread fields at their defaults: its pay if no stimulus triggers it, the range of a stimulus that it
+/// does not have, the speed of a static object, the texture in a world of plain looks, and so on.
 pub(super) fn as_read(object: &Object, style: Style) -> Object {
     let plain = Object::new(object.class.as_str(), object.coordinates);
     let mut read = object.clone();
@@ -48,7 +48,7 @@ pub(super) fn as_read(object: &Object, style: Style) -> Object {
     read
 }
 
-/// Whether coming near moves it: opens or closes it, sets it off, picks it up.
+/// Whether approaching changes it: opens or closes it, triggers it, picks it up.
 fn is_moved_in_range(object: &Object) -> bool {
     let is_near = |list: &Vec<Stimulus>| list.contains(&Stimulus::AgentInRange);
     let door = object.door.as_ref();

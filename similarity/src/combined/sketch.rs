@@ -1,5 +1,4 @@
-//! [`Sketch`]: a world reduced to what comparing it needs, made once and compared often. The parts of a distance are in
-//! `parts.rs`.
+//! [`Sketch`]: a world reduced to the features that a comparison needs, computed once and compared often.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -13,28 +12,28 @@ use crate::combined::leaves::{LeafReader, Leaves};
 use crate::combined::read::as_read;
 use crate::layout_shape::LayoutShape;
 
-/// The number of the next kind that is met. 0 is none.
+/// The next unused kind id. 0 means none.
 static NEXT_KIND: AtomicU64 = AtomicU64::new(1);
 
-/// Reduces worlds alike: only sketches of one sketcher can be compared.
+/// Makes sketches; only sketches of the same sketcher can be compared.
 #[derive(Debug, Default)]
 pub(super) struct Sketcher {
     texts: LeafTexts,
     reader: LeafReader,
     kinds: BTreeMap<[u64; 10], u64>,
-    /// The last layout that was met, with its arena and its shape.
+    /// Cache of the last layout, with its arena and shape.
     layout: Option<(Plan, [f64; 3], Arc<LayoutShape>)>,
 }
 
-/// A world as it is compared.
+/// A world prepared for comparison.
 #[derive(Clone, Debug)]
 pub(super) struct Sketch {
-    /// Objects by class, those of one class in an order that is theirs alone, whatever the order of the document.
+    /// Objects by class; within a class in an order that does not depend on the order of the document.
     pub(super) objects: Vec<ObjectFeatures>,
-    /// For each class its name in small letters, and where its objects end in `objects`; by name.
+    /// For each class its name in lower case, and the end of its objects in `objects`; sorted by name.
     pub(super) classes: Vec<(String, usize)>,
     pub(super) start: [f64; 2],
-    /// In degrees, as all headings here in `0..360`.
+    /// In degrees, in `0..360` like all headings here.
     pub(super) heading: f64,
     pub(super) action_model: Arc<Leaves>,
     pub(super) action_space: Arc<Leaves>,
@@ -45,17 +44,17 @@ pub(super) struct Sketch {
     pub(super) energy: Arc<Leaves>,
     pub(super) map: u8,
     pub(super) walls: Arc<Leaves>,
-    /// What divides the arena; `None` where there is no layout.
+    /// The walls of the arena; `None` without a layout.
     pub(super) layout: Option<Arc<LayoutShape>>,
-    /// Which doors its rooms are given.
+    /// The doors of its rooms.
     pub(super) doors: RoomDoors,
     pub(super) arena: [f64; 2],
-    /// Zones that act on motion, that pay, and that are seen.
+    /// Zones that affect motion, that pay, and that are visible.
     pub(super) zones: [Arc<Leaves>; 3],
-    /// What time pays, in a second.
+    /// Reward per second.
     pub(super) step_reward: f64,
     pub(super) rules: Arc<Leaves>,
-    /// How many seconds an episode may last; `None` for one without a limit.
+    /// Longest episode in seconds; `None` without a limit.
     pub(super) limit: Option<f64>,
     pub(super) light: f64,
     /// Wall, sky, ground, sunlight, ceiling.
@@ -65,15 +64,15 @@ pub(super) struct Sketch {
     pub(super) camera: Arc<Leaves>,
 }
 
-/// An object as it is compared.
+/// An object prepared for comparison.
 #[derive(Clone, Debug)]
 pub(super) struct ObjectFeatures {
-    /// Its place in the list of the document, which is not compared.
+    /// Its index in the document, which is not compared.
     pub(super) index: usize,
     pub(super) place: [f64; 2],
     pub(super) heading: f64,
     pub(super) scale: f64,
-    /// 1 over the scale, which saves a division for each pair of objects.
+    /// 1 over the scale, which saves a division per pair of objects.
     pub(super) per_scale: f64,
     pub(super) reward: f64,
     pub(super) odds: f64,
@@ -82,12 +81,12 @@ pub(super) struct ObjectFeatures {
     pub(super) body: Arc<Leaves>,
     pub(super) paid_for: Arc<Leaves>,
     pub(super) model: Arc<Leaves>,
-    /// The same number for objects that are alike in all but their places, headings and sizes.
+    /// Equal for objects that differ only in place, heading and size.
     pub(super) kind: u64,
 }
 
 impl Sketcher {
-    /// The sketch of a world.
+    /// Makes the sketch of a world.
     pub(super) fn sketch(&mut self, world: &World) -> Sketch {
         let (agent, around, rules) = (&world.agent_params, &world.environment_params, &world.rules);
         let mut by_class: BTreeMap<String, Vec<ObjectFeatures>> = BTreeMap::new();
@@ -125,7 +124,7 @@ impl Sketcher {
             zones: [Comparison::Zones, Comparison::ZonePay, Comparison::ZoneLooks].map(|part| self.leaves(part)),
             step_reward: rules.step_reward / step_seconds + rules.reward_per_second,
             rules: self.leaves(Comparison::ShapingAndEndings),
-            // To the microsecond: 100 steps of 0.3 s are 300 of 0.1 s.
+            // To the microsecond: 100 steps of 0.3 s equal 300 of 0.1 s.
             limit: limits
                 .into_iter()
                 .filter(|seconds| *seconds > 0.0)
@@ -145,7 +144,7 @@ impl Sketcher {
         }
     }
 
-    /// The shape of the world's layout; worlds of one layout often come one after the other.
+    /// The shape of the world's layout, cached because worlds of one layout often come in a row.
     fn shape(&mut self, world: &World) -> Option<Arc<LayoutShape>> {
         let around = &world.environment_params;
         let (plan, arena, height) = (world.plan()?, around.arena_size(), around.wall_height);
@@ -167,7 +166,7 @@ impl Sketcher {
             place: object.coordinates,
             heading: object.heading.rem_euclid(360.0),
             scale: object.scale,
-            // Finite, so that two objects without any size are no size apart.
+            // Finite, so that two objects of size 0 are at distance 0 in size.
             per_scale: (1.0 / object.scale.abs()).min(f64::MAX),
             reward: object.reward,
             odds: object.reward_probability,
@@ -182,17 +181,17 @@ impl Sketcher {
         features
     }
 
-    /// A number for all of an object but its place, heading and size.
+    /// An id for everything about an object except place, heading and size.
     fn kind(&mut self, object: &ObjectFeatures) -> u64 {
         let [l, a, b] = object.color.map_or([0.0; 3], |color| color.0);
         let numbers = [object.reward, object.odds, l, a, b].map(f64::to_bits);
-        // Equal leaves are one, which the reader keeps.
+        // Equal leaves are one allocation, which the reader keeps alive.
         let leaves = [&object.motion, &object.body, &object.paid_for, &object.model];
         let leaves = leaves.map(|leaves| Arc::as_ptr(leaves).addr() as u64);
         let mut key = [u64::from(object.color.is_some()); 10];
         key[1..6].copy_from_slice(&numbers);
         key[6..].copy_from_slice(&leaves);
-        // Sketchers share the numbers, so that two kinds of one number are one kind wherever they come from.
+        // All sketchers share the ids, so equal ids mean equal kinds wherever they come from.
         *self
             .kinds
             .entry(key)
@@ -206,8 +205,7 @@ impl Sketcher {
 }
 
 impl ObjectFeatures {
-    /// An order of objects that are not alike, so that which of several equally cheap matches is taken hangs on the objects
-    /// alone.
+    /// Orders objects by their features, so that ties between matchings are broken by the objects alone.
     pub(super) fn order(&self, other: &Self) -> Ordering {
         let color = |object: &Self| object.color.map_or([-1.0; 3], |color| color.0);
         let numbers = |object: &Self| {
@@ -226,7 +224,7 @@ impl ObjectFeatures {
 }
 
 impl Sketch {
-    /// For each class that either has, its objects in each, by class.
+    /// For each class in either sketch, its objects in both, sorted by class.
     pub(super) fn classes_of_both<'a>(
         &'a self,
         other: &'a Self,
@@ -253,7 +251,7 @@ impl Sketch {
     }
 }
 
-/// Which doors the rooms of a layout are given; none where it has no rooms.
+/// The doors of a layout's rooms; none if it has no rooms.
 pub(super) fn doors(layout: Option<&Layout>) -> RoomDoors {
     let rooms = layout.and_then(|layout| layout.rooms.as_ref());
     rooms.map_or_else(RoomDoors::default, |rooms| rooms.doors)
@@ -264,7 +262,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn classes_meet_by_name_and_their_objects_stand_in_an_order_of_their_own() {
+    fn classes_match_by_name_and_objects_have_a_canonical_order() {
         let world = |classes: &[(&str, f64)]| {
             let objects = classes.iter().map(|(class, x)| Object::new(*class, [*x, 0.0]));
             World::default().edit(|world| world.objects.extend(objects)).unwrap()

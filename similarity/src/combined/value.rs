@@ -1,4 +1,4 @@
-//! [`ValueMeasure`]: how two values of a parameter are compared, and what the number is divided by. Distributions are in `drawn.rs`.
+//! [`ValueMeasure`]: compares two values of one parameter, and normalises the result.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -13,16 +13,16 @@ use crate::layout_shape::LayoutShape;
 use crate::scalar::{CostTable, choice_mismatch, circular_difference, relative_difference};
 use crate::{ColorMeasure, MetricProperties};
 
-/// How two values of one parameter are compared.
+/// The measure for two values of one parameter.
 #[derive(Clone, Debug)]
 pub(super) enum ValueMeasure {
-    /// Difference over the width of the range; for points and vectors its Euclidean length.
+    /// Difference over the width of the range; Euclidean length for points and vectors.
     Difference { measure: &'static str, width: f64 },
     /// |ln a − ln b| over that of the range.
     LogRatio { width: f64 },
-    /// Difference over the larger of the two, over the most that the range or the choices allow.
+    /// Difference over the larger of the two, divided by the most that the range or the choices allow.
     Relative { widest: f64 },
-    /// Turn over the widest that the range or the choices allow, half a circle at most.
+    /// Turn over the widest that the range or the choices allow, at most half a circle.
     Turn { widest: f64 },
     /// A distance of colours over that of the widest pair of choices.
     Color {
@@ -30,26 +30,26 @@ pub(super) enum ValueMeasure {
         of: ColorMeasure,
         widest: f64,
     },
-    /// What differs of two layouts, over that of the widest pair of choices.
+    /// The difference of two layouts over that of the widest pair of choices.
     Layout {
         of: LayoutMeasure,
         arena: Arena,
         widest: f64,
     },
-    /// A table of costs, by the words for the choices, over the largest of them.
+    /// A table of costs between named choices, over the largest of them.
     Costs(CostTable),
     /// 0 or 1.
     SameOrNot,
 }
 
 impl ValueMeasure {
-    /// What the parameter asks for, or what its type has. Layouts stand in an arena.
+    /// The measure that the parameter asks for, or its type's default. Layouts are placed in an arena.
     pub(super) fn of(parameter: &Parameter, arena: Arena) -> Self {
         let compare = parameter.compare.as_ref();
         if let (Some(costs), Some(choices)) = (compare.and_then(|compare| compare.costs.as_ref()), &parameter.choices) {
             let names = choices.iter().filter_map(|choice| choice.cast(parameter.kind));
             let table = CostTable::new(names.map(|choice| choice.to_string()).collect(), &costs.concat());
-            // Loading the task checked the table.
+            // The table was checked when the task was loaded.
             return table.map_or(Self::SameOrNot, Self::Costs);
         }
         let color = |measure, of| color(parameter, measure, of);
@@ -114,7 +114,7 @@ impl ValueMeasure {
         }
     }
 
-    /// Which laws it keeps.
+    /// Which laws the measure satisfies.
     pub(super) fn properties(&self) -> MetricProperties {
         match self {
             Self::Color { of, .. } => of.properties(),
@@ -124,7 +124,7 @@ impl ValueMeasure {
         }
     }
 
-    /// The measure's own number, and the one that counts; the second may be above 1.
+    /// The raw number and the normalised one, which may be above 1.
     pub(super) fn between(&self, a: &Value, b: &Value) -> (f64, f64) {
         let both = || a.as_number().zip(b.as_number());
         let found = match self {
@@ -137,7 +137,7 @@ impl ValueMeasure {
                 _ => None,
             },
             Self::Layout { of, arena, widest } => Some((of.between(a, b, *arena), *widest)),
-            // What lies between the choices, as on the way of a drift, is the same or not.
+            // Values between the choices, as during a drift, are compared as same or not.
             Self::Costs(table) => {
                 let cost = table.between(&a.to_string(), &b.to_string());
                 cost.ok().map(|cost| (cost, table.largest()))
@@ -151,14 +151,14 @@ impl ValueMeasure {
     }
 }
 
-/// What of two layouts is compared. Those without a seed are compared as drawn with seed 0.
+/// The aspect of two layouts that is compared. Layouts without a seed are drawn with seed 0.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum LayoutMeasure {
-    /// What they are: their shapes, the sides of their arenas, each by the difference over the larger, and 1 for other doors.
+    /// Everything: shapes and the sides of their arenas, each by the difference over the larger, and 1 for different doors.
     Whole,
-    /// Which walls stand.
+    /// Which cells have walls.
     Walls,
-    /// How long ways are.
+    /// Path lengths.
     Ways,
     /// How far walls have to be moved.
     Transport,
@@ -195,7 +195,7 @@ impl LayoutMeasure {
             }
             Self::Walls => one.walls_distance(&other),
             Self::Ways => one.ways_distance(&other),
-            // Shapes that layouts make have finite heights.
+            // Shapes of layouts have finite heights.
             Self::Transport => one.transport_distance(&other).unwrap_or(f64::NAN),
         }
     }
@@ -210,7 +210,7 @@ fn layout(parameter: &Parameter, of: LayoutMeasure, arena: Arena) -> ValueMeasur
     }
 }
 
-/// The shape of a layout. The last that were asked for are kept: the same few choices are compared again and again.
+/// The shape of a layout, with a small cache: the same few choices are compared again and again.
 fn shape(layout: &Layout, arena: Arena) -> Arc<LayoutShape> {
     const MOST_KEPT: usize = 256;
     static KEPT: Mutex<BTreeMap<String, Arc<LayoutShape>>> = Mutex::new(BTreeMap::new());
@@ -229,7 +229,7 @@ fn shape(layout: &Layout, arena: Arena) -> Arc<LayoutShape> {
     shape
 }
 
-/// The numbers that a value consists of.
+/// The numbers in a value.
 fn numbers(value: &Value) -> Option<Vec<f64>> {
     match value {
         Value::Point(point) => Some(point.to_vec()),
@@ -246,7 +246,7 @@ pub(super) fn share(raw: f64, whole: f64) -> f64 {
     }
 }
 
-/// Width of what a number may be, on a scale.
+/// Width of a numeric parameter's range, on a scale.
 fn range(parameter: &Parameter, scale: impl Fn(f64) -> f64) -> f64 {
     match parameter.domain() {
         Some(Domain::Range([low, high])) => scale(high) - scale(low),
@@ -261,10 +261,10 @@ fn range(parameter: &Parameter, scale: impl Fn(f64) -> f64) -> f64 {
     }
 }
 
-/// From so many choices on their pairs are compared on all cores.
+/// From this number of choices, pairs are compared on all cores.
 const FEW_CHOICES: usize = 500;
 
-/// The widest pair of choices; `apart` is how far two are. 1 where there are none, or only one.
+/// The distance of the widest pair of choices, by `apart`. 1 if there are fewer than two.
 fn widest_pair<T: Sync>(
     parameter: &Parameter,
     read: impl Fn(&Value) -> Option<T>,
@@ -275,7 +275,7 @@ fn widest_pair<T: Sync>(
     };
     let choices: Vec<T> = choices.iter().filter_map(read).collect();
     let farthest = |(index, a): (usize, &T)| choices[..index].iter().map(|b| apart(a, b)).fold(0.0, f64::max);
-    // The largest is the same whichever is looked at first.
+    // The maximum does not depend on the order of comparison.
     let widest = if choices.len() < FEW_CHOICES {
         choices.iter().enumerate().map(farthest).fold(0.0, f64::max)
     } else {
@@ -299,7 +299,7 @@ fn widest_turn(parameter: &Parameter) -> f64 {
     }
 }
 
-/// The most that two numbers can be apart as a share of the larger: below 1 for those of one sign, 2 across 0.
+/// The largest relative difference of two numbers: below 1 for those of one sign, 2 across 0.
 fn widest_relative(parameter: &Parameter) -> f64 {
     match parameter.domain() {
         Some(Domain::Range([low, high])) if low < 0.0 && 0.0 < high => 2.0,

@@ -1,4 +1,4 @@
-//! Distance between two variants of one task, parameter by parameter. Distances of concrete worlds are in `world.rs`.
+//! Distance between two variants of one task, parameter by parameter.
 
 use std::sync::Arc;
 
@@ -11,23 +11,22 @@ use crate::combined::weighted_distance::{Distance, Part};
 use crate::combined::weights::Weights;
 use crate::{MetricProperties, SimilarityError};
 
-/// How far apart two variants of one task are: the sum over its parameters, where 1 is one parameter moved over its whole
-/// declared range.
+/// The distance of two variants of one task: a sum over its parameters, where 1 is one parameter moved over its whole declared
+/// range.
 ///
-/// Every parameter counts by the measure and at the weight that the task gives it under `compare`, or else at weight 1 and by
-/// what its type has: numbers by difference over the declared range, headings by the turn, colours in Oklab, points and
-/// vectors by Euclidean length, layouts by their shapes in the task's arena, each over the widest pair of choices, anything else
-/// as the same or not. Randomized ones are
-/// compared by distribution, over the widest pair of distributions that the declared ranges and choices allow: Wasserstein-1
-/// of numbers, round the circle for headings, in Oklab for colours out of a continuum, share by share for shares, Wasserstein-2 for
-/// points, total variation for words and for colours out of lists. Parameters that only such distributions read count by what they make
-/// of them, and not once more by themselves. A parameter that nothing reads in a variant (`read_if`) stands at its default.
-/// Fixed parameters cannot differ and are left out.
+/// Every parameter uses the measure and weight that the task gives it under `compare`, by default weight 1 and its type's
+/// measure: numbers by difference over the declared range, headings by the turn, colours in Oklab, points and vectors by
+/// Euclidean length, layouts by their shapes in the task's arena, each over the widest pair of choices, anything else as the
+/// same or not. Randomized parameters are compared by distribution, over the widest pair of distributions that the declared
+/// ranges and choices allow: Wasserstein-1 of numbers, on the circle for headings, in Oklab for colours from a continuum, share
+/// by share for shares, Wasserstein-2 for points, total variation for words and for colours from lists. Parameters that only
+/// such distributions read count through them and not a second time. A parameter that nothing reads in a variant (`read_if`)
+/// counts with its default. Fixed parameters cannot differ and are left out.
 ///
-/// What is alike in both contributes exactly 0, so variants that differ in what they pay are 0 apart in all elements but the
-/// reward, and a parameter more that is the same in both changes no number. What a number is divided by depends on what the task
-/// declares alone and on no other variant. [`VariantMeasure::properties`] says whether the whole is a metric. To compare
-/// many variants, make a [`VariantMeasure`] once.
+/// Equal values contribute exactly 0, so variants that differ only in pay are 0 apart in all elements but the reward, and
+/// adding a parameter that is the same in both changes no number. Normalisation depends only on what the task declares, on no
+/// other variant. [`VariantMeasure::properties`] says whether the whole is a metric. To compare many variants, make a
+/// [`VariantMeasure`] once.
 ///
 /// # Errors
 /// As [`VariantMeasure::between`].
@@ -35,7 +34,7 @@ pub fn variant_distance(a: &Variant, b: &Variant, weights: &Weights) -> Result<D
     VariantMeasure::new(a.task(), weights.clone()).between(a, b)
 }
 
-/// How the variants of one task are compared, made ready for many comparisons.
+/// Measures distances between the variants of one task, prepared for many comparisons.
 ///
 /// # Example
 /// ```
@@ -57,7 +56,7 @@ pub struct VariantMeasure {
     parameters: Vec<Compared>,
 }
 
-/// A parameter, and how it is compared.
+/// A parameter and its measure.
 #[derive(Clone, Debug)]
 struct Compared {
     name: String,
@@ -68,7 +67,7 @@ struct Compared {
     by: By,
 }
 
-/// The coarse elements that a parameter counts for: once where it lists a fine one beside its coarse one.
+/// The coarse elements that a parameter counts for: one only once, even if the parameter lists a fine element beside it.
 fn counts_for(affects: &[Element]) -> Vec<Element> {
     let is_said = |element: &&Element| **element == element.coarse() || !affects.contains(&element.coarse());
     affects.iter().filter(is_said).map(|element| element.coarse()).collect()
@@ -81,7 +80,7 @@ enum By {
 }
 
 impl VariantMeasure {
-    /// Compares variants of this task, its elements at these weights.
+    /// Prepares to compare variants of this task, with these weights of elements.
     pub fn new(task: &Arc<TaskSpec>, weights: Weights) -> Self {
         let arena = Arena::of(task);
         let parameters = task.parameters().iter().filter_map(|(name, parameter)| {
@@ -115,7 +114,7 @@ impl VariantMeasure {
         }
     }
 
-    /// How far apart two variants of the task are.
+    /// The distance of two variants of the task.
     ///
     /// # Errors
     /// [`SimilarityError::DifferentTasks`] if one is not a variant of this task, [`SimilarityError::NotADistance`] for
@@ -158,14 +157,13 @@ impl VariantMeasure {
         Ok(Distance::new(parts, &self.weights))
     }
 
-    /// Whether it is a variant of this task: of the very same document.
+    /// Whether it is a variant of this very task document.
     pub fn takes(&self, variant: &Variant) -> bool {
         self.task.is_same_as(variant.task())
     }
 
-    /// How far two variants of the task can be apart at most, as far as each parameter goes: the sum over parameters of what
-    /// the whole declared range counts. 0 for a task without parameters that count, infinite where the distributions of one
-    /// have no finite distance.
+    /// Upper bound on the distance of two variants of the task: the sum over parameters of the whole declared range. 0 for a
+    /// task without parameters that count, infinite if the distributions of one have no finite distance.
     pub fn diameter(&self) -> f64 {
         let counts = |compared: &Compared| {
             let weights = compared.affects.iter().map(|element| self.weights.of(*element));
@@ -182,14 +180,14 @@ impl VariantMeasure {
             .sum()
     }
 
-    /// Whether the diameter is a number to take shares of: above 0, and finite.
+    /// Whether the diameter can be divided by: above 0, and finite.
     pub fn has_diameter(&self) -> bool {
         let diameter = self.diameter();
         diameter > 0.0 && diameter.is_finite()
     }
 
-    /// Which laws the whole keeps: a metric if all measures that count are, a pseudometric if one of them is, or if in
-    /// addition a parameter that can differ counts nothing.
+    /// Which laws the whole satisfies: a metric if all measures that count are; a pseudometric if one of them is only that, or
+    /// if a parameter that can differ has weight 0.
     pub fn properties(&self) -> MetricProperties {
         let counts = |compared: &&Compared| {
             let is_seen = compared.affects.iter().any(|element| self.weights.of(*element) > 0.0);

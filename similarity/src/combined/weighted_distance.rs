@@ -1,4 +1,4 @@
-//! [`Distance`]: the weighted sum of its parts. The parts are measured in `variant.rs` and `world.rs`.
+//! [`Distance`]: the weighted sum of its parts.
 
 use driftworld_spec::Element;
 use serde::Serialize;
@@ -6,35 +6,35 @@ use serde::Serialize;
 use super::weights::{Weights, position};
 use crate::distribution::Method;
 
-/// One comparison that a distance is made of.
+/// One comparison in a distance.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Part {
-    /// What was compared: a parameter, or a property of worlds.
+    /// The parameter or world property that was compared.
     pub name: String,
-    /// The element of the decision process that it counts for.
+    /// The element of the decision process that the part counts for.
     pub element: Element,
-    /// The measure, and what its number is divided by: what counts 1.
+    /// The measure, and its normalisation.
     pub measure: &'static str,
-    /// For distributions: how the number was found. Values are compared as they are.
+    /// For distributions: the method by which the number was found. Single values have none.
     #[serde(rename = "how", skip_serializing_if = "Option::is_none")]
     pub method: Option<Method>,
-    /// The measure's own number, in its own units.
+    /// The measure's raw number, in its own unit.
     pub raw: f64,
-    /// The number that counts, in units of which 1 is said by the measure; at least 0.
+    /// The normalised number, at least 0; the measure defines its unit.
     pub normalised: f64,
-    /// What it weighs: it counts `weight` times.
+    /// Weight: the part counts `weight` times.
     pub weight: f64,
-    /// Which share of the whole distance is its doing, in 0..=1; the shares of all parts add up to 1, or are 0 where the whole is.
+    /// Its share of the whole distance, in 0..=1; the shares of all parts add up to 1, or are all 0 if the distance is 0.
     pub share: f64,
 }
 
-/// How far apart two variants or two worlds are.
+/// The distance of two variants or two worlds.
 ///
 /// Parts are added, not averaged: each element's distance is the weighted sum of its parts, and the whole is the sum over
-/// everything that was compared, each at the weight of its element; a parameter that counts for several elements counts
-/// once in the whole, at the largest of their weights. So what is alike in both changes no number, however much of it there
-/// is. All are at least 0 and may be above 1; of variants, 1 is one parameter moved over its whole declared range. A
-/// weighted sum of metrics is a metric.
+/// everything that was compared, each at the weight of its element; a parameter that counts for several elements counts once in
+/// the whole, at the largest of their weights. So parts that are equal in both change no number, however many there are. All
+/// are at least 0 and may be above 1; for variants, 1 is one parameter moved over its whole declared range. A weighted sum of
+/// metrics is a metric.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Distance {
     /// All elements together.
@@ -42,12 +42,12 @@ pub struct Distance {
     /// State, action, transition, reward, observation; `None` where nothing could differ. As JSON an object with their names.
     #[serde(serialize_with = "by_name")]
     pub elements: [Option<f64>; 5],
-    /// What it is made of.
+    /// The parts.
     pub parts: Vec<Part>,
 }
 
 impl Part {
-    /// A part that counts as it is, at weight 1.
+    /// A part of weight 1 whose number needs no normalisation.
     pub fn of(name: &str, element: Element, measure: &'static str, value: f64) -> Self {
         Self {
             name: name.to_owned(),
@@ -63,7 +63,7 @@ impl Part {
 }
 
 impl Distance {
-    /// A distance in no element more than in another: of what a learner can reach or do. It has no parts.
+    /// A distance that belongs to no single element: of what a learner can reach or do. It has no parts.
     pub fn whole(total: f64) -> Self {
         Self {
             total,
@@ -72,7 +72,7 @@ impl Distance {
         }
     }
 
-    /// Adds up parts; those of one name follow each other, and are the same number for several elements.
+    /// Adds up parts; parts of one name are adjacent, with the same number for several elements.
     pub fn new(mut parts: Vec<Part>, weights: &Weights) -> Self {
         let elements = Element::ALL.map(|element| {
             let own = || parts.iter().filter(|part| part.element == element && part.weight > 0.0);
@@ -95,7 +95,7 @@ impl Distance {
         Self { total, elements, parts }
     }
 
-    /// The same in shares of another number, above 0: every total, and what each part weighs, divided by it.
+    /// Divides every total and every part's weight by `whole`, above 0.
     #[must_use]
     pub fn in_shares_of(mut self, whole: f64) -> Self {
         self.total /= whole;
@@ -108,19 +108,19 @@ impl Distance {
         self
     }
 
-    /// The distance in one element, of a fine one in its coarse one; `None` where nothing could differ.
+    /// The distance in one element, for a fine one that of its coarse one; `None` if nothing could differ.
     pub fn element(&self, element: Element) -> Option<f64> {
         self.elements[position(element)]
     }
 
-    /// The elements in which there is any distance.
+    /// The elements with a distance above 0.
     pub fn differs_in(&self) -> Vec<Element> {
         let differs = |element: &Element| self.element(*element).is_some_and(|distance| distance > 0.0);
         Element::ALL.into_iter().filter(differs).collect()
     }
 }
 
-/// The elements under their names, in order.
+/// Serialises the elements under their names, in order.
 fn by_name<S: serde::Serializer>(elements: &[Option<f64>; 5], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_map(Element::ALL.iter().map(|element| element.name()).zip(elements))
 }
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_add_up_to_elements_and_to_the_whole() {
+    fn parts_add_up_to_elements_and_total() {
         let mut parts = vec![
             part(Element::R, 1.0, 1.0),
             part(Element::R, 0.0, 3.0),
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn what_counts_for_two_elements_counts_once_in_the_whole() {
+    fn part_of_two_elements_counts_once_in_the_total() {
         let parts = vec![part(Element::S, 0.5, 1.0), part(Element::O, 0.5, 1.0)];
         let distance = Distance::new(parts.clone(), &Weights::default());
         assert_eq!((distance.total, distance.element(Element::S)), (0.5, Some(0.5)));
@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn one_element_can_be_taken_alone() {
+    fn single_element_can_be_weighted_alone() {
         let parts = vec![part(Element::R, 1.0, 1.0), part(Element::O, 0.5, 1.0)];
         assert_eq!(Distance::new(parts.clone(), &only(Element::S)).total, 0.0);
         assert!(Weights::default().with(Element::R, f64::NAN).is_err());

@@ -1,13 +1,13 @@
-//! [`Weights`]: how much each element of the decision process counts in a distance.
+//! [`Weights`]: the weight of each element of the decision process in a distance.
 
 use driftworld_spec::{Element, TaskSpec};
 
 use crate::SimilarityError;
 
-/// The most that an element can weigh: what a task spec may say, too.
+/// Largest weight of an element, also in a task spec.
 pub const MAX_WEIGHT: f64 = 1e6;
 
-/// What the elements of the decision process weigh in the whole. Each 1 by default.
+/// Weights of the elements of the decision process in the whole. Each is 1 by default.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Weights(pub(super) [f64; 5]);
 
@@ -23,7 +23,7 @@ impl Weights {
         Self(task.element_weights().to_array())
     }
 
-    /// The same weights but for one element.
+    /// These weights, with one element's replaced.
     ///
     /// # Errors
     /// [`SimilarityError::BadWeight`] unless the weight is in `0..=`[`MAX_WEIGHT`].
@@ -38,7 +38,7 @@ impl Weights {
         Ok(self)
     }
 
-    /// What an element weighs.
+    /// The weight of an element.
     pub fn of(&self, element: Element) -> f64 {
         self.0[position(element)]
     }

@@ -1,5 +1,4 @@
-//! Distance between two concrete worlds. Which properties are compared is in `parts.rs`, how a world is reduced to them in `sketch.rs`;
-//! distances of variants are in `variant.rs`.
+//! Distance between two concrete worlds.
 
 use driftworld_spec::World;
 
@@ -11,7 +10,7 @@ use crate::combined::weighted_distance::Distance;
 use crate::combined::weights::Weights;
 use crate::distribution::Method;
 
-/// How far apart two worlds are: a sum of parts, each in a unit of its own.
+/// The distance of two worlds: a sum of parts, each in a unit of its own.
 ///
 /// | element | parts, and what counts 1 |
 /// |---|---|
@@ -21,29 +20,27 @@ use crate::distribution::Method;
 /// | reward | what objects pay (100 points), for what, at which odds (never against always); what a second pays (1 point), rules, limit of steps |
 /// | observation | colours of objects and surroundings (black against white, in Oklab), looks without a match (each), models, sizes, light, camera |
 ///
-/// Numbers without a unit there count by their difference over the larger one, so that 1 is something against nothing;
-/// words 1 if they differ. `docs/reference/comparison.md` has all parts, units and keys.
+/// Numbers without a unit count by their difference over the larger one, so that 1 is something against nothing; words count 1
+/// if they differ. `docs/reference/comparison.md` lists all parts, units and keys.
 ///
-/// Objects are matched once within each class, by all that they have together, as is cheapest; what is left over counts in
-/// full: its presence in the state, its looks in the observation, what it pays in the reward. So the order in which a
-/// document lists objects changes nothing, and adding the same object to both worlds changes nothing unless it is a better
-/// match. What nothing reads, as the reward of an object without a stimulus, counts nothing.
+/// Objects are matched once within each class, at the least total cost over all features; unmatched ones count in full: their
+/// presence in the state, their looks in the observation, their pay in the reward. So the order of objects in a document does
+/// not matter, and adding the same object to both worlds changes nothing unless it is a better match. Fields that nothing
+/// reads, such as the reward of an object without a stimulus, count nothing.
 ///
-/// Objects are matched by where they stand, how they look and what they do; what they pay decides between matches that
-/// are alike in all that. So "the red ones pay, the blue ones cost" and its reverse differ in what they pay and not in
-/// where things stand.
+/// Objects are matched by place, looks and behaviour; pay only breaks ties. So "the red ones pay, the blue ones cost" and its
+/// reverse differ in pay and not in places.
 ///
-/// Symmetric, and 0 between worlds that differ in what is not compared alone (names, tags, the mode of the game, what has
-/// happened so far). A metric among worlds whose objects match in the same way; among others a detour may be shorter. Time:
-/// some microseconds for 20 objects, growing with the cube of the objects of one class.
+/// Symmetric, and 0 between worlds that differ only in fields that are not compared (names, tags, the mode of the game,
+/// progress so far). A metric among worlds whose objects match in the same way; among others the triangle inequality may fail.
+/// Time: some microseconds for 20 objects, growing with the cube of the objects of one class.
 pub fn world_distance(a: &World, b: &World, weights: &Weights) -> Distance {
     let mut sketcher = Sketcher::default();
     let (a, b) = (sketcher.sketch(a), sketcher.sketch(b));
     explained(&a, &b, weights)
 }
 
-/// Which object of one world is compared with which of the other, by their places in the two lists; each object once, in an
-/// order that hangs on the objects alone.
+/// Pairs of indices of matched objects in two worlds; each object occurs once, in an order that depends on the objects alone.
 pub(crate) fn match_objects(a: &World, b: &World) -> Vec<(Option<usize>, Option<usize>)> {
     let mut sketcher = Sketcher::default();
     let (a, b) = (sketcher.sketch(a), sketcher.sketch(b));
@@ -56,11 +53,11 @@ pub(crate) fn match_objects(a: &World, b: &World) -> Vec<(Option<usize>, Option<
     matches
 }
 
-/// How far apart two sets of worlds are: the mean over pairs, the first with the first and so on; worlds without a partner are left
-/// out. Each part's numbers are means, too.
+/// The distance of two sets of worlds: the mean over pairs, the first with the first and so on; worlds without a partner are
+/// left out. Each part's numbers are means, too.
 ///
-/// Draw both sets under the same seed and indices: then pairs share their random numbers, and what differs is what differs between
-/// the variants.
+/// Draw both sets under the same seed and indices: then pairs share their random numbers, and only the difference of the
+/// variants remains.
 ///
 /// # Errors
 /// [`SimilarityError::Empty`] if there is no pair.
@@ -89,7 +86,7 @@ pub fn world_sets_distance(a: &[World], b: &[World], weights: &Weights) -> Resul
     Ok(Distance::new(sums.0, weights))
 }
 
-/// Many worlds, prepared so that comparing each with each is fast: the same numbers as [`world_distance`].
+/// Many worlds, prepared for fast pairwise comparison: the same numbers as [`world_distance`].
 ///
 /// # Example
 /// ```
@@ -110,14 +107,14 @@ pub struct Worlds {
 }
 
 impl Worlds {
-    /// Prepares worlds; their numbers are their places in the list.
+    /// Prepares worlds; they are numbered by their index in the list.
     pub fn new(worlds: &[World], weights: Weights) -> Self {
         let mut sketcher = Sketcher::default();
         let sketches = worlds.iter().map(|world| sketcher.sketch(world)).collect();
         Self { sketches, weights }
     }
 
-    /// How many there are.
+    /// Number of worlds.
     pub fn len(&self) -> usize {
         self.sketches.len()
     }
@@ -127,18 +124,18 @@ impl Worlds {
         self.sketches.is_empty()
     }
 
-    /// How far two of them are apart, at least 0.
+    /// The distance of two worlds by index, at least 0.
     ///
     /// # Panics
-    /// When there is no world of one of the numbers.
+    /// If an index is out of range.
     pub fn distance(&self, a: usize, b: usize) -> f64 {
         total(&self.sketches[a], &self.sketches[b], &self.weights)
     }
 
-    /// How far two of them are apart, part by part.
+    /// The distance of two worlds by index, with its parts.
     ///
     /// # Panics
-    /// When there is no world of one of the numbers.
+    /// If an index is out of range.
     pub fn explain(&self, a: usize, b: usize) -> Distance {
         explained(&self.sketches[a], &self.sketches[b], &self.weights)
     }
@@ -189,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn a_change_of_reward_shows_in_the_reward_only_and_one_of_colour_in_the_observation_only() {
+    fn changed_reward_or_colour_shows_only_in_its_element() {
         let base = world("red", 1.0);
         let paid = world_distance(&base, &world("red", -1.0), &Weights::default());
         let changed = |d: &Distance| Element::ALL.map(|element| d.element(element).is_some_and(|x| x > 0.0));
@@ -199,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_match_counts_by_its_presence_its_looks_and_its_pay() {
+    fn unmatched_object_counts_by_presence_looks_and_pay() {
         let mut more = world("red", 1.0);
         let mut barrel = Object::new("barrel", [20.0, 20.0]);
         (barrel.reward, barrel.reward_stimulus) = (-50.0, vec![Stimulus::AgentCollide]);
@@ -211,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn a_key_a_door_and_a_switch_are_more_than_bodies() {
+    fn keys_doors_and_switches_count_beyond_their_bodies() {
         let with = |change: fn(&mut Object)| {
             let mut object = Object::new("cube", [3.0, 4.0]);
             change(&mut object);
@@ -229,7 +226,7 @@ mod tests {
         }
     }
 
-    /// Looks part by part, each of which may be said or not.
+    /// Looks whose parts are each given or left out.
     fn looks() -> impl Strategy<Value = Looks> {
         let surfaces = [
             Surface::Plain,
@@ -289,10 +286,9 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 64)))]
 
-        /// Looks count as they are seen: what is said in so many words is what the style has by itself, and what nothing reads counts
-        /// nothing.
+        /// Looks count by what is visible: a part that repeats the style's own value, or that nothing reads, counts nothing.
         #[test]
-        fn looks_count_as_far_as_they_are_seen(
+        fn looks_count_only_where_visible(
             looks in looks(), other in looks(), inside in any::<bool>(), fog in prop::option::of(Just(12.0)),
         ) {
             let layout = inside.then(|| Layout { maze: Some(Maze { seed: Some(1), ..Maze::default() }), ..Layout::default() });
@@ -326,7 +322,7 @@ mod tests {
             prop_assert_eq!(d(&here, &drawn(unread, layout, fog)).total, 0.0, "{:?}", unread);
             let there = d(&here, &drawn(other, layout, fog));
             prop_assert!(there.differs_in().iter().all(|element| *element == Element::O));
-            // From the plain style each part is as far away as from the natural one by itself, and 1 more.
+            // From the plain style, each part is 1 farther than from the natural style.
             let natural = drawn(Looks { fog_in_depth: looks.fog_in_depth, ..Looks::of(Style::Natural) }, layout, fog);
             let plain = drawn(Looks { fog_in_depth: looks.fog_in_depth, ..Looks::default() }, layout, fog);
             if looks.style == Style::Natural {
@@ -336,7 +332,7 @@ mod tests {
     }
 
     #[test]
-    fn what_covers_things_and_what_they_say_counts_where_it_is_seen() {
+    fn covers_and_texts_count_where_visible() {
         let with = |style: Style, class: &str, change: fn(&mut Object)| {
             let mut object = Object::new(class, [3.0, 4.0]);
             change(&mut object);
@@ -367,7 +363,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_of_ceilings_are_compared_as_colours() {
+    fn ceiling_colours_are_compared_as_colours() {
         let under = |color: Color| {
             let looks = Looks {
                 ceiling: Some(true),
@@ -403,7 +399,7 @@ mod tests {
     }
 
     #[test]
-    fn a_zone_counts_in_the_elements_that_it_is_part_of_and_its_place_in_the_list_does_not() {
+    fn zones_count_in_their_elements_in_any_order() {
         type Change = fn(&mut Zone);
         let plain = || {
             let mut zone = Zone::disc([3.0, 0.0], 2.0);
@@ -466,7 +462,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_is_0_on_itself_and_as_far_there_as_back(a in worlds(), b in worlds()) {
+        fn world_distance_is_symmetric_and_zero_on_itself(a in worlds(), b in worlds()) {
             let d = |a, b| world_distance(a, b, &Weights::default());
             prop_assert_eq!(d(&a, &a).total, 0.0);
             prop_assert_eq!(d(&a, &b), d(&b, &a));
@@ -474,7 +470,7 @@ mod tests {
         }
 
         #[test]
-        fn among_worlds_whose_objects_stand_alike_it_is_a_metric(
+        fn world_distance_is_a_metric_if_objects_stay_in_place(
             world in worlds(),
             pays in prop::array::uniform3(prop::array::uniform4(-300.0..300.0_f64)),
             lights in prop::array::uniform3(0.0..4.0_f64),
@@ -492,7 +488,7 @@ mod tests {
         }
 
         #[test]
-        fn the_order_of_objects_and_what_nothing_reads_change_nothing(a in worlds(), b in worlds(), turn in 0_usize..4) {
+        fn object_order_and_unread_fields_change_nothing(a in worlds(), b in worlds(), turn in 0_usize..4) {
             let d = |a: &World, b: &World| world_distance(a, b, &Weights::default());
             let mut shuffled = b.clone().into_draft();
             shuffled.objects.rotate_left(turn.min(b.objects.len()));
@@ -508,7 +504,7 @@ mod tests {
         }
 
         #[test]
-        fn what_both_have_far_from_all_else_changes_nothing(a in worlds(), b in worlds(), reward in -300.0..300.0_f64) {
+        fn remote_object_in_both_worlds_changes_nothing(a in worlds(), b in worlds(), reward in -300.0..300.0_f64) {
             let mut object = Object::new("lamp", [200.0, 200.0]);
             (object.reward, object.reward_stimulus) = (reward, vec![Stimulus::AgentInteract]);
             let with = |world: &World| {
@@ -521,7 +517,7 @@ mod tests {
         }
 
         #[test]
-        fn no_change_of_sign_is_more_reward_than_the_reverse_of_all(world in worlds(), signs in prop::array::uniform4(any::<bool>())) {
+        fn partial_sign_change_is_at_most_the_full_reversal(world in worlds(), signs in prop::array::uniform4(any::<bool>())) {
             let signed = |signs: [bool; 4]| {
                 let mut signed = world.clone().into_draft();
                 for (object, negative) in signed.objects.iter_mut().zip(signs) {
@@ -533,7 +529,7 @@ mod tests {
         }
 
         #[test]
-        fn the_fast_way_gives_the_same_number_to_the_bit(a in worlds(), b in worlds(), fewer in any::<bool>()) {
+        fn prepared_worlds_give_bit_identical_distances(a in worlds(), b in worlds(), fewer in any::<bool>()) {
             let mut b = b;
             if fewer {
                 b = b.edit(|b| b.objects.truncate(2)).unwrap();

@@ -1,5 +1,4 @@
-//! The Mantel test: how rarely two unrelated measures of the same pairs correlate as strongly as these do. The correlations
-//! themselves are in `spearman.rs` and `pearson.rs`.
+//! The Mantel test: how rarely two unrelated measures of the same pairs correlate as strongly as these do.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -9,72 +8,72 @@ use super::spearman::without_rounding;
 use super::{Correlation, MIN_CORRELATED, pearson, ranks};
 use crate::{DistanceMatrix, SimilarityError};
 
-/// The most relabellings that a test goes through.
+/// Most relabellings per test.
 pub const MAX_RELABELLINGS: u64 = 1_000_000;
 
-/// The most items that a test compares.
+/// Most items per test.
 pub const MAX_MANTEL_ITEMS: usize = 2_000;
 
-/// Correlations nearer than this are as strong as each other: the order of additions moves them by less.
+/// Correlations closer than this count as equal: the order of additions changes them by less.
 const AS_STRONG: f64 = 1e-9;
 
-/// What was measured of one pair of a matrix's items, there and not necessarily back.
+/// A value measured for one ordered pair of a matrix's items.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PairValue {
     /// Index of the first item.
     pub from: usize,
     /// Index of the second item.
     pub to: usize,
-    /// What was measured, in any unit.
+    /// The measured value, in any unit.
     pub value: f64,
 }
 
-/// What a Mantel test found.
+/// The result of a Mantel test.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MantelTest {
-    /// How the lists were compared.
+    /// The correlation used.
     pub method: Correlation,
-    /// Their correlation, −1 to 1.
+    /// The correlation of the lists, −1 to 1.
     pub correlation: f64,
-    /// Share of relabellings whose correlation is at least as far from 0.
+    /// Share of relabellings with a correlation at least as far from 0.
     pub p_two_sided: f64,
-    /// Share of relabellings whose correlation is at least as low: for "the nearer, the more".
+    /// Share of relabellings with a correlation at least as low: for "the nearer, the more".
     pub p_less: f64,
-    /// Share of relabellings whose correlation is at least as high: for "the farther, the more".
+    /// Share of relabellings with a correlation at least as high: for "the farther, the more".
     pub p_greater: f64,
-    /// How many relabellings were gone through.
+    /// Number of relabellings.
     pub relabellings: u64,
-    /// Whether these were all there are, so that the shares are exact; otherwise they were drawn at random.
+    /// Whether these were all relabellings, so that the shares are exact; otherwise they were drawn at random.
     pub exact: bool,
-    /// How many items changed labels: those with at least one value.
+    /// Number of items relabelled: those with at least one value.
     pub items: usize,
-    /// How many pairs had a value.
+    /// Number of pairs with a value.
     pub pairs: usize,
 }
 
-/// How distances correlate with another measure of the same pairs, and how rarely that happens at random.
+/// Correlates distances with another measure of the same pairs, and tests how often chance alone does as well.
 ///
-/// The correlation is taken over the pairs that have a value. Then the items change their labels in the matrix, and with
-/// them all their distances, and the correlation is taken again: a share of `p` of the relabellings goes together at least as
-/// well. Items change labels and not pairs, since pairs that share an item are not independent. All relabellings are gone
-/// through where there are at most `relabellings`, and `p = k / all`; otherwise as many are drawn from `seed`, and
-/// `p = (k + 1) / (drawn + 1)`, which counts what was found as one of them. `p` is therefore never 0.
+/// The correlation is taken over the pairs that have a value. Then the items of the matrix are relabelled, with all their
+/// distances, and the correlation is taken again: a share of `p` of the relabellings correlates at least as strongly. Items are
+/// relabelled and not pairs, because pairs that share an item are not independent. If there are at most `relabellings` of them,
+/// all are used, and `p = k / all`; otherwise as many are drawn from `seed`, and `p = (k + 1) / (drawn + 1)`, which counts the
+/// observed one among them. So `p` is never 0.
 ///
-/// `pairs`: in any order, each at most once; there and back are two. **Pairs without a value are left out as they are**: the
-/// gaps stay where they are while labels change, and only items with at least one value take part. The test then speaks of
-/// the pairs that were measured; whether those that were not are like them, no test knows. Distances cannot be missing: a
-/// matrix has all of its own, which is what keeps a test with gaps sound. A relabelling under which all distances
-/// are equal has no correlation; it counts as going together at least as well, against the finding.
+/// `pairs`: in any order, each at most once; the two directions are two pairs. **Pairs without a value are left out**: the gaps
+/// stay in place while labels change, and only items with at least one value take part. The test is then about the measured
+/// pairs; no test knows whether the others are like them. Distances cannot be missing: a matrix has all of them, which keeps a
+/// test with gaps sound. A relabelling under which all distances are equal has no correlation; it counts as at least as strong,
+/// against the result.
 ///
-/// Time `O(relabellings · (pairs + items²))`, over all cores; the same result for the same seed on any number of them.
+/// Time `O(relabellings · (pairs + items²))`, over all cores; the same result for the same seed on any number of cores.
 ///
 /// Source: Mantel 1967; Legendre and Legendre 2012, § 10.5; the same correlations as `skbio.stats.distance.mantel` and the
 /// same exact shares as an enumeration with scipy, see `tests/oracle/make_correlation.py`.
 ///
 /// # Errors
 /// As [`spearman`](crate::spearman) and [`pearson`](crate::pearson); [`SimilarityError::MantelPair`] for pairs that are
-/// twice there or not of the matrix; [`SimilarityError::MantelCount`] for 0 or more than [`MAX_RELABELLINGS`] relabellings,
-/// and for more than [`MAX_MANTEL_ITEMS`] items.
+/// repeated or not in the matrix; [`SimilarityError::MantelCount`] for 0 or more than [`MAX_RELABELLINGS`] relabellings, and
+/// for more than [`MAX_MANTEL_ITEMS`] items.
 ///
 /// # Example
 /// ```
@@ -104,7 +103,7 @@ pub fn mantel(
     let table = Table::new(distances, pairs, method);
     let ways = Relabellings::new(table.items, relabellings, seed);
     let [far, low, high] = table.tally(ways, correlation);
-    // What was found is among all relabellings; to drawn ones it is added.
+    // All relabellings include the observed one; drawn ones do not, so it is added.
     let itself = u64::from(!ways.is_all());
     let share = |as_strong: u64| (as_strong + itself) as f64 / (ways.count + itself) as f64;
     Ok(MantelTest {
@@ -158,7 +157,7 @@ fn check(distances: &DistanceMatrix, pairs: &[PairValue], relabellings: u64) -> 
     Ok(())
 }
 
-/// Whether a relabelling goes together at least as well as what was found: as far from 0, as low, as high.
+/// Whether a relabelling correlates at least as strongly as observed: two-sided, below, above.
 fn as_strong(correlation: Option<f64>, found: f64) -> [u64; 3] {
     let here = correlation.unwrap_or_default();
     let as_strong = [
@@ -169,21 +168,21 @@ fn as_strong(correlation: Option<f64>, found: f64) -> [u64; 3] {
     as_strong.map(|as_strong| u64::from(correlation.is_none() || as_strong))
 }
 
-/// What is the same under every relabelling: items numbered from 0, their distances, and the values to compare with.
+/// Data shared by all relabellings: items numbered from 0, their distances, and the values to compare with.
 struct Table {
     items: usize,
     method: Correlation,
-    /// `(items, items)`, row-major: the distance, or for Spearman's its place among the distances that occur.
+    /// `(items, items)`, row-major: the distance, or for Spearman's its rank index among the different distances.
     distances: Vec<f64>,
-    /// How many different distances occur, where places stand for distances.
+    /// Number of different distances, if rank indices stand for distances.
     places: usize,
     pairs: Vec<(usize, usize)>,
-    /// For Spearman's the ranks.
+    /// The values, or for Spearman's their ranks.
     values: Vec<f64>,
 }
 
 impl Table {
-    /// Of pairs that can be correlated.
+    /// For pairs that can be correlated.
     fn new(matrix: &DistanceMatrix, pairs: &[PairValue], method: Correlation) -> Self {
         let mut items: Vec<usize> = pairs.iter().flat_map(|pair| [pair.from, pair.to]).collect();
         items.sort_unstable();
@@ -209,7 +208,7 @@ impl Table {
         }
     }
 
-    /// How many relabellings are as strong as what was found, in each of the three respects.
+    /// Number of relabellings at least as strong as observed, for each of the three tests.
     fn tally(&self, ways: Relabellings, found: f64) -> [u64; 3] {
         (0..ways.count)
             .into_par_iter()
@@ -223,7 +222,7 @@ impl Table {
             .reduce(|| [0; 3], |a, b| [0, 1, 2].map(|k| a[k] + b[k]))
     }
 
-    /// The correlation where each item has the distances of another; nothing where these are all equal.
+    /// The correlation after relabelling; `None` if all distances are equal.
     fn correlation(&self, labels: &[usize]) -> Option<f64> {
         let relabelled = |(from, to): &(usize, usize)| self.distances[labels[*from] * self.items + labels[*to]];
         let mut here: Vec<f64> = self.pairs.iter().map(relabelled).collect();
@@ -234,8 +233,8 @@ impl Table {
     }
 }
 
-/// Puts in place of every number how many different ones are below it; returns how many different ones there are. Which are equal,
-/// [`ranks`] says.
+/// Replaces every number by how many different ones are below it; returns how many different ones there are. Numbers are equal
+/// as in [`ranks`].
 fn place_among_equals(numbers: &mut [f64]) -> usize {
     let merged = without_rounding(numbers);
     numbers.copy_from_slice(&merged);
@@ -248,10 +247,10 @@ fn place_among_equals(numbers: &mut [f64]) -> usize {
     different.len()
 }
 
-/// Puts ranks in place of places: as [`ranks`], without sorting again for every relabelling.
+/// Replaces rank indices by ranks: as [`ranks`], without sorting again for every relabelling.
 fn rank_places(numbers: &mut [f64], places: usize) {
     let mut counts = vec![0_u32; places + 1];
-    // Places are whole numbers below `places`.
+    // Rank indices are whole numbers below `places`.
     for place in numbers.iter() {
         counts[*place as usize + 1] += 1;
     }
@@ -298,7 +297,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 64)))]
 
         #[test]
-        fn shares_are_shares_and_the_order_of_pairs_is_nothing((at, pairs) in cases(), spearman in any::<bool>()) {
+        fn shares_are_valid_and_independent_of_pair_order((at, pairs) in cases(), spearman in any::<bool>()) {
             let method = if spearman { Correlation::Spearman } else { Correlation::Pearson };
             let Ok(test) = mantel(&matrix(&at), &pairs, method, 120, 3) else { return Ok(()) };
             prop_assert!(test.exact);
@@ -317,9 +316,9 @@ mod tests {
         }
 
         #[test]
-        fn drawn_shares_come_near_the_exact_ones((at, pairs) in cases(), seed in 0_u64..9) {
+        fn drawn_shares_approximate_exact_ones((at, pairs) in cases(), seed in 0_u64..9) {
             let Ok(exact) = mantel(&matrix(&at), &pairs, Correlation::Spearman, 120, seed) else { return Ok(()) };
-            // Fewer than there are, so that they are drawn; 5 items have 120.
+            // Fewer than all, so that they are drawn; 5 items have 120.
             prop_assume!(exact.relabellings == 120);
             let drawn = mantel(&matrix(&at), &pairs, Correlation::Spearman, 119, seed).unwrap();
             prop_assert!(!drawn.exact);
@@ -344,8 +343,8 @@ mod tests {
     }
 
     #[test]
-    fn a_relabelling_without_a_correlation_counts_against_the_finding() {
-        // Three pairs of four items, of which three stand on one spot: under some labels all distances are 0.
+    fn relabelling_without_a_correlation_counts_against_the_result() {
+        // Three pairs of four items, three of which are in one place: under some labels all distances are 0.
         let pairs = [(0, 1, 1.0), (1, 2, 2.0), (0, 2, 3.0), (0, 3, 4.0)].map(pair);
         let test = mantel(&matrix(&[0.0, 0.0, 0.0, 5.0]), &pairs[..3], Correlation::Pearson, 24, 0);
         assert_eq!(test.unwrap_err().code(), "similarity/correlation-constant");
@@ -359,7 +358,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_tested_says_why() {
+    fn impossible_tests_are_refused_with_reason() {
         let check = |pairs: &[(usize, usize, f64)], relabellings, expected: &str| {
             let pairs: Vec<_> = pairs.iter().copied().map(pair).collect();
             let found = mantel(

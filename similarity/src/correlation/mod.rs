@@ -1,5 +1,4 @@
-//! Correlations between two measures of the same pairs, and how rarely one arises at random. What is
-//! correlated is handed in; distances themselves are measured in the other folders.
+//! Correlations between two measures of the same pairs, and how rarely one arises by chance.
 
 mod mantel;
 mod pearson;
@@ -15,10 +14,10 @@ pub use spearman::{ranks, spearman};
 
 use crate::SimilarityError;
 
-/// The fewest pairs that are correlated: two always lie on a straight line.
+/// Fewest pairs that can be correlated: two always lie on a straight line.
 pub const MIN_CORRELATED: usize = 3;
 
-/// How two lists are compared.
+/// A correlation coefficient.
 #[derive(
     Clone,
     Copy,
@@ -36,10 +35,10 @@ pub const MIN_CORRELATED: usize = 3;
 #[serde(rename_all = "kebab-case")]
 #[strum(serialize_all = "kebab-case", parse_err_ty = SimilarityError, parse_err_fn = unknown)]
 pub enum Correlation {
-    /// By their ranks: whether one rises where the other does, however steeply. See [`spearman`].
+    /// Of ranks: whether one rises with the other, however steeply. See [`spearman`].
     #[default]
     Spearman,
-    /// By their values: whether they lie on a straight line. See [`pearson`].
+    /// Of values: whether they lie on a straight line. See [`pearson`].
     Pearson,
 }
 
@@ -47,7 +46,7 @@ impl Correlation {
     /// Both.
     pub const ALL: &[Self] = Self::VARIANTS;
 
-    /// The word by which the command line calls it.
+    /// The correlation's name on the command line.
     pub fn name(self) -> &'static str {
         self.into()
     }
@@ -68,7 +67,7 @@ fn unknown(word: &str) -> SimilarityError {
     SimilarityError::UnknownCorrelation { found: word.to_owned() }
 }
 
-/// Whether two lists can be correlated: of one length, long enough, finite, neither all one number.
+/// Checks that two lists can be correlated: equal length, long enough, finite, not constant.
 fn check(a: &[f64], b: &[f64]) -> Result<(), SimilarityError> {
     if a.len() != b.len() {
         return Err(SimilarityError::CorrelationLengths { a: a.len(), b: b.len() });
@@ -97,7 +96,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_cannot_be_correlated_says_why() {
+    fn impossible_correlations_are_refused_with_reason() {
         let said = |a: &[f64], b: &[f64]| {
             let of = |correlation: Correlation| correlation.of(a, b).unwrap_err().to_string();
             assert_eq!(of(Correlation::Spearman), of(Correlation::Pearson));

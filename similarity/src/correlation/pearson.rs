@@ -1,10 +1,10 @@
-//! Pearson's correlation: how nearly the points lie on a straight line. That of ranks is in `spearman.rs`.
+//! Pearson's correlation: how closely points follow a straight line.
 
 use super::check;
 use crate::SimilarityError;
 
-/// Pearson's product-moment correlation: 1 on a rising straight line, −1 on a falling one, 0 where knowing one number
-/// does not help to guess the other along a line.
+/// Pearson's product-moment correlation: 1 on a rising straight line, −1 on a falling one, 0 if one number does not help to
+/// predict the other linearly.
 ///
 /// `r = Σ (aᵢ − ā)(bᵢ − b̄) / √(Σ (aᵢ − ā)² · Σ (bᵢ − b̄)²)`. `a` and `b`: one number each per observation, in any units, at
 /// least 3. Returns −1 to 1; symmetric; the same when a list is shifted or scaled by a factor above 0. One far-off point can
@@ -24,7 +24,7 @@ use crate::SimilarityError;
 /// ```
 pub fn pearson(a: &[f64], b: &[f64]) -> Result<f64, SimilarityError> {
     check(a, b)?;
-    // Numbers that differ by less than arithmetic can tell count as one number here.
+    // Numbers that differ by less than the precision of the arithmetic count as equal.
     let constant = |list, values: &[f64]| SimilarityError::CorrelationConstant { list, found: values[0] };
     let (from_a, from_b) = (
         centred(a).ok_or_else(|| constant("first", a))?,
@@ -33,7 +33,7 @@ pub fn pearson(a: &[f64], b: &[f64]) -> Result<f64, SimilarityError> {
     Ok(cosine(&from_a, &from_b))
 }
 
-/// The same of lists that are known to be sound; nothing where one is all one number.
+/// The correlation of checked lists; `None` if one is constant.
 pub(super) fn of_checked(a: &[f64], b: &[f64]) -> Option<f64> {
     Some(cosine(&centred(a)?, &centred(b)?))
 }
@@ -44,14 +44,13 @@ fn cosine(a: &[f64], b: &[f64]) -> f64 {
     (sum(a, b) / (sum(a, a).sqrt() * sum(b, b).sqrt())).clamp(-1.0, 1.0)
 }
 
-/// The numbers less their mean, scaled so that the largest is 1: squares neither overflow nor vanish. Nothing where all are one
-/// number.
+/// The numbers minus their mean, scaled so that the largest is 1: squares neither overflow nor vanish. `None` if all are equal.
 fn centred(values: &[f64]) -> Option<Vec<f64>> {
     let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
     if largest == 0.0 {
         return None;
     }
-    // By a power of two, so that no digit is lost: those of numbers far from 0 are in their differences.
+    // Scaled by a power of two, which loses no digit: the information of numbers far from 0 is in their differences.
     let exponent = libm::ilogb(largest);
     let scaled: Vec<f64> = values.iter().map(|value| libm::scalbn(*value, -exponent)).collect();
     let mean = scaled.iter().sum::<f64>() / scaled.len() as f64;
@@ -80,7 +79,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_is_symmetric_bounded_and_blind_to_shift_and_scale((a, b) in lists(), shift in -9.0..9.0, scale in 0.1..9.0) {
+        fn pearson_is_symmetric_bounded_and_invariant_to_shift_and_scale((a, b) in lists(), shift in -9.0..9.0, scale in 0.1..9.0) {
             let Ok(r) = pearson(&a, &b) else { return Ok(()) };
             prop_assert!((-1.0..=1.0).contains(&r));
             prop_assert!((pearson(&b, &a).unwrap() - r).abs() < 1e-12);

@@ -1,18 +1,17 @@
-//! Relabellings of items: all of them, or some drawn at random. What is compared under them is in `mantel.rs`.
+//! Relabellings of items: all of them, or a random sample.
 
 use crate::split_mix::SplitMix64;
 
-/// The ways in which `items` can change labels that a test goes through; each is found by its number alone, so that any thread
-/// may take any of them.
+/// The relabellings of `items` that a test uses; each is computed from its number alone, so any thread can take any of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Relabellings {
     pub(super) count: u64,
-    /// What they are drawn from, with repetitions; `None` for all, each of them once.
+    /// Seed of the random ones, drawn with replacement; `None` for all, each once.
     seed: Option<u64>,
 }
 
 impl Relabellings {
-    /// All of them where there are at most `most`, otherwise `most` of them.
+    /// All of them if there are at most `most`, otherwise `most` random ones.
     pub(super) fn new(items: usize, most: u64, seed: u64) -> Self {
         let all = (1..=items as u64).try_fold(1_u64, u64::checked_mul);
         let few = all.filter(|all| *all <= most);
@@ -26,13 +25,13 @@ impl Relabellings {
         self.seed.is_none()
     }
 
-    /// Puts relabelling `number` into `labels`, which holds one place for each item.
+    /// Writes relabelling `number` into `labels`, which has one entry per item.
     pub(super) fn write(self, number: u64, labels: &mut [usize]) {
         for (k, label) in labels.iter_mut().enumerate() {
             *label = k;
         }
         let mut rng = self.seed.map(|seed| SplitMix64::keyed(seed, number));
-        // The digits of the number in the factorial number system choose who changes places where nothing is drawn.
+        // Without a seed, the digits of the number in the factorial number system choose the swaps.
         let mut rest = number;
         for last in (1..labels.len()).rev() {
             let choices = last as u64 + 1;
@@ -59,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn all_are_gone_through_once_where_they_are_few() {
+    fn all_relabellings_occur_once_if_few() {
         for items in 1..=6 {
             let all = Relabellings::new(items, 720, 1);
             assert!(all.is_all());
@@ -78,7 +77,7 @@ mod tests {
     }
 
     #[test]
-    fn drawn_ones_are_as_likely_as_each_other_and_depend_on_the_seed() {
+    fn drawn_relabellings_are_uniform_and_depend_on_the_seed() {
         let drawn = |seed| Relabellings {
             count: 24_000,
             seed: Some(seed),

@@ -1,15 +1,14 @@
-//! Spearman's rank correlation: whether one list rises where the other does. That of the numbers themselves is in
-//! `pearson.rs`.
+//! Spearman's rank correlation: whether one list rises with the other.
 
 use super::{check, pearson};
 use crate::SimilarityError;
 
-/// Spearman's rank correlation: 1 where one list rises whenever the other does, −1 where it falls, 0 where neither helps to
-/// guess the other's order.
+/// Spearman's rank correlation: 1 if one list rises whenever the other does, −1 if it falls, 0 if neither helps to predict the
+/// other's order.
 ///
 /// Pearson's correlation of the [`ranks`]; equal numbers share the mean of their ranks. `a` and `b`: one number each per
-/// observation, in any units, at least 3. Returns −1 to 1; symmetric; the same under any rising map of either list, so that no
-/// far-off point and no choice of scale decides it. Numbers that differ by rounding alone count as equal, as [`ranks`] says. Not a
+/// observation, in any units, at least 3. Returns −1 to 1; symmetric; invariant under any rising map of either list, so no
+/// outlier and no choice of scale decides it. Numbers that differ only by rounding count as equal, as in [`ranks`]. Not a
 /// distance. Time `O(n log n)`.
 ///
 /// Source: Spearman 1904; the same numbers as `scipy.stats.spearmanr` within 1e-12.
@@ -31,9 +30,8 @@ pub fn spearman(a: &[f64], b: &[f64]) -> Result<f64, SimilarityError> {
 
 /// The ranks of finite numbers, from 1 for the least; equal numbers share the mean of their ranks.
 ///
-/// Numbers count as equal where they agree to twelve significant digits, and where they differ by less than the largest of all is
-/// rounded by: distances that are the same by definition are sums in different orders, and ties must not be broken by that. Time
-/// `O(n log n)`.
+/// Numbers count as equal if they agree to twelve significant digits, or if they differ by less than the rounding of the
+/// largest: equal distances may be sums in different orders, which must not break ties. Time `O(n log n)`.
 ///
 /// # Example
 /// ```
@@ -56,16 +54,16 @@ pub fn ranks(values: &[f64]) -> Vec<f64> {
     ranks
 }
 
-/// Two numbers of which the larger exceeds the other by at most this part of it agree to twelve significant digits.
+/// If the larger of two numbers exceeds the other by at most this share of it, they agree to twelve significant digits.
 const TWELVE_DIGITS: f64 = 1e-12;
 
-/// Part of the largest number that sums of such numbers may be off by.
+/// Rounding error of sums, as a share of the largest number.
 const ROUNDING: f64 = 1e-15;
 
-/// The numbers, with the least of those that count as equal in place of each.
+/// Replaces each number by the least of those that count as equal to it.
 ///
-/// From the least of a group and not from neighbour to neighbour, so that no chain of small steps makes far numbers equal; and not by
-/// rounding each alone, which would part two neighbours on either side of a rounded number's edge.
+/// Compared with the least of a group and not from neighbour to neighbour, so that no chain of small steps makes distant
+/// numbers equal; and not by rounding each number, which would separate neighbours on either side of a rounding edge.
 pub(super) fn without_rounding(values: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
@@ -75,7 +73,7 @@ pub(super) fn without_rounding(values: &[f64]) -> Vec<f64> {
     for item in order {
         let value = values[item];
         let same = (TWELVE_DIGITS * value.abs().max(least.abs())).max(ROUNDING * largest);
-        // From negative infinity everything is infinitely far, and an infinite bound would take it in.
+        // Everything is infinitely far from negative infinity, and an infinite bound would include it.
         if least.is_infinite() || value - least > same {
             least = value;
         }
@@ -98,7 +96,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_is_symmetric_bounded_and_blind_to_rising_maps((a, b) in lists()) {
+        fn spearman_is_symmetric_bounded_and_invariant_under_rising_maps((a, b) in lists()) {
             let Ok(rho) = spearman(&a, &b) else { return Ok(()) };
             prop_assert!((-1.0..=1.0).contains(&rho));
             prop_assert!((spearman(&b, &a).unwrap() - rho).abs() < 1e-12);
@@ -107,23 +105,23 @@ mod tests {
         }
 
         #[test]
-        fn ranks_add_up_as_if_none_were_equal((a, _) in lists()) {
+        fn ranks_have_the_sum_of_distinct_ones((a, _) in lists()) {
             let n = a.len() as f64;
             prop_assert_eq!(ranks(&a).iter().sum::<f64>(), n * (n + 1.0) / 2.0);
         }
     }
 
     proptest! {
-        /// Ties are what the numbers say, whatever the order in which they were added up, and in whatever unit.
+        /// Ties do not depend on the order of additions, nor on the unit.
         #[test]
-        fn rounding_breaks_no_tie_and_makes_none(
+        fn rounding_neither_breaks_nor_makes_ties(
             (a, _) in lists(), noise in prop::collection::vec(-4_i32..=4, 20), power in -40..40_i32, unit in 0.1..10.0_f64,
         ) {
             let numbers: Vec<f64> = a.iter().map(|value| 0.1 * value + 2.0).collect();
             let noisy: Vec<f64> =
                 numbers.iter().zip(&noise).map(|(number, noise)| number * (1.0 + f64::from(*noise) * 2.5e-16)).collect();
             prop_assert_eq!(ranks(&noisy), ranks(&numbers));
-            // The integers have ties of all their bits.
+            // The integers have exact ties.
             prop_assert_eq!(ranks(&numbers), ranks(&a));
             let scaled: Vec<f64> = noisy.iter().map(|number| number * 2.0_f64.powi(power)).collect();
             prop_assert_eq!(ranks(&scaled), ranks(&numbers));

@@ -1,4 +1,4 @@
-//! Wasserstein-1 between distributions of headings, around the circle. Along a line it is in `wasserstein_1.rs`.
+//! Wasserstein-1 between distributions of headings, around the circle.
 
 use driftworld_spec::Distribution;
 
@@ -6,15 +6,15 @@ use super::gap::Power;
 use super::law::{self, Law, rising};
 use super::measured::Measured;
 
-/// Widest stretch, in degrees, over which a curved cumulative function is taken as straight at first; then over half of it.
+/// Widest stretch, in degrees, over which a curved cumulative function is first taken as linear; then half of it.
 const COARSE: f64 = 0.5;
 
-/// Least work, in degrees, that turns one distribution of headings into the other, each the shorter way round.
+/// Wasserstein-1 of two distributions of headings, each moved the shorter way round.
 ///
 /// min over c of ∫ |F − G − c| over one turn; the best c is the median of F − G. A metric in `0..=180` degrees. Numbers are
-/// taken as headings in degrees, whatever turn they lie in. `None` if either draws no numbers, or strews them over more than
-/// 200 turns. Exact for constants, choices and uniform headings; otherwise by the trapezium rule at two widths, mostly
-/// within 1e-3 degrees, at some two thousand places.
+/// taken as headings in degrees, reduced to one turn. `None` if either draws no numbers, or spreads them over more than 200
+/// turns. Exact for constants, choices and uniform headings; otherwise by the trapezium rule at two widths, mostly within 1e-3
+/// degrees, at about two thousand points.
 ///
 /// Source: Rabin, Delon & Gousseau 2011, "Transportation distances on the circle"; the same numbers as
 /// `ot.wasserstein_circle`, which counts in turns.
@@ -35,15 +35,15 @@ pub fn circular_wasserstein_1(a: &Distribution, b: &Distribution) -> Option<Meas
         return Some(law::exact(&p, &q, around(&stretches(&p, &q, None))));
     }
     let [coarse, fine] = [COARSE, COARSE / 2.0].map(|widest| around(&stretches(&p, &q, Some(widest))));
-    // Half the width leaves a quarter of the error, so a third of the difference is what is left.
+    // Half the width leaves a quarter of the error, so a third of the difference remains.
     let left = (fine - coarse) / 3.0;
     Some(Measured::quadrature((fine + left).max(0.0), left.abs().max(1e-9)))
 }
 
-/// A stretch of the circle: how wide, and the difference of the cumulative functions at its ends.
+/// A stretch of the circle: its width, and the difference of the cumulative functions at its ends.
 type Stretch = (f64, f64, f64);
 
-/// The difference along the circle in stretches: from knot to knot, or no wider than so many degrees.
+/// The difference along the circle in stretches: from knot to knot, or at most `widest` degrees wide.
 fn stretches(a: &Law, b: &Law, widest: Option<f64>) -> Vec<Stretch> {
     let mut knots: Vec<f64> = a.knots().into_iter().chain(b.knots()).collect();
     for x in &mut knots {
@@ -60,7 +60,7 @@ fn stretches(a: &Law, b: &Law, widest: Option<f64>) -> Vec<Stretch> {
     let mut found = Vec::new();
     for ends in knots.windows(2) {
         let step = steps(a, ends[0]) - steps(b, ends[0]);
-        // Eight pieces at least between the knots of curves, and twice as many at half the width.
+        // At least eight pieces between the knots of curves, and twice as many at half the width.
         let count = widest.map_or(1.0, |widest| {
             ((ends[1] - ends[0]) / COARSE).ceil().max(8.0) * (COARSE / widest)
         });
@@ -105,7 +105,7 @@ fn around(stretches: &[Stretch]) -> f64 {
             high = middle;
         }
     }
-    // Between the two the median lies; at a jump either end is as good.
+    // The median lies between the two; at a jump either end is as good.
     let area = |c: f64| -> f64 {
         let each = stretches.iter();
         each.map(|(width, from, to)| width * Power::Absolute.along(from - c, to - c))
@@ -139,12 +139,12 @@ mod tests {
     }
 
     #[test]
-    fn the_shorter_way_counts() {
+    fn the_shorter_way_round_counts() {
         check(&headings(&[350.0]), &headings(&[10.0]), 20.0, 1e-9);
         check(&headings(&[0.0]), &headings(&[180.0]), 180.0, 1e-9);
         check(&headings(&[0.0, 90.0]), &headings(&[350.0, 100.0]), 10.0, 1e-9);
         check(&headings(&[-10.0]), &headings(&[710.0]), 0.0, 1e-9);
-        // All alike is a quarter turn from any one on average.
+        // The uniform distribution is a quarter turn from any heading on average.
         check(&headings(&[123.0]), &Uniform { low: 0.0, high: 360.0 }, 90.0, 1e-9);
     }
 

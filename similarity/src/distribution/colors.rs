@@ -1,4 +1,4 @@
-//! Wasserstein distances between distributions of colours. Distances between single colours are in `color/`.
+//! Wasserstein distances between distributions of colours.
 
 use driftworld_spec::{Color, Distribution, Moments};
 
@@ -8,15 +8,15 @@ use super::values;
 use super::wasserstein_2::wasserstein_2;
 use crate::{Assignment, ColorMeasure, optimal_transport};
 
-/// Colours that stand for a distribution with a density; most colours of a list that are taken as they are.
+/// Sample colours per distribution with a density; also the longest list that is used as it is.
 const STAND_INS: usize = 256;
 
-/// Least work that turns one distribution of colours into the other, where a colour's way is how far `measure` says that it
-/// goes: in the measure's own numbers, at most its [`diameter`](ColorMeasure::diameter).
+/// Wasserstein-1 of two distributions of colours, with `measure` between single colours: in the measure's own unit, at most its
+/// [`diameter`](ColorMeasure::diameter).
 ///
-/// Exact between single colours and between lists of at most 256; otherwise from 256 evenly strewn colours of each, paired at
-/// the least cost, which is right within some percent of the spreads. Among distributions with a density a metric (but for equal samples) if the
-/// measure is one. `None` if either draws anything but colours.
+/// Exact between single colours and between lists of at most 256; otherwise from 256 evenly spread colours of each, matched at
+/// the least cost, which is accurate within some percent of the spreads. Among distributions with a density a metric (except
+/// that equal samples are 0 apart) if the measure is one. `None` if either draws anything but colours.
 ///
 /// Source: Villani 2009, "Optimal Transport: Old and New", chapter 6.
 ///
@@ -33,11 +33,11 @@ pub fn color_wasserstein_1(a: &Distribution, b: &Distribution, measure: ColorMea
     paired(a, b, measure, |way| way)
 }
 
-/// Root mean square of how far each colour goes by `measure`, in its own numbers.
+/// Wasserstein-2: the root mean square distance that each colour has to move by `measure`, in its own unit.
 ///
-/// Never below [`color_wasserstein_1`]. In sRGB channel by channel and as exact as [`wasserstein_2`](super::wasserstein_2())
-/// where the channels of both do not depend on each other; otherwise found as [`color_wasserstein_1`] is. `None` if either
-/// draws anything but colours.
+/// Never below [`color_wasserstein_1`]. In sRGB channel by channel and as exact as [`wasserstein_2`](super::wasserstein_2()) if
+/// the channels of both are independent; otherwise computed like [`color_wasserstein_1`]. `None` if either draws anything but
+/// colours.
 pub fn color_wasserstein_2(a: &Distribution, b: &Distribution, measure: ColorMeasure) -> Option<Measured> {
     if measure == ColorMeasure::Srgb && a.has_independent_channels() && b.has_independent_channels() {
         let (a, b) = (a.color_channels()?, b.color_channels()?);
@@ -52,7 +52,7 @@ pub fn color_wasserstein_2(a: &Distribution, b: &Distribution, measure: ColorMea
     paired(a, b, measure, |way| way * way).map(Measured::root)
 }
 
-/// The mean of a function of the ways of the cheapest pairs.
+/// The mean of a function of the distances in the cheapest matching.
 fn paired(a: &Distribution, b: &Distribution, measure: ColorMeasure, of: impl Fn(f64) -> f64) -> Option<Measured> {
     if a == b {
         return strewn(a).map(|_| Measured::closed(0.0));
@@ -91,11 +91,11 @@ fn is_a_point(moments: Moments<3>) -> bool {
     (0..3).all(|k| moments.covariance[k][k] == 0.0)
 }
 
-/// Colours that each stand for the same share, always the same; `None` if it draws anything but colours.
+/// Deterministic sample colours of equal weight; `None` if it draws anything but colours.
 ///
-/// Those of two distributions are drawn from the same random numbers, so that equal ones get equal colours.
+/// All distributions use the same random numbers, so equal ones get equal colours.
 fn strewn(distribution: &Distribution) -> Option<Vec<Color>> {
-    // Hammersley's points: even along one axis, digits reversed along the others.
+    // Hammersley's points: even along one axis, digit-reversed along the others.
     let units = (0..STAND_INS as u32).map(|k| {
         let even = (f64::from(k) + 0.5) / STAND_INS as f64;
         [even, reversed(k, 2), reversed(k, 3)]
@@ -103,7 +103,7 @@ fn strewn(distribution: &Distribution) -> Option<Vec<Color>> {
     units.map(|unit| color(distribution, unit)).collect()
 }
 
-/// The digits of a number to a base behind the point, in reverse, moved off 0.
+/// The digits of a number to a base, mirrored behind the point and moved off 0.
 fn reversed(mut number: u32, base: u32) -> f64 {
     let (mut sum, mut share) = (0.5 / STAND_INS as f64, 1.0);
     while number > 0 {
@@ -114,7 +114,7 @@ fn reversed(mut number: u32, base: u32) -> f64 {
     sum.min(1.0 - 1e-9)
 }
 
-/// The colour that three random numbers decide.
+/// The colour for three random numbers.
 fn color(distribution: &Distribution, [u, v, w]: [f64; 3]) -> Option<Color> {
     match distribution {
         Distribution::Choice { values, weights } => values[chosen(values.len(), weights.as_deref(), u).0].as_color(),
@@ -165,9 +165,9 @@ mod tests {
         ]
     }
 
-    /// What stands for a distribution has its moments.
+    /// Checks that samples have the moments of their distribution.
     #[test]
-    fn strewn_colours_have_the_moments_of_what_they_stand_for() {
+    fn sample_colours_have_the_moments_of_their_distribution() {
         for text in [
             r#"{"color_uniform": {"from": "black", "to": [1, 0.5, 0.2]}}"#,
             r#"{"color_uniform": {"from": "red", "to": [0.2, 0.4, 0.5], "channels": "together"}}"#,
@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn single_colours_are_as_far_as_the_measure_says() {
+    fn single_colours_are_compared_by_the_measure() {
         let (red, blue) = (Color([1.0, 0.0, 0.0]), Color([0.0, 0.0, 1.0]));
         let (a, b) = (
             law(r#"{"color_normal": {"mean": "red", "std": 0}}"#),
@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_are_paired_exactly() {
+    fn lists_of_colours_are_matched_exactly() {
         let a = law(r#"{"choice": {"values": ["black", "white"], "weights": [3, 1]}}"#);
         let b = law(r#"{"choice": {"values": ["white", "black"]}}"#);
         let found = color_wasserstein_1(&a, &b, ColorMeasure::Srgb).unwrap();
@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn what_draws_no_colours_has_no_distance() {
+    fn colourless_distributions_have_no_distance() {
         let (red, number) = (
             law(r#"{"color_normal": {"mean": "red", "std": 0.1}}"#),
             law(r#"{"uniform": {"low": 0, "high": 1}}"#),
@@ -235,7 +235,7 @@ mod tests {
         #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
 
         #[test]
-        fn it_is_a_metric_in_the_space_of_a_metric(a in any_law(), b in any_law(), c in any_law()) {
+        fn colour_transport_is_a_metric_for_metric_measures(a in any_law(), b in any_law(), c in any_law()) {
             let far = |a, b| color_wasserstein_1(a, b, ColorMeasure::Oklab).unwrap().value;
             prop_assert_eq!(far(&a, &a), 0.0);
             prop_assert!((far(&a, &b) - far(&b, &a)).abs() < 1e-9);
@@ -243,10 +243,10 @@ mod tests {
             prop_assert!((0.0..=1.0).contains(&far(&a, &b)));
         }
 
-        /// Two ways to one number: channel by channel, and by pairs of colours. Whatever the pairs, the distance is at least
-        /// that of the means.
+        /// Compares two ways to the same number: channel by channel, and by pairs of colours. Whatever the pairs, the distance
+        /// is at least that of the means.
         #[test]
-        fn samples_come_near_to_the_closed_form(a in any_law(), b in any_law()) {
+        fn samples_approximate_the_closed_form(a in any_law(), b in any_law()) {
             let by_samples = paired(&a, &b, ColorMeasure::Srgb, |way| way * way).unwrap().root().value;
             let found = color_wasserstein_2(&a, &b, ColorMeasure::Srgb).unwrap();
             prop_assert!((found.value - by_samples).abs() < 0.05, "{} to {}: {:?}, by samples {}", a, b, found, by_samples);

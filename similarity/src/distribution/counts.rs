@@ -1,11 +1,11 @@
-//! Probabilities of counts: binomial, Poisson, geometric. What is reckoned from them is in the measures.
+//! Probabilities of counts: binomial, Poisson, geometric.
 
 use driftworld_spec::Distribution;
 
 /// Counts less likely than this times the likeliest are left out.
 const NEGLIGIBLE: f64 = 1e-17;
 
-/// Every count that matters with its probability; `None` for any other distribution and for more than `most` counts.
+/// All non-negligible counts with their probabilities; `None` for any other distribution and for more than `most` counts.
 pub(super) fn probabilities(distribution: &Distribution, most: usize) -> Option<Vec<(f64, f64)>> {
     // The ratio of the probability of k + 1 to that of k, and the likeliest count.
     let (ratio, mode, end): (Box<dyn Fn(f64) -> f64>, f64, f64) = match *distribution {
@@ -21,7 +21,7 @@ pub(super) fn probabilities(distribution: &Distribution, most: usize) -> Option<
         Distribution::Geometric { p } => (Box::new(move |_| 1.0 - p), 0.0, f64::INFINITY),
         _ => return None,
     };
-    // From the likeliest count outwards, so that nothing underflows; then divided by the sum.
+    // From the likeliest count outwards, so that nothing underflows; then normalised.
     let mut below = Vec::new();
     let (mut k, mut mass) = (mode, 1.0);
     while k > 0.0 {
@@ -70,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn probabilities_add_up_to_the_cumulative_function() {
+    fn probabilities_sum_to_the_cumulative_function() {
         check(&Binomial { n: 20.0, p: 0.3 });
         check(&Binomial { n: 100_000.0, p: 0.999 });
         check(&Binomial { n: 5.0, p: 1.0 });

@@ -1,4 +1,4 @@
-//! Energy distance between distributions of numbers. Other areas between cumulative functions are in `wasserstein_1.rs`.
+//! Energy distance between distributions of numbers.
 
 use std::f64::consts::PI;
 
@@ -9,11 +9,11 @@ use super::law::{Law, draws_headings};
 use super::measured::Measured;
 use super::wasserstein_1::folded;
 
-/// √(2 E|X − Y| − E|X − X′| − E|Y − Y′|), which on the line is √(2 ∫ (F − G)²): in roots of the numbers' unit.
+/// √(2 E|X − Y| − E|X − X′| − E|Y − Y′|), which on the line is √(2 ∫ (F − G)²): in the square root of the numbers' unit.
 ///
-/// A metric in `0..` (its square is none). A Bernoulli counts as 0 and 1. `None` if either draws no numbers, or headings.
-/// Closed for two normals and for all that is flat or in steps; otherwise by quadrature, mostly within 1e-6, at 13 to
-/// 700 places between neighbouring knots. Whole numbers out of more than 4,096 count as evenly spread.
+/// A metric in `0..` (its square is not). A Bernoulli counts as 0 and 1. `None` if either draws no numbers, or headings. Closed
+/// for two normals and for everything flat or stepped; otherwise by quadrature, mostly within 1e-6, at 13 to 700 points between
+/// neighbouring knots. Whole numbers out of more than 4,096 count as evenly spread.
 ///
 /// Source: Székely & Rizzo 2013, "Energy statistics"; the same numbers as `scipy.stats.energy_distance`, which returns the
 /// root, too.
@@ -31,7 +31,7 @@ pub fn energy(a: &Distribution, b: &Distribution) -> Option<Measured> {
     }
     if let (Distribution::Normal { mean: m, std: s }, Distribution::Normal { mean: n, std: t }) = (a, b) {
         let square = 2.0 * folded((m - n).abs(), libm::hypot(*s, *t)) - 2.0 * (s + t) / PI.sqrt();
-        // Neighbours would lose their digits: the quadrature has them.
+        // Similar normals would lose precision: the quadrature keeps it.
         if square > 1e-4 * (s + t) {
             return Some(Measured::closed(square).root());
         }
@@ -42,7 +42,7 @@ pub fn energy(a: &Distribution, b: &Distribution) -> Option<Measured> {
     }
     let found = gap::integral(&p, &q, Power::Square).times(2.0);
     Some(if miss_p + miss_q > 0.0 {
-        // |F − G| is at most 1, so its square is off by no more than twice what it is.
+        // |F − G| is at most 1, so the error of its square is at most twice its own.
         Measured::quadrature(found.value, 4.0 * (miss_p + miss_q)).root()
     } else {
         found.root()
@@ -62,7 +62,7 @@ mod tests {
     }
 
     #[test]
-    fn closed_forms_are_met() {
+    fn closed_forms_match_known_values() {
         // E|X − Y| = 1/r + 1/s − 2/(r + s), E|X − X′| = 1/r.
         let (r, s) = (1.0, 4.0);
         check(
@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn neighbours_keep_their_digits() {
+    fn similar_distributions_keep_precision() {
         let near = energy(&Normal { mean: 0.0, std: 1.0 }, &Normal { mean: 1e-6, std: 1.0 }).unwrap();
         // 2 ∫ (density × shift)² = shift² / √π.
         assert!((near.value / (1e-6 / PI.sqrt().sqrt()) - 1.0).abs() < 1e-6, "{near:?}");

@@ -1,10 +1,10 @@
-//! Integrals of the difference of two cumulative functions. What they stand for is said by the measures.
+//! Integrals of the difference of two cumulative functions.
 
 use super::law::{self, Law, rising};
 use super::measured::Measured;
 use super::quadrature::{Node, integrate, split_at_signs};
 
-/// What of the difference is integrated.
+/// The integrand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Power {
     /// ∫ |F − G|.
@@ -21,7 +21,7 @@ impl Power {
         }
     }
 
-    /// The mean over a straight line from one gap to another.
+    /// The mean along a straight line from one gap to another.
     pub(super) fn along(self, from: f64, to: f64) -> f64 {
         match self {
             Self::Absolute if from * to >= 0.0 => f64::midpoint(from.abs(), to.abs()),
@@ -32,7 +32,7 @@ impl Power {
     }
 }
 
-/// The integral of F − G over the line: exact where both are made of straight lines and steps, otherwise by quadrature.
+/// The integral of F − G over the line: exact if both are piecewise linear with steps, otherwise by quadrature.
 pub(super) fn integral(a: &Law, b: &Law, power: Power) -> Measured {
     let knots = rising(a.knots_and_atoms().chain(b.knots_and_atoms()).collect());
     let (mut steps_a, mut steps_b) = (Steps::new(a), Steps::new(b));
@@ -44,7 +44,7 @@ pub(super) fn integral(a: &Law, b: &Law, power: Power) -> Measured {
         let gap = |x: f64| {
             let from_below = a_steps[0] + a.cumulative_of_parts(x) - (b_steps[0] + b.cumulative_of_parts(x));
             let from_above = b_steps[1] + b.remaining_of_parts(x) - (a_steps[1] + a.remaining_of_parts(x));
-            // Both are the same number; the smaller sums leave the smaller error.
+            // Both give the same number; smaller sums have smaller errors.
             if a_steps[0] + a.cumulative_of_parts(x) > 0.5 {
                 from_above
             } else {
@@ -74,7 +74,7 @@ pub(super) fn integral(a: &Law, b: &Law, power: Power) -> Measured {
     }
 }
 
-/// Goes up the single numbers of a law.
+/// Iterates upwards over the single numbers of a law.
 struct Steps<'a> {
     atoms: &'a [(f64, f64)],
     next: usize,

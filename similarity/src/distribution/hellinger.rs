@@ -1,4 +1,4 @@
-//! Hellinger distance: of the roots of probabilities. Other comparisons of probabilities are beside.
+//! Hellinger distance: between the square roots of probabilities.
 
 use driftworld_spec::Distribution;
 
@@ -8,11 +8,10 @@ use super::part::log_beta;
 
 /// √(½ Σ (√p − √q)²), for densities √(½ ∫ (√f − √g)²).
 ///
-/// A metric in `0..=1`. Takes what [`total_variation`](super::total_variation()) takes, and two `gaussian`s of the plane or
-/// two `dirichlet`s of one length. Closed for normal, log-normal, exponential, beta (with the same ends), Poisson, geometric,
-/// gaussian and Dirichlet pairs and for all that is flat or in steps; otherwise by quadrature, mostly within 1e-6 (the root
-/// of a sum known within 1e-9 or better), at 13 to 700
-/// places between neighbouring knots.
+/// A metric in `0..=1`. Takes what [`total_variation`](super::total_variation()) takes, and two `gaussian`s of the plane or two
+/// `dirichlet`s of one length. Closed for normal, log-normal, exponential, beta (with the same ends), Poisson, geometric,
+/// gaussian and Dirichlet pairs and for everything flat or stepped; otherwise by quadrature, mostly within 1e-6 (the root of a
+/// sum known within 1e-9 or better), at 13 to 700 points between neighbouring knots.
 ///
 /// Source: Pardo 2006, "Statistical Inference Based on Divergence Measures"; √(1 − BC) with BC the Bhattacharyya coefficient.
 ///
@@ -35,7 +34,7 @@ pub fn hellinger(a: &Distribution, b: &Distribution) -> Option<Measured> {
     Some(overlap::sum(a, b, half_square)?.clamped(0.0, 1.0).root())
 }
 
-/// Logarithm of Σ √(p q), where there is a formula.
+/// Logarithm of Σ √(p q), if there is a formula.
 fn log_coefficient(a: &Distribution, b: &Distribution) -> Option<f64> {
     use Distribution::{Beta, Dirichlet, Exponential, Gaussian, Geometric, LogNormal, Normal, Poisson};
     Some(match (a, b) {
@@ -102,7 +101,7 @@ mod tests {
     use Distribution::{Beta, Exponential, Gaussian, Geometric, LogNormal, Normal, Poisson, TruncatedNormal};
     use driftworld_spec::Spread;
 
-    /// The closed form against the sum or the quadrature.
+    /// Compares the closed form with the sum or the quadrature.
     #[track_caller]
     fn check(a: &Distribution, b: &Distribution) {
         let found = hellinger(a, b).unwrap();
@@ -116,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn closed_forms_are_those_of_the_quadrature() {
+    fn closed_forms_match_the_quadrature() {
         let beta = |alpha: f64, beta: f64| Beta {
             alpha,
             beta,
@@ -133,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn gaussians_that_differ_along_one_axis_are_as_far_as_normals() {
+    fn gaussians_that_differ_along_one_axis_match_normals() {
         let plane = |x: f64, std: f64| Gaussian {
             mean: [x, 0.0],
             std: Some(Spread::Axes([std, 1.0])),
@@ -146,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn a_normal_cut_off_far_out_is_the_normal() {
+    fn normal_truncated_far_out_matches_the_normal() {
         let whole = Normal { mean: 0.0, std: 1.0 };
         let cut = TruncatedNormal {
             mean: 0.0,

@@ -1,4 +1,4 @@
-//! Jensen–Shannon divergence and its root, the metric. Kullback–Leibler is in `kullback_leibler.rs`.
+//! Jensen–Shannon divergence and its square root, a metric.
 
 use std::f64::consts::LN_2;
 
@@ -7,10 +7,10 @@ use driftworld_spec::Distribution;
 use super::measured::Measured;
 use super::overlap;
 
-/// The root of [`jensen_shannon_divergence`].
+/// The square root of [`jensen_shannon_divergence`].
 ///
-/// A metric in `0..=1`. Takes and costs the same; by quadrature it is mostly known within 1e-6, the root of a sum known
-/// within 1e-9 or better. `scipy.spatial.distance.jensenshannon` is this root, but in nats unless `base=2`.
+/// A metric in `0..=1`. Takes the same arguments at the same cost; by quadrature it is mostly known within 1e-6, the root of a
+/// sum known within 1e-9 or better. `scipy.spatial.distance.jensenshannon` is this root, but in nats unless `base=2`.
 ///
 /// Source: Endres & Schindelin 2003, "A new metric for probability distributions".
 ///
@@ -25,11 +25,10 @@ pub fn jensen_shannon(a: &Distribution, b: &Distribution) -> Option<Measured> {
     jensen_shannon_divergence(a, b).map(Measured::root)
 }
 
-/// ½ KL(P ‖ M) + ½ KL(Q ‖ M) in bits, M being the even mixture of the two: what a draw tells about which of them it is from.
+/// ½ KL(P ‖ M) + ½ KL(Q ‖ M) in bits, with the even mixture M of the two: how much a draw reveals about its source.
 ///
 /// In `0..=1` bits; symmetric, but not a metric. Takes what [`total_variation`](super::total_variation()) takes. Exact for
-/// all that is flat or in steps, otherwise by quadrature, mostly within 1e-9, at 13 to 700 places between
-/// neighbouring knots.
+/// everything flat or stepped, otherwise by quadrature, mostly within 1e-9, at 13 to 700 points between neighbouring knots.
 ///
 /// Source: Lin 1991, "Divergence measures based on the Shannon entropy".
 pub fn jensen_shannon_divergence(a: &Distribution, b: &Distribution) -> Option<Measured> {
@@ -68,20 +67,20 @@ mod tests {
     }
 
     #[test]
-    fn entropies_say_what_it_is() {
+    fn divergence_matches_entropies() {
         let entropy = |p: f64| -p * libm::log2(p) - (1.0 - p) * libm::log2(1.0 - p);
         check(
             &Bernoulli { p: 0.1 },
             &Bernoulli { p: 0.5 },
             entropy(0.3) - f64::midpoint(entropy(0.1), entropy(0.5)),
         );
-        // A quarter of all is drawn by one only, on either side.
+        // Only one of the two draws the outer quarter on either side.
         check(&Uniform { low: 0.0, high: 4.0 }, &Uniform { low: 1.0, high: 5.0 }, 0.25);
     }
 
     #[test]
-    fn neighbours_keep_their_digits() {
-        // For close normals it comes to (difference of means)² / (8 ln 2) squared deviations.
+    fn similar_distributions_keep_precision() {
+        // For close normals it approaches (difference of means)² / (8 ln 2), in squared standard deviations.
         let near = jensen_shannon(&Normal { mean: 0.0, std: 1.0 }, &Normal { mean: 1e-6, std: 1.0 }).unwrap();
         assert!(
             (near.value / (1e-12 / (8.0 * LN_2)).sqrt() - 1.0).abs() < 1e-6,

@@ -1,5 +1,4 @@
-//! Kullback–Leibler divergence: what it costs to take one distribution for the other. Its bounded kin is in
-//! `jensen_shannon.rs`.
+//! Kullback–Leibler divergence: the cost of taking one distribution for the other.
 
 use driftworld_spec::Distribution;
 
@@ -8,14 +7,13 @@ use super::measured::Measured;
 use super::overlap;
 use super::part::log_beta;
 
-/// Σ p ln(p / q), for densities ∫ f ln(f / g), in nats: `a` is the truth, `b` is taken for it.
+/// Σ p ln(p / q), for densities ∫ f ln(f / g), in nats: `a` is the true distribution, `b` the assumed one.
 ///
-/// A divergence in `0..=∞`: not symmetric, no triangle inequality, and infinite as soon as `a` draws what `b` cannot. Only
-/// for parity with methods that use it (self-paced curricula). Takes what [`total_variation`](super::total_variation())
-/// takes, and two `gaussian`s of the plane or two `dirichlet`s of one length. Closed for normal, log-normal, exponential,
-/// beta (with the same ends), Poisson, geometric, gaussian and Dirichlet pairs and for all that is flat or in steps;
-/// otherwise by quadrature, mostly within 1e-9 of its size, at 13 to 700 places between neighbouring
-/// knots.
+/// A divergence in `0..=∞`: not symmetric, no triangle inequality, and infinite as soon as `a` draws what `b` cannot. Provided
+/// only for parity with methods that use it (self-paced curricula). Takes what [`total_variation`](super::total_variation())
+/// takes, and two `gaussian`s of the plane or two `dirichlet`s of one length. Closed for normal, log-normal, exponential, beta
+/// (with the same ends), Poisson, geometric, gaussian and Dirichlet pairs and for everything flat or stepped; otherwise by
+/// quadrature, mostly within 1e-9 of its size, at 13 to 700 points between neighbouring knots.
 ///
 /// Source: Kullback & Leibler 1951, "On information and sufficiency".
 ///
@@ -37,7 +35,7 @@ pub fn kullback_leibler(a: &Distribution, b: &Distribution) -> Option<Measured> 
             return Some(Measured::closed(f64::INFINITY));
         }
     }
-    // p ln(p / q) − p + q sums to the same, and no term is below 0.
+    // p ln(p / q) − p + q has the same sum, and no term is below 0.
     let sum = overlap::sum(a, b, |p, q| {
         let (of_p, of_q) = (libm::exp(p), libm::exp(q));
         if of_p == 0.0 {
@@ -56,7 +54,7 @@ pub fn kullback_leibler(a: &Distribution, b: &Distribution) -> Option<Measured> 
     })
 }
 
-/// Whether every density of the one lies where the other has one, however far out.
+/// Whether the support of one density lies within that of the other, tails included.
 fn is_within(a: &Law, b: &Law) -> bool {
     let mut covered: Vec<[f64; 2]> = b.parts.iter().map(super::part::Part::ends).collect();
     covered.sort_by(|a, b| a[0].total_cmp(&b[0]));
@@ -131,7 +129,7 @@ fn closed(a: &Distribution, b: &Distribution) -> Option<f64> {
     })
 }
 
-/// Slope of the logarithm of the gamma function, for numbers above 0: ln x − 1/2x − 1/12x² + … once x is large.
+/// The derivative of the log-gamma function, for numbers above 0: ln x − 1/2x − 1/12x² + … once x is large.
 fn digamma(mut x: f64) -> f64 {
     let mut sum = 0.0;
     while x < 10.0 {
@@ -157,7 +155,7 @@ mod tests {
     use crate::distribution::Method;
     use Distribution::{Beta, Exponential, Geometric, LogNormal, Normal, Poisson, Triangular, Uniform};
 
-    /// The closed form against the sum or the quadrature.
+    /// Compares the closed form with the sum or the quadrature.
     #[track_caller]
     fn check(a: &Distribution, b: &Distribution) {
         let found = kullback_leibler(a, b).unwrap();
@@ -170,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn closed_forms_are_those_of_the_quadrature() {
+    fn closed_forms_match_the_quadrature() {
         let beta = |alpha: f64, beta: f64| Beta {
             alpha,
             beta,
@@ -187,10 +185,10 @@ mod tests {
     }
 
     #[test]
-    fn it_is_infinite_where_the_other_cannot_draw() {
+    fn divergence_is_infinite_outside_the_other_support() {
         let infinite = |a, b| kullback_leibler(&a, &b).unwrap().value == f64::INFINITY;
         let wide = || Normal { mean: 0.0, std: 1.0 };
-        // Not even far outside what is drawn in practice.
+        // Not even in the far tails.
         assert!(infinite(wide(), Uniform { low: -50.0, high: 50.0 }));
         assert!(!infinite(Uniform { low: -50.0, high: 50.0 }, wide()));
         assert!(infinite(wide(), Poisson { mean: 1.0 }));
@@ -207,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn digamma_has_the_values_of_scipy() {
+    fn digamma_matches_scipy() {
         for (x, expected) in [
             (1.0, -0.577_215_664_901_532_9),
             (0.001, -1_000.575_571_931_810_3),

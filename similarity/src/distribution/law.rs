@@ -1,6 +1,4 @@
-//! [`Law`]: any distribution of numbers, or of headings, taken apart into single numbers, runs and densities.
-//!
-//! What is reckoned from two laws is in `overlap.rs`, `gap.rs` and the measures.
+//! [`Law`]: any distribution of numbers or headings, split into single numbers, runs and densities.
 
 use driftworld_spec::Distribution;
 
@@ -9,16 +7,16 @@ use super::part::Part;
 use super::quadrature::Node;
 use super::values::share;
 
-/// More single numbers than this, and a distribution of counts is not taken apart.
+/// A distribution of counts with more single numbers is not split.
 const MOST_ATOMS: usize = 65_536;
 
-/// Longer runs of whole numbers than this are kept as runs.
+/// Longer runs of whole numbers are kept as runs.
 const LONGEST_RUN: f64 = 4096.0;
 
-/// Most turns over which the numbers of a distribution may be strewn and still be taken as headings.
+/// A distribution spread over more turns cannot be taken as headings.
 const MOST_TURNS: f64 = 200.0;
 
-/// Whole numbers that are all alike: those from `low` to `high`, each with a probability.
+/// Equally likely whole numbers: those from `low` to `high`, each with the same probability.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Run {
     pub(super) low: f64,
@@ -26,16 +24,16 @@ pub(super) struct Run {
     pub(super) each: f64,
 }
 
-/// A distribution of numbers, taken apart.
+/// A distribution of numbers, split into its parts.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Law {
-    /// Single numbers with their probability, each once, in rising order.
+    /// Single numbers with their probabilities, each once, in rising order.
     pub(super) atoms: Vec<(f64, f64)>,
     pub(super) runs: Vec<Run>,
     pub(super) parts: Vec<Part>,
 }
 
-/// Whether it draws headings and nothing else can stand for what it draws.
+/// Whether it draws only headings.
 pub(crate) fn draws_headings(distribution: &Distribution) -> bool {
     match distribution {
         Distribution::VonMises { .. } => true,
@@ -44,8 +42,8 @@ pub(crate) fn draws_headings(distribution: &Distribution) -> bool {
     }
 }
 
-/// Both taken apart: as headings where either draws such, as numbers otherwise. `None` if either draws no numbers, or too
-/// many different counts.
+/// Splits both: as headings if either draws headings, else as numbers. `None` if either draws no numbers, or too many different
+/// counts.
 pub(super) fn both(a: &Distribution, b: &Distribution) -> Option<(Law, Law)> {
     if draws_headings(a) || draws_headings(b) {
         Some((Law::of_headings(a)?, Law::of_headings(b)?))
@@ -54,7 +52,7 @@ pub(super) fn both(a: &Distribution, b: &Distribution) -> Option<(Law, Law)> {
     }
 }
 
-/// What was reckoned without an error from two laws: over single values if neither has densities.
+/// An exact result for two laws: a sum over single values if neither has densities, else a closed form.
 pub(super) fn exact(a: &Law, b: &Law, value: f64) -> Measured {
     if a.parts.is_empty() && b.parts.is_empty() {
         Measured::atoms(value)
@@ -64,7 +62,7 @@ pub(super) fn exact(a: &Law, b: &Law, value: f64) -> Measured {
 }
 
 impl Law {
-    /// Of a distribution of numbers; a Bernoulli counts as 0 and 1.
+    /// Splits a distribution of numbers; a Bernoulli counts as 0 and 1.
     pub(super) fn of(distribution: &Distribution) -> Option<Self> {
         if draws_headings(distribution) {
             return None;
@@ -75,7 +73,7 @@ impl Law {
         Some(law)
     }
 
-    /// Of a distribution of numbers taken as headings in degrees, from 0 to 360.
+    /// Splits a distribution of numbers taken as headings in degrees, from 0 to 360.
     pub(super) fn of_headings(distribution: &Distribution) -> Option<Self> {
         let mut open = Self::default();
         open.add(1.0, distribution)?;
@@ -97,7 +95,7 @@ impl Law {
         Some(law)
     }
 
-    /// Adds a part, moved by as many full turns as bring it between 0 and 360, in copies.
+    /// Adds copies of a part, shifted by full turns so that they cover 0 to 360.
     fn turn(&mut self, part: Part) -> Option<()> {
         if part.draws_headings() {
             self.parts.push(part);
@@ -166,7 +164,7 @@ impl Law {
         Some(())
     }
 
-    /// A flat part between two single numbers.
+    /// Adds a flat part between two single numbers: a value with uniform noise, clipped at its ends.
     fn add_perturbed(&mut self, scale: f64, value: f64, noise: f64, [low, high]: [Option<f64>; 2]) {
         let cut = |x: f64| {
             x.max(low.unwrap_or(f64::NEG_INFINITY))
@@ -190,7 +188,7 @@ impl Law {
     fn merge(&mut self) {
         self.atoms.sort_by(|a, b| a.0.total_cmp(&b.0));
         self.atoms.dedup_by(|next, kept| {
-            // −0 is 0.
+            // −0 equals 0.
             let same = next.0 == kept.0;
             if same {
                 kept.1 += next.1;
@@ -202,12 +200,13 @@ impl Law {
         self.runs.retain(|run| run.each > 0.0);
     }
 
-    /// Whether every density is flat, so that the cumulative function is made of straight lines and steps.
+    /// Whether every density is flat, so that the cumulative function is piecewise linear with steps.
     pub(super) fn is_flat(&self) -> bool {
         self.parts.iter().all(Part::is_uniform)
     }
 
-    /// Long runs of whole numbers taken as flat densities, and how far that may put a Wasserstein-1 distance wrong.
+    /// Replaces long runs of whole numbers by flat densities, and bounds the error that this causes in a Wasserstein-1
+    /// distance.
     pub(super) fn smoothed(mut self) -> (Self, f64) {
         let mut error = 0.0;
         for run in std::mem::take(&mut self.runs) {
@@ -234,17 +233,17 @@ impl Law {
         greatest + libm::log(sum)
     }
 
-    /// Probability of a number up to `x`, single numbers and runs aside.
+    /// Probability of a number up to `x`, without single numbers and runs.
     pub(super) fn cumulative_of_parts(&self, x: f64) -> f64 {
         self.parts.iter().map(|part| part.share * part.cumulative(x)).sum()
     }
 
-    /// Probability of a number above `x`, single numbers and runs aside.
+    /// Probability of a number above `x`, without single numbers and runs.
     pub(super) fn remaining_of_parts(&self, x: f64) -> f64 {
         self.parts.iter().map(|part| part.share * part.remaining(x)).sum()
     }
 
-    /// The ends between which all that it draws lies; infinite where there are none.
+    /// The ends of its support; infinite if unbounded.
     pub(super) fn ends(&self) -> [f64; 2] {
         let atoms = self.atoms.iter().map(|atom| [atom.0; 2]);
         let runs = self.runs.iter().map(|run| [run.low, run.high]);
@@ -254,7 +253,7 @@ impl Law {
         })
     }
 
-    /// Whether some density is above 0 somewhere between the two.
+    /// Whether some density is above 0 between the two.
     pub(super) fn reaches(&self, low: f64, high: f64) -> bool {
         self.parts.iter().any(|part| {
             let ends = part.ends();
@@ -262,12 +261,12 @@ impl Law {
         })
     }
 
-    /// The places at which densities and cumulative functions change their form, in no order.
+    /// The points at which densities and cumulative functions change their form, unsorted.
     pub(super) fn knots(&self) -> Vec<f64> {
         self.parts.iter().flat_map(Part::knots).collect()
     }
 
-    /// The knots and the single numbers, in no order.
+    /// The knots and the single numbers, unsorted.
     pub(super) fn knots_and_atoms(&self) -> impl Iterator<Item = f64> {
         self.knots().into_iter().chain(self.atoms.iter().map(|atom| atom.0))
     }
@@ -279,7 +278,7 @@ fn turned(degrees: f64) -> f64 {
     if turned >= 360.0 { 0.0 } else { turned }
 }
 
-/// Numbers in rising order, each once; those that are no numbers are left out.
+/// Sorts numbers and removes duplicates and NaN.
 pub(super) fn rising(mut numbers: Vec<f64>) -> Vec<f64> {
     numbers.retain(|x| x.is_finite());
     numbers.sort_by(f64::total_cmp);
@@ -293,7 +292,7 @@ mod tests {
     use Distribution::{IntegerUniform, Mixture, Perturb, Uniform, VonMises};
 
     #[test]
-    fn a_cut_off_number_is_a_flat_part_between_two_single_numbers() {
+    fn clipped_number_is_a_flat_part_between_two_single_numbers() {
         let cut = Perturb {
             value: 1.0,
             noise: 2.0,
@@ -307,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_of_a_mixture_that_draw_the_same_number_are_one() {
+    fn equal_numbers_in_a_mixture_are_merged() {
         let dice = IntegerUniform { low: 1.0, high: 2.0 };
         let mixture = Mixture {
             parts: vec![
@@ -323,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn a_uniform_number_over_more_than_a_turn_is_strewn_around_the_circle() {
+    fn uniform_over_more_than_a_turn_wraps_around_the_circle() {
         let law = Law::of_headings(&Uniform {
             low: -90.0,
             high: 630.0,

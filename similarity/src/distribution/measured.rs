@@ -1,10 +1,10 @@
-//! [`Measured`]: a number with how it was found. The measures that find it are in the files beside.
+//! [`Measured`]: a distance between distributions, with the method that found it.
 
 use std::fmt::{Display, Formatter, Result};
 
 use serde::{Deserialize, Serialize};
 
-/// A distance between two distributions, and how it was found.
+/// A distance between two distributions, with the method that found it.
 ///
 /// # Example
 /// ```
@@ -16,29 +16,29 @@ use serde::{Deserialize, Serialize};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
-    /// The number, in the unit of the measure.
+    /// The number, in the measure's unit.
     pub value: f64,
-    /// How it was found.
+    /// The method.
     #[serde(rename = "how")]
     pub method: Method,
 }
 
-/// How a number was found.
+/// The method by which a number was found.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
-    /// By a formula, exact but for rounding.
+    /// A formula, exact but for rounding.
     Closed,
-    /// By a sum over the values that can occur, exact but for rounding and for values less likely than 1e-15.
+    /// A sum over the possible values, exact but for rounding and for values less likely than 1e-15.
     Atoms,
-    /// By numerical integration.
+    /// Numerical integration.
     Quadrature {
-        /// Estimate of the greatest error, in the unit of the number.
+        /// Estimated maximum error, in the number's unit.
         tolerance: f64,
     },
-    /// From points or numbers that stand for each of the two.
+    /// Points or numbers sampled to represent each distribution.
     Samples {
-        /// How many stand for each.
+        /// Sample size of each.
         count: usize,
     },
 }
@@ -64,7 +64,7 @@ impl Measured {
         Self { value, method }
     }
 
-    /// By a formula, of numbers that are off by so much together: by quadrature unless that is 0.
+    /// The result of a formula on numbers with this total error: counts as quadrature unless the error is 0.
     pub(crate) fn within(value: f64, tolerance: f64) -> Self {
         if tolerance > 0.0 {
             Self::quadrature(value, tolerance)
@@ -73,7 +73,7 @@ impl Measured {
         }
     }
 
-    /// The error of a quadrature; 0 of all else.
+    /// The error of a quadrature; 0 for other methods.
     pub(crate) fn tolerance(self) -> f64 {
         match self.method {
             Method::Quadrature { tolerance } => tolerance,
@@ -81,13 +81,13 @@ impl Measured {
         }
     }
 
-    /// The same with the value between these ends.
+    /// Clamps the value to these ends.
     pub(crate) fn clamped(self, low: f64, high: f64) -> Self {
         let value = self.value.clamp(low, high);
         Self { value, ..self }
     }
 
-    /// The root, with the error that is left of the square's.
+    /// The square root, with the error that follows from the square's.
     pub(crate) fn root(self) -> Self {
         let value = self.value.max(0.0).sqrt();
         let method = match self.method {
@@ -103,7 +103,7 @@ impl Measured {
         Self { value, method }
     }
 
-    /// The number and its error times a factor.
+    /// Multiplies the number and its error by a factor.
     pub(crate) fn times(self, factor: f64) -> Self {
         let method = match self.method {
             Method::Quadrature { tolerance } => Method::Quadrature {
@@ -133,7 +133,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_small_square_leaves_its_root_a_larger_error() {
+    fn root_of_a_small_square_has_a_larger_error() {
         let root = |value| Measured::quadrature(value, 1e-10).root().method;
         assert_eq!(root(0.25), Method::Quadrature { tolerance: 2e-10 });
         assert_eq!(root(0.0), Method::Quadrature { tolerance: 1e-5 });

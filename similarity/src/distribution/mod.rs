@@ -1,4 +1,4 @@
-//! Distances between distributions: of numbers, headings, words, points and colours. How those of many parameters combine is in `combined/`.
+//! Distances between distributions of numbers, headings, words, points and colours.
 
 mod circular;
 mod colors;

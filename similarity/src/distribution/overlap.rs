@@ -1,4 +1,4 @@
-//! Sums over what two distributions may both draw, of a term of the two probabilities. The terms are the measures'.
+//! Sums a term of the two probabilities over everything that two distributions can draw.
 
 use driftworld_spec::Distribution;
 
@@ -7,10 +7,10 @@ use super::measured::Measured;
 use super::quadrature::{Node, integrate, split_at_signs};
 use super::values;
 
-/// Σ term(ln p, ln q) over single values and ∫ term(ln f, ln g) dx over densities, on the circle where either draws headings.
+/// Σ term(ln p, ln q) over single values and ∫ term(ln f, ln g) dx over densities, on the circle if either draws headings.
 ///
-/// The term must be homogeneous, and 0 where the two are equal: term of c p and c q is c times that of p and q. `None` if one
-/// draws what the other cannot, such as words and numbers, or points with a density.
+/// The term must be homogeneous (term of c p and c q is c times that of p and q), and 0 where the two are equal. `None` if the
+/// two cannot be compared, such as words and numbers, or points with a density.
 pub(super) fn sum(a: &Distribution, b: &Distribution, term: impl Fn(f64, f64) -> f64) -> Option<Measured> {
     let equal = (a == b).then(|| Measured::closed(0.0));
     if let Some((p, q)) = law::both(a, b) {
@@ -48,12 +48,12 @@ fn over_numbers(a: &Law, b: &Law, circle: bool, term: impl Fn(f64, f64) -> f64) 
     }
 }
 
-/// The place that a knot has between 0 and 360; copies outside are of no interest.
+/// Maps a knot to 0..360; copies outside are dropped.
 fn onto_the_circle(knot: f64) -> Option<f64> {
     knot.is_finite().then(|| knot.rem_euclid(360.0))
 }
 
-/// The integral between two neighbouring knots, with its error; 0 where a mass or a formula gives it.
+/// The integral between two neighbouring knots, with its error; 0 where a mass or a formula covers it.
 fn over_stretch(a: &Law, b: &Law, [low, high]: [f64; 2], term: &impl Fn(f64, f64) -> f64) -> (f64, f64) {
     let mass = |law: &Law| {
         let below = law.cumulative_of_parts(high) - law.cumulative_of_parts(low);
@@ -76,7 +76,7 @@ fn over_stretch(a: &Law, b: &Law, [low, high]: [f64; 2], term: &impl Fn(f64, f64
             let (mut sum, mut error) = (0.0, 0.0);
             let (mut of_a, mut of_b) = (mass(a), mass(b));
             if of_a + of_b < 1e-17 {
-                // Far out, where every term but one against nothing at all is next to nothing.
+                // Far out, where every term but one against zero probability is negligible.
                 return (0.0, 1e-17);
             }
             let crossings = split_at_signs(&[low, high], |x| {
@@ -89,7 +89,7 @@ fn over_stretch(a: &Law, b: &Law, [low, high]: [f64; 2], term: &impl Fn(f64, f64
                         return [0.0; 3];
                     }
                     let found = [term(p, q), libm::exp(p), libm::exp(q)];
-                    // So near to a steep end that the density is beyond all numbers: what lies there is left over below.
+                    // Finite: not so near to a steep end that the density overflows; the mass there is added below.
                     if found.iter().all(|x| x.is_finite()) {
                         found
                     } else {
@@ -101,7 +101,7 @@ fn over_stretch(a: &Law, b: &Law, [low, high]: [f64; 2], term: &impl Fn(f64, f64
                 of_a -= p;
                 of_b -= q;
             }
-            // What lies nearer to a steep end than numbers go is known as a whole only.
+            // Near a steep end only the total mass is known, because positions cannot be resolved.
             let left = [of_a, of_b].map(|left| if left > 1e-12 { left } else { 0.0 });
             (sum + certain(left[0], left[1]), error + of_a.abs() + of_b.abs())
         }
@@ -137,7 +137,7 @@ fn over_atoms(a: &Law, b: &Law, term: &impl Fn(f64, f64) -> f64) -> f64 {
     sum
 }
 
-/// Whole numbers in runs, but for those that are single numbers of either law.
+/// Runs of whole numbers, except those that are single numbers of either law.
 fn over_runs(a: &Law, b: &Law, term: &impl Fn(f64, f64) -> f64) -> f64 {
     let ends = a.runs.iter().chain(&b.runs).flat_map(|run| [run.low, run.high + 1.0]);
     let mut singles: Vec<f64> = a.atoms.iter().chain(&b.atoms).map(|atom| atom.0).collect();

@@ -1,4 +1,4 @@
-//! [`Part`]: one continuous family with its share of a law. How parts, single numbers and runs make a law is in `law.rs`.
+//! [`Part`]: one continuous family with its share of a law.
 
 use std::f64::consts::TAU;
 
@@ -9,23 +9,23 @@ use super::quadrature::{Node, integrate};
 /// Standard deviations from the mean outside which a normal number lies with a probability below 1e-18.
 const REACH: f64 = 9.0;
 
-/// Standard deviations at which a stretch of a bell ends.
+/// Standard deviations at which a normal density is split into stretches.
 const BELL: [f64; 7] = [-REACH, -5.0, -2.0, 0.0, 2.0, 5.0, REACH];
 
-/// A continuous family that a law holds to some share.
+/// A continuous family, with its share of a law.
 #[derive(Clone, Debug)]
 pub(super) struct Part {
     /// Probability of drawing from it.
     pub(super) share: f64,
     family: Distribution,
-    /// How far it is moved up.
+    /// Added to what the family draws.
     shift: f64,
-    /// Logarithm of what the density is divided by.
+    /// Logarithm of the density's divisor.
     log_scale: f64,
 }
 
 impl Part {
-    /// Of a family that has a density.
+    /// A part of a family that has a density.
     pub(super) fn new(share: f64, family: Distribution, shift: f64) -> Self {
         let log_scale = match &family {
             Distribution::Uniform { low, high } => libm::log(high - low),
@@ -64,7 +64,7 @@ impl Part {
         matches!(self.family, Distribution::VonMises { .. })
     }
 
-    /// The same, moved up.
+    /// The same part, shifted.
     pub(super) fn moved(&self, by: f64) -> Self {
         Self {
             shift: self.shift + by,
@@ -76,7 +76,7 @@ impl Part {
     pub(super) fn log_density(&self, node: Node) -> f64 {
         let node = node.lowered(self.shift);
         let bell = |z: f64| -0.5 * z * z;
-        // A place on the very end may have been rounded past it.
+        // A point on the very end may have been rounded past it.
         let inside = |low: f64, high: f64, log: f64| {
             let slack = 1e-12 * (high - low).min(1e6);
             if node.above(low) >= -slack && node.above(high) <= slack {
@@ -103,7 +103,7 @@ impl Part {
                 let (low, high) = (low.unwrap_or(0.0), high.unwrap_or(1.0));
                 let width = high - low;
                 let [left, right] = [node.above(low), -node.above(high)].map(|x| {
-                    // Only a part that was moved can be off by rounding.
+                    // Only a shifted part can be off by rounding.
                     if self.shift != 0.0 && x <= 0.0 && x > -1e-12 * width {
                         1e-12
                     } else {
@@ -130,13 +130,13 @@ impl Part {
         shape - self.log_scale
     }
 
-    /// Probability of a number up to `x`, without the share. Headings go on counting from turn to turn.
+    /// Probability of a number up to `x`, without the share. Headings accumulate from turn to turn.
     pub(super) fn cumulative(&self, x: f64) -> f64 {
         let x = x - self.shift;
         if let Distribution::VonMises { mean, .. } = self.family {
             let turns = ((x - mean + 180.0) / 360.0).floor();
             let turned = x - mean - 360.0 * turns;
-            // Beside the start of a turn rounding would take the end of one for it.
+            // Near the start of a turn, rounding would confuse it with the end.
             let within = if turned <= -180.0 + 1e-9 {
                 0.0
             } else if turned >= 180.0 - 1e-9 {
@@ -149,7 +149,7 @@ impl Part {
         self.family.cdf(x).unwrap_or(0.0)
     }
 
-    /// Probability of a number above `x`, without the share; keeps its digits far out.
+    /// Probability of a number above `x`, without the share; accurate in the far tail.
     pub(super) fn remaining(&self, x: f64) -> f64 {
         let y = x - self.shift;
         let tail = |z: f64| 0.5 * libm::erfc(z / std::f64::consts::SQRT_2);
@@ -161,7 +161,7 @@ impl Part {
         }
     }
 
-    /// The ends between which it has a density; infinite where it has none.
+    /// The ends of its support; infinite if unbounded.
     pub(super) fn ends(&self) -> [f64; 2] {
         let [low, high] = match &self.family {
             Distribution::Uniform { low, high }
@@ -174,8 +174,8 @@ impl Part {
         [low + self.shift, high + self.shift]
     }
 
-    /// Ends of stretches on which density and cumulative function are smooth and of one size, in no order. They reach as far
-    /// as matters: less than 1e-17 of the probability and of the mean lies outside.
+    /// Ends of stretches on which density and cumulative function are smooth and of one order of magnitude, unsorted. Less than
+    /// 1e-17 of the probability and of the mean lies outside.
     pub(super) fn knots(&self) -> Vec<f64> {
         let [low, high] = self.ends();
         let around = |mean: f64, std: f64| -> Vec<f64> {
@@ -220,21 +220,21 @@ pub(super) fn log_beta(alpha: f64, beta: f64) -> f64 {
     libm::lgamma(alpha) + libm::lgamma(beta) - libm::lgamma(alpha + beta)
 }
 
-/// Logarithm of the density of headings, but for a term; `turned` is in degrees from the mean.
+/// Logarithm of the density of headings, up to a constant; `turned` is in degrees from the mean.
 fn log_bell_of_headings(turned: f64, kappa: f64) -> f64 {
     let half = libm::sin(turned.to_radians() / 2.0);
     -2.0 * kappa * half * half
 }
 
-/// Standard deviation, in degrees, of the normal that a concentration comes near to.
+/// Standard deviation, in degrees, of the normal distribution that a concentration approximates.
 fn deviation_of_headings(kappa: f64) -> f64 {
     (1.0 / kappa.max(0.1).sqrt()).to_degrees()
 }
 
-/// Probability of a standard normal number between two.
+/// Probability of a standard normal number between two ends.
 pub(super) fn normal_mass(low: f64, high: f64) -> f64 {
     let below = |z: f64| 0.5 * libm::erfc(-z / std::f64::consts::SQRT_2);
-    // The upper tail loses its digits beside 1: the mirror image has them.
+    // The upper tail loses precision next to 1: the mirror image keeps it.
     if low > 0.0 {
         below(-low) - below(-high)
     } else {
@@ -247,7 +247,7 @@ mod tests {
     use super::*;
     use Distribution::{Beta, Exponential, LogNormal, Normal, Triangular, TruncatedNormal, Uniform, VonMises};
 
-    /// A density that is the slope of the cumulative function, and sums to 1 between the knots.
+    /// Checks that the density is the slope of the cumulative function, and sums to 1 between the knots.
     #[track_caller]
     fn check(family: Distribution) {
         let part = Part::new(1.0, family, 0.5);
@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn the_density_is_the_slope_of_the_cumulative_function() {
+    fn density_is_the_slope_of_the_cumulative_function() {
         let beta = |alpha: f64, beta: f64| Beta {
             alpha,
             beta,

@@ -1,5 +1,5 @@
-//! How placements differ beyond where each object may stand: the distance that objects keep, and whether places are taken in
-//! turn. Where single objects may stand is compared in `planar_transport.rs`.
+//! Distances between placements: where each object may stand, the distance that objects keep, and whether a list of places is
+//! taken in turn.
 
 use driftworld_spec::{Distribution, Order};
 
@@ -7,21 +7,21 @@ use super::measured::Measured;
 use super::planar_transport::{planar_wasserstein_1, planar_wasserstein_2};
 use super::values::grid_centres;
 
-/// The most objects of which each one's place is compared where places are taken in turn.
+/// Most objects whose places are compared one by one, if places are taken in turn.
 const MOST_IN_TURN: usize = 10_000;
 
-/// Wasserstein-1 between the places of objects, as [`placement_wasserstein_2`].
+/// Wasserstein-1 between the places of objects; otherwise as [`placement_wasserstein_2`].
 pub fn placement_wasserstein_1(a: &Distribution, b: &Distribution) -> Option<Measured> {
     placed(a, b, planar_wasserstein_1)
 }
 
-/// How far two placements of a group are apart, in metres: how far each object's place has to move (root mean square), and
-/// by how much the distance that objects keep differs.
+/// The distance of two placements of a group, in metres: how far each object's place has to move (root mean square), plus the
+/// difference in the distance that objects keep.
 ///
-/// Where both draw each object's place by itself, this is [`planar_wasserstein_2`] and the difference of the distances that
-/// `poisson_disc` keeps. Where one takes its places in turn, the first object is compared with the first, the second with the
-/// second and so on, by the mean and the spread of where each may stand; so a list of points in turn is not the same list at
-/// random. A pseudometric in `0..`, where the first part is a metric. `None` if either draws no points.
+/// If both draw each object's place independently, this is [`planar_wasserstein_2`] plus the difference of the distances that
+/// `poisson_disc` keeps. If one takes its places in turn, the first object is compared with the first, the second with the
+/// second and so on, by the mean and the spread of where each may stand; so a list of points in turn differs from the same list
+/// at random. A pseudometric in `0..`, whose first part is a metric. `None` if either draws no points.
 ///
 /// # Example
 /// ```
@@ -56,7 +56,7 @@ fn placed(
     })
 }
 
-/// Each of a list of places against the same draw: exact, for a single place against anything is.
+/// The distance of each of a list of places from the same distribution: exact, because one of the two is a single place.
 fn one_in_turn(places: &[[f64; 2]], drawn: &Distribution) -> Option<Measured> {
     let moments = drawn.planar_moments()?;
     let spread = moments.covariance[0][0] + moments.covariance[1][1];
@@ -73,7 +73,7 @@ fn squared(a: [f64; 2], b: [f64; 2]) -> f64 {
     x * x + y * y
 }
 
-/// After how many objects two lists are both at their beginning again, or the most that are looked at.
+/// The number of objects after which two lists both start again, at most [`MOST_IN_TURN`].
 fn common_round(a: usize, b: usize) -> usize {
     let (mut divisor, mut rest) = (a, b);
     while rest > 0 {
@@ -82,7 +82,7 @@ fn common_round(a: usize, b: usize) -> usize {
     (a / divisor).saturating_mul(b).min(MOST_IN_TURN)
 }
 
-/// The places that objects take in turn, cells by their centres; `None` where each draws its own.
+/// The places that objects take in turn, cells by their centres; `None` if each object draws its own.
 fn places_in_turn(distribution: &Distribution) -> Option<Vec<[f64; 2]>> {
     match distribution {
         Distribution::Points {
@@ -101,7 +101,7 @@ fn places_in_turn(distribution: &Distribution) -> Option<Vec<[f64; 2]>> {
     }
 }
 
-/// The least distance that objects keep from each other by their distribution, in metres; of a mixture the mean.
+/// The least distance, in metres, that the distribution keeps between objects; for a mixture the mean.
 fn kept_distance(distribution: &Distribution) -> f64 {
     match distribution {
         Distribution::PoissonDisc { distance, .. } => *distance,
@@ -128,13 +128,13 @@ mod tests {
     }
 
     #[test]
-    fn places_in_turn_are_not_the_same_places_at_random() {
+    fn places_in_turn_differ_from_the_same_places_at_random() {
         let values = vec![[0.0, 0.0], [6.0, 8.0]];
         let (turn, random) = (
             points(values.clone(), Order::Turn),
             points(values.clone(), Order::Random),
         );
-        // Each of the two is 0 or 10 m off, as likely.
+        // Each of the two is 0 or 10 m off with equal probability.
         let found = placement_wasserstein_2(&turn, &random).unwrap().value;
         assert!((found - 50.0_f64.sqrt()).abs() < 1e-9, "{found}");
         let reversed = points(values.into_iter().rev().collect(), Order::Turn);
@@ -167,14 +167,14 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_is_symmetric_and_0_on_itself(a in placements(), b in placements()) {
+        fn placement_distance_is_symmetric_and_zero_on_itself(a in placements(), b in placements()) {
             let d = |a: &Distribution, b: &Distribution| placement_wasserstein_2(a, b).unwrap().value;
             prop_assert!(d(&a, &a) < 1e-9);
             prop_assert!((d(&a, &b) - d(&b, &a)).abs() < 1e-9);
         }
 
         #[test]
-        fn between_lists_of_as_many_points_in_turn_it_is_a_metric(
+        fn lists_in_turn_of_equal_length_satisfy_the_metric_laws(
             a in prop::collection::vec(prop::array::uniform2(-9.0..9.0_f64), 3),
             b in prop::collection::vec(prop::array::uniform2(-9.0..9.0_f64), 2),
             c in prop::collection::vec(prop::array::uniform2(-9.0..9.0_f64), 6),

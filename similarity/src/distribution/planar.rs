@@ -4,8 +4,8 @@ use driftworld_spec::Distribution;
 
 /// Bures–Wasserstein distance of mean and covariance: √(|m₁ − m₂|² + tr A + tr B − 2 tr √(√A B √A)), in metres.
 ///
-/// A metric on moments, so a pseudo-metric on distributions; equal to Wasserstein-2 between normal distributions, and a
-/// lower bound of it otherwise. `None` if either draws no points. Source: Gelbrich 1990.
+/// A metric on moments, so a pseudometric on distributions; equal to Wasserstein-2 between normal distributions, and a lower
+/// bound of it otherwise. `None` if either draws no points. Source: Gelbrich 1990.
 pub fn bures_wasserstein(a: &Distribution, b: &Distribution) -> Option<f64> {
     let (a, b) = (a.planar_moments()?, b.planar_moments()?);
     if a == b {
@@ -15,7 +15,7 @@ pub fn bures_wasserstein(a: &Distribution, b: &Distribution) -> Option<f64> {
     let trace = |m: [[f64; 2]; 2]| m[0][0] + m[1][1];
     let determinant = |m: [[f64; 2]; 2]| (m[0][0] * m[1][1] - m[0][1] * m[1][0]).max(0.0);
     let (a, b) = (a.covariance, b.covariance);
-    // Of a 2 × 2 matrix M, tr √M = √(tr M + 2 √det M); here tr M = tr AB and det M = det A det B.
+    // For a 2 × 2 matrix M, tr √M = √(tr M + 2 √det M); here tr M = tr AB and det M = det A det B.
     let product = a[0][0] * b[0][0] + a[0][1] * b[1][0] + a[1][0] * b[0][1] + a[1][1] * b[1][1];
     let both = (product + 2.0 * (determinant(a) * determinant(b)).sqrt())
         .max(0.0)
@@ -39,7 +39,7 @@ mod tests {
     }
 
     #[test]
-    fn means_and_spreads_add_up_as_legs_of_a_triangle() {
+    fn differences_of_mean_and_spread_combine_as_a_hypotenuse() {
         let round = |x: f64, std: f64| Gaussian {
             mean: [x, 0.0],
             std: Some(driftworld_spec::Spread::Round(std)),

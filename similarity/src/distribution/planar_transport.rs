@@ -1,4 +1,4 @@
-//! Wasserstein distances between distributions of points. Their bound by means and spreads is in `planar.rs`.
+//! Wasserstein distances between distributions of points.
 
 use driftworld_spec::{Distribution, Value};
 
@@ -9,15 +9,15 @@ use super::scatter::scatter;
 use super::wasserstein_2::wasserstein_2;
 use crate::Assignment;
 
-/// Points that stand for a distribution where there is no better way.
+/// Sample points per distribution, if no exact method applies.
 const STAND_INS: usize = 256;
 
-/// Least work that turns one distribution of points into the other, in metres.
+/// Wasserstein-1 of two distributions of points, in metres.
 ///
-/// A metric in `0..`, where it is not by samples. Closed where one is the other moved, and for discs around one centre; by
-/// quadrature for discs, rings and round gaussians around one centre; otherwise from 256 evenly strewn points of each, paired
-/// at the least cost, which is right within some percent of the spreads. `poisson_disc` is taken without its distance. `None`
-/// if either draws no points.
+/// A metric in `0..`, except by samples. Closed if one is the other shifted, and for concentric discs; by quadrature for
+/// concentric discs, rings and round gaussians; otherwise from 256 evenly spread points of each, matched at the least cost,
+/// which is accurate within some percent of the spreads. `poisson_disc` is taken without its distance. `None` if either draws
+/// no points.
 ///
 /// Source: Villani 2009, "Optimal Transport: Old and New", chapter 6.
 ///
@@ -42,20 +42,20 @@ pub fn planar_wasserstein_1(a: &Distribution, b: &Distribution) -> Option<Measur
             if let (Radii::Ring(0.0, outer), Radii::Ring(0.0, other)) = (x, y) {
                 return Some(Measured::closed((outer - other).abs() * 2.0 / 3.0));
             }
-            // Each point moves along its ray: nothing is cheaper, since distances from the centre have to change as much.
+            // Each point moves along its ray: no plan is cheaper, because distances from the centre have to change by as much.
             return Some(x.compare(y, f64::abs));
         }
     }
     paired(a, b, |x, y| libm::hypot(x[0] - y[0], x[1] - y[1]))
 }
 
-/// Root mean square of how far each point has to move, in metres.
+/// Wasserstein-2 of two distributions of points: the root mean square distance that each point has to move, in metres.
 ///
-/// A metric in `0..`, where it is not by samples; never below [`bures_wasserstein`](super::bures_wasserstein()) nor
+/// A metric in `0..`, except by samples; never below [`bures_wasserstein`](super::bures_wasserstein()) nor
 /// [`planar_wasserstein_1`]. Closed for two of one family (boxes, discs, gaussians, rings of one proportion) and for anything
-/// beside a single point; axis by axis for boxes, upright gaussians and grids, as exact as
+/// against a single point; axis by axis for boxes, axis-aligned gaussians and grids, as exact as
 /// [`wasserstein_2`](super::wasserstein_2()); by quadrature for discs, rings and round gaussians; otherwise from 256 evenly
-/// strewn points of each, paired at the least cost. `poisson_disc` is taken without its distance. `None` if either draws no
+/// spread points of each, matched at the least cost. `poisson_disc` is taken without its distance. `None` if either draws no
 /// points.
 ///
 /// Source: Peyré & Cuturi 2019, "Computational Optimal Transport", remarks 2.31 and 2.34.
@@ -67,7 +67,7 @@ pub fn planar_wasserstein_2(a: &Distribution, b: &Distribution) -> Option<Measur
     if let (Some(x), Some(y)) = (Form::of(a), Form::of(b))
         && (x == y || x == Form::Point || y == Form::Point)
     {
-        // One is the other moved and stretched by a symmetric map: then means and spreads say all.
+        // One is the other shifted and stretched by a symmetric map: then means and covariances suffice.
         return bures_wasserstein(a, b).map(Measured::closed);
     }
     if let (Some([a_x, a_y]), Some([b_x, b_y])) = (axes(a), axes(b)) {
@@ -90,7 +90,7 @@ pub fn planar_wasserstein_2(a: &Distribution, b: &Distribution) -> Option<Measur
     paired(a, b, square).map(Measured::root)
 }
 
-/// What is left of a family once it is moved, and stretched along its axes.
+/// A family up to shifts, and stretching along its axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Form {
     Point,
@@ -113,7 +113,7 @@ impl Form {
     }
 }
 
-/// How far from their centre the points lie of a distribution that looks alike from all sides.
+/// The distribution of distances from the centre, if it is rotationally symmetric.
 #[derive(Clone, Copy, Debug)]
 enum Radii {
     /// Inner and outer radius.
@@ -139,7 +139,7 @@ impl Radii {
         })
     }
 
-    /// The radius that a share of all points lie beyond.
+    /// The radius that this share of all points exceeds.
     fn beyond(self, share: f64) -> f64 {
         match self {
             Self::Ring(inner, outer) => (outer * outer - (outer * outer - inner * inner) * share)
@@ -149,7 +149,7 @@ impl Radii {
         }
     }
 
-    /// The mean of a function of the difference, share for share.
+    /// The mean of a function of the difference, quantile by quantile.
     fn compare(self, other: Self, of: impl Fn(f64) -> f64) -> Measured {
         let gap = |share: f64| self.beyond(share) - other.beyond(share);
         let knots = super::quadrature::split_at_signs(&[0.0, 0.01, 0.5, 1.0], gap);
@@ -163,7 +163,7 @@ impl Radii {
     }
 }
 
-/// The distributions along x and along y, where they do not depend on each other.
+/// The distributions along x and along y, if they are independent.
 fn axes(distribution: &Distribution) -> Option<[Distribution; 2]> {
     match distribution {
         Distribution::Box { low, high } | Distribution::PoissonDisc { low, high, .. } => Some([0, 1].map(|axis| {
@@ -205,7 +205,7 @@ fn axes(distribution: &Distribution) -> Option<[Distribution; 2]> {
     }
 }
 
-/// The mean cost of the cheapest pairs of points that stand for both.
+/// The mean cost of the cheapest matching of sample points.
 fn paired(a: &Distribution, b: &Distribution, cost: impl Fn([f64; 2], [f64; 2]) -> f64) -> Option<Measured> {
     let listed = |distribution: &Distribution| match distribution {
         Distribution::Points { values, .. } if values.len() <= STAND_INS => Some(values.clone()),
@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn discs_around_one_centre_grow_along_their_rays() {
+    fn concentric_discs_grow_along_their_rays() {
         check(planar_wasserstein_1(&disc(0.0, 1.0), &disc(0.0, 4.0)), 2.0, 1e-12);
         check(
             planar_wasserstein_2(&disc(0.0, 1.0), &disc(0.0, 4.0)),
@@ -272,7 +272,7 @@ mod tests {
             inner: 2.0,
             outer: 2.0 + 1e-9,
         };
-        // All at 2 m, where a disc of 3 m has its points at 2 m on average.
+        // All points at 2 m; a disc of 3 m has its points at 2 m on average.
         check(planar_wasserstein_2(&disc(0.0, 3.0), &ring), 0.5_f64.sqrt(), 1e-6);
         // Mean and mean square of the distance from the centre: √(π/2) and 2.
         let point = round(0.0, 0.0);
@@ -281,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn centres_apart_add_as_a_leg_of_a_triangle() {
+    fn distance_of_centres_adds_as_a_leg_of_a_triangle() {
         let near = planar_wasserstein_2(&disc(0.0, 2.0), &round(0.0, 1.0)).unwrap().value;
         check(
             planar_wasserstein_2(&disc(0.0, 2.0), &round(3.0, 1.0)),
@@ -291,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn samples_come_near_to_what_is_known() {
+    fn samples_approximate_known_distances() {
         let square = Box {
             low: [0.0, 0.0],
             high: [2.0, 2.0],
@@ -320,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_of_points_are_paired_exactly() {
+    fn lists_of_points_are_matched_exactly() {
         let list = |values: &[[f64; 2]]| Points {
             values: values.to_vec(),
             order: Order::Turn,

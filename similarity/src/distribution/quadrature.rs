@@ -1,12 +1,12 @@
-//! Integrals of smooth functions between two ends at which they may be steep. What is integrated is said by the measures.
+//! Integrates functions that are smooth between two ends but may be steep at them.
 //!
-//! No library is used: those at hand hand the function a plain number, which beside an end that is not 0 has lost the digits
-//! that a density without bound needs there.
+//! Own code: available libraries pass a plain number to the function, which loses the digits that an unbounded density needs
+//! next to an end other than 0.
 
 use std::f64::consts::FRAC_PI_2;
 use std::sync::OnceLock;
 
-/// A place on the line as a base and an offset from it, so that its distance from a nearby end keeps all digits.
+/// A point on the line as a base and an offset, so that its distance from a nearby end keeps full precision.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node {
     base: f64,
@@ -14,22 +14,22 @@ pub(crate) struct Node {
 }
 
 impl Node {
-    /// The place of a plain number.
+    /// The node of a plain number.
     pub(crate) fn at(x: f64) -> Self {
         Self { base: x, offset: 0.0 }
     }
 
-    /// The place as a number.
+    /// The point as a number.
     pub(crate) fn x(self) -> f64 {
         self.base + self.offset
     }
 
-    /// How far it lies above `from`.
+    /// Its distance above `from`.
     pub(crate) fn above(self, from: f64) -> f64 {
         (self.base - from) + self.offset
     }
 
-    /// The place as seen from one that lies `by` higher.
+    /// The node, relative to an origin `by` higher.
     pub(crate) fn lowered(self, by: f64) -> Self {
         Self {
             base: self.base - by,
@@ -41,10 +41,10 @@ impl Node {
 /// Steps per unit at the finest level.
 const FINEST: usize = 64;
 
-/// The first level takes every so many of the finest steps.
+/// Stride of the first level, in finest steps.
 const COARSE: usize = 32;
 
-/// Nodes of the finest level on one side: distance from the end and weight, both as shares of the stretch.
+/// Nodes of the finest level on one side: distance from the end and weight, both as shares of the interval.
 fn nodes() -> &'static [(f64, f64)] {
     static NODES: OnceLock<Vec<(f64, f64)>> = OnceLock::new();
     NODES.get_or_init(|| {
@@ -58,10 +58,10 @@ fn nodes() -> &'static [(f64, f64)] {
     })
 }
 
-/// Several integrals from `low` to `high` at once, each with an estimate of its error.
+/// Computes several integrals from `low` to `high` at once, each with an estimate of its error.
 ///
-/// The double exponential rule of Takahasi and Mori 1974: steep ends do no harm, kinks in the middle do. Halves its step
-/// until the first integral changes by no more than `enough`, or by a share of 1e-10, at most five times: 13 to 700 calls.
+/// The double exponential rule of Takahasi and Mori 1974: tolerates steep ends, but not kinks inside. Halves its step until the
+/// first integral changes by at most `enough`, or by a share of 1e-10, at most five times: 13 to 700 calls.
 pub(crate) fn integrate<const N: usize>(
     [low, high]: [f64; 2],
     enough: f64,
@@ -73,7 +73,7 @@ pub(crate) fn integrate<const N: usize>(
     let mut stride = COARSE;
     while stride >= 1 {
         let first = stride == COARSE;
-        // Later levels add the nodes between those of the levels before.
+        // Later levels add the nodes between those of earlier levels.
         let (from, step) = if first { (0, stride) } else { (stride, 2 * stride) };
         for (k, (share, weight)) in nodes().iter().enumerate().skip(from).step_by(step) {
             let offset = width * share;
@@ -110,7 +110,7 @@ pub(crate) fn integrate<const N: usize>(
     (value, error)
 }
 
-/// Where a stretch is looked at for a change of sign, as shares of it: closer near the ends.
+/// Points of a stretch, as shares of it, at which a change of sign is looked for: denser near the ends.
 const LOOKS: [f64; 13] = [
     1e-7,
     1e-3,
@@ -127,7 +127,7 @@ const LOOKS: [f64; 13] = [
     1.0 - 1e-7,
 ];
 
-/// The knots, and between them the places where a function changes its sign, as far as thirteen looks per stretch show.
+/// The knots, with the sign changes of a function between them that thirteen samples per stretch reveal.
 pub(crate) fn split_at_signs(knots: &[f64], f: impl Fn(f64) -> f64) -> Vec<f64> {
     let mut found = Vec::with_capacity(2 * knots.len());
     found.extend(knots.first());
@@ -148,7 +148,7 @@ pub(crate) fn split_at_signs(knots: &[f64], f: impl Fn(f64) -> f64) -> Vec<f64> 
     found
 }
 
-/// The place between two of different sign where the sign changes, by the Illinois rule.
+/// The sign change between two points of different sign, by the Illinois rule.
 fn root(mut a: (f64, f64), mut b: (f64, f64), f: impl Fn(f64) -> f64) -> f64 {
     for _ in 0..100 {
         let x = (a.0 * b.1 - b.0 * a.1) / (b.1 - a.1);
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn a_change_of_sign_becomes_a_knot() {
+    fn sign_change_becomes_a_knot() {
         let split = split_at_signs(&[0.0, 1.0, 3.0], |x| x * x - 2.0);
         assert_eq!(split.len(), 4);
         assert!((split[2] - 2.0_f64.sqrt()).abs() < 1e-12);

@@ -1,13 +1,12 @@
-//! Points that stand for a distribution of the plane, evenly strewn and always the same. What is reckoned from them is in
-//! `planar.rs`; worlds are drawn by `generator`.
+//! Points that represent a distribution of the plane: evenly spread and deterministic.
 
 use driftworld_spec::{Distribution, Value};
 
-/// So many points that each stands for the same share; `None` if it draws no points.
+/// `count` points of equal weight; `None` if the distribution draws no points.
 ///
-/// Those of two distributions are drawn from the same random numbers, so that equal ones get equal points.
+/// All distributions use the same random numbers, so equal ones get equal points.
 pub(super) fn scatter(distribution: &Distribution, count: usize) -> Option<Vec<[f64; 2]>> {
-    // Hammersley's points: even along one axis, bits reversed along the other.
+    // Hammersley's points: even along one axis, bit-reversed along the other.
     let units = (0..count as u32).map(|k| {
         let u = (f64::from(k) + 0.5) / count as f64;
         let v = f64::from(k.reverse_bits()) / (f64::from(u32::MAX) + 1.0) + 0.5 / count as f64;
@@ -16,7 +15,7 @@ pub(super) fn scatter(distribution: &Distribution, count: usize) -> Option<Vec<[
     units.map(|unit| point(distribution, unit)).collect()
 }
 
-/// The point that two random numbers decide. `poisson_disc` is taken without its distance.
+/// The point for two random numbers. `poisson_disc` is taken without its distance.
 fn point(distribution: &Distribution, [u, v]: [f64; 2]) -> Option<[f64; 2]> {
     let among = |count: usize| {
         let at = u * count as f64;
@@ -64,7 +63,7 @@ fn point(distribution: &Distribution, [u, v]: [f64; 2]) -> Option<[f64; 2]> {
     })
 }
 
-/// Which of so many is chosen, and the random number that is left in 0..1.
+/// The entry that a random number chooses among `count`, and the rest of the number, in 0..1.
 pub(super) fn chosen(count: usize, weights: Option<&[f64]>, u: f64) -> (usize, f64) {
     let weight = |k: usize| weights.map_or(1.0, |weights| weights[k]);
     let mut left = u * (0..count).map(weight).sum::<f64>();
@@ -74,7 +73,7 @@ pub(super) fn chosen(count: usize, weights: Option<&[f64]>, u: f64) -> (usize, f
         }
         left -= weight(k);
     }
-    // Rounding can leave a sliver: it belongs to the last that can be chosen.
+    // Rounding can leave a remainder: it belongs to the last entry with a positive weight.
     ((0..count).rev().find(|k| weight(*k) > 0.0).unwrap_or(0), 0.5)
 }
 
@@ -83,7 +82,7 @@ mod tests {
     use super::*;
     use Distribution::{Annulus, Box, Disc, Gaussian, Grid, Mixture};
 
-    /// The points have the moments of what they stand for.
+    /// Checks that the points have the moments of their distribution.
     #[track_caller]
     fn check(distribution: &Distribution) {
         let points = scatter(distribution, 1024).unwrap();
@@ -104,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn points_stand_for_their_distribution() {
+    fn points_have_the_moments_of_their_distribution() {
         let (low, high) = ([0.0, 1.0], [2.0, 4.0]);
         check(&Box { low, high });
         check(&Disc {

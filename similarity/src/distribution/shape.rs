@@ -1,24 +1,24 @@
-//! [`Shape`]: what is left of a family once it is moved and stretched to a standard place. Two of one shape have closed forms.
+//! [`Shape`]: a family up to shift and scale. Two distributions of one shape have closed forms.
 
 use driftworld_spec::Distribution;
 
-/// A standard form; equal for distributions that are one another moved and stretched.
+/// A standard form; equal for distributions that differ only in shift and scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Shape {
     Point,
     Uniform,
     Normal,
     Exponential,
-    /// Where the mode lies between the ends.
+    /// Position of the mode between the ends.
     Triangular(f64),
-    /// The two shapes.
+    /// The two shape parameters.
     Beta(f64, f64),
-    /// The ends in deviations from the mean.
+    /// The ends, in standard deviations from the mean.
     Truncated(f64, f64),
 }
 
 impl Shape {
-    /// The shape, where it starts or stands, and by how much it is stretched.
+    /// The shape, its shift and its scale.
     pub(super) fn of(distribution: &Distribution) -> Option<(Self, f64, f64)> {
         Some(match distribution {
             Distribution::Constant { value } => (Self::Point, value.as_number()?, 1.0),
@@ -51,8 +51,8 @@ impl Shape {
     }
 }
 
-/// Whether chance for chance one never draws less than the other, as far as their families show; then every optimal
-/// transport goes one way, and the difference of the means is its length.
+/// Whether one quantile function is never below the other, as far as can be seen from the families; then every optimal
+/// transport moves in one direction, and the distance is the difference of the means.
 pub(super) fn one_is_never_less(a: &Distribution, b: &Distribution) -> bool {
     use Distribution::{Bernoulli, Beta, Binomial, Geometric, IntegerUniform, Poisson, TruncatedNormal};
     let agree = |x: f64, y: f64| !(x < 0.0 && y > 0.0 || x > 0.0 && y < 0.0);
@@ -83,7 +83,7 @@ pub(super) fn one_is_never_less(a: &Distribution, b: &Distribution) -> bool {
         _ => match (Shape::of(a), Shape::of(b)) {
             (Some((shape, start, stretch)), Some((other, from, by))) if shape == other => {
                 let moved = start - from;
-                // Where only the start differs, an end at infinity is as far.
+                // If only the shift differs, an infinite end is no obstacle.
                 stretch == by || {
                     let [low, high] = shape.ends().map(|end| moved + (stretch - by) * end);
                     agree(low, high)
@@ -100,7 +100,7 @@ mod tests {
     use Distribution::{Exponential, Normal, Triangular, Uniform};
 
     #[test]
-    fn one_inside_the_other_is_less_here_and_more_there() {
+    fn nested_distributions_are_not_ordered() {
         let uniform = |low: f64, high: f64| Uniform { low, high };
         assert!(one_is_never_less(&uniform(0.0, 1.0), &uniform(0.0, 3.0)));
         assert!(!one_is_never_less(&uniform(0.0, 1.0), &uniform(-1.0, 3.0)));

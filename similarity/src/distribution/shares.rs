@@ -1,14 +1,14 @@
-//! How far two Dirichlet distributions are apart. Distances of numbers are in `wasserstein_1.rs`.
+//! Distance between two Dirichlet distributions.
 
 use driftworld_spec::Distribution;
 
 use super::measured::Measured;
 use super::wasserstein_1::wasserstein_1;
 
-/// How much of the whole moves between shares drawn by two Dirichlet distributions, share by share: half the sum over the
-/// shares of Wasserstein-1 between the distributions of each, which are beta distributions.
+/// How much of the whole moves between the shares that two Dirichlet distributions draw: half the sum, over the shares, of
+/// Wasserstein-1 between their marginals, which are beta distributions.
 ///
-/// A metric in `0..=1`: it is 0 only where all shapes are equal. No unit. By quadrature. `None` unless both draw as many
+/// A metric in `0..=1`: 0 only if all shapes are equal. No unit. By quadrature. `None` unless both draw the same number of
 /// shares.
 ///
 /// # Example

@@ -1,4 +1,4 @@
-//! Total variation: how much probability would have to move. Other comparisons of probabilities are beside.
+//! Total variation: the probability that would have to move.
 
 use std::f64::consts::SQRT_2;
 
@@ -9,10 +9,10 @@ use super::overlap;
 
 /// Largest difference of the probabilities that two distributions give to any event: ½ Σ |p − q|, ½ ∫ |f − g|.
 ///
-/// A metric in `0..=1`; 1 exactly when nothing can be drawn by both. Takes distributions of numbers, of headings (both on the
-/// circle as soon as either draws such; keep to one turn for a metric), and of single values of any type; `None` for one of numbers beside one of words, for points with a density and
-/// for shares. Closed for normal, log-normal and exponential pairs and for all that is flat or in steps; otherwise by
-/// quadrature, mostly within 1e-9, at 13 to 700 places between neighbouring knots.
+/// A metric in `0..=1`; 1 exactly if they share no outcome. Takes distributions of numbers, of headings (both on the circle as
+/// soon as either draws headings; a metric only if all numbers keep to one turn), and of single values of any type; `None` for
+/// numbers against words, for points with a density and for shares. Closed for normal, log-normal and exponential pairs and for
+/// everything flat or stepped; otherwise by quadrature, mostly within 1e-9, at 13 to 700 points between neighbouring knots.
 ///
 /// Source: Levin, Peres & Wilmer 2017, "Markov Chains and Mixing Times", section 4.1.
 ///
@@ -37,7 +37,7 @@ fn closed(a: &Distribution, b: &Distribution) -> Option<f64> {
         (Normal { mean: m, std: s }, Normal { mean: n, std: t }) if *s > 0.0 && *t > 0.0 => {
             Some(normals(*m, *s, *n, *t))
         }
-        // The logarithm changes no probability.
+        // Taking the logarithm changes no probability.
         (LogNormal { mu: m, sigma: s }, LogNormal { mu: n, sigma: t }) if *s > 0.0 && *t > 0.0 => {
             Some(normals(*m, *s, *n, *t))
         }
@@ -60,7 +60,7 @@ fn normals(m: f64, s: f64, n: f64, t: f64) -> f64 {
     if s == t {
         return libm::erf(apart / (2.0 * SQRT_2 * s));
     }
-    // Measured in the narrower one's deviations, from its mean.
+    // In standard deviations of the narrower one, from its mean.
     let (narrow, wide) = (s.min(t), s.max(t));
     let (ratio, shift) = (wide / narrow, apart / narrow);
     let a = ratio * ratio - 1.0;
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn closed_forms_are_those_of_the_quadrature() {
+    fn closed_forms_match_the_quadrature() {
         let pairs = [
             (Normal { mean: 1.0, std: 2.0 }, Normal { mean: 4.0, std: 0.5 }),
             (Normal { mean: 1.0, std: 2.0 }, Normal { mean: 1.5, std: 2.0 }),
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_both_be_drawn_is_1_apart() {
+    fn disjoint_distributions_are_1_apart() {
         let uniform = Uniform { low: 0.0, high: 1.0 };
         check(&uniform, &Uniform { low: 1.0, high: 2.0 }, 1.0);
         check(&uniform, &Poisson { mean: 3.0 }, 1.0);
@@ -120,15 +120,15 @@ mod tests {
     }
 
     #[test]
-    fn long_runs_are_counted_not_listed() {
+    fn long_runs_are_counted_without_listing() {
         let run = |low: f64, high: f64| IntegerUniform { low, high };
         check(&run(1.0, 1e9), &run(5e8 + 1.0, 1.5e9), 0.5);
-        // Of the thousand million whole numbers of the one, the other draws three.
+        // The first draws a thousand million whole numbers, the other three of them.
         check(&run(1.0, 1e9), &run(1.0, 3.0), 1.0 - 3e-9);
     }
 
     #[test]
-    fn headings_are_compared_around_the_circle() {
+    fn headings_are_compared_on_the_circle() {
         let all = VonMises { mean: 77.0, kappa: 0.0 };
         check(
             &all,
@@ -162,8 +162,8 @@ mod tests {
     }
 
     #[test]
-    fn where_a_density_is_beyond_all_numbers_its_mass_is_taken_as_a_whole() {
-        // Half a sum of differences of scipy's cumulative functions over 700,000 stretches, evenly wide in ln x.
+    fn overflowing_densities_are_compared_by_mass() {
+        // scipy: half the sum of differences of cumulative functions over 700,000 stretches of equal width in ln x.
         for (alpha, sigma, expected) in [(0.03, 30.0, 0.514_766_196_057), (0.001, 10.0, 0.971_931_609_412)] {
             let beta = Distribution::Beta {
                 alpha,

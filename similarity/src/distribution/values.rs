@@ -1,20 +1,20 @@
-//! Distributions of single values of any type: words, colours, truths, points. Those of numbers are in `law.rs`.
+//! Distributions of discrete values of any type: words, colours, booleans, points.
 
 use std::cmp::Ordering;
 
 use driftworld_spec::{Distribution, Value};
 
-/// Most values that are gone through.
+/// Most values that are enumerated.
 const MOST_VALUES: f64 = 100_000.0;
 
-/// Share of the entry `k` among so many, by weight where there are weights.
+/// Probability of entry `k` of `count`, by weight if there are weights.
 pub(super) fn share(k: usize, count: usize, weights: Option<&[f64]>) -> f64 {
     weights.map_or(1.0 / count as f64, |weights| weights[k] / weights.iter().sum::<f64>())
 }
 
-/// Every value that can occur with its probability, each once, in a fixed order; `None` for distributions with a density.
+/// Every possible value with its probability, each once, in a fixed order; `None` for distributions with a density.
 ///
-/// Of places taken in turn those of one round.
+/// For places taken in turn, those of one round.
 pub(super) fn probabilities(distribution: &Distribution) -> Option<Vec<(Value, f64)>> {
     let mut found = Vec::new();
     add(&mut found, 1.0, distribution)?;
@@ -84,7 +84,7 @@ pub(super) fn grid_centres(low: [f64; 2], high: [f64; 2], cells: [f64; 2]) -> im
     (0..rows).flat_map(move |row| (0..columns).map(move |column| [along(0, column), along(1, row)]))
 }
 
-/// Probabilities of the same value side by side, 0 where one cannot draw it; both lists are in order.
+/// Pairs the probabilities of equal values, 0 where one cannot draw it; both lists are sorted.
 pub(super) fn side_by_side(a: &[(Value, f64)], b: &[(Value, f64)]) -> Vec<[f64; 2]> {
     let (mut i, mut j) = (0, 0);
     let mut pairs = Vec::with_capacity(a.len().max(b.len()));
@@ -103,7 +103,7 @@ pub(super) fn side_by_side(a: &[(Value, f64)], b: &[(Value, f64)]) -> Vec<[f64; 
     pairs
 }
 
-/// A fixed order of values: by type, then by content. Whole and real numbers are of one type.
+/// A total order of values: by type, then by content. Integers and real numbers are one type.
 fn compare(a: &Value, b: &Value) -> Ordering {
     let numbers = |a: &[f64], b: &[f64]| {
         let each = a.iter().zip(b).map(|(a, b)| (a + 0.0).total_cmp(&(b + 0.0)));
@@ -137,7 +137,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_same_words_in_another_order_stand_side_by_side() {
+    fn probabilities_of_equal_words_are_paired_in_any_order() {
         let words = |words: &[&str], weights: &[f64]| Distribution::Choice {
             values: words.iter().map(|word| Value::Text((*word).into())).collect(),
             weights: Some(weights.to_vec()),
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bernoulli_is_a_choice_of_truths() {
+    fn bernoulli_is_a_choice_of_booleans() {
         let choice = Distribution::Choice {
             values: vec![Value::Boolean(true), Value::Boolean(false)],
             weights: Some(vec![1.0, 3.0]),

@@ -1,4 +1,4 @@
-//! Wasserstein-1 between distributions of numbers. Around the circle it is in `circular.rs`, of points in `planar.rs`.
+//! Wasserstein-1 between distributions of numbers.
 
 use std::f64::consts::PI;
 
@@ -11,15 +11,14 @@ use super::measured::Measured;
 use super::part::normal_mass;
 use super::shape::one_is_never_less;
 
-/// Least work that turns one distribution of numbers into the other: ∫ |F − G|, in the units of the numbers.
+/// Wasserstein-1 of two distributions of numbers: ∫ |F − G|, in the unit of the numbers.
 ///
-/// A metric in `0..`. A Bernoulli counts as 0 and 1; where either draws headings, both are taken as such and compared by
+/// A metric in `0..`. A Bernoulli counts as 0 and 1; if either draws headings, both are taken as headings and compared by
 /// [`circular_wasserstein_1`](super::circular_wasserstein_1()). `None` if either draws no numbers. Exact for pairs of normal
-/// and of log-normal distributions, for all that is flat or in steps, and wherever one of the two draws, chance for chance,
-/// never less than the other (two betas that lean to different sides, two Poissons, exponentials …): then it is the
-/// difference of the means. Otherwise by quadrature, mostly within 1e-9 of its size. Whole numbers out of more than 4,096
-/// count as evenly spread. Looks for a closed form first and takes no memory then; a
-/// quadrature takes 13 to 700 places between neighbouring knots.
+/// and of log-normal distributions, for everything flat or stepped, and whenever one quantile function is never below the other
+/// (two betas that lean to different sides, two Poissons, exponentials …): then it is the difference of the means. Otherwise by
+/// quadrature, mostly within 1e-9 of its size, at 13 to 700 points between neighbouring knots. Whole numbers out of more than
+/// 4,096 count as evenly spread. Tries closed forms first, without allocating.
 ///
 /// Source: Vallender 1974; the same numbers as `scipy.stats.wasserstein_distance` on large samples.
 ///
@@ -63,7 +62,7 @@ fn closed(a: &Distribution, b: &Distribution) -> Option<f64> {
     }
 }
 
-/// Mean of |X| for a normal X: coupled chance for chance, two normals differ by one.
+/// Mean of |X| for a normal X: the quantile-by-quantile difference of two normals is normal.
 pub(super) fn folded(mean: f64, std: f64) -> f64 {
     if std == 0.0 {
         return mean.abs();
@@ -72,14 +71,14 @@ pub(super) fn folded(mean: f64, std: f64) -> f64 {
     std * (2.0 / PI).sqrt() * libm::exp(-0.5 * z * z) + mean * libm::erf(z / std::f64::consts::SQRT_2)
 }
 
-/// Chance for chance, the one with the larger `sigma` is less up to one place and more beyond it.
+/// Quantile by quantile, the one with the larger `sigma` is below the other up to one point and above it beyond.
 fn log_normals([m, s]: [f64; 2], [n, t]: [f64; 2]) -> f64 {
     let mean = |mu: f64, sigma: f64| libm::exp(mu + sigma * sigma / 2.0);
     if s == t {
         return (mean(m, s) - mean(n, t)).abs();
     }
     let at = (n - m) / (s - t);
-    // The part of the mean that comes from chances below and above the place.
+    // The part of the mean from quantiles below and above that point.
     let below = |mu: f64, sigma: f64| mean(mu, sigma) * normal_mass(f64::NEG_INFINITY, at - sigma);
     let above = |mu: f64, sigma: f64| mean(mu, sigma) * normal_mass(at - sigma, f64::INFINITY);
     (below(m, s) - below(n, t)).abs() + (above(m, s) - above(n, t)).abs()
@@ -106,16 +105,16 @@ mod tests {
     }
 
     #[test]
-    fn closed_forms_are_met() {
+    fn closed_forms_match_known_values() {
         check(&Uniform { low: 0.0, high: 1.0 }, &Uniform { low: 0.0, high: 3.0 }, 1.0);
-        // One inside the other around the same centre: a quarter of the difference of the widths.
+        // Nested around the same centre: a quarter of the difference of the widths.
         check(
             &Uniform { low: -1.0, high: 1.0 },
             &Uniform { low: -3.0, high: 3.0 },
             1.0,
         );
         check(&Normal { mean: 1.0, std: 2.0 }, &Normal { mean: 4.0, std: 2.0 }, 3.0);
-        // Same mean: the difference of the deviations times √(2/π).
+        // Same mean: the difference of the standard deviations times √(2/π).
         check(
             &Normal { mean: 0.0, std: 1.0 },
             &Normal { mean: 0.0, std: 3.0 },
@@ -137,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn formulas_agree_with_the_area_between_the_functions() {
+    fn formulas_match_the_area_between_the_functions() {
         let beta = |alpha: f64, beta: f64| Beta {
             alpha,
             beta,
@@ -176,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wide_truncation_changes_nothing() {
+    fn wide_truncation_changes_nothing() {
         let cut = TruncatedNormal {
             mean: 0.0,
             std: 1.0,

@@ -1,4 +1,4 @@
-//! Wasserstein-2 between distributions of numbers. That of points is in `planar.rs`.
+//! Wasserstein-2 between distributions of numbers.
 
 use driftworld_spec::Distribution;
 
@@ -8,14 +8,15 @@ use super::measured::Measured;
 use super::quadrature::integrate;
 use super::shape::Shape;
 
-/// Root mean square of how far each number has to move: √∫ (F⁻¹(u) − G⁻¹(u))² du, in the units of the numbers.
+/// Wasserstein-2 of two distributions of numbers, the root mean square distance that each number has to move: √∫ (F⁻¹(u) −
+/// G⁻¹(u))² du, in the unit of the numbers.
 ///
 /// A metric in `0..`, never below Wasserstein-1. A Bernoulli counts as 0 and 1. `None` if either draws no numbers, draws
-/// headings, or has more different counts than 65,536. Closed for two that are one another moved and stretched (normal,
-/// uniform, exponential, triangular, beta and truncated normal of one shape): the hypotenuse of the differences of mean and
-/// standard deviation; for two log-normals, for anything beside a constant, and for all that is flat or in steps. Otherwise
-/// by quadrature over the quantiles, mostly within 1e-7, at 13 to 700 places between neighbouring knots. Whole numbers out of more than 4,096 count
-/// as evenly spread.
+/// headings, or has more than 65,536 different counts. Closed if both differ only in shift and scale (normal, uniform,
+/// exponential, triangular, beta and truncated normal of one shape): the hypotenuse of the differences of mean and standard
+/// deviation; for two log-normals, for anything against a constant, and for everything flat or stepped. Otherwise by quadrature
+/// over the quantiles, mostly within 1e-7, at 13 to 700 points between neighbouring knots. Whole numbers out of more than 4,096
+/// count as evenly spread.
 ///
 /// Source: Peyré & Cuturi 2019, "Computational Optimal Transport", remarks 2.30 and 2.31. `ot.wasserstein_1d(p=2)` is the
 /// square.
@@ -43,7 +44,7 @@ pub fn wasserstein_2(a: &Distribution, b: &Distribution) -> Option<Measured> {
     }
     let square = between_pieces(&pieces(&p), &pieces(&q));
     Some(if miss_p + miss_q > 0.0 {
-        // A number is at most half a unit from where it was put.
+        // Each number moves by at most half a unit.
         Measured::quadrature(square.max(0.0).sqrt(), 2.0 * (miss_p + miss_q))
     } else {
         law::exact(&p, &q, square).root()
@@ -52,7 +53,7 @@ pub fn wasserstein_2(a: &Distribution, b: &Distribution) -> Option<Measured> {
 
 fn closed(a: &Distribution, b: &Distribution) -> Option<f64> {
     if let (Distribution::LogNormal { mu: m, sigma: s }, Distribution::LogNormal { mu: n, sigma: t }) = (a, b) {
-        // E (X − Y)² = (E X − E Y)² + Var X + Var Y − 2 Cov, with the covariance of one chance.
+        // E (X − Y)² = (E X − E Y)² + Var X + Var Y − 2 Cov, with the covariance of the quantile coupling.
         let (of_m, of_n) = (a.mean()?, b.mean()?);
         let spread = libm::expm1(s * s) * of_m * of_m + libm::expm1(t * t) * of_n * of_n;
         let both = libm::expm1(s * t) * libm::exp(m + n + f64::midpoint(s * s, t * t));
@@ -70,7 +71,7 @@ fn closed(a: &Distribution, b: &Distribution) -> Option<f64> {
     ))
 }
 
-/// A stretch of chance in which the number goes straight from one to another: how much chance, from, to.
+/// A stretch of probability over which the quantile is linear: its probability, from, to.
 type Piece = (f64, f64, f64);
 
 /// The quantile function of a law of flat parts and single numbers.
@@ -93,7 +94,7 @@ fn pieces(law: &Law) -> Vec<Piece> {
     pieces
 }
 
-/// ∫ (F⁻¹ − G⁻¹)² over chance.
+/// ∫ (F⁻¹ − G⁻¹)² over the probability.
 fn between_pieces(a: &[Piece], b: &[Piece]) -> f64 {
     let (mut a, mut b) = (a.iter().copied(), b.iter().copied());
     let (mut left, mut right) = (a.next(), b.next());
@@ -145,7 +146,7 @@ fn over_quantiles(a: &Distribution, p: &Law, b: &Distribution, q: &Law) -> Optio
         squares[0] += x;
         squares[1] += y;
     }
-    // What is missing of the variances lies in tails finer than numbers near 1.
+    // The rest of the variances lies in tails finer than the resolution of numbers near 1.
     let missing = (squares[0] - a.variance()?).abs() + (squares[1] - b.variance()?).abs();
     Some(Measured::quadrature(sum, tolerance + missing))
 }
@@ -165,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn closed_forms_are_met() {
+    fn closed_forms_match_known_values() {
         check(&Normal { mean: 0.0, std: 1.0 }, &Normal { mean: 3.0, std: 5.0 }, 5.0);
         check(
             &Uniform { low: 0.0, high: 1.0 },
@@ -180,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn formulas_agree_with_the_quantiles() {
+    fn formulas_match_the_quantiles() {
         let tent = |low: f64, high: f64| Triangular {
             low,
             mode: 0.25 * high + 0.75 * low,
@@ -211,7 +212,7 @@ mod tests {
             low: Some(0.0),
             high: None,
         };
-        // Half of the chance moves not at all, the other from u to 0.
+        // Half of the probability does not move, the other half moves from u to 0.
         check(&cut, &Uniform { low: -1.0, high: 1.0 }, (1.0 / 6.0_f64).sqrt());
         let found = wasserstein_2(&Poisson { mean: 4.0 }, &Normal { mean: 4.0, std: 2.0 }).unwrap();
         let less = wasserstein_1(&Poisson { mean: 4.0 }, &Normal { mean: 4.0, std: 2.0 }).unwrap();

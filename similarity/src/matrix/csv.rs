@@ -1,5 +1,4 @@
-//! Distance matrices as CSV: a line of labels behind an empty cell, then a line for each item, its label first. Files are the
-//! callers'.
+//! Distance matrices as CSV: a line of labels after an empty cell, then a line for each item, its label first.
 
 use std::iter::Peekable;
 use std::str::Chars;
@@ -11,13 +10,13 @@ use super::{DistanceMatrix, MAX_ITEMS};
 use crate::SimilarityError;
 
 impl DistanceMatrix {
-    /// The matrix as CSV (RFC 4180 with bare line feeds). Every number reads back as the same one. Labels that a
-    /// spreadsheet would take for formulas are guarded by an apostrophe, which is taken away when they are read.
+    /// The matrix as CSV (RFC 4180 with bare line feeds). Every number reads back exactly. Labels that a spreadsheet would take
+    /// for formulas are escaped by an apostrophe, which reading removes.
     pub fn to_csv(&self) -> String {
         self.to_csv_with(Cells::Guarded)
     }
 
-    /// As [`DistanceMatrix::to_csv`], with labels guarded or as they are.
+    /// Like [`DistanceMatrix::to_csv`], with labels escaped or raw.
     pub fn to_csv_with(&self, cells: Cells) -> String {
         let cell = |text: &str| {
             let text = cells.cell(text);
@@ -36,10 +35,10 @@ impl DistanceMatrix {
         text
     }
 
-    /// Reads what [`DistanceMatrix::to_csv`] writes. CSV does not say what the measure was: the nature is the default.
+    /// Reads the output of [`DistanceMatrix::to_csv`]. CSV does not record the measure's laws, so the default applies.
     ///
     /// # Errors
-    /// [`SimilarityError::BadMatrix`] where the text is no such table; whatever [`DistanceMatrix::from_values`] says.
+    /// [`SimilarityError::BadMatrix`] if the text is not such a table; otherwise as [`DistanceMatrix::from_values`].
     ///
     /// # Example
     /// ```
@@ -83,7 +82,7 @@ impl DistanceMatrix {
                 values.push(number.map_err(|_| bad(row.line, format!("{cell:?}"), "a number"))?);
             }
         }
-        // A matrix of nothing is written as a line of two empty cells.
+        // An empty matrix is written as a line of two empty cells.
         if read == 0 && labels == [""] {
             return Self::from_values(Vec::new(), Array2::zeros((0, 0)));
         }
@@ -104,14 +103,14 @@ fn bad(line: usize, found: impl Into<String>, expected: impl Into<String>) -> Si
     }
 }
 
-/// A line of a table, and where it begins, from 1.
+/// A line of a table, with its line number, from 1.
 struct Row {
     line: usize,
     cells: Vec<String>,
 }
 
-/// The lines of a table, one after the other; a cell in quotes may hold commas and line ends, and a doubled quote is
-/// one. Empty lines, as some editors leave at the end, say nothing and are left out.
+/// Iterates over the lines of a table; a cell in quotes may hold commas and line ends, and a doubled quote stands for one.
+/// Empty lines, which some editors append, are skipped.
 struct Rows<'t> {
     letters: Peekable<Chars<'t>>,
     line: usize,
@@ -126,7 +125,7 @@ impl<'t> Rows<'t> {
         }
     }
 
-    /// The next line, empty ones included.
+    /// The next line, including empty ones.
     fn line(&mut self) -> Option<Result<Row, SimilarityError>> {
         self.letters.peek()?;
         let (mut cells, mut cell) = (Vec::new(), String::new());
@@ -150,7 +149,7 @@ impl<'t> Rows<'t> {
     }
 }
 
-/// Puts a cell to its line; of a line with more cells than any matrix has, however many more they are, one more.
+/// Adds a cell to its line, but at most one more than any matrix can have.
 fn keep(cells: &mut Vec<String>, cell: &mut String) {
     let cell = std::mem::take(cell);
     if cells.len() < MAX_ITEMS + 2 {
@@ -196,14 +195,14 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_written_reads_back_the_same(
+        fn csv_round_trips(
             labels in prop::collection::btree_set("['=+@-]{0,2}[a-z1,\"\n\r\t #é]{1,5}", 1..6),
             numbers in prop::collection::vec(0.0..1e9_f64, 15),
         ) {
             let measure = |a: usize, b: usize| Ok::<_, SimilarityError>(numbers[(a * 5 + b) % 15]);
             let matrix = DistanceMatrix::measure(labels.into_iter().collect(), measure).unwrap();
             prop_assert_eq!(&DistanceMatrix::from_csv(&matrix.to_csv()).unwrap(), &matrix);
-            // What is written raw reads back the same, too, but for labels that look guarded.
+            // Raw output round-trips, too, except for labels that look escaped.
             if matrix.labels().iter().all(|label| !label.starts_with('\'')) {
                 prop_assert_eq!(DistanceMatrix::from_csv(&matrix.to_csv_with(Cells::Raw)).unwrap(), matrix);
             }
@@ -211,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn labels_that_are_formulas_are_guarded() {
+    fn formula_labels_are_escaped() {
         let names = vec!["=1+2".to_owned(), "-3".to_owned()];
         let matrix = DistanceMatrix::measure(names, |_, _| Ok::<_, SimilarityError>(0.5)).unwrap();
         assert_eq!(matrix.to_csv(), ",'=1+2,-3\n'=1+2,0,0.5\n-3,0.5,0\n");
@@ -219,13 +218,13 @@ mod tests {
     }
 
     #[test]
-    fn other_programs_line_ends_and_marks_are_understood() {
+    fn foreign_line_ends_and_byte_order_marks_are_read() {
         let matrix = DistanceMatrix::from_csv("\u{feff},a,b\r\na,0, 1e-1\r\nb,0.1,0\r\n\r\n").unwrap();
         assert_eq!((matrix.labels().join(" "), matrix.get(1, 0)), ("a b".to_owned(), 0.1));
     }
 
     #[test]
-    fn more_lines_and_cells_than_any_matrix_has_are_told() {
+    fn too_many_lines_or_cells_are_refused() {
         let message = |text: &str| DistanceMatrix::from_csv(text).unwrap_err().to_string();
         let few = message(&format!(",a\na,0\n{}", "a,0\n".repeat(70_000)));
         assert!(few.contains("found 70001 lines below the labels, expected 1"), "{few}");
@@ -234,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_table_says_where() {
+    fn bad_csv_error_names_the_place() {
         check_error(
             "",
             "matrix, line 1: found no lines, expected a line of labels behind an empty cell",

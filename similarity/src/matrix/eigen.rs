@@ -1,28 +1,27 @@
-//! The largest eigenvalue of a symmetric matrix that is only known by what it makes of a vector. Which matrix is the callers'.
+//! The largest eigenvalue of a symmetric matrix that is given by its product with a vector.
 //!
-//! Lanczos' method with full reorthogonalisation, in plain sums and square roots: the same bits on every machine, however many
-//! threads the callers' products use.
+//! Lanczos' method with full reorthogonalisation, using only plain sums and square roots: bit-identical on every machine, with
+//! any number of threads in the caller's products.
 
 use crate::split_mix::SplitMix64;
 
-/// The most steps between two beginnings.
+/// Most steps between two restarts.
 const MAX_STEPS: usize = 160;
-/// How often it begins anew from the best vector found.
+/// How often it restarts from the best vector found.
 const MAX_RESTARTS: usize = 12;
-/// How small the error of `A v = λ v` has to be, against the largest `λ`.
+/// Largest error of `A v = λ v`, relative to the largest `λ`.
 const PRECISION: f64 = 1e-12;
 
-/// The largest eigenvalue of the part of a symmetric matrix that is orthogonal to some orthonormal vectors, and its eigenvector
-/// of length 1, whose entry of largest size is positive. `multiply(x, y)` puts the matrix times `x` into `y`.
+/// The largest eigenvalue of a symmetric matrix on the subspace orthogonal to some orthonormal vectors, with its eigenvector of
+/// length 1, whose largest entry is positive. `multiply(x, y)` writes the matrix times `x` into `y`.
 ///
-/// None if nothing is orthogonal to those vectors. Eigenvalues that occur twice are found one after the other, by handing the
-/// first vector in again.
+/// `None` if nothing is orthogonal to those vectors. For repeated eigenvalues, call it again with the vectors found so far.
 pub(crate) fn largest(
     n: usize,
     multiply: &impl Fn(&[f64], &mut [f64]),
     against: &[Vec<f64>],
 ) -> Option<(f64, Vec<f64>)> {
-    // Another start each time: the old one has no part left in an eigenspace that it has led into before.
+    // A new start each time: the old one has no component left in an eigenspace that it has already led into.
     let mut rng = SplitMix64(against.len() as u64);
     let mut start: Vec<f64> = (0..n).map(|_| rng.unit() - 0.5).collect();
     let mut best = None;
@@ -76,7 +75,7 @@ fn climb(n: usize, multiply: &impl Fn(&[f64], &mut [f64]), against: &[Vec<f64>],
             .fold(0.0_f64, |a, b: &f64| a.max(b.abs()));
         let ended = steps == most || rest <= 1e-14 * scale;
         if ended || steps % 8 == 0 {
-            // Of each eigenvector of the small matrix only the last entry is needed to judge the error.
+            // Of each eigenvector of the small matrix, only the last entry is needed for the error.
             let mut last = vec![vec![0.0; steps]];
             last[0][steps - 1] = 1.0;
             let values = tridiagonal(&diagonal, &beside, &mut last);
@@ -108,7 +107,7 @@ fn climb(n: usize, multiply: &impl Fn(&[f64], &mut [f64]), against: &[Vec<f64>],
 }
 
 /// The eigenvalues of a symmetric tridiagonal matrix by the implicit QL method; `rows` of the identity become rows of the
-/// matrix of eigenvectors, which stand in its columns.
+/// matrix of eigenvectors, which are its columns.
 ///
 /// Source: Bowdler, Martin, Reinsch and Wilkinson 1968 (`tql2` of EISPACK).
 fn tridiagonal(diagonal: &[f64], beside: &[f64], rows: &mut [Vec<f64>]) -> Vec<f64> {
@@ -117,7 +116,7 @@ fn tridiagonal(diagonal: &[f64], beside: &[f64], rows: &mut [Vec<f64>]) -> Vec<f
     let mut e = beside.to_vec();
     e.resize(n, 0.0);
     for low in 0..n {
-        // Three or so are enough for each; the bound only keeps a matrix of no numbers from going on for ever.
+        // About three iterations suffice for each; the bound ends the loop for matrices of NaN.
         for _ in 0..64 {
             let small = |k: usize| e[k].abs() <= f64::EPSILON * (d[k].abs() + d[k + 1].abs());
             let high = (low..n - 1).find(|k| small(*k)).unwrap_or(n - 1);
@@ -186,7 +185,7 @@ fn scaled(vector: &[f64], by: f64) -> Vec<f64> {
     vector.iter().map(|value| value * by).collect()
 }
 
-/// Takes from a vector its parts along some orthonormal ones.
+/// Projects some orthonormal vectors out of a vector.
 fn remove(vector: &mut [f64], directions: &[Vec<f64>]) {
     for direction in directions {
         let part = dot(vector, direction);
@@ -197,7 +196,7 @@ fn remove(vector: &mut [f64], directions: &[Vec<f64>]) {
     }
 }
 
-/// The vector or its opposite: that whose first entry of (within rounding) largest size is positive.
+/// The vector or its negative: the one whose first entry of (within rounding) largest size is positive.
 fn with_fixed_sign(vector: Vec<f64>) -> Vec<f64> {
     let largest = vector.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
     let leads = vector.iter().find(|value| value.abs() >= largest * (1.0 - 1e-9));
@@ -232,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn eigenvalues_come_from_the_top_each_as_often_as_it_is_there() {
+    fn eigenvalues_descend_and_repeat() {
         check(&[&[2.0, 0.0], &[0.0, 3.0]], &[3.0, 2.0]);
         check(
             &[&[0.0, 1.0, 1.0], &[1.0, 0.0, 1.0], &[1.0, 1.0, 0.0]],
@@ -247,8 +246,8 @@ mod tests {
     }
 
     #[test]
-    fn the_second_difference_has_its_known_eigenvalues() {
-        // 2 - 2 cos(k π / (n + 1)): close together at the top, which is what makes it hard.
+    fn second_difference_matrix_has_known_eigenvalues() {
+        // 2 - 2 cos(k π / (n + 1)): close together at the top, which makes it hard.
         let n = 400;
         let multiply = |x: &[f64], y: &mut [f64]| {
             for k in 0..n {

@@ -1,4 +1,4 @@
-//! Distance matrices as JSON: `labels`, `nature` and `values` row by row. Files are the callers'.
+//! Distance matrices as JSON: `labels`, `nature` and `values` row by row.
 
 use driftworld_text::in_plain_words;
 use ndarray::Array2;
@@ -17,15 +17,15 @@ struct Document {
 }
 
 impl DistanceMatrix {
-    /// The matrix as JSON. Every number reads back as the same one.
+    /// The matrix as JSON. Every number reads back exactly.
     pub fn to_json(&self) -> String {
         serde_json::to_string(self).expect("labels and finite numbers have a form in JSON")
     }
 
-    /// Reads what [`DistanceMatrix::to_json`] writes; `nature` may be left out.
+    /// Reads the output of [`DistanceMatrix::to_json`]; `nature` may be left out.
     ///
     /// # Errors
-    /// [`SimilarityError::BadMatrix`] where the text is no such document; whatever [`DistanceMatrix::from_values`] says.
+    /// [`SimilarityError::BadMatrix`] if the text is not such a document; otherwise as [`DistanceMatrix::from_values`].
     ///
     /// # Example
     /// ```
@@ -58,7 +58,7 @@ impl DistanceMatrix {
     }
 }
 
-/// What the JSON reader says, without the place, which stands elsewhere in the message.
+/// The JSON reader's message without the place, which the error states separately.
 fn without_place(error: &serde_json::Error) -> String {
     let said = error.to_string();
     let end = said.rfind(" at line ").unwrap_or(said.len());
@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_reads_back_the_same() {
+    fn json_round_trips() {
         let names = ["a", "say \"x\"", "é"].map(String::from).to_vec();
         let measure = |a: usize, b: usize| Ok::<_, SimilarityError>(((a + 3 * b) as f64).sqrt());
         let matrix = DistanceMatrix::measure(names, measure)
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_matrix_says_where() {
+    fn bad_json_error_names_the_place() {
         check_error(
             "{\"labels\": [\"a\"],\n \"rows\": []}",
             "matrix, line 2 column 7: found unknown field `rows`, expected one of `labels`, `nature`, `values`, \

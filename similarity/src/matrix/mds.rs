@@ -1,23 +1,23 @@
-//! Maps of a matrix: items as points of a plane whose distances are as true as they can be. Drawing them is the callers'.
+//! Maps of a matrix: items as points of a plane that approximate the distances.
 
 use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{DistanceMatrix, eigen};
 
-/// Items as points of a plane.
+/// Items as points in a plane.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlanarMap {
-    /// Where each item is, in the distances' own unit; the mean is 0, and the first axis is the longer one.
+    /// Each item's position, in the distances' own unit; the mean is 0, and the first axis is the longer one.
     pub points: Vec<[f64; 2]>,
-    /// How much of the matrix the plane shows, in 0..=1: the squares of the two eigenvalues used, as a share of all squares
-    /// (Mardia 1978). 1 where all distances are those of points in a plane, and where all are 0.
+    /// The share of the matrix that the plane explains, in 0..=1: the squares of the two eigenvalues used, as a share of all
+    /// squares (Mardia 1978). 1 if all distances are those of points in a plane, or all are 0.
     pub explained: f64,
 }
 
 /// Classical scaling (Torgerson 1952): the plane that keeps most of the doubly centred squared distances. Distances that are
-/// not Euclidean are taken as well as they can be; `explained` says how well. Signs are fixed: on each axis the item that lies
-/// farthest out, the first of equals, is on the positive side. Time `O(n²)` for each of some dozens of steps.
+/// not Euclidean are approximated; `explained` says how well. Signs are fixed: on each axis, the item farthest from 0, the
+/// first of equals, is on the positive side. Time `O(n²)` for each of some dozens of steps.
 ///
 /// Same points as by `numpy.linalg.eigh` up to signs, within 1e-9, see `tests/oracle/mds.json`.
 ///
@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn maps_are_those_of_numpys_eigenvectors() {
+    fn map_matches_numpy_eigenvectors() {
         let text = include_str!("../../tests/oracle/mds.json");
         let golden: serde_json::Value = serde_json::from_str(text).unwrap();
         for case in ["euclidean", "not_euclidean"] {
@@ -121,7 +121,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 32)))]
 
         #[test]
-        fn points_of_a_plane_keep_their_distances(points in prop::collection::vec(prop::array::uniform2(-9.0..9.0_f64), 1..30)) {
+        fn distances_of_planar_points_are_kept(points in prop::collection::vec(prop::array::uniform2(-9.0..9.0_f64), 1..30)) {
             let gap = |a: [f64; 2], b: [f64; 2]| libm::hypot(a[0] - b[0], a[1] - b[1]);
             let labels = (0..points.len()).map(|k| k.to_string()).collect();
             let measure = |a: usize, b: usize| Ok::<_, SimilarityError>(gap(points[a], points[b]));
@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn items_that_are_all_equal_stand_in_one_place() {
+    fn equal_items_are_in_one_place() {
         let matrix =
             DistanceMatrix::measure(vec!["a".into(), "b".into()], |_, _| Ok::<_, SimilarityError>(0.0)).unwrap();
         let map = classical_map(&matrix);

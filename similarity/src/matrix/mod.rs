@@ -1,5 +1,4 @@
-//! [`DistanceMatrix`]: every distance among some items. What is measured is handed in; files of it are in `csv.rs` and
-//! `json.rs`, orders of it in `order/`.
+//! [`DistanceMatrix`]: all distances among some items.
 
 mod csv;
 pub(crate) mod eigen;
@@ -14,13 +13,13 @@ use crate::{MetricProperties, SimilarityError};
 
 pub use mds::{PlanarMap, classical_map};
 
-/// The most items that a matrix holds.
+/// Most items in a matrix.
 pub const MAX_ITEMS: usize = 20_000;
 
-/// The largest distance: sums of as many as there can be stay finite.
+/// The largest distance: sums over any matrix stay finite.
 pub const MAX_DISTANCE: f64 = 1e100;
 
-/// Every distance among labelled items: symmetric, finite, at least 0, and 0 on the diagonal.
+/// All distances among labelled items: symmetric, finite, at least 0, and 0 on the diagonal.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DistanceMatrix {
     labels: Vec<String>,
@@ -37,12 +36,11 @@ fn rows<S: serde::Serializer>(values: &Array2<f64>, serializer: S) -> Result<S::
 impl DistanceMatrix {
     /// Measures every pair once, in parallel; `measure` takes two indices, the first below the second.
     ///
-    /// What the measure is, nobody has said yet: the matrix counts as one of a [`MetricProperties::Distance`] until
-    /// [`DistanceMatrix::with_properties`] says more.
+    /// The matrix counts as one of a [`MetricProperties::Distance`] unless [`DistanceMatrix::with_properties`] says more.
     ///
     /// # Errors
-    /// Whatever `measure` says of the first pair, in row order, that it fails on; [`SimilarityError::NotADistance`] for a
-    /// number that is none; [`SimilarityError::TooMany`] for more than [`MAX_ITEMS`] items.
+    /// The error of `measure` for the first failing pair in row order; [`SimilarityError::NotADistance`] for an invalid number;
+    /// [`SimilarityError::TooMany`] for more than [`MAX_ITEMS`] items.
     ///
     /// # Example
     /// ```
@@ -77,12 +75,12 @@ impl DistanceMatrix {
         Ok(Self::mirrored(labels, values))
     }
 
-    /// A matrix of distances that are there already: `(items, items)`, symmetric up to rounding, 0 on the diagonal. Where two
-    /// halves differ by less than a thousand-millionth, the upper one is kept.
+    /// A matrix of given distances: `(items, items)`, symmetric up to rounding, 0 on the diagonal. If the two halves differ by
+    /// less than a thousand-millionth, the upper one is kept.
     ///
     /// # Errors
-    /// [`SimilarityError::BadMatrix`] for another shape, a label that stands twice, a diagonal that is not 0, halves that differ;
-    /// [`SimilarityError::NotADistance`] for a number that is none; [`SimilarityError::TooMany`] for more than [`MAX_ITEMS`].
+    /// [`SimilarityError::BadMatrix`] for another shape, a repeated label, a diagonal that is not 0, or halves that differ;
+    /// [`SimilarityError::NotADistance`] for an invalid number; [`SimilarityError::TooMany`] for more than [`MAX_ITEMS`].
     pub fn from_values(labels: Vec<String>, values: Array2<f64>) -> Result<Self, SimilarityError> {
         let n = Self::bounded(labels.len())?;
         let bad =
@@ -110,10 +108,10 @@ impl DistanceMatrix {
         Ok(Self::mirrored(labels, values))
     }
 
-    /// Whether a matrix can have these labels, before anything is measured.
+    /// Checks the labels of a matrix before anything is measured.
     ///
     /// # Errors
-    /// [`SimilarityError::TooMany`] for more than [`MAX_ITEMS`], [`SimilarityError::BadMatrix`] for a label that stands twice.
+    /// [`SimilarityError::TooMany`] for more than [`MAX_ITEMS`], [`SimilarityError::BadMatrix`] for a repeated label.
     pub fn check_labels(labels: &[String]) -> Result<(), SimilarityError> {
         Self::bounded(labels.len())?;
         Self::distinct(labels)
@@ -144,7 +142,7 @@ impl DistanceMatrix {
         Err(SimilarityError::NotADistance { a, b, found })
     }
 
-    /// The matrix whose upper triangle is filled.
+    /// Completes a matrix from its upper triangle.
     fn mirrored(labels: Vec<String>, mut values: Array2<f64>) -> Self {
         let n = labels.len();
         for a in 0..n {
@@ -159,13 +157,13 @@ impl DistanceMatrix {
         }
     }
 
-    /// The same matrix, of a measure that is known to keep these laws. Nothing is checked.
+    /// The same matrix, declared to satisfy these laws. Nothing is checked.
     #[must_use]
     pub fn with_properties(self, properties: MetricProperties) -> Self {
         Self { properties, ..self }
     }
 
-    /// Which laws the measure behind it keeps, as far as anyone has said.
+    /// The laws that its measure is declared to satisfy.
     pub fn properties(&self) -> MetricProperties {
         self.properties
     }
@@ -180,7 +178,7 @@ impl DistanceMatrix {
         &self.values
     }
 
-    /// How many items there are.
+    /// Number of items.
     pub fn len(&self) -> usize {
         self.labels.len()
     }
@@ -205,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn every_pair_is_measured_once_and_stands_on_both_sides() {
+    fn every_pair_is_measured_once_and_mirrored() {
         let matrix = DistanceMatrix::measure(labels(4), |a, b| {
             assert!(a < b);
             Ok::<_, SimilarityError>((b - a) as f64)
@@ -217,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_distance_is_refused_by_name() {
+    fn invalid_distances_are_refused_by_name() {
         let found = DistanceMatrix::measure(labels(3), |a, _| {
             Ok::<_, SimilarityError>(if a == 1 { f64::NAN } else { 1.0 })
         });
@@ -233,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn values_that_are_no_matrix_of_distances_are_refused() {
+    fn values_that_are_no_distance_matrix_are_refused() {
         let said = |numbers: [f64; 4]| {
             let values = Array2::from_shape_vec((2, 2), numbers.to_vec()).unwrap();
             DistanceMatrix::from_values(labels(2), values).map_err(|error| error.to_string())

@@ -1,5 +1,5 @@
-//! [`bisimulation`]: the bisimulation metric between states of two large deterministic processes, over those pairs only that are
-//! reached together.
+//! [`bisimulation`]: the bisimulation metric between states of two large deterministic processes, computed only over pairs that
+//! are reached together.
 
 use std::collections::HashMap;
 
@@ -7,44 +7,44 @@ use super::certain_sums::CertainSums;
 use super::process::{Mdp, no_such_state};
 use crate::SimilarityError;
 
-/// Most pairs that [`bisimulation`] looks at: with 6 actions some 3 GiB.
+/// Most pairs that [`bisimulation`] visits: with 6 actions some 3 GiB.
 pub const MAX_PAIRS: usize = 1 << 24;
 
-/// How far two states of two deterministic processes are apart: equal bounds, but for rounding, where all pairs that are reached
-/// were looked at.
+/// The distance of two states of two deterministic processes: the bounds are equal, but for rounding, if all reachable pairs
+/// were visited.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bisimulation {
-    /// The distance is not below this, in the unit of the rewards.
+    /// Lower bound, in the unit of the rewards.
     pub lower: f64,
-    /// The distance is not above this, in the unit of the rewards.
+    /// Upper bound, in the unit of the rewards.
     pub upper: f64,
-    /// How many pairs of states were looked at.
+    /// Number of pairs of states visited.
     pub pairs: usize,
 }
 
 /// The bisimulation metric between a state of one deterministic decision process and a state of another with the same actions.
 ///
-/// With one successor each, `d(s, t) = maxₐ (1 − c) |R(s, a) − R(t, a)| + c d(s', t')` with `s'` and `t'` where action `a` leads from
-/// both: the Wasserstein-1 distance of two certain successors is their distance. So `d(s, t)` hangs on those pairs only that
-/// the same actions lead to from `(s, t)`. In `0..=` the largest difference of rewards, in the unit of the rewards: 0 between
-/// states from which all actions pay alike, however one goes on. Between worlds that move alike the pairs are those of a state
-/// with itself, as many as states.
+/// With one successor each, `d(s, t) = maxₐ (1 − c) |R(s, a) − R(t, a)| + c d(s', t')`, where action `a` leads from `s` to `s'`
+/// and from `t` to `t'`: the Wasserstein-1 distance of two certain successors is their distance. So `d(s, t)` depends only on
+/// the pairs that equal action sequences reach from `(s, t)`. In `0..=` the largest difference of rewards, in the unit of the
+/// rewards: 0 between states from which every sequence of actions pays the same. Between worlds with the same transitions, each
+/// state is paired with itself, so there are as many pairs as states.
 ///
 /// `starts`: a state of the first and one of the second process. `discount`: `c`, 0 to 0.9999. `max_pairs`: how many pairs to
-/// look at, 1 to [`MAX_PAIRS`]; nearest first. Pairs that are not looked at count as 0 in the lower bound and as the largest
+/// visit, 1 to [`MAX_PAIRS`]; nearest first. Pairs that are not visited count as 0 in the lower bound and as the largest
 /// difference of two rewards in the upper: the gap is at most that difference times `c` to the power of the steps that all were
 /// followed.
 ///
-/// Exact within rounding (some 1e-15 of the largest difference over `1 − c`): by policy iteration, for any discount.
-/// Memory `O(pairs · actions)`, and as much time for each round of it.
+/// Exact within rounding (some 1e-15 of the largest difference over `1 − c`): by policy iteration, for any discount. Memory
+/// `O(pairs · actions)`, and as much time for each iteration.
 ///
 /// Source: Ferns, Panangaden and Precup 2004, "Metrics for finite Markov decision processes"; for deterministic processes
 /// Castro 2020, "Scalable methods for computing state similarity in deterministic Markov decision processes". Same numbers as
 /// by `SciPy`'s linear programs, see `tests/oracle/mdp.json`.
 ///
 /// # Errors
-/// [`SimilarityError::SizesDiffer`] for different numbers of actions, [`SimilarityError::NoSuchState`] for a start that is none,
-/// [`SimilarityError::TooMany`] above [`MAX_PAIRS`], [`SimilarityError::BadNumber`] for a discount that is none.
+/// [`SimilarityError::SizesDiffer`] for different numbers of actions, [`SimilarityError::NoSuchState`] for an invalid start,
+/// [`SimilarityError::TooMany`] above [`MAX_PAIRS`], [`SimilarityError::BadNumber`] for an invalid discount.
 ///
 /// # Example
 /// ```
@@ -122,19 +122,19 @@ fn check(
     SimilarityError::check_count(max_pairs, MAX_PAIRS)
 }
 
-/// No reward of one process differs from one of the other by more.
+/// The largest difference between a reward of one process and a reward of the other.
 fn largest_difference(a: &Mdp, b: &Mdp) -> f64 {
     let ((low_a, high_a), (low_b, high_b)) = (a.reward_range(), b.reward_range());
     (high_a - low_b).max(high_b - low_a).max(0.0)
 }
 
-/// The pairs that the starts lead to, nearest first, and behind them one place for all that were not looked at.
+/// The pairs reachable from the starts, nearest first, followed by one place for all that were not visited.
 #[derive(Debug)]
 struct Reached {
     pairs: usize,
-    /// `(pairs + 1, actions)`: where each action leads both.
+    /// `(pairs + 1, actions)`: the pair that each action leads to.
     next: Vec<u32>,
-    /// `(pairs + 1, actions)`: how much what it pays differs, times the share of the present.
+    /// `(pairs + 1, actions)`: differences of rewards, times `1 − c`.
     costs: Vec<f64>,
 }
 
@@ -178,13 +178,13 @@ impl Reached {
         }
     }
 
-    /// Whether no action leads beyond the pairs.
+    /// Whether every action stays within the visited pairs.
     fn is_complete(&self) -> bool {
         let steps = self.next.len() / (self.pairs + 1);
         !self.next[..self.pairs * steps].contains(&(self.pairs as u32))
     }
 
-    /// The costs, where each step beyond the pairs has this one.
+    /// The costs, with this one for steps to pairs that were not visited.
     fn with_beyond(&self, cost: f64, actions: usize) -> Vec<f64> {
         let mut costs = self.costs.clone();
         let last = costs.len() - actions;
@@ -199,7 +199,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// All distances by the definition, iterated until the rest is below 1e-11: `(states of a, states of b)`.
+    /// All distances by the definition, iterated until the remainder is below 1e-11: `(states of a, states of b)`.
     fn by_definition(a: &Mdp, b: &Mdp, discount: f64) -> Vec<f64> {
         let width = b.states();
         let mut d = vec![0.0; a.states() * width];
@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_followed_is_refused() {
+    fn invalid_arguments_are_refused() {
         let one = Mdp::new(1, 1, vec![0], vec![0.0]).unwrap();
         let two = Mdp::new(1, 2, vec![0; 2], vec![0.0; 2]).unwrap();
         let code = |b: &Mdp, starts, discount, most| bisimulation(&one, b, starts, discount, most).unwrap_err().code();
@@ -234,7 +234,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_is_the_bisimulation_metric(a in process(6, 2), b in process(5, 2), discount in 0.0..0.9) {
+        fn result_matches_the_definition(a in process(6, 2), b in process(5, 2), discount in 0.0..0.9) {
             let expected = by_definition(&a, &b, discount);
             for (pair, expected) in expected.iter().enumerate() {
                 let found = bisimulation(&a, &b, (pair / 5, pair % 5), discount, 1000).unwrap();
@@ -244,7 +244,7 @@ mod tests {
         }
 
         #[test]
-        fn it_is_a_pseudometric_that_scales(a in process(4, 2), b in process(4, 2), c in process(4, 2)) {
+        fn bisimulation_is_a_pseudometric_that_scales(a in process(4, 2), b in process(4, 2), c in process(4, 2)) {
             let d = |a: &Mdp, b: &Mdp| bisimulation(a, b, (0, 0), 0.7, 100).unwrap().upper;
             prop_assert!(d(&a, &a) < 1e-12);
             prop_assert!((d(&a, &b) - d(&b, &a)).abs() < 1e-12);
@@ -259,7 +259,7 @@ mod tests {
         }
 
         #[test]
-        fn names_of_states_are_no_distance(
+        fn renaming_states_gives_distance_0(
             a in process(4, 2),
             b in process(3, 2),
             names in Just([0_usize, 1, 2, 3]).prop_shuffle(),
@@ -278,7 +278,7 @@ mod tests {
         }
 
         #[test]
-        fn optimal_values_are_no_farther_apart_than_states(a in process(3, 2), b in process(4, 2), discount in 0.0..0.8) {
+        fn optimal_values_differ_by_at_most_the_distance(a in process(3, 2), b in process(4, 2), discount in 0.0..0.8) {
             let values = |of: &Mdp| {
                 let mut values = vec![0.0_f64; of.states()];
                 for _ in 0..200 {
@@ -297,7 +297,7 @@ mod tests {
         }
 
         #[test]
-        fn few_pairs_bound_it_and_more_bound_it_closer(a in process(9, 2), b in process(9, 2)) {
+        fn bounds_hold_for_few_pairs_and_tighten_with_more(a in process(9, 2), b in process(9, 2)) {
             let expected = by_definition(&a, &b, 0.7)[0];
             let mut before = f64::INFINITY;
             for most in [1, 3, 9, 27, 81] {

@@ -1,31 +1,31 @@
-//! [`CertainSums`]: the largest discounted sums of costs over steps with one successor each. What the places and costs stand for is
-//! known elsewhere.
+//! [`CertainSums`]: the largest discounted sums of costs over deterministic steps.
 
-/// Places from each of which some steps lead to others, at a cost.
+/// Places with deterministic steps between them, each at a cost.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CertainSums<'a> {
-    /// Steps from each place, at least 1.
+    /// Steps per place, at least 1.
     pub(super) steps: usize,
-    /// `(places · steps,)`: where each step leads.
+    /// `(places · steps,)`: the place that each step leads to.
     pub(super) next: &'a [u32],
-    /// `(places · steps,)`: what each step costs.
+    /// `(places · steps,)`: the cost of each step.
     pub(super) costs: &'a [f64],
-    /// What the next place counts for, 0 to below 1.
+    /// Discount of the next place's value, 0 to below 1.
     pub(super) discount: f64,
 }
 
 impl CertainSums<'_> {
-    /// The largest sum from each place, `v(i) = max (cost + discount · v(next))`, and how far off one is at most.
+    /// The largest sum from each place, `v(i) = max (cost + discount · v(next))`, and a bound on its error.
     ///
-    /// Policy iteration (Howard 1960): take one step from each place, add up its way exactly (it ends in a cycle), take better steps,
-    /// until there is none. Costs of a share of `1 − discount` make `v` a mean; sums are exact within rounding over `1 − discount`.
+    /// Policy iteration (Howard 1960): choose one step per place, add up its path exactly (it ends in a cycle), choose better
+    /// steps, until there is none. Costs scaled by `1 − discount` make `v` a mean; sums are exact within rounding over
+    /// `1 − discount`.
     pub(super) fn solve(self) -> (Vec<f64>, f64) {
         let places = self.next.len() / self.steps;
         let largest = self
             .costs
             .iter()
             .fold(0.0, |largest: f64, cost| largest.max(cost.abs()));
-        // Better by more than rounding, so that no step is taken back.
+        // Better by more than rounding, so that the iteration cannot cycle.
         let better = 16.0 * f64::EPSILON * largest / ((1.0 - self.discount) * (1.0 - self.discount));
         let mut chosen: Vec<u32> = (0..places).map(|place| self.best(place, |_| 0.0).0).collect();
         loop {
@@ -45,7 +45,7 @@ impl CertainSums<'_> {
         }
     }
 
-    /// The first best step from a place, by the values of the next.
+    /// The first best step from a place, by the values of the next places.
     fn best(&self, place: usize, value: impl Fn(usize) -> f64) -> (u32, f64) {
         let mut best = (0, f64::NEG_INFINITY);
         for step in 0..self.steps {
@@ -58,11 +58,11 @@ impl CertainSums<'_> {
         best
     }
 
-    /// The sums of going on by the chosen steps for ever.
+    /// The sums of following the chosen steps for ever.
     fn along(&self, chosen: &[u32]) -> Vec<f64> {
         let at = |place: usize| place * self.steps + chosen[place] as usize;
         let mut values = vec![f64::NAN; chosen.len()];
-        // By which way a place was reached first; 0 for none.
+        // The path that first reached a place; 0 for none.
         let mut reached = vec![0_u32; chosen.len()];
         let mut way = Vec::new();
         for start in 0..chosen.len() {
@@ -73,7 +73,7 @@ impl CertainSums<'_> {
                 place = self.next[at(place)] as usize;
             }
             if values[place].is_nan() {
-                // The way met itself: once round the cycle and on for ever.
+                // The path closed a cycle: sum it once and extrapolate.
                 let (mut sum, mut weight, mut on) = (0.0, 1.0, place);
                 loop {
                     sum += weight * self.costs[at(on)];
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn ways_into_cycles_add_up() {
+    fn paths_into_cycles_add_up() {
         // 0 leads into a cycle of 1 and 2.
         let found = solve(1, &[1, 2, 1], &[4.0, 1.0, 0.0], 0.5);
         let (one, two) = (4.0 / 3.0, 2.0 / 3.0);
@@ -123,8 +123,8 @@ mod tests {
     }
 
     #[test]
-    fn a_small_pay_is_left_for_a_larger_one_farther_on() {
-        // Stay for 1, or go two steps for nothing to where 3 is paid for ever.
+    fn small_reward_is_given_up_for_a_larger_later_one() {
+        // Stay for 1, or take two unpaid steps to a place that pays 3 for ever.
         let found = solve(2, &[0, 1, 2, 2, 2, 2], &[1.0, 0.0, 0.0, 0.0, 3.0, 0.0], 0.9);
         assert!((found[0] - 24.3).abs() < 1e-12);
         assert_eq!(solve(1, &[0], &[2.0], 0.0), [2.0]);
@@ -132,7 +132,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_step_is_better(
+        fn no_step_improves_the_solution(
             next in prop::collection::vec(0_u32..20, 60),
             costs in prop::collection::vec(-4_i8..=4, 60),
             discount in 0.0..0.999,

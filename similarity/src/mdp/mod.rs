@@ -1,5 +1,4 @@
-//! How far apart finite decision processes are: by bisimulation, and by where each action leads. How a world becomes one is known
-//! elsewhere.
+//! Distances between finite decision processes: by bisimulation, and by single transitions.
 
 mod bisimulation;
 mod certain_sums;
@@ -17,7 +16,7 @@ mod drawn {
     use super::Mdp;
     use proptest::prelude::*;
 
-    /// So many states and actions, rewards of −2 to 2 in eighths.
+    /// `states` states and actions, rewards of −2 to 2 in eighths.
     pub(super) fn process(states: usize, actions: usize) -> impl Strategy<Value = Mdp> {
         let rewards = prop::collection::vec((-16_i8..=16).prop_map(|k| f64::from(k) / 8.0), states * actions);
         (prop::collection::vec(0..states as u32, states * actions), rewards)

@@ -1,17 +1,17 @@
-//! [`Mdp`]: a finite deterministic decision process as plain tables. Distances are in the files beside.
+//! [`Mdp`]: a finite deterministic decision process as plain tables.
 
 use crate::SimilarityError;
 
 /// Most states of an [`Mdp`].
 pub const MAX_MDP_STATES: usize = 1 << 24;
 
-/// Largest size of a reward.
+/// Largest absolute reward.
 const LARGEST_REWARD: f64 = 1e100;
 
-/// A finite deterministic Markov decision process: where each action leads from each state, and what it pays.
+/// A finite deterministic Markov decision process: the successor and the reward of each action in each state.
 ///
-/// States and actions are numbered from 0. Rewards are of a state and an action, in any unit. What ends an episode is a state
-/// that leads to itself and pays nothing. Memory: 12 bytes for each state and action.
+/// States and actions are numbered from 0. Rewards depend on state and action, in any unit. An episode ends in a state that
+/// leads to itself and pays nothing. Memory: 12 bytes for each state and action.
 ///
 /// # Example
 /// ```
@@ -30,10 +30,10 @@ pub struct Mdp {
 }
 
 impl Mdp {
-    /// `successors` and `rewards`: `(states · actions,)`, of each state action by action, rewards within ±1e100.
+    /// `successors` and `rewards`: `(states · actions,)`, for each state action by action, rewards within ±1e100.
     ///
     /// # Errors
-    /// [`SimilarityError::NoSuchState`] for a successor that is no state, [`SimilarityError::BadReward`],
+    /// [`SimilarityError::NoSuchState`] for an invalid successor, [`SimilarityError::BadReward`],
     /// [`SimilarityError::Shape`] for more or fewer successors or rewards, or none, [`SimilarityError::TooMany`] above
     /// [`MAX_MDP_STATES`].
     pub fn new(
@@ -64,22 +64,22 @@ impl Mdp {
         })
     }
 
-    /// How many states there are, at least 1.
+    /// Number of states, at least 1.
     pub fn states(&self) -> usize {
         self.states
     }
 
-    /// How many actions there are, at least 1.
+    /// Number of actions, at least 1.
     pub fn actions(&self) -> usize {
         self.actions
     }
 
-    /// What an action pays. Panics where the process does not have the state or the action.
+    /// The reward of an action. Panics if the process does not have the state or the action.
     pub fn reward(&self, state: usize, action: usize) -> f64 {
         self.rewards[self.index(state, action)]
     }
 
-    /// Where an action leads. Panics where the process does not have the state or the action.
+    /// The state that an action leads to. Panics if the process does not have the state or the action.
     pub fn successor(&self, state: usize, action: usize) -> u32 {
         self.successors[self.index(state, action)]
     }
@@ -109,7 +109,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_no_process_is_refused() {
+    fn invalid_processes_are_refused() {
         let said = |states, actions, successors: &[u32], rewards: &[f64]| {
             let made = Mdp::new(states, actions, successors.to_vec(), rewards.to_vec());
             made.unwrap_err().to_string()

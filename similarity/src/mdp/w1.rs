@@ -1,22 +1,21 @@
-//! [`w1_mdp`]: how far apart two decision processes are in what the next step pays and where it leads. What follows from that in the
-//! long run is in `bisimulation.rs`.
+//! [`w1_mdp`]: compares two decision processes by the reward and the successor of single steps.
 
 use crate::SimilarityError;
 
-/// Differences below this are rounding: sums of as many points over other numbers of steps.
+/// Differences below this are rounding errors, as from summing over different numbers of steps.
 const ROUNDING: f64 = 1e-12;
 
-/// W₁-MDP of two deterministic processes, state by state: the mean way that what an action does in one has to be moved to be what
-/// it does in the other. Returns what of it is in what actions pay and what in where they lead; their sum is the distance.
+/// W₁-MDP of two deterministic processes, state by state: the mean distance between the outcomes of the same action in both.
+/// Returns the share due to rewards and the share due to successors; their sum is the distance.
 ///
-/// The Wasserstein-1 distance of two certain outcomes is the cost between them, here `|r − u| / unit + ground`, with `r` and `u`
-/// what the same action pays in the same state of both. The mean is over all actions of the states that count; state by state,
-/// so that an exchange of two actions' effects is seen.
+/// The Wasserstein-1 distance of two certain outcomes is the cost between them, here `|r − u| / unit + ground`, with `r` and
+/// `u` the rewards of the same action in the same state of both. The mean is over all actions of the counted states; outcomes
+/// are compared state by state, so swapping the effects of two actions is noticed.
 ///
-/// `rewards`: of each process, `(states · actions,)`, of each state action by action. `unit`: the reward that counts 1.
-/// `counted`: `(states,)`, at least one of them true. `ground(row)`: how far apart the outcomes of a state and an action are, by
-/// their place in `rewards`. With a metric between outcomes it is a metric on the processes' counted states; it does not see a
-/// shift of both rewards.
+/// `rewards`: for each process, `(states · actions,)`, for each state action by action. `unit`: the reward that counts 1.
+/// `counted`: `(states,)`, at least one of them true. `ground(row)`: the distance between the successors of a state and an
+/// action, by their index in `rewards`. With a metric between successors it is a metric on the processes' counted states; a
+/// shift of both rewards does not change it.
 ///
 /// Source: the Wasserstein-1 distance between what transitions lead to and pay is the W₁-MDP distance of Birkbeck, Sobey,
 /// Cerutti, Flynn and Norman 2024, "CHIRPs: change-induced regret proxy metrics for lifelong reinforcement learning"; theirs
@@ -24,7 +23,7 @@ const ROUNDING: f64 = 1e-12;
 /// see `tests/oracle/mdp.json`.
 ///
 /// # Errors
-/// [`SimilarityError::Shape`] for lists of rewards that are not of one length, or do not hold as many for each state.
+/// [`SimilarityError::Shape`] for lists of rewards that differ in length, or are no multiple of the number of states.
 ///
 /// # Example
 /// ```
@@ -85,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_that_do_not_fit_are_refused() {
+    fn mismatched_lists_are_refused() {
         let code = |a: &[f64], b: &[f64], counted: &[bool]| w1_mdp([a, b], 1.0, counted, |_| 0.0).unwrap_err().code();
         assert_eq!(code(&[0.0; 4], &[0.0; 3], &[true; 2]), "similarity/shape");
         assert_eq!(code(&[0.0; 3], &[0.0; 3], &[true; 2]), "similarity/shape");
@@ -96,7 +95,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 64)))]
 
         #[test]
-        fn it_is_a_pseudometric_that_scales(a in process(4, 2), b in process(4, 2), c in process(4, 2)) {
+        fn w1_mdp_is_a_pseudometric_that_scales(a in process(4, 2), b in process(4, 2), c in process(4, 2)) {
             let apart = |a: &Mdp, b: &Mdp| apart_by(a, b, 1.0);
             prop_assert_eq!(apart(&a, &a), 0.0);
             prop_assert_eq!(apart(&a, &b), apart(&b, &a));
@@ -105,8 +104,9 @@ mod tests {
         }
 
         #[test]
-        fn the_next_step_bounds_the_long_run(a in process(4, 2), b in process(4, 2)) {
-            // By induction d ≤ max (|ΔR| + ground) for the diagonal, where the ground is the bisimulation metric of one of them.
+        fn single_step_distance_bounds_the_long_run(a in process(4, 2), b in process(4, 2)) {
+            // By induction d ≤ max (|ΔR| + ground) for the diagonal, where the ground is the bisimulation metric of one of
+            // them.
             let d = |a: &Mdp, b: &Mdp, s, t| crate::bisimulation(a, b, (s, t), 0.6, 100).unwrap().upper;
             let rewards = |of: &Mdp| -> Vec<f64> { rows().map(|(s, k)| of.reward(s, k)).collect() };
             let ground = |row: usize| {
@@ -116,7 +116,7 @@ mod tests {
             let most = (0..4).map(|state| {
                 let only: Vec<bool> = (0..4).map(|other| other == state).collect();
                 let (paid, led) = w1_mdp([&rewards(&a), &rewards(&b)], 1.0, &only, ground).unwrap();
-                // Mean over two actions: the larger of both is at most twice that.
+                // Mean over two actions: the larger one is at most twice that.
                 2.0 * (paid + led)
             });
             let most = most.fold(0.0, f64::max);

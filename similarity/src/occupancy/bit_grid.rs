@@ -1,4 +1,4 @@
-//! [`BitGrid`]: which cells are taken, a bit for each. How much stands in them is in `grid.rs`.
+//! [`BitGrid`]: which cells are taken, one bit each.
 
 use super::grid::GridShape;
 use crate::SimilarityError;
@@ -23,7 +23,7 @@ pub struct BitGrid {
 }
 
 impl BitGrid {
-    /// Cells in the order `(planes, rows, columns)`; cells that are not told of are free, what is beyond the last is left out.
+    /// Cells in the order `(planes, rows, columns)`; missing cells are free, extra ones are ignored.
     pub fn new(shape: GridShape, taken: impl IntoIterator<Item = bool>) -> Self {
         let mut words = vec![0u64; shape.num_cells().div_ceil(64)];
         for (index, taken) in taken.into_iter().take(shape.num_cells()).enumerate() {
@@ -33,27 +33,27 @@ impl BitGrid {
         Self { shape, words, count }
     }
 
-    /// How many cells there are, and how large they are.
+    /// Number and size of the cells.
     pub fn shape(&self) -> GridShape {
         self.shape
     }
 
-    /// How many cells are taken.
+    /// Number of taken cells.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// Whether a cell is taken, by its number in the order `(planes, rows, columns)`; what is beyond the last is not.
+    /// Whether a cell is taken, by its index in the order `(planes, rows, columns)`; cells beyond the last are free.
     pub fn is_taken(&self, cell: usize) -> bool {
         self.words
             .get(cell / 64)
             .is_some_and(|word| word >> (cell % 64) & 1 == 1)
     }
 
-    /// How many cells are taken in both.
+    /// Number of cells taken in both.
     ///
     /// # Errors
-    /// [`SimilarityError::GridsDiffer`] when the shapes do.
+    /// [`SimilarityError::GridsDiffer`] if the shapes differ.
     pub fn common(&self, other: &Self) -> Result<usize, SimilarityError> {
         self.shape.check(other.shape)?;
         let both = self.words.iter().zip(&other.words).map(|(a, b)| a & b);
@@ -66,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_lies_beyond_the_last_cell_is_free() {
+    fn cells_beyond_the_last_are_free() {
         let grid = BitGrid::new(GridShape::new(3, 1, 1, 1.0).unwrap(), [true; 9]);
         assert_eq!(
             (grid.count(), grid.is_taken(2), grid.is_taken(3), grid.is_taken(999)),

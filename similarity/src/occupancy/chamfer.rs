@@ -1,18 +1,18 @@
-//! Chamfer distance of two grids: how far it is to the nearest on the mean. The farthest is in `hausdorff.rs`.
+//! Chamfer distance of two grids: the mean distance to the nearest taken cell.
 
 use super::bit_grid::BitGrid;
 use super::distance_transform::nearest_squared;
 use crate::SimilarityError;
 
-/// Mean distance in metres from a taken cell to the nearest that is taken in the other grid, the mean of both ways:
-/// ½ (mean over A of d(a, B) + mean over B of d(b, A)). The form of means, of distances that are not squared.
+/// Mean distance in metres from a taken cell to the nearest that is taken in the other grid, averaged over both directions: ½
+/// (mean over A of d(a, B) + mean over B of d(b, A)). Uses means, and distances that are not squared.
 ///
-/// Between the centres of cells, within a plane. A distance in `0..=` the grid's diameter, not a metric: a detour can be shorter.
-/// Two empty planes are 0 apart; where only one is empty, each cell of the other is the diameter away, and likewise back. Time: a few
-/// times over the cells.
+/// Between the centres of cells, within a plane. A distance in `0..=` the grid's diameter, not a metric: the triangle
+/// inequality may fail. Two empty planes are 0 apart; if only one is empty, each cell of the other counts the diameter in both
+/// directions. Time: a few passes over the cells.
 ///
 /// # Errors
-/// [`SimilarityError::GridsDiffer`] when the shapes do.
+/// [`SimilarityError::GridsDiffer`] if the shapes differ.
 ///
 /// # Example
 /// ```
@@ -30,8 +30,8 @@ pub fn grid_chamfer_distance(a: &BitGrid, b: &BitGrid) -> Result<f64, Similarity
     Ok(f64::midpoint(mean(&ways(a, b)?), mean(&ways(b, a)?)))
 }
 
-/// The distance in metres from each taken cell of `a` to the nearest of `b`. Where a plane of `b` is empty and that of `a` is not,
-/// the diameter; where it is the other way round, the diameter once.
+/// The distance in metres from each taken cell of `a` to the nearest of `b`. If only the plane of `b` is empty, each counts the
+/// diameter; if only that of `a` is, the diameter once.
 pub(super) fn ways(a: &BitGrid, b: &BitGrid) -> Result<Vec<f64>, SimilarityError> {
     let shape = a.shape();
     shape.check(b.shape())?;

@@ -1,11 +1,11 @@
-//! How far it is from each cell of a plane to the nearest taken one. What is made of that is up to chamfer and Hausdorff.
+//! Distance transform: from each cell of a plane to the nearest taken one.
 
 use super::bit_grid::BitGrid;
 
-/// Squared distances, in cells, from each taken cell of a plane of `a` to the nearest taken cell of the same plane of `b`. `None`
-/// if the plane of `b` is empty.
+/// Squared distances, in cells, from each taken cell of a plane of `a` to the nearest taken cell of the same plane of `b`.
+/// `None` if the plane of `b` is empty.
 ///
-/// Exact, in time of the number of cells (Meijster, Roerdink and Hesselink 2000).
+/// Exact, in time linear in the number of cells (Meijster, Roerdink and Hesselink 2000).
 pub(super) fn nearest_squared(a: &BitGrid, b: &BitGrid, plane: usize) -> Option<Vec<u64>> {
     let shape = b.shape();
     let (columns, rows) = (shape.columns(), shape.rows());
@@ -50,7 +50,8 @@ pub(super) fn nearest_squared(a: &BitGrid, b: &BitGrid, plane: usize) -> Option<
     Some(found)
 }
 
-/// The parabolas (x − centre)² + height² that are lowest somewhere, from west to east, each with the first column where it is.
+/// The parabolas (x − centre)² + height² on the lower envelope, from west to east, each with the first column where it is
+/// lowest.
 fn lowest(heights: &[usize], parabolas: &mut Vec<(usize, usize)>) {
     let at = |centre: usize, x: usize| x.abs_diff(centre).pow(2) + heights[centre].pow(2);
     parabolas.clear();
@@ -63,7 +64,7 @@ fn lowest(heights: &[usize], parabolas: &mut Vec<(usize, usize)>) {
         }
         let from = match parabolas.last() {
             None => 0,
-            // The first whole column at which the new one is lower: right of where the two meet.
+            // The first whole column at which the new one is lower: right of the intersection.
             Some(&(last, _)) => {
                 let (new, old) = (
                     centre.pow(2) + heights[centre].pow(2),
@@ -86,7 +87,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_is_what_looking_at_every_pair_gives(
+        fn distances_match_brute_force(
             columns in 1usize..12,
             rows in 1usize..12,
             cells in prop::collection::vec((any::<bool>(), prop::bool::weighted(0.15)), 288),

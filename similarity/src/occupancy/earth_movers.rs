@@ -1,4 +1,4 @@
-//! Earth mover's distance of two grids of the same mass. Of points it is in `transport/`.
+//! Earth mover's distance of two grids of the same mass.
 
 use super::grid::{Grid, GridShape};
 use crate::SimilarityError;
@@ -7,15 +7,16 @@ use crate::transport::{Units, cheapest_moves};
 /// Least work that turns one grid into the other: mass times metres, between the centres of cells (Wasserstein-1 with the
 /// Euclidean distance).
 ///
-/// Both grids must hold the same mass, in each plane: take [`Grid::normalised`] of both where only the places matter. In
-/// `0..=` the diameter times the mass, metres for a mass of 1. A metric. Mass does not move between planes; their work is added up.
+/// Both grids must hold the same mass in each plane: use [`Grid::normalised`] if only the places matter. In `0..=` the diameter
+/// times the mass, metres for a mass of 1. A metric. Mass does not move between planes; their work is added up.
 ///
-/// Exact: what a cell has in both grids stays (with a metric no plan is better than one that leaves it), the rest is moved by
-/// network simplex. Two grids of 25 × 25 random masses take some milliseconds.
+/// Exact: mass that both grids have in a cell stays (with a metric no plan is better than one that leaves it), the rest is
+/// moved by network simplex. Two grids of 25 × 25 random masses take some milliseconds.
 ///
 /// # Errors
-/// [`SimilarityError::GridsDiffer`] when the shapes do, [`SimilarityError::UnequalMasses`] when a plane's masses do by more than 1e-9
-/// of them, [`SimilarityError::TooMany`] when more than [`MAX_TRANSPORTED`](crate::MAX_TRANSPORTED) cells have to give, or take.
+/// [`SimilarityError::GridsDiffer`] if the shapes differ, [`SimilarityError::UnequalMasses`] if a plane's masses differ by more
+/// than 1e-9 of them, [`SimilarityError::TooMany`] if more than [`MAX_TRANSPORTED`](crate::MAX_TRANSPORTED) cells have to give,
+/// or take.
 ///
 /// # Example
 /// ```
@@ -47,6 +48,6 @@ fn least_work(shape: GridShape, mut units: Units) -> Result<f64, SimilarityError
     };
     let moves = cheapest_moves(&units.from, &units.to, apart)?.into_iter();
     let work = moves.map(|(from, to, flow)| flow as f64 * apart(from, to));
-    // Not −0 without any moves.
+    // Gives 0, not −0, if nothing moves.
     Ok(work.fold(0.0, |sum, work| sum + work) * units.unit)
 }

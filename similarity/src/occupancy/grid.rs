@@ -1,4 +1,4 @@
-//! [`Grid`]: how much stands in each cell. How a world becomes one is in `raster.rs`, which cells are taken at all in `bit_grid.rs`.
+//! [`Grid`]: the mass in each cell.
 
 use super::bit_grid::BitGrid;
 use crate::SimilarityError;
@@ -6,7 +6,7 @@ use crate::SimilarityError;
 /// Most cells of a grid, all planes together.
 pub const MAX_CELLS: usize = 1 << 20;
 
-/// How many cells there are, and how large they are. Grids can be compared when their shapes are equal.
+/// Number and size of the cells. Grids can be compared if their shapes are equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GridShape {
     columns: usize,
@@ -73,7 +73,7 @@ impl GridShape {
         ((x * x + y * y) as f64).sqrt() * self.cell
     }
 
-    /// Refuses two shapes that differ.
+    /// Fails if two shapes differ.
     pub(crate) fn check(self, other: Self) -> Result<(), SimilarityError> {
         if self == other {
             return Ok(());
@@ -92,7 +92,7 @@ impl GridShape {
     }
 }
 
-/// How much stands in each cell: a number of objects, or any mass.
+/// The mass in each cell: a number of objects, or any other mass.
 ///
 /// # Example
 /// ```
@@ -113,15 +113,15 @@ impl Grid {
     /// `masses`: `(planes, rows, columns)`, at least 0, any unit; row 0 is the southernmost.
     ///
     /// # Errors
-    /// [`SimilarityError::Shape`] when they are not as many as the cells, [`SimilarityError::BadMass`] for one that is negative or
-    /// not finite (1e200 at most).
+    /// [`SimilarityError::Shape`] if their number differs from the cells', [`SimilarityError::BadMass`] for one that is
+    /// negative or not finite (1e200 at most).
     pub fn new(shape: GridShape, masses: Vec<f64>) -> Result<Self, SimilarityError> {
         SimilarityError::check_length("cells", masses.len(), shape.num_cells())?;
         crate::transport::sum_of_masses("cells", &masses)?;
         Ok(Self { shape, masses })
     }
 
-    /// How many cells there are, and how large they are.
+    /// Number and size of the cells.
     pub fn shape(&self) -> GridShape {
         self.shape
     }
@@ -131,13 +131,13 @@ impl Grid {
         &self.masses
     }
 
-    /// The mass of all cells.
+    /// The mass of all cells together.
     pub fn total(&self) -> f64 {
         self.masses.iter().sum()
     }
 
-    /// The same with a total of 1, plane by plane if there are several: each plane that holds something sums to 1. What is
-    /// empty stays empty. Makes grids of unequal masses comparable where only the places matter, not the numbers.
+    /// Scales each plane to a total of 1; empty planes stay empty. Makes grids of unequal masses comparable if only the places
+    /// matter, not the numbers.
     #[must_use]
     pub fn normalised(&self) -> Self {
         let mut masses = self.masses.clone();
@@ -152,12 +152,12 @@ impl Grid {
         Self { masses, ..*self }
     }
 
-    /// Which cells hold anything.
+    /// Which cells have any mass.
     pub fn taken(&self) -> BitGrid {
         BitGrid::new(self.shape, self.masses.iter().map(|mass| *mass > 0.0))
     }
 
-    /// The planes, one after the other.
+    /// Iterates over the planes.
     pub(super) fn planes(&self) -> impl Iterator<Item = &[f64]> {
         self.masses.chunks(self.plane_len().max(1))
     }
@@ -172,7 +172,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_grid_holds_as_many_masses_as_cells_and_no_negative_ones() {
+    fn mass_count_and_sign_are_checked() {
         let shape = GridShape::new(2, 2, 1, 1.0).unwrap();
         let code = |masses: Vec<f64>| Grid::new(shape, masses).unwrap_err().code();
         assert_eq!(code(vec![1.0; 3]), "similarity/shape");
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn each_plane_is_normalised_for_itself() {
+    fn each_plane_is_normalised_by_itself() {
         let shape = GridShape::new(2, 1, 3, 1.0).unwrap();
         let grid = Grid::new(shape, vec![1.0, 3.0, 0.0, 0.0, 0.0, 5.0]).unwrap();
         assert_eq!(grid.normalised().masses(), [0.25, 0.75, 0.0, 0.0, 0.0, 1.0]);

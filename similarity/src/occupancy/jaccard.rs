@@ -5,11 +5,11 @@ use crate::SimilarityError;
 
 /// Share of the cells taken in either grid that are not taken in both: 1 − |A ∩ B| / |A ∪ B|.
 ///
-/// A metric in `0..=1`; two empty grids are 0 apart. Time: a word for 64 cells, so that grids of 50 × 50 are some tens of
-/// nanoseconds apart.
+/// A metric in `0..=1`; two empty grids are 0 apart. Time: one word per 64 cells, so some tens of nanoseconds for grids of 50 ×
+/// 50.
 ///
 /// # Errors
-/// [`SimilarityError::GridsDiffer`] when the shapes do.
+/// [`SimilarityError::GridsDiffer`] if the shapes differ.
 ///
 /// # Example
 /// ```

@@ -1,4 +1,4 @@
-//! Distances between what stands where: worlds as grids, and as sets of objects.
+//! Distances between worlds by occupancy: as grids, and as sets of objects.
 
 mod bit_grid;
 mod chamfer;

@@ -1,20 +1,20 @@
-//! OSPA: distance between sets of objects, of equal or different size. Distances between grids of taken cells are in the other files; the
-//! optimal assignment is found in `assignment.rs`.
+//! OSPA: distance between sets of objects, of equal or different size.
 
 use std::collections::BTreeMap;
 
 use crate::SimilarityError;
 use crate::assignment::{Assignment, MAX_ASSIGNED};
 
-/// Optimal sub-pattern assignment (OSPA) of order 1: how far objects have to be moved to become others, where a missing object
-/// counts as one that is moved by the cut-off.
+/// Optimal sub-pattern assignment (OSPA) of order 1: how far objects have to be moved to match, where a missing object counts
+/// as one moved by the cut-off.
 ///
-/// `a`, `b`: a class and a place in metres for each object. `cut_off`: metres above 0. With the larger set of n objects, the
-/// smaller of m and the cut-off c: (min Σ min(c, dᵢ) + c (n − m)) / n, the sum over pairs that fit best and d in metres. Two
-/// empty sets are 0 apart, an empty one c from any other. Objects of different classes are c apart, wherever they are.
+/// `a`, `b`: a class and a place in metres for each object. `cut_off`: metres above 0. With n objects in the larger set, m in
+/// the smaller, and the cut-off c: (min Σ min(c, dᵢ) + c (n − m)) / n, where the sum is over the best pairing and d is in
+/// metres. Two empty sets are 0 apart, an empty one c from any other. Objects of different classes are c apart, wherever they
+/// are.
 ///
-/// A metric between sets in which objects may coincide, in metres, in `0..=c`. Time `O(n³)` at worst, class by class; up to
-/// [`MAX_ASSIGNED`] objects of a set.
+/// A metric between multisets of objects, in metres, in `0..=c`. Time `O(n³)` at worst, class by class; up to [`MAX_ASSIGNED`]
+/// objects per set.
 ///
 /// Source: Schuhmacher, Vo and Vo 2008, "A consistent metric for performance evaluation of multi-object filters"; the same numbers as
 /// `scipy.optimize.linear_sum_assignment` with the formula around it within 1e-9, see `tests/oracle/ospa.json`.
@@ -39,7 +39,7 @@ pub fn ospa<C: Ord + Clone>(a: &[(C, [f64; 2])], b: &[(C, [f64; 2])], cut_off: f
     let (a, b) = (by_class(a), by_class(b));
     let mut assignment = Assignment::new();
     let (mut sum, mut pairs) = (0.0, 0);
-    // As many pairs as can be within each class, for none costs more than two objects without partner.
+    // As many pairs as possible within each class, because no pair costs more than two unmatched objects.
     for (class, from) in &a {
         let Some(to) = b.get(class) else { continue };
         let cost = |x: f64, y: f64, to: &[f64; 2]| libm::hypot(x - to[0], y - to[1]).min(cut_off);
@@ -59,7 +59,7 @@ fn by_class<C: Ord + Clone>(objects: &[(C, [f64; 2])]) -> BTreeMap<C, Vec<[f64; 
     classes
 }
 
-/// How many there are.
+/// Checks the coordinates, and returns the number of objects.
 fn check<C>(objects: &[(C, [f64; 2])]) -> Result<usize, SimilarityError> {
     let found = objects.len();
     SimilarityError::check_count(found, MAX_ASSIGNED)?;
@@ -84,14 +84,14 @@ mod tests {
     }
 
     #[test]
-    fn coordinates_that_are_none_are_refused() {
+    fn non_finite_coordinates_are_refused() {
         let error = ospa(&[((), [f64::NAN, 0.0])], &[], 1.0).unwrap_err();
         assert!(matches!(error, SimilarityError::BadNumber { .. }), "{error}");
     }
 
     proptest! {
         #[test]
-        fn it_is_a_metric(a in objects(), b in objects(), c in objects(), cut_off in 0.5..15.0) {
+        fn ospa_is_a_metric(a in objects(), b in objects(), c in objects(), cut_off in 0.5..15.0) {
             let mut turned = a.clone();
             turned.reverse();
             let d = |a: &[_], b: &[_]| ospa(a, b, cut_off).unwrap();
@@ -102,7 +102,7 @@ mod tests {
         }
 
         #[test]
-        fn a_surplus_object_far_away_costs_as_much_as_one_nearby(a in objects(), x in 50.0..100.0) {
+        fn surplus_object_costs_the_same_at_any_distance(a in objects(), x in 50.0..100.0) {
             let with = |x: f64| [a.clone(), vec![(0, [x, 0.0])]].concat();
             let (near, far) = (ospa(&a, &with(30.0), 2.0).unwrap(), ospa(&a, &with(x), 2.0).unwrap());
             prop_assert!((near - far).abs() < 1e-12);

@@ -1,4 +1,4 @@
-//! [`Raster`]: how worlds become grids. What is measured between grids is in the files of the measures.
+//! [`Raster`]: turns worlds into grids.
 
 use std::collections::BTreeSet;
 
@@ -7,25 +7,25 @@ use driftworld_spec::World;
 use super::grid::{Grid, GridShape};
 use crate::SimilarityError;
 
-/// Side of a cell in metres, where an arena of such cells is not too fine.
+/// Side of a cell in metres, unless that makes too many cells.
 const CELL: f64 = 1.0;
 
-/// How worlds become grids: the smallest area around the origin that holds all their arenas, cut into square cells from its
-/// south-western corner on, with a plane for each class.
+/// A common raster for worlds: the smallest area around the origin that holds all their arenas, divided into square cells from
+/// its south-western corner on, with a plane for each class.
 ///
-/// An object on the line between two cells belongs to that in the north or east, on the outer line to the last cell;
-/// objects outside are not counted. Grids of one raster can be compared.
+/// An object on the line between two cells belongs to the northern or eastern one, on the outer edge to the last cell; objects
+/// outside are not counted. Grids of one raster can be compared.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Raster {
     shape: GridShape,
-    /// The north-eastern corner, as far from the origin as the south-western one.
+    /// The north-eastern corner; the south-western one is its opposite.
     high: [f64; 2],
-    /// In lower case and alphabetical.
+    /// In lower case, sorted.
     classes: Vec<String>,
 }
 
 impl Raster {
-    /// One for these worlds, with cells of 1 m, or of 2, 4, 8 … m for arenas that are too large for it.
+    /// A raster for these worlds, with cells of 1 m, or of 2, 4, 8 … m for arenas that are too large for it.
     ///
     /// # Errors
     /// Those of [`Raster::of_worlds`].
@@ -33,15 +33,15 @@ impl Raster {
         let mut cell = CELL;
         loop {
             match Self::of_worlds(worlds, cell) {
-                // An arena has a cell at least, and fewer classes than there are cells in all.
+                // An arena has at least one cell, and fewer classes than the limit of cells.
                 Err(SimilarityError::TooFine { .. }) if cell < 1e6 => cell *= 2.0,
                 made => return made,
             }
         }
     }
 
-    /// One that holds the arenas and the classes of all these worlds. `cell`: side of a cell in metres; the last cells may reach
-    /// beyond the arenas.
+    /// A raster that holds the arenas and the classes of all these worlds. `cell`: side of a cell in metres; the last cells may
+    /// reach beyond the arenas.
     ///
     /// # Errors
     /// [`SimilarityError::BadNumber`] for a cell without size, [`SimilarityError::TooFine`] for too many cells.
@@ -61,12 +61,12 @@ impl Raster {
         })
     }
 
-    /// How many cells its grids have, and how large they are.
+    /// Number and size of its grids' cells.
     pub(crate) fn shape(&self) -> GridShape {
         self.shape
     }
 
-    /// How many objects have their centre in each cell; those of other classes are left out.
+    /// Number of objects with their centre in each cell; objects of other classes are ignored.
     ///
     /// # Errors
     /// As [`Grid::new`].
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn each_class_has_a_plane_whatever_its_case() {
+    fn each_class_has_a_plane_ignoring_case() {
         check(
             &[("TREE", 1.0, 1.0), ("rock", -2.0, -2.0), ("Tree", -2.0, -2.0)],
             &[0, 16, 31],
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn a_raster_of_worlds_holds_the_largest_arena() {
+    fn raster_of_several_worlds_holds_the_largest_arena() {
         let small = world(&[("tree", 0.0, 0.0)]);
         let large = World::default()
             .edit(|world| world.environment_params.map_size = [120.0, 10.0])

@@ -1,13 +1,13 @@
-//! The longest path: neighbours as unlike as can be. Searched as the shortest one of turned distances, by the methods for that.
+//! The longest path: neighbours are as different as possible. Found as the shortest path of reversed distances.
 
 use super::items::Items;
 use super::two_opt::cheapest;
 
-/// How many times the path is shaken, for each item.
+/// Shakes per item.
 const SHAKES_PER_ITEM: usize = 1;
 
 pub(super) fn order(items: &Items) -> Vec<usize> {
     let largest = items.largest_gap();
-    // Every path has as many steps: what one is short of the largest everywhere, it lacks in length.
+    // All paths have the same number of steps, so minimising the distance to the largest gap maximises the length.
     cheapest(items, &|a, b| largest - items.gap(a, b), SHAKES_PER_ITEM)
 }

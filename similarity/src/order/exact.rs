@@ -1,9 +1,10 @@
-//! The best path of few items, by dynamic programming over sets (Held and Karp 1962). What a step costs is handed in.
+//! The cheapest path of few items, by dynamic programming over sets (Held and Karp 1962). The caller passes in the costs of
+//! steps.
 
 use super::items::{Ends, Items};
 use crate::SimilarityError;
 
-/// The most items for which the best path is searched exactly. It takes 4 MB and some milliseconds; each item more doubles both.
+/// Most items for which the best path is searched exactly. It takes 4 MB and some milliseconds; each further item doubles both.
 pub const MAX_EXACT: usize = 15;
 
 pub(super) fn order(items: &Items) -> Result<Vec<usize>, SimilarityError> {
@@ -17,8 +18,8 @@ pub(super) fn order(items: &Items) -> Result<Vec<usize>, SimilarityError> {
     Ok(best_path(items.len(), &|a, b| items.gap(a, b), items.ends))
 }
 
-/// The path of least total; of equal ones (within rounding) that with the lowest numbers first. Steps of infinite cost are
-/// taken only where no path does without. Time `O(2ⁿ n²)`, memory `2ⁿ n` numbers; `n` is at most [`MAX_EXACT`].
+/// The path of least total; ties (within rounding) go to the lowest numbers first. Steps of infinite cost are taken only if
+/// every path has one. Time `O(2ⁿ n²)`, memory `2ⁿ n` numbers; `n` is at most [`MAX_EXACT`].
 pub(super) fn best_path(n: usize, cost: &impl Fn(usize, usize) -> f64, ends: Ends) -> Vec<usize> {
     debug_assert!(n <= MAX_EXACT, "larger sets are refused before");
     let costs: Vec<f64> = (0..n * n).map(|k| cost(k / n, k % n)).collect();
@@ -28,7 +29,7 @@ pub(super) fn best_path(n: usize, cost: &impl Fn(usize, usize) -> f64, ends: End
         .filter(|cost| cost.is_finite())
         .fold(0.0_f64, |a, b| a.max(b.abs()));
     let slack = 1e-12 * largest * n as f64;
-    // Rounding must not decide between equal paths: whoever comes within it, and has the lowest number, is taken.
+    // Rounding must not decide between equal paths: of all values within rounding, the lowest number is taken.
     let lowest = |values: &[(usize, f64)]| {
         let least = values.iter().map(|(_, value)| *value).fold(f64::INFINITY, f64::min);
         values
@@ -55,7 +56,8 @@ pub(super) fn best_path(n: usize, cost: &impl Fn(usize, usize) -> f64, ends: End
     path
 }
 
-/// For each set and each item of it: the least total of a path that begins there, visits the set, and ends where it has to.
+/// For each set and each item of it: the least total of a path that begins there, visits the set, and ends at the fixed last
+/// item, if any.
 fn rests(n: usize, costs: &[f64], last: Option<usize>) -> Vec<f64> {
     let mut rest = vec![f64::INFINITY; (1 << n) * n];
     for end in (0..n).filter(|end| last.is_none_or(|last| last == *end)) {

@@ -1,13 +1,14 @@
-//! Each time what is farthest from everything met so far: as abrupt as can be. Looks at no length.
+//! Farthest-first traversal: each next item is the farthest from all items so far.
 
 use super::items::Items;
 
-/// Farthest-first traversal (Gonzalez 1985): begins at an end of the largest distance, where nothing is fixed. Time `O(n²)`.
+/// Farthest-first traversal (Gonzalez 1985): starts at an end of the largest distance, unless the first item is fixed. Time
+/// `O(n²)`.
 pub(super) fn order(items: &Items) -> Vec<usize> {
     let n = items.len();
     let last = items.ends.last;
     let start = items.ends.first.unwrap_or_else(|| outermost(items));
-    // How far the nearest item met so far is.
+    // Distance to the nearest item so far.
     let mut reach: Vec<f64> = (0..n).map(|item| items.gap(start, item)).collect();
     let mut left: Vec<usize> = (0..n).filter(|item| *item != start && Some(*item) != last).collect();
     let mut path = vec![start];
@@ -28,7 +29,7 @@ pub(super) fn order(items: &Items) -> Vec<usize> {
     path
 }
 
-/// The first item, but for the fixed last, that has the largest distance to any other.
+/// The first item, other than the fixed last, that has the largest distance to any other.
 fn outermost(items: &Items) -> usize {
     let farthest = |a: usize| (0..items.len()).map(|b| items.gap(a, b)).fold(0.0, f64::max);
     let mut best = None;

@@ -1,16 +1,15 @@
-//! Paths of small steps: the shortest, and of equally short ones that whose largest step is smallest. The shortest alone is found in
-//! `exact.rs` and `two_opt.rs`.
+//! Paths of small steps: the shortest, and among equally short ones the one whose largest step is smallest.
 
 use super::exact::{MAX_EXACT, best_path};
 use super::items::Items;
 use super::small_steps::{self, largest_step};
 use super::two_opt;
 
-/// Lengths that differ by no more than this share are equal.
+/// Lengths that differ by at most this share are equal.
 const EQUAL: f64 = 1e-9;
 
-/// Exact for few items; beyond, the shorter of the paths that two-opt and the search for small largest steps find, and of equally
-/// short ones that with the smaller largest step.
+/// Exact for few items; beyond, the shorter of the paths that two-opt and the search for small largest steps find; ties go to
+/// the smaller largest step.
 pub(super) fn order(items: &Items) -> Vec<usize> {
     if items.len() > MAX_EXACT {
         let short = two_opt::order(items);
@@ -19,7 +18,7 @@ pub(super) fn order(items: &Items) -> Vec<usize> {
         let is_better = is_as_short && largest_step(&even, items) < largest_step(&short, items);
         return if is_better { even } else { short };
     }
-    // More than any path is long, and finite: where every path has such a step, the ends still stand where they belong.
+    // More than the length of any path, and finite: even if every path needs such a step, the fixed ends are respected.
     let penalty = 2.0 * items.len() as f64 * items.largest_gap();
     let within = |bound: f64| {
         let cost = |a: usize, b: usize| {
@@ -30,7 +29,7 @@ pub(super) fn order(items: &Items) -> Vec<usize> {
     };
     let mut best = within(f64::INFINITY);
     let longest = length(&best, items) * (1.0 + EQUAL);
-    // The bound under which a path is still as short, found by halving the list of all gaps.
+    // Binary search over all gaps for the smallest bound that still allows a shortest path.
     let mut bounds: Vec<f64> = items.matrix.values().iter().copied().collect();
     bounds.retain(|gap| *gap < largest_step(&best, items));
     bounds.sort_by(f64::total_cmp);
@@ -57,7 +56,7 @@ mod tests {
     use crate::{DistanceMatrix, Method, OrderOptions, SimilarityError, order};
 
     #[test]
-    fn of_two_shortest_paths_that_with_smaller_steps_is_taken() {
+    fn tie_of_shortest_paths_goes_to_the_smaller_largest_step() {
         // From a: a-b-c-d is 1 + 1 + 4, a-c-b-d is 2 + 1 + 3, and no path is shorter.
         let gap = |a: usize, b: usize| {
             let gaps = [[0, 1, 2, 9], [1, 0, 1, 3], [2, 1, 0, 4], [9, 3, 4, 0]];
@@ -76,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn outward_goes_by_distance_from_the_first() {
+    fn outward_sorts_by_distance_from_the_first() {
         let at = [0.0_f64, -2.0, 1.0, 3.0];
         let names = ["a", "b", "c", "d"].map(str::to_owned).to_vec();
         let matrix = DistanceMatrix::measure(names, |a, b| Ok::<_, SimilarityError>((at[a] - at[b]).abs())).unwrap();

@@ -1,17 +1,16 @@
-//! [`Items`]: the items of a matrix by the order of their names, which is how the methods see them. Finds no order itself.
+//! [`Items`]: the items of a matrix numbered by name, as the methods see them.
 
 use super::options::OrderOptions;
 use crate::{DistanceMatrix, SimilarityError};
 
-/// Which items stand at the ends of a path.
+/// The fixed ends of a path.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Ends {
     pub(super) first: Option<usize>,
     pub(super) last: Option<usize>,
 }
 
-/// The items of a matrix, numbered by their names: of equal choices a method takes that with the lowest number, and the order
-/// in which a matrix happens to hold its items changes nothing.
+/// The items of a matrix, numbered by name: ties go to the lowest number, so the order of items in the matrix does not matter.
 pub(super) struct Items<'a> {
     pub(super) matrix: &'a DistanceMatrix,
     /// The fixed ends, as ranks.
@@ -44,7 +43,7 @@ impl<'a> Items<'a> {
         let mut by_name: Vec<usize> = (0..n).collect();
         by_name.sort_by(|a, b| matrix.labels()[*a].cmp(&matrix.labels()[*b]));
         let rank = |index: usize| by_name.iter().position(|item| *item == index);
-        // A single item is its own first; naming it twice adds nothing.
+        // A single item is its own first; naming it as the last, too, adds nothing.
         let last = if n == 1 { None } else { options.last.and_then(rank) };
         let first = options.first.and_then(rank);
         Ok(Self {
@@ -54,7 +53,7 @@ impl<'a> Items<'a> {
         })
     }
 
-    /// How many items there are.
+    /// Number of items.
     pub(super) fn len(&self) -> usize {
         self.by_name.len()
     }
@@ -69,12 +68,12 @@ impl<'a> Items<'a> {
         self.matrix.values().iter().copied().fold(0.0, f64::max)
     }
 
-    /// From ranks to indices in the matrix.
+    /// Maps ranks to indices in the matrix.
     pub(super) fn indices(&self, ranks: &[usize]) -> Vec<usize> {
         ranks.iter().map(|rank| self.by_name[*rank]).collect()
     }
 
-    /// The ranks of the items as they stand in the matrix.
+    /// The ranks of the items in the matrix's order.
     pub(super) fn as_given(&self) -> Vec<usize> {
         let mut ranks = vec![0; self.len()];
         for (rank, index) in self.by_name.iter().enumerate() {
@@ -83,7 +82,7 @@ impl<'a> Items<'a> {
         ranks
     }
 
-    /// The same order but for the fixed ends, which are put where they belong.
+    /// The same order, with the fixed ends moved to the ends.
     pub(super) fn with_ends_outside(&self, mut ranks: Vec<usize>) -> Vec<usize> {
         let Ends { first, last } = self.ends;
         ranks.retain(|rank| Some(*rank) != first && Some(*rank) != last);
@@ -91,8 +90,8 @@ impl<'a> Items<'a> {
     }
 }
 
-/// Ranks by rising value. Values closer than a thousand-millionth of their span count as equal, so that rounding decides no
-/// tie; then the name does.
+/// Ranks by rising value. Values closer than a thousand-millionth of their span count as equal, so that rounding breaks no tie;
+/// then the name decides.
 pub(super) fn by_rising(values: &[f64]) -> Vec<usize> {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);

@@ -1,9 +1,9 @@
-//! Makes a path cheaper by small changes until none helps, then shakes it and goes on. What a step costs is handed in, so the
-//! same search finds short, long and even paths; the array that it changes is in `tour.rs`.
+//! Local search for a cheap path: small improvements until none helps, then random shakes. The caller passes in the costs of
+//! steps, so the same search finds short, long and even paths.
 //!
-//! The changes are 2-opt (a stretch is turned round) and Or-opt (up to three neighbours move elsewhere), tried only towards
-//! items that are near (Bentley 1992), and only from items near which something has changed (don't-look bits). A shake lets
-//! two short stretches change places, and is taken back unless the search makes something better of it.
+//! The moves are 2-opt (reverse a stretch) and Or-opt (move up to three neighbours), tried only towards near items (Bentley
+//! 1992), and only from items near a recent change (don't-look bits). A shake swaps two short stretches, and is undone unless
+//! the search improves on it.
 
 use rayon::prelude::*;
 
@@ -11,7 +11,7 @@ use super::items::Ends;
 use super::tour::Tour;
 use crate::split_mix::SplitMix64;
 
-/// Towards how many of its nearest a change of an item is tried.
+/// Number of nearest items towards which a move is tried.
 const NEIGHBOURS: usize = 10;
 /// The longest stretch that a shake moves.
 const SHAKEN: usize = 50;
@@ -38,12 +38,12 @@ pub(super) fn improve(
 struct Search<'a, C> {
     tour: Tour,
     cost: &'a C,
-    /// What it costs to leave the path at an item: the round is closed by a gap, which stands at number `n`.
+    /// The cost of ending the path at an item: the round is closed by a gap, which is item number `n`.
     gap: Vec<f64>,
     neighbours: Vec<Vec<u32>>,
     waiting: Vec<usize>,
     is_waiting: Vec<bool>,
-    /// The least gain that rounding cannot feign.
+    /// The least gain that is not a rounding error.
     least_gain: f64,
 }
 
@@ -53,7 +53,7 @@ impl<'a, C: Fn(usize, usize) -> f64 + Sync> Search<'a, C> {
         let nearest: Vec<(f64, Vec<u32>)> = (0..n).into_par_iter().map(|item| nearest(n, item, cost)).collect();
         let largest = nearest.iter().map(|(largest, _)| *largest).fold(0.0, f64::max);
         let mut gap = vec![0.0; n + 1];
-        // No change can gain as much as the two steps that it takes away cost: the ends stay where they are.
+        // No move can gain as much as the two steps that it removes cost, so fixed ends stay in place.
         for end in [ends.first, ends.last].into_iter().flatten() {
             gap[end] = -4.0 * largest - 1.0;
         }
@@ -89,7 +89,7 @@ impl<'a, C: Fn(usize, usize) -> f64 + Sync> Search<'a, C> {
         }
     }
 
-    /// Makes changes that help until there is none. Returns by how much the path became cheaper.
+    /// Makes improving moves until there is none. Returns the total gain.
     fn settle(&mut self) -> f64 {
         let mut gained = 0.0;
         while let Some(item) = self.waiting.pop() {
@@ -101,9 +101,9 @@ impl<'a, C: Fn(usize, usize) -> f64 + Sync> Search<'a, C> {
         gained
     }
 
-    /// Makes one change that brings `a` next to something nearer, if there is one that helps; returns its gain.
+    /// Makes one improving move that brings `a` next to something nearer, if there is one; returns its gain.
     fn change_at(&mut self, a: usize) -> Option<f64> {
-        // The gap itself is reached from the items.
+        // Moves at the gap are found from the items.
         if a + 1 == self.gap.len() {
             return None;
         }
@@ -167,7 +167,7 @@ impl<'a, C: Fn(usize, usize) -> f64 + Sync> Search<'a, C> {
                 let gain = freed + self.cost(c, e) - self.cost(s, e);
                 if gain > self.least_gain {
                     let (start, x) = (if forwards { s } else { a }, if after { c } else { e });
-                    // As the stretch stands it begins at `start`; it has to begin with `a` where `c` comes before it.
+                    // The stretch begins at `start` in the tour; it must begin with `a` if `c` comes before it.
                     self.tour.move_stretch(start, length, x, (start == a) != after);
                     self.wake(&[a, b, c, e, s, p]);
                     return Some(gain);
@@ -178,7 +178,7 @@ impl<'a, C: Fn(usize, usize) -> f64 + Sync> Search<'a, C> {
         None
     }
 
-    /// How many steps `item` lies behind `a`, seen from the side of `b`.
+    /// Number of steps from `a` back to `item`, on the side opposite to `b`.
     fn distance_back(&self, a: usize, item: usize, forwards: bool) -> usize {
         let span = if forwards {
             self.tour.span(item, a)
@@ -188,7 +188,7 @@ impl<'a, C: Fn(usize, usize) -> f64 + Sync> Search<'a, C> {
         span - 1
     }
 
-    /// Lets short stretches change places, here and there, and keeps what the search makes cheaper of it.
+    /// Swaps random short stretches, and keeps those swaps after which the search finds a cheaper path.
     fn shake(&mut self, shakes: usize) {
         let round = self.tour.len();
         if round < 8 {
@@ -215,7 +215,7 @@ impl<'a, C: Fn(usize, usize) -> f64 + Sync> Search<'a, C> {
         }
     }
 
-    /// The round from its gap on, in the direction that the fixed ends ask for.
+    /// The round from its gap on, in the direction required by the fixed ends.
     fn path(&self, ends: Ends) -> Vec<usize> {
         let n = self.gap.len() - 1;
         let begin = self.tour.place(n) + 1;
@@ -227,7 +227,7 @@ impl<'a, C: Fn(usize, usize) -> f64 + Sync> Search<'a, C> {
     }
 }
 
-/// The largest cost at an item, and what is near it, the nearest first: the gap, then items.
+/// The largest cost at an item, and its neighbours, nearest first: the gap, then items.
 fn nearest(n: usize, item: usize, cost: &impl Fn(usize, usize) -> f64) -> (f64, Vec<u32>) {
     let mut all: Vec<(f64, u32)> = (0..n)
         .filter(|other| *other != item)

@@ -1,5 +1,4 @@
-//! Orders of items by their distances: paths that are short, even, long on purpose, or random. One method per file;
-//! measuring the distances is not done here.
+//! Orders of items by their distances: short, even, deliberately long, or random paths. One method per file.
 
 mod abrupt;
 mod exact;
@@ -28,12 +27,12 @@ pub use random_orders::{NUM_RANDOM_ORDERS, share_of_shorter_orders};
 use crate::{DistanceMatrix, SimilarityError};
 use items::Items;
 
-/// Puts items into an order. Of equal orders the one whose labels come first is taken, so the same distances always give the
-/// same order, however the matrix is sorted.
+/// Puts items into an order. Ties go to the labels that come first, so equal distances always give the same order, however the
+/// matrix is sorted.
 ///
 /// # Errors
-/// [`SimilarityError::Empty`] without items; [`SimilarityError::NoSuchEnd`] and [`SimilarityError::EqualEnds`] for ends that
-/// cannot be; [`SimilarityError::TooManyForMethod`] from [`Method::Exact`]; [`SimilarityError::BadTargetStep`] from
+/// [`SimilarityError::Empty`] without items; [`SimilarityError::NoSuchEnd`] and [`SimilarityError::EqualEnds`] for invalid
+/// ends; [`SimilarityError::TooManyForMethod`] from [`Method::Exact`]; [`SimilarityError::BadTargetStep`] from
 /// [`Method::TargetStep`].
 ///
 /// # Example

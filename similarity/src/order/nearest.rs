@@ -1,17 +1,17 @@
-//! The nearest-neighbour walk: each time the nearest item that is left. Makes nothing better afterwards.
+//! The nearest-neighbour walk: always the nearest remaining item. Greedy; no local improvement.
 
 use rayon::prelude::*;
 
 use super::items::{Ends, Items};
 
-/// The most items from each of which a walk is tried.
+/// Most items from which a walk is tried.
 const MAX_STARTS: usize = 256;
 
 pub(super) fn order(items: &Items) -> Vec<usize> {
     walk(items.len(), &|a, b| items.gap(a, b), items.ends)
 }
 
-/// The cheapest of the walks from the fixed first item, or from each of the first 256. Time `O(starts · n²)`.
+/// The cheapest of the walks from the fixed first item, or from each of the first 256 items. Time `O(starts · n²)`.
 pub(super) fn walk(n: usize, cost: &(impl Fn(usize, usize) -> f64 + Sync), ends: Ends) -> Vec<usize> {
     let starts: Vec<usize> = match ends.first {
         Some(first) => vec![first],
@@ -58,7 +58,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_nearest_left_comes_next_and_the_last_waits() {
+    fn nearest_remaining_item_is_next_and_fixed_last_waits() {
         let at = [0.0_f64, 1.0, 2.5, 10.0];
         let cost = |a: usize, b: usize| (at[a] - at[b]).abs();
         let ends = |first, last| Ends { first, last };

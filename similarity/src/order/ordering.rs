@@ -1,10 +1,10 @@
-//! [`Ordering`]: items in an order, with what the way through them is like. How an order is found is in the methods' files.
+//! [`Ordering`]: items in an order, with its steps and statistics.
 
 use serde::Serialize;
 
 use crate::{DistanceMatrix, ranks};
 
-/// Items in an order, and how far each step goes.
+/// Items in an order, with the distance of each step.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Ordering {
     /// The items, by their index in the matrix.
@@ -13,17 +13,18 @@ pub struct Ordering {
     pub steps: Vec<f64>,
     /// The sum of the steps.
     pub length: f64,
-    /// How steadily the order leads away from its first item: Spearman's rank correlation, in -1..=1, of an item's place with
-    /// its distance from the first, over all items but the first. None for fewer than three items, or where all are as far.
+    /// How steadily the order leads away from its first item: Spearman's rank correlation, in -1..=1, of an item's position
+    /// with its distance from the first, over all items but the first. `None` for fewer than three items, or if all distances
+    /// are equal.
     pub anchor_correlation: Option<f64>,
 }
 
 impl Ordering {
-    /// The items in this order, measured. Every index must be one of the matrix.
+    /// Measures the items in this order. Every index must be valid in the matrix.
     pub fn given(matrix: &DistanceMatrix, indices: Vec<usize>) -> Self {
         let steps: Vec<f64> = indices.windows(2).map(|pair| matrix.get(pair[0], pair[1])).collect();
         Self {
-            // Not `sum`, whose empty sum is −0.
+            // Not `sum`: its empty sum is −0.
             length: steps.iter().fold(0.0, |sum, step| sum + step),
             anchor_correlation: anchor_correlation(matrix, &indices),
             indices,
@@ -53,7 +54,7 @@ fn anchor_correlation(matrix: &DistanceMatrix, indices: &[usize]) -> Option<f64>
     pearson(&places, &ranks(&distances))
 }
 
-/// Correlation of two lists of one length; none where a list does not vary.
+/// Correlation of two lists of one length; `None` if a list is constant.
 fn pearson(a: &[f64], b: &[f64]) -> Option<f64> {
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let (mean_a, mean_b) = (mean(a), mean(b));
@@ -86,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_length_and_mean_are_those_of_the_path() {
+    fn steps_length_and_mean_describe_the_path() {
         let path = Ordering::given(&on_a_line(&[0.0, 4.0, 1.0]), vec![0, 1, 2]);
         assert_eq!((path.steps.as_slice(), path.length), ([4.0, 3.0].as_slice(), 7.0));
         assert_eq!((path.largest_step(), path.mean_step()), (4.0, 3.5));
@@ -95,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn correlation_with_the_anchor_is_spearmans() {
+    fn anchor_correlation_is_spearmans() {
         check_correlation(&[0.0, 1.0, 2.0, 3.0], Some(1.0));
         check_correlation(&[0.0, 3.0, 2.0, 1.0], Some(-1.0));
         // scipy.stats.spearmanr([1, 2, 3, 4, 5], [2, 7, 2, 5, 9]) = 0.6155870112510925.

@@ -1,16 +1,16 @@
-//! How an order's length compares with those of random orders. Random orders as controls are in `random.rs`.
+//! Compares an order's length with those of random orders.
 
 use super::ordering::Ordering;
 use crate::DistanceMatrix;
 use crate::split_mix::SplitMix64;
 
-/// How many random orders an order is compared with.
+/// Number of random orders in a comparison.
 pub const NUM_RANDOM_ORDERS: u32 = 1000;
 
 /// The share of [`NUM_RANDOM_ORDERS`] random orders of all items that are shorter than this one, in 0..=1.
 ///
-/// `seed` is what they are drawn from. Near 0 for a short path, near 1 for a long one, around 0.5 for one by chance; lengths that agree to
-/// twelve digits are not shorter. Time `O(n)` for each.
+/// `seed` is the seed of the random orders. Near 0 for a short path, near 1 for a long one, around 0.5 for a random one;
+/// lengths that agree to twelve digits are not shorter. Time `O(n)` per order.
 ///
 /// # Example
 /// ```
@@ -28,7 +28,7 @@ pub fn share_of_shorter_orders(matrix: &DistanceMatrix, ordering: &Ordering, see
     let below = ordering.length * (1.0 - 1e-12);
     let mut shorter = 0_u32;
     for _ in 0..NUM_RANDOM_ORDERS {
-        // Fisher and Yates: every order as likely.
+        // Fisher and Yates: every order is equally likely.
         for place in (1..items.len()).rev() {
             items.swap(place, rng.below(place as u64 + 1) as usize);
         }
@@ -44,7 +44,7 @@ mod tests {
     use crate::SimilarityError;
 
     #[test]
-    fn it_is_the_share_of_all_orders_within_chance() {
+    fn share_matches_the_exact_share_within_sampling_error() {
         // Of the six orders of 0, 1 and 3, two have length 3, two 4 and two 5.
         let at = [0.0_f64, 1.0, 3.0];
         let names = ["a", "b", "c"].map(str::to_owned).to_vec();

@@ -1,22 +1,22 @@
-//! Searches for paths of small largest step, which `gradual.rs` weighs against the shortest.
+//! Searches for paths whose largest step is small.
 
 use super::items::Items;
 use super::local_search;
 use super::two_opt::from_the_lower_end;
 
-/// How many times the path is shaken in each round of the search, for each item.
+/// Shakes per item in each round of the search.
 const SHAKES_PER_ITEM: usize = 2;
-/// How many times it is shaken at least: a short path has few ways to change places, and each is tried by draw.
+/// Least number of shakes: a short path has few possible swaps, and they are tried at random.
 const LEAST_SHAKES: usize = 200;
-/// How many bounds are tried.
+/// Number of bounds tried.
 const ROUNDS: usize = 12;
 
-/// A path whose largest step is as small as a search finds, from a short path on; it halves the span in which the smallest
-/// largest step can lie.
+/// Searches for a path with a small largest step, starting from a short path; each round halves the interval in which the
+/// smallest largest step can lie.
 pub(super) fn search(short: &[usize], items: &Items) -> Vec<usize> {
     let mut best = short.to_vec();
     let mut reached = largest_step(&best, items);
-    // Whatever connects all items has a step as large as the largest in their minimum spanning tree.
+    // Every path has a step at least as large as the largest in the minimum spanning tree.
     let mut impossible = largest_branch(items);
     let largest = items.largest_gap();
     let shakes = LEAST_SHAKES.max(SHAKES_PER_ITEM * items.len());
@@ -25,7 +25,7 @@ pub(super) fn search(short: &[usize], items: &Items) -> Vec<usize> {
             break;
         }
         let bound = f64::midpoint(impossible, reached);
-        // Any step beyond the bound costs more than all that it could save, and the more the farther it goes.
+        // A step beyond the bound costs more than everything it could save, and more the farther it goes.
         let cost = |a: usize, b: usize| {
             let gap = items.gap(a, b);
             if gap <= bound {
@@ -39,7 +39,7 @@ pub(super) fn search(short: &[usize], items: &Items) -> Vec<usize> {
         if found <= bound {
             (best, reached) = (path, found);
         } else {
-            // Not proof that there is none: but none that this search finds.
+            // Not proof that there is no such path, but the search finds none.
             impossible = bound;
             if found < reached {
                 (best, reached) = (path, found);
@@ -49,7 +49,7 @@ pub(super) fn search(short: &[usize], items: &Items) -> Vec<usize> {
     from_the_lower_end(best, items)
 }
 
-/// The largest distance in the minimum spanning tree, which Prim's algorithm grows; 0 for a single item.
+/// The largest distance in the minimum spanning tree, by Prim's algorithm; 0 for a single item.
 fn largest_branch(items: &Items) -> f64 {
     let mut reach: Vec<f64> = (0..items.len()).map(|item| items.gap(0, item)).collect();
     let mut left: Vec<usize> = (1..items.len()).collect();
@@ -83,7 +83,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(24))]
 
         #[test]
-        fn the_search_for_many_comes_near_the_exact_answer(
+        fn search_is_close_to_the_exact_answer(
             points in prop::collection::vec(prop::array::uniform2(0.0..10.0_f64), 8..12),
         ) {
             let labels = (0..points.len()).map(|k| format!("{k:02}")).collect();
@@ -92,7 +92,7 @@ mod tests {
             let items = Items::new(&matrix, &OrderOptions::default()).unwrap();
             let mut bounds: Vec<f64> = matrix.values().iter().copied().collect();
             bounds.sort_by(f64::total_cmp);
-            // The smallest bound that some path keeps to.
+            // The smallest bound that some path respects.
             let keeps = |bound: &f64| {
                 let cost = |a: usize, b: usize| f64::from(items.gap(a, b) > *bound);
                 let path = best_path(points.len(), &cost, items.ends);

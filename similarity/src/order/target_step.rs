@@ -1,10 +1,10 @@
-//! Paths whose every step is close to a wanted one. Short paths are in `two_opt.rs`, those of small steps in `gradual.rs`.
+//! Paths whose every step is close to a target length.
 
 use super::items::Items;
 use super::two_opt::cheapest;
 use crate::SimilarityError;
 
-/// How many times the path is shaken, for each item.
+/// Shakes per item.
 const SHAKES_PER_ITEM: usize = 4;
 
 /// Minimises the sum of `|step - wanted|`.

@@ -1,4 +1,4 @@
-//! Laws that every method keeps, and answers found by trying everything. What a single file does is tested there.
+//! Laws of all methods, and results checked by brute force.
 
 use super::*;
 use crate::split_mix::SplitMix64;
@@ -30,7 +30,7 @@ fn with_last(options: OrderOptions, last: usize) -> OrderOptions {
     }
 }
 
-/// The least value over all paths that keep to the ends, by trying all.
+/// The least value over all paths with the fixed ends, by brute force.
 fn least(matrix: &DistanceMatrix, options: &OrderOptions, value: &impl Fn(&Ordering) -> f64) -> f64 {
     fn extend(
         matrix: &DistanceMatrix,
@@ -65,7 +65,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 48)))]
 
     #[test]
-    fn exact_methods_are_as_good_as_trying_everything(points in points(7), fixed in any::<[bool; 2]>()) {
+    fn exact_methods_match_brute_force(points in points(7), fixed in any::<[bool; 2]>()) {
         let matrix = matrix(&points);
         let options = options(&points, fixed);
         let found = |method| order(&matrix, method, &options).unwrap();
@@ -104,7 +104,7 @@ proptest! {
     }
 
     #[test]
-    fn lengths_stand_as_the_methods_promise(points in points(MAX_EXACT + 1), fixed in any::<[bool; 2]>()) {
+    fn lengths_compare_as_the_methods_promise(points in points(MAX_EXACT + 1), fixed in any::<[bool; 2]>()) {
         let matrix = matrix(&points);
         let options = options(&points, fixed);
         let length = |method| order(&matrix, method, &options).unwrap().length;
@@ -114,9 +114,9 @@ proptest! {
         prop_assert!(length(Method::Nearest) <= length(Method::Abrupt) + 1e-9);
     }
 
-    /// Where the items stand in the matrix must not matter: only their names and distances do.
+    /// The order of items in the matrix does not matter: only names and distances do.
     #[test]
-    fn a_matrix_in_another_order_gives_the_same_order(points in points(20), shift in 0_usize..20) {
+    fn reordered_matrix_gives_the_same_order(points in points(20), shift in 0_usize..20) {
         let n = points.len();
         let moved: Vec<usize> = (0..n).map(|k| (k + shift) % n).collect();
         let matrix = matrix(&points);
@@ -135,7 +135,7 @@ proptest! {
     }
 }
 
-/// Items on a line: the one order along which all similar ones are neighbours.
+/// Items on a line: only one order makes all similar items neighbours.
 #[test]
 fn methods_for_similar_neighbours_find_the_line() {
     let at = [3.0, 9.0, 0.0, 5.5, 1.0, 7.0, 2.2, 14.0];
@@ -154,7 +154,7 @@ fn methods_for_similar_neighbours_find_the_line() {
 }
 
 #[test]
-fn farthest_always_takes_what_is_newest() {
+fn farthest_always_takes_the_farthest_remaining_item() {
     let line: Vec<[f64; 2]> = [0.0, 1.0, 4.0, 10.0].iter().map(|x| [*x, 0.0]).collect();
     let found = |options: OrderOptions| order(&matrix(&line), Method::Farthest, &options).unwrap().indices;
     assert_eq!(found(OrderOptions::default()), [0, 3, 2, 1]);
@@ -163,7 +163,7 @@ fn farthest_always_takes_what_is_newest() {
 }
 
 #[test]
-fn random_orders_follow_their_seed_and_given_keeps_the_order() {
+fn random_orders_depend_on_the_seed_and_given_keeps_the_order() {
     let matrix = matrix(&[[0.0, 0.0]; 9]);
     let random = |seed| {
         let options = OrderOptions {
@@ -182,9 +182,9 @@ fn random_orders_follow_their_seed_and_given_keeps_the_order() {
     );
 }
 
-/// Equal items leave every path equal: then the names decide.
+/// Between equal items all paths are equal: then the names decide.
 #[test]
-fn ties_fall_to_the_first_names() {
+fn ties_go_to_the_first_names() {
     let matrix = matrix(&[[0.0, 0.0]; 9]);
     let options = OrderOptions {
         target_step: Some(1.0),
@@ -197,7 +197,7 @@ fn ties_fall_to_the_first_names() {
 }
 
 #[test]
-fn what_cannot_be_ordered_says_why() {
+fn impossible_orders_are_refused_with_reason() {
     let said = |matrix: &DistanceMatrix, method, options: &OrderOptions| {
         order(matrix, method, options).unwrap_err().to_string()
     };
@@ -225,7 +225,7 @@ fn what_cannot_be_ordered_says_why() {
     );
 }
 
-/// Points of the unit square, as `tests/oracle/make_orders.py` makes them.
+/// Random points of the unit square, the same as in `tests/oracle/make_orders.py`.
 fn drawn(seed: u64, count: usize) -> DistanceMatrix {
     let mut rng = SplitMix64(seed);
     let points: Vec<[f64; 2]> = (0..count).map(|_| [rng.unit(), rng.unit()]).collect();
@@ -236,7 +236,7 @@ fn golden() -> serde_json::Value {
     serde_json::from_str(include_str!("../../tests/oracle/orders.json")).unwrap()
 }
 
-/// What OR-Tools' routing found in half a minute and more is the mark; the search has to come within 6 % of it.
+/// OR-Tools' routing, run for at least half a minute, is the reference; the search must come within 6 % of it.
 #[test]
 fn a_thousand_items_come_within_six_percent_of_a_routing_library() {
     let golden = golden()["routing"]["length"].as_f64().unwrap();
@@ -245,7 +245,7 @@ fn a_thousand_items_come_within_six_percent_of_a_routing_library() {
 }
 
 #[test]
-fn the_largest_distances_there_can_be_are_ordered_by_every_method() {
+fn every_method_orders_the_largest_possible_distances() {
     for n in [3, 4, 40] {
         let labels = (0..n).map(|k| format!("{k:03}")).collect();
         let far = |_, _| Ok::<_, SimilarityError>(crate::MAX_DISTANCE);
@@ -267,7 +267,7 @@ fn the_largest_distances_there_can_be_are_ordered_by_every_method() {
 }
 
 #[test]
-fn a_single_item_is_a_path_of_length_0_and_not_of_minus_0() {
+fn single_item_has_length_0_not_minus_0() {
     let matrix = matrix(&[[1.0, 1.0]]);
     let found = order(&matrix, Method::Exact, &OrderOptions::default()).unwrap();
     assert_eq!(found.length.to_string(), "0");

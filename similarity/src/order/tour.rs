@@ -1,7 +1,6 @@
-//! [`Tour`]: a round of items in an array, changed by turning stretches round, every turn of which can be taken back. Costs
-//! and choices are in `local_search.rs`.
+//! [`Tour`]: a round of items in an array, changed by reversing stretches, with undo.
 
-/// A closed round. Every change is a series of turned stretches, which are logged until [`Tour::keep`].
+/// A closed round. Every change is a series of reversed stretches, logged for undo until [`Tour::keep`].
 pub(super) struct Tour {
     items: Vec<u32>,
     places: Vec<u32>,
@@ -24,7 +23,7 @@ impl Tour {
         self.items.len()
     }
 
-    /// Where an item stands.
+    /// The place of an item.
     pub(super) fn place(&self, item: usize) -> usize {
         self.places[item] as usize
     }
@@ -42,12 +41,13 @@ impl Tour {
         self.at(self.place(item) + self.len() - 1)
     }
 
-    /// How many items stand from one to another, both counted, going forwards.
+    /// Number of items from one to another, both included, going forwards.
     pub(super) fn span(&self, from: usize, to: usize) -> usize {
         self.wrapped(self.place(to) + self.len() - self.place(from)) + 1
     }
 
-    /// Turns the stretch from one item forwards to another round, or all others, which comes to the same and may be less work.
+    /// Reverses the stretch from one item forwards to another, or the rest of the round, which is equivalent and may be
+    /// shorter.
     pub(super) fn turn_between(&mut self, from: usize, to: usize) {
         let inside = self.span(from, to);
         if 2 * inside <= self.len() {
@@ -57,12 +57,12 @@ impl Tour {
         }
     }
 
-    /// Moves the `length` items from `start` forwards to between `x` and the item after it, turned round or not.
+    /// Moves the `length` items from `start` forwards to between `x` and the item after it, reversed if `turned`.
     pub(super) fn move_stretch(&mut self, start: usize, length: usize, x: usize, turned: bool) {
         let (n, start) = (self.len(), self.place(start));
         let over = self.wrapped(self.place(x) + 2 * n - (start + length) % n) + 1;
         let others = n - length - over;
-        // Forwards over the one side, or backwards over the other: the round is the same.
+        // Forwards over one side, or backwards over the other: the round is the same.
         let (begin, now_at) = if over <= others {
             self.turn(start, length + over);
             self.turn(start, over);
@@ -78,19 +78,19 @@ impl Tour {
         }
     }
 
-    /// Lets two stretches that follow each other change places.
+    /// Swaps two adjacent stretches.
     pub(super) fn swap_stretches(&mut self, start: usize, first: usize, second: usize) {
         self.turn(start, first + second);
         self.turn(start, second);
         self.turn(start + second, first);
     }
 
-    /// Keeps all that was changed.
+    /// Keeps all changes.
     pub(super) fn keep(&mut self) {
         self.turned.clear();
     }
 
-    /// Takes back all that was changed since the last [`Tour::keep`].
+    /// Undoes all changes since the last [`Tour::keep`].
     pub(super) fn take_back(&mut self) {
         while let Some((start, length)) = self.turned.pop() {
             self.turn_in_place(start, length);
@@ -129,7 +129,7 @@ impl Tour {
 mod tests {
     use super::*;
 
-    /// The round from item 0 on, in the direction that leads to the lower of its neighbours.
+    /// The round from item 0 on, in the direction of its lower neighbour.
     fn round(tour: &Tour) -> Vec<usize> {
         let mut items = vec![0];
         let forwards = tour.next(0) < tour.before(0);
@@ -141,7 +141,7 @@ mod tests {
     }
 
     fn check(expected: &[usize], change: impl Fn(&mut Tour)) {
-        // Wherever the array begins, the round is the same.
+        // The start of the array does not affect the round.
         for shift in 0..8 {
             let mut tour = Tour::new((0..8).map(|k| (k + shift) % 8));
             change(&mut tour);
@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn stretches_are_turned_whichever_side_is_shorter() {
+    fn stretches_are_reversed_on_either_side() {
         check(&[0, 1, 4, 3, 2, 5, 6, 7], |tour| tour.turn_between(2, 4));
         check(&[0, 1, 4, 3, 2, 5, 6, 7], |tour| tour.turn_between(5, 1));
         check(&[0, 1, 7, 6, 5, 4, 3, 2], |tour| tour.turn_between(2, 7));
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn stretches_change_places() {
+    fn adjacent_stretches_swap() {
         check(&[0, 3, 4, 1, 2, 5, 6, 7], |tour| {
             tour.swap_stretches(tour.place(1), 2, 2);
         });

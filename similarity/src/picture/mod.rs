@@ -1,4 +1,4 @@
-//! Distances between what an agent would see in two worlds: pictures in pairs, from the same poses. Rendering them is not done here.
+//! Distances between rendered views of two worlds: pairs of pictures from the same poses.
 
 mod oklab;
 mod ssim;
@@ -13,7 +13,7 @@ use crate::SimilarityError;
 /// Longest side of a picture in pixels.
 pub const MAX_SIDE: usize = 4096;
 
-/// A picture, borrowed: `(height, width, 3)` bytes of sRGB, row 0 on top.
+/// A borrowed picture: `(height, width, 3)` bytes of sRGB, row 0 at the top.
 ///
 /// # Example
 /// ```
@@ -31,10 +31,10 @@ pub struct Picture<'a> {
 }
 
 impl<'a> Picture<'a> {
-    /// From its bytes.
+    /// Wraps the bytes of a picture.
     ///
     /// # Errors
-    /// [`SimilarityError::PictureSide`] for a side of 0 or above [`MAX_SIDE`], [`SimilarityError::Shape`] when there are not
+    /// [`SimilarityError::PictureSide`] for a side of 0 or above [`MAX_SIDE`], [`SimilarityError::Shape`] unless there are
     /// `height · width · 3` bytes.
     pub fn new(rgb: &'a [u8], height: usize, width: usize) -> Result<Self, SimilarityError> {
         for found in [height, width] {
@@ -50,7 +50,7 @@ impl<'a> Picture<'a> {
         Ok(Self { rgb, height, width })
     }
 
-    /// Whether another is as high and as wide.
+    /// Checks that another has the same height and width.
     fn lies_on(self, other: Self) -> Result<(), SimilarityError> {
         if (self.height, self.width) == (other.height, other.width) {
             return Ok(());

@@ -1,4 +1,4 @@
-//! Mean difference of the colours of two pictures, pixel by pixel. The distance of two colours is in `color/oklab.rs`.
+//! Mean colour difference of two pictures, pixel by pixel.
 
 use std::sync::LazyLock;
 
@@ -7,17 +7,17 @@ use driftworld_spec::{Oklab, linear_from_srgb};
 use super::Picture;
 use crate::SimilarityError;
 
-/// Amounts of light of the 256 bytes.
+/// Linear light of the 256 byte values.
 static LIGHT: LazyLock<[f64; 256]> =
     LazyLock::new(|| std::array::from_fn(|byte| linear_from_srgb(byte as f64 / 255.0)));
 
-/// Mean over all pixels of the distance in Oklab between what two pictures show there.
+/// Mean over all pixels of the distance in Oklab between two pictures.
 ///
-/// A metric between pictures of one size, in `0..=1` (black to white), no unit. Sees every shift of a thing by a pixel as much as its
-/// absence. Mostly the cost of six cube roots a pixel; pixels of equal bytes cost nothing.
+/// A metric between pictures of one size, in `0..=1` (black to white), no unit. A shift by a single pixel counts as much as an
+/// absence. Costs about six cube roots per pixel; pixels of equal bytes are free.
 ///
 /// # Errors
-/// [`SimilarityError::PictureSizes`] when they differ in height or width.
+/// [`SimilarityError::PictureSizes`] if they differ in height or width.
 ///
 /// # Example
 /// ```
@@ -30,7 +30,7 @@ static LIGHT: LazyLock<[f64; 256]> =
 pub fn picture_oklab(a: Picture, b: Picture) -> Result<f64, SimilarityError> {
     a.lies_on(b)?;
     let (from, to) = (a.rgb.as_chunks::<3>().0, b.rgb.as_chunks::<3>().0);
-    // Neighbours are often alike: the last conversion of each picture is kept.
+    // Neighbours are often equal: the last conversion of each picture is cached.
     let (mut before, mut after) = (Last::default(), Last::default());
     let mut sum = 0.0;
     for (from, to) in from.iter().zip(to) {
@@ -41,12 +41,12 @@ pub fn picture_oklab(a: Picture, b: Picture) -> Result<f64, SimilarityError> {
     Ok(sum / from.len() as f64)
 }
 
-/// The sum of the distances in Oklab and the number of pixels: of those that `marked` marks, and of the others.
+/// The sum of the distances in Oklab and the number of pixels: for those that `marked` marks, and for the others.
 ///
-/// Whoever compares many pictures adds these up, and has the mean over all pixels of either kind. `marked`: `(height · width,)`.
+/// Add these up over many pictures to get the mean over all pixels of either kind. `marked`: `(height · width,)`.
 ///
 /// # Errors
-/// [`SimilarityError::PictureSizes`] when the pictures differ in height or width, [`SimilarityError::Shape`] unless there is a
+/// [`SimilarityError::PictureSizes`] if the pictures differ in height or width, [`SimilarityError::Shape`] unless there is a
 /// mark for every pixel.
 ///
 /// # Example
@@ -109,7 +109,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_is_a_metric(a in pixels(), b in pixels(), c in pixels()) {
+        fn picture_oklab_is_a_metric(a in pixels(), b in pixels(), c in pixels()) {
             prop_assert_eq!(distance(&a, &a), 0.0);
             prop_assert_eq!(distance(&a, &b), distance(&b, &a));
             prop_assert!(distance(&a, &c) <= distance(&a, &b) + distance(&b, &c) + 1e-12);
@@ -118,7 +118,7 @@ mod tests {
         }
 
         #[test]
-        fn the_sums_of_both_kinds_of_pixels_make_the_mean(
+        fn sums_of_both_pixel_kinds_give_the_mean(
             a in pixels(), b in pixels(), marked in prop::collection::vec(any::<bool>(), 4)
         ) {
             let [a_picture, b_picture] = [&a, &b].map(|rgb| Picture::new(rgb, 2, 2).unwrap());
@@ -129,7 +129,7 @@ mod tests {
         }
 
         #[test]
-        fn it_is_the_mean_of_the_distances_of_the_colors(a in pixels(), b in pixels()) {
+        fn mean_is_over_the_distances_of_the_colours(a in pixels(), b in pixels()) {
             let color = |rgb: &[u8]| Color([rgb[0], rgb[1], rgb[2]].map(|byte| f64::from(byte) / 255.0));
             let pairs = a.chunks(3).zip(b.chunks(3));
             let mean = pairs.map(|(a, b)| color(a).distance(color(b))).sum::<f64>() / 4.0;

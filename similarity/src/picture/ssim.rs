@@ -1,32 +1,33 @@
-//! Structural similarity of two pictures. How it becomes a distance between sets of pictures is in `views.rs`.
+//! Structural similarity of two pictures.
 
 use super::Picture;
 use crate::SimilarityError;
 
-/// Weights of a Gaussian with a standard deviation of 1.5 pixels reach this far from its middle, as scikit-image cuts it.
+/// Radius of the Gaussian window (standard deviation 1.5 pixels), truncated as in scikit-image.
 const REACH: usize = 5;
 
-/// Side of the window, and so the least side of a picture.
+/// Side of the window, and so the shortest side of a picture.
 pub const LEAST_SIDE: usize = 2 * REACH + 1;
 
-/// (0.01 · 255)² and (0.03 · 255)²: they keep dark and flat places from counting too much.
+/// (0.01 · 255)² and (0.03 · 255)²: they stabilise dark and flat areas.
 const STEADY_MEAN: f64 = 6.5025;
 const STEADY_SPREAD: f64 = 58.5225;
 
-/// Mean structural similarity (SSIM) of two pictures: mean, contrast and structure of the brightness around each pixel, channel by channel.
+/// Mean structural similarity (SSIM) of two pictures: mean, contrast and structure of the brightness around each pixel, channel
+/// by channel.
 ///
 /// Mean over the channels red, green and blue and over all places of a Gaussian window (11 × 11 pixels, standard deviation 1.5) of
 /// (2 μν + C₁)(2 κ + C₂) / ((μ² + ν² + C₁)(σ² + τ² + C₂)), with the means μ and ν, the variances σ² and τ², the covariance κ and
-/// C₁ = 6.5025, C₂ = 58.5225. 1 for equal pictures, about 0 for unrelated ones, at
-/// least −1. Symmetric. A similarity; `(1 − SSIM) / 2` is a distance but not a metric. Time in proportion to the number of
-/// pixels: about 130 multiplications for each of a channel.
+/// C₁ = 6.5025, C₂ = 58.5225. 1 for equal pictures, about 0 for unrelated ones, at least −1. Symmetric. A similarity;
+/// `(1 − SSIM) / 2` is a distance but not a metric. Time proportional to the number of pixels: about 130 multiplications per
+/// pixel and channel.
 ///
 /// Source: Wang, Bovik, Sheikh and Simoncelli 2004, "Image quality assessment: from error visibility to structural similarity"; the same numbers as
 /// `skimage.metrics.structural_similarity(a, b, channel_axis=2, gaussian_weights=True, sigma=1.5, use_sample_covariance=False,
 /// data_range=255)` within 1e-9, see `tests/oracle/ssim.json`.
 ///
 /// # Errors
-/// [`SimilarityError::PictureSizes`] when they differ in height or width, [`SimilarityError::PictureSide`] below
+/// [`SimilarityError::PictureSizes`] if they differ in height or width, [`SimilarityError::PictureSide`] below
 /// [`LEAST_SIDE`].
 ///
 /// # Example
@@ -52,7 +53,7 @@ pub fn structural_similarity(a: Picture, b: Picture) -> Result<f64, SimilarityEr
     }
     let weights = gaussian();
     let (inner, rows) = (width - 2 * REACH, height - 2 * REACH);
-    // The rows in reach, already blurred along themselves: five moments each.
+    // The rows within the window, already blurred horizontally: five moments each.
     let mut blurred = vec![[0.0; 5]; LEAST_SIDE * inner];
     let mut moments = vec![[0.0; 5]; width];
     let mut sum = 0.0;
@@ -115,7 +116,7 @@ mod tests {
     const BYTES: usize = 12 * 13 * 3;
 
     #[test]
-    fn a_picture_smaller_than_the_window_is_refused() {
+    fn picture_smaller_than_the_window_is_refused() {
         let rgb = [0; 10 * 20 * 3];
         let picture = Picture::new(&rgb, 10, 20).unwrap();
         let error = structural_similarity(picture, picture).unwrap_err();
@@ -136,7 +137,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 32)))]
 
         #[test]
-        fn it_is_symmetric_and_1_for_equals(
+        fn ssim_is_symmetric_and_1_for_equal_pictures(
             a in prop::collection::vec(any::<u8>(), BYTES),
             b in prop::collection::vec(any::<u8>(), BYTES),
         ) {

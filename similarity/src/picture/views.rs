@@ -1,15 +1,15 @@
-//! Distance between two sets of pictures, pose by pose. The poses are chosen, and the pictures made, by whoever calls.
+//! Distance between two sets of pictures, pose by pose.
 
 use super::{Picture, picture_oklab, structural_similarity};
 use crate::{MetricProperties, SimilarityError};
 
-/// How two pictures are compared.
+/// A measure of two pictures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PictureMeasure {
-    /// [`picture_oklab`]: colours where they stand. A metric.
+    /// [`picture_oklab`]: colours pixel by pixel. A metric.
     #[default]
     Oklab,
-    /// `(1 − SSIM) / 2` by [`structural_similarity`]: edges and shading, less so their colours. Half for unrelated pictures.
+    /// `(1 − SSIM) / 2` by [`structural_similarity`]: edges and shading more than colours. 0.5 for unrelated pictures.
     Structure,
 }
 
@@ -22,7 +22,7 @@ impl PictureMeasure {
         }
     }
 
-    /// Which laws it keeps.
+    /// Which laws the measure satisfies.
     pub fn properties(self) -> MetricProperties {
         match self {
             Self::Oklab => MetricProperties::Metric,
@@ -30,26 +30,26 @@ impl PictureMeasure {
         }
     }
 
-    /// How far two pictures are apart, in `0..=1`.
+    /// The distance of two pictures, in `0..=1`.
     ///
     /// # Errors
     /// As [`picture_oklab`] and [`structural_similarity`].
     pub fn between(self, a: Picture, b: Picture) -> Result<f64, SimilarityError> {
         match self {
             Self::Oklab => picture_oklab(a, b),
-            // Rounding makes the similarity of equals a little more than 1 now and then.
+            // Rounding may push the similarity of equal pictures slightly above 1.
             Self::Structure => Ok(((1.0 - structural_similarity(a, b)?) / 2.0).clamp(0.0, 1.0)),
         }
     }
 }
 
-/// Mean distance of pictures in pairs: the first of each, the second of each, and so on, as seen from the same poses.
+/// Mean distance of pictures in pairs: the first of each, the second of each, and so on, from the same poses.
 ///
-/// In `0..=1`, of the nature of the measure. Both sets must have as many pictures, pair by pair of one size. The sum of the costs of
-/// the pairs.
+/// In `0..=1`, with the laws of the measure. Both sets must have the same number of pictures, with equal sizes in each pair.
+/// Costs the sum over the pairs.
 ///
 /// # Errors
-/// [`SimilarityError::NoPictures`] without any, [`SimilarityError::Shape`] when one set has more; otherwise as
+/// [`SimilarityError::NoPictures`] if both are empty, [`SimilarityError::Shape`] if one set has more; otherwise as
 /// [`PictureMeasure::between`].
 ///
 /// # Example
@@ -79,7 +79,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn sets_have_as_many_pictures() {
+    fn sets_must_have_the_same_number_of_pictures() {
         let rgb = [0; 3];
         let picture = Picture::new(&rgb, 1, 1).unwrap();
         let code = |a: &[Picture], b: &[Picture]| views_distance(a, b, PictureMeasure::Oklab).unwrap_err().code();
@@ -91,7 +91,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 32)))]
 
         #[test]
-        fn each_measure_keeps_its_laws(bytes in prop::collection::vec(any::<u8>(), 6 * 11 * 11 * 3)) {
+        fn measures_satisfy_their_laws(bytes in prop::collection::vec(any::<u8>(), 6 * 11 * 11 * 3)) {
             let pictures: Vec<Picture> = bytes.chunks(11 * 11 * 3).map(|rgb| Picture::new(rgb, 11, 11).unwrap()).collect();
             let (a, b, c) = (&pictures[..2], &pictures[2..4], &pictures[4..]);
             for measure in [PictureMeasure::Oklab, PictureMeasure::Structure] {

@@ -1,18 +1,18 @@
-//! [`Direction`]: what is left of a list of numbers once it is moved and stretched. What the numbers are is known elsewhere.
+//! [`Direction`]: a list of numbers up to shift and scale.
 
 use crate::sum::sum;
 
-/// Where a list points: centred and of length 1, every number counting alike.
+/// The direction of a list: centred and of length 1, every number with equal weight.
 #[derive(Clone, Debug)]
 pub(super) struct Direction {
-    /// `None` for a list that is all one number, within rounding.
+    /// `None` for a list that is constant within rounding.
     offsets: Option<Vec<f64>>,
-    /// How far rounding may have turned it.
+    /// How far rounding may have turned the direction.
     rounding: f64,
 }
 
 impl Direction {
-    /// `values`: at least one. `rounding`: how far off each may be.
+    /// `values`: at least one. `rounding`: the largest error of each.
     pub(super) fn of(values: &[f64], rounding: f64) -> Self {
         let share = 1.0 / values.len() as f64;
         let mean = sum(values.iter().map(|value| value * share));
@@ -24,7 +24,7 @@ impl Direction {
                 rounding: 0.0,
             };
         }
-        // First by the widest, so that squares neither overflow nor vanish.
+        // Divided by the largest first, so that squares neither overflow nor vanish.
         let squares = offsets.iter().map(|offset| {
             let offset = offset / widest;
             share * offset * offset
@@ -42,9 +42,9 @@ impl Direction {
     /// Half the length between the two, which is `√((1 − r) / 2)` with Pearson's correlation `r` and keeps the digits that
     /// `1 − r` loses.
     ///
-    /// 0 to 1: 0 where one list is the other times a factor above 0 plus a number, 1 where one falls as the other rises. A list
-    /// that is all one number is ½ from any that is not, and 0 from its like. What rounding alone can make is given as 0;
-    /// within 8 · 2⁻⁵² of 1 it is given as 1.
+    /// 0 to 1: 0 if one list is the other times a factor above 0 plus a constant, 1 if one falls exactly as the other rises. A
+    /// constant list is ½ from any that is not, and 0 from another constant one. Distances within rounding are returned as 0,
+    /// those within 8 · 2⁻⁵² of 1 as 1.
     pub(super) fn distance(&self, other: &Self) -> f64 {
         let (Some(a), Some(b)) = (&self.offsets, &other.offsets) else {
             return if self.offsets.is_none() && other.offsets.is_none() {
@@ -86,13 +86,13 @@ mod tests {
     }
 
     #[test]
-    fn small_lists_have_their_known_distances() {
+    fn small_lists_have_known_distances() {
         check(&[1.0, 2.0, 3.0, 4.0], &[1.0, 3.0, 2.0, 4.0], 0.1_f64.sqrt());
         check(&[1.0, -1.0, 1.0, -1.0], &[1.0, 1.0, -1.0, -1.0], 0.5_f64.sqrt());
     }
 
     #[test]
-    fn what_is_all_one_number_lies_in_the_middle() {
+    fn constant_list_is_halfway() {
         check(&[3.0; 3], &[7.0; 3], 0.0);
         check(&[3.0; 3], &[1.0, 2.0, 4.0], 0.5);
         check(&[1.0, 2.0, 4.0], &[0.1; 3], 0.5);
@@ -108,7 +108,7 @@ mod tests {
 
     #[test]
     fn nearly_equal_lists_keep_their_digits() {
-        // To first order half the sine of the angle between them; 1 − r would leave one digit of it.
+        // To first order half the sine of the angle between them; 1 − r would keep only one digit of it.
         let found = apart(&[1.0, 0.0, -1.0], &[1.0, 3e-8, -1.0]);
         let expected = 3e-8 * (2.0_f64 / 3.0).sqrt() / 2.0_f64.sqrt() / 2.0;
         assert!((found / expected - 1.0).abs() < 1e-7, "{found}, expected {expected}");
@@ -120,7 +120,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_is_a_pseudometric(a in list(), b in list(), c in list()) {
+        fn direction_distance_is_a_pseudometric(a in list(), b in list(), c in list()) {
             prop_assert_eq!(apart(&a, &a), 0.0);
             prop_assert_eq!(apart(&a, &b), apart(&b, &a));
             prop_assert!((0.0..=1.0).contains(&apart(&a, &b)));
@@ -128,7 +128,7 @@ mod tests {
         }
 
         #[test]
-        fn moving_and_stretching_is_no_distance(a in list(), by in -1e3..1e3, times in 1e-3..1e3) {
+        fn shift_and_scale_give_distance_0(a in list(), by in -1e3..1e3, times in 1e-3..1e3) {
             let moved: Vec<f64> = a.iter().map(|value| value * times + by).collect();
             prop_assert_eq!(apart(&a, &moved), 0.0);
         }

@@ -1,5 +1,4 @@
-//! [`RewardSamples`]: the equivalent-policy invariant comparison of rewards (EPIC) over transitions. Drawing them is up to whoever
-//! knows the world.
+//! [`RewardSamples`]: the equivalent-policy invariant comparison of rewards (EPIC) over given transitions.
 
 use std::cell::Cell;
 
@@ -7,17 +6,17 @@ use super::direction::Direction;
 use crate::SimilarityError;
 use crate::sum::sum;
 
-/// Largest size of a reward: squares of shaped ones stay finite.
+/// Largest absolute reward: squares of shaped rewards stay finite.
 const LARGEST: f64 = 1e100;
 
-/// How far off a shaped reward may be, as a multiple of 2⁻⁵² of the largest reward: half for the rewards themselves, some 2 for each
-/// of three means, half the size of every partial sum; doubled.
+/// Largest error of a shaped reward, as a multiple of 2⁻⁵² of the largest reward: half for the rewards themselves, some 2 for
+/// each of three means, half the size of every partial sum; doubled.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
-/// What rewards are compared on: transitions, and pairs of an action and a state that their mean is taken over.
+/// The samples on which rewards are compared: transitions, and pairs of an action and a state for the means.
 ///
-/// `S` and `A` are whatever a reward is a function of: an index, a pose, a whole world. Both rewards have to be measured on
-/// the same samples.
+/// `S` and `A` are the arguments of a reward: an index, a pose, a whole world. Both rewards must be measured on the same
+/// samples.
 #[derive(Clone, Debug)]
 pub struct RewardSamples<S, A> {
     transitions: Vec<(S, A, S)>,
@@ -25,12 +24,12 @@ pub struct RewardSamples<S, A> {
 }
 
 impl<S, A> RewardSamples<S, A> {
-    /// `transitions`: state, action, next state, from the coverage that rewards are to be compared over; possible ones, if
-    /// others never pay. `draws`: actions and next states by which the canonical shape is estimated, each drawn apart from
-    /// the other; their states also stand for the state drawn. What is there twice counts twice.
+    /// `transitions`: state, action, next state, from the coverage distribution of the comparison; only possible ones, if
+    /// others never pay. `draws`: actions and next states for estimating the canonical shape, drawn independently of each
+    /// other; their states also serve as the random start states. Duplicates count twice.
     ///
     /// # Errors
-    /// [`SimilarityError::NoSamples`] where one of them is empty.
+    /// [`SimilarityError::NoSamples`] if one of them is empty.
     pub fn new(transitions: Vec<(S, A, S)>, draws: Vec<(A, S)>) -> Result<Self, SimilarityError> {
         if transitions.is_empty() || draws.is_empty() {
             return Err(SimilarityError::NoSamples);
@@ -38,12 +37,12 @@ impl<S, A> RewardSamples<S, A> {
         Ok(Self { transitions, draws })
     }
 
-    /// What a reward gives on these samples. It is asked `transitions · (1 + 2 · draws) + draws²` times.
+    /// Evaluates a reward on these samples. It is called `transitions · (1 + 2 · draws) + draws²` times.
     ///
     /// # Errors
     /// [`SimilarityError::BadReward`] for one that is not within ±1e100.
     pub fn measure(&self, reward: impl Fn(&S, &A, &S) -> f64) -> Result<SampledReward, SimilarityError> {
-        // Means of large rewards that cancel out are rounded as large ones are.
+        // Means of large rewards that cancel keep the rounding error of the large ones.
         let most = Cell::new(0.0_f64);
         let reward = |state: &S, action: &A, next: &S| {
             let paid = reward(state, action, next);
@@ -71,7 +70,7 @@ impl<S, A> RewardSamples<S, A> {
     }
 }
 
-/// A reward on some [`RewardSamples`].
+/// A reward evaluated on some [`RewardSamples`].
 ///
 /// # Example
 /// ```
@@ -87,15 +86,15 @@ impl<S, A> RewardSamples<S, A> {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampledReward {
-    /// What each transition pays.
+    /// The reward of each transition.
     rewards: Vec<f64>,
-    /// The mean reward of going on at random from the state that each transition leaves.
+    /// The mean reward of a random step from the state that each transition leaves.
     before: Vec<f64>,
-    /// The same from the state that it enters.
+    /// The mean reward of a random step from the state that it enters.
     after: Vec<f64>,
-    /// The same from a state that is drawn, too.
+    /// The mean reward of a random step from a random state.
     overall: f64,
-    /// The largest size of a reward, and of a mean.
+    /// The largest absolute reward or mean.
     largest: f64,
 }
 
@@ -113,7 +112,7 @@ impl SampledReward {
     }
 
     /// The reward of each transition in its canonical shape, `R(s, a, s') + E[γ R(s', A, S') − R(s, A, S') − γ R(S, A, S')]`
-    /// with `S`, `S'` and `A` drawn alike for all.
+    /// with the same samples of `S`, `S'` and `A` for all.
     fn canonical(&self, discount: f64) -> Vec<f64> {
         let means = self.before.iter().zip(&self.after);
         let shaped = self.rewards.iter().zip(means);
@@ -122,24 +121,25 @@ impl SampledReward {
             .collect()
     }
 
-    /// EPIC: how far apart two rewards are in what they ask for, under any dynamics. Both measured on the same samples.
+    /// EPIC: the distance of two rewards up to equivalence of their optimal policies, under any dynamics. Both must be measured
+    /// on the same samples.
     ///
     /// Both are brought into their canonical shape; then it is `√((1 − r) / 2)`, `r` Pearson's correlation over the
     /// transitions. 0 to 1: 0 between rewards that differ by potential shaping of this discount, by a factor above 0 and by a
-    /// shift, and 1 between a reward and its reverse. A reward that is the same for all transitions, but for shaping, asks for
-    /// nothing: it is 0 from its like and ½ from any other. What rounding alone can make is given as exactly 0: up to
-    /// 32 · 2⁻⁵² times (largest reward / standard deviation of the canonical one), both rewards' added up.
+    /// shift, and 1 between a reward and its reverse. A reward that is constant, but for shaping, has no preference: it is 0
+    /// from another such reward and ½ from any other. Distances within rounding are exactly 0: up to 32 · 2⁻⁵² times (largest
+    /// reward / standard deviation of the canonical one), both rewards' added up.
     ///
-    /// A pseudometric, whatever the samples. It differs from the distance of the distributions that were drawn from by something
-    /// like `1 / √samples`. A difference where no sample lies is not seen.
+    /// A pseudometric for any samples. It differs from the distance over the sampled distributions by about `1 / √samples`.
+    /// Differences where there is no sample go unnoticed.
     ///
     /// Source: Gleave, Dennis, Legg, Russell and Leike 2021, "Quantifying differences in reward functions", appendix A.1;
     /// `sample_canon_shaping` of `evaluating_rewards/distances/epic_sample.py`. On all transitions the same numbers as its
     /// tabular code (`tabular.py`), see `tests/oracle/reward.json`.
     ///
     /// # Errors
-    /// [`SimilarityError::SizesDiffer`] for rewards of different samples, [`SimilarityError::BadNumber`] for a discount that is
-    /// not from 0 to 1.
+    /// [`SimilarityError::SizesDiffer`] for rewards of different samples, [`SimilarityError::BadNumber`] for a discount outside
+    /// 0 to 1.
     pub fn distance(&self, other: &Self, discount: f64) -> Result<f64, SimilarityError> {
         if !(0.0..=1.0).contains(&discount) {
             return Err(SimilarityError::BadNumber {
@@ -171,7 +171,7 @@ mod tests {
     const STATES: usize = 5;
     const ACTIONS: usize = 3;
 
-    /// What each transition pays: `(states, actions, states)`.
+    /// The reward of each transition: `(states, actions, states)`.
     type Table = Vec<f64>;
 
     fn table(rng: &mut SplitMix64) -> Table {
@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reward_that_asks_for_nothing_lies_in_the_middle() {
+    fn constant_reward_is_halfway() {
         let nothing = of_table(|_, _, _| 0.3);
         let soft = shaped(&nothing, &[1.0, -7.3, 0.2, 4.0, 0.0], 0.9);
         let goal = of_table(|_, _, next| f64::from(next == 1));
@@ -223,14 +223,14 @@ mod tests {
     }
 
     #[test]
-    fn shaping_of_another_discount_is_seen() {
+    fn shaping_of_another_discount_is_noticed() {
         let goal = of_table(|_, _, next| f64::from(next == 1));
         let soft = shaped(&goal, &[5.0, 1.0, 0.0, 2.0, 3.0], 0.9);
         assert!(apart(&every(), &goal, &soft, 0.5) > 0.1);
     }
 
     #[test]
-    fn the_error_falls_with_the_root_of_the_number_of_samples() {
+    fn error_falls_with_the_root_of_the_number_of_samples() {
         let mut rng = SplitMix64(2);
         let tables: Vec<_> = (0..30).map(|_| (table(&mut rng), table(&mut rng))).collect();
         let every = every();
@@ -264,7 +264,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_is_a_pseudometric_on_any_samples(seed in 0_u64..1000, discount in 0.0..=1.0) {
+        fn epic_is_a_pseudometric_on_any_samples(seed in 0_u64..1000, discount in 0.0..=1.0) {
             let mut rng = SplitMix64(seed);
             let (a, b, c) = (table(&mut rng), table(&mut rng), table(&mut rng));
             for samples in [every(), samples(&mut rng, 12)] {
@@ -277,7 +277,7 @@ mod tests {
         }
 
         #[test]
-        fn what_asks_for_the_same_is_exactly_0_apart(
+        fn equivalent_rewards_are_exactly_0_apart(
             seed in 0_u64..1000,
             potential in prop::collection::vec(-50.0..50.0, STATES),
             by in -50.0..50.0,

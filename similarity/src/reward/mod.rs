@@ -1,4 +1,4 @@
-//! How far apart rewards are, whatever the dynamics: EPIC over drawn transitions, and the transitions of worlds.
+//! Distances between rewards, whatever the dynamics: EPIC on given transitions, and for whole worlds.
 
 mod direction;
 mod epic;

@@ -1,5 +1,4 @@
-//! How far apart the rewards of two worlds are, by EPIC over states and choices that are drawn. How objects of two worlds are
-//! matched is said in `combined/matching.rs`, EPIC in `epic.rs`.
+//! Distance between the rewards of two worlds, by EPIC over random states and choices.
 
 use driftworld_spec::{Object, World};
 
@@ -8,24 +7,24 @@ use crate::SimilarityError;
 use crate::combined::match_objects;
 use crate::split_mix::SplitMix64;
 
-/// The discount where neither world's shaping names one.
+/// The discount if neither world's shaping gives one.
 const DISCOUNT: f64 = 0.99;
 
-/// How many transitions are drawn, and how many choices and states means are taken over.
+/// Number of transitions, and of choices and states for the means.
 const TRANSITIONS: usize = 256;
 const DRAWS: usize = 96;
 
-/// How far apart what two worlds reward is, in `0..=1`: EPIC, which does not count what no choice depends on.
+/// The distance between the rewards of two worlds, in `0..=1`: EPIC, which ignores rewards that no choice affects.
 ///
-/// A state is where the agent is and which objects are used up; an action sets one object off, or none. A world pays for it
-/// what the object is worth (times its odds), `order_penalty` out of turn, and what its shaping gives. Both worlds' rewards are
-/// asked on the same 256 transitions, of which each leads anywhere; objects are matched as distances of worlds match them, and
-/// what is in one world only pays nothing in the other. So 0 is the same reward up to a constant, a factor above 0 and
-/// potential shaping; about 0.7 (√½) are rewards that have nothing to do with each other; 1 is the reverse.
+/// A state is the agent's place and the set of used-up objects; an action triggers one object, or none. A world pays for it the
+/// object's reward (times its odds), `order_penalty` if out of turn, and its shaping. Both worlds' rewards are evaluated on the
+/// same 256 transitions, each of which may lead anywhere; objects are matched as in distances of worlds, and an object that
+/// only one world has pays nothing in the other. So 0 is the same reward up to a constant, a factor above 0 and potential
+/// shaping; about 0.7 (√½) are unrelated rewards; 1 is the reverse.
 ///
-/// It does not see what a second pays, for that is a constant, nor how hard a reward is to come by. The
-/// discount is that of the worlds' shaping, the larger of two, and else 0.99. A pseudometric among worlds whose
-/// objects are matched alike. The same arguments give the same number. Some milliseconds.
+/// It ignores the reward per second, which is a constant, and how hard a reward is to reach. The discount is that of the
+/// worlds' shaping, the larger of two, by default 0.99. A pseudometric among worlds whose objects are matched alike.
+/// Deterministic. Takes some milliseconds.
 ///
 /// Source: Gleave, Dennis, Legg, Russell and Leike 2021, "Quantifying differences in reward functions".
 ///
@@ -63,24 +62,24 @@ pub fn world_rewards_distance(a: &World, b: &World) -> Result<f64, SimilarityErr
     measure(&a)?.distance(&measure(&b)?, discount)
 }
 
-/// Where the agent is, and which objects are used up.
+/// The agent's place, and which objects are used up.
 #[derive(Clone, Debug)]
 struct State {
     place: [f64; 2],
     gone: Vec<bool>,
 }
 
-/// Which object is set off.
+/// The object that is triggered.
 type Choice = Option<usize>;
 
-/// Transitions that lead anywhere, over so many objects and a field that reaches so far from the middle, in metres.
+/// Random transitions between any states, for this number of objects and a field of this half-extent in metres.
 fn draw(objects: usize, reach: [f64; 2]) -> Result<RewardSamples<State, Choice>, SimilarityError> {
     let mut rng = SplitMix64::keyed(0, objects as u64);
     let state = |rng: &mut SplitMix64| State {
         place: reach.map(|reach| (2.0 * rng.unit() - 1.0) * reach),
         gone: (0..objects).map(|_| rng.below(2) == 1).collect(),
     };
-    // Every object as often as none.
+    // Every object is as likely as none.
     let choice = |rng: &mut SplitMix64| {
         let drawn = rng.below(objects as u64 + 1) as usize;
         (drawn < objects).then_some(drawn)
@@ -99,7 +98,7 @@ fn draw(objects: usize, reach: [f64; 2]) -> Result<RewardSamples<State, Choice>,
     RewardSamples::new(transitions, draws)
 }
 
-/// What a world pays, its objects in the order in which those of both worlds are matched.
+/// The rewards of a world, its objects in the order of the matching.
 struct Rewards<'a> {
     world: &'a World,
     objects: Vec<Option<&'a Object>>,
@@ -118,7 +117,7 @@ impl<'a> Rewards<'a> {
         self.world.environment_params.arena_size()[axis] / 2.0
     }
 
-    /// What a step pays that leads from a state to another and sets an object off, in points.
+    /// The reward, in points, of a step between two states that triggers an object.
     fn pays(&self, from: &State, action: Choice, to: &State) -> f64 {
         let set_off = action.and_then(|index| Some((index, self.objects[index]?)));
         let shaped = self.world.rules.shaping.as_ref().map_or(0.0, |shaping| {
@@ -127,7 +126,7 @@ impl<'a> Rewards<'a> {
         shaped + set_off.map_or(0.0, |(index, object)| self.worth(from, index, object))
     }
 
-    /// What setting an object off is worth in a state.
+    /// The value of triggering an object in a state.
     fn worth(&self, state: &State, index: usize, object: &Object) -> f64 {
         let again = !object.reward_stimulus.is_empty();
         let pays = again || !object.reward_once_stimulus.is_empty();
@@ -141,14 +140,14 @@ impl<'a> Rewards<'a> {
         }
     }
 
-    /// Whether everything that comes before an object is used up.
+    /// Whether all earlier objects of the sequence are used up.
     fn is_due(&self, state: &State, object: &Object) -> bool {
         let before = |other: &&Object| other.order.zip(object.order).is_some_and(|(other, own)| other < own);
         let open = self.objects.iter().zip(&state.gone).filter(|(_, gone)| !**gone);
         !open.filter_map(|(other, _)| other.as_ref()).any(before)
     }
 
-    /// The potential of the world's shaping, as the simulator has it.
+    /// The potential of the world's shaping, as in the simulator.
     fn potential(&self, state: &State) -> f64 {
         let Some(shaping) = &self.world.rules.shaping else {
             return 0.0;
@@ -192,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn costs_that_are_added_are_seen_and_by_how_much() {
+    fn added_costs_increase_the_distance() {
         let plain = world(&[10.0, 10.0]);
         let with_barrels = |pays: f64| {
             let mut world = plain.clone().into_draft();
@@ -212,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_second_pays_is_no_other_reward() {
+    fn reward_per_second_does_not_count() {
         let plain = world(&[10.0, -5.0]);
         let hasty = plain
             .clone()
@@ -222,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sequence_is_another_reward_than_any_order() {
+    fn sequence_differs_from_any_order() {
         let any = world(&[10.0, 10.0, 10.0]);
         let mut sequence = any.clone().into_draft();
         for (order, object) in (1..).zip(&mut sequence.objects) {
@@ -248,7 +247,7 @@ mod tests {
         }
 
         #[test]
-        fn it_is_a_pseudometric_among_worlds_that_differ_in_what_they_pay(
+        fn reward_distance_is_a_pseudometric_for_worlds_that_differ_in_pay(
             pays in prop::array::uniform3(prop::array::uniform4(-100.0..100.0_f64)),
         ) {
             let [a, b, c] = pays.map(|pays| world(&pays));

@@ -1,8 +1,8 @@
-//! Whether two choices differ. Choices that are more or less alike are in `cost_table.rs`.
+//! Whether two choices differ.
 
 /// 0 for equal choices, 1 for any others.
 ///
-/// A metric (the discrete one), 0 or 1, no unit. The term for choices in Gower's mix.
+/// A metric (the discrete one), 0 or 1, no unit. The term for categories in Gower's mix.
 ///
 /// # Example
 /// ```
@@ -19,7 +19,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_is_a_metric() {
+    fn choice_mismatch_is_a_metric() {
         for a in 0..3 {
             for b in 0..3 {
                 assert_eq!(choice_mismatch(&a, &b), choice_mismatch(&b, &a));

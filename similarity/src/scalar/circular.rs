@@ -1,9 +1,9 @@
-//! Difference of two headings. Distances between distributions of headings are in `distribution/circular.rs`.
+//! Difference of two headings.
 
 /// The lesser angle between two headings: min(t, 360 − t) with t = |a − b| mod 360.
 ///
-/// A metric between headings that are less than a turn apart, in degrees, in `0..=180`; 370° is the same heading as 10°. Headings must
-/// be finite. A few nanoseconds.
+/// A metric between headings within one turn, in degrees, in `0..=180`; 370° is the same heading as 10°. Headings must be
+/// finite. Takes a few nanoseconds.
 ///
 /// # Example
 /// ```
@@ -12,7 +12,7 @@
 /// assert_eq!(circular_difference(0.0, 180.0), 180.0);
 /// ```
 pub fn circular_difference(a: f64, b: f64) -> f64 {
-    // Each first, for the difference of two large numbers may overflow; a tiny negative number becomes 360.
+    // Each reduced first, because the difference of two large numbers may overflow; a tiny negative number becomes 360.
     let turn = (a.rem_euclid(360.0) - b.rem_euclid(360.0)).abs();
     turn.min((360.0 - turn).abs())
 }
@@ -23,7 +23,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn headings_a_hair_apart_are_near_on_both_sides_of_north() {
+    fn headings_close_to_north_on_either_side_are_close() {
         assert!(circular_difference(-1e-20, 0.0) < 1e-12);
         assert!(circular_difference(359.999, 0.001) < 0.003);
         assert!(circular_difference(f64::MAX, -f64::MAX) <= 180.0);
@@ -31,7 +31,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_is_a_metric(a in -720.0..720.0, b in -720.0..720.0, c in -720.0..720.0, turns in -2i8..3) {
+        fn circular_difference_is_a_metric(a in -720.0..720.0, b in -720.0..720.0, c in -720.0..720.0, turns in -2i8..3) {
             let d = circular_difference;
             prop_assert_eq!(d(a, a), 0.0);
             prop_assert_eq!(d(a, b), d(b, a));

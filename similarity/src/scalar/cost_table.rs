@@ -1,16 +1,17 @@
-//! [`CostTable`]: how far each choice is from each other, as its author says. Choices without a table are in `choice.rs`.
+//! [`CostTable`]: distances between named choices, given by the task's author.
 
 use std::collections::BTreeMap;
 
 use crate::{MetricProperties, SimilarityError};
 
-/// Most choices of a table.
+/// Most choices in a table.
 pub const MAX_CHOICES: usize = 1000;
 
-/// A table of how far choices are apart, checked: costs are finite and at least 0, 0 for equals, and the same there and back.
+/// A checked table of distances between choices: costs are finite and at least 0, 0 on the diagonal, and symmetric.
 ///
-/// [`CostTable::properties`] says whether it is a metric: whether no two choices are 0 apart and no detour is cheaper than the straight way.
-/// In `0..=`[`CostTable::largest`], in the unit of its author. Making it takes `O(n³)` for n choices, a look-up two searches by name.
+/// [`CostTable::properties`] says whether it is a metric: whether different choices are more than 0 apart and the triangle
+/// inequality holds. In `0..=`[`CostTable::largest`], in the author's unit. Construction takes `O(n³)` for n choices, a look-up
+/// two searches by name.
 ///
 /// # Example
 /// ```
@@ -29,12 +30,13 @@ pub struct CostTable {
 }
 
 impl CostTable {
-    /// From the names of the choices and the costs, `(choices, choices)`, row after row in the order of the names.
+    /// Builds the table from the names of the choices and the costs, `(choices, choices)`, row after row in the order of the
+    /// names.
     ///
     /// # Errors
-    /// [`SimilarityError::TooMany`] above [`MAX_CHOICES`]; [`SimilarityError::Shape`] when the costs do not fill the table;
-    /// [`SimilarityError::TwiceNamed`] for a name that is there twice; [`SimilarityError::BadTable`] for a cost that is negative or not
-    /// finite, is not 0 between a choice and itself, or is not the same there and back.
+    /// [`SimilarityError::TooMany`] above [`MAX_CHOICES`]; [`SimilarityError::Shape`] unless the costs fill the table;
+    /// [`SimilarityError::TwiceNamed`] for a repeated name; [`SimilarityError::BadTable`] for a cost that is negative or not
+    /// finite, not 0 on the diagonal, or not symmetric.
     pub fn new(names: Vec<String>, costs: &[f64]) -> Result<Self, SimilarityError> {
         let count = names.len();
         SimilarityError::check_count(count, MAX_CHOICES)?;
@@ -55,20 +57,20 @@ impl CostTable {
         })
     }
 
-    /// How far two choices are apart.
+    /// The cost between two choices.
     ///
     /// # Errors
-    /// [`SimilarityError::UnknownChoice`] for a choice that the table does not have.
+    /// [`SimilarityError::UnknownChoice`] for a choice that is not in the table.
     pub fn between(&self, a: &str, b: &str) -> Result<f64, SimilarityError> {
         Ok(self.costs[self.index(a)? * self.choices.len() + self.index(b)?])
     }
 
-    /// How far the two choices that are farthest apart are apart: what to divide by for a share in `0..=1`. 0 for a table of one choice.
+    /// The largest cost, for normalising to `0..=1`. 0 for a table of one choice.
     pub fn largest(&self) -> f64 {
         self.costs.iter().copied().fold(0.0, f64::max)
     }
 
-    /// Which laws it keeps.
+    /// Which laws the table satisfies.
     pub fn properties(&self) -> MetricProperties {
         self.properties
     }
@@ -112,7 +114,7 @@ fn properties(count: usize, costs: &[f64]) -> MetricProperties {
     let cost = |a: usize, b: usize| costs[a * count + b];
     let kept = (0..count).all(|a| {
         (0..count).filter(|&b| b != a).all(|b| {
-            // Sums of decimal fractions miss by their rounding.
+            // Sums of decimal fractions carry rounding errors.
             let straight = cost(a, b) * (1.0 - 1e-12);
             straight > 0.0 && (0..count).all(|via| straight <= cost(a, via) + cost(via, b))
         })
@@ -139,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn a_table_that_is_none_is_refused() {
+    fn invalid_tables_are_refused() {
         check(&[0.0, 1.0, 1.0, 0.0], "similarity/shape");
         check(&[0.0, 1.0, 2.0, 1.5, 0.0, 1.0, 2.0, 1.0, 0.0], "similarity/bad-table");
         check(&[0.5, 1.0, 2.0, 1.0, 0.0, 1.0, 2.0, 1.0, 0.0], "similarity/bad-table");
@@ -155,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn a_choice_that_is_not_there_is_named() {
+    fn unknown_choice_is_named() {
         let error = table(&[0.0; 9]).unwrap().between("a", "d").unwrap_err();
         assert_eq!(
             error.to_string(),
@@ -164,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn a_shorter_detour_makes_it_a_distance() {
+    fn violated_triangle_makes_it_a_distance() {
         let properties = |ac: f64| {
             table(&[0.0, 0.1, ac, 0.1, 0.0, 0.2, ac, 0.2, 0.0])
                 .unwrap()
@@ -181,7 +183,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_says_that_it_is_a_metric_is_one(costs in prop::array::uniform3(0.0..2.0)) {
+        fn table_declared_a_metric_is_one(costs in prop::array::uniform3(0.0..2.0)) {
             let [ab, ac, bc] = costs;
             let table = table(&[0.0, ab, ac, ab, 0.0, bc, ac, bc, 0.0]).unwrap();
             let triangles = ab <= ac + bc && ac <= ab + bc && bc <= ab + ac;

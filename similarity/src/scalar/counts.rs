@@ -1,11 +1,11 @@
-//! Difference of how many there are of each kind. Where they stand is in `occupancy/`.
+//! Difference of the counts per kind.
 
 use std::collections::BTreeMap;
 
-/// Share of the things that have no counterpart: Σ |aₖ − bₖ| / Σ max(aₖ, bₖ) over all kinds k; 0 where there is nothing.
+/// Share of things without a counterpart: Σ |aₖ − bₖ| / Σ max(aₖ, bₖ) over all kinds k; 0 if there is nothing.
 ///
-/// A metric (Ruzicka's, the weighted form of Jaccard's), in `0..=1`, no unit. For a single kind the difference as a share of the larger
-/// count. Kinds that are missing count 0. Time in proportion to the number of kinds.
+/// A metric (Ruzicka's, the weighted form of Jaccard's), in `0..=1`, no unit. For a single kind, the difference as a share of
+/// the larger count. Missing kinds count 0. Time proportional to the number of kinds.
 ///
 /// Source: Ruzicka 1958; the triangle inequality as for Jaccard, Kosub 2019.
 ///
@@ -38,7 +38,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_like_nothing_and_unlike_anything() {
+    fn empty_counts_are_0_apart_and_1_from_any_other() {
         let (none, some) = (BTreeMap::from([(1, 0)]), BTreeMap::from([(1, 2)]));
         assert_eq!(counts_distance(&none, &BTreeMap::new()), 0.0);
         assert_eq!(counts_distance(&some, &BTreeMap::new()), 1.0);
@@ -46,7 +46,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_is_a_metric(a in counts(), b in counts(), c in counts()) {
+        fn counts_distance_is_a_metric(a in counts(), b in counts(), c in counts()) {
             let d = counts_distance;
             prop_assert_eq!(d(&a, &a), 0.0);
             prop_assert_eq!(d(&a, &b), d(&b, &a));

@@ -1,4 +1,4 @@
-//! Differences of single numbers, choices and counts. Distances between distributions of them are in `distribution/`.
+//! Differences of single numbers, choices and counts.
 
 mod choice;
 mod circular;

@@ -1,9 +1,9 @@
-//! Difference of two numbers as a share of the larger one. Differences as a share of a range are in `range.rs`.
+//! Difference of two numbers as a share of the larger one.
 
 /// Difference of two numbers as a share of the larger in size: |a − b| / max(|a|, |b|); 0 for two zeros.
 ///
-/// A metric, in `0..=1` for numbers of one sign, up to 2 for others; no unit and no range to be known. Numbers must be finite.
-/// Two nanoseconds.
+/// A metric, in `0..=1` for numbers of one sign, up to 2 for others; no unit, and needs no range. Numbers must be finite. Takes
+/// two nanoseconds.
 ///
 /// Source: Li 1998, "Relative perturbation theory I" (its relative distance for p = ∞).
 ///
@@ -32,14 +32,14 @@ mod tests {
     }
 
     #[test]
-    fn the_largest_numbers_do_not_overflow() {
+    fn largest_numbers_do_not_overflow() {
         assert_eq!(relative_difference(f64::MAX, -f64::MAX), 2.0);
         assert_eq!(relative_difference(f64::MAX, 0.0), 1.0);
     }
 
     proptest! {
         #[test]
-        fn it_is_a_metric(a in number(), b in number(), c in number()) {
+        fn relative_difference_is_a_metric(a in number(), b in number(), c in number()) {
             let d = relative_difference;
             prop_assert_eq!(d(a, a), 0.0);
             prop_assert_eq!(d(a, b), d(b, a));

@@ -1,7 +1,6 @@
-//! Arcs that are likely to carry something: for each source those to its nearest sinks. That no other one would have been
-//! better is proven in `network_simplex.rs`.
+//! Candidate arcs that are likely to carry flow: for each source those to its nearest sinks.
 
-/// An arc outside or inside the tree.
+/// An arc between a source and a sink, inside or outside the tree.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Arc {
     pub(super) cost: f64,
@@ -9,10 +8,10 @@ pub(super) struct Arc {
     pub(super) sink: u32,
 }
 
-/// How many sinks of each source are tried first. Of grids of 25 × 25 random masses, 16 to 32 took the least time.
+/// Number of sinks per source that are tried first. For grids of 25 × 25 random masses, 16 to 32 took the least time.
 const NEAREST: usize = 24;
 
-/// The cheapest arcs of each source, all in the order of their costs, ties by source and sink.
+/// The cheapest arcs of each source, all sorted by cost, ties by source and sink.
 pub(super) fn nearest(costs: &[f64], sinks: usize) -> Vec<Arc> {
     let kept = NEAREST.min(sinks);
     let mut arcs = Vec::with_capacity(costs.len() / sinks * kept);
@@ -42,7 +41,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_cheapest_arcs_of_each_source_come_in_order() {
+    fn cheapest_arcs_of_each_source_are_sorted() {
         let sinks = NEAREST + 10;
         let costs: Vec<f64> = (0..3 * sinks).map(|k| ((k * 37) % 101) as f64).collect();
         let arcs = nearest(&costs, sinks);

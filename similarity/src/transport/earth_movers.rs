@@ -1,20 +1,20 @@
-//! Earth mover's distance between two sets of points, each of equal weight. For sets that count missing points, see OSPA in
-//! `occupancy/`; for masses on grids, `occupancy/earth_movers.rs`.
+//! Earth mover's distance between two sets of equally weighted points.
 
 use super::exact::{MAX_TRANSPORTED, cheapest_moves};
 use crate::{Assignment, SimilarityError};
 
-/// Mean way in metres from the points of one set to those of the other, when they are paired as cheaply as possible
-/// (Wasserstein-1 with the Euclidean distance).
+/// Mean distance in metres from the points of one set to those of the other under the cheapest pairing (Wasserstein-1 with the
+/// Euclidean distance).
 ///
-/// `a`, `b`: points `(x, y)` in metres; all points of a set weigh the same and each set weighs 1 as a whole, so that points are
-/// split where the sets differ in size. In `0..=` the largest distance between two points. A metric between sets in which
-/// nothing is there twice as a whole: a set and its doubling are 0 apart. Two empty sets are 0 apart.
+/// `a`, `b`: points `(x, y)` in metres; all points of a set have equal weight and each set has weight 1, so points are split if
+/// the sets differ in size. In `0..=` the largest distance between two points. A metric between sets up to duplication: a set
+/// and its doubling are 0 apart. Two empty sets are 0 apart.
 ///
 /// Exact: an assignment for sets of one size, network simplex otherwise. Time about `points³` at worst.
 ///
 /// # Errors
-/// [`SimilarityError::UnequalMasses`] when one set is empty, [`SimilarityError::BadPoint`] for a coordinate that is not within ±1e100,
+/// [`SimilarityError::UnequalMasses`] if only one set is empty, [`SimilarityError::BadPoint`] for a coordinate that is not
+/// within ±1e100,
 /// [`SimilarityError::TooMany`] above [`MAX_TRANSPORTED`](crate::MAX_TRANSPORTED) points.
 ///
 /// # Example
@@ -36,14 +36,14 @@ pub fn earth_movers_distance(a: &[[f64; 2]], b: &[[f64; 2]]) -> Result<f64, Simi
         let costs: Vec<f64> = a.iter().flat_map(|p| b.iter().map(|q| apart(p, q))).collect();
         return Ok(Assignment::new().solve(&costs, a.len(), b.len())? / a.len() as f64);
     }
-    // As many units at each point of one set as the other has points: whole numbers, and the same sum.
+    // Each point of one set holds as many units as the other has points: whole numbers with equal sums.
     let (from, to) = (vec![b.len() as i64; a.len()], vec![a.len() as i64; b.len()]);
     let moves = cheapest_moves(&from, &to, |p, q| apart(&a[p], &b[q]))?.into_iter();
     let total: f64 = moves.map(|(p, q, units)| units as f64 * apart(&a[p], &b[q])).sum();
     Ok(total / (a.len() * b.len()) as f64)
 }
 
-/// Refuses coordinates whose squares could not be added up, and an empty set beside one that is not.
+/// Refuses coordinates whose squares could not be added up, and an empty set next to a non-empty one.
 fn check(a: &[[f64; 2]], b: &[[f64; 2]]) -> Result<(), SimilarityError> {
     for (side, points) in [("a", a), ("b", b)] {
         for (index, point) in points.iter().enumerate() {
@@ -72,14 +72,14 @@ mod tests {
     }
 
     #[test]
-    fn a_point_is_split_among_several() {
+    fn point_is_split_among_several() {
         let found = earth_movers_distance(&[[0.0, 0.0]], &[[1.0, 0.0], [0.0, 3.0]]).unwrap();
         assert_eq!(found, 2.0);
         assert_eq!(earth_movers_distance(&[], &[]).unwrap(), 0.0);
     }
 
     #[test]
-    fn one_empty_set_and_points_that_are_none_are_refused() {
+    fn one_empty_set_and_invalid_points_are_refused() {
         let code = |a: &[[f64; 2]], b: &[[f64; 2]]| earth_movers_distance(a, b).unwrap_err().code();
         assert_eq!(code(&[], &[[0.0, 0.0]]), "similarity/unequal-masses");
         assert_eq!(code(&[[f64::NAN, 0.0]], &[[0.0, 0.0]]), "similarity/bad-point");
@@ -89,7 +89,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_is_a_metric(a in points(), b in points(), c in points()) {
+        fn earth_movers_distance_is_a_metric(a in points(), b in points(), c in points()) {
             let d = |a: &[[f64; 2]], b: &[[f64; 2]]| earth_movers_distance(a, b).unwrap();
             prop_assert!(d(&a, &a).abs() < 1e-12);
             prop_assert!((d(&a, &b) - d(&b, &a)).abs() < 1e-12);
@@ -98,13 +98,13 @@ mod tests {
         }
 
         #[test]
-        fn a_set_moved_as_a_whole_is_as_far_as_it_was_moved(a in points(), x in -5.0f64..5.0, y in -5.0f64..5.0) {
+        fn shifted_set_is_as_far_as_its_shift(a in points(), x in -5.0f64..5.0, y in -5.0f64..5.0) {
             let b: Vec<[f64; 2]> = a.iter().map(|p| [p[0] + x, p[1] + y]).collect();
             prop_assert!((earth_movers_distance(&a, &b).unwrap() - libm::hypot(x, y)).abs() < 1e-12);
         }
 
         #[test]
-        fn every_point_twice_changes_nothing(a in points(), b in points()) {
+        fn doubling_every_point_changes_nothing(a in points(), b in points()) {
             let twice: Vec<[f64; 2]> = a.iter().chain(&a).copied().collect();
             let (once, twice) = (earth_movers_distance(&a, &b).unwrap(), earth_movers_distance(&twice, &b).unwrap());
             prop_assert!((once - twice).abs() < 1e-12);

@@ -1,5 +1,4 @@
-//! Exact optimal transport for any costs: [`optimal_transport`]. Points and grids, whose costs are distances, have short cuts
-//! in `earth_movers.rs` and in `occupancy/earth_movers.rs`.
+//! [`optimal_transport`]: exact optimal transport for any costs.
 
 use super::masses::Units;
 use super::network_simplex::solve;
@@ -15,15 +14,15 @@ pub const MAX_TRANSPORTED: usize = 4096;
 /// larger (the difference is taken off the largest mass of the heavier side). `costs`: `(origins, destinations)`, row after row,
 /// any unit, negative ones too. Without any mass the cost is 0.
 ///
-/// The optimum is exact: masses are moved in whole units (2⁻⁶⁰ of the sum) and the prices in the plan prove it; the cost is
-/// that of the true optimum within rounding, some 1e-14 of the largest cost times the mass. A metric between masses of sum 1 if
-/// the costs are the distances of a metric (Wasserstein-1). Network simplex, see `network_simplex.rs`: time grows like
+/// The optimum is exact: masses are moved in whole units (2⁻⁶⁰ of the sum) and the dual prices prove it; the cost is that of
+/// the true optimum within rounding, some 1e-14 of the largest cost times the mass. A metric between masses of sum 1 if the
+/// costs are the distances of a metric (Wasserstein-1). Network simplex, see `network_simplex.rs`: time grows like
 /// `(origins + destinations)^2` to `^3`.
 ///
 /// # Errors
-/// [`SimilarityError::Shape`] when the number of costs is not `origins · destinations`, [`SimilarityError::BadCost`] for one that
-/// is not within ±1e200, [`SimilarityError::BadMass`] for one that is negative or not finite,
-/// [`SimilarityError::UnequalMasses`] for sums that differ, [`SimilarityError::TooMany`] above [`MAX_TRANSPORTED`] masses.
+/// [`SimilarityError::Shape`] unless there are `origins · destinations` costs, [`SimilarityError::BadCost`] for one that is not
+/// within ±1e200, [`SimilarityError::BadMass`] for one that is negative or not finite, [`SimilarityError::UnequalMasses`] for
+/// sums that differ, [`SimilarityError::TooMany`] above [`MAX_TRANSPORTED`] masses.
 ///
 /// # Example
 /// ```
@@ -48,13 +47,13 @@ pub fn optimal_transport(from: &[f64], to: &[f64], costs: &[f64]) -> Result<Tran
         })
         .collect();
     let cost = moves.iter().map(|step| step.mass * cost(step.from, step.to));
-    // Not −0 without any moves.
+    // Gives 0, not −0, without any moves.
     let cost = cost.fold(0.0, |sum, cost| sum + cost);
     Ok(TransportPlan { cost, moves })
 }
 
-/// Moves units from where there are some to where some belong, at the least cost: origin, destination and units of all that moves,
-/// in order. Both sides have as many units.
+/// Moves units from origins to destinations at the least cost. Returns origin, destination and units of every move, sorted.
+/// Both sides have the same number of units.
 pub(crate) fn cheapest_moves(
     from: &[i64],
     to: &[i64],
@@ -73,7 +72,7 @@ pub(crate) fn cheapest_moves(
         .collect())
 }
 
-/// Refuses a table of the wrong size, and costs that cannot be added up.
+/// Refuses a cost matrix of the wrong size, and costs that cannot be added up.
 pub(crate) fn check_costs(rows: usize, columns: usize, costs: &[f64]) -> Result<(), SimilarityError> {
     SimilarityError::check_length("costs", costs.len(), rows * columns)?;
     match costs.iter().position(|cost| !(-1e200..=1e200).contains(cost)) {
@@ -86,7 +85,7 @@ pub(crate) fn check_costs(rows: usize, columns: usize, costs: &[f64]) -> Result<
     }
 }
 
-/// Where something is, if that is not at too many places.
+/// The places with mass, if there are not too many.
 fn taken(units: &[i64]) -> Result<Vec<usize>, SimilarityError> {
     let places: Vec<usize> = (0..units.len()).filter(|&place| units[place] > 0).collect();
     SimilarityError::check_count(places.len(), MAX_TRANSPORTED)?;
@@ -114,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_moved_is_refused() {
+    fn invalid_problems_are_refused() {
         let code = |from: &[f64], to: &[f64], costs: &[f64]| optimal_transport(from, to, costs).unwrap_err().code();
         assert_eq!(code(&[1.0], &[1.0], &[]), "similarity/shape");
         assert_eq!(code(&[1.0], &[1.0], &[f64::NAN]), "similarity/bad-cost");

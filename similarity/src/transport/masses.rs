@@ -1,26 +1,26 @@
-//! [`Units`]: checked masses as whole numbers, so that moving them about never rounds. What moving costs is not known here.
+//! [`Units`]: checked masses as whole numbers, so that moving them never rounds.
 
 use crate::SimilarityError;
 
-/// How much the sums of both sides may differ, as a share of the larger.
+/// Largest difference between the sums of both sides, as a share of the larger.
 const SUMS_WITHIN: f64 = 1e-9;
 
-/// The units that the larger sum is made of, as a power of two: a mass that is a 128th of the whole or more loses no bit.
+/// The larger sum is about 2 to this power in units: a mass of at least a 128th of the whole loses no bit.
 const BITS: i32 = 60;
 
 /// Masses of both sides in whole units of one size.
 #[derive(Clone, Debug)]
 pub(crate) struct Units {
-    /// As many as there are masses, 0 included.
+    /// One per origin, including zeros.
     pub(crate) from: Vec<i64>,
-    /// Likewise; the sums are equal.
+    /// One per destination; the sums are equal.
     pub(crate) to: Vec<i64>,
     /// The mass of one unit.
     pub(crate) unit: f64,
 }
 
 impl Units {
-    /// Checks the masses and rounds them to units. Sums that differ by no more than rounding are made equal at the largest mass.
+    /// Checks the masses and rounds them to units. A difference in the sums due to rounding is taken off the largest mass.
     pub(crate) fn of(from: &[f64], to: &[f64]) -> Result<Self, SimilarityError> {
         let (a, b) = (sum("from", from)?, sum("to", to)?);
         if (a - b).abs() > SUMS_WITHIN * a.max(b) {
@@ -42,7 +42,7 @@ impl Units {
     }
 }
 
-/// The sum of masses that are sound.
+/// The sum of masses after checking them.
 pub(crate) fn sum(side: &'static str, masses: &[f64]) -> Result<f64, SimilarityError> {
     for (index, &found) in masses.iter().enumerate() {
         if !(0.0..=1e200).contains(&found) {
@@ -52,7 +52,7 @@ pub(crate) fn sum(side: &'static str, masses: &[f64]) -> Result<f64, SimilarityE
     Ok(masses.iter().sum())
 }
 
-/// The power of two that brings a sum to 2^59..2^60; 1 for a sum of 0.
+/// The power of two that scales a sum to 2^59..2^60; 1 for a sum of 0.
 fn power_of_two(sum: f64) -> f64 {
     if sum < 1e-250 {
         return 1.0;
@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn masses_that_are_none_are_refused() {
+    fn invalid_masses_are_refused() {
         for wrong in [-1.0, f64::NAN, f64::INFINITY] {
             let found = Units::of(&[1.0, wrong], &[1.0]).unwrap_err();
             assert_eq!(found.code(), "similarity/bad-mass", "{wrong}");

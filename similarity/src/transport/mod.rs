@@ -1,4 +1,4 @@
-//! Moving mass as cheaply as possible, exactly. Grids of it are compared in `occupancy/`.
+//! Exact optimal transport of masses and points.
 
 mod candidates;
 mod earth_movers;

@@ -1,20 +1,20 @@
-//! The exact optimum of a transport problem by pivots of a spanning tree. Masses come in whole units from `masses.rs`.
+//! Network simplex: the exact optimum of a transport problem by pivots of a spanning tree.
 
 use super::candidates::{Arc, nearest};
 use super::spanning_tree::SpanningTree;
 use super::start::greedy;
 
-/// Pivots, as a multiple of the nodes, after which prices are worked out anew and the tolerance is doubled: rounding cannot keep
-/// the search from ending. Problems of random masses need 2 to 4.
+/// Pivots per node after which prices are recomputed and the tolerance is doubled, so that rounding cannot make the search run
+/// for ever. Problems of random masses need 2 to 4.
 const ROUND: usize = 64;
 
-/// Moves units from sources to sinks at the least cost: source, sink and units of all that moves something, in order.
+/// Moves units from sources to sinks at the least cost: source, sink and units of every move, sorted.
 ///
-/// All units are above 0 and both sides have as many; `costs`: `(sources, sinks)`, finite, row after row.
+/// All units are above 0 and both sides have the same number; `costs`: `(sources, sinks)`, finite, row after row.
 ///
-/// Network simplex over a short list of arcs: block search (as LEMON has it, Király and Kovács 2012) finds those that enter. When
-/// none of the list would, all arcs are priced, and those that would lower the cost join the list, until there is none: the
-/// prices then prove that the plan is best.
+/// Network simplex over a short list of arcs: block search (as in LEMON, Király and Kovács 2012) chooses the entering arc. If
+/// the list has none, all arcs are priced, and those that would lower the cost join the list, until there is none: the prices
+/// then prove that the plan is optimal.
 pub(super) fn solve(sources: &[i64], sinks: &[i64], costs: &[f64]) -> Vec<(usize, usize, i64)> {
     let mut moves: Vec<_> = cheapest_tree(sources, sinks, costs).arcs().collect();
     moves.retain(|(.., units)| *units > 0);
@@ -22,7 +22,7 @@ pub(super) fn solve(sources: &[i64], sinks: &[i64], costs: &[f64]) -> Vec<(usize
     moves
 }
 
-/// The tree of arcs that the cheapest moves go along, with the prices that prove them the cheapest.
+/// The tree of arcs of an optimal plan, with the prices that prove it.
 fn cheapest_tree(sources: &[i64], sinks: &[i64], costs: &[f64]) -> SpanningTree {
     let mut arcs = nearest(costs, sinks.len());
     let mut tree = greedy(sources, sinks, costs, &arcs);
@@ -54,16 +54,16 @@ fn cheapest_tree(sources: &[i64], sinks: &[i64], costs: &[f64]) -> SpanningTree 
 }
 
 struct Search {
-    /// Where in the list the search goes on.
+    /// Index in the list at which the search continues.
     next: usize,
-    /// What a reduced cost must be below, negated, to be no work of rounding.
+    /// A reduced cost must be below the negative of this to be no rounding error.
     tolerance: f64,
     pivots: usize,
     round: usize,
 }
 
 impl Search {
-    /// The arc of the most negative reduced cost in the first block that has one.
+    /// The arc with the most negative reduced cost in the first block that has one.
     fn entering(&mut self, arcs: &[Arc], tree: &SpanningTree, sources: usize) -> Option<(Arc, f64)> {
         let block = (2.0 * (arcs.len() as f64).sqrt()) as usize + 10;
         let mut left = arcs.len();
@@ -89,7 +89,7 @@ impl Search {
     }
 }
 
-/// Adds arcs that would lower the cost to the list: of each source the one that would most, and those at least half as good.
+/// Adds arcs that would lower the cost to the list: for each source the best one, and those at least half as good.
 fn price_all(arcs: &mut Vec<Arc>, tree: &SpanningTree, sources: usize, sinks: usize, costs: &[f64], tolerance: f64) {
     let prices: Vec<f64> = (0..sinks).map(|sink| tree.price(sources + sink)).collect();
     for (source, row) in costs.chunks_exact(sinks).enumerate() {
@@ -107,7 +107,7 @@ fn price_all(arcs: &mut Vec<Arc>, tree: &SpanningTree, sources: usize, sinks: us
     }
 }
 
-/// The least difference of a cost and a price. Four at a time, which the compiler turns into vectors.
+/// The least difference of a cost and a price. Four at a time, which the compiler vectorises.
 fn cheapest(row: &[f64], prices: &[f64]) -> f64 {
     let mut least = [f64::INFINITY; 4];
     let (rows, prices) = (row.chunks_exact(4), prices.chunks_exact(4));
@@ -131,8 +131,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Marginals to the unit, and prices as high as costs allow that are equal to the cost wherever something moves: that proves the
-    /// optimum.
+    /// Checks that the marginals match to the unit, and that prices are feasible and equal to the cost wherever something
+    /// moves: that proves the optimum.
     fn check(sources: &[i64], sinks: &[i64], costs: &[f64]) -> f64 {
         let tree = cheapest_tree(sources, sinks, costs);
         let sink_prices: Vec<f64> = (0..sinks.len()).map(|sink| tree.price(sources.len() + sink)).collect();
@@ -157,7 +157,7 @@ mod tests {
         total
     }
 
-    /// The same number of units on both sides.
+    /// Random sides with the same number of units.
     fn sides() -> impl Strategy<Value = (Vec<i64>, Vec<i64>)> {
         let side = || prop::collection::vec(1i64..6, 1..30);
         (side(), side()).prop_map(|(mut a, mut b)| {
@@ -169,15 +169,15 @@ mod tests {
     }
 
     #[test]
-    fn two_by_two_goes_the_short_ways() {
+    fn two_by_two_takes_the_short_arcs() {
         assert_eq!(check(&[1, 1], &[1, 1], &[0.0, 5.0, 5.0, 0.0]), 0.0);
         assert_eq!(check(&[3, 1], &[1, 3], &[1.0, 4.0, 2.0, 1.0]), 1.0 + 8.0 + 1.0);
         assert_eq!(check(&[7], &[7], &[2.0]), 14.0);
     }
 
     #[test]
-    fn nearest_sinks_that_are_all_full_do_not_keep_it_from_the_optimum() {
-        // Fifty sources on a heap: the candidates of all are the same few sinks.
+    fn full_nearest_sinks_do_not_prevent_the_optimum() {
+        // Fifty sources in one place: all have the same few candidate sinks.
         let costs: Vec<f64> = (0..50 * 200)
             .map(|k| f64::from(k % 200) + f64::from(k / 200) * 1e-3)
             .collect();
@@ -188,18 +188,18 @@ mod tests {
 
     proptest! {
         #[test]
-        fn prices_prove_every_plan_best((sources, sinks) in sides(), numbers in prop::collection::vec(0.0f64..1.0, 900)) {
+        fn prices_prove_every_plan_optimal((sources, sinks) in sides(), numbers in prop::collection::vec(0.0f64..1.0, 900)) {
             check(&sources, &sinks, &numbers[..sources.len() * sinks.len()]);
         }
 
         #[test]
-        fn ties_end_as_well((sources, sinks) in sides(), numbers in prop::collection::vec(0u8..3, 900)) {
+        fn ties_terminate((sources, sinks) in sides(), numbers in prop::collection::vec(0u8..3, 900)) {
             let costs: Vec<f64> = numbers.into_iter().map(f64::from).collect();
             check(&sources, &sinks, &costs[..sources.len() * sinks.len()]);
         }
 
         #[test]
-        fn one_unit_each_is_an_assignment(n in 1usize..30, numbers in prop::collection::vec(-1.0f64..1.0, 900)) {
+        fn unit_masses_are_an_assignment(n in 1usize..30, numbers in prop::collection::vec(-1.0f64..1.0, 900)) {
             check(&vec![1; n], &vec![1; n], &numbers[..n * n]);
         }
     }

@@ -1,10 +1,9 @@
-//! [`SpanningTree`]: a basis of a transport problem, and how it changes when an arc enters. Which arc enters is chosen in
-//! `network_simplex.rs`, the first tree is made in `start.rs`.
+//! [`SpanningTree`]: a basis of a transport problem, with pivots.
 
 /// The parent of the root, and the end of every list of siblings.
 const NONE: u32 = u32::MAX;
 
-/// A place with mass to give or to take, and the arc to its parent in the tree.
+/// A source or sink, with the arc to its parent in the tree.
 #[derive(Clone, Copy, Debug)]
 struct Node {
     parent: u32,
@@ -19,9 +18,9 @@ struct Node {
 
 /// Sources and sinks joined by `sources + sinks − 1` arcs, each between a source and a sink.
 ///
-/// The prices of an arc's ends add up to its cost, so that an arc outside costs its reduced cost more than the way through the
-/// tree. Strongly feasible at all times: an arc that carries nothing leads from a source up to its parent. Then no sequence of
-/// pivots runs in a circle (Cunningham 1976).
+/// The prices of an arc's ends add up to its cost, so an arc outside the tree costs its reduced cost more than the path through
+/// the tree. Always strongly feasible: an arc without flow leads from a source up to its parent. Then pivots cannot cycle
+/// (Cunningham 1976).
 #[derive(Clone, Debug)]
 pub(crate) struct SpanningTree {
     nodes: Vec<Node>,
@@ -46,7 +45,7 @@ impl SpanningTree {
         }
     }
 
-    /// Hangs `node`, which has no parent yet, under `parent` by an arc of this cost that carries `flow` units.
+    /// Attaches `node`, which has no parent yet, to `parent` by an arc of this cost that carries `flow` units.
     pub(super) fn join(&mut self, node: usize, parent: usize, flow: i64, cost: f64) {
         self.attach(node, parent);
         let above = self.nodes[parent];
@@ -54,7 +53,7 @@ impl SpanningTree {
         (node.flow, node.depth, node.price) = (flow, above.depth + 1, cost - above.price);
     }
 
-    /// The price at a source, or at sink `k` by `sources + k`.
+    /// The price of a source, or of sink `k` as node `sources + k`.
     pub(super) fn price(&self, node: usize) -> f64 {
         self.nodes[node].price
     }
@@ -76,7 +75,7 @@ impl SpanningTree {
         })
     }
 
-    /// Works all prices out anew, so that what rounding has added up is gone. `cost` takes a source and a sink.
+    /// Recomputes all prices to clear accumulated rounding errors. `cost` takes a source and a sink.
     pub(super) fn reprice(&mut self, cost: impl Fn(usize, usize) -> f64) {
         let Some(root) = self.nodes.iter().position(|node| node.parent == NONE) else {
             return;
@@ -95,7 +94,7 @@ impl SpanningTree {
         });
     }
 
-    /// Lets the arc from `source` to `sink` enter, as much flow over it as goes, and the arc that this empties leave.
+    /// Lets the arc from `source` to `sink` enter with as much flow as possible; the arc that this empties leaves.
     pub(super) fn pivot(&mut self, source: usize, sink: usize, reduced_cost: f64) {
         let sink = self.sources + sink;
         let (apex, blocking) = self.blocking(source, sink);
@@ -122,8 +121,8 @@ impl SpanningTree {
         });
     }
 
-    /// Where the ways up from both ends meet, and the arc on them that is emptied first; of several the last on the way round
-    /// from the apex over the entering arc, which keeps the tree strongly feasible.
+    /// The node where the paths up from both ends meet, and the arc on them that is emptied first; ties go to the last on the
+    /// cycle from the apex over the entering arc, which keeps the tree strongly feasible.
     fn blocking(&self, source: usize, sink: usize) -> (usize, Blocking) {
         let (mut a, mut b) = (source, sink);
         let (mut least_a, mut node_a, mut least_b, mut node_b) = (i64::MAX, source, i64::MAX, sink);
@@ -150,7 +149,7 @@ impl SpanningTree {
         (a, Blocking { node, flow, below_sink })
     }
 
-    /// Sends units round the half of the circle from `end` up to the apex: less from nodes of its kind, more from the others.
+    /// Pushes flow along the half of the cycle from `end` up to the apex: less from nodes of its kind, more from the others.
     fn push(&mut self, end: usize, apex: usize, flow: i64) {
         let kind = end < self.sources;
         let mut index = end;
@@ -162,7 +161,7 @@ impl SpanningTree {
         }
     }
 
-    /// Turns the way from `inner` up to the leaving arc round, and hangs `inner` under `outer`.
+    /// Reverses the path from `inner` up to the leaving arc, and attaches `inner` to `outer`.
     fn rehang(&mut self, inner: usize, outer: usize, leaving: Blocking) {
         let (mut index, mut parent, mut flow) = (inner, outer, leaving.flow);
         loop {
@@ -177,7 +176,7 @@ impl SpanningTree {
         }
     }
 
-    /// Visits a subtree from the top, each node with what its parent has (with its own at the root of all).
+    /// Visits a subtree from the top, passing each node its parent's data (the top gets its own).
     fn walk(&mut self, top: usize, mut visit: impl FnMut(&mut Node, usize, Above)) {
         let mut index = top;
         loop {
@@ -231,20 +230,20 @@ impl SpanningTree {
     }
 }
 
-/// What a node is told of its parent.
+/// Data that a node gets from its parent.
 #[derive(Clone, Copy, Debug)]
 struct Above {
     depth: u32,
     price: f64,
 }
 
-/// The arc that leaves: that above `node`.
+/// The leaving arc: the one above `node`.
 #[derive(Clone, Copy, Debug)]
 struct Blocking {
     node: usize,
-    /// What it carries.
+    /// The flow that it carries.
     flow: i64,
-    /// Whether it lies on the sink's side of the circle.
+    /// Whether it is on the sink's side of the cycle.
     below_sink: bool,
 }
 
@@ -252,7 +251,7 @@ struct Blocking {
 mod tests {
     use super::*;
 
-    /// Two sources of 1 and two sinks of 1, paired crosswise and joined by an empty arc.
+    /// Two sources of 1 and two sinks of 1, matched crosswise and joined by an empty arc.
     fn crossed() -> SpanningTree {
         let costs = [[0.0, 5.0], [5.0, 0.0]];
         let mut tree = SpanningTree::unjoined(2, 2);
@@ -263,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn an_arc_that_enters_takes_the_flow_of_a_dearer_way() {
+    fn entering_arc_takes_the_flow_of_a_dearer_path() {
         let mut tree = crossed();
         let reduced_cost = 0.0 - tree.price(0) - tree.price(2);
         assert_eq!(reduced_cost, -10.0);
@@ -275,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn prices_worked_out_anew_are_the_same() {
+    fn recomputed_prices_are_the_same() {
         let mut tree = crossed();
         tree.pivot(0, 0, -10.0);
         let before: Vec<f64> = (0..4).map(|node| tree.price(node)).collect();

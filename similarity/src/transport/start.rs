@@ -1,9 +1,9 @@
-//! The tree that pivots start from: cheap arcs first, as much over each as goes. Making it best is up to `network_simplex.rs`.
+//! The initial tree: cheap arcs first, with as much flow as possible.
 
 use super::candidates::Arc;
 use super::spanning_tree::SpanningTree;
 
-/// A feasible tree: masses move over the candidates in their order, what is left to the nearest sinks that still take some.
+/// A feasible tree: masses move along the candidates in order, the rest to the nearest sinks with capacity left.
 pub(super) fn greedy(sources: &[i64], sinks: &[i64], costs: &[f64], candidates: &[Arc]) -> SpanningTree {
     let (mut supply, mut demand) = (sources.to_vec(), sinks.to_vec());
     let mut flows: Vec<(usize, usize, i64)> = Vec::with_capacity(sources.len() + sinks.len());
@@ -30,8 +30,8 @@ pub(super) fn greedy(sources: &[i64], sinks: &[i64], costs: &[f64], candidates: 
     joined(sources.len(), sinks.len(), costs, &flows)
 }
 
-/// Arcs that carry something form trees, since each exhausts one of its ends; here they are joined into one. An empty arc leads
-/// from the source on top of a tree to the nearest sink of those before, as strong feasibility wants it.
+/// Joins the arcs that carry flow, which form trees because each exhausts one of its ends, into one tree. An empty arc leads
+/// from the source at the top of a tree to the nearest sink of earlier trees, as strong feasibility requires.
 fn joined(sources: usize, sinks: usize, costs: &[f64], flows: &[(usize, usize, i64)]) -> SpanningTree {
     let mut neighbours: Vec<Vec<(usize, i64)>> = vec![Vec::new(); sources + sinks];
     for &(source, sink, flow) in flows {
@@ -75,7 +75,7 @@ mod tests {
     use crate::transport::candidates::nearest;
 
     #[test]
-    fn the_first_tree_moves_everything_and_joins_all() {
+    fn initial_tree_moves_everything_and_spans_all_nodes() {
         let (sources, sinks) = ([3, 3, 1], [1, 2, 3, 1]);
         let costs: Vec<f64> = (0..12).map(|k| f64::from((k * 5) % 7)).collect();
         let tree = greedy(&sources, &sinks, &costs, &nearest(&costs, 4));

@@ -1,4 +1,4 @@
-//! [`WorldMeasure`]: one measure between two worlds, by name. What each does is in the files of its kind.
+//! [`WorldMeasure`]: single measures between two worlds, by name.
 
 use driftworld_spec::{Element, World};
 
@@ -11,18 +11,18 @@ use crate::{
     grid_jaccard_distance,
 };
 
-/// One measure of how far apart two worlds are, where [`world_distance`](crate::world_distance) adds up all that they
-/// differ in.
+/// A single measure of the distance of two worlds, while [`world_distance`](crate::world_distance) adds up all their
+/// differences.
 ///
-/// The number depends on the two worlds alone, not on the order of their objects, and is finite, at least 0, 0 for a
-/// world and itself, and as far there as back, to the last bit. Two worlds without objects are 0 apart; what one
-/// without and one with objects are stands with each measure.
+/// The number depends on the two worlds alone, not on the order of their objects, and is finite, at least 0, 0 for a world and
+/// itself, and symmetric to the last bit. Two worlds without objects are 0 apart; each measure documents its value if only one
+/// has objects.
 ///
-/// Measures of *occupancy* say how far apart two worlds are by where things stand, each class for itself. Both worlds
-/// become grids of square cells that cover both arenas, so that the pair alone decides; what stands outside of both is
-/// not seen. A cell is 1 m wide, or 2, 4, 8 m and so on where those of all classes would be more than
-/// [`MAX_CELLS`](crate::MAX_CELLS). The *diameter* is the way between the centres of the outermost cells. Measures of
-/// *objects* take each as a class and a place. The case of a class does not matter.
+/// Measures of *occupancy* compare the places of objects, each class separately. Both worlds become grids of square cells that
+/// cover both arenas, so the pair alone decides; objects outside both arenas are ignored. A cell is 1 m wide, or 2, 4, 8 m and
+/// so on if all classes together would take more than [`MAX_CELLS`](crate::MAX_CELLS). The *diameter* is the distance between
+/// the centres of opposite corner cells. Measures of *objects* use each object's class and place. The case of a class is
+/// ignored.
 ///
 /// # Example
 /// ```
@@ -42,35 +42,33 @@ use crate::{
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WorldMeasure {
-    /// Of occupancy, [`grid_earth_movers_distance`](crate::grid_earth_movers_distance): the mean way in metres from where a
-    /// class stands here to where it stands there, however many there are; exact. Classes are added up. A class that only
-    /// one world has counts the diameter, so an empty world and another are that many diameters apart. In `0..=` diameter ·
-    /// classes.
+    /// Occupancy: [`grid_earth_movers_distance`](crate::grid_earth_movers_distance), the mean distance in metres by which a
+    /// class must be moved, whatever its number of objects; exact. Classes are added up. A class that only one world has counts
+    /// the diameter, so an empty world is one diameter per class from another. In `0..=` diameter · classes.
     EarthMovers,
-    /// Of occupancy, [`grid_jaccard_distance`]: the share of taken cells that are not taken in both, in `0..=1`. From an
-    /// empty world to another: 1.
+    /// Occupancy: [`grid_jaccard_distance`], the share of taken cells that are not taken in both, in `0..=1`. 1 between an
+    /// empty world and another.
     Jaccard,
-    /// Of occupancy, [`grid_hausdorff_distance`]: the largest way in metres from a taken cell to the nearest that the class
-    /// takes in the other world, in `0..=` diameter; the diameter where a class is in one world only.
+    /// Occupancy: [`grid_hausdorff_distance`], the largest distance in metres from a taken cell to the nearest cell of the same
+    /// class in the other world, in `0..=` diameter; the diameter if a class is in one world only.
     Hausdorff,
-    /// Of occupancy, [`grid_chamfer_distance`]: the mean of such ways. From an empty world to another: the diameter.
+    /// Occupancy: [`grid_chamfer_distance`], the mean of these distances. The diameter between an empty world and another.
     Chamfer,
-    /// Of objects, [`ospa`](crate::ospa) with a cut-off of 10 m: the mean way, in metres in `0..=10`, from an object to its
-    /// counterpart of the same class. An object without one counts 10 m, as does one that is farther away. Of an empty
-    /// world and any other it is 10.
+    /// Objects: [`ospa`](crate::ospa) with a cut-off of 10 m, the mean distance, in metres in `0..=10`, from an object to its
+    /// counterpart of the same class. An object without one counts 10 m, as does one that is farther away. 10 between an empty
+    /// world and another.
     Ospa,
-    /// Of objects, [`counts_distance`]: the share of objects without a counterpart of their class, wherever they stand, in
-    /// `0..=1`. Of an empty world and any other it is 1.
+    /// Objects: [`counts_distance`], the share of objects without a counterpart of their class, whatever their places, in
+    /// `0..=1`. 1 between an empty world and another.
     Counts,
-    /// By the colours of the objects that have one, wherever they stand: the mean way of those that go together best,
-    /// as a share of the way between the two colours that are farthest apart, in `0..=1`. A colour without a
-    /// counterpart counts 1, so worlds without and with colours are 1 apart. Objects that look as their model does are
-    /// left out.
+    /// The colours of objects that have one, whatever their places: the mean distance of the best pairing, as a share of the
+    /// distance between the two farthest colours, in `0..=1`. A colour without a counterpart counts 1, so worlds without and
+    /// with colours are 1 apart. Objects that look like their model are left out.
     Colors(ColorMeasure),
 }
 
 impl WorldMeasure {
-    /// All of them, those of a kind together.
+    /// All measures, grouped by kind.
     pub fn all() -> impl Iterator<Item = Self> {
         use WorldMeasure::{Chamfer, Counts, EarthMovers, Hausdorff, Jaccard, Ospa};
         let others = [EarthMovers, Jaccard, Hausdorff, Chamfer, Ospa, Counts];
@@ -79,14 +77,14 @@ impl WorldMeasure {
             .chain(ColorMeasure::ALL.iter().map(|own| Self::Colors(*own)))
     }
 
-    /// The measure of a kind that has this name, or the one that is meant without a name, if there is one.
+    /// The measure with this kind and name, or the kind's default without a name, if there is one.
     pub fn from_name(kind: &str, name: Option<&str>) -> Option<Self> {
         let usual = [Self::EarthMovers, Self::Ospa, Self::Colors(ColorMeasure::Oklab)];
         let is_meant = |own: &Self| name.map_or(usual.contains(own), |name| own.name() == name);
         Self::all().find(|own| own.kind() == kind && is_meant(own))
     }
 
-    /// What it looks at: "occupancy", "objects" or "colors".
+    /// The kind of things compared: "occupancy", "objects" or "colors".
     pub fn kind(self) -> &'static str {
         match self {
             Self::EarthMovers | Self::Jaccard | Self::Hausdorff | Self::Chamfer => "occupancy",
@@ -95,12 +93,12 @@ impl WorldMeasure {
         }
     }
 
-    /// Its name among those of its kind, in documents and on the command line: the first word of its label.
+    /// Its name within its kind, in documents and on the command line: the first word of its label.
     pub fn name(self) -> &'static str {
         self.label().split(' ').next().unwrap_or_default()
     }
 
-    /// The element of the decision process that it is about: the state, or the observation for colours.
+    /// The element of the decision process that it belongs to: the state, or the observation for colours.
     pub fn element(self) -> Element {
         match self {
             Self::Colors(_) => Element::O,
@@ -108,8 +106,8 @@ impl WorldMeasure {
         }
     }
 
-    /// Which laws it keeps: of occupancy among worlds of one arena, see [`WorldMeasure::properties_among`]. None is a
-    /// metric, for each sees but a part of a world.
+    /// Which laws the measure satisfies, for occupancy among worlds of one arena, see [`WorldMeasure::properties_among`]. None
+    /// is a metric, because each considers only part of a world.
     pub fn properties(self) -> MetricProperties {
         match self {
             Self::Chamfer => MetricProperties::Distance,
@@ -118,9 +116,9 @@ impl WorldMeasure {
         }
     }
 
-    /// Which laws it keeps among these worlds. Where arenas differ, or the classes of all are so many that cells are
-    /// larger for some pairs than for others, occupancy has other cells and another diameter for each pair, and a
-    /// detour may be shorter.
+    /// Which laws the measure satisfies among these worlds. If arenas differ, or there are so many classes that some pairs need
+    /// larger cells than others, occupancy has different cells and diameters for each pair, and the triangle inequality may
+    /// fail.
     pub fn properties_among<'a>(self, worlds: impl IntoIterator<Item = &'a World>) -> MetricProperties {
         let worlds: Vec<&World> = worlds.into_iter().collect();
         let Some(first) = worlds.first().filter(|_| self.kind() == "occupancy") else {
@@ -136,7 +134,7 @@ impl WorldMeasure {
         }
     }
 
-    /// How far apart two worlds are, in the unit of [`WorldMeasure::label`]. Some microseconds to some milliseconds.
+    /// The distance of two worlds, in the unit of [`WorldMeasure::label`]. Takes some microseconds to some milliseconds.
     ///
     /// # Errors
     /// [`SimilarityError::TooMany`] for more than [`MAX_ASSIGNED`](crate::MAX_ASSIGNED) objects (`ospa`, colours), or

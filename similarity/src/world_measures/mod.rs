@@ -1,6 +1,4 @@
-//! How far apart two worlds are by one measure alone: by where things stand, by which things there are, or by their
-//! colours. All that worlds differ in, added up, is in `combined/`; the measures themselves are in `occupancy/`,
-//! `scalar/` and `color/`.
+//! Distances between worlds by a single measure: of places, of objects, or of colours.
 
 mod colors;
 mod measure;

@@ -1,4 +1,4 @@
-//! How far apart two worlds are by which objects there are. Where cells matter, not objects, see `occupancy.rs`.
+//! Distances between worlds by their objects, without cells.
 
 use std::collections::BTreeMap;
 
@@ -6,18 +6,18 @@ use driftworld_spec::World;
 
 use crate::{SimilarityError, ospa};
 
-/// Metres that a missing object counts: what distances of worlds set against one object, too.
+/// Metres that a missing object counts; distances of worlds use the same unit for an object's place.
 const CUT_OFF: f64 = 10.0;
 
 /// [`ospa`] of the objects of two worlds.
 pub(super) fn places_apart(a: &World, b: &World) -> Result<f64, SimilarityError> {
     let (a, b) = (places(a), places(b));
-    // One of both ways, so that it is as far there as back to the last bit.
+    // In a canonical order of the two, so that the result is symmetric to the last bit.
     let (a, b) = if a > b { (b, a) } else { (a, b) };
     ospa(&a, &b, CUT_OFF)
 }
 
-/// Class and place of each object, in an order of their own.
+/// Class and place of each object, sorted.
 fn places(world: &World) -> Vec<(String, [f64; 2])> {
     let objects = world.objects.iter();
     let mut places: Vec<_> = objects
@@ -27,7 +27,7 @@ fn places(world: &World) -> Vec<(String, [f64; 2])> {
     places
 }
 
-/// How many objects there are of each class.
+/// Number of objects of each class.
 pub(super) fn counts_of(world: &World) -> BTreeMap<String, usize> {
     let mut counts = BTreeMap::new();
     for object in &world.objects {

@@ -1,5 +1,4 @@
-//! How far apart two worlds are by the cells that objects stand in. What is measured between grids is in the crate's
-//! `occupancy/`.
+//! Distances between worlds by the cells that objects occupy.
 
 use driftworld_spec::World;
 
@@ -15,8 +14,8 @@ pub(super) fn of_taken(
     distance(&a.taken(), &b.taken())
 }
 
-/// How many objects stand in each cell of both, the one or the other first whichever was named first, so that it is as
-/// far there as back to the last bit.
+/// Number of objects in each cell of both worlds, in a canonical order of the two, so that the result is symmetric to the last
+/// bit.
 fn grids(a: &World, b: &World) -> Result<[Grid; 2], SimilarityError> {
     let raster = Raster::fitting(&[a, b])?;
     let mut grids = [raster.counts(a)?, raster.counts(b)?];
@@ -26,8 +25,8 @@ fn grids(a: &World, b: &World) -> Result<[Grid; 2], SimilarityError> {
     Ok(grids)
 }
 
-/// The sum over classes of the work that moves one from here to there, each class of mass 1; the diameter for a class
-/// that stands in one world only. Masses are whole, so that cells that hold equal shares of a class hold equal masses.
+/// The sum over classes of the work that moves one to the other, each class of mass 1; the diameter for a class in one world
+/// only. Masses are whole numbers, so cells with equal shares of a class have equal masses.
 pub(super) fn earth_movers(a: &World, b: &World) -> Result<f64, SimilarityError> {
     let [a, b] = &grids(a, b)?;
     let shape = a.shape();

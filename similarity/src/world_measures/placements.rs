@@ -1,5 +1,4 @@
-//! [`Placements`]: where the objects of many worlds come to stand, as one law for each class. Worlds pair by pair are in `occupancy.rs`
-//! and `objects.rs`.
+//! [`Placements`]: the places of objects in many worlds, as one distribution per class.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,8 +11,8 @@ use crate::{SimilarityError, earth_movers_distance};
 /// Metres that count 1, as in distances of worlds.
 const METRES: f64 = 10.0;
 
-/// Where the objects of each class stand in many worlds of one variant: the law of places as it comes out, with all that walls
-/// and refusals do to the law that is declared.
+/// Where the objects of each class stand in many worlds of one variant: the actual distribution of places, after walls and
+/// rejected placements have changed the declared one.
 #[derive(Clone, Debug, Default)]
 pub struct Placements {
     by_class: BTreeMap<String, Vec<[f64; 2]>>,
@@ -21,7 +20,7 @@ pub struct Placements {
 }
 
 impl Placements {
-    /// The places of all objects in all of these worlds. The case of a class does not matter.
+    /// The places of all objects in these worlds. The case of a class is ignored.
     pub fn of(worlds: &[World]) -> Self {
         let mut by_class: BTreeMap<String, Vec<[f64; 2]>> = BTreeMap::new();
         for object in worlds.iter().flat_map(|world| &world.objects) {
@@ -35,11 +34,12 @@ impl Placements {
         Self { by_class, worlds }
     }
 
-    /// How far the places of one are from those of the other, class by class: the mean way of an object in tens of metres, by the
-    /// least work that makes one law the other (Wasserstein-1 of all places together, exact). A class that only one has counts 1.
+    /// The distance of two sets of places, class by class: the mean distance of an object in tens of metres, by the least work
+    /// that turns one distribution into the other (Wasserstein-1 of all places together, exact). A class that only one has
+    /// counts 1.
     ///
-    /// Classes are added. However many objects of a class there are, they count as one law: more of them in the same places are
-    /// 0. A metric between sets of places; what else worlds hold is not seen. `weights`: what the state weighs.
+    /// Classes are added up. The number of objects in a class does not count: more of them in the same places are 0 apart. A
+    /// metric between sets of places; all else in the worlds is ignored. `weights`: for the weight of the state.
     ///
     /// # Errors
     /// [`SimilarityError::Empty`] if one has no world, [`SimilarityError::TooMany`] above
@@ -63,7 +63,7 @@ impl Placements {
         for class in classes {
             let (raw, counts) = match (self.by_class.get(class), other.by_class.get(class)) {
                 (Some(a), Some(b)) => {
-                    // The lesser first, so that it is as far there as back to the last bit.
+                    // The lesser first, so that the result is symmetric to the last bit.
                     let (a, b) = if a > b { (b, a) } else { (a, b) };
                     let way = earth_movers_distance(a, b)?;
                     (way, way / METRES)
@@ -114,7 +114,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 64)))]
 
         #[test]
-        fn it_keeps_the_laws_of_a_metric_whatever_the_order(a in drawn(), b in drawn(), c in drawn()) {
+        fn placements_distance_satisfies_the_metric_laws_in_any_order(a in drawn(), b in drawn(), c in drawn()) {
             let [of_a, of_b, of_c] = [&a, &b, &c].map(|places| Placements::of(&worlds(places)));
             let d = |a: &Placements, b: &Placements| a.distance(b, &Weights::default()).unwrap().total;
             prop_assert_eq!(d(&of_a, &of_a), 0.0);
@@ -125,7 +125,7 @@ mod tests {
                 world.reverse();
             }
             prop_assert_eq!(d(&of_a, &of_b), d(&Placements::of(&worlds(&shuffled)), &of_b));
-            // A class that only one has counts 1, whatever the ways: only where all have the same classes is it a metric.
+            // A class that only one has counts 1, whatever the distances: it is a metric only if all have the same classes.
             let classes = |of: &Placements| of.by_class.keys().cloned().collect::<Vec<_>>();
             if classes(&of_a) == classes(&of_b) && classes(&of_b) == classes(&of_c) {
                 prop_assert!(d(&of_a, &of_c) <= d(&of_a, &of_b) + d(&of_b, &of_c) + 1e-9);
@@ -135,7 +135,7 @@ mod tests {
         }
 
         #[test]
-        fn a_move_of_all_counts_its_length(a in drawn(), east in -30.0..30.0_f64) {
+        fn common_shift_counts_its_length(a in drawn(), east in -30.0..30.0_f64) {
             let moved: Vec<Vec<_>> =
                 a.iter().map(|world| world.iter().map(|(class, [x, y])| (*class, [x + east, *y])).collect()).collect();
             let (before, after) = (Placements::of(&worlds(&a)), Placements::of(&worlds(&moved)));
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn without_worlds_there_is_no_law() {
+    fn empty_placements_are_refused() {
         let (none, one) = (Placements::of(&[]), Placements::of(&[World::default()]));
         assert!(matches!(
             none.distance(&one, &Weights::default()),

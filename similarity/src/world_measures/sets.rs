@@ -7,9 +7,8 @@ use crate::SimilarityError;
 use crate::combined::{Distance, Part, Weights};
 use crate::distribution::Method;
 
-/// The mean of [`WorldMeasure::between`] over pairs, the first with the first and so on, as a distance in the measure's
-/// element alone; worlds without a partner are left out. `weights`: what the element weighs. 1 is one of the measure's
-/// units.
+/// The mean of [`WorldMeasure::between`] over pairs, the first with the first and so on, as a distance in the measure's element
+/// alone; worlds without a partner are left out. `weights`: for the weight of the element. 1 is one of the measure's units.
 ///
 /// # Errors
 /// [`SimilarityError::Empty`] if there is no pair, and as [`WorldMeasure::between`].

@@ -1,4 +1,4 @@
-//! Laws of the measures between worlds. What each is by hand is in `tests/by_hand.rs`.
+//! Laws of the measures between worlds.
 
 mod by_hand;
 
@@ -10,8 +10,8 @@ use crate::{ColorMeasure, MetricProperties, Raster, SimilarityError, Weights};
 
 const COLORS: [&str; 3] = ["red", "tan", "navy"];
 
-/// Class, place and colour: two classes, one of them in large and small letters, places in and out of an arena of 12 ×
-/// 8 m, and often the same cell.
+/// Class, place and colour: two classes, one of them with varying case, places in and outside an arena of 12 × 8 m, and often
+/// the same cell.
 type Thing = (&'static str, [f64; 2], Option<Color>);
 
 fn things() -> impl Strategy<Value = Vec<Thing>> {
@@ -39,7 +39,7 @@ fn between(measure: WorldMeasure, a: &[Thing], b: &[Thing]) -> f64 {
 }
 
 #[test]
-fn names_are_read_back_and_others_refused() {
+fn names_round_trip_and_others_are_refused() {
     for measure in WorldMeasure::all() {
         let name = measure.name();
         assert_eq!(WorldMeasure::from_name(measure.kind(), Some(name)), Some(measure));
@@ -64,7 +64,7 @@ fn names_are_read_back_and_others_refused() {
 }
 
 #[test]
-fn an_empty_world_is_0_from_another_and_as_far_as_stated_from_the_rest() {
+fn empty_world_has_the_documented_distances() {
     let tree = ("tree", [0.5, 0.5], Color::from_name("red"));
     let some = [tree, ("tree", [2.5, 0.5], None), ("rock", [0.5, 0.5], None)];
     // 12 × 8 cells of 1 m.
@@ -83,7 +83,7 @@ fn an_empty_world_is_0_from_another_and_as_far_as_stated_from_the_rest() {
 }
 
 #[test]
-fn colours_of_the_model_count_nowhere() {
+fn colours_of_the_model_are_ignored() {
     let (red, plain) = (("tree", [0.0; 2], Color::from_name("red")), ("tree", [0.0; 2], None));
     for measure in ColorMeasure::ALL {
         let d = |a: &[Thing], b: &[Thing]| between(WorldMeasure::Colors(*measure), a, b);
@@ -94,7 +94,7 @@ fn colours_of_the_model_count_nowhere() {
 }
 
 #[test]
-fn sets_of_worlds_are_compared_pair_by_pair_in_one_element() {
+fn sets_of_worlds_are_compared_pairwise_in_one_element() {
     let at = |x: f64| world(&[("tree", [x, 0.0], None)]);
     let (a, b) = ([at(0.0), at(0.0), at(5.0)], [at(1.0), at(3.0)]);
     let weights = Weights::default().with(Element::S, 3.0).unwrap();
@@ -111,7 +111,7 @@ fn sets_of_worlds_are_compared_pair_by_pair_in_one_element() {
 }
 
 #[test]
-fn cells_grow_until_those_of_all_classes_fit() {
+fn cells_grow_until_all_classes_fit() {
     let with = |classes: usize, side: f64| {
         let objects = (0..classes).map(|index| Object::new(format!("kind {index}"), [0.5, 0.5]));
         let made = World::default().edit(|world| {
@@ -140,7 +140,7 @@ fn cells_grow_until_those_of_all_classes_fit() {
 }
 
 #[test]
-fn a_detour_by_a_larger_arena_may_be_shorter() {
+fn larger_arena_can_violate_the_triangle_inequality() {
     let arena = |side: f64, trees: usize| {
         let made = World::default().edit(|world| {
             world.environment_params.map_size = [side; 2];
@@ -155,7 +155,7 @@ fn a_detour_by_a_larger_arena_may_be_shorter() {
 
 proptest! {
     #[test]
-    fn they_are_0_on_equals_and_as_far_there_as_back(a in things(), b in things(), turn in 0_usize..5) {
+    fn measures_are_symmetric_and_0_on_equals(a in things(), b in things(), turn in 0_usize..5) {
         let mut turned = a.clone();
         turned.rotate_left(turn.min(a.len()));
         for measure in WorldMeasure::all() {
@@ -171,7 +171,7 @@ proptest! {
     }
 
     #[test]
-    fn no_detour_is_shorter_where_they_say_so(a in things(), b in things(), c in things()) {
+    fn declared_triangle_inequality_holds(a in things(), b in things(), c in things()) {
         for measure in WorldMeasure::all().filter(|measure| measure.properties().keeps_triangles()) {
             let d = |a: &[Thing], b: &[Thing]| between(measure, a, b);
             prop_assert!(d(&a, &c) <= d(&a, &b) + d(&b, &c) + 1e-9, "{}", measure.name());
@@ -179,7 +179,7 @@ proptest! {
     }
 
     #[test]
-    fn one_alone_that_is_moved_farther_is_never_nearer(from in -6.0..6.0_f64, ways in prop::array::uniform2(0.0..6.0_f64)) {
+    fn distance_never_falls_as_a_lone_object_moves_away(from in -6.0..6.0_f64, ways in prop::array::uniform2(0.0..6.0_f64)) {
         let (near, far) = (ways[0].min(ways[1]), ways[0].max(ways[1]));
         for measure in WorldMeasure::all() {
             let moved = |way: f64| {
@@ -191,7 +191,7 @@ proptest! {
     }
 
     #[test]
-    fn one_among_others_that_is_moved_farther_is_never_nearer_by_what_moves(
+    fn transport_never_falls_as_one_of_several_objects_moves_away(
         others in things(),
         from in -6.0..6.0_f64,
         ways in prop::array::uniform2(0.0..6.0_f64),
@@ -206,7 +206,7 @@ proptest! {
     }
 
     #[test]
-    fn a_class_that_is_the_same_in_both_changes_nothing_that_is_a_sum_or_a_largest(
+    fn equal_class_changes_no_sum_or_maximum(
         a in things(), b in things(), more in things(),
     ) {
         let with = |things: &[Thing]| -> Vec<Thing> {

@@ -1,4 +1,4 @@
-//! The numbers that oracles in Python draw, too: `SplitMix64`, modulo the bound, as `oracle/split_mix.py` has it.
+//! Random numbers shared with the Python oracles: `SplitMix64`, modulo the bound, as in `oracle/split_mix.py`.
 
 pub(crate) struct Rng(pub(crate) u64);
 

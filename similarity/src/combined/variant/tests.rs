@@ -34,7 +34,7 @@ fn variants_that_differ_in_one_element_are_0_apart_in_the_others() {
 }
 
 #[test]
-fn a_fine_element_counts_for_its_coarse_one_and_once() {
+fn fine_element_counts_once_for_its_coarse_one() {
     use Element::{O, P, Phi, R, S};
     assert_eq!(counts_for(&[P, Phi]), [S, O]);
     assert_eq!(counts_for(&[P, S, R]), [S, R]);
@@ -55,7 +55,7 @@ fn a_fine_element_counts_for_its_coarse_one_and_once() {
 }
 
 #[test]
-fn a_parameter_counts_for_each_element_that_it_affects() {
+fn parameter_counts_for_each_element_that_it_affects() {
     let model = distance("a", "model");
     assert_eq!(model.element(Element::S), Some(1.0));
     assert_eq!(model.element(Element::O), Some(1.0));
@@ -63,7 +63,7 @@ fn a_parameter_counts_for_each_element_that_it_affects() {
 }
 
 #[test]
-fn a_wider_distribution_is_farther_by_its_wasserstein_distance() {
+fn wider_distribution_is_measured_by_wasserstein() {
     let wide = distance("a", "wide");
     let heading = wide.parts.iter().find(|part| part.name == "heading").unwrap();
     assert!(
@@ -79,7 +79,7 @@ fn a_wider_distribution_is_farther_by_its_wasserstein_distance() {
 }
 
 #[test]
-fn a_variant_is_0_from_itself_and_as_far_there_as_back() {
+fn variant_distance_is_symmetric_and_zero_on_itself() {
     for name in ["a", "pay", "look", "model", "wide"] {
         assert_eq!(distance(name, name).total, 0.0);
         assert_eq!(distance(name, "a").total, distance("a", name).total);
@@ -87,7 +87,7 @@ fn a_variant_is_0_from_itself_and_as_far_there_as_back() {
 }
 
 #[test]
-fn weights_shift_the_whole_to_an_element() {
+fn element_weights_scale_the_total() {
     let weights = Weights::default().with(Element::R, 0.0).unwrap();
     assert!(Weights::default().with(Element::R, f64::NAN).is_err());
     let task = TaskSpec::from_json(
@@ -120,7 +120,7 @@ fn check(parameter: &str, other: &str, measure: &str, expected: f64) {
 }
 
 #[test]
-fn a_task_says_by_which_measure_a_parameter_is_compared() {
+fn task_chooses_the_measure_of_a_parameter() {
     let number = r#""role": "variant", "type": "number", "range": [1, 100], "default": 1"#;
     check(number, "10", "difference / range", 9.0 / 99.0);
     check(
@@ -172,7 +172,7 @@ fn a_task_says_by_which_measure_a_parameter_is_compared() {
 }
 
 #[test]
-fn drawn_colours_are_as_far_as_the_work_that_turns_one_into_the_other() {
+fn drawn_colours_are_compared_by_transport() {
     let around = |color: &str| format!(r#"{{ "color_normal": {{ "mean": "{color}", "std": 0 }} }}"#);
     let drawn = |more: &str| {
         let (black, white) = (around("black"), around("white"));
@@ -190,7 +190,7 @@ fn drawn_colours_are_as_far_as_the_work_that_turns_one_into_the_other() {
 }
 
 #[test]
-fn weights_of_parameters_and_of_elements_come_from_the_task() {
+fn weights_of_parameters_and_elements_come_from_the_task() {
     let task = TaskSpec::from_json("t.json", r#"{ "name": "t", "element_weights": { "R": 3 }, "parameters": {
         "r": { "role": "variant", "type": "number", "affects": ["R"], "range": [0, 1], "default": 0 },
         "o": { "role": "variant", "type": "boolean", "affects": ["O"], "choices": [true, false], "default": true, "compare": { "weight": 0 } },
@@ -203,7 +203,7 @@ fn weights_of_parameters_and_of_elements_come_from_the_task() {
 }
 
 #[test]
-fn a_measure_that_is_no_metric_makes_the_whole_none() {
+fn nonmetric_measure_makes_the_whole_nonmetric() {
     let properties = |compare: &str| {
         let text = format!(
             r#"{{ "name": "t", "parameters": {{ "p": {{ "role": "variant", "affects": ["O"], {compare} }} }} }}"#

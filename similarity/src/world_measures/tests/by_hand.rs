@@ -1,4 +1,4 @@
-//! Each measure between worlds a second time, by its definition: over all pairings, and over sets of cells.
+//! Checks each measure between worlds against its definition: over all pairings, and over sets of cells.
 
 use std::collections::BTreeSet;
 
@@ -8,7 +8,7 @@ type Cell = [i64; 2];
 
 const CLASSES: [&str; 2] = ["rock", "tree"];
 
-/// The cells of 1 m in an arena of 12 × 8 m in which a class stands, with one entry for each object.
+/// The 1 m cells that a class occupies in an arena of 12 × 8 m, one entry per object.
 fn cells(things: &[Thing], class: &str) -> Vec<Cell> {
     let own = things.iter().filter(|thing| thing.0.to_lowercase() == class);
     let inside = own.filter(|(_, [x, y], _)| x.abs() <= 6.0 && y.abs() <= 4.0);
@@ -24,7 +24,7 @@ fn diameter() -> f64 {
     170.0_f64.sqrt()
 }
 
-/// The least sum over all ways to give each of the shorter list one of the longer.
+/// The least sum over all ways to give each element of the shorter list one of the longer.
 fn least_sum<T>(short: &[T], long: &[T], cost: &dyn Fn(&T, &T) -> f64) -> f64 {
     fn go<T>(short: &[T], long: &[T], used: &mut Vec<bool>, cost: &dyn Fn(&T, &T) -> f64) -> f64 {
         let Some((first, rest)) = short.split_first() else {
@@ -46,7 +46,7 @@ fn least_sum<T>(short: &[T], long: &[T], cost: &dyn Fn(&T, &T) -> f64) -> f64 {
     go(short, long, &mut vec![false; long.len()], cost)
 }
 
-/// Each as often as it takes for both to be as many.
+/// Repeats the elements of both until they have equal length.
 fn equally_many(a: &[Cell], b: &[Cell]) -> (Vec<Cell>, Vec<Cell>) {
     let (mut i, mut j) = (1, 1);
     while i * a.len() != j * b.len() {
@@ -56,7 +56,7 @@ fn equally_many(a: &[Cell], b: &[Cell]) -> (Vec<Cell>, Vec<Cell>) {
     (times(a, i), times(b, j))
 }
 
-/// The sum over classes, the diameter where only one world has one.
+/// The sum over classes; the diameter for a class in one world only.
 fn over_classes(a: &[Thing], b: &[Thing], apart: impl Fn(&[Cell], &[Cell]) -> f64) -> f64 {
     let of_class = |class: &&str| {
         let (a, b) = (cells(a, class), cells(b, class));
@@ -84,7 +84,7 @@ fn taken(things: &[Thing]) -> BTreeSet<(&'static str, Cell)> {
     CLASSES.iter().flat_map(of_class).collect()
 }
 
-/// The way from each taken cell to the nearest of its class; once the diameter where a class has none to start from.
+/// The distance from each taken cell to the nearest of its class; once the diameter if a class has none to start from.
 fn ways(a: &[Thing], b: &[Thing]) -> Vec<f64> {
     let mut ways = Vec::new();
     for class in CLASSES {
@@ -109,8 +109,8 @@ fn assert_near(measure: &str, found: f64, expected: f64) {
 
 proptest! {
     #[test]
-    fn work_is_the_least_of_all_pairings(a in things(), b in things()) {
-        // With up to 3 of a class the pairings are few.
+    fn earth_movers_match_the_best_pairing(a in things(), b in things()) {
+        // At most 3 objects per class, so that pairings are few.
         let few = |things: &[Thing]| things[..things.len().min(3)].to_vec();
         let (a, b) = (few(&a), few(&b));
         let found = between(WorldMeasure::EarthMovers, &a, &b);
@@ -118,7 +118,7 @@ proptest! {
     }
 
     #[test]
-    fn shares_of_cells_are_those_of_sets(a in things(), b in things()) {
+    fn jaccard_matches_the_sets_of_cells(a in things(), b in things()) {
         let (left, right) = (taken(&a), taken(&b));
         let (common, all) = (left.intersection(&right).count() as f64, left.union(&right).count() as f64);
         let share = if all == 0.0 { 0.0 } else { (all - common) / all };
@@ -126,7 +126,7 @@ proptest! {
     }
 
     #[test]
-    fn ways_to_the_nearest_are_found_by_looking_at_all(a in things(), b in things()) {
+    fn nearest_distances_match_brute_force(a in things(), b in things()) {
         use WorldMeasure::{Chamfer, Hausdorff};
         let (there, back) = (ways(&a, &b), ways(&b, &a));
         let most = there.iter().chain(&back).copied().fold(0.0, f64::max);
@@ -136,7 +136,7 @@ proptest! {
     }
 
     #[test]
-    fn objects_and_colours_go_together_as_cheaply_as_any_pairing(a in things(), b in things()) {
+    fn object_and_colour_measures_match_the_best_pairing(a in things(), b in things()) {
         let larger = a.len().max(b.len()).max(1) as f64;
         let cost = |a: &Thing, b: &Thing| {
             let way = libm::hypot(a.1[0] - b.1[0], a.1[1] - b.1[1]);

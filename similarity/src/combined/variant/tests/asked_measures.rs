@@ -1,11 +1,11 @@
-//! Measures that a parameter asks for by name: what they are by hand, what counts 1, and which laws they keep.
+//! Measures that a parameter asks for by name: values computed by hand, normalisation, and laws.
 
 use super::*;
 use crate::Lab;
 use driftworld_spec::Color;
 use proptest::prelude::*;
 
-/// A task whose parameter `p` may be each of these, by this measure; its variants `v0`, `v1` … are the choices in turn.
+/// A task whose parameter `p` may take these values, with this measure; its variants `v0`, `v1` … are the choices in turn.
 fn task(kind: &str, measure: &str, choices: &[String]) -> Arc<TaskSpec> {
     let variants: Vec<String> = (choices.iter().enumerate())
         .map(|(index, choice)| format!(r#""v{index}": {{ "p": {choice} }}"#))
@@ -30,7 +30,7 @@ fn between(task: &Arc<TaskSpec>, a: &str, b: &str) -> Result<Distance, Similarit
     )
 }
 
-/// The measure's name, its own number between `v0` and `v1`, and what that counts.
+/// The measure's name, and its raw and normalised number between `v0` and `v1`.
 fn found(kind: &str, measure: &str, choices: &[&str]) -> (&'static str, f64, f64) {
     let choices: Vec<String> = choices.iter().map(|choice| (*choice).to_owned()).collect();
     let distance = between(&task(kind, measure, &choices), "v0", "v1").unwrap();
@@ -47,14 +47,14 @@ fn assert_found(found: (&'static str, f64, f64), measure: &str, raw: f64, normal
     );
 }
 
-/// Lightness apart plus the straight way in a and b.
+/// Difference of lightness plus the Euclidean distance in a and b.
 fn hyab_by_hand(a: &str, b: &str) -> f64 {
     let [Lab([l, u, v]), Lab([m, x, y])] = [a, b].map(|name| Lab::from(Color::from_name(name).unwrap()));
     (l - m).abs() + libm::hypot(u - x, v - y)
 }
 
 #[test]
-fn hyab_of_colours_and_of_drawn_ones_is_over_the_widest_choice() {
+fn hyab_is_normalised_by_the_widest_choice() {
     let (raw, widest) = (
         hyab_by_hand("red", "tan"),
         hyab_by_hand("red", "navy").max(hyab_by_hand("tan", "navy")),
@@ -74,8 +74,8 @@ fn hyab_of_colours_and_of_drawn_ones_is_over_the_widest_choice() {
 }
 
 #[test]
-fn layouts_are_measured_by_what_is_asked_for_alone() {
-    // One wall of 4 m in the arena of 100 m, so many metres east.
+fn layouts_are_compared_by_the_requested_aspect_alone() {
+    // One wall of 4 m in a 100 m arena, `x` metres east.
     let wall = |x: f64| format!(r#"{{ "walls": [{{ "from": [{x}, -2], "to": [{x}, 2], "thickness": 0.5 }}] }}"#);
     let ask = |measure: &str, choices: [String; 3]| found("layout", measure, &choices.each_ref().map(String::as_str));
     let three = || [-30.0, -5.0, 20.0].map(wall);
@@ -85,7 +85,7 @@ fn layouts_are_measured_by_what_is_asked_for_alone() {
         0.25,
         0.5,
     );
-    // Where they do not overlap, how far they are apart does not count.
+    // Without overlap, the distance between the walls does not count.
     assert_found(ask("wall_jaccard", three()), "wall jaccard / widest choice", 1.0, 1.0);
     let rooms = |rows: [&str; 5]| format!(r#"{{ "text": {}, "cell": 2 }}"#, serde_json::to_string(&rows).unwrap());
     let doorway = ["#######", "#..#..#", "#.....#", "#..#..#", "#######"];
@@ -98,7 +98,7 @@ fn layouts_are_measured_by_what_is_asked_for_alone() {
 }
 
 #[test]
-fn relative_differences_are_over_the_most_that_the_domain_allows() {
+fn relative_differences_are_normalised_by_the_domain() {
     let check = |domain: &str, other: &str, raw: f64, normalised: f64| {
         let text = format!(
             r#"{{ "name": "t", "parameters": {{ "p": {{ "role": "variant", "type": "number", "affects": ["T"], {domain},
@@ -123,15 +123,15 @@ fn relative_differences_are_over_the_most_that_the_domain_allows() {
 }
 
 #[test]
-fn distributions_are_measured_as_by_hand_over_the_widest_pair() {
+fn distribution_measures_match_values_by_hand() {
     let at = |x: f64| format!(r#"{{ "normal": {{ "mean": {x}, "std": 0 }} }}"#);
     let ask = |measure: &str, three: [String; 3]| found("distribution", measure, &three.each_ref().map(String::as_str));
-    // Of single numbers √(2 |a − b|).
+    // The energy distance of single numbers is √(2 |a − b|).
     let energy = ask("energy", [at(0.0), at(1.0), at(4.0)]);
     assert_found(energy, "energy / widest", 2.0_f64.sqrt(), 0.5);
     let round = |x: f64, std: f64| format!(r#"{{ "gaussian": {{ "mean": [{x}, 0], "std": {std} }} }}"#);
     let places = ask("bures_wasserstein", [round(0.0, 1.0), round(3.0, 3.0), round(6.0, 1.0)]);
-    // 3 m and 2 m of spread along both axes.
+    // Standard deviations of 3 m and 2 m along both axes.
     assert_found(
         places,
         "bures-wasserstein / widest",
@@ -141,7 +141,7 @@ fn distributions_are_measured_as_by_hand_over_the_widest_pair() {
 }
 
 #[test]
-fn each_says_which_laws_it_keeps() {
+fn measures_declare_their_laws() {
     let properties = |kind: &str, measure: &str, choices: [&str; 2]| {
         let task = task(kind, measure, &choices.map(str::to_owned));
         VariantMeasure::new(&task, Weights::default()).properties()
@@ -187,7 +187,7 @@ fn three(of: impl Strategy<Value = String>) -> impl Strategy<Value = Vec<String>
     prop::collection::vec(of, 3)
 }
 
-/// A type, a measure and three choices, for each measure that was drawn.
+/// A type, a measure and three random choices.
 fn asked() -> impl Strategy<Value = (&'static str, &'static str, Vec<String>)> {
     let normal = (-9.0..9.0_f64, 0.5..4.0_f64)
         .prop_map(|(mean, std)| format!(r#"{{ "normal": {{ "mean": {mean}, "std": {std} }} }}"#));
@@ -210,7 +210,7 @@ fn asked() -> impl Strategy<Value = (&'static str, &'static str, Vec<String>)> {
 
 proptest! {
     #[test]
-    fn laws_hold_for_what_is_asked((kind, measure, choices) in asked()) {
+    fn requested_measures_satisfy_their_laws((kind, measure, choices) in asked()) {
         let task = task(kind, measure, &choices);
         let d = |a: &str, b: &str| between(&task, a, b).unwrap().total;
         prop_assert_eq!(d("v0", "v0"), 0.0);
@@ -224,7 +224,7 @@ proptest! {
     }
 
     #[test]
-    fn what_is_the_same_in_both_changes_nothing((kind, measure, choices) in asked(), other in asked()) {
+    fn equal_parameter_changes_nothing((kind, measure, choices) in asked(), other in asked()) {
         let alone = task(kind, measure, &choices);
         let beside = format!(
             r#""p": {{ "role": "variant", "type": "{kind}", "affects": ["O"], "choices": [{list}], "default": {first},
