@@ -1,4 +1,4 @@
-//! How long a step, a picture and a reset take. Whole batches are measured by `driftworld bench env`.
+//! Times of a step, an image and a reset. `driftworld bench env` measures whole batches.
 
 use std::hint::black_box;
 
@@ -38,7 +38,7 @@ fn naturally(world: World) -> World {
         .expect("looks are sound")
 }
 
-/// Of 8 × 8 cells, with the agent in its middle.
+/// A maze of 8 × 8 cells, with the agent in the middle.
 fn maze() -> World {
     let layout = Layout {
         maze: Some(Maze {
@@ -55,7 +55,7 @@ fn maze() -> World {
         .expect("the maze is sound")
 }
 
-/// Pictures along a circle.
+/// Renders images along a circle.
 fn draw(c: &mut Criterion, name: &str, world: World) {
     const SIZE: u32 = 84;
     let mut environment = Environment::new(world);

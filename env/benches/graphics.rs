@@ -1,5 +1,5 @@
-//! How many pictures a second the graphics card draws, in batches: `cargo bench -p driftworld-env --features gpu
-//! --bench graphics`. Without the feature there is nothing to measure, and it ends at once.
+//! Batched rendering throughput of the GPU: `cargo bench -p driftworld-env --features gpu --bench graphics`. Without the
+//! feature it exits at once.
 
 #[cfg(feature = "gpu")]
 #[path = "graphics/batches.rs"]

@@ -1,4 +1,4 @@
-//! What the built-in expert costs: a step where things move, a step of errands over doors, keys, things and zones, and a choice
+//! Cost of the built-in expert: a step among moving objects, a step of plans with doors, keys, things and zones, and a choice
 //! among two hundred targets.
 
 use std::hint::black_box;
@@ -7,7 +7,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use driftworld_env::{Agent, Environment, OnRailsAgent};
 use driftworld_spec::{MotionModel, Object, Stimulus, World, WorldDraft};
 
-/// A world of the built-in task `moving_object#wandering`; its balls move as is said.
+/// A world of the built-in task `moving_object#wandering`, whose balls have the given motion.
 fn moving_object(motion: MotionModel) -> World {
     let text = include_str!("scenes/moving_object.json");
     let world = World::from_json("moving_object.json", text).expect("the scene is sound");
@@ -21,11 +21,11 @@ fn moving_object(motion: MotionModel) -> World {
     moved.expect("the scene is sound")
 }
 
-/// Two hundred solid cubes that pay, scattered over an arena of 100 × 100 m without chance.
+/// Two hundred solid cubes that pay, scattered deterministically over an arena of 100 × 100 m.
 fn crowd() -> World {
     let cube = |number: u32| {
         let share = |prime: f64| (f64::from(number) * prime).fract() - 0.5;
-        // Steps of the golden ratio and of the root of two: no two are close, and no two distances are alike.
+        // Multiples of the golden ratio and of the root of two: no two cubes are close, and no two distances are equal.
         let mut cube = Object::new("cube", [share(0.618_033_988_75) * 94.0, share(0.414_213_562_37) * 94.0]);
         cube.reward = 1.0;
         cube.reward_once_stimulus = vec![Stimulus::AgentCollide];
@@ -63,7 +63,7 @@ fn steps(c: &mut Criterion) {
     group.finish();
 }
 
-/// Worlds 0 under seed 77 of example worlds, with their plans from the first to the last.
+/// Worlds 0 under seed 77 of example tasks, planned from start to end.
 fn errands(c: &mut Criterion) {
     let mut group = c.benchmark_group("on rails, a step of an example world");
     group.throughput(Throughput::Elements(1));
@@ -91,7 +91,7 @@ fn errands(c: &mut Criterion) {
 
 fn choices(c: &mut Criterion) {
     let environment = Environment::new(crowd());
-    // An agent that knows nothing of the world yet: the dearest of its choices.
+    // A new agent has no cache: the most expensive choice.
     c.bench_function("on rails, a choice among 200 targets", |bench| {
         bench.iter(|| black_box(OnRailsAgent::new().act(&environment)));
     });

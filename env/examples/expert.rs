@@ -1,6 +1,5 @@
-//! How often the agent on rails has success, and how many steps a second it plans and makes on one core: files of worlds, one a
-//! line, as `driftworld sample TASK#VARIANT --count 1000 --jsonl -o FILE` writes them. What it does in one of them is shown by
-//! `driftworld render --view episode`.
+//! Success rate of the agent on rails, and its steps per second on one core, for files with one world per line, as written by
+//! `driftworld sample TASK#VARIANT --count 1000 --jsonl -o FILE`. `driftworld render --view episode` shows a single world.
 //!
 //! ```sh
 //! driftworld sample examples/worlds/maze.json#tiny --seed 77 --count 1000 --jsonl -o tiny.jsonl

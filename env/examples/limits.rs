@@ -1,5 +1,4 @@
-//! How long a step takes in worlds at their limits, and how much memory: `limits CASE [OBJECTS]`, or all cases without
-//! one.
+//! Time per step and memory of worlds at their limits: `limits CASE [OBJECTS]`; without arguments, all cases.
 
 use std::error::Error;
 use std::time::{Duration, Instant};
@@ -9,7 +8,7 @@ use driftworld_spec::{
     ActionModel, Modality, MotionModel, Object, Pushable, Respawn, StateFeature, Stimulus, WorldDraft,
 };
 
-/// What is done in one step of a case.
+/// A case: its name, its number of objects and the world.
 type Case = (&'static str, usize, fn(usize) -> WorldDraft);
 
 const CASES: [Case; 14] = [
@@ -41,7 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Steps a world for some steps or some seconds, and prints what they took.
+/// Runs a world for some steps or seconds, and prints their cost.
 #[expect(clippy::print_stdout, reason = "an example shows what it finds")]
 fn measure(name: &str, world: WorldDraft) -> Result<(), Box<dyn Error>> {
     const STEPS: usize = 20;
@@ -73,7 +72,7 @@ fn measure(name: &str, world: WorldDraft) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// All that a camera of 84 × 84 pixels sees.
+/// Renders everything that a camera of 84 × 84 pixels sees.
 fn draw(environment: &mut Environment) -> Result<(), Box<dyn Error>> {
     const SIZE: u32 = 84;
     let pixels = (SIZE * SIZE) as usize;
@@ -95,7 +94,7 @@ fn milliseconds(time: Duration) -> f64 {
     time.as_secs_f64() * 1e3
 }
 
-/// The most memory that the process has held, as Linux knows it.
+/// Peak memory of the process, according to Linux.
 fn peak_memory() -> String {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
@@ -113,7 +112,7 @@ fn world(objects: Vec<Object>) -> WorldDraft {
     world
 }
 
-/// Places on a square field around the origin, so many metres apart, which leaves the agent its room.
+/// Places on a square grid around the origin, `apart` metres apart, with room for the agent.
 fn field(count: usize, apart: f64) -> impl Iterator<Item = [f64; 2]> {
     let side = (count as f64).sqrt().ceil() as usize + 2;
     let middle = side as f64 / 2.0;
@@ -141,7 +140,7 @@ fn pushable_field(count: usize) -> WorldDraft {
     world(field(count, 1.1).map(|at| pushable(at, 0.5)).collect())
 }
 
-/// Everything slides, and nothing comes to rest.
+/// Everything slides without friction and never comes to rest.
 fn pushable_ice(count: usize) -> WorldDraft {
     let mut world = world(field(count, 0.02).map(|at| pushable(at, 0.0)).collect());
     world.agent_params.max_linear_speed = 100.0;
@@ -184,7 +183,7 @@ fn solid_heap(count: usize) -> WorldDraft {
     )
 }
 
-/// Thin posts that the agent meets one after another.
+/// Thin posts that the agent bumps into one after another.
 fn posts(count: usize) -> WorldDraft {
     let at = |at: [f64; 2]| {
         let mut object = Object::new("barrel", at);
@@ -208,7 +207,7 @@ fn ranges(count: usize) -> WorldDraft {
     world(field(count, 0.2).map(at).collect())
 }
 
-/// Everything has been eaten, and comes back where something else stands.
+/// Everything has been collected, and respawns where something else stands.
 fn returning(count: usize) -> WorldDraft {
     let mut world = ranges(count);
     for object in &mut world.objects {
@@ -222,7 +221,7 @@ fn returning(count: usize) -> WorldDraft {
     world
 }
 
-/// All places of a sequence at once, and a state that asks for the nearest.
+/// A sequence of all objects, and a state that asks for the nearest.
 fn sequence(count: usize) -> WorldDraft {
     let mut world = ranges(count);
     for (index, object) in world.objects.iter_mut().enumerate() {
@@ -248,7 +247,7 @@ fn rails(count: usize) -> WorldDraft {
     world
 }
 
-/// Targets that each take all of the ground.
+/// Targets so large that each covers the whole floor.
 fn rails_large(count: usize) -> WorldDraft {
     let mut world = rails(count);
     for object in &mut world.objects {

@@ -1,5 +1,4 @@
-//! Batches of pictures on the machine's first adapter, which may be software, and the same on the processor. How they
-//! are started is in `graphics.rs`.
+//! Renders batches of images on the machine's first adapter, which may be software, and on the CPU.
 
 use criterion::{Criterion, Throughput, criterion_group};
 use driftworld_env::{Action, Camera, CpuRenderer, Environment, GpuChoice, GpuRenderer, Picture, Target};
@@ -22,7 +21,7 @@ fn circle() -> (Environment, Vec<Camera>) {
     (environment, cameras)
 }
 
-/// One batch of pictures in each run, in colour, or with depth and classes too.
+/// One batch of images per run: colour only, or with depth and classes.
 fn batches(c: &mut Criterion) {
     let mut gpu = GpuRenderer::new(GpuChoice::Any).expect("there is an adapter");
     let (environment, cameras) = circle();
@@ -33,7 +32,7 @@ fn batches(c: &mut Criterion) {
             let mut images = vec![(vec![0; 3 * PIXELS], vec![0.0; depths], vec![0; depths]); count];
             group.bench_function(format!("{count} pictures of 84 × 84"), |bench| {
                 bench.iter(|| {
-                    // From all around the circle, however many there are.
+                    // Spread evenly around the circle, whatever the batch size.
                     let around = (0..count).map(|k| &cameras[k * cameras.len() / count]);
                     let views = images.iter_mut().zip(around);
                     let mut pictures: Vec<_> = views
@@ -58,7 +57,7 @@ fn batches(c: &mut Criterion) {
     }
 }
 
-/// The same on the processor, on one thread.
+/// The same on the CPU, on one thread.
 fn processor(c: &mut Criterion) {
     let (environment, cameras) = circle();
     let mut renderer = CpuRenderer::new();
@@ -85,7 +84,7 @@ fn processor(c: &mut Criterion) {
 
 criterion_group!(benches, batches, processor);
 
-/// Runs them as the arguments say.
+/// Runs the benchmarks with the command line's arguments.
 pub(super) fn run() {
     benches();
     Criterion::default().configure_from_args().final_summary();

@@ -1,41 +1,41 @@
-//! [`StateGrid`]: how places and headings become numbers of states. What happens there is found in `walker.rs`.
+//! [`StateGrid`]: maps places and headings to numbers of states.
 
-/// How many headings a state can have: every 45°, from +y on.
+/// Number of headings that a state can have: every 45°, starting at +y.
 pub const NUM_HEADINGS: usize = 8;
 
 /// Degrees between two headings.
 const TURN: f64 = 360.0 / NUM_HEADINGS as f64;
 
-/// Cells around the origin, each with [`NUM_HEADINGS`] headings, and one state in which the episode is over.
+/// Cells around the origin, each with [`NUM_HEADINGS`] headings, and one end state for finished episodes.
 ///
 /// State `(row · columns + column) · 8 + heading`; columns go east, rows north. The last state is the end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StateGrid {
     /// Side of a cell in metres.
     pub cell: f64,
-    /// How many columns and rows there are.
+    /// Numbers of columns and rows.
     pub cells: [usize; 2],
 }
 
 impl StateGrid {
-    /// The least grid that covers an area of these sides in metres, its middle at the origin.
+    /// The smallest grid that covers an area of these sides in metres, centred on the origin.
     pub(super) fn over(area: [f64; 2], cell: f64) -> Self {
         let cells = area.map(|side| (side / cell - 1e-9).ceil().max(1.0) as usize);
         Self { cell, cells }
     }
 
-    /// How many states there are, the end among them; at most `usize::MAX`.
+    /// The number of states, including the end; at most `usize::MAX`.
     pub fn states(&self) -> usize {
         let cells = self.cells[0].saturating_mul(self.cells[1]);
         cells.saturating_mul(NUM_HEADINGS).saturating_add(1)
     }
 
-    /// The state in which the episode is over.
+    /// The state of a finished episode.
     pub fn end(&self) -> usize {
         self.states() - 1
     }
 
-    /// The middle of a state's cell in metres, and its heading in degrees. `None` for the end, and for what is no state.
+    /// The centre of a state's cell in metres, and its heading in degrees. `None` for the end, and for numbers out of range.
     pub fn pose(&self, state: usize) -> Option<([f64; 2], f64)> {
         let (cell, heading) = (state / NUM_HEADINGS, state % NUM_HEADINGS);
         if state >= self.end() {
@@ -46,7 +46,7 @@ impl StateGrid {
         Some(([middle(0), middle(1)], heading as f64 * TURN))
     }
 
-    /// The state that a place in metres and a heading in degrees belong to; outside the grid, in the nearest cell.
+    /// The state of a place in metres and a heading in degrees; a place outside the grid belongs to the nearest cell.
     pub fn state_at(&self, place: [f64; 2], heading_deg: f64) -> usize {
         let [column, row] = [0, 1].map(|axis| {
             let cells = place[axis] / self.cell + self.cells[axis] as f64 / 2.0;

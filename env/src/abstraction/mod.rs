@@ -1,5 +1,4 @@
-//! A world as a finite, deterministic decision process: cells × headings, with what the simulator does from each. How such processes
-//! are compared is for others.
+//! Turns a world into a finite, deterministic decision process: cells × headings, with transitions from the simulator.
 
 mod grid;
 #[cfg(test)]
@@ -15,24 +14,24 @@ use crate::EnvError;
 use crate::assets::Catalogue;
 use walker::{Walked, Walker};
 
-/// The most states of a [`WorldAbstraction`].
+/// Most states of a [`WorldAbstraction`].
 pub const MAX_ABSTRACT_STATES: usize = 1 << 20;
 
 /// The longest macro action in seconds.
 pub const MAX_MACRO_SECONDS: f64 = 60.0;
 
-/// How many macro actions there are: ahead, ahead and left, ahead and right, left, right, and interact.
+/// Number of macro actions: ahead, ahead and left, ahead and right, left, right, and interact.
 pub const NUM_MACRO_ACTIONS: usize = 6;
 
-/// How a world is made finite.
+/// Settings for turning a world into a finite one.
 #[derive(Clone, Debug)]
 pub struct Abstraction {
     /// Side of a cell in metres, above 0; 2 by default.
     pub cell: f64,
-    /// Seconds of the world's own time that an action is held, above 0 to [`MAX_MACRO_SECONDS`]; 0.5 by default. It is held
-    /// for whole steps of the world, as few as last that long.
+    /// Seconds of simulated time for which an action is held, above 0 to [`MAX_MACRO_SECONDS`]; 0.5 by default. Rounded up to
+    /// whole steps of the world.
     pub seconds: f64,
-    /// Sides in metres of the area that the cells cover; the world's arena if absent.
+    /// Sides in metres of the area that the cells cover; by default the world's arena.
     pub area: Option<[f64; 2]>,
     /// Where assets come from.
     pub catalogue: Catalogue,
@@ -49,40 +48,40 @@ impl Default for Abstraction {
     }
 }
 
-/// A world as tables: where each action leads from each state, and what it pays.
+/// Transition and reward tables of a world.
 ///
-/// A state is a cell and a heading, with everything else as at the start of the world: each object is there, pays what it paid
-/// then, and begins its own motion. So the tables hold what walls, the agent's body and speed, the time step, the hold of actions,
-/// the action model, solid and pushed objects and rewards make of an action. What is taken, pushed or gone by does not last beyond
-/// the action; limits of steps and seconds are no part of it; rules about the return count what the one action earns. Uncertain
+/// A state is a cell and a heading; everything else is as at the start of the world: each object is present, pays what it paid
+/// then, and starts its own motion. So the tables reflect walls, the agent's body and speed, the time step, how long actions
+/// are held, the action model, solid and pushed objects, and rewards. Whatever is taken, pushed or moves past is reset after
+/// the action; limits of steps and seconds are ignored; rules about the return count only what this one action earns. Uncertain
 /// rewards pay their mean.
 ///
-/// Actions have the order of [`NUM_MACRO_ACTIONS`]; each is done as fast as the agent can, by the nearest row where the world has a table
-/// of actions. Who cannot interact stands still instead.
+/// Actions are in the order of [`NUM_MACRO_ACTIONS`]; each is done at the agent's full speed, by the nearest row if the world
+/// has a table of actions. An agent that cannot interact stands still instead.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorldAbstraction {
-    /// Which state is where.
+    /// Maps between states and poses.
     pub grid: StateGrid,
-    /// How many states there are, the end among them.
+    /// Number of states, including the end.
     pub states: usize,
-    /// How many actions there are: [`NUM_MACRO_ACTIONS`].
+    /// Number of actions: [`NUM_MACRO_ACTIONS`].
     pub actions: usize,
-    /// `(states · actions,)`, of each state action by action: the state that it leads to. The end, and states where the agent has
-    /// no room, lead to themselves.
+    /// `(states · actions,)`, row-major by state: the successor state. The end, and states in which the agent has no room, lead
+    /// to themselves.
     pub successors: Vec<u32>,
-    /// `(states · actions,)`: what the action pays, in points.
+    /// `(states · actions,)`: the reward of the action, in points.
     pub rewards: Vec<f64>,
-    /// `(states · actions,)`: where the agent stands after the action, before that becomes a state: x and y in metres, heading in
+    /// `(states · actions,)`: the agent's pose after the action, before it is rounded to a state: x and y in metres, heading in
     /// degrees.
     pub landings: Vec<[f32; 3]>,
-    /// `(states,)`: whether the agent has room in the middle of the state's cell.
+    /// `(states,)`: whether the agent has room at the centre of the state's cell.
     pub standable: Vec<bool>,
     /// The state in which the world starts.
     pub start: usize,
 }
 
 impl WorldAbstraction {
-    /// For each state whether any actions lead there from the start: `(states,)`.
+    /// Whether each state can be reached from the start: `(states,)`.
     pub fn reached(&self) -> Vec<bool> {
         let mut reached = vec![false; self.states];
         let mut open = vec![self.start];
@@ -100,7 +99,7 @@ impl WorldAbstraction {
 }
 
 impl Abstraction {
-    /// A world as tables. States are worked out in parallel; the result does not depend on that.
+    /// Computes a world's tables. Runs in parallel; the result does not depend on the number of threads.
     ///
     /// # Errors
     /// [`EnvError::BadAbstraction`] for settings out of range, [`EnvError::TooManyStates`] above [`MAX_ABSTRACT_STATES`].
@@ -162,7 +161,7 @@ impl Abstraction {
     }
 }
 
-/// What the actions come to from the states of a cell: heading by heading, action by action.
+/// Results of all actions from the states of a cell: heading by heading, action by action.
 fn of_cell(walker: &mut Walker, grid: StateGrid, cell: usize, is_open: bool) -> Result<Vec<Walked>, EnvError> {
     let mut walked = Vec::with_capacity(NUM_HEADINGS * NUM_MACRO_ACTIONS);
     for heading in 0..NUM_HEADINGS {
@@ -226,7 +225,7 @@ fn tables(world: &World, grid: StateGrid, open: &[bool], walked: &[Vec<Walked>])
     found
 }
 
-/// The state of a pose: of its own cell, or of the nearest of the eight around it where its own leaves no room; else `otherwise`.
+/// The state of a pose. If the agent has no room in that cell, the nearest of the eight cells around it; otherwise `otherwise`.
 fn standing(grid: StateGrid, open: &[bool], place: [f64; 2], heading_deg: f64, otherwise: usize) -> usize {
     let own = grid.state_at(place, heading_deg);
     if open[own / NUM_HEADINGS] {

@@ -1,4 +1,4 @@
-//! What the simulator does is in the tables, and nothing that is not motion or pay.
+//! The tables match the simulator, and depend only on motion and rewards.
 
 use driftworld_spec::{Color, Object, Stimulus, Wall, World, WorldDraft};
 
@@ -23,7 +23,7 @@ fn abstracted(change: impl FnOnce(&mut WorldDraft)) -> WorldAbstraction {
 }
 
 #[test]
-fn ahead_leads_as_far_as_the_agent_walks() {
+fn moving_ahead_lands_where_the_agent_walks() {
     let found = abstracted(|_| ());
     assert_eq!((found.states, found.actions), (801, 6));
     let from = found.grid.state_at([1.0, -3.0], 0.0) * found.actions;
@@ -36,7 +36,7 @@ fn ahead_leads_as_far_as_the_agent_walks() {
 }
 
 #[test]
-fn touching_pays_once_for_the_action_that_touches() {
+fn touch_reward_is_paid_once_by_the_touching_action() {
     let found = abstracted(|_| ());
     let paid = |place: [f64; 2]| found.rewards[found.grid.state_at(place, 0.0) * found.actions];
     assert_eq!(
@@ -48,7 +48,7 @@ fn touching_pays_once_for_the_action_that_touches() {
 }
 
 #[test]
-fn ends_are_one_state() {
+fn all_episode_ends_lead_to_the_end_state() {
     let found = abstracted(|world| world.rules.success = vec![driftworld_spec::EndCondition::AllCollected]);
     let from = found.grid.state_at([1.0, 3.0], 0.0) * found.actions;
     assert_eq!(found.successors[from] as usize, found.grid.end());
@@ -57,7 +57,7 @@ fn ends_are_one_state() {
 }
 
 #[test]
-fn what_is_not_motion_or_pay_changes_nothing() {
+fn settings_besides_motion_and_reward_do_not_change_the_tables() {
     let base = abstracted(|_| ());
     let looks = abstracted(|world| {
         world.environment_params.light_intensity = 0.2;
@@ -77,7 +77,7 @@ fn what_is_not_motion_or_pay_changes_nothing() {
 }
 
 #[test]
-fn bodies_walls_speed_and_hold_are_in_it() {
+fn tables_depend_on_body_walls_speed_and_hold() {
     let base = abstracted(|_| ());
     let wall = Wall {
         polygon: vec![[-10.0, 0.0], [6.0, 0.0], [6.0, 0.4], [-10.0, 0.4]],

@@ -1,4 +1,4 @@
-//! The real simulator, put into one state after the other and let act from there.
+//! Runs the real simulator from one state after another.
 
 use driftworld_spec::{ActionModel, World};
 
@@ -8,7 +8,7 @@ use crate::agents::in_space;
 use crate::assets::Catalogue;
 use crate::sim::{Environment, Snapshot, Step};
 
-/// What one macro action came to.
+/// Result of one macro action.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Walked {
     pub(super) place: [f32; 2],
@@ -17,17 +17,17 @@ pub(super) struct Walked {
     pub(super) ended: bool,
 }
 
-/// A world that is begun again and again.
+/// Runs macro actions in one world, restored to its start each time.
 pub(super) struct Walker {
     environment: Environment,
     begin: Snapshot,
     step: Step,
-    /// Steps of the world that a macro action takes.
+    /// Steps of the world per macro action.
     steps: u32,
 }
 
 impl Walker {
-    /// In this world without its limits of time, where uncertain rewards pay their mean.
+    /// A walker for this world without time limits; uncertain rewards pay their mean.
     pub(super) fn new(world: &World, seconds: f64, catalogue: &Catalogue) -> Result<Self, EnvError> {
         let endless = world.clone().edit(|world| {
             (world.max_steps, world.max_seconds, world.progress) = (0, 0.0, None);
@@ -51,7 +51,7 @@ impl Walker {
         })
     }
 
-    /// Whether all actions do the same.
+    /// Whether all actions have the same effect.
     pub(super) fn ignores_actions(&self) -> bool {
         let model = self.environment.world().agent_params.action_model;
         matches!(model, ActionModel::OnRails | ActionModel::None)
@@ -63,7 +63,7 @@ impl Walker {
         self.environment.teleport(place, 0.0).is_ok()
     }
 
-    /// What a macro action comes to from a pose, with everything else as it is at the start.
+    /// Runs a macro action from a pose, with everything else as at the start.
     pub(super) fn walk(&mut self, place: [f64; 2], heading_deg: f64, action: usize) -> Result<Walked, EnvError> {
         self.environment.restore(&self.begin);
         self.environment.teleport(place, heading_deg)?;

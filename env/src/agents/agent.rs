@@ -1,4 +1,4 @@
-//! What acts in an environment, and what it may know of its task.
+//! [`Agent`]: the interface of agents, and the task label that they may see.
 
 use crate::sim::{Action, Environment, Step};
 
@@ -17,32 +17,32 @@ pub trait Agent {
     /// Called before [`begin`](Self::begin) with the label of the coming task, where the scenario reveals it.
     fn set_task_label(&mut self, _label: &Label) {}
 
-    /// Called after each step in which the agent may learn, and never in an evaluation. An agent that learns only here
-    /// is frozen in evaluations.
+    /// Called after each step in which the agent may learn, never in an evaluation. An agent that learns only here is frozen
+    /// during evaluations.
     fn learn(&mut self, _environment: &Environment, _step: &Step) {}
 
-    /// Whether [`learn`](Self::learn) may change the agent. If not, what it does in an episode depends only on the
-    /// label, the seed and what it observes there.
+    /// Whether [`learn`](Self::learn) may change the agent. If not, its behaviour in an episode depends only on the label, the
+    /// seed and its observations.
     fn learns(&self) -> bool {
         true
     }
 
-    /// A copy that acts as this agent does now and never learns. Copies run evaluations, one or several at a time. `None`,
-    /// the default, for an agent that cannot be copied: it runs its evaluations itself, one after the other.
+    /// A copy that acts as this agent does now and never learns. Copies run evaluations, possibly several at a time. `None`,
+    /// the default, is for agents that cannot be copied: they run their own evaluations, one after another.
     fn frozen(&self) -> Option<Box<dyn Agent + Send>> {
         None
     }
 }
 
-/// What a task is called, for agents that may know it.
+/// A task's label, for agents that may know it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Label {
     /// The name, as `task#variant`.
     pub name: String,
-    /// Its number among the names of the lifetime, from 0 in the order in which they first come.
+    /// Its index among the names of the lifetime, from 0 in order of first appearance.
     pub number: usize,
-    /// How many names the lifetime has: the width of the number as a one-hot vector.
+    /// Number of names in the lifetime: the length of a one-hot vector.
     pub of: usize,
-    /// Whether it is a part of what is observed; else it is known beside the observation.
+    /// Whether the label is part of the observation; otherwise it is known beside the observation.
     pub observed: bool,
 }

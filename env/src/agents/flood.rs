@@ -1,47 +1,44 @@
-//! How far every cell is from one of them: Dijkstra's way of finding it, with one bucket for each distance, and no
-//! farther than anyone asks.
+//! Distances from one cell to others: Dijkstra's algorithm with one bucket per distance, run only as far as needed.
 
 use super::occupancy::OccupancyGrid;
 
-/// Cost of a step to a straight and to a slanting neighbour, in fifths of a cell.
+/// Cost of a step to a straight and to a diagonal neighbour, in fifths of a cell.
 pub(super) const STRAIGHT: u32 = 5;
 pub(super) const SLANTING: u32 = 7;
 
-/// How many times as dear a step is that belongs to a blocked cell: a way through is the last resort, for who is shut
-/// in.
+/// Factor on the cost of a step through a blocked cell: only an agent that is shut in goes that way.
 pub(super) const BLOCKED: u32 = 40;
 
-/// More than the dearest step, so that what waits is never a full round ahead; a power of two.
+/// More than the largest step cost, so that queued cells are never a full round ahead; a power of two.
 const NUM_BUCKETS: usize = 512;
 
-/// Which cell of a step makes it dear where it is blocked. Of a walk from far to near it is always the one that is
-/// left.
+/// Which cell of a step decides whether the step counts as blocked. On a walk from far to near it is always the cell that the
+/// walk leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Charge {
-    /// The flood spreads from the goal of walks: the cell that it comes to.
+    /// The flood spreads from the walk's goal: the cell that the flood enters.
     Entered,
-    /// The flood spreads from the start of walks: the cell that it comes from.
+    /// The flood spreads from the walk's start: the cell that the flood leaves.
     Left,
 }
 
-/// Distances from one cell, in fifths of a cell: of the cells nearer than `next` they are found, of others they are
-/// bounds.
+/// Distances from one cell, in fifths of a cell: final for cells nearer than `next`, upper bounds for the others.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Flood {
     distance: Vec<u32>,
-    /// Cells by the distance under which they wait, modulo the number of buckets. Some wait under an old distance, too.
+    /// Queued cells by distance, modulo the number of buckets. A cell may also be queued under an outdated distance.
     buckets: Vec<Vec<u32>>,
     next: u32,
     num_waiting: usize,
 }
 
 impl Flood {
-    /// Begins anew from a cell.
+    /// Restarts from a cell.
     pub(super) fn begin(&mut self, occupancy: &OccupancyGrid, start: usize) {
         let grid = occupancy.grid();
         self.distance.clear();
         self.distance.resize(grid.num_cells(), u32::MAX);
-        // Nothing is nearer than 0: the rim and the walls of layouts are never come to.
+        // Distance 0 cannot be undercut, so the flood never enters the rim or the walls of layouts.
         grid.rim()
             .chain(occupancy.sealed())
             .for_each(|cell| self.distance[cell] = 0);
@@ -52,18 +49,19 @@ impl Flood {
         (self.next, self.num_waiting) = (0, 1);
     }
 
-    /// The distance of a cell: found, or the shortest so far; `u32::MAX` if there is none yet.
+    /// The distance of a cell: final, or the shortest so far; `u32::MAX` if there is none yet.
     pub(super) fn distance(&self, cell: usize) -> u32 {
         self.distance[cell]
     }
 
-    /// Finds the distance of a cell, and of all that are nearer.
+    /// Finalises the distance of a cell, and of all nearer cells.
     pub(super) fn reach(&mut self, cell: usize, occupancy: &OccupancyGrid, charge: Charge) -> u32 {
         while self.distance[cell] >= self.next && self.spread(occupancy, charge, |_| {}).is_some() {}
         self.distance[cell]
     }
 
-    /// Spreads from the nearest cells that wait, which are told; hands back how far they are. `None` if all are found.
+    /// Spreads from the nearest queued cells, which it passes to the callback; returns their distance. `None` once the queue is
+    /// empty.
     pub(super) fn spread(
         &mut self,
         occupancy: &OccupancyGrid,
@@ -96,7 +94,7 @@ impl Flood {
             for (step, cost) in around {
                 let other = cell.wrapping_add_signed(step);
                 let known = self.distance[other];
-                // Most neighbours are known to be nearer, whatever they cost.
+                // Most neighbours already have a shorter distance.
                 if here + cost >= known {
                     continue;
                 }

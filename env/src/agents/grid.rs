@@ -1,4 +1,4 @@
-//! The arena as cells of equal size. What stands on them is in `occupancy.rs`.
+//! The arena as a grid of square cells.
 
 /// Most cells along one side of the grid.
 const MOST_CELLS: usize = 256;
@@ -6,12 +6,12 @@ const MOST_CELLS: usize = 256;
 /// Least side of a cell in metres.
 const LEAST_SIDE: f32 = 0.5;
 
-/// The same of a grid for narrow corridors.
+/// Limits for a grid with narrow corridors.
 const MOST_FINE_CELLS: usize = 1024;
 const LEAST_FINE_SIDE: f32 = 0.1;
 
-/// Cells over the arena, row by row, with a rim of one cell around them that is never walked on: every cell of the
-/// arena has eight neighbours.
+/// Cells over the arena, row by row, surrounded by a rim of one cell that is never walked on, so that every cell of the arena
+/// has eight neighbours.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Grid {
     columns: usize,
@@ -29,7 +29,7 @@ impl Grid {
         Self::of_side(size, LEAST_SIDE)
     }
 
-    /// Cells over an arena of these sides in metres, as small as `wanted` where that is less than they would be.
+    /// A grid over an arena of these sides in metres, with cells of side `wanted` if that is smaller than the default side.
     pub(super) fn fine(size: [f32; 2], wanted: f32) -> Self {
         let long = size[0].max(size[1]);
         let plain = (long / MOST_CELLS as f32).max(LEAST_SIDE);
@@ -39,7 +39,7 @@ impl Grid {
         )
     }
 
-    /// Cells of this side in metres over an arena; of a larger one where they would be too many.
+    /// A grid with cells of at least this side in metres; larger if the arena would need too many cells.
     pub(super) fn of_side(size: [f32; 2], least: f32) -> Self {
         Self::exact(size, (size[0].max(size[1]) / MOST_CELLS as f32).max(least))
     }
@@ -54,12 +54,12 @@ impl Grid {
         }
     }
 
-    /// How many cells there are, with the rim.
+    /// Number of cells, including the rim.
     pub(super) fn num_cells(&self) -> usize {
         self.stride() * (self.rows + 2)
     }
 
-    /// From a cell to the one north of it.
+    /// Index offset from a cell to the one north of it.
     pub(super) fn stride(&self) -> usize {
         self.columns + 2
     }
@@ -69,7 +69,7 @@ impl Grid {
         self.side
     }
 
-    /// The cell of a place; outside the arena the nearest one.
+    /// The cell of a place; the nearest cell for a place outside the arena.
     pub(super) fn cell_at(&self, [x, y]: [f32; 2]) -> usize {
         self.cell([self.index(x, 0), self.index(y, 1)])
     }
@@ -84,7 +84,7 @@ impl Grid {
         ((metres - self.corner[axis]) / self.side).clamp(0.0, most as f32) as usize
     }
 
-    /// Middle of a cell of the arena in metres.
+    /// Centre of a cell of the arena in metres.
     pub(super) fn centre(&self, cell: usize) -> [f32; 2] {
         let (x, y) = (cell % self.stride() - 1, cell / self.stride() - 1);
         [
@@ -99,18 +99,18 @@ impl Grid {
         x == 0 || y == 0 || x > self.columns || y > self.rows
     }
 
-    /// The cells of the arena whose middles may lie within a rectangle, row by row.
+    /// The cells of the arena whose centres may lie within a rectangle, row by row.
     pub(super) fn within(self, low: [f32; 2], high: [f32; 2]) -> impl Iterator<Item = usize> {
         let [low, high] = [low, high].map(|place| [0, 1].map(|axis| self.index(place[axis], axis)));
         (low[1]..=high[1]).flat_map(move |row| (low[0]..=high[0]).map(move |column| self.cell([column, row])))
     }
 
-    /// The cells of the arena whose middles may lie within a square around a place, `reach` to each side.
+    /// The cells of the arena whose centres may lie within a square around a place, `reach` to each side.
     pub(super) fn near(self, at: [f32; 2], reach: f32) -> impl Iterator<Item = usize> {
         self.within(at.map(|metres| metres - reach), at.map(|metres| metres + reach))
     }
 
-    /// The cells of the arena whose middles may lie in a polygon, or nearer to it than a margin.
+    /// The cells of the arena whose centres may lie in a polygon or within `margin` of it.
     pub(super) fn near_polygon(self, corners: &[[f64; 2]], margin: f32) -> impl Iterator<Item = usize> {
         let bound = |axis: usize, sign: f32| {
             let along = corners.iter().map(|corner| corner[axis] as f32 * sign);
@@ -120,7 +120,7 @@ impl Grid {
         self.within(low, high)
     }
 
-    /// The eight cells around a cell of the arena as steps in the list of cells, and whether they are slanting.
+    /// Index offsets of the eight cells around a cell of the arena, and whether each is diagonal.
     pub(super) fn around(&self) -> [(isize, bool); 8] {
         let row = self.stride() as isize;
         [
@@ -148,7 +148,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_cell_is_at_its_own_middle_and_the_rim_is_all_the_rest() {
+    fn cell_at_inverts_centre_and_all_other_cells_are_rim() {
         for size in [[50.0, 20.0], [0.3, 7.0], [300.0, 299.0], [0.0, 0.0]] {
             let grid = Grid::over(size);
             let mut rim: Vec<usize> = grid.rim().collect();

@@ -1,33 +1,33 @@
-//! Which cells belong to which goals, while the best of many goals is found in `nearest.rs`.
+//! Marks which cells belong to which goals, for the search in `nearest.rs`.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::grid::Grid;
 
-/// The most cells that are gone over around goals in one choice; then ways are as long as they are known to be.
+/// Most cells visited around goals per choice; beyond that, the best path length known so far is used.
 const MOST_LOOKS: usize = 4_000_000;
 
-/// Which goals a cell belongs to, as lists within one list, and room to look around a goal.
+/// The goals of each cell, as linked lists in one vector, and scratch space for searching around a goal.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Marks {
-    /// For each cell the place of its first mark, from 1.
+    /// For each cell the position of its first mark, from 1.
     first: Vec<u32>,
-    /// Number of a goal, and the place of the next mark of the cell.
+    /// Number of a goal, and the position of the cell's next mark.
     links: Vec<(u32, u32)>,
     marked: Vec<usize>,
-    /// For each cell the way from it to a goal, while that is being found.
+    /// Distance from each cell to the goal of the current search.
     pub(super) back: Vec<u32>,
     pub(super) touched: Vec<usize>,
     pub(super) open: BinaryHeap<Reverse<(u32, usize)>>,
-    /// How many more cells may be gone over around goals.
+    /// How many more cells may be visited around goals.
     pub(super) looks: usize,
 }
 
 impl Marks {
     pub(super) fn begin(&mut self, grid: Grid) {
         for cell in self.marked.drain(..) {
-            // The list may be that of a larger arena.
+            // The marks may be left from a larger arena.
             if let Some(first) = self.first.get_mut(cell) {
                 *first = 0;
             }

@@ -1,5 +1,4 @@
-//! Agents that come with the environment: one acts at random, one knows the map, one follows a script, one
-//! learns, one acts by a trained network.
+//! Built-in agents: random, on rails (knows the map), scripted, Sarsa (learns), and trained networks.
 
 mod agent;
 mod flood;

@@ -1,5 +1,4 @@
-//! Which of many goals is the best to walk to: one flood from the agent for all of them, which ends when no goal
-//! farther out can be better. The way to the chosen one is found in `route.rs`.
+//! Chooses the best of many goals to walk to: a single flood from the agent, which ends when no goal farther out can be better.
 
 use std::cmp::Reverse;
 
@@ -10,26 +9,25 @@ use super::marks::Marks;
 use super::route::Route;
 use crate::scene::Scene;
 
-/// The most cells that belong to goals in one choice. Of more, only the goals that are nearest as the crow flies are
-/// looked at.
+/// Most cells that belong to goals in one choice. If there are more, only the nearest goals in a straight line are considered.
 const MOST_MARKS: usize = 2_000_000;
 
-/// A place that may be walked to.
+/// A candidate destination.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Goal {
-    /// Index of the object that stands there: a way to it does not lead around it.
+    /// Index of the object that stands there: paths to it do not avoid it.
     pub(super) object: u32,
-    /// Where it is, in metres.
+    /// Its position in metres.
     pub(super) place: [f32; 2],
-    /// How likely it pays, above 0: what pays half the time is as good as what is twice as far.
+    /// Probability that it pays, above 0: a goal that pays half the time is worth as much as one twice as far away.
     pub(super) probability: f32,
 }
 
 impl Route {
-    /// The goal of the shortest way from a place, each way as long as it is over its goal's probability; the first of
-    /// equals.
+    /// The goal with the shortest path from a place, where path lengths are divided by the goal's probability; ties go to the
+    /// first.
     ///
-    /// Ways lead around all that is avoided but their goal. What this instance led to is lost.
+    /// Paths avoid all objects in `avoided` except their goal. Discards the previous route.
     pub(super) fn nearest(
         &mut self,
         world: &World,
@@ -56,7 +54,7 @@ impl Route {
         }
         let here = self.open_cell(from);
         self.flood.begin(&self.occupancy, here);
-        // For each goal, how far it is at least: to the first cell that is open on the way to it alone.
+        // For each goal a lower bound on its distance: that of the first open cell on the path that only this goal may use.
         let mut least: Vec<Option<u32>> = vec![None; goals.len()];
         let likeliest = goals.iter().map(|goal| goal.probability).fold(0.0, f32::max);
         let (mut best, mut farthest, mut num_unseen) = (f32::INFINITY, 0, looked_at.len());
@@ -71,7 +69,7 @@ impl Route {
                 if least[number].is_none() {
                     least[number] = Some(distance);
                     num_unseen -= 1;
-                    // What is known beyond the flood's edge are ways, if not the shortest.
+                    // Beyond the flood's edge the known distances are those of real paths, though maybe not the shortest.
                     let way = self.length(&goals[number], distance);
                     farthest = farthest.max(way);
                     best = best.min(self.metres(way) / goals[number].probability);
@@ -81,7 +79,7 @@ impl Route {
                 break;
             }
         }
-        // Now every way that may be the best lies within the flood.
+        // Every path that may be the best now lies within the flood.
         let mut costs = Vec::with_capacity(goals.len());
         for (number, goal) in goals.iter().enumerate() {
             if let Some(least) = least[number]
@@ -95,7 +93,7 @@ impl Route {
         nearest.map(|(number, _)| number)
     }
 
-    /// The numbers of the goals that are looked at, rising: all, if they do not have too many cells.
+    /// The numbers of the goals to consider, rising: all, unless they have too many cells.
     fn looked_at(&self, from: [f32; 2], goals: &[Goal]) -> Vec<usize> {
         let grid = self.occupancy.grid();
         let num_cells = |goal: &Goal| 1 + self.occupancy.disc(goal.object).map_or(0, |disc| disc.num_cells(grid));
@@ -122,11 +120,11 @@ impl Route {
         numbers
     }
 
-    /// Length of the way to a goal whose own ground is open, by what the flood knows so far; the flood came to that
-    /// ground, or to the goal, at the distance `least`.
+    /// Length of the path to a goal that may cross the goal's own ground, given what the flood knows so far; the flood reached
+    /// that ground, or the goal, at the distance `least`.
     ///
-    /// Spreads from the goal until the rest of the way, over ground that is the same for all goals, is known from the
-    /// flood.
+    /// Searches from the goal until the rest of the path crosses only ground that is the same for all goals; the flood knows
+    /// the rest.
     fn length(&mut self, goal: &Goal, least: u32) -> u32 {
         let (occupancy, flood) = (&self.occupancy, &self.flood);
         let grid = occupancy.grid();
@@ -151,7 +149,7 @@ impl Route {
         back[start] = 0;
         touched.push(start);
         while let Some(Reverse((distance, cell))) = open.pop() {
-            // What is left leads through the goal's own ground, and to that it is `least` from the agent.
+            // The rest of the path crosses the goal's own ground, whose distance from the agent is at least `least`.
             if distance.saturating_add(least) >= best {
                 break;
             }
@@ -191,8 +189,8 @@ mod tests {
 
     use super::*;
 
-    /// The same ways by a plan that shares nothing with ours but what a way costs: no queue, no rim, no marks. All
-    /// cells are gone over until nothing changes any more.
+    /// Reference plan that shares only the step costs with the real one: no queue, no rim, no marks. It relaxes all cells until
+    /// nothing changes.
     struct SlowPlan {
         cells: [i64; 2],
         side: f32,
@@ -269,7 +267,7 @@ mod tests {
             });
             let is_at_wall = world.environment_params.walls.iter().any(|wall| {
                 let corners: Vec<[f32; 2]> = wall.polygon.iter().map(|corner| corner.map(|m| m as f32)).collect();
-                // Convex and counter-clockwise, as they are drawn below.
+                // Convex and counter-clockwise, as generated below.
                 let edges = corners.iter().zip(corners.iter().cycle().skip(1));
                 let left = |a: &[f32; 2], b: &[f32; 2]| (b[0] - a[0]) * (at[1] - a[1]) - (b[1] - a[1]) * (at[0] - a[0]);
                 edges.clone().all(|(a, b)| left(a, b) > 0.0)
@@ -284,7 +282,7 @@ mod tests {
         }
     }
 
-    /// A rectangle that was turned.
+    /// A rotated rectangle.
     fn wall() -> impl Strategy<Value = Wall> {
         ([-12.0..=12.0, -12.0..=12.0f64], [0.3..=5.0, 0.3..=5.0f64], 0.0..=3.2f64).prop_map(|(middle, half, turn)| {
             let (sin, cos) = (libm::sin(turn), libm::cos(turn));
@@ -298,7 +296,7 @@ mod tests {
         })
     }
 
-    /// An arena with walls, and cubes of all sizes, some of them in heaps and in walls.
+    /// An arena with walls, and cubes of all sizes, some in clusters and inside walls.
     fn world() -> impl Strategy<Value = World> {
         let cube = ([-13.0..=13.0, -13.0..=13.0], 0.3..=4.0f64, 0.0..=1.0).prop_map(|(place, scale, chance)| {
             let mut cube = Object::new("cube", place);
@@ -326,10 +324,9 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 96)))]
 
-        /// One instance goes from world to world, as an agent does, and leaves some objects out of what it leads
-        /// around.
+        /// One instance is reused for several worlds, as agents do, and avoids only some of the objects.
         #[test]
-        fn ways_are_as_long_as_a_slow_plan_has_them_and_the_same_goal_is_nearest(
+        fn path_lengths_and_nearest_goal_match_a_slow_reference(
             worlds in vec((world(), [-13.0..=13.0, -13.0..=13.0f32], any::<u16>()), 1..3),
         ) {
             let mut route = Route::default();
@@ -349,7 +346,7 @@ mod tests {
                     let others: Vec<u32> = avoided.iter().copied().filter(|index| *index != goal.object).collect();
                     let slow = SlowPlan::to(&world, &scene, goal.place, &others);
                     route.lead(&world, &scene, goal.place, &others);
-                    // Asked from here and there, near and far, the flood grows as it must.
+                    // Queries near and far, so that the flood has to grow.
                     for from in [goal.place.map(|metres| metres * 0.5), from, [12.0, -12.0]] {
                         let cell = route.occupancy.grid().cell_at(from);
                         let found = route.flood.reach(cell, &route.occupancy, Charge::Entered);

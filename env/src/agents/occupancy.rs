@@ -1,6 +1,4 @@
-//! Where the agent cannot walk: cells near walls, and near objects that a way leads around. Ways over the rest are
-//! found in
-//! `flood.rs`.
+//! Marks the cells where the agent cannot walk: near walls, and near objects that paths avoid.
 
 use driftworld_spec::{World, Zone, ZoneEnd};
 
@@ -9,49 +7,49 @@ use crate::ground;
 use crate::polygon::is_near_or_inside;
 use crate::scene::Scene;
 
-/// How far ways keep from walls and objects, in metres beside half the agent's width.
+/// Clearance of paths from walls and objects, in metres in addition to half the agent's width.
 const CLEARANCE: f32 = 0.15;
 
-/// How far ways keep from walls and objects where corridors are this wide, in metres beside half the agent's width: less
+/// Clearance of paths from walls and objects for this corridor width, in metres in addition to half the agent's width: smaller
 /// where there is little room.
 fn clearance(corridor: f32, body: f32) -> f32 {
     CLEARANCE.min((corridor / 2.0 - body) / 2.0).max(0.0)
 }
 
-/// How far the agent's middle keeps from zones that cost, in metres.
+/// Distance in metres that the agent's centre keeps from zones that cost.
 const ZONE_CLEARANCE: f32 = 0.35;
 
-/// The most that a cell measures in metres where zones fail: so narrow fords are seen.
+/// Largest side of a cell in metres where zones end the episode as a failure, so that narrow gaps between them are found.
 const SIDE_BESIDE_FAILURE: f32 = 0.25;
 
-/// How often each cell is taken: by walls once, and once by each object that is led around. What did not change since
-/// the last way is kept.
+/// Counts how often each cell is taken: once by walls, and once by each avoided object. Updates only what changed since the
+/// last path.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OccupancyGrid {
     grid: Grid,
     walls: Walls,
     taken: Vec<u32>,
-    /// Whether a cell belongs to a wall of a layout, or to a zone that ends the episode as a failure: no way leads through it.
-    /// Empty where there is neither.
+    /// Whether a cell belongs to a wall of a layout, or to a zone that ends the episode as a failure: no path crosses it. Empty
+    /// if there are neither.
     sealed: Vec<bool>,
-    /// The objects that are led around, by rising index.
+    /// The avoided objects, by rising index.
     discs: Vec<Disc>,
 }
 
-/// What is blocked whatever objects there are.
+/// Everything that is blocked regardless of objects.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Walls {
     arena_size: [f32; 2],
     /// Half the agent's width in metres.
     body: f32,
-    /// The least width between walls of the layout, in metres.
+    /// The smallest width between walls of the layout, in metres.
     corridor: f32,
     regions: Vec<Vec<[f64; 2]>>,
-    /// Zones that cost, or end an episode as a failure: ways lead around them where they can.
+    /// Zones that cost, or end an episode as a failure: paths avoid them if possible.
     zones: Vec<Zone>,
 }
 
-/// Ground that an object takes, for the agent's middle.
+/// Ground that an object blocks for the agent's centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Disc {
     object: u32,
@@ -60,26 +58,26 @@ pub(super) struct Disc {
 }
 
 impl Disc {
-    /// The cells whose middles it covers.
+    /// The cells whose centres it covers.
     pub(super) fn cells(self, grid: Grid) -> impl Iterator<Item = usize> {
         let near = grid.near(self.centre, self.radius);
         near.filter(move |cell| self.covers(*cell, grid))
     }
 
-    /// About how many cells it covers, and no fewer.
+    /// An upper estimate of the number of cells that it covers.
     pub(super) fn num_cells(self, grid: Grid) -> usize {
         let across = (2.0 * self.radius / grid.side()) as usize + 2;
         across.saturating_mul(across).min(grid.num_cells())
     }
 
-    /// The first and the last cell that it covers of each row.
+    /// The first and the last cell that it covers in each row.
     fn rows(self, grid: Grid) -> impl Iterator<Item = (usize, usize)> {
         let [x, y] = self.centre;
         let column = |x: f32| grid.within([x, y - self.radius], [x, y + self.radius]);
         column(x).filter_map(move |middle| {
             let dy = grid.centre(middle)[1] - y;
             let half = (self.radius * self.radius - dy * dy).max(0.0).sqrt();
-            // A cell more on each side than rounding could take away.
+            // One extra cell on each side, against rounding.
             let end = |sign: f32| {
                 let [x, y] = [x + sign * (half + 2.0 * grid.side()), grid.centre(middle)[1]];
                 grid.cell_at([x, y])
@@ -91,7 +89,7 @@ impl Disc {
         })
     }
 
-    /// Whether it covers the middle of a cell.
+    /// Whether it covers the centre of a cell.
     pub(super) fn covers(self, cell: usize, grid: Grid) -> bool {
         let at = grid.centre(cell);
         let (dx, dy) = (at[0] - self.centre[0], at[1] - self.centre[1]);
@@ -109,7 +107,8 @@ impl OccupancyGrid {
         self.taken[cell] > 0
     }
 
-    /// Whether no way leads over a cell, be there another or not: it is of the rim, of a wall of a layout, or of a zone that fails.
+    /// Whether no path may cross a cell, even as a last resort: it belongs to the rim, a wall of a layout, or a zone that
+    /// fails.
     pub(super) fn is_closed(&self, cell: usize) -> bool {
         self.grid.is_rim(cell) || self.sealed.get(cell).is_some_and(|sealed| *sealed)
     }
@@ -119,18 +118,18 @@ impl OccupancyGrid {
         (0..self.sealed.len()).filter(|cell| self.sealed[*cell])
     }
 
-    /// How many walls and objects take a cell.
+    /// The number of walls and objects that take a cell.
     pub(super) fn count(&self, cell: usize) -> u32 {
         self.taken[cell]
     }
 
-    /// The ground of an object, if it is led around.
+    /// The ground of an object, if the object is avoided.
     pub(super) fn disc(&self, object: u32) -> Option<Disc> {
         let place = self.discs.binary_search_by_key(&object, |disc| disc.object).ok()?;
         Some(self.discs[place])
     }
 
-    /// Blocks the walls of a world, and these of its objects where they stand at its start; opens all else.
+    /// Blocks the walls of a world, and these of its objects at their places at the start; frees everything else.
     pub(super) fn block(&mut self, world: &World, scene: &Scene, avoided: &[u32]) {
         self.block_walls(world, scene);
         let margin = self.walls.body + clearance(self.walls.corridor, self.walls.body);
@@ -146,7 +145,7 @@ impl OccupancyGrid {
             })
             .collect();
         discs.sort_by_key(|disc| disc.object);
-        // Both lists rise: what is in one of them only is taken anew, or left.
+        // Both lists are sorted: discs in only one of them were added or removed.
         let mut changed: Vec<(Disc, bool)> = Vec::new();
         let (mut old, mut new) = (self.discs.iter().peekable(), discs.iter().peekable());
         loop {
@@ -170,7 +169,7 @@ impl OccupancyGrid {
         self.discs = discs;
     }
 
-    /// Takes the cells of discs, or leaves them.
+    /// Takes or frees the cells of discs.
     fn take(&mut self, changed: &[(Disc, bool)]) {
         let grid = self.grid;
         let num_cells: usize = changed.iter().map(|(disc, _)| disc.num_cells(grid)).sum();
@@ -182,7 +181,7 @@ impl OccupancyGrid {
             }
             return;
         }
-        // Many large discs: by how much each cell differs from the one before it. Behind each row is a cell of the rim.
+        // For many large discs: differences between neighbouring cells, then a running sum. Each row ends in a cell of the rim.
         let mut steps = vec![0_i32; grid.num_cells()];
         for (disc, is_taken) in changed {
             let by = if *is_taken { 1 } else { -1 };
@@ -212,9 +211,9 @@ impl OccupancyGrid {
             return;
         }
         let margin = body + clearance(corridor, body);
-        // Between two walls there are cells whose middles are free, be the corridor narrow.
+        // Fine enough that even narrow corridors have cells with free centres.
         let grid = match world.plan() {
-            // So small, too, that the cells of walls are not those in which a body beside them stands.
+            // Also fine enough that a body beside a wall is not in one of the wall's cells.
             Some(_) => Grid::fine(arena_size, (corridor / 2.0 - margin).min(body / 1.45)),
             None if zones().any(fails) => Grid::fine(arena_size, SIDE_BESIDE_FAILURE),
             None => Grid::fine(arena_size, f32::INFINITY),
@@ -230,7 +229,7 @@ impl OccupancyGrid {
             let is_near = |axis: usize| half[axis] - at[axis].abs() < body;
             self.taken[cell] = u32::from(is_near(0) || is_near(1));
         }
-        // Nearer than this to a wall: no step from cell to cell crosses one.
+        // At this distance, no step between cells can cross a wall.
         let seal = 0.71 * grid.side();
         if world.plan().is_some() || zones().any(fails) {
             self.sealed.resize(grid.num_cells(), false);
@@ -281,7 +280,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_rows_of_a_disc_are_its_cells(
+        fn rows_of_a_disc_cover_exactly_its_cells(
             size in [1.0..400.0_f32, 1.0..400.0_f32],
             place in [-1.2..1.2_f32, -1.2..1.2_f32],
             radius in prop_oneof![0.0..3.0_f32, 0.0..300.0_f32],
@@ -296,7 +295,7 @@ mod tests {
         }
 
         #[test]
-        fn many_discs_at_once_take_what_each_alone_takes(
+        fn taking_many_discs_equals_taking_each(
             discs in prop::collection::vec(([-30.0..30.0_f32, -30.0..30.0_f32], 0.0..60.0_f32, any::<bool>()), 1..40),
         ) {
             let grid = Grid::over([50.0, 40.0]);

@@ -1,5 +1,4 @@
-//! An agent that knows the map and tours what pays: the ceiling that a learner may come near. How it goes to one object is
-//! in `steering.rs`. A world on rails steers by it, too.
+//! [`OnRailsAgent`] knows the map and visits whatever pays: a practical ceiling for learners. It also steers worlds on rails.
 
 use driftworld_spec::{Object, RailsProgress, Stimulus, World, Zone};
 
@@ -12,29 +11,29 @@ use crate::ground;
 use crate::scene::Scene;
 use crate::sim::{Action, Environment, SimRef};
 
-/// Steps after which a target that was not reached is left for later.
+/// Steps after which an unreached target is postponed.
 const PATIENCE: u32 = 150;
 
-/// Steps after which it looks again whether there is a way to anything.
+/// Steps after which it checks again whether anything can be reached.
 const IDLE: u32 = 20;
 
-/// How far from the edge of an object that will come back the agent waits for it, in metres.
+/// Distance in metres from the edge of a respawning object at which the agent waits for it.
 const ASIDE: f32 = 1.5;
 
-/// Tours all objects that pay, nearest first by the way around obstacles and surest first where rewards are uncertain,
-/// and then goes where the world's success lies.
+/// Visits all objects that pay, nearest first along paths around obstacles and most probable first if rewards are uncertain,
+/// and then goes where the world's success is.
 ///
-/// It reads the world's state, not its pictures.
+/// Reads the world's state, not its images.
 #[derive(Clone, Debug, Default)]
 pub struct OnRailsAgent {
     target: Option<Target>,
     steps_on_target: u32,
     given_up: Vec<usize>,
-    /// Where the route leads while nothing but a zone is wanted.
+    /// Where the route leads while the only target is a zone.
     zone_goal: Option<[f32; 2]>,
-    /// Leads to the target. Boxed: agents are moved about, and this is large.
+    /// Leads to the target. Boxed because agents are moved often and this is large.
     route: Box<Route>,
-    /// Plans in worlds with doors and things, in place of the tour.
+    /// Plans in worlds with doors and things, instead of the tour.
     planner: Box<Planner>,
 }
 
@@ -44,7 +43,7 @@ impl OnRailsAgent {
         Self::default()
     }
 
-    /// What it is about to do, to be written down.
+    /// Its plans, for a snapshot.
     pub(crate) fn progress(&self) -> RailsProgress {
         let target = self.target.as_ref();
         let planner = &self.planner;
@@ -65,7 +64,7 @@ impl OnRailsAgent {
         }
     }
 
-    /// Goes on from what was written down. A checked world names none but its own objects.
+    /// Resumes from a snapshot. A checked world names only its own objects.
     pub(crate) fn resumed(progress: &RailsProgress, world: &World, scene: &Scene) -> Self {
         let known = |index: &u32| (*index as usize) < world.objects.len();
         if world.objects.iter().any(Object::is_used) {
@@ -99,7 +98,7 @@ impl OnRailsAgent {
         }
     }
 
-    /// Whether nothing is worth going to.
+    /// Whether there is nothing left worth going to.
     pub(crate) fn is_done(sim: SimRef) -> bool {
         if sim.state.has_things {
             return Planner::is_done(sim);
@@ -119,14 +118,14 @@ impl OnRailsAgent {
             if self.target.is_some() {
                 return;
             }
-            // There is no way to them.
+            // They cannot be reached.
             let given_up = self.given_up_of(sim);
             wanted.retain(|index| !given_up.contains(*index));
             self.given_up.append(&mut wanted);
         }
     }
 
-    /// The nearest of these objects that was not given up; `None` where there is no way to any.
+    /// The nearest of these objects that was not given up; `None` if none can be reached.
     fn nearest(&mut self, sim: SimRef, wanted: &[usize]) -> Option<Target> {
         let here = sim.agent().position;
         let given_up = self.given_up_of(sim);
@@ -153,7 +152,7 @@ impl OnRailsAgent {
         if !self.given_up.is_empty() {
             given_up.resize(sim.objects().len(), false);
         }
-        // What was written down may name objects that the world does not have.
+        // A snapshot may name objects that the world does not have.
         for index in &self.given_up {
             if let Some(given_up) = given_up.get_mut(*index) {
                 *given_up = true;
@@ -173,20 +172,20 @@ impl OnRailsAgent {
         if reacts_to(object, Stimulus::AgentInteract) {
             return target.towards(sim, Purpose::Interact, &mut self.route);
         }
-        // A contact counts when it begins: what wants to be touched again is left first.
+        // Contacts count when they begin, so it steps back before touching the object again.
         if sim.state.touches(target.object) && reacts_to(object, Stimulus::AgentCollide) {
             return back(sim);
         }
         target.towards(sim, Purpose::Touch, &mut self.route)
     }
 
-    /// The next step into the zone that is best to be in, and none once it is there; `None` without such a zone.
+    /// The next step into the best zone to be in, zero once it is there; `None` without such a zone.
     fn towards_zone(&mut self, sim: SimRef) -> Option<[f64; 3]> {
         let here = sim.agent().position;
         let zones = sim.world.environment_params.zones.iter();
         let wanted = zones.filter(|zone| zone.is_wanted());
         let goals = wanted.filter_map(|zone| Some((zone, ground::middle(zone)?.map(|metres| metres as f32))));
-        // What ends the episode well, then what pays most; of equals the nearest.
+        // Zones that end the episode well come first, then those that pay most; ties go to the nearest.
         let value = |zone: &Zone| (zone.ends.is_some(), zone.reward_per_second, zone.reward_on_entering);
         let (zone, goal) = goals.max_by(|(a, to_a), (b, to_b)| {
             let (a, b) = (value(a), value(b));
@@ -203,7 +202,7 @@ impl OnRailsAgent {
         Some(walk(goal, sim, &mut self.route))
     }
 
-    /// What it does next, as speed, turn rate and interaction, whatever actions the world takes.
+    /// Its next step as speed, turn rate and interaction, whatever the world's action space.
     pub(crate) fn steer(&mut self, sim: SimRef) -> [f64; 3] {
         let step = if sim.state.has_things {
             self.planner.steer(sim)
@@ -224,7 +223,7 @@ impl OnRailsAgent {
         if !stale && self.steps_on_target > PATIENCE {
             self.given_up.extend(self.target.as_ref().map(|target| target.object));
         }
-        // Where there is no way to anything, it looks again now and then.
+        // If nothing can be reached, it checks again from time to time.
         let waits = self.target.is_none()
             && self.steps_on_target < IDLE
             && wanted.iter().all(|index| given_up.contains(*index));
@@ -250,7 +249,7 @@ impl Agent for OnRailsAgent {
         self.planner.shield().in_space(step, sim)
     }
 
-    // What the route knows of the ground it looks at again before it uses it.
+    // The route checks its cached ground before using it, so it can be kept.
     fn begin(&mut self, _seed: u64) {
         let route = std::mem::take(&mut self.route);
         let mut planner = std::mem::take(&mut self.planner);
@@ -271,7 +270,7 @@ impl Agent for OnRailsAgent {
     }
 }
 
-/// For each object whether it was given up; empty where none was.
+/// Whether each object was given up; empty if none was.
 struct GivenUp(Vec<bool>);
 
 impl GivenUp {
@@ -279,7 +278,7 @@ impl GivenUp {
         self.0.get(index).is_some_and(|given_up| *given_up)
     }
 
-    /// The tier that counts: the first of which not all is given up; all where nothing else is left.
+    /// The first tier with objects that were not given up; all objects if there is none.
     fn tier(&self, mut tiers: [Vec<usize>; 3]) -> Vec<usize> {
         let is_left = |index: &usize| !self.contains(*index);
         match tiers.iter().position(|tier| tier.iter().any(is_left)) {
@@ -289,18 +288,18 @@ impl GivenUp {
     }
 }
 
-/// The objects worth going to, by index: those that pay now, without those whose touch is a success as long as others pay; if
-/// nothing pays, those whose touch is a success.
+/// Objects worth going to, by index: those that pay now, except that objects whose touch is a success wait until no others pay;
+/// if nothing pays, those whose touch is a success.
 pub(super) fn wanted(sim: SimRef) -> Vec<usize> {
     tiers(sim).into_iter().find(|tier| !tier.is_empty()).unwrap_or_default()
 }
 
-/// The objects worth going to, by index, those that come first before others: what pays and does not end the episode, what pays and
-/// ends it well, what ends it well. What touching fails is none.
+/// Objects worth going to, by index, in tiers: those that pay without ending the episode, those that pay and end it as a
+/// success, those that only end it as a success. Objects whose touch is a failure are left out.
 fn tiers(sim: SimRef) -> [Vec<usize>; 3] {
     let world = sim.world;
     let states = sim.objects();
-    // In a sequence only what comes first of what is left pays.
+    // In a sequence only the first remaining object pays.
     let left = world.objects.iter().zip(states).filter(|(_, state)| !state.collected);
     let first = left.filter_map(|(object, _)| object.order).min();
     let in_turn = |index: &usize| {
@@ -321,7 +320,7 @@ fn tiers(sim: SimRef) -> [Vec<usize>; 3] {
     [before, last, ending]
 }
 
-/// Whether the agent stands where something that pays would come back.
+/// Whether the agent stands where a paying object would respawn.
 fn stands_in_the_way(sim: SimRef) -> bool {
     let here = sim.agent().position;
     let objects = sim.world.objects.iter().zip(sim.objects()).enumerate();

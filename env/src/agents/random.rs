@@ -1,4 +1,4 @@
-//! An agent that acts at random: the floor that every learner must rise above.
+//! [`RandomAgent`]: acts at random, a baseline for learners.
 
 use driftworld_spec::{ActionModel, ActionSpace};
 use rand::{RngExt, SeedableRng};
@@ -7,11 +7,11 @@ use rand_chacha::ChaCha8Rng;
 use super::Agent;
 use crate::sim::{Action, Environment, in_units};
 
-/// How many steps it keeps to one action, so that it gets about at all.
+/// Steps for which it keeps an action, so that it covers some ground.
 const HOLD: u32 = 8;
 
-/// Draws a forward speed, a turn rate and whether to interact, and keeps to them for 8 steps; in a world with an action
-/// table it draws rows.
+/// Samples a forward speed, a turn rate and whether to interact, and keeps them for 8 steps; in a world with an action table it
+/// samples rows.
 #[derive(Clone, Debug)]
 pub struct RandomAgent {
     rng: ChaCha8Rng,
@@ -20,7 +20,7 @@ pub struct RandomAgent {
 }
 
 impl RandomAgent {
-    /// An agent whose actions depend on this number alone.
+    /// An agent whose actions depend only on this seed.
     pub fn new(seed: u64) -> Self {
         Self {
             rng: ChaCha8Rng::seed_from_u64(seed),
@@ -42,7 +42,7 @@ impl Agent for RandomAgent {
                     Action::Continuous(match (agent.action_model, &agent.actions) {
                         (ActionModel::ByWaypoint, ActionSpace::Normalized) => shares,
                         (ActionModel::ByWaypoint, _) => in_units(shares, environment.world()),
-                        // Mostly ahead, as below.
+                        // Mostly forwards, as below.
                         _ => [shares[0].abs(), shares[1], shares[2]],
                     })
                 }

@@ -1,5 +1,4 @@
-//! The text form of what a scripted agent does: one command a line, read and checked. Carrying it out is in
-//! `scripted.rs`.
+//! Parses and checks scripts for the scripted agent, one command a line.
 
 use std::str::FromStr;
 
@@ -9,16 +8,16 @@ use driftworld_text::{is_unprintable, quoted};
 use crate::EnvError;
 use crate::sim::Action;
 
-/// The most steps of one command.
+/// Most steps of one command.
 const MOST_STEPS: u32 = 100_000;
 
-/// Steps after which a walk to an object is given up, if the script does not say.
+/// Default number of steps after which a walk to an object is given up.
 const WALK_STEPS: u32 = 300;
 
-/// The most lines of a script.
+/// Most lines of a script.
 const MOST_LINES: usize = 100_000;
 
-/// The longest name of an object, as worlds have it.
+/// Longest name of an object, as in worlds.
 const MOST_LETTERS: usize = 100;
 
 /// Every command with its arguments.
@@ -35,28 +34,28 @@ const COMMANDS: [(&str, &str); 7] = [
 /// One command.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Command {
-    /// The same action for so many steps.
+    /// Repeats one action for `steps` steps.
     Act { action: Action, steps: u32 },
-    /// To the nearest object of a name, for a purpose.
+    /// Walks to the nearest object of a name, until a condition holds.
     Go { name: String, until: Until, steps: u32 },
-    /// What the agent on rails does, until nothing is worth going to.
+    /// Acts as the agent on rails until nothing is worth going to.
     Tour { steps: u32 },
-    /// From the first line again.
+    /// Starts again from the first line.
     Repeat,
 }
 
-/// When a walk to an object is over.
+/// When a walk to an object ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Until {
     /// The agent has touched it.
     Touched,
     /// The agent has interacted with it.
     Interacted,
-    /// Its middle is nearer than so many metres.
+    /// Its centre is within this many metres.
     Near(f32),
 }
 
-/// Reads a script; `name` is what messages call it.
+/// Parses a script; messages call it `name`.
 pub(super) fn parse(name: &str, text: &str) -> Result<Vec<Command>, EnvError> {
     let wrong = |index: usize, (found, expected): (String, String)| EnvError::BadScript {
         script: name.to_owned(),
@@ -92,7 +91,7 @@ type Problem = (String, String);
 
 fn command(name: &str, words: &[&str]) -> Result<Command, Problem> {
     let go = |object: &str, until, rest: &[&str]| -> Result<Command, Problem> {
-        // Worlds call their objects as they like, also those of the original: only what nobody could see is refused.
+        // Worlds may name objects freely, as the original's do, so only unprintable names are refused.
         if object.chars().count() > MOST_LETTERS || object.contains(is_unprintable) {
             let expected = format!("the name of an object: 1 to {MOST_LETTERS} characters that can be seen");
             return Err((quoted(object), expected));
@@ -144,7 +143,7 @@ fn names() -> String {
     COMMANDS.map(|(known, _)| known).join(", ")
 }
 
-/// Three numbers, or one row.
+/// Parses three numbers, or one row.
 fn act(steps: u32, words: &[&str]) -> Result<Command, Problem> {
     let action = match words {
         [a, b, c] => Action::Continuous([number(a)?, number(b)?, number(c)?]),
@@ -184,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn actions_are_written_as_in_the_console() {
+    fn actions_parse_as_in_the_console() {
         let action = Action::Continuous([2.0, 0.0, 1.0]);
         for text in [
             "action -c 20 -a 2 0 1",
@@ -209,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn walks_and_tours_have_an_end() {
+    fn walks_and_tours_have_step_limits() {
         let go = |until, steps| Command::Go {
             name: "goal".to_owned(),
             until,
@@ -225,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_done_is_told_with_its_line() {
+    fn impossible_commands_are_refused_with_their_line() {
         refuse(
             "step\ntuch goal",
             "way.txt:2: found command \"tuch\", expected one of step, action, touch, interact, near, tour, repeat; did you \

@@ -1,5 +1,4 @@
-//! An agent that follows a script: fixed actions, and walks to what the script names. How a script is written is in
-//! `script.rs`.
+//! [`ScriptedAgent`]: carries out a script of fixed actions and walks to named objects.
 
 use driftworld_spec::Object;
 
@@ -10,24 +9,24 @@ use super::{Agent, OnRailsAgent};
 use crate::EnvError;
 use crate::sim::{Action, Environment, ObjectState};
 
-/// Steps for which an agent interacts with an object that does not answer.
+/// Steps for which the agent keeps interacting with an object that does not react.
 const INSISTENCE: u32 = 10;
 
-/// Plays a script anew in every episode, one command a line; `#` begins a comment, and after the last line it stands
-/// still.
+/// Plays a script from the start in every episode, one command a line; `#` begins a comment, and after the last line the agent
+/// stands still.
 ///
 /// | line | what it does |
 /// |---|---|
 /// | `step [N] [A B C \| ROW]` | take N steps (1) with action A B C (0 0 0), or with a row of the action table, as in the console |
-/// | `action [-c N] -a A B C \| ROW` | the same, by options |
+/// | `action [-c N] -a A B C \| ROW` | the same, with options |
 /// | `touch NAME [N]` | walks to the nearest object of this tag or unique name until it touches it, for at most N steps (300) |
-/// | `interact NAME [N]` | walks there and interacts until the object answers |
-/// | `near NAME METRES [N]` | walks there until its middle is nearer than that |
+/// | `interact NAME [N]` | walks there and interacts until the object reacts |
+/// | `near NAME METRES [N]` | walks there until its centre is nearer than that |
 /// | `tour [N]` | does what [`OnRailsAgent`] does until nothing is worth going to |
 /// | `repeat` | begins again; only as the last line |
 ///
-/// A walk to something that is not there takes no step. Walks fit every action space; the actions of `step` and
-/// `action` are handed to the world as they stand.
+/// A walk to an absent object takes no step. Walks work in every action space; the actions of `step` and `action` are passed to
+/// the world unchanged.
 ///
 /// # Example
 /// ```
@@ -45,30 +44,30 @@ const INSISTENCE: u32 = 10;
 #[derive(Clone, Debug)]
 pub struct ScriptedAgent {
     commands: Vec<Command>,
-    /// The number of the command under way.
+    /// Index of the current command.
     now: usize,
-    /// Steps that it has taken.
+    /// Steps that it has taken so far.
     steps: u32,
     walk: Option<Walk>,
     route: Route,
     rails: OnRailsAgent,
 }
 
-/// A walk under way.
+/// A walk in progress.
 #[derive(Clone, Debug)]
 struct Walk {
     target: Target,
-    /// The object as it was when the walk began.
+    /// The object's state when the walk began.
     before: ObjectState,
     /// Steps in which the agent has interacted within reach.
     asked: u32,
 }
 
 impl ScriptedAgent {
-    /// Reads a script; `name` is what messages call it, usually its path.
+    /// Parses a script; messages call it `name`, usually its path.
     ///
     /// # Errors
-    /// [`EnvError::BadScript`] with the first line that cannot be done.
+    /// [`EnvError::BadScript`] with the first faulty line.
     pub fn parse(name: &str, text: &str) -> Result<Self, EnvError> {
         Ok(Self {
             commands: parse(name, text)?,
@@ -80,7 +79,7 @@ impl ScriptedAgent {
         })
     }
 
-    /// Whether the script is over, so that the agent stands still.
+    /// Whether the script has finished and the agent stands still.
     pub fn is_over(&self) -> bool {
         self.now >= self.commands.len()
     }
@@ -92,7 +91,7 @@ impl ScriptedAgent {
         self.rails = OnRailsAgent::new();
     }
 
-    /// What the command under way does in this step; `None` if it is over.
+    /// The current command's action for this step; `None` once the command is finished.
     fn run_command(&mut self, environment: &Environment) -> Option<Action> {
         match self.commands[self.now].clone() {
             Command::Act { action, steps } => (self.steps < steps).then_some(action),
@@ -151,7 +150,7 @@ impl Walk {
 
 impl Agent for ScriptedAgent {
     fn act(&mut self, environment: &Environment) -> Action {
-        // Once through the script at most: a loop of commands that take no step would have no end.
+        // Goes through the script at most once: a loop of commands that take no steps would never end.
         for _ in 0..=self.commands.len() {
             if self.is_over() {
                 break;
@@ -183,7 +182,7 @@ impl Agent for ScriptedAgent {
     }
 }
 
-/// The nearest object that is there and has this tag or unique name.
+/// The nearest present object with this tag or unique name.
 fn nearest(environment: &Environment, name: &str) -> Option<usize> {
     let here = environment.agent().position;
     let named = |object: &Object| {
@@ -210,7 +209,7 @@ mod tests {
     use super::*;
     use driftworld_spec::{ActionSpace, Stimulus, World, WorldDraft};
 
-    /// Coins north and east of the agent, a switch in the west.
+    /// Coins north and east of the agent, a switch to the west.
     fn world() -> World {
         let mut world = WorldDraft::default();
         for (tag, at) in [("coin", [0.0, 8.0]), ("coin", [12.0, 0.0]), ("switch", [-6.0, 0.0])] {
@@ -228,7 +227,7 @@ mod tests {
         world.check().expect("the world is sound")
     }
 
-    /// What a script earns in so many steps, and where it leaves the agent.
+    /// Return and final position after playing a script for this many steps.
     fn play(world: World, script: &str, steps: u32) -> (f64, [f32; 2]) {
         let mut agent = ScriptedAgent::parse("script", script).expect("the script is sound");
         let mut environment = Environment::new(world);
@@ -240,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn a_walk_takes_the_nearest_and_ends_when_it_is_touched() {
+    fn walk_goes_to_the_nearest_object_and_ends_on_touch() {
         let (earned, at) = play(world(), "touch coin\nstep 100", 120);
         assert_eq!(earned, 1.0);
         assert!(at[0].abs() < 0.5 && at[1] > 6.0, "{at:?}");
@@ -248,20 +247,20 @@ mod tests {
     }
 
     #[test]
-    fn interacting_is_more_than_touching() {
+    fn interact_sets_off_a_switch_that_touch_does_not() {
         assert_eq!(play(world(), "touch switch", 60).0, 0.0);
         assert_eq!(play(world(), "interact switch", 60).0, 1.0);
     }
 
     #[test]
-    fn near_keeps_its_distance() {
+    fn near_stops_at_its_distance() {
         let (earned, [x, _]) = play(world(), "near switch 3", 60);
         assert_eq!(earned, 0.0);
         assert!((-4.2..-2.9).contains(&x), "{x}");
     }
 
     #[test]
-    fn a_repeated_script_begins_again_and_one_that_takes_no_step_stands_still() {
+    fn repeat_restarts_and_a_script_without_steps_stands_still() {
         assert_eq!(play(world(), "touch coin\nrepeat", 120).0, 2.0);
         assert_eq!(play(world(), "touch nobody\nrepeat", 5), (0.0, [0.0, 0.0]));
     }
@@ -273,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn an_episode_begins_with_the_first_line() {
+    fn episode_restarts_the_script() {
         let mut agent = ScriptedAgent::parse("script", "step 2 10 0 0").expect("the script is sound");
         let environment = Environment::new(World::default());
         for _ in 0..3 {

@@ -1,25 +1,24 @@
-//! Keeps who walks by a plan out of zones that end the episode as a failure, off objects whose touch does so, and out of zones
-//! that cost: a plan leads around them, but steps are as long as the world's actions make them. Where ways lead is found in
-//! `flood.rs` and `planner/`.
+//! Keeps agents that follow a plan out of zones and off objects that end the episode as a failure, and out of zones that cost.
+//! The plan avoids them, but the world's actions may force longer steps than planned.
 
 use driftworld_spec::{Zone, ZoneEnd};
 
 use super::steering::{failing, in_space_where};
 use crate::sim::{Action, SimRef};
 
-/// The shares of a speed that are tried.
+/// Fractions of a speed to try.
 const SHARES: [f64; 4] = [1.0, 0.5, 0.25, 0.0];
 
-/// How far beyond a touch a step keeps off what fails, in metres.
+/// Extra distance that steps keep from objects whose touch fails, in metres.
 const AWAY: f64 = 0.01;
 
-/// What a step keeps out of, beside off objects whose touch is a failure.
+/// Which zones steps avoid, in addition to objects whose touch is a failure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Shield {
-    /// Those that end the episode as a failure.
+    /// Zones that end the episode as a failure.
     #[default]
     Failure,
-    /// Those too that cost: the plan does not lead through one.
+    /// Zones that cost as well: the plan does not cross any.
     Cost,
 }
 
@@ -32,7 +31,7 @@ impl Shield {
         sim.world.environment_params.zones.iter().any(|zone| self.shuns(zone)) || failing(sim).next().is_some()
     }
 
-    /// A step as speed, turn rate and interaction, slower where it would lead into what is shunned.
+    /// The step as speed, turn rate and interaction, slowed where it would enter what is avoided.
     pub(super) fn slowed(self, sim: SimRef, [speed, turn, interact]: [f64; 3]) -> [f64; 3] {
         if !self.has_use(sim) {
             return [speed, turn, interact];
@@ -43,14 +42,14 @@ impl Shield {
             .unwrap_or([0.0, turn, interact])
     }
 
-    /// Such a step as an action of the world: of its table, a row that does not lead into what is shunned, where there
+    /// The step as an action of the world. From an action table, it picks a row that does not enter what is avoided, if there
     /// is one.
     pub(super) fn in_space(self, numbers: [f64; 3], sim: SimRef) -> Action {
         let has_use = self.has_use(sim);
         in_space_where(numbers, sim, |row| !has_use || self.is_safe(sim, row))
     }
 
-    /// Whether a step by a velocity enters no zone and touches no object that is shunned, as far as nothing stands in the way.
+    /// Whether a step by a velocity enters no avoided zone and touches no avoided object, assuming that nothing blocks it.
     fn is_safe(self, sim: SimRef, step: [f64; 3]) -> bool {
         let path = path(sim, step);
         !sim.views.zones.are_entered(&path, |zone| self.shuns(zone))
@@ -58,7 +57,7 @@ impl Shield {
     }
 }
 
-/// Where a step by a velocity leads, if nothing stands in the way: a place for each time step.
+/// The positions along a step by a velocity, one per time step, assuming that nothing blocks it.
 fn path(sim: SimRef, [speed, turn, _]: [f64; 3]) -> Vec<[f64; 2]> {
     let (agent, params) = (sim.agent(), &sim.world.agent_params);
     let turn = turn.clamp(-params.max_angular_speed, params.max_angular_speed);

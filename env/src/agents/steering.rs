@@ -1,30 +1,29 @@
-//! Walking to one object: the way there, the next step on it, and that step as an action of the world. Which object is
-//! chosen by the agents.
+//! Walks to one object: the path, the next step on it, and that step as an action of the world.
 
 use driftworld_spec::{ActionModel, ActionSpace, EndCondition, MotionModel, Object, World, Zone};
 
 use super::route::Route;
 use crate::sim::{Action, Environment, SimRef};
 
-/// Metres within which an object is walked at straight, whatever the way.
+/// Distance in metres within which it walks straight at an object, ignoring the path.
 const NEAR: f32 = 2.0;
 
-/// The same in a world with zones that cost.
+/// The same, in worlds with zones that cost.
 const NEAR_BESIDE_ZONES: f32 = 1.2;
 
-/// Metres that it looks ahead on its way there, without a layout.
+/// Look-ahead along the path in metres, in worlds with zones that cost and without a layout.
 const AHEAD_BESIDE_ZONES: f32 = 0.5;
 
-/// Metres within which an agent that means to interact does so.
+/// Distance in metres within which an agent that wants to interact does so.
 const REACH: f32 = 3.0;
 
-/// Degrees off which an agent that stands before an object looks at it.
+/// Angle in degrees within which an agent in front of an object counts as facing it.
 const FACING: f32 = 30.0;
 
-/// Share of the distance to an object that it may have moved by before the way to it is found anew.
+/// Fraction of the distance to an object by which it may move before its path is recomputed.
 const ASTRAY: f32 = 0.2;
 
-/// What an agent goes to an object for.
+/// What an agent wants to do at an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Purpose {
     /// To walk into it.
@@ -33,19 +32,19 @@ pub(super) enum Purpose {
     Interact,
 }
 
-/// Where an agent is going.
+/// An agent's current destination.
 #[derive(Clone, Debug)]
 pub(super) struct Target {
     /// Index of the object.
     pub(super) object: usize,
-    /// Where it stood when it was chosen.
+    /// Its position when it was chosen.
     pub(super) goal: [f32; 2],
-    /// What the way leads around.
+    /// Objects that the path avoids.
     pub(super) avoided: Vec<u32>,
 }
 
 impl Target {
-    /// The object where it is now, with the way around what is there now: the route leads to it from now on.
+    /// Targets the object at its current position, and points the route there around everything present now.
     pub(super) fn at(object: usize, sim: SimRef, route: &mut Route) -> Self {
         let (world, scene) = (sim.world, sim.scene());
         let goal = sim.objects()[object].position;
@@ -54,25 +53,25 @@ impl Target {
         Self { object, goal, avoided }
     }
 
-    /// Whether the object has moved so far that the way leads astray.
+    /// Whether the object has moved so far that the path is out of date.
     pub(super) fn is_astray(&self, sim: SimRef) -> bool {
         let now = sim.objects()[self.object].position;
         let far = distance(sim.agent().position, now);
         far >= NEAR && distance(now, self.goal) > (ASTRAY * far).max(0.5)
     }
 
-    /// Whether the agent is so near that an interaction should be answered.
+    /// Whether the agent is near enough for the object to react to an interaction.
     pub(super) fn is_in_reach(&self, sim: SimRef) -> bool {
         let bodies = sim.body_radius(self.object) + sim.world.agent_params.agent_width as f32 / 2.0;
         distance(sim.agent().position, sim.objects()[self.object].position) < bodies + 0.5
     }
 
-    /// The next step on the way, by the route that leads here, as speed, turn rate and interaction.
+    /// The next step of the route to this target, as speed, turn rate and interaction.
     pub(super) fn towards(&self, sim: SimRef, purpose: Purpose, route: &mut Route) -> [f64; 3] {
         let goal = sim.objects()[self.object].position;
         let [speed, turn, _] = walk(goal, sim, route);
         if purpose == Purpose::Interact && !interacts_on_the_way(sim) {
-            // First it gets there and looks at it, then it interacts.
+            // Walks there and faces the object before interacting.
             return match self.is_in_reach(sim) {
                 true if off(sim, goal).abs() < FACING => [0.0, 0.0, 1.0],
                 true => [0.0, turn, 0.0],
@@ -84,23 +83,23 @@ impl Target {
     }
 }
 
-/// The next step of the way to a place to which the route leads, as speed, turn rate and no interaction.
+/// The next step along the route to a place, as speed, turn rate and no interaction.
 pub(super) fn walk(goal: [f32; 2], sim: SimRef, route: &mut Route) -> [f64; 3] {
     let world = sim.world;
     let agent = sim.agent();
-    // Beside what costs no corner is cut.
+    // Cuts no corners beside zones that cost.
     let costs = is_narrow(sim);
     let ahead = if !costs {
         3
     } else if world.plan().is_some() {
         1
     } else {
-        // As far as a cell of open ground, however fine the cells are: how fast it walks does not depend on them.
+        // About one coarse cell, however fine the cells are, so that walking speed does not depend on them.
         (AHEAD_BESIDE_ZONES / route.occupancy.grid().side()).round().max(1.0) as usize
     };
     let near = if costs { NEAR_BESIDE_ZONES } else { NEAR };
     let straight = distance(agent.position, goal);
-    // In a layout a wall may stand between.
+    // In a layout a wall may stand between them.
     let mut is_open = || world.plan().is_none() || route.is_straight(agent.position, straight);
     let point = if straight < near && is_open() {
         goal
@@ -111,8 +110,8 @@ pub(super) fn walk(goal: [f32; 2], sim: SimRef, route: &mut Route) -> [f64; 3] {
     step_to(sim, point, past, widest)
 }
 
-/// A step towards a point, and so many metres past it, as speed, turn rate and no interaction: at no speed where it would
-/// still be off by more than `widest` degrees after the step.
+/// A step towards a point, overshooting by `past` metres, as speed, turn rate and no interaction. The speed is 0 if the heading
+/// would still be off by more than `widest` degrees after the step.
 pub(super) fn step_to(sim: SimRef, point: [f32; 2], past: f32, widest: f32) -> [f64; 3] {
     let agent = &sim.world.agent_params;
     let (off, seconds) = (off(sim, point), seconds(sim));
@@ -126,7 +125,7 @@ pub(super) fn step_to(sim: SimRef, point: [f32; 2], past: f32, widest: f32) -> [
     [f64::from(speed), f64::from(off / seconds), 0.0]
 }
 
-/// How far a point is to the right of where the agent looks, in degrees, -180 to 180.
+/// Angle from the agent's heading to a point, clockwise in degrees, -180 to 180.
 pub(super) fn off(sim: SimRef, point: [f32; 2]) -> f32 {
     let agent = sim.agent();
     let way = [point[0] - agent.position[0], point[1] - agent.position[1]];
@@ -134,7 +133,7 @@ pub(super) fn off(sim: SimRef, point: [f32; 2]) -> f32 {
     (wanted - agent.heading_deg + 540.0).rem_euclid(360.0) - 180.0
 }
 
-/// Seconds of a step of the agent.
+/// Duration of an agent's step in seconds.
 pub(super) fn seconds(sim: SimRef) -> f32 {
     sim.world.agent_params.time_step as f32 * sim.world.agent_params.frame_skip as f32
 }
@@ -148,7 +147,7 @@ pub(super) fn fails(world: &World, object: &Object) -> bool {
         .any(|condition| condition.is_touch_of(object))
 }
 
-/// The objects that are there and whose touch ends the episode as a failure.
+/// Present objects whose touch ends the episode as a failure.
 pub(super) fn failing(sim: SimRef) -> impl Iterator<Item = usize> {
     let mut conditions = sim.world.rules.failure.iter();
     let has_any = conditions.any(|condition| matches!(condition, EndCondition::Touch(_)));
@@ -157,13 +156,13 @@ pub(super) fn failing(sim: SimRef) -> impl Iterator<Item = usize> {
     objects.iter().enumerate().filter(is_there).map(|(index, _)| index)
 }
 
-/// Whether no corner is to be cut: beside it may be a zone that costs, or what fails.
+/// Whether corners must not be cut, because zones that cost or failing objects may be beside them.
 pub(super) fn is_narrow(sim: SimRef) -> bool {
     sim.world.environment_params.zones.iter().any(Zone::is_costly) || failing(sim).next().is_some()
 }
 
-/// The objects that a way to `goal` leads around: what stands fast and is solid, costs or fails. Without a goal all of them,
-/// by rising index.
+/// The objects that a path to `goal` avoids: static ones that are solid, cost or fail. Without a goal all of them, by rising
+/// index.
 pub(super) fn avoided(sim: SimRef, goal: Option<usize>) -> Vec<u32> {
     let objects = sim.world.objects.iter().zip(sim.objects());
     let returns_elsewhere = |object: &Object| object.respawn.as_ref().is_some_and(|back| back.radius > 0.0);
@@ -182,7 +181,7 @@ pub(super) fn avoided(sim: SimRef, goal: Option<usize>) -> Vec<u32> {
         .collect()
 }
 
-/// Whether an action can go and interact at once: in tables a row may do one of them alone.
+/// Whether one action can move and interact at the same time; rows of an action table may do only one of them.
 fn interacts_on_the_way(sim: SimRef) -> bool {
     let agent = &sim.world.agent_params;
     agent.num_actions().is_none_or(|rows| {
@@ -191,12 +190,12 @@ fn interacts_on_the_way(sim: SimRef) -> bool {
     })
 }
 
-/// The action in the world's own space: the row of its table that comes nearest, if it has one.
+/// The step in the world's own action space: the nearest row if the world has an action table.
 pub(crate) fn in_space(numbers: [f64; 3], sim: SimRef) -> Action {
     in_space_where(numbers, sim, |_| true)
 }
 
-/// The same, and of the rows of a table rather one that is allowed.
+/// Like [`in_space`], but prefers allowed rows of an action table.
 pub(super) fn in_space_where(numbers: [f64; 3], sim: SimRef, is_allowed: impl Fn([f64; 3]) -> bool) -> Action {
     let agent = &sim.world.agent_params;
     let velocity = |numbers: [f64; 3]| match agent.action_model {
@@ -230,13 +229,13 @@ pub(super) fn in_space_where(numbers: [f64; 3], sim: SimRef, is_allowed: impl Fn
 }
 
 impl Environment {
-    /// The action of this world that comes nearest to a speed in m/s, a turn rate in °/s, clockwise, and whether to interact.
+    /// The action of this world that is nearest to a speed in m/s, a clockwise turn rate in °/s, and whether to interact.
     pub fn action_near(&self, speed: f64, turn: f64, interact: bool) -> Action {
         in_space([speed, turn, if interact { 1.0 } else { 0.0 }], self.sim())
     }
 }
 
-/// A speed and a turn as a point to walk to: that which the velocity leads to in one step.
+/// Converts a speed and a turn to a waypoint: the point that the velocity reaches in one step.
 fn waypoint([speed, turn, _]: [f64; 3], sim: SimRef) -> [f64; 3] {
     let agent = sim.agent();
     let agent_params = &sim.world.agent_params;

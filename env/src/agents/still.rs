@@ -1,12 +1,11 @@
-//! An agent that stands still: the other floor, which random acting may lie below.
+//! [`StillAgent`]: stands still, a baseline that random acting may fall below.
 
 use driftworld_spec::{ActionModel, ActionSpace};
 
 use super::{Agent, in_space};
 use crate::sim::{Action, Environment};
 
-/// Stands where it is and does nothing. In a world with an action table it takes the row that comes nearest to that. A world on rails
-/// moves it all the same.
+/// Stands still and does nothing. With an action table it takes the nearest row. A world on rails moves it all the same.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StillAgent;
 
@@ -16,7 +15,7 @@ impl Agent for StillAgent {
         if params.action_model != ActionModel::ByWaypoint || params.num_actions().is_some() {
             return in_space([0.0; 3], environment.sim());
         }
-        // The waypoint is where it stands.
+        // The waypoint is the agent's own position.
         let [x, y] = environment.sim().agent().position.map(f64::from);
         if params.actions == ActionSpace::Normalized {
             let [width, depth] = environment.world().environment_params.arena_size();
@@ -41,7 +40,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_stays_where_it_is_whatever_actions_there_are() {
+    fn agent_stays_in_place_in_every_action_space() {
         for (action_model, actions) in [
             (ActionModel::ByVelocity, ActionSpace::Continuous),
             (ActionModel::ByVelocity, ActionSpace::Normalized),

@@ -1,4 +1,4 @@
-//! The file of a network, in the format safetensors: eight bytes with the length of a JSON header, the header, and numbers.
+//! Reads network files in the safetensors format: eight bytes with the length of a JSON header, the header, and numbers.
 
 use std::collections::BTreeMap;
 
@@ -10,18 +10,18 @@ use super::Trained;
 use super::forward::{Layer, PATCH, PatchNetwork};
 use crate::EnvError;
 
-/// The most bytes of the header.
+/// Most bytes of the header.
 const MAX_NETWORK_HEADER: u64 = 1 << 20;
-/// The most pixels of an image's side.
+/// Most pixels of an image's side.
 const MAX_NETWORK_SIDE: u32 = 512;
-/// The most multiplications for an image.
+/// Most multiplications per image.
 const MAX_NETWORK_PRODUCTS: u64 = 1_000_000_000;
-/// The most rows of the table of actions: as of a world's.
+/// Most rows of the action table, as in worlds.
 const MAX_NETWORK_ACTIONS: usize = 1000;
-/// The most time steps that an action is held.
+/// Most time steps for which an action is held.
 const MAX_NETWORK_FRAME_SKIP: u32 = 1000;
 
-/// Where the header has a tensor.
+/// A tensor's entry in the header.
 #[derive(Deserialize)]
 struct Tensor {
     dtype: String,
@@ -29,7 +29,7 @@ struct Tensor {
     data_offsets: [usize; 2],
 }
 
-/// A file under reading.
+/// A file being read.
 struct Safetensors<'a> {
     name: &'a str,
     metadata: BTreeMap<String, String>,
@@ -52,7 +52,7 @@ pub(super) fn read(name: &str, bytes: &[u8]) -> Result<Trained, EnvError> {
     let image = file.layer("trunk.image", halves * halves * 2 * width, None)?;
     let hidden = image.outputs() as u64;
     let policy = file.layer("policy", hidden, Some(actions.len() as u64))?;
-    // Of each 2 × 2 patches: those, what joins them, and their part of the hidden layer.
+    // Per 2 × 2 patches: the patches themselves, the layer that joins them, and their share of the hidden layer.
     let of_four = width * ((4 * PATCH * PATCH * 3) as u64 + 8 * width + 2 * hidden);
     let products = halves * halves * of_four + hidden * actions.len() as u64;
     if products > MAX_NETWORK_PRODUCTS {
@@ -77,7 +77,7 @@ pub(super) fn read(name: &str, bytes: &[u8]) -> Result<Trained, EnvError> {
 }
 
 impl<'a> Safetensors<'a> {
-    /// Reads the header.
+    /// Parses the header.
     fn parse(name: &'a str, bytes: &'a [u8]) -> Result<Self, EnvError> {
         let mut file = Self {
             name,
@@ -141,14 +141,14 @@ impl<'a> Safetensors<'a> {
         })
     }
 
-    /// A layer of so many inputs and, where that is known, outputs.
+    /// A layer with this number of inputs and, if known, of outputs.
     fn layer(&self, name: &str, inputs: u64, outputs: Option<u64>) -> Result<Layer, EnvError> {
         let biases = self.tensor(&format!("{name}.bias"), [outputs].as_slice())?;
         let weights = self.tensor(&format!("{name}.weight"), &[Some(biases.len() as u64), Some(inputs)])?;
         Ok(Layer::new(&weights, biases))
     }
 
-    /// The numbers of a tensor; an axis of unknown length has one entry or more.
+    /// The numbers of a tensor; an axis of unknown length has at least one entry.
     fn tensor(&self, name: &str, shape: &[Option<u64>]) -> Result<Vec<f32>, EnvError> {
         let axes: Vec<String> = shape
             .iter()
@@ -195,7 +195,7 @@ impl<'a> Safetensors<'a> {
     }
 }
 
-/// A value as a message shows it.
+/// Formats a value for a message.
 fn shown(value: &Value) -> String {
     shortened(&value.to_string(), 60)
 }

@@ -1,5 +1,5 @@
-//! The forward pass of `PatchNetwork` of `driftworld.learners`: patches of 4 × 4 pixels, then 2 × 2 of those, a hidden layer, the
-//! policy. Sums have a fixed order, so that results are the same on every machine.
+//! Forward pass of `PatchNetwork` of `driftworld.learners`: patches of 4 × 4 pixels, then 2 × 2 of those, a hidden layer, the
+//! policy. Sums have a fixed order, so results are the same on every machine.
 
 /// Pixels of a patch's side.
 pub(super) const PATCH: usize = 4;
@@ -7,13 +7,13 @@ pub(super) const PATCH: usize = 4;
 /// A matrix and biases.
 #[derive(Clone, Debug)]
 pub(super) struct Layer {
-    /// Row-major, `(inputs, outputs)`: a file has them the other way round.
+    /// Row-major, `(inputs, outputs)`: transposed with respect to the file.
     weights: Vec<f32>,
     biases: Vec<f32>,
 }
 
 impl Layer {
-    /// From weights `(outputs, inputs)`, row-major, and a bias of each output.
+    /// A layer from weights `(outputs, inputs)`, row-major, and one bias per output.
     pub(super) fn new(weights: &[f32], biases: Vec<f32>) -> Self {
         let outputs = biases.len();
         let inputs = weights.len() / outputs.max(1);
@@ -28,13 +28,13 @@ impl Layer {
         self.biases.len()
     }
 
-    /// Appends the outputs for one input after another.
+    /// Appends the layer's outputs for one input vector.
     fn apply(&self, input: impl Iterator<Item = f32>, outputs: &mut Vec<f32>) {
         let first = outputs.len();
         outputs.extend_from_slice(&self.biases);
         let outputs = &mut outputs[first..];
         for (x, row) in input.zip(self.weights.chunks_exact(self.outputs())) {
-            // Half of what a layer gives is 0.
+            // About half of all activations are 0.
             if x != 0.0 {
                 for (y, weight) in outputs.iter_mut().zip(row) {
                     *y += weight * x;
@@ -44,23 +44,23 @@ impl Layer {
     }
 }
 
-/// What is below 0 as 0.
+/// Rectified linear units: negative values become 0.
 fn rectified(values: &[f32]) -> impl Iterator<Item = f32> {
     values.iter().map(|value| value.max(0.0))
 }
 
-/// The network without its value.
+/// The network without its value head.
 #[derive(Clone, Debug)]
 pub(super) struct PatchNetwork {
     /// Pixels of an image's side, a multiple of twice [`PATCH`].
     pub(super) side: usize,
-    /// Pixels of a patch to features.
+    /// Maps a patch's pixels to features.
     pub(super) small: Layer,
-    /// Features of 2 × 2 patches, row by row, to features.
+    /// Maps the features of 2 × 2 patches, row by row, to features.
     pub(super) large: Layer,
-    /// All of those to hidden units.
+    /// Maps all of those to hidden units.
     pub(super) image: Layer,
-    /// Hidden units to actions.
+    /// Maps hidden units to actions.
     pub(super) policy: Layer,
 }
 

@@ -1,4 +1,4 @@
-//! An agent that acts by a trained network of `driftworld.learners`. Its forward pass is in `forward.rs`, its file in `file.rs`.
+//! [`NetworkAgent`]: acts by a network trained with `driftworld.learners`.
 
 mod file;
 mod forward;
@@ -16,38 +16,38 @@ use crate::render::{CpuRenderer, Target};
 use crate::sim::{Action, Environment};
 use forward::PatchNetwork;
 
-/// A network, and how it acts: all that its file says.
+/// Contents of a network file: the network and its action settings.
 #[derive(Debug)]
 struct Trained {
     network: PatchNetwork,
-    /// Speed in m/s, turn rate in °/s, and whether to interact if above 0.5: a row for each output of the policy.
+    /// Speed in m/s, turn rate in °/s, and interaction if above 0.5: one row per output of the policy.
     actions: Vec<[f64; 3]>,
-    /// Time steps for which an action is held; as long as one step of the world if not said.
+    /// Time steps for which an action is held; by default one step of the world.
     frame_skip: Option<u32>,
-    /// Whether it takes the likeliest action, or draws one from the policy.
+    /// Whether it takes the most probable action; otherwise it samples from the policy.
     is_greedy: bool,
 }
 
-/// Acts by a network that `export` of a learner in Python has written: it draws what its camera shows, small, on the processor,
-/// and holds each action as long as it was held in training.
+/// Acts by a network that a Python learner's `export` wrote: renders a small image of its camera view on the CPU, and holds
+/// each action as long as in training.
 ///
-/// It sees what an environment with the modality RGB and the network's size shows, to the bit. A sampled policy draws from the
-/// seed of the episode. In worlds with a table of actions it takes the row that comes nearest.
+/// Its image is bit-identical to that of an environment with the modality RGB and the network's size. A sampled policy draws
+/// from the seed of the episode. In worlds with a table of actions it takes the nearest row.
 pub struct NetworkAgent {
     trained: Arc<Trained>,
     renderer: CpuRenderer,
     image: Vec<u8>,
     rng: ChaCha8Rng,
     action: [f64; 3],
-    /// Steps for which it is still held.
+    /// Steps for which the action is still held.
     held: u32,
 }
 
 impl NetworkAgent {
-    /// Reads a network in the format safetensors; `name` is what messages call it, usually its path.
+    /// Parses a network in safetensors format; messages call it `name`, usually its path.
     ///
     /// # Errors
-    /// [`EnvError::BadNetwork`] with the place of what is wrong.
+    /// [`EnvError::BadNetwork`] with the location of the fault.
     pub fn parse(name: &str, bytes: &[u8]) -> Result<Self, EnvError> {
         file::read(name, bytes).map(|trained| Self::of(Arc::new(trained)))
     }
@@ -63,7 +63,7 @@ impl NetworkAgent {
         }
     }
 
-    /// Draws what its camera shows.
+    /// Renders the camera's view.
     fn look(&mut self, environment: &Environment) {
         let side = self.trained.network.side as u32;
         self.image.resize((side * side * 3) as usize, 0);
@@ -80,7 +80,7 @@ impl NetworkAgent {
         environment.draw_carried(&mut self.renderer, &mut target);
     }
 
-    /// The row of the table of actions for what it sees.
+    /// Chooses the row of the action table for the current image.
     fn decide(&mut self) -> usize {
         let log_policy = self.trained.network.log_policy(&self.image);
         let last = log_policy.len() - 1;
@@ -107,7 +107,7 @@ impl Agent for NetworkAgent {
             let of_world = environment.world().agent_params.frame_skip.max(1);
             self.held = self.trained.frame_skip.unwrap_or(1).div_ceil(of_world);
         } else {
-            // Who interacts does so in the first time step.
+            // Interacts only in the first time step.
             self.action[2] = 0.0;
         }
         self.held -= 1;

@@ -1,4 +1,4 @@
-//! The network against torch, what its agent does with it, and files that are refused.
+//! The network matches torch; tests of its agent, and of files that are refused.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use driftworld_spec::{ActionSpace, World};
 use super::{Agent, NetworkAgent, Trained, file};
 use crate::sim::{Action, Environment};
 
-/// Three actions held for five time steps, images of 16 × 16 pixels; `scripts/golden_network.py` wrote it.
+/// Three actions held for five time steps, images of 16 × 16 pixels; written by `scripts/golden_network.py`.
 const NETWORK: &[u8] = include_bytes!("../../../tests/golden/network.safetensors");
 
 fn trained() -> Trained {
@@ -20,7 +20,7 @@ fn agent(edit: impl FnOnce(&mut Trained)) -> NetworkAgent {
     NetworkAgent::of(Arc::new(trained))
 }
 
-/// The actions of some steps; the world stands in the arena's middle and has one thing to see.
+/// Actions of the first steps; the agent stands in the middle of the arena and sees one tree.
 fn actions(agent: &mut dyn Agent, seed: u64, edit: impl FnOnce(&mut driftworld_spec::WorldDraft)) -> Vec<Action> {
     let world = World::default().edit(|world| {
         world.objects.push(driftworld_spec::Object::new("tree", [2.0, 9.0]));
@@ -37,7 +37,7 @@ fn actions(agent: &mut dyn Agent, seed: u64, edit: impl FnOnce(&mut driftworld_s
 }
 
 #[test]
-fn log_probabilities_are_those_of_torch() {
+fn log_probabilities_match_torch() {
     let rows: Vec<Vec<f64>> =
         serde_json::from_str(include_str!("../../../tests/golden/network.json")).expect("rows of numbers");
     let network = trained().network;
@@ -58,7 +58,7 @@ fn log_probabilities_are_those_of_torch() {
 }
 
 #[test]
-fn image_is_that_of_an_environment_of_its_size() {
+fn image_matches_an_environment_of_the_same_size() {
     let world = World::default().edit(|world| {
         world.objects.push(driftworld_spec::Object::new("tree", [2.0, 9.0]));
         world.agent_params.observation_size = 16;
@@ -71,7 +71,7 @@ fn image_is_that_of_an_environment_of_its_size() {
 }
 
 #[test]
-fn action_is_held_as_in_training_and_interacts_in_its_first_time_step() {
+fn action_is_held_and_interacts_only_in_its_first_time_step() {
     let always = |trained: &mut Trained| trained.actions = vec![[4.0, 9.0, 1.0]; 3];
     let first = Action::Continuous([4.0, 9.0, 1.0]);
     let later = Action::Continuous([4.0, 9.0, 0.0]);
@@ -87,7 +87,7 @@ fn action_is_held_as_in_training_and_interacts_in_its_first_time_step() {
 }
 
 #[test]
-fn table_of_the_world_gives_the_nearest_row() {
+fn action_table_gives_the_nearest_row() {
     let always = |trained: &mut Trained| trained.actions = vec![[4.0, 9.0, 0.0]; 3];
     let table = vec![[0.0, 90.0, 0.0], [5.0, 0.0, 0.0], [-5.0, 0.0, 0.0]];
     let done = actions(&mut agent(always), 0, |world| {
@@ -97,7 +97,7 @@ fn table_of_the_world_gives_the_nearest_row() {
 }
 
 #[test]
-fn sampling_depends_on_the_seed_of_the_episode_alone() {
+fn sampling_depends_only_on_the_episode_seed() {
     let sampled = |trained: &mut Trained| trained.is_greedy = false;
     let mut used = agent(sampled);
     let first = actions(&mut used, 3, |_| {});
@@ -110,7 +110,7 @@ fn sampling_depends_on_the_seed_of_the_episode_alone() {
     assert_eq!(actions(&mut greedy, 3, |_| {}), actions(&mut greedy, 4, |_| {}));
 }
 
-/// The file with a word of its header replaced by one as long, or by others with spaces left out elsewhere.
+/// The file with one word of its header replaced.
 fn changed(from: &str, to: &str) -> Vec<u8> {
     let length = u64::from_le_bytes(*NETWORK.first_chunk().expect("eight bytes")) as usize;
     let (header, data) = NETWORK[8..].split_at(length);
@@ -136,7 +136,7 @@ fn bad_files_are_refused_with_where_and_what() {
     ];
     let mut infinite = NETWORK.to_vec();
     let last = infinite.len();
-    // The last tensors are those of the value, which is not read: 9 numbers.
+    // The last tensors are the value head's, which is not read: 9 numbers.
     infinite[last - 40..last - 36].copy_from_slice(&f32::NAN.to_le_bytes());
     lines.push(refusal(&infinite));
     for (from, to) in [

@@ -1,4 +1,4 @@
-//! What the learner sees: how much of each colour is where in a small picture. What it makes of it is in `linear.rs`.
+//! The learner's features: how much of each colour is in each part of a small image.
 
 use std::sync::LazyLock;
 
@@ -6,19 +6,19 @@ use crate::camera::Camera;
 use crate::render::{CpuRenderer, Target};
 use crate::sim::Environment;
 
-/// Height and width of the picture in pixels.
+/// Height and width of the image in pixels.
 const SIDE: usize = 42;
-/// The picture is looked at in so many columns.
+/// Columns into which the image is divided.
 const COLUMNS: usize = 7;
 /// The first row of each band, and the end of the last: above the horizon, just below it, near the feet.
 const BANDS: [usize; 4] = [0, 21, 27, SIDE];
-/// Six hues, and dark and bright without a hue.
+/// Six hues, then dark and bright without hue.
 const COLORS: usize = 8;
 
-/// How many numbers the eye gives: a share for each colour in each cell, then a constant 1.
+/// Number of features: a share for each colour in each cell, then a constant 1.
 pub(super) const FEATURES: usize = COLUMNS * (BANDS.len() - 1) * COLORS + 1;
 
-/// Draws what the agent's camera shows, small, and counts colours.
+/// Renders a small image of the camera's view and counts colours.
 #[derive(Default)]
 pub(super) struct Eye {
     renderer: CpuRenderer,
@@ -26,7 +26,7 @@ pub(super) struct Eye {
 }
 
 impl Eye {
-    /// The square root of the share of each cell that each colour covers, 0 to 1: so few pixels count beside many.
+    /// Square roots of the share of each cell that each colour covers, 0 to 1: the root gives small patches more weight.
     pub(super) fn look(&mut self, environment: &Environment) -> [f32; FEATURES] {
         let agent = &environment.world().agent_params;
         let state = environment.agent();
@@ -49,7 +49,7 @@ impl Eye {
     }
 }
 
-/// What a picture of `SIDE` × `SIDE` pixels comes to.
+/// Features of an image of `SIDE` × `SIDE` pixels.
 fn shares(rgb: &[u8]) -> [f32; FEATURES] {
     let mut features = [0.0; FEATURES];
     for (band, rows) in BANDS.windows(2).enumerate() {
@@ -72,7 +72,7 @@ fn shares(rgb: &[u8]) -> [f32; FEATURES] {
     features
 }
 
-/// The number of a colour, looked up by its five highest bits in each channel.
+/// The index of a colour, from a table over the five highest bits of each channel.
 fn color([r, g, b]: [u8; 3]) -> usize {
     static TABLE: LazyLock<Box<[u8]>> = LazyLock::new(|| {
         let level = |bits: usize| (bits & 31) as i32 * 8 + 4;
@@ -84,8 +84,8 @@ fn color([r, g, b]: [u8; 3]) -> usize {
     usize::from(TABLE[five(r) << 10 | five(g) << 5 | five(b)])
 }
 
-/// Its hue in sixths of the circle, 0 to 5 around red, yellow, green, cyan, blue and magenta; without much of a hue 6 where it is
-/// dark and 7 where it is bright.
+/// Hue in sixths of the circle, 0 to 5 around red, yellow, green, cyan, blue and magenta; colours with little hue are 6 if dark
+/// and 7 if bright.
 fn named([r, g, b]: [i32; 3]) -> u8 {
     let (most, least) = (r.max(g).max(b), r.min(g).min(b));
     let chroma = most - least;
@@ -109,7 +109,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn hues_go_around_the_circle_and_greys_have_none() {
+    fn colours_are_classified_by_hue_and_greys_by_brightness() {
         let seen = [
             [255, 0, 0],
             [255, 255, 0],
@@ -121,14 +121,14 @@ mod tests {
             [230, 230, 230],
         ];
         assert_eq!(seen.map(color), [0, 1, 2, 3, 4, 5, 6, 7]);
-        // By dusk a hue is the same, down to the darkest.
+        // In dim light the hue stays the same, down to the darkest.
         assert_eq!([[60, 0, 0], [0, 60, 0], [0, 0, 60]].map(color), [0, 2, 4]);
     }
 
     proptest! {
-        /// Colours share each cell: whatever the picture, the squares of a cell's numbers come to 1.
+        /// Colours share each cell: the squares of a cell's features always sum to 1.
         #[test]
-        fn the_colours_of_a_cell_share_it(rgb in proptest::collection::vec(0_u8..=255, SIDE * SIDE * 3)) {
+        fn squares_of_a_cells_features_sum_to_one(rgb in proptest::collection::vec(0_u8..=255, SIDE * SIDE * 3)) {
             let features = shares(&rgb);
             for cell in features[..FEATURES - 1].chunks(COLORS) {
                 let whole: f32 = cell.iter().map(|x| x * x).sum();
@@ -136,9 +136,9 @@ mod tests {
             }
         }
 
-        /// One pixel changes the cell that it is in, and no other.
+        /// A pixel changes only the cell that contains it.
         #[test]
-        fn a_pixel_counts_where_it_is(row in 0..SIDE, x in 0..SIDE) {
+        fn pixel_changes_only_its_own_cell(row in 0..SIDE, x in 0..SIDE) {
             let grey = vec![200_u8; SIDE * SIDE * 3];
             let mut dotted = grey.clone();
             dotted[(row * SIDE + x) * 3 + 1] = 0;

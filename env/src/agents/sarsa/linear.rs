@@ -1,12 +1,12 @@
-//! Linear Sarsa(λ): what a deed is worth is a weighted sum of what is seen. What is seen is in `eye.rs`, who acts in `mod.rs`.
+//! Linear Sarsa(λ): the value of an action is a weighted sum of the features.
 
 use super::LEARNING_RATE;
 use super::eye::FEATURES;
 
-/// What is seen before a deed.
+/// The features before an action.
 pub(super) type Seen = [f32; FEATURES];
 
-/// Weights of `DEEDS` deeds, and what of them the errors to come will change.
+/// Weights of `DEEDS` actions, and their eligibility traces.
 #[derive(Clone)]
 pub(super) struct LinearSarsa<const DEEDS: usize> {
     weights: Box<[Seen; DEEDS]>,
@@ -14,7 +14,7 @@ pub(super) struct LinearSarsa<const DEEDS: usize> {
 }
 
 impl<const DEEDS: usize> LinearSarsa<DEEDS> {
-    /// All deeds are worth nothing.
+    /// All actions start with value 0.
     pub(super) fn new() -> Self {
         Self {
             weights: Box::new([[0.0; FEATURES]; DEEDS]),
@@ -22,19 +22,19 @@ impl<const DEEDS: usize> LinearSarsa<DEEDS> {
         }
     }
 
-    /// What each deed is worth.
+    /// The value of each action.
     pub(super) fn values(&self, seen: &Seen) -> [f32; DEEDS] {
         std::array::from_fn(|deed| self.weights[deed].iter().zip(seen).map(|(w, x)| w * x).sum())
     }
 
-    /// Forgets what was done, not what was learned.
+    /// Clears the traces and keeps the weights.
     pub(super) fn begin(&mut self) {
         for traces in self.traces.iter_mut() {
             traces.fill(0.0);
         }
     }
 
-    /// What was done: it has a share in the errors to come, and earlier deeds only `decay` of the share that they had.
+    /// Records an action: adds its features to the traces, after earlier traces have been multiplied by `decay`.
     pub(super) fn done(&mut self, seen: &Seen, deed: usize, decay: f32) {
         for trace in self.traces.iter_mut().flatten() {
             *trace *= decay;
@@ -44,8 +44,8 @@ impl<const DEEDS: usize> LinearSarsa<DEEDS> {
         }
     }
 
-    /// Learns that the last deed was worth so much more than was thought. `seen` is what was seen before it: the rate is that of
-    /// one deed whatever the number of features that are on.
+    /// Learns that the last action was worth `error` more than predicted. `seen` are the features before it: the step is
+    /// divided by their squared norm, so the learning rate does not depend on how many features are on.
     pub(super) fn learn(&mut self, seen: &Seen, error: f32) {
         let size = seen.iter().map(|x| x * x).sum::<f32>().max(1.0);
         let step = LEARNING_RATE * error / size;
@@ -63,9 +63,9 @@ mod tests {
     use super::*;
 
     proptest! {
-        /// The weights are the sum over all errors of what every earlier deed has of them, however it is summed.
+        /// The traces give the same weights as a plain sum over all errors and earlier actions.
         #[test]
-        fn weights_are_the_sum_over_errors_and_earlier_deeds(
+        fn weights_equal_the_sum_over_errors_and_earlier_actions(
             way in proptest::collection::vec((0_usize..FEATURES, 0.1_f32..2.0, 0_usize..3, -1.0_f32..1.0), 1..12),
             decay in 0.0_f32..1.0,
         ) {
@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_done_again_and_again_comes_to_be_worth_what_it_pays() {
+    fn value_of_a_repeated_action_converges_to_its_reward() {
         let mut learner = LinearSarsa::<2>::new();
         let mut seen = [0.0; FEATURES];
         (seen[3], seen[FEATURES - 1]) = (0.5, 1.0);

@@ -1,5 +1,4 @@
-//! A small learner that comes with the environment, so that a lifetime shows learning, transfer and forgetting in seconds. What
-//! it sees is in `eye.rs`, how it learns in `linear.rs`.
+//! [`SarsaAgent`]: a small built-in learner, so that a lifetime shows learning, transfer and forgetting in seconds.
 
 mod eye;
 mod linear;
@@ -13,7 +12,7 @@ use crate::sim::{Action, Environment, Step};
 use eye::Eye;
 use linear::{LinearSarsa, Seen};
 
-/// What it can do: shares of the largest speed and turn rate, and whether it interacts.
+/// The actions: shares of the largest speed and turn rate, and whether it interacts.
 const DEEDS: [[f64; 3]; 5] = [
     [1.0, 0.0, 1.0],
     [1.0, -0.5, 1.0],
@@ -22,27 +21,27 @@ const DEEDS: [[f64; 3]; 5] = [
     [0.0, 1.0, 0.0],
 ];
 
-/// A deed takes so many seconds of the world, as nearly as steps allow.
+/// Seconds of simulated time per action, rounded to whole steps.
 const DEED_SECONDS: f64 = 0.2;
-/// The share of an error that is learned.
+/// Learning rate.
 const LEARNING_RATE: f32 = 0.02;
-/// What a reward is worth one deed later.
+/// Discount per action.
 const DISCOUNT: f32 = 0.93;
-/// How much of an error one deed earlier is to blame for.
+/// Trace decay λ.
 const LAMBDA: f32 = 0.8;
-/// How often it tries some deed, in evaluations as well: a greedy agent without a memory turns in circles.
+/// Probability of a random action, in evaluations as well: a greedy agent without memory turns in circles.
 const TRIES: f64 = 0.1;
-/// Rewards are counted in hundreds: touching a cube of the built-in tasks pays 1.
+/// Rewards are divided by 100: touching a cube of the built-in tasks pays 1.
 const UNIT: f32 = 0.01;
 
-/// Learns by linear Sarsa(λ) what each of five deeds is worth: straight ahead, ahead to either side, turning on the spot.
+/// Learns the value of five actions by linear Sarsa(λ): straight ahead, ahead to either side, turning on the spot.
 ///
-/// It sees the agent's camera at 42 × 42 pixels, and of that how much of each cell of a 7 × 3 grid each of eight colours
-/// covers: 169 numbers. It knows no map, no state and no label, and remembers nothing within an episode. It is small: it finds
-/// coloured things and shows what learning one task does to others, but plans nothing and opens no door.
+/// It sees the agent's camera at 42 × 42 pixels, as the share of each cell of a 7 × 3 grid that each of eight colours covers:
+/// 169 features. It knows no map, state or label, and remembers nothing within an episode. It is small: it finds coloured
+/// things and shows how learning one task affects others, but cannot plan or open doors.
 ///
-/// A deed is ε-greedy (ε 0.1, in evaluations as well: [`SarsaAgent::POLICY`]) and held for 0.2 s. All that it draws comes from
-/// the seed of the episode, so a lifetime can be repeated to the bit.
+/// Actions are ε-greedy (ε 0.1, in evaluations as well: [`SarsaAgent::POLICY`]) and held for 0.2 s. All its random numbers come
+/// from the seed of the episode, so a lifetime is reproducible to the bit.
 ///
 /// # Source
 /// Sutton and Barto, *Reinforcement Learning*, 2nd edition, section 12.7, with accumulating traces.
@@ -65,11 +64,11 @@ pub struct SarsaAgent {
     learner: LinearSarsa<{ DEEDS.len() }>,
     eye: Eye,
     rng: ChaCha8Rng,
-    /// The last deed, with what was seen before it.
+    /// The last action, with the features before it.
     last: Option<(Seen, usize)>,
-    /// Steps for which it goes on.
+    /// Steps for which the action is still held.
     held: u32,
-    /// What was paid since.
+    /// Reward since the last action.
     reward: f32,
     is_frozen: bool,
 }
@@ -81,7 +80,7 @@ impl Default for SarsaAgent {
 }
 
 impl SarsaAgent {
-    /// How it chooses its actions, while it learns and in evaluations.
+    /// The policy's name, while learning and in evaluations.
     pub const POLICY: &str = "epsilon-greedy, epsilon 0.1";
 
     /// An agent that has learned nothing.
@@ -97,7 +96,7 @@ impl SarsaAgent {
         }
     }
 
-    /// Looks, learns from what the last deed led to, and chooses the next.
+    /// Observes, learns from the result of the last action, and chooses the next.
     fn decide(&mut self, environment: &Environment) -> (Seen, usize) {
         let seen = self.eye.look(environment);
         let values = self.learner.values(&seen);
@@ -113,7 +112,7 @@ impl SarsaAgent {
         (seen, deed)
     }
 
-    /// Learns from what was paid since the last deed, and what is still to come.
+    /// Learns from the reward since the last action and the discounted value of the next one.
     fn learn_that(&mut self, to_come: f32) {
         let paid = std::mem::take(&mut self.reward);
         if let Some((seen, deed)) = &self.last {
@@ -123,7 +122,7 @@ impl SarsaAgent {
     }
 }
 
-/// The deed that is worth most; the first of equals.
+/// The action with the highest value; ties go to the first.
 fn best(values: &[f32]) -> usize {
     let better = |best: usize, deed: usize| if values[deed] > values[best] { deed } else { best };
     (0..values.len()).fold(0, better)
@@ -149,7 +148,7 @@ impl Agent for SarsaAgent {
         (self.last, self.held, self.reward) = (None, 0, 0.0);
     }
 
-    /// An episode that is cut off teaches nothing of what would have come.
+    /// A truncated episode gives no value for its end state, so nothing is learned from the last action.
     fn learn(&mut self, _environment: &Environment, step: &Step) {
         if self.is_frozen {
             return;
