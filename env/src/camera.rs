@@ -1,15 +1,15 @@
-//! Where a picture is taken from. What is in front of it is the scene's; how it is drawn, the renderer's.
+//! [`Camera`]: the pose and field of view from which an image is rendered.
 
 use crate::scene::Scene;
 
 /// A pinhole camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Where it is, in metres; x east, y north, z up.
+    /// Position in metres; x east, y north, z up.
     pub position: [f32; 3],
-    /// Where it looks, in degrees clockwise from +y.
+    /// Heading in degrees clockwise from +y.
     pub heading_deg: f32,
-    /// How far it looks up, in degrees; negative looks down.
+    /// Elevation of the view in degrees; negative looks down.
     pub pitch_deg: f32,
     /// Vertical field of view in degrees.
     pub field_of_view_deg: f32,
@@ -24,7 +24,7 @@ pub(crate) struct Axes {
 }
 
 impl Camera {
-    /// What an agent sees that stands at `position` and looks along `heading_deg`; `height` is that of its eyes.
+    /// The view of an agent at `position` with this heading; `height` is that of its eyes.
     pub fn first_person(position: [f32; 2], heading_deg: f32, height: f32, field_of_view_deg: f32) -> Self {
         Self {
             position: [position[0], position[1], height],
@@ -34,7 +34,7 @@ impl Camera {
         }
     }
 
-    /// The arena and the sky above it, from over its south-western corner.
+    /// The arena and the sky above it, seen from above its south-western corner.
     pub fn overview(scene: &Scene) -> Self {
         let [width, depth] = scene.arena_size();
         let span = width.max(depth).max(4.0);
@@ -57,7 +57,7 @@ impl Camera {
         }
     }
 
-    /// Half the height of the picture at 1 m.
+    /// Half the height of the image plane at 1 m.
     pub(crate) fn tangent(&self) -> f32 {
         let half = (self.field_of_view_deg.clamp(1.0, 170.0) / 2.0).to_radians();
         libm::sinf(half) / libm::cosf(half)

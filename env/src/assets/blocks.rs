@@ -1,12 +1,11 @@
-//! Meshes as the processor likes them: triangles in blocks, one array for each coordinate. How they are drawn is the
-//! renderer's.
+//! Meshes for the CPU renderer: triangles in blocks, with one array per coordinate.
 
 use super::{Mesh, Paint, Part};
 
-/// Triangles in a block: as many as the widest vectors of the renderer hold.
+/// Triangles in a block: the lanes of the renderer's widest vectors.
 pub(crate) const BLOCK: usize = 16;
 
-/// Up to [`BLOCK`] triangles of one colour that face about the same way. What is left over faces nowhere.
+/// Up to [`BLOCK`] triangles of one colour that face about the same way. Unused lanes never face the camera.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub(crate) struct Block {
@@ -26,7 +25,7 @@ pub(crate) struct Material {
 }
 
 impl Material {
-    /// A part's triangles, those that face the same way together: then whole blocks face away at once.
+    /// Groups a part's triangles by direction, so that whole blocks face away at once.
     pub(crate) fn new(part: &Part) -> Self {
         let mut order: Vec<usize> = (0..part.mesh.triangles.len()).collect();
         order.sort_by_cached_key(|&triangle| facing(part.normals[triangle]));
@@ -41,7 +40,8 @@ impl Material {
     }
 }
 
-/// Which of 24 directions a normal is nearest to, as a number whose neighbours are near each other: down, around, up.
+/// Which of 24 directions a normal is nearest to, numbered so that neighbouring directions have close numbers: down, around,
+/// up.
 fn facing([x, y, z]: [f32; 3]) -> u32 {
     if z.abs() > 0.7 {
         return if z < 0.0 { 0 } else { 100 };
@@ -54,7 +54,7 @@ fn block(mesh: &Mesh, normals: &[[f32; 3]], triangles: &[usize]) -> Block {
     let mut block = Block {
         corners: [[0.0; BLOCK]; 9],
         normal: [[0.0; BLOCK]; 3],
-        // With no normal, a plane far ahead: whoever looks sees its back.
+        // Unused lanes: no normal, and a plane that is always seen from behind.
         offset: [1.0; BLOCK],
     };
     for (lane, &triangle) in triangles.iter().enumerate() {
@@ -76,7 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_triangle_is_in_one_block_and_the_rest_faces_away() {
+    fn triangles_are_each_in_one_block_and_unused_lanes_face_away() {
         let part = Part::new(Mesh::ball(1.0, 1.0, 9, 5), Paint::Fixed([1.0; 3]));
         let material = Material::new(&part);
         assert_eq!(material.blocks.len(), part.mesh.triangles.len().div_ceil(BLOCK));

@@ -1,4 +1,4 @@
-//! The built-in classes and their models: which file each has, and its number in class segmentation.
+//! The built-in classes: their model files and their numbers in class segmentation.
 
 use std::sync::{Arc, LazyLock, OnceLock};
 
@@ -6,14 +6,14 @@ use driftworld_spec::{Model, Style};
 
 use super::{Asset, model_file};
 
-/// The models of a class in a style, read when they are first asked for: their names and looks, in the order of their numbers.
+/// The models of a class in a style, read on first use: names and looks, ordered by number.
 struct Models {
     class: &'static str,
     file: &'static str,
     read: OnceLock<Vec<(String, Arc<Asset>)>>,
 }
 
-/// Classes, each with the file of its name and this ending.
+/// A list of classes, each in the file of its name with this ending.
 macro_rules! models {
     ($ending:literal: $($class:ident)+) => {
         [$(Models {
@@ -24,18 +24,18 @@ macro_rules! models {
     };
 }
 
-/// All classes in the order of their numbers in class segmentation, which must not change: first those of the original in
-/// alphabetical order, then ours. A new one goes to the end, the next as number 30, the last that there is.
+/// All classes, ordered by their numbers in class segmentation, which must not change: first those of the original in
+/// alphabetical order, then ours. New ones go to the end; the next is number 30, the last one possible.
 static PLAIN: [Models; 29] = models!(".gltf":
     bag barrel bed bench building car castleruin chair cube fence geometric icosphere mushroom nature pot roadblock rock
     shelf shrub streetsign table tent tree
     door key switch animal sign furniture
 );
 
-/// The classes with other models in natural looks: as many, with the same names and bodies.
+/// The classes with other models in the natural style: equally many, with the same names and bodies.
 static NATURAL: [Models; 5] = models!("_natural.gltf": car mushroom rock shrub tree);
 
-/// What stands for a class that is not known: a striped bollard, something to stumble over.
+/// The placeholder for unknown classes: a striped bollard to stumble over.
 static UNKNOWN: [Models; 1] = models!(".gltf": unknown);
 
 impl Models {
@@ -44,7 +44,7 @@ impl Models {
     }
 }
 
-/// A class's models in a style; none if it is not built in, or looks as in the plain style.
+/// A class's models in a style; `None` if the class is not built in, or looks the same as in the plain style.
 fn find(style: Style, class: &str) -> Option<&'static [(String, Arc<Asset>)]> {
     let all = match style {
         Style::Plain => PLAIN.as_slice(),
@@ -53,7 +53,7 @@ fn find(style: Style, class: &str) -> Option<&'static [(String, Arc<Asset>)]> {
     all.iter().find(|models| models.class == class).map(Models::read)
 }
 
-/// The names of the built-in classes in the order of their numbers in class segmentation.
+/// The names of the built-in classes, ordered by their numbers in class segmentation.
 pub(crate) fn class_names<'a>() -> impl Iterator<Item = &'a str> {
     PLAIN.iter().map(|models| models.class)
 }
@@ -64,14 +64,13 @@ pub(crate) fn class_number(class: &str) -> Option<u16> {
     u16::try_from(place + 1).ok()
 }
 
-/// The models of a class in the order of their numbers, by their names.
+/// The names of a class's models, ordered by number.
 pub(crate) fn model_names(class: &str) -> impl Iterator<Item = &'static str> + use<> {
     let models = find(Style::Plain, class).unwrap_or_default();
     models.iter().map(|(name, _)| name.as_str())
 }
 
-/// The number of a model of a class, by its name or its number in writing; capitals do not matter. None if there is no such
-/// model.
+/// The number of a model of a class, from its name or its number as text, ignoring case. `None` if there is no such model.
 pub(crate) fn number(class: &str, model: &Model) -> Option<u32> {
     let name = model.0.trim();
     let named = model_names(class).position(|own| own.eq_ignore_ascii_case(name));
@@ -81,14 +80,14 @@ pub(crate) fn number(class: &str, model: &Model) -> Option<u32> {
         .then_some(number)
 }
 
-/// The built-in model of a number in a style, if there is one.
+/// The built-in model with this number in a style, if there is one.
 pub(crate) fn asset(style: Style, class: &str, number: u32) -> Option<Arc<Asset>> {
     let models = find(style, class).or_else(|| find(Style::Plain, class))?;
     let (_, asset) = models.get((number as usize).checked_sub(1)?)?;
     Some(Arc::clone(asset))
 }
 
-/// The asset of a class that is not known.
+/// The asset of unknown classes.
 pub(crate) fn placeholder() -> Arc<Asset> {
     static MADE: LazyLock<Arc<Asset>> = LazyLock::new(|| {
         let (_, asset) = &UNKNOWN[0].read()[0];
@@ -104,7 +103,7 @@ pub(crate) fn placeholder() -> Arc<Asset> {
 mod tests {
     use super::*;
 
-    /// A checksum of all that is drawn and felt of models, to the bit.
+    /// A checksum over the exact bits of everything that is drawn or bumped into.
     fn checksum(models: &[(String, Arc<Asset>)]) -> String {
         let mut bytes = Vec::new();
         for (name, asset) in models {
@@ -124,7 +123,7 @@ mod tests {
         format!("{:08x}", crc32fast::hash(&bytes))
     }
 
-    /// Stored pictures and trajectories depend on these models.
+    /// Stored images and trajectories depend on these models.
     #[test]
     fn built_in_models_match_their_checksums() {
         let all = |models: &[Models]| {
@@ -138,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn natural_models_have_the_names_of_the_plain_ones() {
+    fn natural_models_are_named_like_the_plain_ones() {
         for models in &NATURAL {
             let names = models.read().iter().map(|(name, _)| name.as_str());
             assert!(names.eq(model_names(models.class)), "{}", models.class);

@@ -1,5 +1,4 @@
-//! [`Catalogue`]: which models a world can refer to, those of libraries in front of the built-in ones. How either is
-//! made is in `library` and `builtin.rs`.
+//! [`Catalogue`]: the models that worlds can refer to; those of libraries take precedence over the built-in ones.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
@@ -9,16 +8,15 @@ use driftworld_spec::{Classes, Model, Models, Style};
 use super::library::{Library, LibraryModel};
 use super::{Asset, Lettering, asset_in, builtin, sign};
 
-/// The number in class segmentation of every class that a catalogue does not know, which is drawn as a placeholder.
+/// The number in class segmentation of all classes unknown to the catalogue, which are drawn as placeholders.
 pub const UNKNOWN_CLASS: u16 = 31;
 
 /// The number in class segmentation of the first class of libraries.
 pub const FIRST_LIBRARY_CLASS: u16 = 32;
 
-/// The models that worlds may refer to by class and model: the built-in ones, and in front of them those of libraries.
+/// The models that worlds may refer to by class and model: the built-in ones, overridden by those of libraries.
 ///
-/// Cloning one is cheap: clones share their assets. A library's model becomes an asset, many times its size, when it is
-/// first asked for.
+/// Cloning is cheap: clones share their assets. A library's model becomes an asset, many times its size, on first use.
 ///
 /// # Example
 /// ```
@@ -31,13 +29,13 @@ pub const FIRST_LIBRARY_CLASS: u16 = 32;
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Catalogue {
-    /// By class and model as [`key`] writes them.
+    /// By class and model, as [`key`] normalises them.
     models: Arc<BTreeMap<(String, String), Arc<Entry>>>,
-    /// The classes that are not built in, in rising order.
+    /// The classes that are not built in, sorted.
     own_classes: Arc<Vec<String>>,
 }
 
-/// A library's model, and the asset that it becomes when somebody asks for it.
+/// A library's model, and its asset once it has been used.
 #[derive(Debug)]
 struct Entry {
     model: LibraryModel,
@@ -51,7 +49,7 @@ impl Entry {
 }
 
 impl Catalogue {
-    /// The catalogue with a library in front: where it has a class and model that were known before, its own holds.
+    /// Adds a library; its models override known ones with the same class and name.
     #[must_use]
     pub fn with_library(mut self, library: &Library) -> Self {
         let models = Arc::make_mut(&mut self.models);
@@ -69,11 +67,10 @@ impl Catalogue {
         self
     }
 
-    /// The number of a class in class segmentation, the same in every world; capitals do not matter.
+    /// The number of a class in class segmentation, the same in every world; ignores case.
     ///
-    /// Built-in classes have 1 to 29, those of libraries follow each other from [`FIRST_LIBRARY_CLASS`] on in the order
-    /// of their names, and whatever is not known has [`UNKNOWN_CLASS`]. A library's models of a built-in class have
-    /// that class's number. 0 is where there is no object.
+    /// Built-in classes have 1 to 29. Those of libraries follow from [`FIRST_LIBRARY_CLASS`] on, sorted by name. Unknown
+    /// classes have [`UNKNOWN_CLASS`]. A library's models of a built-in class have that class's number. 0 means no object.
     ///
     /// # Example
     /// ```
@@ -83,7 +80,7 @@ impl Catalogue {
     /// assert_eq!(catalogue.class_number("dragon"), UNKNOWN_CLASS);
     /// ```
     pub fn class_number(&self, class: &str) -> u16 {
-        // Most classes are written as they are known, and then no copy is made.
+        // Most names are already in the right case, so no copy is needed.
         if let Some(number) = self.find_number(class) {
             return number;
         }
@@ -97,30 +94,30 @@ impl Catalogue {
         })
     }
 
-    /// All classes that it knows with their numbers in class segmentation, in rising order of the numbers.
+    /// All known classes with their numbers in class segmentation, ordered by number.
     pub fn class_numbers(&self) -> impl Iterator<Item = (&str, u16)> {
         builtin::class_names()
             .chain(self.own_classes.iter().map(String::as_str))
             .map(|class| (class, self.class_number(class)))
     }
 
-    /// The classes that it has models of, with these: the built-in ones, and those of its libraries.
+    /// The classes with their models, for checking worlds: the built-in ones and those of its libraries.
     pub fn classes(&self) -> Classes {
         Classes::new(builtin::class_names().chain(self.models.keys().map(|(class, _)| class.as_str())))
             .with_models(self.clone())
     }
 
-    /// The asset of a class and model; what nobody knows is a placeholder.
+    /// The asset of a class and model; unknown ones get a placeholder.
     ///
-    /// Capitals do not matter, and a model that is a number may be written in any way that says the same number.
+    /// Ignores case; a model that is a number may be written in any way that parses to it.
     pub fn asset(&self, class: &str, model: &Model) -> Arc<Asset> {
         self.asset_in(Style::Plain, class, model)
     }
 
-    /// The asset of a class and model as a style draws it, with the body that it has in every style. Models of libraries look the
-    /// same in all.
+    /// The asset of a class and model in a style; its body is the same in every style. Models of libraries look the same in all
+    /// styles.
     pub fn asset_in(&self, style: Style, class: &str, model: &Model) -> Arc<Asset> {
-        // Most catalogues hold nothing but built-in models, and then no key is made.
+        // Most catalogues contain only built-in models, so no key is needed.
         if self.models.is_empty() {
             return asset_in(style, class, model);
         }
@@ -128,8 +125,8 @@ impl Catalogue {
         found.map_or_else(|| asset_in(style, class, model), |entry| entry.asset())
     }
 
-    /// The asset of a class and model as an object shows it that says something: a built-in sign has the text on its board, in
-    /// lettering that is seen on the board's colour (sRGB; its own if absent). All else is as it is without a text.
+    /// The asset of an object with a text: a built-in sign has the text on its board, in lettering that is readable on the
+    /// board's colour (sRGB; its own if absent). All other models ignore the text.
     pub fn asset_with_text(&self, class: &str, model: &Model, text: &str, color: Option<[f32; 3]>) -> Arc<Asset> {
         let is_built_in =
             class == "sign" && (self.models.is_empty() || !self.models.contains_key(&key(class, &model.0)));
@@ -158,7 +155,7 @@ impl Models for Catalogue {
     }
 }
 
-/// What class and model are found by.
+/// Normalises class and model for lookup.
 pub(super) fn key(class: &str, model: &str) -> (String, String) {
     let model = model.trim();
     let model = match model.parse::<u32>() {
@@ -186,9 +183,9 @@ mod tests {
             .expect("a cube is a sound model")
     }
 
-    /// Pinned: pictures that were stored mean these numbers.
+    /// Pinned: stored images use these numbers.
     #[test]
-    fn the_numbers_of_the_originals_classes_stay_as_they_are() {
+    fn numbers_of_the_originals_classes_are_stable() {
         let numbers: Vec<String> = Catalogue::default()
             .class_numbers()
             .map(|(class, number)| format!("{number} {class}"))
@@ -202,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn classes_of_libraries_follow_in_the_order_of_their_names_however_they_are_loaded() {
+    fn library_classes_are_numbered_by_name_in_any_load_order() {
         let library = |classes: &[&str]| {
             let mut library = Library::default();
             for class in classes {
@@ -234,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn pictures_show_the_same_number_of_a_class_in_every_world_also_beyond_what_a_label_holds() {
+    fn class_numbers_in_images_are_stable_and_may_exceed_a_byte() {
         let mut library = Library::default();
         for class in ["kiosk", "lamp"] {
             library.insert(model(class)).expect("there is room");
@@ -263,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn models_become_assets_when_they_are_asked_for_and_then_once() {
+    fn library_models_become_assets_once_on_first_use() {
         let mut library = Library::default();
         for class in ["kiosk", "lamp"] {
             library.insert(model(class)).expect("there is room");

@@ -1,8 +1,8 @@
-//! Letters as geometry: a block font of five by seven squares, merged into few rectangles. What is written on is in `signs.rs`.
+//! Letters as geometry: a block font of five by seven squares, merged into few rectangles.
 
 use super::Mesh;
 
-/// Squares of a letter from left to right, and from top to bottom.
+/// Squares of a letter, across and down.
 pub(crate) const LETTER: [u32; 2] = [5, 7];
 
 /// Each letter as seven rows from the top; the highest of five bits is the left square.
@@ -52,14 +52,14 @@ const FONT: &[(char, [u8; 7])] = &[
     ('Z', [0x1F, 0x01, 0x02, 0x04, 0x08, 0x10, 0x1F]),
 ];
 
-/// Whether a square of a letter, counted from its left and its top, is filled; a letter that is not in the font has none.
+/// Whether a square of a letter, counted from the left and the top, is filled; letters missing from the font have none.
 pub(crate) fn is_filled(letter: char, column: u32, row: u32) -> bool {
     let found = FONT.binary_search_by_key(&letter, |(letter, _)| *letter);
     found.is_ok_and(|place| FONT[place].1[row as usize] >> (LETTER[0] - 1 - column) & 1 == 1)
 }
 
-/// A letter as rectangles that do not overlap: left, top, width and height in squares. Runs along a row that repeat below
-/// are one rectangle.
+/// A letter as disjoint rectangles: left, top, width and height in squares. Identical runs in successive rows are one
+/// rectangle.
 fn rectangles(letter: char) -> Vec<[u32; 4]> {
     let [columns, rows] = LETTER;
     let mut found: Vec<[u32; 4]> = Vec::new();
@@ -85,8 +85,8 @@ fn rectangles(letter: char) -> Vec<[u32; 4]> {
     found
 }
 
-/// A text, its middle at x = 0 and z = `middle`, of squares of this size in metres, in the plane y = `front`; whoever looks along
-/// −y reads it.
+/// A text in the plane y = `front`, centred at x = 0 and z = `middle`, readable when looking along −y; squares have this size
+/// in metres.
 pub(crate) fn written(text: &str, square: f32, front: f32, middle: f32) -> Mesh {
     let [columns, rows] = LETTER.map(|count| count as f32);
     let letters = text.chars().count() as f32;
@@ -113,7 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_font_is_in_order_and_no_two_letters_are_alike() {
+    fn font_is_sorted_and_its_letters_are_distinct() {
         assert!(
             FONT.windows(2).all(|pair| pair[0].0 < pair[1].0),
             "binary search needs it"
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn rectangles_cover_a_letter_once_and_nothing_else() {
+    fn rectangles_cover_exactly_the_filled_squares_once() {
         for (letter, _) in FONT {
             let rectangles = rectangles(*letter);
             for (row, column) in (0..LETTER[1]).flat_map(|row| (0..LETTER[0]).map(move |column| (row, column))) {

@@ -9,7 +9,7 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// Shapes for the tests of other files.
+/// Shapes for tests in other files.
 #[cfg(test)]
 mod tests {
     use std::f32::consts::TAU;
@@ -40,7 +40,7 @@ mod tests {
             }
         }
 
-        /// Both meshes as one.
+        /// Merges two meshes.
         #[cfg(feature = "gltf")]
         #[must_use]
         pub(crate) fn with(mut self, other: &Self) -> Self {
@@ -55,9 +55,9 @@ mod tests {
             self
         }
 
-        /// A profile of (radius, height) pairs from bottom to top, turned about the z axis in `segments` steps.
+        /// Rotates a profile of (radius, height) pairs, from bottom to top, about the z axis in `segments` steps.
         ///
-        /// A radius of 0 closes the shape in a point; ends of other radius are capped.
+        /// A radius of 0 closes the shape in a point; other ends are capped.
         pub(crate) fn lathe(profile: &[[f32; 2]], segments: u32) -> Self {
             let mut mesh = Self::default();
             let mut rings = Vec::new();
@@ -75,7 +75,7 @@ mod tests {
             mesh
         }
 
-        /// Bands between neighbouring rings, and a cap on either end that is no point.
+        /// Bands between neighbouring rings, and caps on ends that are not points.
         fn join(&mut self, rings: &[(u32, u32)], segments: u32) {
             for pair in rings.windows(2) {
                 self.band(pair[0], pair[1], segments);

@@ -1,4 +1,4 @@
-//! What objects look like: their meshes and colliders, from the files of built-in models or from libraries.
+//! Meshes and colliders of objects, from built-in model files or from libraries.
 
 mod blocks;
 mod builtin;
@@ -34,40 +34,40 @@ pub(crate) use signs::Lettering;
 
 use crate::vector::{cross, dot, sub};
 
-/// The look and the body of one model of one class, at scale 1.
+/// The look and the collider of one model, at scale 1.
 #[derive(Clone, Debug)]
 pub struct Asset {
-    /// What is drawn.
+    /// The coloured meshes.
     pub parts: Vec<Part>,
-    /// What the agent bumps into; it stands on the ground, centred above the object's coordinates.
+    /// The collider; it stands on the ground, centred above the object's coordinates.
     pub collider: ColliderShape,
     /// Height in metres.
     pub height: f32,
     /// Largest distance of any corner from the upright axis in metres.
     pub radius: f32,
-    /// Whether class and model are known; if not, this is the placeholder.
+    /// Whether class and model are known; otherwise this is the placeholder.
     pub known: bool,
-    /// What is drawn, from all of it to the coarsest.
+    /// Levels of detail, from the full model to the coarsest.
     levels: Vec<Level>,
 }
 
-/// An asset's parts, all of them or simplified, ready to be drawn.
+/// One level of detail of an asset, ready to be drawn.
 #[derive(Clone, Debug)]
 struct Level {
-    /// How far the surface may be from where it should be, in metres at scale 1.
+    /// Largest distance of the surface from the full model's, in metres at scale 1.
     error: f32,
     num_triangles: usize,
     materials: Vec<Material>,
 }
 
 impl Asset {
-    /// What to draw where an error of so many metres, at scale 1, cannot be seen.
+    /// The coarsest level whose error is at most `error` metres at scale 1.
     pub(crate) fn level(&self, error: f32) -> &[Material] {
         let good = self.levels.iter().rev().find(|level| level.error <= error);
         good.or(self.levels.first()).map_or(&[], |level| &level.materials)
     }
 
-    /// An asset of these levels of detail, each with its error in metres; the first is the whole of it.
+    /// An asset of these levels of detail, each with its error in metres; the first is the full model.
     pub(crate) fn of_levels(levels: Vec<(f32, Vec<Part>)>, collider: ColliderShape) -> Self {
         let drawn = levels.iter().map(|(error, parts)| Level {
             error: *error,
@@ -87,18 +87,18 @@ impl Asset {
         }
     }
 
-    /// Triangles of each level of detail, and its largest error in metres at scale 1: from all of it to the coarsest.
+    /// Triangles of each level of detail, and its largest error in metres at scale 1: from the full model to the coarsest.
     pub fn levels(&self) -> impl Iterator<Item = (usize, f32)> {
         self.levels.iter().map(|level| (level.num_triangles, level.error))
     }
 
-    /// All there is to choose from for [`Asset::level`].
+    /// All levels from which [`Asset::level`] chooses.
     #[cfg(feature = "gpu")]
     pub(crate) fn materials_of_levels(&self) -> impl Iterator<Item = &[Material]> {
         self.levels.iter().map(|level| level.materials.as_slice())
     }
 
-    /// Radius of the ball around the middle of the asset's height that holds all of it, in metres at scale 1.
+    /// Radius of the bounding ball around the middle of the asset's height, in metres at scale 1.
     pub(crate) fn ball_radius(&self) -> f32 {
         let half = self.height / 2.0;
         (self.radius * self.radius + half * half).sqrt()
@@ -116,12 +116,12 @@ pub struct Part {
     pub normals: Vec<[f32; 3]>,
 }
 
-/// Where a part gets its colour (sRGB).
+/// A part's colour (sRGB).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Paint {
     /// The object's colour; this one if the object has none.
     Main([f32; 3]),
-    /// Always this.
+    /// Always this colour.
     Fixed([f32; 3]),
 }
 
@@ -146,14 +146,14 @@ pub enum ColliderShape {
         /// Half of the height.
         half_height: f32,
     },
-    /// An upright cylinder with a half ball at each end; it stands on the lower one.
+    /// An upright cylinder with a half ball at each end, standing on the lower one.
     Capsule {
         /// Radius.
         radius: f32,
-        /// Half of the height between the middles of the half balls.
+        /// Half of the height between the centres of the half balls.
         half_height: f32,
     },
-    /// What these points enclose, in the asset's frame.
+    /// The convex hull of these points, in the asset's frame.
     Hull {
         /// x, y, z of each point.
         points: Vec<[f32; 3]>,
@@ -176,19 +176,20 @@ fn reach<'a>(points: impl Iterator<Item = &'a [f32; 3]>) -> f32 {
     points.fold(0.0, |most, [x, y, _]| most.max((x * x + y * y).sqrt()))
 }
 
-/// The built-in asset of a class and model; made once, then shared. What is not known is a placeholder.
+/// The built-in asset of a class and model, built once and shared. Unknown ones get a placeholder.
 pub fn asset(class: &str, model: &Model) -> Arc<Asset> {
     asset_in(Style::Plain, class, model)
 }
 
-/// The built-in asset of a class and model in a style. The body is the same in all styles, so that looks change what is seen alone.
+/// The built-in asset of a class and model in a style. The collider is the same in all styles, so that a style changes only the
+/// look.
 pub fn asset_in(style: Style, class: &str, model: &Model) -> Arc<Asset> {
     let class = lowercase(class);
     let found = builtin::number(&class, model).and_then(|number| builtin::asset(style, &class, number));
     found.unwrap_or_else(builtin::placeholder)
 }
 
-/// In small letters; what is written so is not copied.
+/// Lowercases a class name; copies only if needed.
 pub(crate) fn lowercase(class: &str) -> Cow<'_, str> {
     let is_small = |byte: u8| byte.is_ascii() && !byte.is_ascii_uppercase();
     if class.bytes().all(is_small) {
@@ -198,17 +199,17 @@ pub(crate) fn lowercase(class: &str) -> Cow<'_, str> {
     }
 }
 
-/// The built-in sign of a model with a text; made when it is first asked for, then shared for a while.
+/// The built-in sign of a model with a text, built on first use and cached.
 pub(crate) fn sign(model: u32, text: &str, lettering: Lettering) -> Arc<Asset> {
     type Made = HashMap<(u32, String, Lettering), Arc<Asset>>;
     static MADE: LazyLock<Mutex<Made>> = LazyLock::new(Mutex::default);
-    // What was made before a panic elsewhere is whole: assets are inserted when they are finished.
+    // The cache stays valid after a panic: only finished assets are inserted.
     let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
     let key = (model, text.to_owned(), lettering);
     if let Some(asset) = made.get(&key) {
         return Arc::clone(asset);
     }
-    // No stream of ever new texts fills the memory; who still draws what is forgotten keeps it.
+    // Bounds the memory of endless new texts; assets in use stay alive.
     if made.len() >= MOST_SIGNS {
         made.clear();
     }
@@ -218,16 +219,16 @@ pub(crate) fn sign(model: u32, text: &str, lettering: Lettering) -> Arc<Asset> {
     asset
 }
 
-/// How many texts are kept as signs.
+/// Most signs in the cache.
 const MOST_SIGNS: usize = 256;
 
-/// The built-in classes, and how many models each has, in the order of their numbers in class segmentation.
+/// The built-in classes with their numbers of models, ordered by number in class segmentation.
 pub fn classes() -> impl Iterator<Item = (&'static str, u32)> {
     builtin::class_names().map(|class| (class, builtin::model_names(class).count() as u32))
 }
 
-/// The models of a built-in class in the order of their numbers: their names where they have some, else their numbers; none if
-/// the class is not built in.
+/// The models of a built-in class, ordered by number: their names if they have any, otherwise their numbers; empty if the class
+/// is not built in.
 ///
 /// # Example
 /// ```

@@ -1,5 +1,4 @@
-//! Reads a glTF file of built-in models. `docs/assets.md` says what is in one. Files of users are read in `import/`, which
-//! checks them.
+//! Reads the glTF files of built-in models; `docs/assets.md` describes their contents. `import/` reads and checks users' files.
 
 use std::sync::Arc;
 
@@ -10,16 +9,16 @@ use serde_json::Value;
 
 use super::{Asset, ColliderShape, Mesh, Paint, Part};
 
-/// A file that is part of the program: tests have read it whole, so that nothing is missing in it.
+/// A file embedded in the program: tests read all of them completely, so nothing can be missing.
 struct File {
     json: Value,
     buffers: Vec<Vec<u8>>,
 }
 
-/// The forms of a model, each with its error in metres.
+/// The levels of a model, each with its error in metres.
 type Levels = Vec<(f32, Vec<Part>)>;
 
-/// The models of a file in the order of their nodes, with their names.
+/// The models of a file with their names, in the order of their nodes.
 pub(super) fn read(text: &str) -> Vec<(String, Arc<Asset>)> {
     let json: Value = serde_json::from_str(text).expect("a model file is JSON");
     let buffers = list(&json["buffers"]).iter().map(decoded).collect();
@@ -51,7 +50,7 @@ impl File {
         let indices = self.bytes(&primitive["indices"], 2);
         let corner = |bytes: &[u8; 12]| {
             let [x, y, z] = [0, 4, 8].map(|k| f32::from_le_bytes([bytes[k], bytes[k + 1], bytes[k + 2], bytes[k + 3]]));
-            // glTF's up is ours, its front is our north: its x points west.
+            // Converts axes: glTF's up is ours, its front is our north, and its x points west.
             [-x, z, y]
         };
         let triangle = |bytes: &[u8; 6]| [0, 2, 4].map(|k| u32::from(u16::from_le_bytes([bytes[k], bytes[k + 1]])));
@@ -62,7 +61,7 @@ impl File {
         Part::new(mesh, paint(&self.json["materials"][index(&primitive["material"])]))
     }
 
-    /// What an accessor refers to: elements of so many bytes.
+    /// The bytes of an accessor whose elements have `size` bytes.
     fn bytes(&self, accessor: &Value, size: usize) -> &[u8] {
         let accessor = &self.json["accessors"][index(accessor)];
         let view = &self.json["bufferViews"][index(&accessor["bufferView"])];

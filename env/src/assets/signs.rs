@@ -1,4 +1,4 @@
-//! Signs with something written on their boards. The boards are models; letters are in `letters.rs`.
+//! Signs with a text on their boards.
 
 use super::letters::{LETTER, written};
 use super::{Asset, Paint, Part};
@@ -6,32 +6,32 @@ use super::{Asset, Paint, Part};
 const DARK: [f32; 3] = [0.06, 0.06, 0.08];
 const LIGHT: [f32; 3] = [0.97, 0.97, 0.95];
 
-/// Width and height of a board, and from the ground to its middle, in metres.
+/// Width and height of a board, and the height of its centre, in metres.
 const POST: [f32; 2] = [1.3, 0.62];
 const WIDE: [f32; 2] = [2.2, 0.62];
 const MIDDLE: f32 = 1.15;
 
-/// Pixels of a square of a letter from which on letters are drawn, seen from the sign's nearest point.
+/// Size in pixels of a letter's square from which letters are drawn, seen from the sign's nearest point.
 const READABLE: f32 = 1.6;
 
-/// How thick a board is, and how far letters are before it, in metres.
+/// Thickness of a board, and distance of letters in front of it, in metres.
 const THICK: f32 = 0.05;
 const BEFORE: f32 = 0.01;
 
-/// What letters are written with.
+/// Colour of letters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) enum Lettering {
-    /// For boards that are light: those of no other colour, too.
+    /// For light boards; the default.
     #[default]
     Dark,
-    /// For boards that are dark.
+    /// For dark boards.
     Light,
 }
 
 impl Lettering {
-    /// The lettering that is seen on a colour (sRGB).
+    /// The lettering that is readable on a colour (sRGB).
     pub(crate) fn on([r, g, b]: [f32; 3]) -> Self {
-        // The eye's weights; half of what is seen as white is a little below a half in sRGB.
+        // Luma weights; perceived middle grey is a little below a half in sRGB.
         if 0.30 * r + 0.59 * g + 0.11 * b < 0.45 {
             Self::Light
         } else {
@@ -40,8 +40,8 @@ impl Lettering {
     }
 }
 
-/// The bare sign number `model` with a text on its front. The letters are left out where one of their squares is below
-/// [`READABLE`] pixels: they would flicker, and be read as others.
+/// The bare sign number `model` with a text on its front. Letters are left out where one of their squares is below [`READABLE`]
+/// pixels, because they would flicker and be misread.
 pub(crate) fn sign(bare: &Asset, model: u32, text: &str, lettering: Lettering) -> Asset {
     if text.trim().is_empty() {
         return bare.clone();
@@ -57,7 +57,7 @@ pub(crate) fn sign(bare: &Asset, model: u32, text: &str, lettering: Lettering) -
     };
     let mut all = bare.parts.clone();
     all.push(Part::new(letters, Paint::Fixed(color)));
-    // Half a pixel may be off: that is this much where a square is so many pixels.
+    // An error of half a pixel is allowed: this many metres at that size of square.
     let levels = vec![(0.0, all), (square / (2.0 * READABLE), bare.parts.clone())];
     Asset::of_levels(levels, bare.collider.clone())
 }

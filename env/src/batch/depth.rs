@@ -1,15 +1,15 @@
-//! [`DepthForm`]: the numbers that a batch hands out depth in. The metres they are made from are drawn by `render`.
+//! [`DepthForm`]: the number formats of a batch's depth images.
 
 use crate::render::{GRAY_PER_METRE, rounded};
 
-/// What numbers a batch's depth images are made of, by the names of Python's arrays.
+/// The number format of a batch's depth images, by the names of NumPy's dtypes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, strum::EnumString)]
 pub enum DepthForm {
-    /// Metres, as drawn.
+    /// Metres, as rendered.
     #[default]
     #[strum(serialize = "float32")]
     Metres,
-    /// Whole millimetres up to 65,535; what is farther is 65,535. As depth cameras give it.
+    /// Whole millimetres, capped at 65,535, as depth cameras give them.
     #[strum(serialize = "uint16")]
     Millimetres,
     /// Grey, as L2Explorer shows it: 0 at the camera, 255 at 100 m and beyond.
@@ -17,18 +17,18 @@ pub enum DepthForm {
     Gray,
 }
 
-/// Millimetres for metres, rounded.
+/// Converts metres to millimetres, rounded.
 pub(super) fn millimetres(depth: &[f32], out: &mut [u16]) {
     scaled(depth, 1000.0, 65_535.0, |word| word as u16, out);
 }
 
-/// Grey for metres.
+/// Converts metres to grey.
 pub(super) fn gray(depth: &[f32], out: &mut [u8]) {
     scaled(depth, GRAY_PER_METRE, 255.0, |word| word as u8, out);
 }
 
-/// Whole numbers up to `most` of `scale` times the metres, with the widest vectors of the processor: 0.7 µs for 84 × 84
-/// pixels with AVX-512, 1.2 with AVX2, 2.1 with SSE2. The numbers are the same with all of them.
+/// Rounds `scale` times the metres, capped at `most`, with the CPU's widest vectors: 0.7 µs for 84 × 84 pixels with AVX-512,
+/// 1.2 with AVX2, 2.1 with SSE2. The numbers are the same with all of them.
 fn scaled<T>(depth: &[f32], scale: f32, most: f32, lowest: impl Fn(u32) -> T, out: &mut [T]) {
     #[cfg(target_arch = "x86_64")]
     {
@@ -74,7 +74,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_far_end_of_each_form_is_its_greatest_number() {
+    fn far_distances_give_the_largest_number() {
         let depth = [0.0, 0.0625, 50.0, 99.9, 65.6, 1000.0];
         let (mut small, mut large) = ([0; 6], [0; 6]);
         gray(&depth, &mut small);
@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn forms_round_as_a_cast_does() {
+    fn conversion_rounds_like_a_cast() {
         let steps = (0..60_000_u16).step_by(if cfg!(miri) { 599 } else { 1 });
         let depth: Vec<f32> = steps.map(|step| f32::from(step) * 0.001_713).collect();
         let (mut small, mut large) = (vec![0; depth.len()], vec![0; depth.len()]);

@@ -1,12 +1,11 @@
-//! The pictures of a whole batch drawn together, for renderers that like it so. What an environment draws by itself is
-//! in `slot.rs`.
+//! Draws the images of a whole batch together, for renderers that are faster that way.
 
 use super::images::{ImagesMut, blank_unasked};
 use super::slot::Slot;
 use crate::EnvError;
 use crate::render::{Picture, Renderer};
 
-/// Draws what the chosen environments' agents see.
+/// Draws the views of the chosen environments' agents.
 pub(super) fn draw(
     renderer: &mut Renderer,
     slots: &[Slot],

@@ -1,4 +1,4 @@
-//! Images of many environments in one buffer for each modality. Who fills them is in `mod.rs`.
+//! Images of many environments, with one buffer per modality.
 
 use driftworld_spec::{Modality, StateFeature, World};
 
@@ -7,25 +7,25 @@ use super::options::MAX_BATCH_BYTES;
 use crate::EnvError;
 use crate::render::{FAR_DEPTH, Target};
 
-/// What images the environments of a batch make: all alike.
+/// The layout of a batch's images, the same for all environments.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ImageLayout {
     /// Width in pixels.
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Points per pixel along each side that colours are the mean of.
+    /// Samples per pixel along each side, whose mean is the colour.
     pub supersampling: u32,
-    /// Which images there are.
+    /// The modalities.
     pub modalities: Vec<Modality>,
-    /// What the state vectors beside them hold.
+    /// Features of the state vectors.
     pub state_features: Vec<StateFeature>,
-    /// Numbers of the instruction after these.
+    /// Length of the instruction that follows these features.
     pub instruction_len: usize,
 }
 
 impl ImageLayout {
-    /// The images that a world asks for.
+    /// The images that a world requests.
     pub fn of(world: &World) -> Self {
         let agent = &world.agent_params;
         Self {
@@ -38,7 +38,7 @@ impl ImageLayout {
         }
     }
 
-    /// Whether a world's images have their place among these: as large, and none that is not there.
+    /// Whether a world's images fit this layout: the same size, and no modality that the layout lacks.
     pub(super) fn check(&self, env: usize, world: &World) -> Result<(), EnvError> {
         let agent = &world.agent_params;
         if [self.width, self.height] == agent.picture_size()
@@ -105,33 +105,33 @@ impl std::fmt::Display for ImageLayout {
     }
 }
 
-/// The images of all environments of a batch, environment after environment; row 0 on top. Buffers of modalities that the
-/// layout lacks are empty. Images that it has and an environment's world does not ask for are 0 everywhere.
+/// The images of all environments of a batch, one after another; row 0 on top. Buffers of modalities that the layout lacks are
+/// empty. Images that the layout has but an environment's world does not request are 0 everywhere.
 #[derive(Clone, Debug)]
 pub struct Images {
-    /// What there is.
+    /// Sizes and modalities.
     pub layout: ImageLayout,
     /// Colour, `(num_envs, height, width, 3)` bytes, sRGB.
     pub rgb: Vec<u8>,
     /// Distance along the view axis in metres, `(num_envs, height, width)`.
     pub depth: Vec<f32>,
-    /// The same in millimetres, `(num_envs, height, width)`; only in [`DepthForm::Millimetres`].
+    /// Depth in millimetres, `(num_envs, height, width)`; only in [`DepthForm::Millimetres`].
     pub depth_millimetres: Vec<u16>,
-    /// The same as grey, `(num_envs, height, width)`; only in [`DepthForm::Gray`].
+    /// Depth as grey, `(num_envs, height, width)`; only in [`DepthForm::Gray`].
     pub depth_gray: Vec<u8>,
     /// Reward category, `(num_envs, height, width)`.
     pub category: Vec<u8>,
     /// Object class, `(num_envs, height, width)`.
     pub class: Vec<u16>,
-    /// Object, `(num_envs, height, width)`: its index plus 1, 0 where there is none.
+    /// Object, `(num_envs, height, width)`: its index plus 1, or 0 for none.
     pub instance: Vec<u32>,
 }
 
 impl Images {
-    /// Those of environments that have not begun.
+    /// Blank images, for environments that have not begun.
     ///
     /// # Errors
-    /// [`EnvError::BatchMemory`] where memory is not available.
+    /// [`EnvError::BatchMemory`] if memory is not available.
     pub(super) fn new(layout: ImageLayout, num_envs: usize, form: DepthForm) -> Result<Self, EnvError> {
         let pixels = |modality: Modality| {
             let wanted = usize::from(layout.modalities.contains(&modality));
@@ -150,7 +150,7 @@ impl Images {
         })
     }
 
-    /// All of them, for writing.
+    /// A mutable view of all images.
     pub(super) fn view(&mut self) -> ImagesMut<'_> {
         ImagesMut {
             size: [self.layout.width, self.layout.height],
@@ -166,7 +166,7 @@ impl Images {
     }
 }
 
-/// Images of some of a batch's environments, for writing.
+/// A mutable view of the images of some of a batch's environments.
 pub(super) struct ImagesMut<'a> {
     size: [u32; 2],
     supersampling: u32,
@@ -180,7 +180,7 @@ pub(super) struct ImagesMut<'a> {
 }
 
 impl<'a> ImagesMut<'a> {
-    /// Each environment's images, all at once.
+    /// One render target per environment.
     pub(super) fn targets(self, num_envs: usize) -> impl Iterator<Item = Target<'a>> {
         let mut rest = Some(self);
         (0..num_envs).map_while(move |_| {
@@ -203,7 +203,7 @@ impl<'a> ImagesMut<'a> {
         }
     }
 
-    /// Those of the first environments, and the rest.
+    /// Splits off the images of the first environments.
     pub(super) fn split(mut self, num_envs: usize) -> (Self, Self) {
         let pixels = num_envs * self.size[0] as usize * self.size[1] as usize;
         let rest = Self {
@@ -220,7 +220,7 @@ impl<'a> ImagesMut<'a> {
         (self, rest)
     }
 
-    /// Makes the depth that was drawn into the form that is handed out, for the environment of this number among these.
+    /// Converts the rendered depth of one environment, by its index in this view, to the chosen format.
     pub(super) fn form_depth(&mut self, env: usize) {
         let pixels = self.size[0] as usize * self.size[1] as usize;
         let drawn = env * pixels..(env + 1) * pixels;
@@ -232,7 +232,7 @@ impl<'a> ImagesMut<'a> {
         }
     }
 
-    /// The images of the environment of this number among these.
+    /// The images of one environment, by its index in this view.
     pub(super) fn target(&mut self, env: usize) -> Target<'_> {
         let pixels = self.size[0] as usize * self.size[1] as usize;
         Target {
@@ -248,7 +248,7 @@ impl<'a> ImagesMut<'a> {
     }
 }
 
-/// Sets the images that a world does not ask for to 0, and takes them out of what is to be drawn.
+/// Clears the images that a world does not request, and removes them from the render target.
 pub(super) fn blank_unasked(target: &mut Target<'_>, asked: &[Modality]) {
     fn blank<T: Default + Clone>(image: &mut Option<&mut [T]>, is_asked: bool) {
         if !is_asked && let Some(image) = image.take() {
@@ -263,11 +263,10 @@ pub(super) fn blank_unasked(target: &mut Target<'_>, asked: &[Modality]) {
     blank(&mut target.instance, is_asked(Modality::Instance));
 }
 
-/// A buffer of so many of a value.
+/// A buffer of `length` copies of a value.
 ///
 /// # Errors
-/// [`EnvError::BatchMemory`] where memory is not available: the buffer is the caller's to choose, so that is no reason to
-/// end all.
+/// [`EnvError::BatchMemory`] if memory is not available: the caller chose the size, so running out must not abort the process.
 pub(super) fn filled<T: Clone>(value: T, length: usize) -> Result<Vec<T>, EnvError> {
     let mut buffer = Vec::new();
     buffer.try_reserve_exact(length).map_err(|_| EnvError::BatchMemory {
@@ -282,7 +281,7 @@ fn wanted<T>(all: &mut [T]) -> Option<&mut [T]> {
     (!all.is_empty()).then_some(all)
 }
 
-/// One environment's share of a buffer; none of an empty one.
+/// One environment's slice of a buffer; `None` if the buffer is empty.
 fn one<T>(all: &mut [T], env: usize, length: usize) -> Option<&mut [T]> {
     (!all.is_empty()).then(|| &mut all[env * length..(env + 1) * length])
 }

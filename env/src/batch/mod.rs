@@ -1,6 +1,4 @@
-//! [`Batch`]: many environments that step together, in one contiguous buffer per output. One environment's part of it
-//! is in
-//! `slot.rs`, how the work is shared among threads in `part.rs`; what happens inside an environment is in `sim`.
+//! [`Batch`]: many environments that step together, with one contiguous buffer per output.
 
 mod depth;
 mod graphics;
@@ -26,15 +24,14 @@ use crate::recording::Recording;
 use crate::render::{CpuRenderer, Renderer, RendererKind};
 use crate::sim::{Action, EndedBy, Environment, Event};
 
-/// The most threads of a batch for each processor: more would only take turns.
+/// Most threads of a batch per processor: more would only take turns.
 const THREADS_PER_PROCESSOR: usize = 4;
 
 /// `num_envs` environments that step together.
 ///
-/// Each behaves exactly as an [`Environment`] alone would, whatever the number of threads. A step in which no episode
-/// begins allocates nothing, but that the pool's queue takes a block of memory once in about sixty steps if there are
-/// several threads. Worlds take memory in steps in which something is pushed or comes back, bodies overlap, or an agent
-/// on rails chooses where to go.
+/// Each behaves exactly as a single [`Environment`] would, whatever the number of threads. A step in which no episode begins
+/// allocates nothing, except that with several threads the pool's queue allocates a block of memory about once in sixty steps.
+/// Worlds allocate in steps in which something is pushed or respawns, bodies overlap, or an agent on rails chooses where to go.
 ///
 /// # Example
 /// ```
@@ -55,25 +52,25 @@ pub struct Batch {
     finals: Option<Outputs>,
     autoreset: Autoreset,
     renderers: Vec<CpuRenderer>,
-    /// Draws all environments' images together, if a graphics card does; the renderers above are idle then.
+    /// Draws all environments' images together, if on a GPU; the renderers above are idle then.
     graphics: Option<Renderer>,
     pool: Option<rayon::ThreadPool>,
 }
 
 impl Batch {
-    /// Environments at the start of their episodes 0, their first observations drawn.
+    /// Environments at the start of their episodes 0, with their first observations rendered.
     ///
     /// # Errors
-    /// [`EnvError::BatchSize`] for none or more than [`MAX_ENVS`]; [`EnvError::BatchMemory`] where outputs would take
-    /// more than [`MAX_BATCH_BYTES`], or more than can be had; [`EnvError::BatchWorld`] where the source has no world;
-    /// [`EnvError::BatchImages`] where worlds ask for images of other sizes, or for some that there are not;
-    /// [`EnvError::BatchThreads`] if there are no threads; [`EnvError::NoGpu`] if a graphics card is asked for and none works;
-    /// and as [`Renderer::draw_batch`].
+    /// [`EnvError::BatchSize`] for none or more than [`MAX_ENVS`]; [`EnvError::BatchMemory`] if outputs would take more than
+    /// [`MAX_BATCH_BYTES`], or more than is available; [`EnvError::BatchWorld`] if the source has no world;
+    /// [`EnvError::BatchImages`] if worlds request images of other sizes, or modalities that the batch lacks;
+    /// [`EnvError::BatchThreads`] if threads cannot be started; [`EnvError::NoGpu`] if a GPU is requested and none works; and
+    /// as [`Renderer::draw_batch`].
     pub fn new(num_envs: usize, source: WorldSource, options: BatchOptions) -> Result<Self, EnvError> {
         Self::with_catalogue(num_envs, source, options, &Catalogue::default())
     }
 
-    /// The same with assets from a catalogue, for all environments and episodes.
+    /// Like [`Batch::new`], with assets from a catalogue for all environments and episodes.
     ///
     /// # Errors
     /// As [`Batch::new`].
@@ -86,7 +83,7 @@ impl Batch {
         Self::with_catalogue_while(num_envs, source, options, catalogue, &always)
     }
 
-    /// The same as long as `go_on` says so.
+    /// Like [`Batch::with_catalogue`], but stops when `go_on` returns false.
     ///
     /// # Errors
     /// As [`Batch::new`], and [`EnvError::Stopped`].
@@ -114,7 +111,7 @@ impl Batch {
         layout.modalities = options.modalities.unwrap_or(layout.modalities);
         let (layout, state_len) = (Arc::new(layout), world.agent_params.state_len());
         let first = Slot::new(0, world, &source, &layout, catalogue, limit)?;
-        // Before anything large is taken.
+        // Checks memory before allocating anything large.
         let copies = 1 + u64::from(options.autoreset == Autoreset::SameStep);
         expect_room(copies * Outputs::bytes(&layout, options.depth, state_len, num_envs))?;
         let pool = match threads(options.num_threads, num_envs) {
@@ -145,7 +142,7 @@ impl Batch {
             Autoreset::SameStep => Some(Outputs::new(&layout, options.depth, state_len, num_envs)?),
             Autoreset::NextStep | Autoreset::Disabled => None,
         };
-        // Several parts for each thread: environments that are near many things take longer.
+        // Several parts per thread: environments near many objects take longer.
         let parts = if threads == 1 { 1 } else { (4 * threads).min(num_envs) };
         let mut batch = Self {
             finals,
@@ -160,18 +157,18 @@ impl Batch {
         Ok(batch)
     }
 
-    /// How many environments there are.
+    /// Number of environments.
     pub fn num_envs(&self) -> usize {
         self.slots.len()
     }
 
-    /// What the last step or reset led to.
+    /// Outputs of the last step or reset.
     pub fn outputs(&self) -> &Outputs {
         &self.outputs
     }
 
-    /// With [`Autoreset::SameStep`], the last observation, reward and flags of each environment whose episode ended in
-    /// the last step: those where the outputs say terminated or truncated. Other environments' parts hold old values.
+    /// With [`Autoreset::SameStep`], the last observation, reward and flags of each environment whose episode ended in the last
+    /// step: those that the outputs mark as terminated or truncated. Other environments' entries are stale.
     pub fn final_outputs(&self) -> Option<&Outputs> {
         self.finals.as_ref()
     }
@@ -181,7 +178,7 @@ impl Batch {
         self.slots.get(env).map(|slot| &slot.environment)
     }
 
-    /// What happened in an environment in the last step.
+    /// Events in an environment during the last step.
     pub fn events(&self, env: usize) -> Option<&[Event]> {
         self.slots.get(env).map(|slot| slot.step.events.as_slice())
     }
@@ -191,37 +188,37 @@ impl Batch {
         self.slots.get(env)?.step.ended_by
     }
 
-    /// Takes down what is done in each environment from now on, or no longer. Steps take memory then.
+    /// Starts or stops recording in every environment. Steps allocate memory while recording.
     pub fn set_recording(&mut self, records: bool) {
         for env in 0..self.slots.len() {
             self.set_recording_of(env, records);
         }
     }
 
-    /// As [`Batch::set_recording`], of one environment alone. Nothing where there is no such environment.
+    /// Like [`Batch::set_recording`], for one environment. Does nothing if there is no such environment.
     pub fn set_recording_of(&mut self, env: usize, records: bool) {
         if let Some(slot) = self.slots.get_mut(env) {
             slot.set_recording(records);
         }
     }
 
-    /// What was done in an environment's episode so far; before its first step, and where it began by itself in the step that ended
-    /// another, what was done in the one before. `None` unless [`Batch::set_recording`] asks for it.
+    /// The recording of an environment's current episode. Before its first step, and if it began by itself in the step that
+    /// ended another episode, that of the previous one. `None` unless [`Batch::set_recording`] requested it.
     pub fn recording(&self, env: usize) -> Option<Recording> {
         self.slots.get(env)?.recording()
     }
 
-    /// Which episode an environment is in.
+    /// An environment's current episode.
     pub fn episode(&self, env: usize) -> Option<Episode> {
         self.slots.get(env).map(Slot::episode)
     }
 
-    /// Steps of the episode that an environment is in, as [`BatchOptions::max_episode_steps`] counts them.
+    /// Steps of an environment's current episode, as counted for [`BatchOptions::max_episode_steps`].
     pub fn episode_steps(&self, env: usize) -> Option<u32> {
         self.slots.get(env).map(|slot| slot.steps)
     }
 
-    /// Counts on from so many steps, for an episode that began elsewhere.
+    /// Sets the number of steps taken, for an episode that began elsewhere.
     ///
     /// # Errors
     /// [`EnvError::NoSuchEnv`].
@@ -233,23 +230,24 @@ impl Batch {
         Ok(())
     }
 
-    /// Begins the next episode in every environment, ended or not.
+    /// Begins the next episode in every environment, whether its current one has ended or not.
     ///
     /// # Errors
-    /// [`EnvError::BatchWorld`] and [`EnvError::BatchImages`] for the first environment that gets no world: all others have begun.
+    /// [`EnvError::BatchWorld`] and [`EnvError::BatchImages`] for the first environment that gets no world: all others have
+    /// begun.
     pub fn reset(&mut self) -> Result<(), EnvError> {
         self.begin_next(|_| true);
         let go_on = &always;
         self.work(Work::Reset { chosen: &[], go_on })
     }
 
-    /// Begins the next episode in the environments that `chosen` says true for, as long as `go_on` says so; the others' outputs
+    /// Begins the next episode in the environments for which `chosen` is true, until `go_on` returns false; the others' outputs
     /// stay.
     ///
     /// # Errors
-    /// [`EnvError::BatchLength`] unless there is one answer for each environment; those of [`Batch::reset`];
-    /// [`EnvError::Stopped`] if some have not begun: they do so with the next reset, or with the next step where episodes begin by
-    /// themselves.
+    /// [`EnvError::BatchLength`] unless `chosen` has one entry per environment; those of [`Batch::reset`];
+    /// [`EnvError::Stopped`] if some have not begun: they do so with the next reset, or, with automatic resets, with the next
+    /// step.
     pub fn reset_where_while(&mut self, chosen: &[bool], go_on: GoOn<'_>) -> Result<(), EnvError> {
         self.expect_one_each(chosen.len())?;
         self.begin_next(|env| chosen[env]);
@@ -264,12 +262,12 @@ impl Batch {
         }
     }
 
-    /// Lets every environment act once: one action for each, in order. What comes of it is in [`Batch::outputs`].
+    /// Steps every environment with one action each, in order. The results are in [`Batch::outputs`].
     ///
     /// # Errors
-    /// [`EnvError::BatchLength`] and [`EnvError::BatchAction`] before anything has changed. [`EnvError::BatchWorld`]
-    /// and [`EnvError::BatchImages`] when the next episode of an environment cannot begin: the others have stepped, and
-    /// the next step asks for that world again.
+    /// [`EnvError::BatchLength`] and [`EnvError::BatchAction`] before anything has changed. [`EnvError::BatchWorld`] and
+    /// [`EnvError::BatchImages`] if the next episode of an environment cannot begin: the others have stepped, and the next step
+    /// requests that world again.
     pub fn step(&mut self, actions: &[Action]) -> Result<(), EnvError> {
         self.expect_one_each(actions.len())?;
         for (env, (slot, action)) in self.slots.iter().zip(actions).enumerate() {
@@ -292,7 +290,7 @@ impl Batch {
         }
     }
 
-    /// What draws the images: the processor or a graphics card.
+    /// What draws the images: the CPU or a GPU.
     pub fn renderer(&self) -> RendererKind {
         self.graphics.as_ref().map_or(RendererKind::Cpu, Renderer::kind)
     }
@@ -344,7 +342,7 @@ fn always() -> bool {
     true
 }
 
-/// Threads for so many environments: as many as asked for, where they have something to do.
+/// Number of threads: as many as requested, but no more than can be kept busy.
 fn threads(asked: usize, num_envs: usize) -> usize {
     let processors = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
     let wanted = if asked == 0 { processors } else { asked };
@@ -361,7 +359,7 @@ fn expect_room(bytes: u64) -> Result<(), EnvError> {
     })
 }
 
-/// Draws the chosen environments' images at once, on the batch's own threads.
+/// Draws the chosen environments' images together, on the batch's own threads.
 fn draw_together(
     graphics: &mut Option<Renderer>,
     pool: Option<&rayon::ThreadPool>,
@@ -389,7 +387,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn threads_are_as_many_as_have_something_to_do() {
+    fn thread_count_is_limited_by_environments_and_processors() {
         let processors = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
         assert_eq!(threads(0, 65_536), processors);
         assert_eq!(threads(2, 65_536), 2);

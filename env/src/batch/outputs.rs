@@ -1,29 +1,29 @@
-//! What comes out of a batch: observations, rewards and flags, one buffer each. Images are in `images.rs`.
+//! Outputs of a batch: observations, rewards and flags, with one buffer each.
 
 use super::depth::DepthForm;
 use super::images::{ImageLayout, Images, ImagesMut, filled};
 use crate::EnvError;
 
-/// Observations, rewards and flags of all environments, environment after environment.
+/// Observations, rewards and flags of all environments, one after another.
 #[derive(Clone, Debug)]
 pub struct Outputs {
-    /// What the agents see.
+    /// The agents' images.
     pub images: Images,
     /// The state vectors, `(num_envs, state_len)`.
     pub states: Vec<f32>,
-    /// Numbers in one state vector.
+    /// Length of one state vector.
     pub state_len: usize,
-    /// What the last step paid, `(num_envs,)`; 0 in a reset.
+    /// Reward of the last step, `(num_envs,)`; 0 in a reset.
     pub rewards: Vec<f64>,
-    /// Whether the last step ended the episode by itself, `(num_envs,)`.
+    /// Whether the last step terminated the episode, `(num_envs,)`.
     pub terminated: Vec<bool>,
-    /// Whether the last step was the last that the limit allows, `(num_envs,)`.
+    /// Whether the last step reached the limit, `(num_envs,)`.
     pub truncated: Vec<bool>,
     /// Whether the last step ended the episode as a success, `(num_envs,)`.
     pub success: Vec<bool>,
 }
 
-/// Some environments' part of [`Outputs`].
+/// A mutable view of [`Outputs`] for some environments.
 pub(super) struct OutputsMut<'a> {
     pub(super) images: ImagesMut<'a>,
     states: &'a mut [f32],
@@ -35,10 +35,10 @@ pub(super) struct OutputsMut<'a> {
 }
 
 impl Outputs {
-    /// Those of environments that have not begun.
+    /// Blank outputs, for environments that have not begun.
     ///
     /// # Errors
-    /// [`EnvError::BatchMemory`] where memory is not available.
+    /// [`EnvError::BatchMemory`] if memory is not available.
     pub(super) fn new(
         layout: &ImageLayout,
         form: DepthForm,
@@ -56,7 +56,7 @@ impl Outputs {
         })
     }
 
-    /// How many bytes they take.
+    /// Their size in bytes.
     pub(super) fn bytes(layout: &ImageLayout, form: DepthForm, state_len: usize, num_envs: usize) -> u64 {
         let flags = size_of::<f64>() + 3 * size_of::<bool>();
         let numbers = (state_len * size_of::<f32>() + flags) as u64;
@@ -77,7 +77,7 @@ impl Outputs {
 }
 
 impl OutputsMut<'_> {
-    /// Those of the first environments, and the rest.
+    /// Splits off the outputs of the first environments.
     pub(super) fn split(mut self, num_envs: usize) -> (Self, Self) {
         let (images, more_images) = self.images.split(num_envs);
         let rest = Self {
@@ -95,12 +95,12 @@ impl OutputsMut<'_> {
         (Self { images, ..self }, rest)
     }
 
-    /// The state vector of the environment of this number among these.
+    /// The state vector of one environment, by its index in this view.
     pub(super) fn state(&mut self, env: usize) -> &mut [f32] {
         &mut self.states[env * self.state_len..(env + 1) * self.state_len]
     }
 
-    /// Notes what a step paid and whether it was the last.
+    /// Stores a step's reward and flags.
     pub(super) fn note(&mut self, env: usize, step: &crate::sim::Step) {
         self.rewards[env] = step.reward;
         self.terminated[env] = step.terminated;

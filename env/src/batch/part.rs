@@ -1,4 +1,4 @@
-//! The work of a step or a reset, shared among threads: each takes a part of the environments.
+//! Shares the work of a step or a reset among threads: each takes a part of the environments.
 
 use super::options::{Autoreset, GoOn};
 use super::outputs::OutputsMut;
@@ -7,7 +7,7 @@ use crate::EnvError;
 use crate::render::CpuRenderer;
 use crate::sim::Action;
 
-/// What a step or a reset does to a part of a batch.
+/// A part of a batch for one step or reset.
 pub(super) struct Part<'a> {
     pub(super) slots: &'a mut [Slot],
     pub(super) outputs: OutputsMut<'a>,
@@ -19,13 +19,13 @@ pub(super) struct Part<'a> {
 /// When images are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Drawing {
-    /// Right after an environment's step.
+    /// Right after each environment's step.
     Now,
-    /// After the steps of all.
+    /// After all environments have stepped.
     Later,
 }
 
-/// What all parts are to do.
+/// The work for all parts.
 #[derive(Clone, Copy)]
 pub(super) enum Work<'a> {
     Step {
@@ -36,12 +36,12 @@ pub(super) enum Work<'a> {
         chosen: &'a [bool],
         go_on: GoOn<'a>,
     },
-    /// Begins the episodes that follow those whose last image had to be drawn first.
+    /// Begins the next episodes of environments whose last image had to be drawn first.
     BeginLate,
 }
 
 impl Part<'_> {
-    /// Does the work on environments from `first` on, in halves until each has one renderer.
+    /// Does the work on environments from `first` on, halving until each part has one renderer.
     pub(super) fn run(self, first: usize, work: Work<'_>) -> Result<(), EnvError> {
         if self.renderers.len() <= 1 {
             return self.run_here(first, work);
@@ -53,7 +53,7 @@ impl Part<'_> {
         low.and(high)
     }
 
-    /// The first environments with the first renderers, and the rest.
+    /// Splits off the first environments with the first renderers.
     fn split(mut self, num_envs: usize, num_renderers: usize) -> (Self, Self) {
         let (outputs, more_outputs) = self.outputs.split(num_envs);
         let (finals, more_finals) = self.finals.map(|finals| finals.split(num_envs)).unzip();

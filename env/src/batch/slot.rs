@@ -1,4 +1,4 @@
-//! One environment of a batch: where its worlds come from, and what a step does when an episode has ended.
+//! One environment of a batch: fetches its worlds, and handles the end of episodes.
 
 use std::num::NonZeroU32;
 use std::sync::Arc;
@@ -20,22 +20,22 @@ pub(super) struct Slot {
     pub(super) step: Step,
     source: WorldSource,
     pub(super) layout: Arc<ImageLayout>,
-    /// Number of the episode that runs.
+    /// Index of the current episode.
     current: u64,
-    /// Number of the episode that comes next.
+    /// Index of the next episode.
     next: u64,
-    /// Whether the next episode must begin before anything else happens.
+    /// Whether the next episode must begin before anything else.
     pub(super) is_over: bool,
-    /// Steps of the episode that runs, and how many it may have.
+    /// Steps of the current episode, and its limit.
     pub(super) steps: u32,
     limit: Option<NonZeroU32>,
-    /// Takes the episode down, if that is wanted, and the episode before.
+    /// Records the episode if requested, and keeps the recording of the one before.
     recorder: Option<Recorder>,
     before: Option<Recording>,
 }
 
 impl Slot {
-    /// An environment at the start of its episode 0, in the world of that.
+    /// An environment at the start of its episode 0, in `world`.
     pub(super) fn new(
         env: usize,
         world: World,
@@ -61,19 +61,19 @@ impl Slot {
         })
     }
 
-    /// Takes down what is done from now on, or no longer.
+    /// Starts or stops recording.
     pub(super) fn set_recording(&mut self, records: bool) {
         self.recorder = records.then(|| Recorder::from_now(&self.environment));
         self.before = None;
     }
 
-    /// The episode so far; before its first step the one before, if there is one.
+    /// The recording of the current episode; before its first step that of the previous one, if any.
     pub(super) fn recording(&self) -> Option<Recording> {
         let recorder = self.recorder.as_ref()?;
         if recorder.num_steps() == 0 && self.before.is_some() {
             return self.before.clone();
         }
-        // What ended before the first recorded step belongs to another episode.
+        // An end before the first recorded step belongs to another episode.
         let ended_by = self.step.ended_by.filter(|_| recorder.num_steps() > 0);
         Some(recorder.recording(&self.environment, ended_by))
     }
@@ -85,13 +85,13 @@ impl Slot {
         }
     }
 
-    /// Counts on from so many steps; that may be the last.
+    /// Sets the number of steps taken, which may reach the limit.
     pub(super) fn set_steps(&mut self, steps: u32) {
         self.steps = steps;
         self.is_over |= self.limit.is_some_and(|limit| steps >= limit.get());
     }
 
-    /// Whether the action can be carried out as things are.
+    /// Whether the action is valid now.
     pub(super) fn check(&self, action: Action, autoreset: Autoreset) -> Result<(), EnvError> {
         if !self.is_over {
             return self.environment.check(action);
@@ -102,7 +102,7 @@ impl Slot {
         }
     }
 
-    /// Begins the next episode after a same-step reset whose last picture has been drawn in the meantime.
+    /// Begins the next episode after a same-step reset, once the last image has been drawn.
     pub(super) fn begin_late(&mut self, index: usize, outputs: &mut OutputsMut<'_>) -> Result<(), EnvError> {
         if self.ends_late() {
             self.begin()?;
@@ -111,12 +111,12 @@ impl Slot {
         Ok(())
     }
 
-    /// Whether the step that was just made ended the episode, and the next has not begun.
+    /// Whether the last step ended the episode and the next one has not begun.
     pub(super) fn ends_late(&self) -> bool {
         self.is_over && self.step.ended()
     }
 
-    /// Begins the next episode if that is due, and hands out the observation.
+    /// Begins the next episode if it is due, and writes the observation.
     pub(super) fn reset(
         &mut self,
         index: usize,
@@ -141,7 +141,7 @@ impl Slot {
         mut renderer: Option<&mut CpuRenderer>,
     ) -> Result<(), EnvError> {
         if self.is_over {
-            // Next-step autoreset; or an episode that could not begin in its own time.
+            // Next-step autoreset, or an episode that could not begin in its own time.
             return self.reset(index, outputs, renderer);
         }
         self.environment.step_into(action, &mut self.step)?;
@@ -159,7 +159,7 @@ impl Slot {
             finals.note(index, &self.step);
             self.observe(index, finals, renderer.as_deref_mut())?;
             if renderer.is_none() {
-                // The last picture is still to be drawn: see `begin_late`.
+                // The last image is still to be drawn: see `begin_late`.
                 return Ok(());
             }
             self.begin()?;
@@ -167,7 +167,7 @@ impl Slot {
         self.observe(index, outputs, renderer)
     }
 
-    /// Asks for the next world and enters it; on error the slot stays as it is.
+    /// Fetches the next world and enters it; on error the slot stays unchanged.
     fn begin(&mut self) -> Result<(), EnvError> {
         let world = world_of(&self.source, self.env, self.next)?;
         self.layout.check(self.env, &world)?;
@@ -180,21 +180,21 @@ impl Slot {
         self.environment.reset(world);
         self.current = self.next;
         self.next = self.next.saturating_add(1);
-        // A world that was written down after its end has no step left.
+        // A world that was saved after its end has no steps left.
         self.is_over = self.environment.ended();
         self.steps = 0;
         Ok(())
     }
 
-    /// What its world asks for, if that is less than there is.
+    /// The modalities that its world requests, if fewer than the layout's.
     pub(super) fn blanks(&self) -> Option<&[Modality]> {
         let asked = &self.environment.world().agent_params.modalities;
         let is_less = self.layout.modalities.iter().any(|there| !asked.contains(there));
         is_less.then_some(asked)
     }
 
-    /// Hands out the state vector, and the images if there is a renderer: without one they are drawn later, for all
-    /// environments together.
+    /// Writes the state vector, and the images if there is a renderer; otherwise they are drawn later, for all environments
+    /// together.
     fn observe(
         &self,
         index: usize,

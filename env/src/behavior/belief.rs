@@ -1,4 +1,5 @@
-//! What the expert of one world takes another for: the same things in the same places, that pay as their likes do at home.
+//! What the expert of one world believes about another: the same objects in the same places, with the rewards of their
+//! counterparts at home.
 
 use driftworld_spec::{Object, Stimulus, World};
 
@@ -6,17 +7,17 @@ use crate::EnvError;
 use crate::assets::Catalogue;
 use crate::sim::{Action, Environment, Step};
 
-/// A world as an expert from elsewhere believes it to be, kept in the state of the true one.
+/// A world as an expert from elsewhere believes it to be, synchronised with the state of the true one.
 pub(super) struct Belief {
     environment: Environment,
-    /// Of each object, what is believed to use it up, where it is not so in truth; nothing where both agree.
+    /// For each object, the stimuli that are believed to use it up but do not; empty where belief and truth agree.
     vain: Vec<Vec<Stimulus>>,
-    /// Which of those were set off.
+    /// Which of those have been triggered.
     tried: Vec<bool>,
 }
 
 impl Belief {
-    /// What the expert of `home` takes `truth` for.
+    /// What the expert of `home` believes about `truth`.
     pub(super) fn new(home: &World, truth: &World, catalogue: &Catalogue) -> Result<Self, EnvError> {
         let believed = truth.clone().edit(|world| {
             world.rules = home.rules.clone();
@@ -42,11 +43,11 @@ impl Belief {
         })
     }
 
-    /// The believed world, in the state of the true one.
+    /// The believed world, set to the state of the true one.
     pub(super) fn at(&mut self, truth: &Environment) -> &Environment {
         self.environment.take_state_of(truth);
         for (index, tried) in self.tried.iter_mut().enumerate() {
-            // What went and came back can be tried again.
+            // Objects that left and came back can be tried again.
             *tried &= truth.objects()[index].present;
             if *tried {
                 self.environment.take_reward_of(index);
@@ -55,21 +56,21 @@ impl Belief {
         &self.environment
     }
 
-    /// What would come of an action in the believed world, which [`Belief::at`] has put into the state of the true one.
+    /// Predicts an action in the believed world, after [`Belief::at`] has set it to the true state.
     pub(super) fn foresee(&mut self, action: Action, step: &mut Step) -> Result<(), EnvError> {
         self.environment.step_into(action, step)
     }
 
-    /// Takes note of what a step of the true world set off.
+    /// Records which stimuli a step of the true world triggered.
     pub(super) fn note(&mut self, step: &Step) {
         for event in &step.events {
-            // Coming near is no try of what has to be touched.
+            // Coming near does not count as trying an object that has to be touched.
             self.tried[event.object] |= self.vain[event.object].contains(&event.stimulus);
         }
     }
 }
 
-/// The object of the same class that looks most like another: of the nearest colour, then of its model, then nearest to its place.
+/// The most similar object of the same class: by nearest colour, then by model, then by nearest place, then by index.
 fn most_alike<'a>(objects: &'a [Object], other: &Object, index: usize) -> Option<&'a Object> {
     let same_class = objects
         .iter()
@@ -94,7 +95,7 @@ fn colors_apart(a: &Object, b: &Object) -> f64 {
     match (&a.color, &b.color) {
         (None, None) => 0.0,
         (Some(a), Some(b)) => squared(a.0, b.0),
-        // Farther than any two colours.
+        // More than the distance of any two colours.
         _ => 4.0,
     }
 }
@@ -103,7 +104,7 @@ fn squared<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum()
 }
 
-/// Gives an object the effects of another: what it pays and for what, what destroys it, and what rules call it.
+/// Gives an object the effects of another: rewards, their stimuli, destruction, and the tag that rules use.
 fn take_effects(object: &mut Object, like: Object) {
     object.tag = like.tag;
     object.reward = like.reward;
@@ -122,7 +123,7 @@ fn has_effects_of(a: &Object, b: &Object) -> bool {
     same == *a
 }
 
-/// What uses an object up.
+/// The stimuli that use an object up.
 fn uses_up(object: &Object) -> Vec<Stimulus> {
     let both = object.reward_once_stimulus.iter().chain(&object.destroy_stimulus);
     both.copied().collect()

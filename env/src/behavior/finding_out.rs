@@ -1,5 +1,4 @@
-//! An agent that knows the map, and of what pays only that it is as in one of several worlds: it has to find out. Which
-//! worlds look alike is for others to say.
+//! An agent that knows the map, but only that rewards are as in one of several worlds, so it has to find out which.
 
 use driftworld_spec::World;
 
@@ -9,18 +8,18 @@ use crate::EnvError;
 use crate::agents::{Agent, OnRailsAgent, in_space};
 use crate::sim::{Environment, Step};
 
-/// Rewards that differ by no more than this are the same.
+/// Rewards that differ by at most this are equal.
 const SAME_REWARD: f64 = 1e-9;
 
 impl Expertise {
-    /// An agent in the world `abroad` that knows that it pays there as in one of `homes`, and not as in which.
+    /// An agent in the world `abroad` that knows only that rewards are as in one of `homes`.
     ///
-    /// It does as the expert of the first home does [`abroad`](Self::abroad). After each step it drops the homes in
-    /// which that step would have paid something else, or ended otherwise, and follows the first that is left. If none
-    /// is left it keeps to the last that it followed. What pays by chance is told apart by the draws of this very
-    /// world, so there the agent finds out sooner than a learner can.
+    /// It acts as the expert of the first home does [`abroad`](Self::abroad). After each step it drops the homes in which that
+    /// step would have given another reward or another end, and follows the first remaining one. If none remains, it keeps the
+    /// last one it followed. Uncertain rewards are compared using the random draws of this very world, so the agent finds out
+    /// sooner than a learner could.
     ///
-    /// With one home it is the expert of that home abroad, to the bit; with none, that of the world itself.
+    /// With one home it is the expert of that home abroad, to the bit; with none, the expert of the world itself.
     ///
     /// # Errors
     /// Those of [`Expertise::abroad`].
@@ -56,7 +55,7 @@ impl Expertise {
         let (mut expert, mut run) = (OnRailsAgent::new(), ExpertRun::default());
         let (mut step, mut foreseen) = (Step::default(), Step::default());
         while !truth.ended() && run.steps < self.steps.min(MAX_EXPERT_STEPS) {
-            // Who believes something else does not know where zones are.
+            // An expert from elsewhere does not know where the zones are.
             let action = match beliefs.first_mut() {
                 Some(belief) => in_space(expert.steer(belief.at(&truth).sim()), truth.sim()),
                 None => expert.act(&truth),

@@ -1,4 +1,4 @@
-//! What experts earn in worlds that are not theirs. Drawing the worlds, and what the numbers mean for tasks, is for others.
+//! Measures what experts earn in worlds that are not their own.
 
 mod belief;
 mod finding_out;
@@ -10,24 +10,24 @@ use driftworld_spec::World;
 use crate::EnvError;
 use crate::assets::Catalogue;
 
-/// The most steps of an episode of an expert.
+/// Most steps of an expert's episode.
 pub const MAX_EXPERT_STEPS: u32 = 100_000;
 
-/// What became of one episode.
+/// Result of one episode.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ExpertRun {
     /// The sum of rewards, in points.
     pub earned: f64,
     /// Whether it ended as a success.
     pub success: bool,
-    /// How many steps it took.
+    /// Number of steps.
     pub steps: u32,
 }
 
-/// How experts live: those of the world they are in, and others.
+/// Settings for running experts in their own worlds and in others.
 #[derive(Clone, Debug)]
 pub struct Expertise {
-    /// Steps after which an episode ends that no rule ends before, up to [`MAX_EXPERT_STEPS`]; 500 by default.
+    /// Step limit of an episode, up to [`MAX_EXPERT_STEPS`]; 500 by default.
     pub steps: u32,
     /// Where assets come from.
     pub catalogue: Catalogue,
@@ -43,7 +43,7 @@ impl Default for Expertise {
 }
 
 impl Expertise {
-    /// The expert of a world in its own world: [`OnRailsAgent`](crate::OnRailsAgent).
+    /// Runs the expert of a world in its own world: [`OnRailsAgent`](crate::OnRailsAgent).
     ///
     /// # Errors
     /// Those of [`Environment::step`](crate::Environment::step).
@@ -51,19 +51,20 @@ impl Expertise {
         self.finding_out(&[], world)
     }
 
-    /// The expert of the world `home` in the world `abroad`: it sees what is there and believes that it pays as at home.
+    /// Runs the expert of the world `home` in the world `abroad`: it sees what is there and believes in the rewards of home.
     ///
-    /// Before each step the expert is shown the true state of `abroad`: its map, where the agent and the objects are and which are
-    /// there. It plans there by the rules of `home`, and takes each object for the one of the same class at home that looks most
-    /// like it: of the nearest colour, then of the same model, then nearest to the same place, then next in number. That object's
-    /// reward, its probability, stimuli, order and respawn are what it believes of this one; of a class that home does not have it
-    /// believes nothing. Then the action that it chooses is carried out in `abroad`, within that agent's limits, by the nearest row
-    /// of its table if it has one. What it believes to be used up once set off, it leaves when it has set that off.
+    /// Before each step the expert is shown the true state of `abroad`: its map, the agent and the present objects with their
+    /// positions. It plans by the rules of `home`, and takes each object for the most similar one of the same class at home: by
+    /// nearest colour, then by model, then by nearest place, then by index. It believes that the object has that one's reward,
+    /// probability, stimuli, order and respawn; about a class that home lacks it believes nothing. The chosen action is then
+    /// carried out in `abroad`, within that agent's limits, by the nearest row of its action table if there is one. The expert
+    /// leaves an object alone once it has triggered what it believes to use the object up.
     ///
-    /// In a world that is `home` it does the same as [`at_home`](Self::at_home), to the bit.
+    /// If the world is `home` itself, the result is that of [`at_home`](Self::at_home), to the bit.
     ///
     /// # Errors
-    /// Those of [`Environment::step`](crate::Environment::step); [`EnvError::BadWorld`] where the rules of one world cannot hold in the other.
+    /// Those of [`Environment::step`](crate::Environment::step); [`EnvError::BadWorld`] if the rules of one world are invalid
+    /// in the other.
     ///
     /// # Example
     /// ```

@@ -1,4 +1,4 @@
-//! Experts at home and abroad.
+//! Experts in their own and in other worlds.
 
 use driftworld_spec::{Color, EndCondition, Object, Respawn, Stimulus, World, WorldDraft};
 use proptest::prelude::*;
@@ -18,7 +18,7 @@ fn cube(place: [f64; 2], color: Color, reward: f64, tag: &str) -> Object {
     cube
 }
 
-/// Two colours of cubes; the first pays.
+/// Cubes of two colours; the first pays.
 fn world(paying: Color, other: Color) -> WorldDraft {
     let mut world = WorldDraft::default();
     world.environment_params.map_size = [30.0, 30.0];
@@ -42,21 +42,21 @@ fn sound(draft: WorldDraft) -> World {
 }
 
 #[test]
-fn the_expert_goes_for_the_colour_that_pays_at_home() {
+fn expert_goes_for_the_colour_that_pays_at_home() {
     let (red, blue) = (sound(world(RED, BLUE)), sound(world(BLUE, RED)));
     let expertise = Expertise::default();
     let own = expertise.at_home(&blue).expect("it lives");
     assert_eq!((own.earned, own.success), (20.0, true));
     let other = expertise.abroad(&red, &blue).expect("it lives");
     assert!(other.earned <= -10.0 && !other.success, "{other:?}");
-    // What the first of its number or tag was at home makes no difference.
+    // The order and the tags of objects at home make no difference.
     let mut turned = world(RED, BLUE);
     turned.objects.reverse();
     assert_eq!(expertise.abroad(&sound(turned), &blue).expect("it lives"), other);
 }
 
 #[test]
-fn what_is_believed_to_be_used_up_is_left_when_it_was_tried() {
+fn objects_believed_used_up_are_left_after_one_try() {
     let home = sound(world(RED, BLUE));
     let mut idle = world(RED, BLUE);
     idle.rules.success.clear();
@@ -68,7 +68,7 @@ fn what_is_believed_to_be_used_up_is_left_when_it_was_tried() {
 }
 
 #[test]
-fn a_class_that_home_lacks_is_left_alone() {
+fn class_unknown_at_home_is_ignored() {
     let mut barrels = world(RED, BLUE);
     for object in &mut barrels.objects {
         object.class = "barrel".to_owned();
@@ -79,7 +79,7 @@ fn a_class_that_home_lacks_is_left_alone() {
 }
 
 #[test]
-fn coming_near_is_no_try_of_what_has_to_be_touched() {
+fn coming_near_does_not_count_as_a_touch() {
     for range in [0.0, 1.5, 2.0, 4.0] {
         let pays = |reward: f64| {
             let mut draft = WorldDraft::default();
@@ -104,7 +104,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn at_home_abroad_is_at_home(
+    fn abroad_in_the_home_world_equals_at_home(
         places in prop::collection::vec((-13_i8..=13, -13_i8..=13), 1..8),
         rewards in prop::collection::vec((-2_i8..=3, 0_u8..4), 8),
         frame_skip in 1_u32..3,
@@ -132,8 +132,8 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn who_finds_out_between_two_homes_is_wrong_once(
-        // Far enough apart to walk between: a crowd that bars the expert's way costs it what others who go another way keep.
+    fn finding_out_between_two_homes_errs_once(
+        // Far enough apart to walk between: detours around a crowd could cost one expert more than another.
         places in Just([-12_i8, -6, 0, 6, 12]).prop_flat_map(|x| {
             let all: Vec<_> = x.iter().flat_map(|x| [(*x, 4_i8), (*x, 11)]).collect();
             prop::sample::subsequence(all, 4).prop_shuffle()
@@ -148,7 +148,7 @@ proptest! {
             draft
         };
         let (red, mut blue) = (draft(RED, BLUE), draft(BLUE, RED));
-        // The same things stand in the same places, and pay the other way round.
+        // The same objects in the same places, with opposite rewards.
         for (own, other) in blue.objects.iter_mut().zip(&red.objects) {
             (own.color, own.reward) = (other.color, -other.reward / 2.0 - 1.0);
         }
@@ -169,7 +169,7 @@ proptest! {
         let own = expertise.at_home(homes[1]).expect("it runs");
         let found = expertise.finding_out(&homes, homes[1]).expect("it runs");
         let fixed = expertise.abroad(homes[0], homes[1]).expect("it runs");
-        // The right home is never dropped: what it costs to find out is the first thing that was touched in vain.
+        // The right home is never dropped: finding out costs at most the first object touched in vain.
         prop_assert!(found.earned >= fixed.earned, "{found:?} {fixed:?}");
         prop_assert!(found.earned <= own.earned, "{found:?} {own:?}");
         let known = expertise.finding_out(&[homes[1], homes[0]], homes[1]).expect("it runs");

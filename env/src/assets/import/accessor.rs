@@ -1,5 +1,5 @@
-//! Numbers out of buffers: positions, texture coordinates, colours, indices. Every count and range is checked before
-//! anything is read or memory is taken.
+//! Reads numbers from buffers: positions, texture coordinates, colours, indices. Every count and range is checked before
+//! anything is read or allocated.
 
 use gltf_json::Index;
 use gltf_json::accessor::{Accessor, ComponentType, GenericComponentType, Type};
@@ -10,7 +10,7 @@ use super::refusal::{named, one_of, refuse};
 use crate::EnvError;
 use crate::assets::library::{MAX_MODEL_TRIANGLES, MAX_MODEL_VERTICES};
 
-/// What a list of numbers is for; decides what it may be made of.
+/// What a list of numbers is for; decides which types it may have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Use {
     Positions,
@@ -19,7 +19,7 @@ pub(super) enum Use {
     Indices,
 }
 
-/// An accessor whose numbers can be read.
+/// A checked accessor.
 struct Sound<'a> {
     accessor: &'a Accessor,
     place: String,
@@ -29,12 +29,12 @@ struct Sound<'a> {
 }
 
 impl Buffers<'_> {
-    /// How many elements an accessor says it has; at most a million vertices, or indices for a million triangles.
+    /// Number of elements of an accessor; at most a million vertices, or indices for a million triangles.
     pub(super) fn count(&self, index: Index<Accessor>, for_use: Use, place: &str) -> Result<usize, EnvError> {
         self.sound(index, for_use, place).map(|sound| sound.count)
     }
 
-    /// The numbers of an accessor, element by element, the first three of each; what is missing is 0.
+    /// The first three numbers of each element of an accessor; missing ones are 0.
     pub(super) fn vectors(&self, index: Index<Accessor>, for_use: Use, place: &str) -> Result<Vec<[f32; 3]>, EnvError> {
         let sound = self.sound(index, for_use, place)?;
         let (bytes, stride, size) = sound.bytes(self)?;
@@ -59,7 +59,7 @@ impl Buffers<'_> {
         Ok(vectors)
     }
 
-    /// Indices of corners, each below `num_corners`.
+    /// Indices of corners, all below `num_corners`.
     pub(super) fn indices(
         &self,
         index: Index<Accessor>,
@@ -131,8 +131,7 @@ impl Buffers<'_> {
 }
 
 impl Sound<'_> {
-    /// The bytes from the first element on, the distance of elements, and the size of a number. All elements lie
-    /// within.
+    /// The bytes from the first element on, the stride, and the size of a number. All elements are within bounds.
     fn bytes<'b>(&self, buffers: &'b Buffers) -> Result<(&'b [u8], usize, usize), EnvError> {
         let Some(view) = self.accessor.buffer_view else {
             return Err(refuse(
@@ -150,7 +149,7 @@ impl Sound<'_> {
             return Err(refuse(self.place.as_str(), found, "a byteStride of their size or more"));
         }
         let offset = self.accessor.byte_offset.map_or(0, |offset| offset.0);
-        // Counts and strides are small by now; only the offset may be anything.
+        // Counts and strides are bounded by now; only the offset may be arbitrary.
         let span = self.count.checked_sub(1).map_or(0, |last| last * stride + element) as u64;
         let fits = offset
             .checked_add(span)

@@ -1,4 +1,4 @@
-//! The bytes behind a glTF file's buffers and views, every range checked. What the bytes mean is in `accessor.rs`.
+//! Resolves a glTF file's buffers and views to bytes, checking every range.
 
 use std::borrow::Cow;
 
@@ -8,7 +8,7 @@ use super::refusal::{at_most, named, refuse};
 use super::uri::{self, ReadBeside};
 use crate::EnvError;
 
-/// The most buffers, and the most bytes of all of them together.
+/// Most buffers, and most bytes of all buffers together.
 const MAX_BUFFERS: usize = 1000;
 const MAX_BYTES: usize = 256 << 20;
 
@@ -18,7 +18,7 @@ pub(super) struct Buffers<'a> {
     data: Vec<Cow<'a, [u8]>>,
 }
 
-/// A view's bytes, and how far its elements are apart if it says so.
+/// A view's bytes, and its stride if given.
 pub(super) struct View<'a> {
     pub(super) bytes: &'a [u8],
     pub(super) stride: Option<usize>,
@@ -53,7 +53,7 @@ impl<'a> Buffers<'a> {
         Ok(Self { root, data })
     }
 
-    /// The bytes of a view, which whoever is at `place` refers to.
+    /// The bytes of a view; `place` is the reference to it.
     pub(super) fn view(&self, index: Index<buffer::View>, place: &str) -> Result<View<'_>, EnvError> {
         let place = format!("{place}/bufferView");
         let view = named(&self.root.buffer_views, index.value(), "view", &place)?;
@@ -72,7 +72,7 @@ impl<'a> Buffers<'a> {
             let place = format!("{place}/byteStride");
             return Err(refuse(place, stride.to_string(), "a multiple of 4 in 4..252"));
         }
-        // The end is within the buffer, which is within the data.
+        // Checked above: the view ends within its buffer, and the buffer within the data.
         let bytes = self.data[index].get(offset as usize..end as usize).unwrap_or_default();
         Ok(View { bytes, stride })
     }

@@ -1,6 +1,6 @@
-//! Colours as files write them and as models keep them: light in numbers that add up, and sRGB.
+//! Converts between sRGB and linear light.
 
-/// The light of an sRGB channel in 0..1.
+/// Converts an sRGB channel in 0..1 to linear light.
 pub(super) fn linear(channel: f32) -> f32 {
     if channel <= 0.040_45 {
         channel / 12.92
@@ -9,7 +9,7 @@ pub(super) fn linear(channel: f32) -> f32 {
     }
 }
 
-/// The sRGB channel in 0..1 of an amount of light.
+/// Converts linear light to an sRGB channel in 0..1.
 pub(super) fn srgb(light: f32) -> f32 {
     let light = light.clamp(0.0, 1.0);
     let channel = if light <= 0.003_130_8 {
@@ -25,7 +25,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_byte_comes_back() {
+    fn every_byte_round_trips() {
         for byte in 0..=255_u8 {
             let channel = f32::from(byte) / 255.0;
             let back = srgb(linear(channel)) * 255.0;

@@ -1,24 +1,22 @@
-//! The colour of a triangle: the mean light of material, texture and corners over it. Which colours are kept is decided
-//! in
-//! `palette.rs`.
+//! The colour of a triangle: its material, texture and corner colours, averaged as linear light.
 
 use super::texture::Texture;
 
-/// How a triangle is cut into places at which its texture is looked at: along each side.
+/// Texture samples along each side of a triangle.
 const SAMPLES: usize = 5;
 
-/// What colours the triangles of a primitive.
+/// Colours of a primitive's triangles.
 pub(super) struct Coloring<'a> {
     pub(super) factor: [f32; 4],
     pub(super) texture: Option<Texture<'a>>,
-    /// Texture coordinates of each corner; none without a texture.
+    /// Texture coordinates of each corner; empty without a texture.
     pub(super) places: Vec<[f32; 3]>,
-    /// Light of each corner; none where corners have no colours.
+    /// Linear colour of each corner; empty without corner colours.
     pub(super) colors: Vec<[f32; 3]>,
 }
 
 impl Coloring<'_> {
-    /// The mean light of a triangle: its material's, its texture's and its corners' multiplied.
+    /// A triangle's mean linear colour: the product of its material's, its texture's and its corners'.
     pub(super) fn of(&self, triangle: [u32; 3]) -> [f32; 3] {
         let [r, g, b, _] = self.factor;
         let factor = [r, g, b];
@@ -27,7 +25,7 @@ impl Coloring<'_> {
         }
         let (mut sum, mut weights) = ([0.0; 3], 0.0);
         for (i, j) in (0..SAMPLES).flat_map(|i| (0..SAMPLES - i).map(move |j| (i, j))) {
-            // The middles of places along both sides, so that no sample lies on an edge.
+            // Offset by a third, so that no sample is on an edge.
             let share = |k: usize| (k as f32 + 1.0 / 3.0) / SAMPLES as f32;
             let at = [1.0 - share(i) - share(j), share(i), share(j)];
             let mean = |list: &[[f32; 3]]| {

@@ -1,4 +1,4 @@
-//! The outermost layer of a file: GLB with its chunks, or plain JSON. What the JSON says is read in `document.rs`.
+//! Opens a file: GLB with its chunks, or plain JSON.
 
 use super::refusal::refuse;
 use crate::EnvError;
@@ -6,7 +6,7 @@ use crate::EnvError;
 const JSON: u32 = 0x4E4F_534A;
 const BIN: u32 = 0x004E_4942;
 
-/// The JSON of a file, and the binary chunk of one that is GLB.
+/// The JSON of a file, and for GLB the binary chunk.
 pub(super) fn open(bytes: &[u8]) -> Result<(&str, Option<&[u8]>), EnvError> {
     if !bytes.starts_with(b"glTF") {
         return Ok((text(bytes)?, None));
@@ -25,7 +25,7 @@ pub(super) fn open(bytes: &[u8]) -> Result<(&str, Option<&[u8]>), EnvError> {
     }
     let mut rest = &bytes[12..];
     let mut chunks = Vec::new();
-    // Only the first two chunks mean something; more may follow.
+    // Only the first two chunks have a meaning; others may follow.
     while chunks.len() < 2 && !rest.is_empty() {
         let (kind, data, behind) = chunk(rest, chunks.len())?;
         chunks.push((kind, data));
@@ -38,7 +38,7 @@ pub(super) fn open(bytes: &[u8]) -> Result<(&str, Option<&[u8]>), EnvError> {
     Ok((text(json)?, binary))
 }
 
-/// A chunk's kind and data, and what follows it.
+/// A chunk's kind and data, and the bytes after it.
 fn chunk(bytes: &[u8], index: usize) -> Result<(u32, &[u8], &[u8]), EnvError> {
     let place = || format!("GLB chunk {index}");
     let (Some(length), Some(kind)) = (number(bytes, 0), number(bytes, 4)) else {

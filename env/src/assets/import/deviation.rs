@@ -1,5 +1,4 @@
-//! How far points lie from a surface at most, with bounded work. Which points and surfaces these are is in
-//! `simplify.rs`.
+//! Largest distance of points from a surface, with bounded work.
 
 use rapier3d::math::Vector;
 use rapier3d::parry::partitioning::{BvhNode, TraversalAction};
@@ -8,16 +7,15 @@ use rapier3d::parry::shape::TriMesh;
 
 use super::simplify::{point, used};
 
-/// How many triangles are looked at for one level of detail: a second's work or two. Most models need a hundredth of
-/// it; where large triangles lie through each other in thousands, boxes around them tell nothing apart, and every point
-/// would ask for all.
+/// Triangle tests per level of detail: a second's work or two. Most models need a hundredth of it; but where thousands of large
+/// triangles intersect each other, their bounding boxes do not help, and every point would test all of them.
 const LOOKS: u64 = 30_000_000;
 
-/// A point as much nearer than the farthest so far, in squares, is passed over: more than the rounding of two ways to a
-/// distance.
+/// Skips points whose squared distance is below this fraction of the maximum so far: the margin exceeds the rounding difference
+/// between two ways to compute a distance.
 const PASSED_OVER: f32 = 1.0 - 1e-4;
 
-/// Triangles that may still be looked at.
+/// The remaining budget of triangle tests.
 pub(super) struct Looks {
     left: u64,
 }
@@ -38,7 +36,7 @@ pub(super) struct Deviation {
 }
 
 impl Deviation {
-    /// The surface of triangles; none if nothing is left of them.
+    /// The surface of these triangles; `None` if all are degenerate.
     pub(super) fn new(corners: &[[f32; 3]], triangles: &[[u32; 3]]) -> Option<Self> {
         let left = used(triangles);
         let place = |corner: u32| left.binary_search(&corner).map_or(0, |place| place as u32);
@@ -47,15 +45,15 @@ impl Deviation {
         Some(Self { surface: surface.ok()? })
     }
 
-    /// How far a point is from the surface.
+    /// Distance of a point from the surface.
     pub(super) fn distance(&self, point: Vector) -> f32 {
         self.surface.distance_to_local_point(point, false)
     }
 
-    /// How far the farthest of points is, or `least` if none is farther. None as soon as that is above `most`.
+    /// The largest distance of any of the points, at least `least`. `None` as soon as it exceeds `most`.
     ///
-    /// A point with a triangle nearer than the farthest so far need not be measured. When looks run out, those measured
-    /// so far, evenly chosen, stand for all; at least one is measured.
+    /// Skips points with a triangle nearer than the maximum so far. When the budget runs out, the points measured so far,
+    /// evenly spread, represent the rest; at least one is measured.
     pub(super) fn farthest(&self, points: &[Vector], least: f32, most: f32, looks: &mut Looks) -> Option<f32> {
         let mut farthest = least;
         for (number, index) in evenly(points.len()).enumerate() {
@@ -67,7 +65,7 @@ impl Deviation {
                 continue;
             }
             let distance = self.distance(point);
-            // About what that looked at: every triangle whose box is as near as the surface.
+            // Estimates the cost of that query: every triangle whose box is as near as the surface.
             let reach = distance * distance;
             let near = self.surface.bvh().leaves(|node| squared_distance(node, point) <= reach);
             looks.take(near.count() as u64);
@@ -79,7 +77,7 @@ impl Deviation {
         Some(farthest)
     }
 
-    /// Whether any triangle is found to be as near to a point as this, in squares.
+    /// Whether a triangle is within this squared distance of a point.
     fn is_within(&self, point: Vector, squared: f32, looks: &mut Looks) -> bool {
         let mut found = false;
         self.surface.bvh().traverse(|node| {
@@ -102,13 +100,13 @@ impl Deviation {
     }
 }
 
-/// The square of the distance of a point from a box.
+/// The squared distance of a point from a box.
 fn squared_distance(node: &BvhNode, point: Vector) -> f32 {
     let nearest = point.clamp(node.mins(), node.maxs());
     (nearest - point).length_squared()
 }
 
-/// All of so many numbers, each once, in an order whose beginnings are spread evenly.
+/// All numbers below `count`, each once, in an order whose prefixes are evenly spread.
 fn evenly(count: usize) -> impl Iterator<Item = usize> {
     let shares_none = |step: &usize| {
         let (mut a, mut b) = (*step, count);
@@ -117,7 +115,7 @@ fn evenly(count: usize) -> impl Iterator<Item = usize> {
         }
         a == 1
     };
-    // Near to the golden section of the count, without a common divisor.
+    // Near the golden section of the count, and coprime to it.
     let first = ((count as f64 * 0.618_034) as usize).max(1);
     let step = (first..=first + count).find(shares_none).unwrap_or(1);
     (0..count).map(move |number| (number as u64 * step as u64 % count as u64) as usize)
@@ -134,17 +132,17 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_number_comes_once(count in 0usize..3000) {
+        fn evenly_yields_every_number_once(count in 0usize..3000) {
             let mut numbers: Vec<usize> = evenly(count).collect();
             numbers.sort_unstable();
             prop_assert!(numbers.into_iter().eq(0..count));
         }
 
-        /// Against every point to every triangle.
+        /// Compared with measuring every point against every triangle.
         #[test]
-        fn the_farthest_is_that_of_all_points_to_the_last_bit(
+        fn farthest_equals_the_maximum_over_all_points_exactly(
             corners in prop::collection::vec(place(), 3..60),
-            // A point of the surface's own is at no distance.
+            // Corners of the surface itself have distance 0.
             others in prop::collection::vec(place(), 1..60),
             least in prop_oneof![Just(0.0_f32), 0.0..4.0_f32],
         ) {
@@ -155,10 +153,10 @@ mod tests {
             let mut looks = Looks::new();
             prop_assert_eq!(surface.farthest(&points, least, 1e9, &mut looks), Some(expected));
             prop_assert!(expected <= least || surface.farthest(&points, least, expected * 0.999, &mut looks).is_none());
-            // With few looks some points stand for all.
+            // With a small budget, some points represent the rest.
             let some = surface.farthest(&points, 0.0, 1e9, &mut Looks { left: 40 });
             prop_assert!(some.is_some_and(|some| some <= expected));
-            // Another way to the distance: the nearest of all triangles.
+            // Cross-check of the distance: the nearest of all triangles.
             for point in &points {
                 let to = |triangle: u32| (surface.surface.triangle(triangle).project_local_point(*point, false).point - *point).length();
                 let nearest = (0..triangles.len() as u32).map(to).fold(f32::INFINITY, f32::min);
@@ -168,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn large_triangles_through_each_other_are_measured_within_the_looks() {
+    fn large_intersecting_triangles_stay_within_the_budget() {
         let mut at = 1_u32;
         let mut number = || {
             at = at.wrapping_mul(0x9E37_79B9) ^ (at >> 15);
@@ -180,7 +178,7 @@ mod tests {
         let points: Vec<Vector> = corners.iter().map(|[x, y, z]| Vector::new(*x, *y, *z)).collect();
         let mut looks = Looks::new();
         let found = surface.farthest(&points, 0.0, 10.0, &mut looks);
-        // One by one these are a quarter of 30,000 times 2,500.
+        // Tested one by one, these would take a quarter of 30,000 × 2,500.
         let looked = LOOKS - looks.left;
         assert!(looked < 6_000_000, "{looked}");
         let expected = points

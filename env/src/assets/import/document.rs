@@ -1,5 +1,5 @@
-//! The JSON of a glTF file: its size is checked before it is parsed, its version and extensions after. Numbers of
-//! things in it are trusted by nobody: whoever follows one looks whether it leads somewhere.
+//! Parses the JSON of a glTF file. Checks its size before parsing, and its version and extensions afterwards. Indices in it are
+//! not checked here, but when they are followed.
 
 use std::fmt;
 
@@ -12,13 +12,13 @@ use super::limits::{MAX_IMPORT_DEPTH, MAX_IMPORT_NODES};
 use super::refusal::{at_most, quoted, refuse};
 use crate::EnvError;
 
-/// The most objects and lists: each may cost some hundred bytes of memory for two of text.
+/// Most objects and lists: each may take some hundred bytes of memory for two of text.
 const MAX_ITEMS: usize = 200_000;
 
-/// The most letters of the parser's own words in a message: it may quote a text as long as the file.
+/// Most characters of the parser's own message that are shown: it may quote a text as long as the file.
 const MAX_WORDS: usize = 200;
 
-/// Extensions that a file may require and that can be left unread: they change no triangle.
+/// Extensions that may be ignored even if a file requires them: they change no triangle.
 const HARMLESS: &[&str] = &[
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
@@ -41,7 +41,7 @@ pub(super) fn parse(json: &str) -> Result<Root, EnvError> {
         if is_version_1(json) {
             return refuse("file", "glTF 1.0", "glTF 2.0; export as that");
         }
-        // The position is said before, so the parser's own words at the end are cut off.
+        // The position is given separately, so it is cut off the parser's message.
         let said = error.to_string();
         let words = said.split(" at line ").next().unwrap_or(&said);
         let place = format!("line {}, column {}", error.line(), error.column());
@@ -70,8 +70,8 @@ pub(super) fn parse(json: &str) -> Result<Root, EnvError> {
     Ok(root)
 }
 
-/// Whether JSON that is no glTF 2.0 is of the version before, where meshes had names in place of numbers. Nothing of it
-/// is kept in memory.
+/// Whether JSON that is not glTF 2.0 is version 1, where meshes are referred to by name instead of index. Keeps nothing in
+/// memory.
 fn is_version_1(json: &str) -> bool {
     gltf_json::deserialize::from_str::<Version1>(json).is_ok()
 }
@@ -82,7 +82,7 @@ struct Version1 {
     _meshes: AnyObject,
 }
 
-/// A JSON object, whatever it holds.
+/// Any JSON object.
 struct AnyObject;
 
 impl<'de> Deserialize<'de> for AnyObject {
@@ -110,7 +110,7 @@ fn is_compression(extension: &str) -> bool {
         .any(|word| extension.to_lowercase().contains(word))
 }
 
-/// Refuses JSON that is nested too deep, or would take many times its length in memory.
+/// Refuses JSON that is nested too deeply, or would need many times its length in memory.
 fn check_extent(json: &str) -> Result<(), EnvError> {
     let (mut depth, mut items) = (0_usize, 0_usize);
     let (mut quoted, mut escaped) = (false, false);
@@ -139,7 +139,7 @@ fn check_extent(json: &str) -> Result<(), EnvError> {
     Ok(())
 }
 
-/// The number of the material whose colour is the object's: the one of this name, or that is called `main`.
+/// Index of the material that takes the object's colour: the one with the wanted name, by default `main`.
 pub(super) fn main_material(root: &Root, wanted: Option<&str>) -> Result<Option<usize>, EnvError> {
     let named = |name: &str| {
         let is_it = |material: &gltf_json::Material| {
@@ -167,7 +167,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_version_before_is_known_by_its_meshes() {
+    fn version_1_is_recognised_by_its_meshes() {
         #[track_caller]
         fn check(json: &str, expected: bool) {
             assert_eq!(is_version_1(json), expected, "{json}");
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn texts_are_quoted_no_longer_than_a_line() {
+    fn quoted_texts_are_limited_to_a_line() {
         assert_eq!(quoted("é"), "\"é\"");
         assert_eq!(quoted(&"é".repeat(100)).chars().count(), 2 + 61);
     }

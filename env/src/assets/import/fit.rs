@@ -1,35 +1,35 @@
-//! Which simple body stands for a model, and how large it is.
+//! Fits a simple collider to a model.
 
 use std::f32::consts::PI;
 
 use super::surface::Surface;
 use crate::assets::ColliderShape;
 
-/// The height in metres up to which a body is looked at: what an agent can bump into. A crown above it takes no room.
+/// Only the part of a model below this height, in metres, determines its width: agents cannot bump into a tree's crown.
 const KNEE_TO_HEAD: f32 = 2.0;
 
-/// Least half size of a body in metres, so that sheets have one.
+/// Least half size of a collider in metres, so that flat sheets have one.
 const LEAST: f32 = 0.01;
 
-/// Which body a model gets.
+/// Which collider a model gets.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ColliderKind {
-    /// A ball for what is round on all sides, else the smaller one of box and cylinder.
+    /// A ball for models that are round on all sides, otherwise the smaller one of box and cylinder.
     #[default]
     Auto,
-    /// The box around what is lower than 2 m, as high as the model.
+    /// The box around the part below 2 m, as high as the model.
     Box,
     /// A ball as high as the model.
     Ball,
-    /// The upright cylinder around what is lower than 2 m, as high as the model.
+    /// The upright cylinder around the part below 2 m, as high as the model.
     Cylinder,
-    /// The same with round ends.
+    /// Like the cylinder, with round ends.
     Capsule,
-    /// About the least convex shape around all of it, of at most 64 points.
+    /// An approximate convex hull of the whole model, of at most 64 points.
     Hull,
 }
 
-/// How far a model reaches from its upright axis.
+/// Extents of a model around its upright axis.
 struct Extent {
     half: [f32; 2],
     radius: f32,
@@ -81,7 +81,7 @@ impl Extent {
                 if a[2] <= KNEE_TO_HEAD {
                     extent.take_in([a[0], a[1]]);
                 }
-                // Where a side passes the height of a head.
+                // Where an edge crosses the height limit.
                 if (a[2] <= KNEE_TO_HEAD) != (b[2] <= KNEE_TO_HEAD) {
                     let share = (KNEE_TO_HEAD - a[2]) / (b[2] - a[2]);
                     extent.take_in([0, 1].map(|axis| a[axis] + (b[axis] - a[axis]) * share));
@@ -96,7 +96,7 @@ impl Extent {
         self.radius = self.radius.max((x * x + y * y).sqrt());
     }
 
-    /// Whether the model is about as wide, deep and high, and no corner lies far outside the ball of that height.
+    /// Whether the model is about as wide and deep as it is high, with no corner far outside the ball of that height.
     fn is_round(&self, surface: &Surface) -> bool {
         let ball = self.height / 2.0;
         let near = |metres: f32| (metres - ball).abs() < 0.1 * ball;
@@ -106,9 +106,9 @@ impl Extent {
     }
 }
 
-/// The corners that lie furthest in 64 directions, evenly spread; nothing if they are all in about one plane.
+/// The farthest corners in 64 evenly spread directions; `None` if they are nearly coplanar.
 fn hull(surface: &Surface) -> Option<ColliderShape> {
-    /// The golden angle, by which neighbours on the spiral are apart.
+    /// The golden angle, between neighbours on the spiral.
     const TURN: f32 = 2.399_963_2;
     const DIRECTIONS: usize = super::super::library::MAX_HULL_POINTS;
     let mut chosen: Vec<u32> = Vec::new();
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn the_body_is_what_the_model_looks_like() {
+    fn collider_follows_the_models_shape() {
         let auto = ColliderKind::Auto;
         check(
             &Mesh::cuboid([1.0, 2.0, 3.0], 0.0),
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn a_crown_above_the_head_takes_no_room() {
+    fn crown_above_the_head_does_not_widen_the_collider() {
         let tree = Mesh::cylinder(0.2, 0.0, 3.0, 12).with(&Mesh::ball(2.0, 5.0, 12, 8));
         check(
             &tree,
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hull_has_the_corners_of_a_box_and_a_sheet_has_none() {
+    fn hull_of_a_box_has_its_corners_and_a_sheet_has_no_hull() {
         let ColliderShape::Hull { points } = ColliderKind::Hull.fit(&surface(&Mesh::cuboid([1.0, 1.0, 1.0], 0.0)))
         else {
             panic!("a box has a hull");

@@ -1,13 +1,13 @@
-//! How large a glTF file may be, and what it names.
+//! Limits on glTF files and the files that they refer to.
 
-/// The largest glTF file, and the largest of each file that it names, in bytes.
+/// Largest size in bytes of a glTF file, and of each file that it refers to.
 pub const MAX_IMPORT_BYTES: usize = 64 << 20;
 
-/// The most nodes of a glTF file.
+/// Most nodes of a glTF file.
 pub const MAX_IMPORT_NODES: usize = 10_000;
 
-/// How deep nodes may lie in each other, and objects and lists of JSON.
+/// Deepest nesting of nodes, and of objects and lists in JSON.
 pub const MAX_IMPORT_DEPTH: usize = 64;
 
-/// The most pixels of a texture along each side.
+/// Most pixels along each side of a texture.
 pub const MAX_TEXTURE_SIDE: u32 = 4096;

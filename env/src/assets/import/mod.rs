@@ -1,5 +1,5 @@
-//! Models from glTF 2.0 files: the way from bytes to a model. Files that lie are refused where they lie, in the file of
-//! the step that meets them. Skins and animations are left out; extensions that compress are refused.
+//! Imports models from glTF 2.0 files. Each step refuses faulty input and names the location. Skins and animations are left
+//! out; compression extensions are refused.
 
 mod accessor;
 mod buffers;
@@ -32,25 +32,25 @@ use self::refusal::{at_most, refuse};
 use super::library::{Detail, LibraryModel};
 use crate::EnvError;
 
-/// A model and what was left out of it.
+/// A model, with warnings about what was left out of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Imported {
     /// The model.
     pub model: LibraryModel,
-    /// What of the file could not be kept, each kind once.
+    /// Features of the file that could not be kept, each kind once.
     pub warnings: Vec<ImportWarning>,
 }
 
 impl LibraryModel {
-    /// A model from the bytes of a `.glb` or `.gltf` file.
+    /// Converts the bytes of a `.glb` or `.gltf` file to a model.
     ///
-    /// It is turned so that glTF's up (+y) is up and its front (+z) faces +y, stood on the ground, centred above its
-    /// origin, and gets up to three coarser levels of detail. A triangle's colour is the mean of base colour, texture
-    /// and corner colours over it; at most 64 colours are kept.
+    /// The model is rotated so that glTF's up (+y) is up and its front (+z) faces +y, placed on the ground, centred above its
+    /// origin, and gets up to three coarser levels of detail. A triangle's colour is the mean of base colour, texture and
+    /// corner colours over it; at most 64 colours are kept.
     ///
     /// # Errors
-    /// [`EnvError::BadModel`] for what is not a sound glTF file within the limits: [`MAX_IMPORT_BYTES`],
-    /// [`MAX_IMPORT_NODES`], [`MAX_IMPORT_DEPTH`], [`MAX_MODEL_VERTICES`](crate::MAX_MODEL_VERTICES),
+    /// [`EnvError::BadModel`] if the file is not valid glTF within the limits: [`MAX_IMPORT_BYTES`], [`MAX_IMPORT_NODES`],
+    /// [`MAX_IMPORT_DEPTH`], [`MAX_MODEL_VERTICES`](crate::MAX_MODEL_VERTICES),
     /// [`MAX_MODEL_TRIANGLES`](crate::MAX_MODEL_TRIANGLES), [`MAX_TEXTURE_SIDE`].
     pub fn from_gltf(bytes: &[u8], options: &ImportOptions, read: &mut ReadBeside) -> Result<Imported, EnvError> {
         at_most(MAX_IMPORT_BYTES, bytes.len(), "bytes", "file")?;
@@ -73,7 +73,7 @@ impl LibraryModel {
     }
 }
 
-/// Levels of detail, a collider and both sides for what is standing in its place.
+/// Adds levels of detail, a collider and back faces to a surface that is already in place.
 fn finish(
     options: &ImportOptions,
     surface: &surface::Surface,

@@ -1,4 +1,4 @@
-//! The tree of nodes: which meshes stand where. Cycles, nodes of two parents and endless depth are met here.
+//! Walks the node tree and finds the pose of every mesh. Refuses cycles, nodes with two parents and excessive depth.
 
 use gltf_json::{Index, Mesh, Node, Root};
 
@@ -6,14 +6,13 @@ use super::limits::MAX_IMPORT_DEPTH;
 use super::refusal::{named, one_of, refuse};
 use crate::EnvError;
 
-/// Where a mesh stands: three rows of a 3 × 4 matrix that takes its points into the scene.
+/// The pose of a mesh: the upper three rows of a 4 × 4 matrix from its frame to the scene's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pose([[f64; 4]; 3]);
 
 type Found<'a> = dyn FnMut(Index<Mesh>, &Pose, &str) -> Result<(), EnvError> + 'a;
 
-/// Shows every mesh of the default scene with its pose and the place of its node; without scenes, every mesh that hangs
-/// in the tree.
+/// Visits every mesh of the default scene with its pose and the path of its node; without scenes, every mesh in the tree.
 pub(super) fn visit(root: &Root, found: &mut Found) -> Result<(), EnvError> {
     let mut walk = Walk {
         root,
@@ -80,7 +79,7 @@ impl Walk<'_, '_> {
 impl Pose {
     pub(super) const HERE: Self = Self([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]);
 
-    /// A node's own transform: its matrix, or scale, then rotation, then translation.
+    /// A node's local transform: its matrix, or scale, then rotation, then translation.
     fn of(node: &Node) -> Self {
         if let Some(columns) = node.matrix {
             let row = |row: usize| [0, 1, 2, 3].map(|column| f64::from(columns[4 * column + row]));
@@ -121,7 +120,7 @@ impl Pose {
         ])
     }
 
-    /// The pose of something that stands at `child` in what stands here.
+    /// The pose of a `child` given in this frame.
     fn then(&self, child: &Self) -> Self {
         let entry = |row: &[f64; 4], column: usize| {
             let along: f64 = (0..3).map(|k| row[k] * child.0[k][column]).sum();
@@ -135,7 +134,7 @@ impl Pose {
         self.0.map(|[a, b, c, d]| a * x + b * y + c * z + d)
     }
 
-    /// Whether it turns left hands into right ones, so that triangles must be wound the other way.
+    /// Whether the transform mirrors, so that the winding of triangles must be reversed.
     pub(super) fn mirrors(&self) -> bool {
         let [a, b, c] = self.0;
         let cross = [
@@ -156,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn scale_comes_first_then_rotation_then_translation() {
+    fn transform_applies_scale_then_rotation_then_translation() {
         let half = std::f64::consts::FRAC_1_SQRT_2;
         let json = format!(r#"{{"translation": [1, 2, 3], "rotation": [0, 0, {half}, {half}], "scale": [2, 1, 1]}}"#);
         let found = Pose::of(&node(&json)).apply([1.0, 0.0, 0.0]);
@@ -165,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn a_matrix_is_read_column_by_column() {
+    fn matrices_are_read_in_column_major_order() {
         let pose = Pose::of(&node(r#"{"matrix": [0,1,0,0, -1,0,0,0, 0,0,1,0, 5,6,7,1]}"#));
         assert_eq!(pose.apply([1.0, 0.0, 0.0]), [5.0, 7.0, 7.0]);
         assert!(!pose.mirrors());

@@ -1,37 +1,36 @@
-//! What may be asked for when a glTF file becomes a model.
+//! Options for importing a glTF file.
 
 use super::fit::ColliderKind;
 use super::refusal::refuse;
 use crate::EnvError;
 use crate::assets::library::MAX_MODEL_REACH;
 
-/// How a glTF file becomes a model.
+/// How to import a glTF file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImportOptions {
-    /// The class that worlds refer to it by.
+    /// The class by which worlds refer to it.
     pub class: String,
     /// The model's name within its class, such as "1".
     pub name: String,
-    /// How large it becomes.
+    /// The model's size.
     pub size: ImportSize,
-    /// What the agent bumps into.
+    /// The model's collider.
     pub collider: ColliderKind,
-    /// Name of the material whose colour gives way to an object's `color`. Without it, the material named `main`, if
-    /// any.
+    /// Name of the material that an object's `color` replaces. By default the material named `main`, if any.
     pub main: Option<String>,
 }
 
-/// How large a model becomes.
+/// The size of a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ImportSize {
-    /// So many metres for each unit of the file: 1 where the file is in metres, as glTF asks for.
+    /// Metres per unit of the file: 1 for files in metres, as glTF requires.
     Scale(f32),
-    /// So high in metres.
+    /// Height in metres.
     Height(f32),
 }
 
 impl ImportSize {
-    /// Metres for each unit of a file in which the model is `height` units high.
+    /// Metres per unit, for a file whose model is `height` units high.
     pub(super) fn factor(self, height: f64) -> Result<f64, EnvError> {
         let (place, asked) = match self {
             Self::Scale(scale) => ("scale", f64::from(scale)),

@@ -1,4 +1,4 @@
-//! Few colours for many triangles: those that look alike become one part of the model.
+//! Reduces a model to few colours: triangles of similar colours become one part.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -6,10 +6,10 @@ use super::color::srgb;
 use super::surface::Surface;
 use crate::assets::Paint;
 
-/// The most fixed colours that a model keeps.
+/// Most fixed colours of a model.
 const MOST_COLORS: usize = 64;
 
-/// Steps of a channel within which colours are taken for one.
+/// Quantisation steps per channel: colours that round to the same step are merged.
 const STEPS: f32 = 31.0;
 
 /// Triangles of one colour.
@@ -20,7 +20,7 @@ pub(super) struct Group {
     pub(super) triangles: Vec<[u32; 3]>,
 }
 
-/// Triangles that may become a group: the sum of their light by area, and that area.
+/// Triangles of a future group: the sum of their linear colours weighted by area, and that area.
 #[derive(Default)]
 struct Heap {
     light: [f64; 3],
@@ -28,10 +28,10 @@ struct Heap {
     triangles: Vec<[u32; 3]>,
 }
 
-/// What tells heaps apart: whether it is the main colour, whether it has two sides, and about which colour.
+/// Key of a heap: whether it has the main colour, whether it is two-sided, and its quantised colour.
 type Kind = (bool, bool, [u8; 3]);
 
-/// The surface's triangles by colour; those of the material `main` take the object's colour.
+/// Groups the surface's triangles by colour; those of the material `main` take the object's colour.
 pub(super) fn groups(surface: &Surface, main: Option<usize>) -> Vec<Group> {
     let mut heaps: BTreeMap<Kind, Heap> = BTreeMap::new();
     for face in &surface.faces {
@@ -61,12 +61,12 @@ pub(super) fn groups(surface: &Surface, main: Option<usize>) -> Vec<Group> {
     heaps.into_iter().map(group).collect()
 }
 
-/// Gives the smallest heaps to those whose colour is nearest, until few enough are left.
+/// Merges the smallest heaps into those of the nearest colour, until few enough are left.
 fn reduce(heaps: &mut BTreeMap<Kind, Heap>) {
     let fixed = heaps.iter().filter(|((is_main, ..), _)| !is_main);
     let mut by_area: Vec<(f64, Kind)> = fixed.map(|(kind, heap)| (heap.area, *kind)).collect();
     by_area.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    // Sides are kept apart: a sheet must not lose its back.
+    // One-sided and two-sided heaps are never merged: a sheet must keep its back.
     let (mut kept, mut given): (Vec<Kind>, Vec<Kind>) = (Vec::new(), Vec::new());
     for (_, kind) in by_area {
         let of_its_sides = kept.iter().filter(|other| other.1 == kind.1).count();
@@ -102,12 +102,11 @@ impl Heap {
     }
 }
 
-/// The corners that groups use, those at the same place in the same group as one, and the groups with their new
-/// numbers.
+/// The corners that groups use, with coincident corners of a group merged, and the groups with their new indices.
 pub(super) fn welded(corners: &[[f32; 3]], mut groups: Vec<Group>) -> (Vec<[f32; 3]>, Vec<Group>) {
     let mut welded = Vec::new();
     for group in &mut groups {
-        // Only looked up in, never walked through: the order of corners is that of the triangles.
+        // Used for lookups only: the order of corners follows the triangles, not the map.
         let mut known: HashMap<[u32; 3], u32> = HashMap::new();
         for corner in group.triangles.as_flattened_mut() {
             // Adding 0 turns -0 into 0, which is the same place.
@@ -117,7 +116,7 @@ pub(super) fn welded(corners: &[[f32; 3]], mut groups: Vec<Group>) -> (Vec<[f32;
                 welded.len() as u32 - 1
             });
         }
-        // Corners that were apart by less than 32 bits can tell.
+        // Drops triangles whose corners became equal in 32 bits.
         group.triangles.retain(|[a, b, c]| a != b && b != c && c != a);
     }
     groups.retain(|group| !group.triangles.is_empty());

@@ -1,6 +1,4 @@
-//! One primitive of a mesh: its corners, its triangles and their colours, read out of the file's accessors. Where it
-//! stands is
-//! `surface.rs`'s.
+//! Reads one primitive of a mesh from the file's accessors: corners, triangles and their colours.
 
 use gltf_json::mesh::{Mode, Primitive, Semantic};
 use gltf_json::validation::Checked;
@@ -15,25 +13,24 @@ use super::warning::{ImportWarning, Warnings};
 use crate::EnvError;
 use crate::assets::library::{MAX_MODEL_TRIANGLES, MAX_MODEL_VERTICES};
 
-/// A file that is being read, with all that its meshes refer to.
+/// State of an import: the file, and everything that its meshes refer to.
 pub(super) struct Reading<'a, 'b> {
     pub(super) buffers: &'a Buffers<'a>,
     pub(super) textures: Textures<'a, 'b>,
     pub(super) warnings: Warnings,
 }
 
-/// What a primitive holds, in its mesh's own frame.
+/// Contents of a primitive, in its mesh's own frame.
 pub(super) struct ReadPrimitive {
     pub(super) corners: Vec<[f32; 3]>,
-    /// Three corners each, and a colour as light.
+    /// Three corners and a linear colour each.
     pub(super) triangles: Vec<([u32; 3], [f32; 3])>,
     pub(super) material: Option<usize>,
     pub(super) two_sided: bool,
 }
 
 impl Reading<'_, '_> {
-    /// Reads a primitive; none if it is made of points or lines. `taken`: vertices and triangles of the scene up to
-    /// here.
+    /// Reads a primitive; `None` for points or lines. `taken`: vertices and triangles of the scene so far.
     pub(super) fn primitive(
         &mut self,
         primitive: &Primitive,
@@ -67,7 +64,7 @@ impl Reading<'_, '_> {
         }))
     }
 
-    /// Positions, and indices of them; their numbers are checked before either is read.
+    /// Positions and indices; their counts are checked before either is read.
     fn shape(
         &self,
         primitive: &Primitive,
@@ -106,7 +103,7 @@ impl Reading<'_, '_> {
         Ok((corners, indices))
     }
 
-    /// One vector for each corner, if the primitive has the attribute.
+    /// One vector per corner, if the primitive has the attribute.
     fn attribute(
         &self,
         primitive: &Primitive,
@@ -184,7 +181,7 @@ fn material_of<'a>(
     Ok(Some(material))
 }
 
-/// Triangles from a list, a strip or a fan of corners, all wound the same way.
+/// Triangles of a list, strip or fan, all with the same winding.
 fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
     match mode {
         Mode::TriangleStrip => {

@@ -1,10 +1,10 @@
-//! What is said where a glTF file is refused.
+//! Errors for glTF files.
 
 use driftworld_text::shortened;
 
 use crate::EnvError;
 
-/// What is found at a place of a file, and what was expected.
+/// An error about what was found at a place in the file, and what was expected.
 pub(super) fn refuse(place: impl Into<String>, found: impl Into<String>, expected: impl Into<String>) -> EnvError {
     EnvError::BadModel {
         place: place.into(),
@@ -13,13 +13,13 @@ pub(super) fn refuse(place: impl Into<String>, found: impl Into<String>, expecte
     }
 }
 
-/// What an index of the file names in a list of it.
+/// The element of a list that an index of the file refers to.
 pub(super) fn named<'a, T>(list: &'a [T], index: usize, what: &str, place: &str) -> Result<&'a T, EnvError> {
     let named = list.get(index);
     named.ok_or_else(|| refuse(place, format!("{what} {index}"), one_of(list.len())))
 }
 
-/// Refuses more of something than there may be.
+/// Refuses counts above a limit.
 pub(super) fn at_most(most: usize, found: usize, what: &str, place: &str) -> Result<(), EnvError> {
     if found <= most {
         return Ok(());
@@ -27,7 +27,7 @@ pub(super) fn at_most(most: usize, found: usize, what: &str, place: &str) -> Res
     Err(refuse(place, format!("{found} {what}"), format!("at most {most}")))
 }
 
-/// The numbers that a list of this length has.
+/// The valid indices of a list of this length, for messages.
 pub(super) fn one_of(length: usize) -> String {
     match length {
         0 => "none, for there are none".to_owned(),
@@ -36,7 +36,7 @@ pub(super) fn one_of(length: usize) -> String {
     }
 }
 
-/// A text of a file as it is quoted in a message: never more than a line of it.
+/// Quotes a text of the file for a message, shortened to a line.
 pub(super) fn quoted(text: &str) -> String {
     format!("{:?}", shortened(text, 60))
 }

@@ -1,5 +1,5 @@
-//! Coarser forms of a surface, with the distance by which each is off. Made once, when a model is imported, and stored:
-//! the simplifier's arithmetic is its C++ compiler's, so nothing that must be the same on every machine may call it.
+//! Simplifies a surface and measures the error. Done once, on import, and stored: the simplifier's arithmetic depends on its
+//! C++ compiler, so nothing that must be the same on every machine may call it.
 
 use meshopt::SimplifyOptions;
 use rapier3d::math::Vector;
@@ -7,26 +7,25 @@ use rapier3d::math::Vector;
 use super::deviation::{Deviation, Looks};
 use crate::assets::library::{Detail, MAX_MODEL_LEVELS};
 
-/// Triangles below which a surface is not worth simplifying: a few blocks of the renderer.
+/// Fewest triangles worth simplifying: a few blocks of the renderer.
 const WORTH_IT: usize = 96;
 
-/// The share of triangles that each level means to keep of the one before.
+/// Each level aims at one in so many triangles of the level before.
 const KEPT: usize = 4;
 
-/// The largest error of a level, as a share of the surface's size.
+/// Largest error of a level, as a fraction of the surface's size.
 const MOST_ERROR: f32 = 0.2;
 
-/// The most corners of the whole surface that are measured for a level: with more of them, evenly chosen ones stand for
-/// all.
+/// Most corners of the whole surface that are measured per level: beyond that, evenly chosen ones represent the rest.
 const MEASURED: usize = 20_000;
 
-/// The most pairs of triangles at one corner, over all corners: the simplifier looks at each. A corner shared by 63,000
-/// triangles has as many.
+/// Most pairs of triangles that share a corner, summed over all corners: the simplifier visits every pair. One corner shared by
+/// 63,000 triangles has that many.
 const MOST_PAIRS: u64 = 4_000_000_000;
 
-/// Up to three coarser levels of a surface, triangles in groups of one colour; each level with at most two thirds of
-/// the triangles of the one before. Groups share no corners. None where so many triangles meet in one corner that
-/// simplifying would take minutes.
+/// Up to three coarser levels of a surface, with triangles grouped by colour; each level has at most two thirds of the
+/// triangles of the level before. Groups share no corners. Empty if so many triangles meet in one corner that simplifying would
+/// take minutes.
 pub(super) fn levels(corners: &[[f32; 3]], groups: &[Vec<[u32; 3]>]) -> Vec<Detail> {
     let mut group_of = vec![0_usize; corners.len()];
     for (group, triangles) in groups.iter().enumerate() {
@@ -51,7 +50,7 @@ pub(super) fn levels(corners: &[[f32; 3]], groups: &[Vec<[u32; 3]>]) -> Vec<Deta
         for three in indices.chunks_exact(3) {
             by_group[group_of[three[0] as usize]].push([three[0], three[1], three[2]]);
         }
-        // Counted before anything is measured, for what cannot be simplified is what takes longest to measure.
+        // Checked before measuring, because surfaces that cannot be simplified take longest to measure.
         if indices.len() > before * 2 {
             break;
         }
@@ -68,7 +67,7 @@ pub(super) fn levels(corners: &[[f32; 3]], groups: &[Vec<[u32; 3]>]) -> Vec<Deta
     levels
 }
 
-/// How many pairs of triangles meet in a corner, over all corners, each triangle with itself, too.
+/// Number of pairs of triangles that share a corner, summed over all corners; each triangle is also paired with itself.
 fn pairs(whole: &[u32], corners: usize) -> u64 {
     let mut around = vec![0_u64; corners];
     for corner in whole {
@@ -78,13 +77,12 @@ fn pairs(whole: &[u32], corners: usize) -> u64 {
 }
 
 fn simplified(whole: &[u32], corners: &[[f32; 3]], wanted: usize, most_error: f32) -> Vec<u32> {
-    // Where two colours meet, each has its own corner in the same place: the simplifier takes that for a seam, and
-    // keeps it.
+    // Where two colours meet, each has its own corner at the same place: the simplifier treats that as a seam and keeps it.
     let options = SimplifyOptions::ErrorAbsolute | SimplifyOptions::Prune;
     meshopt::simplify_decoder(whole, corners, wanted, most_error, options, None)
 }
 
-/// The largest extent of points along an axis.
+/// The largest extent of the points along any axis.
 fn size<'a, I: Iterator<Item = &'a [f32; 3]>>(points: impl Fn() -> I) -> f32 {
     let along = |axis: usize| {
         let values = || points().map(|point| point[axis]);
@@ -93,12 +91,11 @@ fn size<'a, I: Iterator<Item = &'a [f32; 3]>>(points: impl Fn() -> I) -> f32 {
     along(0).max(along(1)).max(along(2)).max(0.0)
 }
 
-/// How far the corners of groups lie from their coarser forms at most; the size of a group of which nothing is left.
-/// None as soon as that is above `most`. Where triangles lie through each other in thousands, fewer corners are
-/// measured.
+/// Largest distance of the groups' corners from their coarser forms; for a group with nothing left, the group's size. `None` as
+/// soon as it exceeds `most`. Measures fewer corners where thousands of triangles intersect each other.
 fn error(corners: &[[f32; 3]], fine: &[Vec<[u32; 3]>], coarse: &[Vec<[u32; 3]>], most: f32) -> Option<f32> {
     let used: Vec<Vec<u32>> = fine.iter().map(|triangles| used(triangles)).collect();
-    // Each group has at least one corner measured, which rounding up may add to the most.
+    // At least one corner of each group is measured, so rounding up may exceed the limit.
     let (total, at_most) = (
         used.iter().map(Vec::len).sum(),
         MEASURED.saturating_sub(used.len()).max(1),
@@ -121,7 +118,7 @@ fn error(corners: &[[f32; 3]], fine: &[Vec<[u32; 3]>], coarse: &[Vec<[u32; 3]>],
     (error <= most).then_some(error)
 }
 
-/// The corners that triangles have, each once.
+/// The corners that triangles use, each once.
 pub(super) fn used(triangles: &[[u32; 3]]) -> Vec<u32> {
     let mut used = triangles.as_flattened().to_vec();
     used.sort_unstable();
@@ -140,7 +137,7 @@ mod tests {
     use crate::assets::Mesh;
 
     #[test]
-    fn a_fan_around_one_corner_is_simplified_up_to_a_limit() {
+    fn large_fan_around_one_corner_is_not_simplified() {
         let fan = |count: u32| {
             let mut corners = vec![[0.0, 0.0, 1.0]];
             corners.extend((0..count).map(|k| {
@@ -155,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ball_gets_coarser_level_by_level_and_says_by_how_much() {
+    fn levels_of_a_ball_get_coarser_and_report_their_error() {
         let ball = Mesh::ball(1.0, 1.0, 48, 32);
         let levels = levels(&ball.corners, std::slice::from_ref(&ball.triangles));
         assert_eq!(levels.len(), 3);
@@ -171,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn groups_keep_their_triangles_and_a_cube_is_left_alone() {
+    fn groups_stay_separate_and_a_cube_is_not_simplified() {
         let (low, high) = (Mesh::ball(1.0, 1.0, 32, 24), Mesh::ball(0.5, 2.5, 32, 24));
         let both = low.clone().with(&high);
         let (first, second) = both.triangles.split_at(low.triangles.len());
@@ -185,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn a_level_that_is_too_far_off_is_none() {
+    fn level_beyond_the_error_limit_is_dropped() {
         let ball = Mesh::ball(1.0, 1.0, 48, 32);
         let fine = [ball.triangles.clone()];
         let some = [ball.triangles[..ball.triangles.len() / 2].to_vec()];
@@ -200,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn many_corners_are_measured_at_few_and_almost_as_far_off() {
+    fn sampling_corners_hardly_changes_the_measured_error() {
         let ball = Mesh::ball(1.0, 1.0, 256, 256);
         assert!(ball.corners.len() > 3 * MEASURED, "{} corners", ball.corners.len());
         let coarse = Mesh::ball(1.0, 1.0, 16, 12);

@@ -1,5 +1,4 @@
-//! Triangles with colours from all of a file's scene, and the way they are stood up. How one primitive is read is in
-//! `primitive.rs`.
+//! Collects the coloured triangles of a file's scene, and scales and places them.
 
 use gltf_json::{Index, Mesh};
 
@@ -10,7 +9,7 @@ use super::refusal::{named, refuse};
 use crate::EnvError;
 use crate::assets::library::MAX_MODEL_REACH;
 
-/// The most primitives of all meshes, each as often as it stands in the scene.
+/// Most primitives in the scene, counting each instance of a mesh.
 const MAX_PRIMITIVES: usize = 100_000;
 
 /// All triangles of a file.
@@ -25,15 +24,15 @@ pub(super) struct Surface {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Face {
     pub(super) corners: [u32; 3],
-    /// Number of its material, if it has one.
+    /// Index of its material, if it has one.
     pub(super) material: Option<usize>,
     pub(super) two_sided: bool,
-    /// Its colour as light.
+    /// Its linear colour.
     pub(super) color: [f32; 3],
 }
 
 impl Surface {
-    /// Adds a mesh that stands somewhere; `node` is the place of the one that it hangs on.
+    /// Adds an instance of a mesh; `node` is the path of its node.
     pub(super) fn add(
         &mut self,
         reading: &mut Reading,
@@ -62,7 +61,7 @@ impl Surface {
         let first = self.corners.len() as u32;
         for corner in &part.corners {
             let [x, y, z] = pose.apply(*corner);
-            // glTF's up is ours, its front is our north: its x points west.
+            // Converts axes: glTF's up is ours, its front is our north, and its x points west.
             let corner = [-x, z, y].map(|metres| metres as f32);
             if !corner.iter().all(|metres| metres.abs() < 1e9) {
                 return Err(refuse(place, format!("a corner at {corner:?}"), "numbers below 1e9"));
@@ -97,7 +96,7 @@ impl Surface {
         cross.iter().map(|part| part * part).sum::<f64>().sqrt() / 2.0
     }
 
-    /// Brings everything to its size, centred above the origin, with its lowest corner on the ground.
+    /// Scales everything to the given size and centres it above the origin, with its lowest corner on the ground.
     pub(super) fn stand(&mut self, size: ImportSize) -> Result<(), EnvError> {
         if self.faces.is_empty() {
             let expected = "at least one triangle with an area";

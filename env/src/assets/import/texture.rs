@@ -1,5 +1,4 @@
-//! Textures as far as a model needs them: the colour at a place. PNG is read; of anything else the material keeps its
-//! plain colour.
+//! Reads PNG textures to look up colours. For other formats, the material keeps its plain colour.
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -16,29 +15,29 @@ use super::uri::{self, ReadBeside};
 use super::warning::{ImportWarning, Warnings};
 use crate::EnvError;
 
-/// The most pixels of all textures of a model together: two of the largest.
+/// Most pixels of all textures of a model together: two of the largest.
 const MAX_PIXELS: usize = 2 * 4096 * 4096;
 
-/// The most images that are read.
+/// Most images that are read.
 const MAX_IMAGES: usize = 256;
 
-/// What stands for the image of a texture that names none.
+/// Stands for a missing image index.
 const NO_SOURCE: usize = u32::MAX as usize;
 
-/// The textures of a file, read when they are first asked for.
+/// The textures of a file, read on first use.
 pub(super) struct Textures<'a, 'b> {
     buffers: &'a Buffers<'a>,
     read: &'a mut ReadBeside<'b>,
-    /// By the number of the image; none where it is not read.
+    /// By image index; `None` if its format is not supported.
     images: BTreeMap<usize, Option<Pixels>>,
     num_pixels: usize,
 }
 
-/// An image as a texture repeats it.
+/// An image with its wrap modes.
 #[derive(Clone, Copy)]
 pub(super) struct Texture<'a> {
     pixels: &'a Pixels,
-    /// What lies beyond its sides: across, and down.
+    /// Wrap modes across and down.
     wrap: [WrappingMode; 2],
 }
 
@@ -59,7 +58,7 @@ impl<'a, 'b> Textures<'a, 'b> {
         }
     }
 
-    /// The texture that whoever is at `place` refers to; none where it has no image, or one whose format is not read.
+    /// The texture that `place` refers to; `None` if it has no image, or one in another format.
     pub(super) fn texture(
         &mut self,
         texture: Index<gltf_json::Texture>,
@@ -83,7 +82,7 @@ impl<'a, 'b> Textures<'a, 'b> {
         Ok(pixels.map(|pixels| Texture { pixels, wrap }))
     }
 
-    /// How a texture goes on beyond its image, across and down: without a sampler it is repeated.
+    /// A texture's wrap modes across and down; without a sampler it repeats.
     fn wrap(&self, sampler: Option<Index<Sampler>>, place: &str) -> Result<[WrappingMode; 2], EnvError> {
         let Some(index) = sampler.map(|sampler| sampler.value()) else {
             return Ok([WrappingMode::Repeat; 2]);
@@ -140,7 +139,7 @@ fn decoded(bytes: &[u8], place: &str) -> Result<Pixels, EnvError> {
     let limits = png::Limits { bytes: 128 << 20 };
     let mut decoder = png::Decoder::new_with_limits(std::io::Cursor::new(bytes), limits);
     decoder.set_transformations(png::Transformations::normalize_to_color8());
-    // The size is known before anything else is read.
+    // Checks the size before reading anything else.
     let header = decoder.read_header_info().map_err(unreadable)?;
     let (width, height) = (header.width, header.height);
     if width.max(height) > MAX_TEXTURE_SIDE {
@@ -148,7 +147,7 @@ fn decoded(bytes: &[u8], place: &str) -> Result<Pixels, EnvError> {
         return Err(refuse(place, found, format!("at most {MAX_TEXTURE_SIDE} each way")));
     }
     let mut reader = decoder.read_info().map_err(unreadable)?;
-    // At most 4096 × 4096 × 4 bytes after the check above.
+    // At most 4096 × 4096 × 4 bytes, by the check above.
     let size = reader.output_buffer_size().unwrap_or(0);
     let mut data = vec![0; size];
     let info = reader.next_frame(&mut data).map_err(unreadable)?;
@@ -167,11 +166,11 @@ fn decoded(bytes: &[u8], place: &str) -> Result<Pixels, EnvError> {
     })
 }
 
-/// The light of each byte.
+/// Linear light of each byte.
 static LIGHT: LazyLock<[f32; 256]> = LazyLock::new(|| std::array::from_fn(|byte| linear(byte as f32 / 255.0)));
 
 impl Texture<'_> {
-    /// Light and opacity at a place in texture coordinates: the nearest pixel.
+    /// Linear colour and opacity at texture coordinates, from the nearest pixel.
     pub(super) fn at(self, [u, v]: [f32; 2]) -> [f32; 4] {
         let Self { pixels, wrap } = self;
         let index = |place: f32, wrap: WrappingMode, size: usize| {
@@ -188,7 +187,7 @@ impl Texture<'_> {
     }
 }
 
-/// Where in the image, 0 to 1, a place is that may lie beyond it.
+/// Wraps a coordinate into the image, 0 to 1.
 fn within(place: f32, wrap: WrappingMode) -> f32 {
     match wrap {
         WrappingMode::Repeat => place.rem_euclid(1.0),
@@ -205,7 +204,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn places_beyond_the_image_are_brought_into_it() {
+    fn coordinates_beyond_the_image_are_wrapped() {
         #[track_caller]
         fn check(place: f32, repeated: f32, clamped: f32, mirrored: f32) {
             let modes = [

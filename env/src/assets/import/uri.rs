@@ -1,5 +1,4 @@
-//! What a glTF file may name: data inside itself, and files in its own folder. Who reads those files decides about
-//! links.
+//! Resolves URIs in a glTF file: embedded data, and files in the same folder.
 
 use base64::Engine;
 
@@ -7,11 +6,11 @@ use super::limits::MAX_IMPORT_BYTES;
 use super::refusal::{at_most, quoted, refuse};
 use crate::EnvError;
 
-/// Hands over a file that lies beside the glTF file, or says why it cannot. It is asked for relative paths that lead
-/// into the folder only, with `/` between their parts; whoever follows links must see that they stay there too.
+/// Reads a file beside the glTF file, or returns the reason why it cannot. Called only with relative paths inside the folder,
+/// separated by `/`; if it follows links, it must check that they stay inside as well.
 pub type ReadBeside<'a> = dyn FnMut(&str) -> Result<Vec<u8>, String> + 'a;
 
-/// The bytes that a URI stands for.
+/// The bytes behind a URI.
 pub(super) fn bytes(uri: &str, place: &str, read: &mut ReadBeside) -> Result<Vec<u8>, EnvError> {
     let bytes = if uri.get(..5).is_some_and(|start| start.eq_ignore_ascii_case("data:")) {
         embedded(uri, place)?
@@ -38,7 +37,7 @@ fn embedded(uri: &str, place: &str) -> Result<Vec<u8>, EnvError> {
     decoded.map_err(|error| refuse(place, format!("data that is not base64: {error}"), "base64"))
 }
 
-/// A URI as a relative path that does not lead out of the folder.
+/// A URI as a relative path that stays inside the folder.
 fn path_inside(uri: &str, place: &str) -> Result<String, EnvError> {
     let expected = "the relative path of a file in the folder of this one";
     let outside = || refuse(place, quoted(uri), expected);
@@ -76,7 +75,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_paths_into_the_folder_are_asked_for() {
+    fn only_paths_inside_the_folder_are_accepted() {
         #[track_caller]
         fn check(uri: &str, expected: Option<&str>) {
             assert_eq!(path_inside(uri, "here").ok().as_deref(), expected, "{uri}");
@@ -110,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn data_is_decoded_with_or_without_padding() {
+    fn data_uris_are_decoded_with_or_without_padding() {
         let read = |uri: &str| bytes(uri, "here", &mut |_| Err("nothing is beside it".into()));
         assert_eq!(read("data:application/octet-stream;base64,AQID"), Ok(vec![1, 2, 3]));
         assert_eq!(read("data:;base64,AQ=="), Ok(vec![1]));

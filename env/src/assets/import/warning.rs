@@ -1,17 +1,17 @@
-//! What of a glTF file a model cannot keep.
+//! Warnings about features of glTF files that models do not support.
 
 use std::collections::BTreeSet;
 
 use gltf_json::Root;
 
-/// Something in a glTF file that is left out of the model.
+/// A feature of a glTF file that was left out of the model.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, strum::Display)]
 #[non_exhaustive]
 pub enum ImportWarning {
     /// Animations: models do not move.
     #[strum(to_string = "/animations: left out; models do not move")]
     Animations,
-    /// Skins: what has bones is drawn as it was modelled, without them.
+    /// Skins: models with bones keep their rest shape.
     #[strum(to_string = "/skins: left out; the model stands as it does without bones")]
     Skins,
     /// Morph targets: the undeformed shape is drawn.
@@ -20,43 +20,43 @@ pub enum ImportWarning {
     /// Points and lines.
     #[strum(to_string = "/meshes: points and lines are left out")]
     PointsOrLines,
-    /// Surfaces that light comes through: they are drawn as if it did not.
+    /// Transparent surfaces: they are drawn opaque.
     #[strum(to_string = "/materials: transparent surfaces are drawn solid")]
     Transparency,
-    /// A texture in a format other than PNG: the material's plain colour is taken.
+    /// A texture in a format other than PNG: the material keeps its plain colour.
     #[strum(
         to_string = "/images/{image}: {found} is not read; its materials keep their plain colour, or convert it to PNG"
     )]
     TextureFormat {
-        /// Number of the image in the file.
+        /// Index of the image in the file.
         image: usize,
-        /// What it is.
+        /// Its format.
         found: String,
     },
-    /// A texture without an image, or with one that only an extension names: the material's plain colour is taken.
+    /// A texture without an image, or with one that only an extension refers to: the material keeps its plain colour.
     #[strum(
         to_string = "/textures/{texture}: it names no image; its materials keep their plain colour, or export it as PNG"
     )]
     TextureWithoutImage {
-        /// Number of the texture in the file.
+        /// Index of the texture in the file.
         texture: usize,
     },
-    /// Textured surfaces that do not say where on the texture their corners are: the material's plain colour is taken.
+    /// Textured surfaces without texture coordinates: the material keeps its plain colour.
     #[strum(
         to_string = "/meshes: textured surfaces without the texture coordinates that their material asks for keep its plain colour"
     )]
     NoTexturePlaces,
-    /// Textures that are moved, turned or scaled by `KHR_texture_transform`: they are taken as they are.
+    /// Textures transformed by `KHR_texture_transform`: the transform is ignored.
     #[strum(
         to_string = "/extensionsUsed: KHR_texture_transform is left out; textures that it moves or scales give other colours"
     )]
     TextureTransform,
 }
 
-/// Warnings on their way out, each once.
+/// Collected warnings, each once.
 pub(super) type Warnings = BTreeSet<ImportWarning>;
 
-/// What of a file is never read.
+/// Warnings about features that are never read.
 pub(super) fn left_out(root: &Root) -> Warnings {
     let transforms = |name: &String| name == "KHR_texture_transform";
     let kinds = [

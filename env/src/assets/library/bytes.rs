@@ -1,4 +1,4 @@
-//! How a library is written down: a header with a checksum, then the models. Models are read in `reader.rs`.
+//! Binary format of libraries: a header with a checksum, then the models.
 //!
 //! All numbers are little-endian. Header: `DRIFTLIB`, version (u32), length of the rest after the checksum (u64),
 //! SHA-256 of that rest. Then the number of models (u32), and each model: class and name (length u16, UTF-8), collider
@@ -16,15 +16,15 @@ use crate::assets::{ColliderShape, Paint};
 
 const MAGIC: &[u8; 8] = b"DRIFTLIB";
 const VERSION: u32 = 1;
-/// Bytes before the models.
+/// Bytes of the header.
 const HEADER: usize = 8 + 4 + 8 + 32;
-/// Corners up to which triangles are written in 16 bits.
+/// Most corners of a model whose triangles are stored as 16-bit indices.
 pub(super) const SMALL: usize = 1 << 16;
-/// The fewest bytes that a model takes.
+/// Fewest bytes of a model.
 const LEAST_MODEL: usize = 32;
 
 impl Library {
-    /// The library as a file's bytes: the same library gives the same bytes on every machine.
+    /// Serialises the library; the same library gives the same bytes on every machine.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut body = Vec::new();
         body.extend((self.models.len() as u32).to_le_bytes());
@@ -34,17 +34,17 @@ impl Library {
         sealed(&body)
     }
 
-    /// Whether a file that begins with these bytes means to be a library, of any version, whole or not.
+    /// Whether these bytes start like a library of any version, even an incomplete one.
     pub fn is_meant(bytes: &[u8]) -> bool {
         bytes.starts_with(MAGIC)
     }
 
-    /// Reads what [`Library::to_bytes`] wrote.
+    /// Parses the output of [`Library::to_bytes`].
     ///
-    /// Any bytes may be handed in; memory stays below a fixed multiple of their number.
+    /// Accepts untrusted bytes; memory stays below a fixed multiple of their number.
     ///
     /// # Errors
-    /// [`EnvError::BadLibrary`] with the byte at which the file is not a library, or not a whole one.
+    /// [`EnvError::BadLibrary`] with the offset of the first fault.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, EnvError> {
         let mut reader = Reader::new(bytes);
         if reader.take(8).ok() != Some(MAGIC) {
@@ -92,7 +92,7 @@ impl Library {
     }
 }
 
-/// The models' bytes behind their header.
+/// Prepends the header to the models' bytes.
 fn sealed(body: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(HEADER + body.len());
     bytes.extend(MAGIC);
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_written_is_read_again() {
+    fn library_round_trips_through_bytes() {
         let library = library();
         let bytes = library.to_bytes();
         assert_eq!(Library::from_bytes(&bytes), Ok(library));
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn every_cut_and_every_flipped_bit_is_noticed() {
+    fn truncated_files_and_flipped_bits_are_refused() {
         let bytes = library().to_bytes();
         for length in 0..bytes.len() {
             let read = Library::from_bytes(&bytes[..length]);
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn a_message_says_where_and_what() {
+    fn errors_name_the_offset_and_the_fault() {
         #[track_caller]
         fn check(bytes: &[u8], expected: &str) {
             let error = Library::from_bytes(bytes).expect_err("the bytes are no library");
@@ -244,7 +244,7 @@ mod tests {
     }
 
     proptest! {
-        /// The checksum is made to fit, so that what is behind it is met by every kind of nonsense.
+        /// Fixes up the checksum, so that the corrupted models themselves are parsed.
         #[test]
         fn changed_models_are_refused_or_sound(
             changes in proptest::collection::vec((0_usize..2000, any::<u8>()), 1..8),
@@ -268,7 +268,7 @@ mod tests {
         }
 
         #[test]
-        fn no_bytes_make_it_panic(body in proptest::collection::vec(any::<u8>(), 0..400)) {
+        fn arbitrary_bytes_never_panic(body in proptest::collection::vec(any::<u8>(), 0..400)) {
             prop_assert!(Library::from_bytes(&body).is_err());
             let _ = Library::from_bytes(&sealed(&body));
         }

@@ -1,5 +1,4 @@
-//! [`Library`]: models made elsewhere, ready to be drawn. How they are written down is in `bytes.rs`; how they are made
-//! from glTF files is in `import`.
+//! [`Library`]: a collection of imported models, ready to be drawn.
 
 mod bytes;
 mod model;
@@ -15,32 +14,32 @@ use std::collections::BTreeSet;
 use crate::EnvError;
 use crate::assets::catalogue::key;
 
-/// The most models of a library.
+/// Most models of a library.
 pub const MAX_LIBRARY_MODELS: usize = 10_000;
 
-/// The most corners of a model, all parts together.
+/// Most corners of a model, over all parts.
 pub const MAX_MODEL_VERTICES: usize = 1_000_000;
 
-/// The most triangles of a model, both sides of two-sided ones counted.
+/// Most triangles of a model; two-sided ones count twice.
 pub const MAX_MODEL_TRIANGLES: usize = 1_000_000;
 
-/// The most colours of a model.
+/// Most colours of a model.
 pub const MAX_MODEL_PARTS: usize = 256;
 
-/// The most levels of detail of a model, the full one among them.
+/// Most levels of detail of a model, including the full one.
 pub const MAX_MODEL_LEVELS: usize = 4;
 
-/// The furthest that a model may reach from its origin, along each axis in metres.
+/// Largest distance of a model from its origin, along each axis in metres.
 pub const MAX_MODEL_REACH: f32 = 1000.0;
 
-/// The most letters of a class or of a model's name, in bytes of UTF-8.
+/// Longest class or model name, in bytes of UTF-8.
 pub const MAX_NAME_BYTES: usize = 200;
 
-/// Models that worlds may refer to by class and name, beside the built-in ones; see [`Catalogue`](crate::Catalogue).
+/// Models that worlds may refer to by class and name, in addition to the built-in ones; see [`Catalogue`](crate::Catalogue).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Library {
     models: Vec<LibraryModel>,
-    /// Class and name of each model, as they are looked up.
+    /// Normalised class and name of each model.
     keys: BTreeSet<(String, String)>,
 }
 
@@ -48,7 +47,7 @@ impl Library {
     /// Adds a model.
     ///
     /// # Errors
-    /// [`EnvError::BadModel`] if the library has a model of that class and name, or [`MAX_LIBRARY_MODELS`] of them.
+    /// [`EnvError::BadModel`] if the library already has a model of that class and name, or has [`MAX_LIBRARY_MODELS`].
     pub fn insert(&mut self, model: LibraryModel) -> Result<(), EnvError> {
         let refuse = |found: &str, expected: &str| {
             Err(EnvError::BadModel {
@@ -69,7 +68,7 @@ impl Library {
         Ok(())
     }
 
-    /// The models in the order they were added in.
+    /// The models in insertion order.
     pub fn models(&self) -> &[LibraryModel] {
         &self.models
     }

@@ -1,13 +1,11 @@
-//! [`LibraryModel`]: one model of a library, with its colours, levels of detail and collider. How it looks in a file is
-//! in
-//! `bytes.rs`, how it is simplified in `simplify.rs`.
+//! [`LibraryModel`]: one model of a library, with its colours, levels of detail and collider.
 
 use super::{
     MAX_MODEL_LEVELS, MAX_MODEL_PARTS, MAX_MODEL_REACH, MAX_MODEL_TRIANGLES, MAX_MODEL_VERTICES, MAX_NAME_BYTES,
 };
 use crate::assets::{Asset, ColliderShape, Mesh, Paint, Part};
 
-/// One model of a library: sound, in metres, on the ground, with levels of detail.
+/// A checked model of a library, in metres, on the ground, with levels of detail.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LibraryModel {
     pub(crate) class: String,
@@ -17,24 +15,24 @@ pub struct LibraryModel {
     pub(super) corners: Vec<[f32; 3]>,
     /// The colours, each with triangles in every level.
     pub(super) paints: Vec<Paint>,
-    /// From the whole model to the coarsest.
+    /// From the full model to the coarsest level.
     pub(super) levels: Vec<Detail>,
 }
 
 /// One level of detail of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Detail {
-    /// How far the surface may be from where it should be, in metres.
+    /// Largest distance of the surface from the full model's, in metres.
     pub(crate) error: f32,
-    /// For each colour of the model, its triangles.
+    /// The triangles of each of the model's colours.
     pub(crate) triangles: Vec<Vec<[u32; 3]>>,
 }
 
-/// What is wrong with a model's parts: what was found, and what was expected.
+/// A fault in a model's parts: what was found, and what was expected.
 pub(crate) type Unsound = (String, String);
 
 impl LibraryModel {
-    /// A model of these parts, or what is wrong with them.
+    /// Builds a model from these parts, or returns their fault.
     pub(crate) fn checked(
         class: String,
         name: String,
@@ -110,7 +108,7 @@ impl LibraryModel {
         })
     }
 
-    /// The class that worlds refer to it by.
+    /// The class by which worlds refer to it.
     pub fn class(&self) -> &str {
         &self.class
     }
@@ -120,34 +118,34 @@ impl LibraryModel {
         &self.name
     }
 
-    /// What the agent bumps into.
+    /// The model's collider.
     pub fn collider(&self) -> &ColliderShape {
         &self.collider
     }
 
-    /// How many levels of detail there are, the whole model among them: 1 to [`MAX_MODEL_LEVELS`].
+    /// Number of levels of detail, including the full model: 1 to [`MAX_MODEL_LEVELS`].
     pub fn num_levels(&self) -> usize {
         self.levels.len()
     }
 
-    /// Triangles of a level and its largest error in metres; level 0 is the whole model, without error.
+    /// Number of triangles of a level and its largest error in metres; level 0 is the full model, with error 0.
     pub fn level(&self, level: usize) -> Option<(usize, f32)> {
         let level = self.levels.get(level)?;
         Some((level.triangles.iter().map(Vec::len).sum(), level.error))
     }
 
-    /// The model as an asset that can be drawn.
+    /// Converts the model to an asset for drawing.
     pub fn asset(&self) -> Asset {
         let levels = self.levels.iter().map(|level| (level.error, self.parts(level)));
         Asset::of_levels(levels.collect(), self.collider.clone())
     }
 
-    /// The model drawn at one of its levels wherever it stands, to look at; `None` if there is no such level.
+    /// The model at a fixed level of detail, for inspection; `None` if there is no such level.
     pub fn asset_at(&self, level: usize) -> Option<Asset> {
         let parts = self.parts(self.levels.get(level)?);
         let whole = self.asset();
         let asset = Asset::of_levels(vec![(0.0, parts)], self.collider.clone());
-        // Coarse levels may be smaller; what is drawn is placed as the whole model is.
+        // Coarse levels may be smaller, so keeps the full model's dimensions for placing it.
         Some(Asset {
             height: whole.height,
             radius: whole.radius,
@@ -155,7 +153,7 @@ impl LibraryModel {
         })
     }
 
-    /// A level's triangles, each colour with the corners it needs.
+    /// A level's triangles by colour, each with only the corners it needs.
     fn parts(&self, level: &Detail) -> Vec<Part> {
         const UNUSED: u32 = u32::MAX;
         let mut place = vec![UNUSED; self.corners.len()];
@@ -176,7 +174,7 @@ impl LibraryModel {
                 });
                 mesh.triangles.push(corners);
             }
-            // Only what was used is cleared, so that many colours stay cheap.
+            // Clears only the used entries, so that many colours stay cheap.
             triangles
                 .iter()
                 .flatten()
@@ -187,7 +185,7 @@ impl LibraryModel {
     }
 }
 
-/// Whether a collider's numbers are sizes.
+/// Whether all dimensions of a collider are valid.
 fn is_sound(collider: &ColliderShape) -> bool {
     let size = |metres: &f32| *metres > 0.0 && *metres <= 2.0 * MAX_MODEL_REACH;
     match collider {
@@ -203,5 +201,5 @@ fn is_sound(collider: &ColliderShape) -> bool {
     }
 }
 
-/// The most points of a hull.
+/// Most points of a hull.
 pub(crate) const MAX_HULL_POINTS: usize = 64;

@@ -1,5 +1,4 @@
-//! Models out of bytes that nobody vouches for: nothing is trusted, nothing panics, and no memory is taken for what is
-//! not there. What a sound model is, is said in `model.rs`; what the bytes are, in `bytes.rs`.
+//! Parses models from untrusted bytes: never panics, and allocates only what the remaining bytes can fill.
 
 use super::MAX_HULL_POINTS;
 use super::bytes::SMALL;
@@ -7,10 +6,10 @@ use super::model::{Detail, LibraryModel};
 use crate::EnvError;
 use crate::assets::{ColliderShape, Paint};
 
-/// A place in bytes that nobody vouches for.
+/// A position in untrusted bytes.
 pub(super) struct Reader<'a> {
     bytes: &'a [u8],
-    /// How many of them are behind.
+    /// Number of bytes read so far.
     pub(super) at: usize,
 }
 
@@ -59,7 +58,7 @@ impl<'a> Reader<'a> {
         Ok(numbers)
     }
 
-    /// Refuses a count of things that the rest of the bytes cannot hold, before memory is taken for them.
+    /// Refuses a count that the remaining bytes cannot hold, before anything is allocated.
     pub(super) fn expect_room(&self, count: usize, each: usize, what: &str) -> Result<(), EnvError> {
         let left = self.bytes.len() - self.at;
         if count.checked_mul(each).is_some_and(|bytes| bytes <= left) {
@@ -155,7 +154,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// What is found at a byte, and what was expected.
+/// An error about what was found at a byte, and what was expected.
 pub(super) fn bad(byte: usize, found: &str, expected: &str) -> EnvError {
     EnvError::BadLibrary {
         byte,
