@@ -1,4 +1,4 @@
-//! What can go wrong while a world runs.
+//! [`EnvError`]: all errors of this crate.
 
 use driftworld_spec::SpecError;
 use driftworld_text::one_line;
@@ -8,7 +8,7 @@ use crate::sim::Obstacle;
 /// Bytes of a gibibyte.
 const GIB: f64 = (1_u64 << 30) as f64;
 
-/// Everything that can go wrong in this crate.
+/// All errors of this crate.
 #[derive(Debug, Clone, PartialEq, thiserror::Error, strum::IntoStaticStr, strum::VariantNames)]
 #[strum(prefix = "env/", serialize_all = "kebab-case")]
 #[non_exhaustive]
@@ -19,40 +19,40 @@ pub enum EnvError {
         /// The action.
         found: [f64; 3],
     },
-    /// An action is the number of a row that the world's table does not have.
+    /// An action is a row number that the world's table does not have.
     #[error("action: found row {found}, expected 0 to {last} of the world's action table; nothing was changed")]
     NoSuchAction {
-        /// The row asked for.
+        /// The requested row.
         found: usize,
-        /// The last row there is.
+        /// The last row of the table.
         last: usize,
     },
     /// A discrete action in a world whose actions are continuous.
     #[error("action: found row {found}, expected three numbers; this world has no action table (agent_params.actions)")]
     NotDiscrete {
-        /// The row asked for.
+        /// The requested row.
         found: usize,
     },
     /// A step after the episode has ended.
     #[error("step: the episode has ended, expected a reset first")]
     Ended,
-    /// Room for another number of values than the state vector has.
+    /// The buffer for the state vector has the wrong length.
     #[error("state vector: found room for {found} numbers, expected {expected} (agent_params.state_features)")]
     StateLength {
-        /// Numbers there is room for.
+        /// Length of the buffer.
         found: usize,
-        /// Numbers there are.
+        /// Length of the state vector.
         expected: usize,
     },
     /// A batch of no environments, or of too many.
     #[error("batch: found {found} environments, expected 1 to {most}")]
     BatchSize {
-        /// Environments asked for.
+        /// Requested environments.
         found: usize,
-        /// The most there can be.
+        /// Most environments.
         most: usize,
     },
-    /// Outputs that take more memory than a batch may have, or than there is.
+    /// Outputs need more memory than a batch may use, or than is available.
     #[error(
         "batch: found outputs of {:.1} GiB, expected at most {} GiB, and as much memory as there is; ask for fewer environments \
          (num_envs), smaller pictures or fewer modalities",
@@ -60,72 +60,72 @@ pub enum EnvError {
         *most as f64 / GIB
     )]
     BatchMemory {
-        /// Bytes asked for.
+        /// Requested bytes.
         found: u64,
-        /// The most there can be.
+        /// Most bytes.
         most: u64,
     },
-    /// Work that somebody ended before it was done.
+    /// Work was stopped before it was done.
     #[error(
         "batch: stopped before every environment had begun its episode, expected a reset of them all before the next step"
     )]
     Stopped,
-    /// Threads that the system does not give.
+    /// The system cannot start the requested threads.
     #[error("batch: {wanted} threads cannot be had: {reason}; ask for fewer (num_threads)")]
     BatchThreads {
-        /// Threads asked for.
+        /// Requested threads.
         wanted: usize,
-        /// What the system says.
+        /// The system's message.
         reason: String,
     },
-    /// A list with not one entry for each environment.
+    /// A list does not have one entry per environment.
     #[error("batch: found {found} entries, expected {num_envs}, one for each environment; nothing was changed")]
     BatchLength {
-        /// Entries handed in.
+        /// Entries in the list.
         found: usize,
-        /// Environments there are.
+        /// Number of environments.
         num_envs: usize,
     },
-    /// The number of an environment that the batch does not have.
+    /// The batch has no environment of this index.
     #[error("batch: found environment {found}, expected 0 to {}", num_envs - 1)]
     NoSuchEnv {
-        /// The number asked for.
+        /// The requested index.
         found: usize,
-        /// Environments there are.
+        /// Number of environments.
         num_envs: usize,
     },
-    /// An action that an environment of a batch cannot carry out.
+    /// An environment of a batch cannot carry out its action.
     #[error("environment {env} of the batch: {error}")]
     BatchAction {
-        /// Number of the environment.
+        /// Index of the environment.
         env: usize,
-        /// What is wrong.
+        /// The underlying error.
         error: Box<Self>,
     },
-    /// A world source without a world.
+    /// A world source has no world.
     #[error("environment {env} of the batch: no world for episode {episode}: {reason}")]
     BatchWorld {
-        /// Number of the environment.
+        /// Index of the environment.
         env: usize,
-        /// Number of its episode.
+        /// Index of its episode.
         episode: u64,
-        /// What the source says.
+        /// The source's reason.
         reason: String,
     },
-    /// A world with other images than the first world of its batch.
+    /// A world has other images than the first world of its batch.
     #[error(
         "environment {env} of the batch: its world asks for {found}, expected {expected} as for environment 0; give the worlds \
          of a batch the same agent_params.observation_size and modalities"
     )]
     BatchImages {
-        /// Number of the environment.
+        /// Index of the environment.
         env: usize,
-        /// What its world asks for.
+        /// Images that its world requests.
         found: String,
-        /// What the batch makes.
+        /// Images of the batch.
         expected: String,
     },
-    /// A file of recordings that is damaged, cut off or of another kind.
+    /// A file of recordings is damaged, truncated or of another kind.
     #[error("line {line}: found {found}, expected {expected}", found = one_line(found), expected = one_line(expected))]
     Recording {
         /// The line, from 1.
@@ -135,32 +135,32 @@ pub enum EnvError {
         /// What was expected.
         expected: String,
     },
-    /// A recorded episode that does not come out as it was recorded.
+    /// The replay of a recorded episode differs from the recording.
     #[error(
         "experience {experience}, {what}: found {found}, expected {expected} as recorded by driftworld {recorded_by:.40}; this is \
          driftworld {now}: replay it with the version and the asset libraries that it was recorded with"
     )]
     Replay {
-        /// The number of the experience.
+        /// Index of the experience.
         experience: u64,
-        /// What differs: the reward, what ended it, or a step that cannot be made.
+        /// What differs: the reward, the cause of the end, or a step that cannot be made.
         what: &'static str,
-        /// What came of the replay.
+        /// The value in the replay.
         found: String,
-        /// What was recorded.
+        /// The recorded value.
         expected: String,
-        /// The version that recorded it.
+        /// The version of Driftworld that recorded it.
         recorded_by: String,
         /// This version.
         now: &'static str,
     },
-    /// A new object is not sound.
+    /// A new object is invalid.
     #[error("spawn: {problem}; nothing was changed")]
     BadObject {
-        /// What is wrong with it.
+        /// The problem.
         problem: SpecError,
     },
-    /// A new object has the name of another.
+    /// A new object has the same name as another.
     #[error(
         "spawn: found unique_name {name:?}, which object {object} has too, expected a name of its own; nothing was changed"
     )]
@@ -173,42 +173,42 @@ pub enum EnvError {
     /// The world is full.
     #[error("spawn: found a world of {limit} objects, expected fewer; destroyed objects count, so start another world")]
     TooManyObjects {
-        /// The most objects that a world may hold.
+        /// Most objects of a world.
         limit: usize,
     },
-    /// An object that the world does not have.
+    /// The world has no object of this index.
     #[error("object: found number {found}, expected less than {count}, the number of objects of this world")]
     NoSuchObject {
-        /// The number asked for.
+        /// The requested index.
         found: usize,
-        /// How many there are.
+        /// Number of objects.
         count: usize,
     },
-    /// An object that was destroyed before, and does not come back.
+    /// The object was destroyed before, and does not respawn.
     #[error("destroy: found object {object} gone already, expected one that is there or comes back")]
     AlreadyGone {
         /// The object.
         object: usize,
     },
-    /// A place where the agent cannot stand.
+    /// The agent cannot stand at this place.
     #[error(
         "teleport: found {found} at {position:?}, expected free ground inside the arena for an agent {width} m wide; it stays where it is"
     )]
     NoRoom {
-        /// The place asked for, in metres.
+        /// The requested place, in metres.
         position: [f64; 2],
-        /// What is in the way.
+        /// The obstacle.
         found: Obstacle,
         /// The agent's width in metres.
         width: f64,
     },
-    /// A heading that is no number.
+    /// A heading is not a finite number.
     #[error("teleport: found a heading of {found}, expected a finite number of degrees; it stays where it is")]
     NoHeading {
-        /// The heading asked for, in degrees.
+        /// The requested heading, in degrees.
         found: f64,
     },
-    /// More photographs of one world than there may be.
+    /// A world needs more photographs than allowed.
     #[error(
         "photographs: found {objects} objects in {views} views each, expected at most {most} photographs; use fewer objects, or \
          lower image_params.yaw_subdivisions or vertical_subdivisions"
@@ -216,104 +216,104 @@ pub enum EnvError {
     TooManyPhotographs {
         /// Objects of the world.
         objects: usize,
-        /// Views of each.
+        /// Views of each object.
         views: usize,
-        /// The most photographs there can be.
+        /// Most photographs.
         most: usize,
     },
-    /// A setting of an abstraction that cannot be.
+    /// A setting of an abstraction is out of range.
     #[error("abstraction: found {what} {found}, expected a number above 0, at most {most}")]
     BadAbstraction {
-        /// Which setting.
+        /// The name of the setting.
         what: &'static str,
         /// Its value.
         found: f64,
-        /// The most that it may be.
+        /// Largest allowed value.
         most: f64,
     },
-    /// An abstraction of more states than there may be.
+    /// An abstraction needs more states than allowed.
     #[error("abstraction: found {found} states, expected at most {most}; use larger cells, or a smaller area")]
     TooManyStates {
-        /// How many there would be.
+        /// States needed.
         found: usize,
-        /// The most there can be.
+        /// Most states.
         most: usize,
     },
-    /// A world that would be made of others is not sound.
+    /// A world that was composed from others is invalid.
     #[error("world: {problem}")]
     BadWorld {
-        /// What is wrong with it.
+        /// The problem.
         problem: SpecError,
     },
-    /// A picture of a size that cannot be.
+    /// An image size is out of range.
     #[error("picture: found {width} × {height} pixels, expected 1 to 4096 each way")]
     PictureSize {
-        /// Width asked for.
+        /// Requested width.
         width: u32,
-        /// Height asked for.
+        /// Requested height.
         height: u32,
     },
-    /// Bytes that are not a library of assets, or not a whole one.
+    /// A library of assets is invalid or truncated.
     #[error("library, byte {byte}: found {found}, expected {expected}", found = one_line(found), expected = one_line(expected))]
     BadLibrary {
-        /// Where in the file.
+        /// Offset in the file.
         byte: usize,
-        /// What is there.
+        /// What was found.
         found: String,
-        /// What could be there.
+        /// What was expected.
         expected: String,
     },
-    /// A model that cannot be taken into a library.
+    /// A model cannot be added to a library.
     #[error("{place}: found {found}, expected {expected}", place = one_line(place), found = one_line(found), expected = one_line(expected))]
     BadModel {
-        /// Where in the model's file: a JSON pointer, or a few words.
+        /// The place in the model's file: a JSON pointer, or a few words.
         place: String,
-        /// What is there.
+        /// What was found.
         found: String,
-        /// What could be there.
+        /// What was expected.
         expected: String,
     },
-    /// A line of an agent's script that says nothing an agent could do.
+    /// A line of an agent's script is invalid.
     #[error("{script}:{line}: found {found}, expected {expected}", script = one_line(script), found = one_line(found), expected = one_line(expected))]
     BadScript {
-        /// What the script is called, usually its path.
+        /// The script's name, usually its path.
         script: String,
         /// The line, counted from 1.
         line: usize,
-        /// What stands there.
+        /// What was found.
         found: String,
-        /// What could stand there.
+        /// What was expected.
         expected: String,
     },
-    /// A file that is not a network by which an agent could act.
+    /// A network file is invalid.
     #[error("{file}: {place}: found {found}, expected {expected}", file = one_line(file), place = one_line(place), found = one_line(found), expected = one_line(expected))]
     BadNetwork {
-        /// What the file is called, usually its path.
+        /// The file's name, usually its path.
         file: String,
-        /// Where in it: a tensor, or a key of its metadata.
+        /// The place in the file: a tensor, or a key of its metadata.
         place: String,
-        /// What is there.
+        /// What was found.
         found: String,
-        /// What could be there.
+        /// What was expected.
         expected: String,
     },
-    /// The name of a renderer that there is not.
+    /// There is no renderer of this name.
     #[error("renderer: found {found:?}, expected cpu, gpu or auto")]
     NoSuchRenderer {
-        /// The name.
+        /// The requested name.
         found: String,
     },
-    /// A graphics card is asked for, and none can be had.
+    /// A GPU is requested, and none is usable.
     #[error(
         "renderer gpu: found no graphics adapter that works, expected one ({}); `driftworld doctor` says what is missing, \
          the renderer cpu works everywhere",
         tried.join("; ")
     )]
     NoGpu {
-        /// What was tried, and why it failed.
+        /// The adapters that were tried, with the reason why each failed.
         tried: Vec<String>,
     },
-    /// A picture that a graphics card cannot hold.
+    /// An image is too large for the GPU.
     #[error(
         "picture: found {width} × {height} points, expected at most {most} each way on {adapter}; draw it with the renderer cpu, \
          smaller, or with less supersampling",
@@ -324,17 +324,17 @@ pub enum EnvError {
         width: u32,
         /// Height in points.
         height: u32,
-        /// The most that the adapter takes.
+        /// Largest size that the adapter supports.
         most: u32,
         /// The adapter's name.
         adapter: String,
     },
-    /// A graphics card fails.
+    /// The GPU failed.
     #[error("renderer gpu: {adapter}: {reason}; expected a picture; the renderer cpu works everywhere", adapter = one_line(adapter), reason = one_line(reason))]
     Gpu {
         /// The adapter's name.
         adapter: String,
-        /// What it says.
+        /// The adapter's message.
         reason: String,
     },
 }

@@ -1,27 +1,27 @@
-//! Zones as they lie on the ground: flat polygons in their colours, for both renderers. What zones do is in `sim/zones.rs`.
+//! Geometry of zones on the ground: flat coloured polygons, for both renderers.
 
 use driftworld_spec::{World, Zone};
 
 use crate::assets::{Material, Mesh, Paint, Part};
 use crate::scene::PanelGroup;
 
-/// How many corners a disc is drawn with.
+/// Corners of the polygon that approximates a disc.
 const CORNERS: u32 = 64;
 
-/// How far a patch is drawn above the ground, as a share of the camera's height: too little to be seen in depths, and
-/// enough to lie on top.
+/// Height of a patch above the ground, as a fraction of the camera's height: too small to show in depths, large enough to lie
+/// on top.
 const LIFT: f32 = 1e-4;
 
-/// How much higher each patch lies than the one before it, as a share of the lift; up to so many patches.
+/// Additional height of each patch over the one before, as a fraction of the lift, and the number of patches that get one.
 const STEP: (f32, usize) = (0.1, 100);
 
-/// How far the ground around an arena reaches in metres: in two bands, as corners so far away are not exact near by.
+/// Extent in metres of the ground around an arena: in two bands, because such distant corners are inexact nearby.
 const AROUND: [f32; 3] = [0.0, 500.0, 50_000.0];
 
-/// How high it lies in metres.
+/// Its height in metres.
 const HEIGHT_AROUND: f32 = 0.01;
 
-/// The ground around an arena of this size: flat and pale beside the arena's own.
+/// Flat ground around an arena of this size, beside the arena's own.
 pub(crate) fn around(size: [f32; 2], color: [f32; 3]) -> PanelGroup {
     let ring = |more: f32| {
         let [x, y] = size.map(|side| side / 2.0 + more);
@@ -38,7 +38,7 @@ pub(crate) fn around(size: [f32; 2], color: [f32; 3]) -> PanelGroup {
     PanelGroup::of(mesh, color.map(|channel| 0.5 + 0.15 * channel))
 }
 
-/// The visible zones of a world, in its order: where they overlap, the later lies on top.
+/// The visible zones of a world, in its order: where they overlap, later ones lie on top.
 pub(crate) fn patches(world: &World) -> impl Iterator<Item = PanelGroup> {
     let zones = world.environment_params.zones.iter().filter(|zone| zone.visible);
     zones.enumerate().map(|(index, zone)| {
@@ -49,7 +49,7 @@ pub(crate) fn patches(world: &World) -> impl Iterator<Item = PanelGroup> {
     })
 }
 
-/// Its ground as triangles that are seen from above.
+/// A zone's ground as triangles that face up.
 fn mesh(zone: &Zone) -> Mesh {
     let corners = corners(zone);
     Mesh {
@@ -58,7 +58,7 @@ fn mesh(zone: &Zone) -> Mesh {
     }
 }
 
-/// A point well inside a zone: the middle of a disc, or of a polygon's largest triangle.
+/// A point well inside a zone: the centre of a disc, or of a polygon's largest triangle.
 pub(crate) fn middle(zone: &Zone) -> Option<[f64; 2]> {
     if let Some(disc) = &zone.disc {
         return Some(disc.center);
@@ -72,7 +72,7 @@ pub(crate) fn middle(zone: &Zone) -> Option<[f64; 2]> {
     Some([0, 1].map(|axis| largest.iter().map(|corner| corner[axis]).sum::<f64>() / 3.0))
 }
 
-/// Corners counter-clockwise; of a disc as it is drawn.
+/// A zone's corners counter-clockwise; for a disc, those of its polygon.
 pub(crate) fn corners(zone: &Zone) -> Vec<[f64; 2]> {
     if let Some(disc) = &zone.disc {
         let corner = |k: u32| {
@@ -91,7 +91,7 @@ pub(crate) fn corners(zone: &Zone) -> Vec<[f64; 2]> {
     corners
 }
 
-/// Cuts one corner after the other off a polygon. One that crosses itself is filled as far as that goes.
+/// Triangulates a polygon by cutting off one corner after another. A self-intersecting polygon is filled as far as possible.
 pub(crate) fn triangles(corners: &[[f64; 2]]) -> Vec<[u32; 3]> {
     let mut left: Vec<u32> = (0..corners.len() as u32).collect();
     let mut triangles = Vec::with_capacity(corners.len().saturating_sub(2));
@@ -119,7 +119,7 @@ pub(crate) fn triangles(corners: &[[f64; 2]]) -> Vec<[u32; 3]> {
     triangles
 }
 
-/// Above 0 where the way over three points turns left.
+/// Positive if the path over three points turns left.
 fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
@@ -129,7 +129,7 @@ fn is_within([a, b, c]: [[f64; 2]; 3], point: [f64; 2]) -> bool {
 }
 
 impl PanelGroup {
-    /// Faces of one colour that are drawn together.
+    /// Faces of one colour, drawn together.
     pub(crate) fn of(mesh: Mesh, color: [f32; 3]) -> Self {
         let part = Part::new(mesh, Paint::Fixed(color));
         let mut sides = [[f32::INFINITY, f32::NEG_INFINITY]; 3];
@@ -158,7 +158,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// The triangles of a polygon that does not cross itself cover what is in it, and nothing else.
+        /// The triangles of a simple polygon cover exactly its inside.
         #[test]
         fn triangles_cover_the_zone(
             radii in prop::collection::vec(0.5..5.0f64, 3..12),

@@ -1,8 +1,8 @@
 //! Runs a [`World`](driftworld_spec::World): physics, rewards and interactions, and cameras that need no GPU.
 //!
-//! [`Environment`] steps a world and draws what its agent sees; [`Scene`], [`Camera`] and [`CpuRenderer`] draw any
-//! picture of it. Units are SI, x is east, y north, z up, headings are degrees clockwise from +y. Nothing here reads
-//! files, samples worlds or learns.
+//! [`Environment`] steps a world and renders what its agent sees; [`Scene`], [`Camera`] and [`CpuRenderer`] render any other
+//! view of it. Units are SI, x is east, y north, z up, headings are degrees clockwise from +y. Reads no files, samples no
+//! worlds and does not learn.
 
 mod abstraction;
 mod agents;

@@ -1,15 +1,15 @@
-//! [`NaturalLooks`]: what the natural style comes to in one scene. How it is drawn is in `render/`; the plain style has none.
+//! [`NaturalLooks`]: the natural style of one scene, resolved.
 
 use driftworld_spec::{Covering, Style, World};
 
 use crate::assets::ColliderShape;
 
-/// The natural style, every part decided.
+/// The natural style, with every choice made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct NaturalLooks {
-    /// What covers the ground.
+    /// Covering of the ground.
     pub(crate) ground: Covering,
-    /// What covers walls.
+    /// Covering of walls.
     pub(crate) walls: Covering,
     pub(crate) ceiling: Option<Ceiling>,
     /// Whether shadows fall on the ground.
@@ -17,7 +17,7 @@ pub(crate) struct NaturalLooks {
     pub(crate) has_clouds: bool,
 }
 
-/// How objects of a class are finished that nothing covers.
+/// Finish of uncovered objects of a class.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Finish {
     /// A door of boards: a frame around panels.
@@ -29,7 +29,7 @@ pub(crate) enum Finish {
 }
 
 impl Finish {
-    /// That of a class, for a body of this shape.
+    /// The finish of a class, for a collider of this shape.
     pub(crate) fn of(class: &str, body: &ColliderShape) -> Option<Self> {
         match (class, body) {
             ("door", _) => Some(Self::Door),
@@ -43,16 +43,16 @@ impl Finish {
 /// A ceiling over the whole arena.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Ceiling {
-    /// Metres above the ground.
+    /// Height above the ground in metres.
     pub(crate) height: f32,
     /// Its colour, sRGB.
     pub(crate) color: [f32; 3],
-    /// Whether every wall goes up to it.
+    /// Whether every wall reaches it.
     pub(crate) meets_walls: bool,
 }
 
 impl NaturalLooks {
-    /// The looks of a world; `None` if they are plain.
+    /// The looks of a world; `None` in the plain style.
     pub(crate) fn of(world: &World) -> Option<Self> {
         let environment = &world.environment_params;
         let looks = &environment.looks;

@@ -1,5 +1,4 @@
-//! Photographs of a world's objects, one at a time, from around and above: what `collect_images` asks for. Files, and
-//! how pictures are written into them, are the caller's.
+//! Photographs a world's objects one by one, from around and above, for `collect_images`.
 
 use driftworld_spec::{EnvironmentParams, World, WorldDraft};
 
@@ -10,10 +9,10 @@ use crate::render::{CpuRenderer, Target};
 use crate::scene::{Item, Scene};
 use crate::vector::{add, scaled};
 
-/// The most photographs of one world: so many that object numbers fit into 16-bit images.
+/// Most photographs of one world; object numbers then fit into 16-bit images.
 pub const MAX_PHOTOGRAPHS: usize = 50_000;
 
-/// How far the sun stands from the camera, in degrees to the photographer's left, and how high.
+/// The sun's angle to the left of the camera, and its elevation, in degrees.
 const SUN: [f32; 2] = [35.0, 50.0];
 
 /// One view of one object.
@@ -21,20 +20,20 @@ const SUN: [f32; 2] = [35.0, 50.0];
 pub struct Photograph {
     /// Index of the object in the world.
     pub object: usize,
-    /// Where the camera stands around the object, in degrees clockwise from where the object faces, 0..360: 0 shows its
-    /// front, 90 its right side.
+    /// Direction of the camera from the object, in degrees clockwise from the object's heading, 0..360: 0 shows its front, 90
+    /// its right side.
     pub yaw_deg: f32,
-    /// How high the camera stands above the level of the object's middle, in degrees, 0..=90: 90 looks straight down.
+    /// Elevation of the camera over the object's centre, in degrees, 0..=90: 90 looks straight down.
     pub elevation_deg: f32,
-    /// From the camera to the object's middle in metres.
+    /// Distance from the camera to the object's centre in metres.
     pub distance: f32,
 }
 
-/// A place where the objects of a world are photographed one by one.
+/// A studio in which the objects of a world are photographed one by one.
 ///
-/// Each object stands alone on a ground of the world's colour under a sky of the world's colour, without walls and fog.
-/// It is full daylight, whatever the world's light is, with the sun behind the photographer's left shoulder: no view is
-/// of a shaded side. The same object gives the same pixels wherever it stands and faces in the world.
+/// Each object stands alone on ground of the world's colour under a sky of the world's colour, without walls or fog. The light
+/// is full daylight, whatever the world's, with the sun behind the photographer's left shoulder, so that no view shows a shaded
+/// side. The same object gives the same pixels for every position and heading in the world.
 ///
 /// # Example
 /// ```
@@ -64,7 +63,7 @@ pub struct Studio {
 }
 
 impl Studio {
-    /// A studio for a world's objects, by the world's `image_params`; where it has none, by their defaults.
+    /// A studio for a world's objects, using the world's `image_params` or their defaults.
     ///
     /// # Errors
     /// [`EnvError::TooManyPhotographs`] for more than [`MAX_PHOTOGRAPHS`].
@@ -72,7 +71,7 @@ impl Studio {
         Self::with_catalogue(world, &Catalogue::default())
     }
 
-    /// The same with assets from a catalogue.
+    /// Like [`Studio::new`], with assets from a catalogue.
     ///
     /// # Errors
     /// Those of [`Studio::new`].
@@ -114,15 +113,15 @@ impl Studio {
         self.size
     }
 
-    /// Points per pixel along each side that colours are the mean of, as the world asks for.
+    /// Samples per pixel along each side, whose mean is the colour, as the world requests.
     pub fn supersampling(&self) -> u32 {
         self.supersampling
     }
 
-    /// All photographs: object by object, from the side up to the top, each time once around.
+    /// All photographs: object by object, in full circles from the side up to the top.
     ///
-    /// Yaws are the full circle in `yaw_subdivisions` equal parts, from the front on. The first elevation is 0 and the
-    /// last of several 90 degrees.
+    /// Yaws divide the full circle into `yaw_subdivisions` equal parts, starting at the front. The first elevation is 0 degrees
+    /// and the last of several is 90.
     pub fn photographs(&self) -> Vec<Photograph> {
         let mut photographs = Vec::with_capacity(self.scene.items.len() * (self.yaws * self.elevations) as usize);
         for (object, item) in self.scene.items.iter().enumerate() {
@@ -140,7 +139,7 @@ impl Studio {
         photographs
     }
 
-    /// How far the camera stands from an object's middle: `zoom` times as far as that the ball around it just fits.
+    /// Distance of the camera from an object's centre: `zoom` times that at which the object's bounding ball just fits.
     fn distance(&self, item: &Item) -> f32 {
         let [width, height] = self.size.map(|pixels| pixels as f32);
         let half = (self.field_of_view_deg.clamp(1.0, 170.0) / 2.0).to_radians();
@@ -167,7 +166,7 @@ impl Studio {
         })
     }
 
-    /// Takes a photograph: fills the images that the target asks for. Class and object numbers are those of the world.
+    /// Takes a photograph: fills the requested images of the target. Class and object numbers are those of the world.
     ///
     /// # Errors
     /// [`EnvError::NoSuchObject`]; [`EnvError::PictureSize`] as for [`CpuRenderer::draw`].
@@ -181,7 +180,7 @@ impl Studio {
     }
 }
 
-/// The arena without all that could stand in the way, in full daylight.
+/// The arena without anything that could obscure the view, in full daylight.
 fn backdrop(environment: &EnvironmentParams) -> EnvironmentParams {
     EnvironmentParams {
         ground_color: environment.ground_color,
@@ -191,7 +190,7 @@ fn backdrop(environment: &EnvironmentParams) -> EnvironmentParams {
     }
 }
 
-/// A direction in space, of length 1, from its degrees clockwise from +y and its degrees above the horizon.
+/// A unit vector from degrees clockwise from +y and degrees above the horizon.
 fn direction(heading_deg: f32, elevation_deg: f32) -> [f32; 3] {
     let (heading, elevation) = (heading_deg.to_radians(), elevation_deg.to_radians());
     let level = libm::cosf(elevation);
@@ -230,7 +229,7 @@ mod tests {
         frame
     }
 
-    /// Pixels of the object, and whether none of them is at the picture's rim.
+    /// Number of the object's pixels, and whether none of them touches the image's border.
     fn subject(frame: &Frame) -> (usize, bool) {
         let (width, height) = (frame.width as usize, frame.height as usize);
         let is_rim = |at: usize| {
@@ -242,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn every_known_asset_is_in_the_picture_whole_from_everywhere() {
+    fn every_known_asset_fits_into_the_image_from_all_sides() {
         let objects = crate::classes()
             .map(|(class, _)| {
                 let mut object = Object::new(class, [-20.0, 30.0]);
@@ -266,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn twice_the_zoom_is_twice_the_distance_and_about_a_quarter_of_the_pixels() {
+    fn doubling_zoom_doubles_distance_and_quarters_the_pixels() {
         let pixels = |zoom: f64| {
             let mut studio =
                 Studio::new(&world(zoom, 1, 1, vec![Object::new("cube", [0.0, 0.0])])).expect("one photograph");
@@ -290,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn an_object_looks_the_same_wherever_it_stands_and_whatever_is_around_it() {
+    fn photograph_does_not_depend_on_position_or_surroundings() {
         let mut car = Object::new("car", [0.0, 0.0]);
         car.reward = 1.0;
         let mut other = car.clone();
@@ -322,7 +321,7 @@ mod tests {
     }
 
     #[test]
-    fn no_view_is_of_a_shaded_side() {
+    fn no_view_shows_a_shaded_side() {
         let mut ball = Object::new("icosphere", [0.0, 0.0]);
         ball.color = driftworld_spec::Color::from_name("white");
         let mut studio = Studio::new(&world(1.5, 8, 1, vec![ball])).expect("eight photographs");
@@ -334,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn a_world_for_photographs_says_so_when_it_runs() {
+    fn running_a_world_for_photographs_warns() {
         let world = WorldDraft {
             game_mode: driftworld_spec::GameMode::CollectImages,
             ..WorldDraft::default()
@@ -345,7 +344,7 @@ mod tests {
     }
 
     #[test]
-    fn more_photographs_than_there_may_be_are_refused_before_any_is_taken() {
+    fn too_many_photographs_are_refused_up_front() {
         let objects = vec![Object::new("cube", [0.0, 0.0]); 100];
         assert!(Studio::new(&world(2.0, 100, 5, objects.clone())).is_ok());
         let error = Studio::new(&world(2.0, 100, 6, objects)).expect_err("60 000 are too many");

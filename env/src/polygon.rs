@@ -1,14 +1,14 @@
-//! Polygons on the ground. What stands there is not known here.
+//! Polygons on the ground: conversion, and tests of points.
 
 use std::ops::{Add, Div, Mul, Sub};
 
-/// Corners as the simulator has them.
+/// Converts corners to the simulator's precision.
 pub(crate) fn to_f32(corners: &[[f64; 2]]) -> Vec<[f32; 2]> {
     let corners = corners.iter();
     corners.map(|corner| corner.map(|metres| metres as f32)).collect()
 }
 
-/// Whether a point is inside a polygon, by the even-odd rule, or nearer to one of its edges than `margin` in metres.
+/// Whether a point is inside a polygon, by the even-odd rule, or within `margin` metres of one of its edges.
 pub(crate) fn is_near_or_inside<F>(corners: impl Iterator<Item = [F; 2]> + Clone, [x, y]: [F; 2], margin: F) -> bool
 where
     F: Copy + PartialOrd + From<u8> + Add<Output = F> + Sub<Output = F> + Mul<Output = F> + Div<Output = F>,
@@ -23,7 +23,7 @@ where
         } else {
             zero
         };
-        // Of the edge's line, what lies between its ends.
+        // Clamped to the edge's ends.
         let along = if along < zero {
             zero
         } else if along > one {

@@ -1,4 +1,4 @@
-//! What there is to see: the arena, its light, and an item for each object. How it is drawn is the renderer's.
+//! [`Scene`]: the visible state of a world: the arena, its light, and an item for each object.
 
 use std::sync::Arc;
 
@@ -10,49 +10,49 @@ use crate::looks::{Finish, NaturalLooks};
 use crate::polygon::to_f32;
 use crate::wall_tops::tops;
 
-/// Everything that a picture of a world depends on, but for the camera.
+/// Everything that an image of a world depends on, except the camera.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// One for each object of the world, in its order.
+    /// One item per object of the world, in its order.
     pub items: Vec<Item>,
     /// The light.
     pub light: Light,
-    /// The natural style; absent in the plain one.
+    /// The natural style; `None` in the plain style.
     pub(crate) natural: Option<NaturalLooks>,
     /// Colour of the ground, sRGB.
     pub ground_color: [f32; 3],
-    /// Walls: the arena's own and regions that cannot be entered.
+    /// Walls: the arena's own, and regions that cannot be entered.
     pub walls: Vec<WallPanel>,
     arena_size: [f32; 2],
-    /// The walls as they are drawn: the arena's four, then a group for each region, then the zones on the ground.
+    /// Geometry of the walls: the arena's four, then one group per region, then the zones on the ground.
     pub(crate) panels: Vec<PanelGroup>,
-    /// The highest number of a class among its items; 0 without items.
+    /// The highest class number among its items; 0 without items.
     pub(crate) highest_class: u16,
     catalogue: Catalogue,
-    /// Which looks its objects have.
+    /// The style of its objects.
     style: Style,
 }
 
-/// How many of a scene's walls, the first ones, are the arena's own: west, north, east, south.
+/// The first walls of a scene are the arena's own: west, north, east, south.
 pub(crate) const ARENA_WALLS: usize = 4;
 
-/// Walls of more corners have no tops for the agent: cutting them into triangles takes long.
+/// Walls with more corners get no tops in the agent's view, because triangulating them takes long.
 const MOST_CORNERS: usize = 64;
 
-/// Panels that are drawn together: one wall of the arena, all of a region, or a zone on the ground.
+/// Panels that are drawn together: one wall of the arena, a whole region, or a zone on the ground.
 #[derive(Clone, Debug)]
 pub(crate) struct PanelGroup {
-    /// Middle of a ball that holds all of them, in metres.
+    /// Centre of the bounding ball, in metres.
     pub(crate) middle: [f32; 3],
     /// Its radius.
     pub(crate) radius: f32,
     /// Their colour, sRGB.
     pub(crate) color: [f32; 3],
-    /// How far above their place they are drawn, as a share of the camera's height: 0 for what stands upright.
+    /// Extra height at which they are drawn, as a fraction of the camera's height: 0 for upright panels.
     pub(crate) lift: f32,
-    /// Where upright panels stand on the ground, from and to; none of what lies.
+    /// Base edges of upright panels on the ground, from and to; empty for flat ones.
     pub(crate) edges: Vec<[[f32; 2]; 2]>,
-    /// How high those are in metres, or tops of walls; 0 of what lies on the ground.
+    /// Height in metres of upright panels, or of the tops of walls; 0 for panels on the ground.
     pub(crate) height: f32,
     pub(crate) blocks: Vec<Block>,
 }
@@ -60,35 +60,34 @@ pub(crate) struct PanelGroup {
 /// One object in the scene.
 #[derive(Clone, Debug)]
 pub struct Item {
-    /// What it looks like.
+    /// Its look.
     pub asset: Arc<Asset>,
-    /// The asset whose body it has: nearly always that of its look.
+    /// The asset that provides the collider: nearly always the same as the look.
     pub body: Arc<Asset>,
-    /// Where it stands, in metres.
+    /// Its position, in metres.
     pub position: [f32; 2],
-    /// Where it faces, in degrees clockwise from +y.
+    /// Its heading, in degrees clockwise from +y.
     pub heading_deg: f32,
     /// Factor on the asset's size.
     pub scale: f32,
-    /// Its main colour, sRGB; the asset's own if absent.
+    /// Its main colour, sRGB; by default the asset's own.
     pub color: Option<[f32; 3]>,
-    /// What covers it in the natural style.
+    /// Its covering in the natural style.
     pub surface: Surface,
-    /// How it is finished there if nothing covers it.
+    /// Its finish in the natural style if it has no covering.
     pub(crate) finish: Option<Finish>,
-    /// Whether its class is `building`, which has a category of its own.
+    /// Whether its class is `building`, which has its own category.
     pub building: bool,
-    /// What it is worth now: decides its category.
+    /// Its current reward, which decides its category.
     pub reward: f32,
-    /// Number of its class, the same in every world: [`Catalogue::class_number`].
+    /// Its class number, the same in every world: [`Catalogue::class_number`].
     pub class_id: u16,
-    /// Whether it is there at all.
+    /// Whether it is present.
     pub visible: bool,
 }
 
 impl Item {
-    /// Draws a door that was closed as it is when open: turned by 90 degrees around its left end; not at all if its body is no
-    /// box.
+    /// Opens a closed door: rotates it by 90 degrees around its left end; hides it if its collider is not a box.
     pub(crate) fn swing(&mut self) {
         let ColliderShape::Box { half: [half_width, ..] } = self.body.collider else {
             self.visible = false;
@@ -97,7 +96,7 @@ impl Item {
         let by = half_width * self.scale;
         let heading = self.heading_deg.to_radians();
         let (sine, cosine) = (libm::sinf(heading), libm::cosf(heading));
-        // Back from the middle to the left end, and from there back along the leaf.
+        // Moves from the centre to the left end, and from there along the open door.
         self.position[0] -= by * (cosine + sine);
         self.position[1] -= by * (cosine - sine);
         self.heading_deg = (self.heading_deg + 90.0).rem_euclid(360.0);
@@ -111,19 +110,19 @@ pub struct Light {
     pub direction: [f32; 3],
     /// Colour of the sun, sRGB.
     pub color: [f32; 3],
-    /// How bright all is: 1 at full daylight.
+    /// Brightness: 1 at full daylight.
     pub exposure: f32,
-    /// Share of the light that comes from everywhere.
+    /// Share of ambient light.
     pub ambient: f32,
     /// Colour of the sky at the zenith, sRGB.
     pub sky_color: [f32; 3],
-    /// Distance in metres at which half of what is seen is fog; no fog if absent.
+    /// Distance in metres at which fog hides half of what is seen; `None` for no fog.
     pub fog_distance: Option<f32>,
-    /// Whether depth sees the fog.
+    /// Whether depth images include the fog.
     pub fog_in_depth: bool,
 }
 
-/// An upright rectangle on the ground, seen from its right-hand side when walking from `from` to `to`.
+/// An upright rectangle on the ground, visible from its right-hand side when walking from `from` to `to`.
 #[derive(Clone, Copy, Debug)]
 pub struct WallPanel {
     /// One end on the ground, in metres.
@@ -137,7 +136,7 @@ pub struct WallPanel {
 }
 
 impl Scene {
-    /// The scene of a world at its start, of built-in assets.
+    /// The scene of a world at its start, with built-in assets.
     pub fn from_world(world: &World) -> Self {
         let mut scene = Self::from_world_with(world, &Catalogue::default());
         for (item, object) in scene.items.iter_mut().zip(&world.objects) {
@@ -148,7 +147,7 @@ impl Scene {
         scene
     }
 
-    /// The scene of a world at its start, of the assets of a catalogue. Doors are drawn closed: an environment opens them.
+    /// The scene of a world at its start, with assets from a catalogue. Doors are drawn closed: an environment opens them.
     pub fn from_world_with(world: &World, catalogue: &Catalogue) -> Self {
         let environment = &world.environment_params;
         let mut scene = Self {
@@ -166,7 +165,7 @@ impl Scene {
         scene.add_walls(world);
         scene.panels.extend(ground::patches(world));
         if scene.natural.is_some() {
-            // Those that the agent looks down on.
+            // The walls whose tops the agent can see.
             let eye = world.agent_params.agent_height as f32;
             let is_seen = |ring: &[WallPanel]| ring[0].height < eye && ring.len() <= MOST_CORNERS;
             scene.panels.extend(tops(&scene.walls, is_seen));
@@ -177,7 +176,7 @@ impl Scene {
         scene
     }
 
-    /// Puts one more object into the scene, as it is at its start.
+    /// Adds an object to the scene, in its initial state.
     pub(crate) fn add(&mut self, object: &Object) {
         let class = lowercase(&object.class);
         let class_id = self.catalogue.class_number(&class);
@@ -206,14 +205,14 @@ impl Scene {
         });
     }
 
-    /// The same scene whose walls have tops, as pictures from above need them.
+    /// The same scene with tops on all walls, for images from above.
     #[must_use]
     pub fn with_wall_tops(mut self) -> Self {
         self.panels.extend(tops(&self.walls, |_| true));
         self
     }
 
-    /// The same scene, in natural looks with other ground around its arena, as pictures of it from outside need it.
+    /// The same scene, in the natural style with other ground around its arena, for images from outside.
     #[must_use]
     pub fn with_surroundings(mut self) -> Self {
         if self.natural.is_some() {
@@ -222,7 +221,7 @@ impl Scene {
         self
     }
 
-    /// The same scene in even white daylight without fog, in which maps can be read: whatever light the world has.
+    /// The same scene in even white daylight without fog, for readable maps: ignores the world's light.
     #[must_use]
     pub fn in_neutral_light(mut self) -> Self {
         self.light.direction = [0.0, 0.0, 1.0];
@@ -233,7 +232,7 @@ impl Scene {
         self
     }
 
-    /// Where the assets of its objects come from.
+    /// The catalogue of its objects' assets.
     pub fn catalogue(&self) -> &Catalogue {
         &self.catalogue
     }
@@ -267,7 +266,7 @@ impl Scene {
         }
     }
 
-    /// A region is seen from outside: its corners are put counter-clockwise.
+    /// Adds a region, which is seen from outside: orders its corners counter-clockwise.
     fn add_region(&mut self, corners: &[[f64; 2]], height: f32, color: [f32; 3]) {
         let mut corners = to_f32(corners);
         let next = corners.iter().cycle().skip(1);
@@ -280,7 +279,7 @@ impl Scene {
         self.add_panels(&edges, height, color);
     }
 
-    /// Panels that stand on these edges, of one height and colour.
+    /// Adds panels on these edges, of one height and colour.
     fn add_panels(&mut self, edges: &[([f32; 2], [f32; 2])], height: f32, color: [f32; 3]) {
         let mut mesh = Mesh::default();
         mesh.corners.reserve(4 * edges.len());
@@ -308,8 +307,8 @@ impl Scene {
     }
 }
 
-/// What exposure comes to with ever more light, and the intensity at which it is half of that: an intensity of 2.3 is
-/// day, with an exposure of 1. Below, brightness falls with the intensity; above, it rises ever more slowly.
+/// The limit of the exposure for ever stronger light, and the intensity that gives half of it: an intensity of 2.3 is daylight,
+/// with an exposure of 1. Below, brightness falls with the intensity; above, it rises ever more slowly.
 const BRIGHTEST: f32 = 1.72;
 const HALF_BRIGHT: f32 = 1.65;
 

@@ -1,5 +1,4 @@
-//! The few operations on directions and places in space that cameras and renderers share. Nothing here knows what they
-//! mean.
+//! Vector operations shared by cameras and renderers.
 
 pub(crate) fn add(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]

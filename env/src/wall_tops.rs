@@ -1,16 +1,16 @@
-//! The tops of walls: of all for pictures from above, in natural looks of those that the agent looks down on for its own.
+//! Tops of walls: of all walls in images from above; in the agent's view, in the natural style, of those lower than its eyes.
 
 use crate::assets::Mesh;
 use crate::ground::triangles;
 use crate::scene::{ARENA_WALLS, PanelGroup, WallPanel};
 
-/// The tops of regions and walls as faces seen from above, each in its wall's colour. The arena's own walls have no
-/// thickness, and walls without height no top. Those of walls by their edges alone that are seen.
+/// The tops of regions and walls as faces that look up, each in its wall's colour, for walls where `is_seen` holds for the
+/// edges. The arena's own walls have no thickness, and walls without height no top.
 pub(crate) fn tops(walls: &[WallPanel], is_seen: impl Fn(&[WallPanel]) -> bool) -> impl Iterator<Item = PanelGroup> {
     let mut left = walls.get(ARENA_WALLS..).unwrap_or_default();
     std::iter::from_fn(move || {
         let first = left.first()?;
-        // The edges of one wall follow each other, and the last one ends where the first begins.
+        // The edges of a wall are consecutive, and the last one ends where the first begins.
         let closes = left.iter().position(|edge| edge.to == first.from);
         let (ring, rest) = left.split_at(closes.map_or(left.len(), |last| last + 1));
         left = rest;

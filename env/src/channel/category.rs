@@ -1,23 +1,23 @@
-//! What remarks are about, and how grave they are. Which categories are on, and what is remarked, is in `exchange.rs`.
+//! Categories and severities of remarks on the Debug channel.
 
 use strum::VariantArray;
 
-/// What a remark on the Debug channel is about.
+/// The subject of a remark on the Debug channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, strum::EnumString, strum::IntoStaticStr, strum::VariantArray)]
 #[strum(serialize_all = "lowercase", ascii_case_insensitive)]
 pub enum Category {
-    /// What the agent meets, and what becomes of it.
+    /// Contacts of the agent and their effects.
     Agent,
-    /// Messages that come, and those that are refused.
+    /// Messages received, and messages refused.
     Communications,
-    /// What messages put into worlds.
+    /// Worlds and objects created by messages.
     Worldmaker,
-    /// Episodes: those that messages begin, and the ends of all.
+    /// Episodes: starts requested by messages, and all ends.
     Academy,
 }
 
 impl Category {
-    /// All of them, in the original's order.
+    /// All categories, in the original's order.
     pub const ALL: &[Self] = Self::VARIANTS;
 
     /// Its name in messages.
@@ -30,21 +30,21 @@ impl Category {
         Self::ALL.iter().map(|category| category.name()).collect()
     }
 
-    /// The category of this name, in any case.
+    /// The category of this name, ignoring case.
     pub fn from_name(name: &str) -> Option<Self> {
         name.parse().ok()
     }
 }
 
-/// How grave a remark is.
+/// The severity of a remark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, strum::IntoStaticStr)]
 #[strum(serialize_all = "lowercase")]
 pub enum Level {
-    /// Good to know.
+    /// Information.
     Log,
-    /// Not as somebody may think.
+    /// Something may not be as intended.
     Warning,
-    /// Refused.
+    /// A request was refused.
     Error,
 }
 

@@ -1,5 +1,4 @@
-//! [`Channels`]: does what messages ask for, and answers. How a message is read and written is in `message.rs`; what
-//! its payload says, in `request.rs`.
+//! [`Channels`]: carries out requests and answers them.
 
 use driftworld_spec::World;
 use driftworld_spec::maps::MapLibrary;
@@ -12,11 +11,11 @@ use super::message::{Message, Outgoing, Refusal, unknown};
 use super::request::{PARTS, Screenshot, categories, create, parts, remark_of, screenshot};
 use crate::{Environment, Step, Warning};
 
-/// Our end of the three channels: who watches what, and which remarks are wanted.
+/// Our end of the three channels: which parts are observed, and which remarks are wanted.
 ///
-/// Messages in, messages out; the caller carries them, tells the time, and writes screenshots. A message that is not
-/// understood is answered by an `error` and changes nothing. Tokens of ours are made of the world's hash and a count,
-/// in the form of a UUID (version 8): the same messages give the same answers.
+/// Messages in, messages out; the caller transports them, provides the time, and writes screenshots. A message that is not
+/// understood is answered by an `error` and changes nothing. Our tokens are derived from the world's hash and a count, in the
+/// form of a UUID (version 8): the same messages always give the same answers.
 ///
 /// # Example
 /// ```
@@ -31,32 +30,32 @@ use crate::{Environment, Step, Warning};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Channels {
-    /// The hash of the world that the last reset asked for.
+    /// The hash of the last world that was reset to.
     world: String,
-    /// Layouts that take the place of the built-in ones in worlds that are reset to.
+    /// Layouts that replace the built-in ones in worlds of resets.
     maps: MapLibrary,
     sent: u64,
-    /// What is sent after each step, of [`PARTS`].
+    /// The parts that are sent after each step, out of [`PARTS`].
     watched: Vec<&'static str>,
     /// Which of [`Category::ALL`] are on.
     active: [bool; 4],
 }
 
-/// What came of a message.
+/// The result of a message.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Received {
-    /// What to send back, in this order.
+    /// The answers, in this order.
     pub messages: Vec<Outgoing>,
-    /// A picture to be written before it is answered by [`Channels::answer_screenshot`].
+    /// A screenshot to be written before [`Channels::answer_screenshot`] answers the request.
     pub screenshot: Option<Screenshot>,
     /// Whether the environment is at the start of a new world.
     pub reset: bool,
-    /// What was made of a new world or object that its author may not have meant: keys that mean nothing, assets that
-    /// are not known. The Debug channel has the same for who listens to `worldmaker`.
+    /// Warnings about a new world or object: unknown keys and unknown assets. The Debug channel sends the same to clients that
+    /// listen to `worldmaker`.
     pub remarks: Vec<String>,
 }
 
-/// What a message that was understood leads to.
+/// The result of a message that was understood.
 enum Answer {
     Say(&'static str, Option<Value>),
     Picture(Screenshot),
@@ -65,7 +64,7 @@ enum Answer {
 const OK: Answer = Answer::Say("ok", None);
 
 impl Channels {
-    /// Channels of a world at its start: nothing is watched, no remarks are wanted.
+    /// Channels of a world at its start: no parts are observed, no remarks are wanted.
     pub fn new(world: &World) -> Self {
         Self {
             world: world.hash(),
@@ -76,7 +75,7 @@ impl Channels {
         }
     }
 
-    /// The same channels, whose resets lead to worlds with these layouts in place of the built-in ones.
+    /// The same channels, with these layouts in place of the built-in ones in worlds of resets.
     #[must_use]
     pub fn with_maps(mut self, maps: MapLibrary) -> Self {
         self.maps = maps;
@@ -85,13 +84,13 @@ impl Channels {
 
     /// Whether remarks of a category are wanted.
     pub fn is_active(&self, category: Category) -> bool {
-        // One place for each of `Category::ALL`, in its order, which is that of the enum.
+        // One entry for each of `Category::ALL`, in the order of the enum.
         self.active[category as usize]
     }
 
     /// Turns the remarks of a category on or off, as `set_debug_categories` does.
     pub fn set_active(&mut self, category: Category, active: bool) {
-        // As above: one place for each category.
+        // As above: one entry per category.
         self.active[category as usize] = active;
     }
 
@@ -100,7 +99,7 @@ impl Channels {
         &self.watched
     }
 
-    /// Does what a message asks for. `time` is the time now in ISO 8601.
+    /// Carries out the request in a message. `time` is the current time in ISO 8601.
     pub fn receive(&mut self, environment: &mut Environment, channel: Channel, text: &str, time: &str) -> Received {
         let mut received = Received::default();
         let (token, done) = match Message::parse(text) {
@@ -118,7 +117,7 @@ impl Channels {
             Ok(Answer::Say(action, payload)) => messages.push(self.message(channel, action, payload, token, time)),
             Ok(Answer::Picture(screenshot)) => received.screenshot = Some(Screenshot { token, ..screenshot }),
             Err(refusal) => {
-                // A refusal is made of one text, or of all problems where there are some.
+                // A refusal has one text, or lists all problems.
                 let said = format!("{} refused: {}", channel.name(), refusal.texts()[0]);
                 messages.extend(self.remark(Category::Communications, Level::Error, said, time));
                 let payload = Some(json!(refusal.texts()));
@@ -128,13 +127,13 @@ impl Channels {
         received
     }
 
-    /// The answer to what should have been a message, and could not be read as a text.
+    /// The answer to a message that could not be read as text.
     pub fn refuse(&mut self, channel: Channel, reason: &str, time: &str) -> Outgoing {
         let payload = Some(json!([format!("message: {reason}")]));
         self.message(channel, "error", payload, None, time)
     }
 
-    /// The answer to a message that asked for a picture, when it has been written, or why it was not.
+    /// The answer to a request for a screenshot, once it has been written or has failed.
     pub fn answer_screenshot(&mut self, screenshot: &Screenshot, written: Result<(), String>, time: &str) -> Outgoing {
         let token = screenshot.token.clone();
         match written {
@@ -143,7 +142,7 @@ impl Channels {
         }
     }
 
-    /// What is to be sent after a step: remarks on what happened, then the parts of the world that are watched.
+    /// Messages to send after a step: remarks on its events, then the observed parts of the world.
     pub fn after_step(&mut self, environment: &Environment, step: &Step, time: &str) -> Vec<Outgoing> {
         let mut messages = Vec::new();
         for event in &step.events {
@@ -242,7 +241,7 @@ impl Channels {
         }
     }
 
-    /// Remarks on a new world or object, for the caller and for who listens.
+    /// Reports remarks on a new world or object to the caller and to listening clients.
     fn warn(&mut self, remarks: Vec<String>, time: &str, received: &mut Received) {
         for said in remarks {
             received.remarks.push(said.clone());
@@ -251,7 +250,7 @@ impl Channels {
         }
     }
 
-    /// Hands back remarks on the new world.
+    /// Resets to the world in the payload; returns remarks on it.
     fn reset(&mut self, environment: &mut Environment, message: &Message) -> Result<Vec<String>, Refusal> {
         let payload = message.payload("a world as in L2Explorer's reset files")?;
         let (world, warnings) = World::from_l2explorer_with("payload", &payload.to_string(), &self.maps)
@@ -259,15 +258,15 @@ impl Channels {
         let hash = world.hash();
         environment.reset(world);
         self.world = hash;
-        // Objects in walls were named where the world was read, with their places.
+        // Objects in walls have already been reported while parsing the world, with their positions.
         let mut own = environment.warnings();
         own.retain(|warning| !matches!(warning, Warning::StandsInWall { .. }));
         let own = own.into_iter().map(|warning| warning.to_string());
         Ok(warnings.iter().map(remark_of).chain(own).collect())
     }
 
-    /// The parts of the world that are watched, as they are now. Objects that are gone are left out, and those without
-    /// a name have one made of their number.
+    /// The current state of the observed parts of the world. Absent objects are left out; objects without a name get one made
+    /// of their index.
     fn state(&self, environment: &Environment) -> Value {
         let world = environment.world();
         let part = |part: &str| match part {
@@ -291,7 +290,7 @@ impl Channels {
         time: &str,
     ) -> Outgoing {
         self.sent += 1;
-        // The hash has 64 digits, of which this takes 18: what UUID version 8 leaves free, but for the count.
+        // The token takes 18 of the hash's 64 digits: all that UUID version 8 leaves free besides the count.
         let hash = &self.world;
         let token = format!(
             "{}-{}-8{}-8{}-{:012x}",
@@ -312,7 +311,7 @@ impl Channels {
     }
 }
 
-/// The objects that are there, as they are now, each with a name.
+/// The present objects in their current state, each with a name.
 fn objects_now(environment: &Environment) -> Value {
     let states = environment.objects().iter().enumerate();
     let present = states.filter(|(_, state)| state.present);

@@ -1,43 +1,43 @@
-//! One message: read leniently, written strictly. What it asks for is done in `exchange.rs`.
+//! Messages: parsed leniently, written strictly.
 
 use driftworld_spec::nearest;
 use serde_json::{Map, Value, json};
 
 use super::Channel;
 
-/// The longest message that is read, in bytes: as long as the longest document.
+/// Longest message that is read, in bytes: the same as for documents.
 pub const MAX_MESSAGE_BYTES: usize = driftworld_spec::MAX_BYTES;
 
 /// The longest token, in characters; a UUID has 36.
 const LONGEST_TOKEN: usize = 100;
 
-/// The token of no message.
+/// The token that stands for no message.
 const NO_TOKEN: &str = "00000000-0000-0000-0000-000000000000";
 
-/// The most texts in the payload of one error.
+/// Most texts in the payload of one error.
 const MOST_TEXTS: usize = 20;
 
 /// A message to the client.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outgoing {
-    /// Where it goes.
+    /// The channel on which it is sent.
     pub channel: Channel,
-    /// What it says: `ok`, `error`, `state`, `debug_message`, …
+    /// The action: `ok`, `error`, `state`, `debug_message`, …
     pub action: &'static str,
-    /// What belongs to it, if anything.
+    /// The payload, if any.
     pub payload: Option<Value>,
-    /// Its own token, in the form of a UUID.
+    /// Its token, in the form of a UUID.
     pub token: String,
-    /// The token of the message that it answers, if it answers one that had one.
+    /// The token of the message that it answers, if there is one.
     pub req_token: Option<String>,
-    /// When it was made, by the time that the caller gave.
+    /// The time at which it was made, as given by the caller.
     pub time: String,
 }
 
 impl Outgoing {
-    /// The message as one line of JSON, with every key: clients of the original index them without asking.
+    /// The message as one line of JSON, with every key: the original's clients access them unconditionally.
     ///
-    /// What answers nobody has a `req_token` of zeros, what has no payload one that is `null`.
+    /// Without a message to answer, `req_token` is all zeros; without a payload, `payload` is `null`.
     pub fn to_json(&self) -> String {
         json!({
             "token": self.token,
@@ -50,7 +50,7 @@ impl Outgoing {
     }
 }
 
-/// Why a message is refused: texts for the payload of the `error` that answers it.
+/// The reasons for refusing a message: texts for the payload of the `error` that answers it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Refusal(Vec<String>);
 
@@ -59,7 +59,7 @@ impl Refusal {
         Self(vec![text.into()])
     }
 
-    /// All problems of a payload; their places in the text are those of our own copy, and are left out.
+    /// All problems of a payload, without their positions in the text, which refer to our own copy.
     pub(super) fn of_document(error: &driftworld_spec::SpecError) -> Self {
         let problems = error.problems();
         if problems.is_empty() {
@@ -87,19 +87,19 @@ impl Refusal {
     }
 }
 
-/// A message from the client. What it may leave out, and keys that nobody knows, do no harm.
+/// A message from the client. Optional keys may be missing, and unknown ones are ignored.
 #[derive(Clone, Debug)]
 pub(super) struct Message {
     pub(super) token: Option<String>,
     pub(super) action: String,
-    /// `null` is as if it were not there.
+    /// `null` counts as missing.
     pub(super) payload: Option<Value>,
-    /// Everything, for what some clients put beside `action`.
+    /// The whole message, because some clients put values beside `action`.
     pub(super) all: Map<String, Value>,
 }
 
 impl Message {
-    /// Reads a message. With the refusal comes the token, where there was one to be read.
+    /// Parses a message. A refusal includes the message's token if it could be read.
     pub(super) fn parse(text: &str) -> Result<Self, (Option<String>, Refusal)> {
         let refuse = |text: String| Err((None, Refusal::new(text)));
         if text.len() > MAX_MESSAGE_BYTES {
@@ -129,7 +129,7 @@ impl Message {
             Some(other) => return refuse(format!("token: found {}, expected a text such as a UUID", kind(other))),
         };
         let refuse = |text: String| Err((token.clone(), Refusal::new(text)));
-        // The original's client tells the time without a zone; nothing depends on it.
+        // The original's client sends times without a zone; nothing depends on them.
         if let Some(time) = all.get("msg_time").filter(|time| !time.is_string() && !time.is_null()) {
             return refuse(format!("msg_time: found {}, expected a text in ISO 8601", kind(time)));
         }
@@ -147,14 +147,14 @@ impl Message {
         })
     }
 
-    /// The payload, or the refusal of a message that cannot do without.
+    /// The payload, or a refusal if it is missing.
     pub(super) fn payload(&self, expected: &str) -> Result<&Value, Refusal> {
         let missing = || Refusal::new(format!("payload: found none, expected {expected}"));
         self.payload.as_ref().ok_or_else(missing)
     }
 }
 
-/// The refusal of a word that is not among those known.
+/// The refusal of an unknown word, with a suggestion.
 pub(super) fn unknown(what: &str, word: &str, known: &[&str]) -> Refusal {
     let short: String = word.chars().take(60).collect();
     let near = nearest(&short, known).map_or_else(String::new, |near| format!("; did you mean {near:?}?"));
@@ -164,7 +164,7 @@ pub(super) fn unknown(what: &str, word: &str, known: &[&str]) -> Refusal {
     ))
 }
 
-/// What kind of value it is.
+/// The JSON type of a value.
 pub(super) fn kind(value: &Value) -> &'static str {
     match value {
         Value::Null => "null",
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn what_clients_leave_out_is_not_missed() {
+    fn optional_keys_may_be_missing() {
         let message = Message::parse(
             "\u{feff}{ \"action\": \" Get_Observers\", \"msg_time\": \"2020-03-01T12:00:00.123\", \"payload\": null }",
         )
@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_message_is_refused() {
+    fn malformed_messages_are_refused() {
         check("", "not valid JSON");
         check("[1]", "found a list, expected an object");
         check("{}", "found no action");
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refusal_knows_the_token_it_answers() {
+    fn refusal_keeps_the_token_of_its_message() {
         let (token, _) = Message::parse(r#"{ "token": "abc" }"#).expect_err("there is no action");
         assert_eq!(token.as_deref(), Some("abc"));
     }

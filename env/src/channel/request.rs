@@ -1,4 +1,4 @@
-//! What the payloads of messages ask for: objects, parts to watch, pictures, categories. Doing it is in `exchange.rs`.
+//! Parses the payloads of requests: objects, parts to observe, screenshots, categories.
 
 use driftworld_spec::Object;
 use serde_json::Value;
@@ -7,31 +7,31 @@ use super::category::Category;
 use super::message::{Message, Refusal, kind, unknown};
 use crate::{EnvError, Environment};
 
-/// The parts of a world that a client can watch.
+/// The parts of a world that a client can observe.
 pub(super) const PARTS: [&str; 4] = ["agent_params", "environment_params", "objects", "game_mode"];
 
 /// The longest side of a screenshot in pixels.
 const LONGEST_SIDE: u32 = 4096;
 
-/// A picture that a client asks for: what the agent sees now, in colour.
+/// A request for a colour image of what the agent sees now.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Screenshot {
-    /// The name that the client wants; the caller decides where, and whether, such a file may be.
+    /// The requested file name; the caller decides where such a file may be written, if at all.
     pub filename: String,
     /// Width in pixels, at most 4096.
     pub width: u32,
     /// Height in pixels, at most 4096.
     pub height: u32,
-    /// The message that asked.
+    /// The token of the request.
     pub(super) token: Option<String>,
 }
 
-/// A warning without its place in our own copy of the text.
+/// A warning without its position, which refers to our own copy of the text.
 pub(super) fn remark_of(warning: &driftworld_spec::Warning) -> String {
     format!("({}): {}", warning.pointer, warning.text)
 }
 
-/// Puts an object into the world; hands back its index, and remarks on it.
+/// Adds an object to the world; returns its index and remarks on it.
 pub(super) fn create(environment: &mut Environment, message: &Message) -> Result<(usize, Vec<String>), Refusal> {
     let payload = message.payload("an object as in L2Explorer's reset files")?;
     let (mut object, warnings) =
@@ -57,7 +57,7 @@ pub(super) fn create(environment: &mut Environment, message: &Message) -> Result
     Ok((index, warnings.iter().map(remark_of).chain(own).collect()))
 }
 
-/// The parts that `set_active_observers` names: in its payload, or beside its action.
+/// The parts that `set_active_observers` names, in its payload or beside its action.
 pub(super) fn parts(message: &Message) -> Result<Vec<&'static str>, Refusal> {
     let own = message.payload.as_ref().and_then(|payload| payload.get("state"));
     let beside = own.or(message.all.get("state"));
@@ -109,7 +109,7 @@ pub(super) fn screenshot(environment: &Environment, message: &Message) -> Result
     })
 }
 
-/// What `set_debug_categories` asks for; all of it is sound, or none is taken.
+/// The settings of `set_debug_categories`; one invalid entry refuses all of them.
 pub(super) fn categories(message: &Message) -> Result<Vec<(Category, bool)>, Refusal> {
     let payload = message.payload("a list of {category, active}")?;
     let list = match payload {

@@ -1,4 +1,4 @@
-//! What an experiment found: a witness for each element that differs, and how much was tried.
+//! Results of an experiment: a witness for each element that differs, and how much was tested.
 
 use driftworld_spec::Element;
 use serde::{Deserialize, Serialize};
@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize};
 use super::policy::Policy;
 use crate::sim::Unlike;
 
-/// The first case in which an element was seen to differ.
+/// The first case in which an element was found to differ.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Witness {
-    /// The number of the pair of worlds, from 0; absent where it takes all of them to see it.
+    /// Index of the pair of worlds, from 0; absent if only all pairs together show the difference.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub world: Option<usize>,
-    /// Who acted; absent where nobody needs to.
+    /// The policy; absent if none is needed.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub policy: Option<Policy>,
     /// The step, from 0.
@@ -20,9 +20,9 @@ pub struct Witness {
     pub step: Option<u32>,
     /// What differs, in words.
     pub what: String,
-    /// How it is in the first of the two.
+    /// The value in the first world.
     pub a: String,
-    /// How it is in the second.
+    /// The value in the second world.
     pub b: String,
 }
 
@@ -39,27 +39,27 @@ impl Witness {
     }
 }
 
-/// How much was tried.
+/// How much was tested.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Proof {
     /// Pairs of worlds.
     pub worlds: u64,
-    /// Episodes that were lived through, of all policies and from both sides.
+    /// Episodes, over all policies, led by either world.
     pub runs: u64,
-    /// Steps that both worlds took from one state by one command.
+    /// Steps that both worlds took from the same state with the same command.
     pub steps: u64,
-    /// States in which both observations were compared.
+    /// States in which the two observations were compared.
     pub observations: u64,
-    /// States of one world that the other does not have, such as places beyond its walls: nothing is compared there.
+    /// States of one world without a counterpart in the other, such as places beyond its walls; nothing is compared there.
     pub without_counterpart: u64,
 }
 
-/// What differs between two tasks, and how much was tried.
+/// The differences between two tasks, and how much was tested.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Findings {
-    /// The elements that differ, each with its first witness, in the order of [`Element::WITH_FINE`].
+    /// The elements that differ with their first witnesses, in the order of [`Element::WITH_FINE`].
     pub differences: Vec<(Element, Witness)>,
-    /// How much was tried.
+    /// How much was tested.
     pub proof: Proof,
 }
 
@@ -79,7 +79,7 @@ impl Findings {
         self.witness(element).is_some()
     }
 
-    /// Notes that an element differs, unless that is known.
+    /// Records that an element differs, unless it is already known.
     pub(super) fn note(&mut self, element: Element, witness: Witness) {
         if !self.differs(element) {
             self.differences.push((element, witness));
@@ -88,7 +88,7 @@ impl Findings {
         }
     }
 
-    /// Adds what was found in later worlds.
+    /// Adds the findings of later pairs.
     pub(super) fn add(&mut self, later: Self) {
         for (element, witness) in later.differences {
             self.note(element, witness);

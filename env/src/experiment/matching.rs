@@ -1,5 +1,4 @@
-//! Which object of a world is the counterpart of which object of another, and how the starts of both differ. What there can
-//! be at all is in `space.rs`.
+//! Pairs the objects of two worlds, and compares the worlds' starts.
 
 use std::collections::BTreeMap;
 
@@ -8,16 +7,16 @@ use driftworld_spec::{Object, World, WorldDraft};
 use super::space::{Kind, StateSpace, kind, shown};
 use crate::sim::Unlike;
 
-/// Two worlds, each with the objects that have a counterpart, in the order of the first: object number `i` of one is the
-/// counterpart of number `i` of the other.
+/// Two worlds, each reduced to the objects that have a counterpart, in the order of the first: objects of the same index are
+/// counterparts.
 pub(super) struct Paired {
     pub(super) worlds: [World; 2],
-    /// How many objects of each kind there are.
+    /// Number of objects of each kind.
     counts: [BTreeMap<Kind, usize>; 2],
 }
 
 impl Paired {
-    /// Objects of the same unique name belong together; the others by their kind, the first with the first and so on.
+    /// Pairs objects of the same unique name; the others by kind, in order.
     pub(super) fn new(a: &World, b: &World) -> Self {
         let counts = [a, b].map(count);
         let names: Vec<&String> = b
@@ -53,7 +52,7 @@ impl Paired {
                 second.objects.push(b.objects[*place].clone());
             }
         }
-        // Both begin at their start.
+        // Both start from the beginning.
         (first.progress, second.progress) = (None, None);
         let checked = |draft: WorldDraft| draft.check_in_range().expect("a world with fewer objects is sound");
         Self {
@@ -62,7 +61,8 @@ impl Paired {
         }
     }
 
-    /// A number of objects of a kind that differs, where such numbers are known in both spaces: that is a law, not a space.
+    /// A kind whose number of objects differs between the worlds although both state spaces allow both numbers: then the laws
+    /// differ, not the spaces.
     pub(super) fn counts_unlike(&self, [a, b]: [&StateSpace; 2]) -> Option<Unlike> {
         let [own, other] = &self.counts;
         let kinds = own.keys().chain(other.keys());
@@ -73,7 +73,7 @@ impl Paired {
         Some(Unlike::new(what, of(own, found), of(other, found)))
     }
 
-    /// What differs of where the agent and the objects with a counterpart are at the start.
+    /// Differences between the starting places of the agents and of paired objects.
     pub(super) fn places_unlike(&self) -> Option<Unlike> {
         let [a, b] = &self.worlds;
         let (own, other) = (&a.agent_params, &b.agent_params);
@@ -105,7 +105,7 @@ impl Paired {
     }
 }
 
-/// How many objects of each kind a world has.
+/// Number of objects of each kind in a world.
 pub(super) fn count(world: &World) -> BTreeMap<Kind, usize> {
     let mut counts = BTreeMap::new();
     for object in &world.objects {

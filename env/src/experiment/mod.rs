@@ -1,5 +1,4 @@
-//! Which elements of the decision process differ between two tasks, found by trying it on pairs of their worlds. Drawing the
-//! worlds, and what tasks claim of themselves, is for others.
+//! Finds which elements of the decision process differ between two tasks, by experiments on pairs of their worlds.
 //!
 //! The definitions are those of `docs/decisions/0024-elements-by-experiment.md`.
 
@@ -21,21 +20,21 @@ use matching::Paired;
 use run::Run;
 use space::StateSpace;
 
-/// The most steps of a run.
+/// Most steps of a run.
 pub const MAX_EXPERIMENT_STEPS: u32 = 100_000;
 
-/// How an experiment is made.
+/// Settings of an experiment.
 #[derive(Clone, Debug)]
 pub struct Experiment {
-    /// Which images the learner has; those that each world asks for if absent.
+    /// Modalities of the learner's images; by default those that each world requests.
     pub modalities: Option<Vec<Modality>>,
     /// Steps of a run, 1 to [`MAX_EXPERIMENT_STEPS`]; 100 by default. An agent that stands still takes a fifth of them.
     pub steps: u32,
-    /// Every so many steps the observations are compared, from the first on; 25 by default, at least 1.
+    /// Observations are compared every this many steps, starting with the first; 25 by default, at least 1.
     pub look_every: u32,
     /// Height and width of the images that are compared, in pixels, 1 to 4096; 48 by default.
     pub side: u32,
-    /// What the agent that acts at random draws from.
+    /// Seed of the random agent.
     pub seed: u64,
     /// Where assets come from.
     pub catalogue: Catalogue,
@@ -55,11 +54,11 @@ impl Default for Experiment {
 }
 
 impl Experiment {
-    /// Tries pairs of worlds: what differs between the first of each pair and the second, with a witness for each element.
+    /// Compares pairs of worlds: the differences between the first and second worlds, with a witness for each element.
     ///
-    /// Each pair runs twice for each [`Policy`]: once the agent acts in the first world and the second is put into
-    /// the same state before every step, once the other way round. So it makes no difference which of the two is called first.
-    /// Pairs are tried in parallel; what is found depends on them, on this experiment and on nothing else.
+    /// Each pair runs twice per [`Policy`]: once the agent acts in the first world and the second is set to the same state
+    /// before every step, once the other way round. So the order of the two worlds does not matter. Pairs run in parallel; the
+    /// findings depend only on the pairs and on this experiment.
     ///
     /// # Errors
     /// [`EnvError::PictureSize`] unless `side` is 1 to 4096.

@@ -1,11 +1,11 @@
-//! Who acts while two worlds are compared. The agents themselves are in `agents`.
+//! [`Policy`]: the agents that act while two worlds are compared.
 
 use driftworld_spec::World;
 use serde::{Deserialize, Serialize};
 
 use crate::agents::{Agent, OnRailsAgent, RandomAgent, ScriptedAgent, StillAgent};
 
-/// Who acts in an experiment.
+/// An agent of an experiment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "lowercase")]
 #[strum(serialize_all = "lowercase")]
@@ -14,22 +14,22 @@ pub enum Policy {
     Still,
     /// Acts at random, as [`RandomAgent`] does.
     Random,
-    /// Knows the map and takes what pays, as [`OnRailsAgent`] does.
+    /// Knows the map and visits what pays, as [`OnRailsAgent`] does.
     Expert,
-    /// Touches an object of each tag and interacts with one, whatever they pay.
+    /// Touches one object of each tag and interacts with one, whatever their rewards.
     Visitor,
 }
 
 impl Policy {
-    /// All of them.
+    /// All policies.
     pub const ALL: [Self; 4] = [Self::Still, Self::Random, Self::Expert, Self::Visitor];
 
-    /// What tables call it.
+    /// Its name in tables.
     pub fn name(self) -> &'static str {
         self.into()
     }
 
-    /// The agent, for worlds such as this one.
+    /// Creates the agent for a world.
     pub(super) fn agent(self, world: &World, seed: u64) -> Box<dyn Agent> {
         match self {
             Self::Still => Box::new(StillAgent),
@@ -43,12 +43,12 @@ impl Policy {
 fn scripted(script: &str) -> Box<dyn Agent> {
     match ScriptedAgent::parse("experiment", script) {
         Ok(agent) => Box::new(agent),
-        // A tag that no script can name: the tour takes its place.
+        // Tags that no script can name: the tour stands in.
         Err(_) => Box::new(OnRailsAgent::new()),
     }
 }
 
-/// A script that touches and interacts with what has a tag of one word: in the world's order, or backwards.
+/// A script that touches and interacts with objects of each one-word tag, in the world's order or backwards.
 fn visits(world: &World, is_backwards: bool) -> String {
     let mut tags: Vec<&str> = world
         .objects

@@ -1,5 +1,5 @@
-//! Two worlds that run side by side: before each step both are in one state, and both bodies get the same command. What
-//! differs then is an element's doing.
+//! Runs two worlds side by side: before each step both have the same state, and both bodies get the same command. Any
+//! difference afterwards is due to an element.
 
 use driftworld_spec::{Element, Modality, World};
 
@@ -11,22 +11,22 @@ use crate::EnvError;
 use crate::render::{Frame, Target};
 use crate::sim::{Action, Environment, Event, Snapshot, Step, Unlike};
 
-/// Both worlds of a pair, one of which leads, and memory that is used again.
+/// Both worlds of a pair, one of which leads, with reused buffers.
 pub(super) struct Run<'a> {
     experiment: &'a Experiment,
-    /// The number of the pair.
+    /// Index of the pair.
     number: usize,
     /// Which of the two worlds leads.
     leader: usize,
     lead: Environment,
-    /// The other world, its things where they are in the world that leads at the start: what returns, returns there.
+    /// The other world, with its objects starting where they do in the leader, because they respawn there.
     follow: Environment,
     starts: [Snapshot; 2],
     frames: [Frame; 2],
     modalities: Vec<Modality>,
 }
 
-/// Where a run is.
+/// The current policy and step.
 #[derive(Clone, Copy)]
 struct Moment {
     policy: Policy,
@@ -50,7 +50,7 @@ impl<'a> Run<'a> {
         let open = |world: World| Environment::with_catalogue(world, experiment.catalogue.clone());
         let (own, other) = (&paired.worlds[leader], &paired.worlds[1 - leader]);
         let (lead, follow) = (open(own.clone()), open(placed_as(other, own)));
-        // Where the two have different images, those that both have.
+        // If the two request different images, compares those that both have.
         let asked = [own, other].map(|world| &world.agent_params.modalities);
         let shared = asked[0].iter().copied().filter(|one| asked[1].contains(one));
         Ok(Self {
@@ -65,7 +65,7 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// Lives through the pair by one policy.
+    /// Runs the pair with one policy.
     pub(super) fn live(&mut self, policy: Policy, found: &mut Findings) -> Result<(), EnvError> {
         self.rewind();
         let seed = self.experiment.seed.wrapping_add(self.number as u64);
@@ -88,13 +88,13 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    /// Both worlds at their starts.
+    /// Resets both worlds to their starts.
     fn rewind(&mut self) {
         self.lead.restore(&self.starts[0]);
         self.follow.restore(&self.starts[1]);
     }
 
-    /// One step of both by one command, and what comes of it.
+    /// Steps both worlds with one command, and compares the results.
     fn step(&mut self, action: Action, moment: Moment, found: &mut Findings) -> Result<(), EnvError> {
         let (lead, follow) = (&mut self.lead, &mut self.follow);
         let seconds = follow.world().agent_params.time_step;
@@ -122,7 +122,7 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    /// Notes a difference: how it is in the first world of the pair comes first, whoever leads.
+    /// Records a difference; the pair's first world comes first, whichever leads.
     fn note(&self, element: Element, moment: Moment, mut unlike: Unlike, found: &mut Findings) {
         if self.leader == 1 {
             std::mem::swap(&mut unlike.own, &mut unlike.other);
@@ -131,7 +131,7 @@ impl<'a> Run<'a> {
         found.note(element, witness);
     }
 
-    /// Compares what both agents observe of the state that both are in.
+    /// Compares both observations of the shared state.
     fn look(&mut self, moment: Moment, found: &mut Findings) -> Result<(), EnvError> {
         found.proof.observations += 1;
         if found.differs(Element::Phi) {
@@ -155,7 +155,7 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    /// The last step that either world leaves time for: whether both end there.
+    /// Takes the last step before either world's time limit, and compares whether both end there.
     pub(super) fn at_the_limit(&mut self, found: &mut Findings) {
         let limited = [self.lead.world().clone(), self.follow.world().clone()];
         for world in &limited {
@@ -167,14 +167,14 @@ impl<'a> Run<'a> {
             let policy = Policy::Still;
             let action = policy.agent(self.lead.world(), 0).act(&self.lead);
             let step = self.lead.num_steps();
-            // A world whose clock is past its limit takes no step.
+            // A world past its time limit takes no step.
             let _ = self.step(action, Moment { policy, step }, found);
         }
     }
 }
 
-/// A world in which the agent and the objects start where they do in another one with the same objects; the world itself
-/// where they have no room in it.
+/// The world, with its agent and objects starting where they do in another world with the same objects; unchanged if they have
+/// no room there.
 fn placed_as(world: &World, other: &World) -> World {
     let mut placed = world.clone().into_draft();
     let start = &other.agent_params;
@@ -185,7 +185,7 @@ fn placed_as(world: &World, other: &World) -> World {
     placed.check_in_range().unwrap_or_else(|_| world.clone())
 }
 
-/// What both worlds saw happen to one object in one way, and paid otherwise, whatever else became of them.
+/// An event of the same object and kind in both worlds that has different rewards, whatever else happened.
 fn event_unlike(own: &Step, other: &Step) -> Option<Unlike> {
     own.events.iter().find_map(|event| {
         let is_same = |other: &&Event| {
@@ -201,7 +201,7 @@ fn event_unlike(own: &Step, other: &Step) -> Option<Unlike> {
     })
 }
 
-/// What differs in what a step paid, or in whether it was the last.
+/// Differences in a step's reward, or in how it ended the episode.
 fn paid_unlike(own: &Step, other: &Step) -> Option<Unlike> {
     let ends = |step: &Step| (step.terminated, step.truncated, step.success);
     Unlike::of("the reward", &own.reward, &other.reward)
@@ -219,7 +219,7 @@ fn wanted<'a>(frame: &'a mut Frame, modalities: &[Modality]) -> Target<'a> {
     target
 }
 
-/// The first pixel that differs, in the first image in which one does.
+/// The first differing pixel, in the first image that has one.
 fn pictures_unlike([a, b]: &[Frame; 2], modalities: &[Modality]) -> Option<Unlike> {
     let width = a.width as usize;
     let at = |index: usize| {
@@ -240,12 +240,12 @@ fn pictures_unlike([a, b]: &[Frame; 2], modalities: &[Modality]) -> Option<Unlik
     })
 }
 
-/// Whether two depths are the same but for the rounding of their sums: a wall in two pieces is as far away as in one.
+/// Whether two depths are equal up to rounding: a wall in two pieces is as far away as a wall in one.
 fn is_as_far(a: f32, b: f32) -> bool {
     (a - b).abs() <= 1e-5 * a.max(b)
 }
 
-/// The first pixel of `each` numbers in which two images differ.
+/// The first pixel, of `each` numbers, in which two images differ.
 fn first<T: std::fmt::Debug>(
     name: &str,
     a: &[T],

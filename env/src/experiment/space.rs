@@ -1,4 +1,4 @@
-//! What can be at all: the spaces of states, actions and observations. What happens in them is in `run.rs`.
+//! The spaces of states, actions and observations of two worlds, and their differences.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use driftworld_spec::{ActionModel, AgentParams, World};
 use super::matching::count;
 use crate::sim::{Action, Intent, Unlike};
 
-/// What tells objects apart that are there at all: the class, and the tag by which rules call them.
+/// The kind of an object in the state space: its class, and the tag that rules use.
 pub(super) type Kind = (String, Option<String>);
 
 /// The kind of an object.
@@ -15,12 +15,12 @@ pub(super) fn kind(object: &driftworld_spec::Object) -> Kind {
     (object.class.clone(), object.tag.clone())
 }
 
-/// A kind in words: its tag, or else its class.
+/// A kind's name: its tag if it has one, otherwise its class.
 pub(super) fn shown((class, tag): &Kind) -> &str {
     tag.as_deref().unwrap_or(class)
 }
 
-/// What was seen to be in the worlds of a task: the least and the greatest number of objects of each kind.
+/// Observed ranges of a task's worlds: the least and the greatest number of objects of each kind.
 #[derive(Debug, Default)]
 pub(super) struct StateSpace {
     counts: BTreeMap<Kind, [usize; 2]>,
@@ -43,13 +43,13 @@ impl StateSpace {
         self.counts.get(kind).copied().unwrap_or([0, 0])
     }
 
-    /// Whether some number of objects of a kind lies in what was seen of both, and both have such objects.
+    /// Whether both have objects of this kind, and their ranges of numbers overlap.
     pub(super) fn shares_counts(&self, other: &Self, kind: &Kind) -> bool {
         let ([low, high], [other_low, other_high]) = (self.range(kind), other.range(kind));
         (high > 0) == (other_high > 0) && low <= other_high && other_low <= high
     }
 
-    /// A kind that only one of two has, or of which they never have the same number.
+    /// A kind that only one of the two has, or whose ranges of numbers do not overlap.
     pub(super) fn unlike(&self, other: &Self) -> Option<Unlike> {
         let kinds = self.counts.keys().chain(other.counts.keys());
         let found = kinds.into_iter().find(|kind| !self.shares_counts(other, kind))?;
@@ -66,7 +66,7 @@ impl StateSpace {
     }
 }
 
-/// What differs of the ground on which things can be.
+/// Differences in the ground on which objects can be.
 pub(super) fn ground_unlike(a: &World, b: &World) -> Option<Unlike> {
     let (own, other) = (&a.environment_params, &b.environment_params);
     let walls = |world: &World| -> Vec<Vec<[f64; 2]>> {
@@ -82,7 +82,7 @@ pub(super) fn ground_unlike(a: &World, b: &World) -> Option<Unlike> {
     .or_else(|| Unlike::of("the walls", &walls(a), &walls(b)))
 }
 
-/// What differs of the actions that there are, or of the commands that the body gets from them.
+/// Differences in the available actions, or in the commands that they give the body.
 pub(super) fn actions_unlike(a: &World, b: &World) -> Option<Unlike> {
     let space = |agent: &AgentParams| match agent.num_actions() {
         Some(rows) => format!("{rows} rows of a table"),
@@ -108,9 +108,9 @@ pub(super) fn actions_unlike(a: &World, b: &World) -> Option<Unlike> {
         })
 }
 
-/// Actions that are tried: all rows of a table, or numbers within and beyond what agents can do.
+/// Actions to test: all rows of a table, or numbers within and beyond the agents' limits.
 fn tried(agent: &AgentParams) -> Vec<Action> {
-    /// From a nudge to more than the fastest agent can.
+    /// From tiny to more than the fastest agent's limit.
     const NUMBERS: [f64; 9] = [-4000.0, -70.0, -7.0, -0.4, 0.0, 0.4, 7.0, 70.0, 4000.0];
     if let Some(rows) = agent.num_actions() {
         return (0..rows).map(Action::Discrete).collect();
@@ -133,7 +133,7 @@ fn in_words(action: Action) -> String {
     }
 }
 
-/// What an action tells the body to do in a second, in words; `None` if the action is not one of the world's.
+/// The command that an action gives the body for one second, as text; `None` if the world has no such action.
 fn intent_of(world: &World, action: Action) -> Option<String> {
     let per_second = AgentParams {
         time_step: 1.0,
@@ -149,7 +149,7 @@ fn intent_of(world: &World, action: Action) -> Option<String> {
     Some(format!("turns {} degrees, {goes}{interacts}", intent.turn_deg))
 }
 
-/// What differs of the form of observations.
+/// Differences in the form of observations.
 pub(super) fn observations_unlike(a: &World, b: &World, is_chosen: bool) -> Option<Unlike> {
     let (own, other) = (&a.agent_params, &b.agent_params);
     let modalities = || Unlike::of("the images of an observation", &own.modalities, &other.modalities);

@@ -1,4 +1,4 @@
-//! A world against itself, against worlds with one thing changed, and that it makes no difference who comes first.
+//! Compares a world with itself and with worlds that have one change, in both orders.
 
 use driftworld_spec::{
     ActionModel, ActionSpace, Color, Door, Element, Energy, MotionModel, Object, Portable, Stimulus, Switch, Wall,
@@ -8,7 +8,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// Cubes that pay when touched, a barrel that costs, a tree and a bench.
+/// A world with cubes that pay when touched, a barrel that costs, a tree and a bench.
 fn world() -> WorldDraft {
     let mut world = WorldDraft::default();
     world.environment_params.map_size = [30.0, 30.0];
@@ -54,7 +54,7 @@ fn check(expected: &[Element], change: impl Fn(&mut WorldDraft)) {
 }
 
 #[test]
-fn nothing_differs_between_a_world_and_itself() {
+fn world_does_not_differ_from_itself() {
     let pairs: Vec<_> = (0..3).map(|_| (sound(&world()), sound(&world()))).collect();
     let found = Experiment::default().compare(&pairs).expect("all run");
     assert_eq!(found.differences, []);
@@ -68,7 +68,7 @@ fn nothing_differs_between_a_world_and_itself() {
 }
 
 #[test]
-fn what_there_is_belongs_to_the_space_of_states() {
+fn objects_and_ground_belong_to_the_state_space() {
     check(&[Element::S], |world| {
         world.objects.push(Object::new("tent", [12.0, 0.0]));
     });
@@ -78,14 +78,14 @@ fn what_there_is_belongs_to_the_space_of_states() {
 }
 
 #[test]
-fn where_it_is_belongs_to_the_initial_state() {
+fn places_belong_to_the_initial_state() {
     check(&[Element::P], |world| world.objects[0].coordinates = [2.0, 9.0]);
     check(&[Element::P], |world| world.agent_params.heading = 30.0);
     check(&[Element::P], |world| world.agent_params.coordinates = [1.0, 1.0]);
 }
 
 #[test]
-fn what_actions_mean_belongs_to_the_actions() {
+fn meaning_of_actions_belongs_to_the_action_space() {
     check(&[Element::A], |world| world.agent_params.max_linear_speed = 5.0);
     check(&[Element::A], |world| world.agent_params.max_angular_speed = 45.0);
     check(&[Element::A], |world| {
@@ -98,7 +98,7 @@ fn what_actions_mean_belongs_to_the_actions() {
 }
 
 #[test]
-fn what_follows_belongs_to_the_transitions() {
+fn dynamics_belong_to_the_transitions() {
     check(&[Element::T], |world| world.agent_params.frame_skip = 3);
     check(&[Element::T], |world| world.agent_params.agent_width = 0.3);
     check(&[Element::T], |world| world.objects[0].destroy_stimulus = vec![]);
@@ -108,7 +108,7 @@ fn what_follows_belongs_to_the_transitions() {
     });
 }
 
-/// A room with a door that the agent opens by touch, on its way to a goal, and a lever; the key of another door lies beside it.
+/// A room with a lever, and a door that opens by touch on the way to a goal; the key of another door lies beside it.
 fn rooms() -> WorldDraft {
     let mut world = WorldDraft::default();
     world.environment_params.map_size = [6.0, 12.0];
@@ -139,8 +139,8 @@ fn rooms() -> WorldDraft {
 }
 
 #[test]
-fn doors_switches_keys_and_energy_are_seen() {
-    // Two pairs: in one of them the visitor begins with the last.
+fn changes_of_doors_switches_keys_and_energy_are_found() {
+    // Two pairs, so that the visitor also goes through the tags backwards.
     let elements = |a: &WorldDraft, b: &WorldDraft| {
         let pair = (sound(a), sound(b));
         let found = Experiment::default().compare(&[pair.clone(), pair]).expect("all run");
@@ -149,7 +149,7 @@ fn doors_switches_keys_and_energy_are_seen() {
     let mut asked = 0;
     let mut check = |expected: &[Element], change: &dyn Fn(&mut WorldDraft)| {
         asked += 1;
-        // A row of the table goes or interacts; numbers do both at once.
+        // A table's row moves or interacts; numbers can do both at once.
         for actions in [ActionSpace::Continuous, ActionSpace::DefaultDiscrete] {
             let mut own = rooms();
             own.agent_params.actions = actions;
@@ -186,7 +186,7 @@ fn doors_switches_keys_and_energy_are_seen() {
 }
 
 #[test]
-fn a_zone_that_pays_or_ends_belongs_to_the_rewards() {
+fn zones_that_pay_or_end_belong_to_the_rewards() {
     let zone = |change: fn(&mut Zone)| {
         move |world: &mut WorldDraft| {
             let mut zone = Zone::disc([0.0, -2.0], 1.5);
@@ -208,9 +208,9 @@ fn a_zone_that_pays_or_ends_belongs_to_the_rewards() {
     check(&[Element::T], &zone(|zone| zone.speed_factor = 0.5));
 }
 
-/// Its corners are the same, and sums about it are rounded otherwise.
+/// The corners are the same, but sums round differently.
 #[test]
-fn a_wall_in_two_pieces_is_one_wall_to_the_eye() {
+fn wall_in_two_pieces_looks_like_one() {
     let wall = |x: [f64; 2]| Wall {
         polygon: vec![[x[0], 5.0], [x[1], 5.0], [x[1], 5.3], [x[0], 5.3]],
         height: None,
@@ -230,7 +230,7 @@ fn a_wall_in_two_pieces_is_one_wall_to_the_eye() {
 }
 
 #[test]
-fn what_returns_returns_to_where_it_was_at_the_start() {
+fn place_of_a_respawning_object_belongs_only_to_the_initial_state() {
     let returning = |at: [f64; 2]| {
         let mut world = world();
         world.objects[0].coordinates = at;
@@ -244,7 +244,7 @@ fn what_returns_returns_to_where_it_was_at_the_start() {
 }
 
 #[test]
-fn a_reward_is_seen_where_every_transition_differs() {
+fn rewards_are_compared_even_if_all_transitions_differ() {
     check(&[Element::T, Element::R], |world| {
         world.agent_params.frame_skip = 2;
         world.objects[0].reward = 3.0;
@@ -252,7 +252,7 @@ fn a_reward_is_seen_where_every_transition_differs() {
 }
 
 #[test]
-fn what_pays_and_what_ends_belongs_to_the_rewards() {
+fn rewards_and_ends_belong_to_the_rewards() {
     check(&[Element::R], |world| world.objects[0].reward = 3.0);
     check(&[Element::R], |world| world.objects[2].reward = -50.0);
     check(&[Element::R], |world| world.rules.reward_per_second = -2.0);
@@ -263,7 +263,7 @@ fn what_pays_and_what_ends_belongs_to_the_rewards() {
 }
 
 #[test]
-fn how_it_looks_belongs_to_the_emission() {
+fn looks_belong_to_the_emission() {
     check(&[Element::Phi], |world| {
         world.objects[0].color = Some(Color([1.0, 0.0, 0.0]));
     });
@@ -273,7 +273,7 @@ fn how_it_looks_belongs_to_the_emission() {
 }
 
 #[test]
-fn the_form_of_observations_belongs_to_their_space() {
+fn form_of_observations_belongs_to_the_observation_space() {
     check(&[Element::O], |world| world.agent_params.observation_size = 32);
     check(&[Element::O], |world| world.agent_params.state_features.truncate(1));
     check(&[Element::O], |world| world.agent_params.instruction.push(0.0));
@@ -283,7 +283,7 @@ fn the_form_of_observations_belongs_to_their_space() {
 }
 
 #[test]
-fn the_sign_of_a_reward_shows_in_the_segmentation_and_nowhere_else() {
+fn reward_sign_shows_only_in_the_segmentation() {
     let (own, mut changed) = (world(), world());
     for object in changed.objects.iter_mut().filter(|object| object.class == "geometric") {
         object.reward = -10.0;
@@ -305,7 +305,7 @@ fn the_sign_of_a_reward_shows_in_the_segmentation_and_nowhere_else() {
 }
 
 #[test]
-fn numbers_that_overlap_are_a_law_and_others_a_space() {
+fn overlapping_object_counts_differ_in_law_and_disjoint_ones_in_space() {
     let with = |trees: usize| {
         let mut world = world();
         let tree = |number: usize| Object::new("tent", [12.0, number as f64 * 3.0]);
@@ -325,7 +325,7 @@ fn numbers_that_overlap_are_a_law_and_others_a_space() {
 }
 
 #[test]
-fn a_witness_says_where_and_how_much() {
+fn witness_names_the_place_and_both_values() {
     let (own, mut changed) = (world(), world());
     changed.objects[0].reward = 3.0;
     let found = Experiment::default()
@@ -360,9 +360,9 @@ fn change(world: &mut WorldDraft, which: u8) {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
 
-    /// Whatever is changed in either: the same elements differ whichever comes first.
+    /// The same elements differ in either order, whatever is changed in either world.
     #[test]
-    fn it_makes_no_difference_which_comes_first(ours in prop::collection::vec(0u8..9, 0..3), theirs in prop::collection::vec(0u8..9, 0..3)) {
+    fn findings_are_order_independent(ours in prop::collection::vec(0u8..9, 0..3), theirs in prop::collection::vec(0u8..9, 0..3)) {
         let (mut a, mut b) = (world(), world());
         for which in ours {
             change(&mut a, which);

@@ -1,5 +1,5 @@
-//! [`RecordingLines`]: recordings as lines of JSON. The first line says what the file is; a world has a line of its own, before the first
-//! episode that began in it; each line ends with the checksum of what stands before it. Reading them is in `reader.rs`.
+//! [`RecordingLines`]: writes recordings as lines of JSON. The first line identifies the file; a world has its own line before
+//! the first episode that begins in it; each line ends with a checksum of its contents.
 
 use std::collections::BTreeSet;
 
@@ -9,10 +9,10 @@ use serde::{Deserialize, Serialize};
 use super::packed::{PackedActions, deflated};
 use super::{EpisodeOrigin, Recording};
 
-/// The version of the format, which the first line of a file says.
+/// The version of the format, given in the first line of a file.
 pub const RECORDING_FORMAT: u32 = 1;
 
-/// What the first line says.
+/// The first line.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct HeaderLine {
     /// The version of the format.
@@ -37,23 +37,23 @@ pub(super) struct EpisodeLine {
     pub(super) origin: EpisodeOrigin,
     /// The hash of its world.
     pub(super) world_hash: String,
-    /// For those who read it without running it: seconds of a time step, and how many of these an action is held.
+    /// For readers that do not run it: seconds per time step, and time steps for which an action is held.
     pub(super) time_step: f64,
     pub(super) frame_skip: u32,
     pub(super) steps: u32,
     pub(super) reward: f64,
     pub(super) ended_by: Option<String>,
     pub(super) driftworld: String,
-    /// Steps and hashes of worlds.
+    /// Steps, and hashes of worlds.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) edits: Vec<(u32, String)>,
     pub(super) actions: PackedActions,
 }
 
-/// Writes recordings down as lines, each with its line end.
+/// Writes recordings as lines, each with its line end.
 #[derive(Clone, Debug, Default)]
 pub struct RecordingLines {
-    /// The hashes of worlds that have a line.
+    /// The hashes of worlds that already have a line.
     known: BTreeSet<String>,
 }
 
@@ -66,14 +66,14 @@ impl RecordingLines {
         })
     }
 
-    /// Goes on in a file that holds these worlds.
+    /// Continues a file that contains these worlds.
     pub(super) fn with_worlds(known: impl IntoIterator<Item = String>) -> Self {
         Self {
             known: known.into_iter().collect(),
         }
     }
 
-    /// The lines of a recording: its worlds where they are new, then the episode.
+    /// The lines of a recording: its worlds if they are new, then the episode.
     pub fn lines(&mut self, recording: &Recording) -> String {
         let mut lines = String::new();
         let mut hash_of = |world: &World| {
@@ -107,10 +107,10 @@ impl RecordingLines {
     }
 }
 
-/// The key of the checksum, which is the last of a line.
+/// The key of the checksum, the last in a line.
 const SEAL: &str = ",\"crc32\":\"";
 
-/// A line of JSON that ends with the checksum of what stands before it, and with a line end.
+/// Serialises a line of JSON, with the checksum of its contents and a line end.
 pub(super) fn sealed(line: &impl Serialize) -> String {
     let mut json = serde_json::to_string(line).expect("lines have string keys only, which always serialise");
     let end = json.pop();
@@ -119,7 +119,7 @@ pub(super) fn sealed(line: &impl Serialize) -> String {
     json + &format!("{SEAL}{sum:08x}\"}}\n")
 }
 
-/// What is wrong with the checksum of a line without its end: what was found, and what was expected.
+/// Checks the checksum of a line without its end; the error is what was found, and what was expected.
 pub(super) fn unsealed(line: &[u8]) -> Result<(), (String, String)> {
     let expected = || "a line of JSON that ends with its checksum".to_owned();
     let text = std::str::from_utf8(line).map_err(|_| ("bytes that are no text".to_owned(), expected()))?;

@@ -1,5 +1,4 @@
-//! [`Recording`]: an episode as the world that it began in and the actions that were carried out, so that it can be run, and drawn, once
-//! more. How it is written down is in `lines.rs`, how it is read in `reader.rs`, how it is run in `replay.rs`; files are the callers'.
+//! [`Recording`]: an episode as its initial world and its actions, so that it can be run and rendered again.
 
 mod lines;
 mod packed;
@@ -18,10 +17,10 @@ pub use replay::Replay;
 
 use crate::sim::{Action, EndedBy};
 
-/// Which episode a recording is of: what names it, where it has names.
+/// Identifies a recorded episode, as far as it has names.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct EpisodeOrigin {
-    /// The number of the experience over the whole lifetime, as the log has it; else of the episode in its file, from 0.
+    /// Index of the experience over the whole lifetime, as in the log; otherwise the episode's index in its file, from 0.
     pub experience: u64,
     /// Its block, from 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -35,21 +34,21 @@ pub struct EpisodeOrigin {
     /// The seed of its world.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
-    /// The number of its world under the seed.
+    /// The index of its world under the seed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub index: Option<u64>,
 }
 
-/// What was changed from outside while an episode ran.
+/// A change from outside during an episode.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Edit {
-    /// How many steps had been made.
+    /// Number of steps before it.
     pub step: u32,
-    /// The world as it was then ([`Environment::state`](crate::Environment::state)).
+    /// The world after it ([`Environment::state`](crate::Environment::state)).
     pub world: World,
 }
 
-/// An episode, or the beginning of one.
+/// A whole or partial episode.
 ///
 /// # Example
 /// ```
@@ -70,24 +69,24 @@ pub struct Edit {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
-    /// Which episode it is.
+    /// The episode's identity.
     pub origin: EpisodeOrigin,
     /// The version of Driftworld that recorded it.
     pub recorded_by: String,
-    /// The world that it began in.
+    /// The initial world.
     pub world: World,
     /// Changes from outside, in the order of their steps.
     pub edits: Vec<Edit>,
-    /// What was done in each step.
+    /// The action of each step.
     pub actions: Vec<Action>,
-    /// The sum of the rewards of its steps; with that of the world at the beginning where that had run before.
+    /// The sum of rewards; if the initial world had run before, including the rewards it had already paid.
     pub reward: f64,
-    /// What ended it, if anything did.
+    /// The cause of the end, if it has ended.
     pub ended_by: Option<EndedBy>,
 }
 
 impl Recording {
-    /// Steps of the world's own time that one action is held for, and their seconds.
+    /// Duration of one action in seconds of simulated time.
     pub fn seconds_per_step(&self) -> f64 {
         let agent = &self.world.agent_params;
         agent.time_step * f64::from(agent.frame_skip.max(1))

@@ -1,4 +1,4 @@
-//! Actions and worlds as short texts: bytes that are deflated (zlib) and written in base64. What stands around them is in `lines.rs`.
+//! Encodes actions and worlds as short texts: deflated with zlib, then base64.
 
 use std::io::{Read, Write};
 
@@ -11,18 +11,18 @@ use serde::{Deserialize, Serialize};
 
 use crate::sim::Action;
 
-/// The most steps of an episode that can be read back.
+/// Most steps of a readable episode.
 pub const MAX_RECORDED_STEPS: u32 = 1 << 24;
 
-/// The actions of an episode, in the shortest form that keeps every bit. Little-endian.
+/// The actions of an episode, in the shortest lossless form. Little-endian.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub(super) enum PackedActions {
     /// Rows of the action table, 16 bits each.
     Rows(String),
-    /// Three numbers a step, 32 bits each: all of them are such numbers.
+    /// Three 32-bit numbers per step: all of the numbers fit exactly.
     F32(String),
-    /// Three numbers a step, 64 bits each. A row of the action table is its number and twice NaN, which no action is.
+    /// Three 64-bit numbers per step. A row of the action table is its number and two NaNs, which no action can contain.
     F64(String),
 }
 
@@ -39,7 +39,7 @@ impl PackedActions {
         Self::F64(deflated(numbers().flat_map(f64::to_le_bytes)))
     }
 
-    /// The actions of so many steps. The error is what was found and what was expected.
+    /// Decodes the actions of `steps` steps. The error is what was found, and what was expected.
     pub(super) fn unpack(&self, steps: u32) -> Result<Vec<Action>, (String, String)> {
         let (text, width) = match self {
             Self::Rows(text) => (text, 2),
@@ -58,7 +58,7 @@ impl PackedActions {
             ));
         }
         let action = |bytes: &[u8]| match self {
-            // Pieces are as long as the width says.
+            // Chunks have the length of `width`.
             Self::Rows(_) => Action::Discrete(usize::from(u16::from_le_bytes([bytes[0], bytes[1]]))),
             Self::F32(_) => Action::Continuous(std::array::from_fn(|place| {
                 f64::from(f32::from_le_bytes(std::array::from_fn(|byte| bytes[4 * place + byte])))
@@ -92,7 +92,7 @@ fn numbers(action: Action) -> [f64; 3] {
     }
 }
 
-/// Bytes, deflated and in base64.
+/// Deflates bytes and encodes them in base64.
 pub(super) fn deflated(bytes: impl IntoIterator<Item = u8>) -> String {
     let bytes: Vec<u8> = bytes.into_iter().collect();
     let mut deflater = ZlibEncoder::new(Vec::new(), Compression::default());
@@ -100,7 +100,7 @@ pub(super) fn deflated(bytes: impl IntoIterator<Item = u8>) -> String {
     STANDARD.encode(written.expect("writing into memory cannot fail"))
 }
 
-/// The bytes of such a text, at most one more than `most`.
+/// Decodes and inflates such a text, to at most `most` + 1 bytes.
 pub(super) fn inflated(text: &str, most: u64) -> Result<Vec<u8>, (String, String)> {
     let wrong = |reason: String| (reason, "zlib in base64".to_owned());
     let bytes = STANDARD.decode(text).map_err(|error| wrong(error.to_string()))?;
@@ -134,7 +134,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn actions_come_back_to_the_bit(
+        fn actions_round_trip_to_the_bit(
             kind in 0usize..4,
             actions in prop::collection::vec(action(), 0..60),
         ) {
@@ -148,14 +148,14 @@ mod tests {
             let packed = PackedActions::new(&actions);
             let back = packed.unpack(actions.len() as u32).unwrap();
             prop_assert_eq!(bits(&back), bits(&actions));
-            // Another number of steps is refused.
+            // A wrong number of steps is refused.
             prop_assert!(packed.unpack(actions.len() as u32 + 1).is_err());
             prop_assert!(actions.is_empty() || packed.unpack(actions.len() as u32 - 1).is_err());
         }
     }
 
     #[test]
-    fn held_actions_take_little_room() {
+    fn held_actions_compress_well() {
         let held = vec![Action::Continuous([10.0, 30.0, 0.0]); 1000];
         let PackedActions::F32(text) = PackedActions::new(&held) else {
             panic!("these are numbers of 32 bits")

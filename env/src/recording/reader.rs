@@ -1,5 +1,4 @@
-//! [`RecordingReader`]: recordings out of the lines that they were written down as. A damaged line is an error with its number, and hides
-//! no other; writing is in `lines.rs`.
+//! [`RecordingReader`]: reads recordings. A damaged line is an error with its number, and does not affect other lines.
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, ErrorKind, Read, Seek};
@@ -13,7 +12,7 @@ use super::{Edit, EpisodeOrigin, Recording};
 use crate::EnvError;
 use crate::sim::EndedBy;
 
-/// The longest line that is read, in bytes.
+/// Longest line that is read, in bytes.
 pub const MAX_RECORDING_LINE: u64 = 1 << 27;
 
 /// Reads the episodes of a file, one after the other.
@@ -22,7 +21,7 @@ pub struct RecordingReader<R> {
     reader: R,
     line: u64,
     offset: u64,
-    /// Worlds as they are written, with their lines, by their hashes.
+    /// Encoded worlds with their line numbers, by hash.
     worlds: BTreeMap<String, (u64, String)>,
     is_torn: bool,
 }
@@ -34,18 +33,18 @@ pub struct RecordingMark {
     offset: u64,
 }
 
-/// An episode as it stands in a file; [`RecordingReader::recording`] makes it out.
+/// An undecoded episode of a file, for [`RecordingReader::recording`].
 #[derive(Debug)]
 pub struct RecordedEpisode {
-    /// Which it is.
+    /// The episode's identity.
     pub origin: EpisodeOrigin,
-    /// Steps that it says it has.
+    /// Its claimed number of steps.
     pub steps: u32,
-    /// What it says its steps paid.
+    /// Its claimed reward.
     pub reward: f64,
     /// Its line in the file, from 1.
     pub line: u64,
-    /// Where that line begins.
+    /// The position of that line.
     pub place: RecordingMark,
     said: EpisodeLine,
 }
@@ -54,7 +53,7 @@ impl<R: BufRead> RecordingReader<R> {
     /// A reader at the first line.
     ///
     /// # Errors
-    /// [`EnvError::Recording`] if that is not the first line of a file of recordings of this version.
+    /// [`EnvError::Recording`] if it is not the first line of a file of recordings of this version.
     pub fn new(reader: R) -> Result<Self, EnvError> {
         let mut this = Self {
             reader,
@@ -83,10 +82,10 @@ impl<R: BufRead> RecordingReader<R> {
         Ok(this)
     }
 
-    /// The next episode; nothing at the end.
+    /// The next episode; `None` at the end.
     ///
     /// # Errors
-    /// [`EnvError::Recording`] for a line that is damaged or cut off; the next call goes on behind it.
+    /// [`EnvError::Recording`] for a line that is damaged or truncated; the next call continues after it.
     pub fn next_episode(&mut self) -> Result<Option<RecordedEpisode>, EnvError> {
         loop {
             let place = self.mark();
@@ -97,7 +96,7 @@ impl<R: BufRead> RecordingReader<R> {
             if line.starts_with(b"{\"world_hash\":") {
                 let world: WorldLine = serde_json::from_slice(&line).map_err(|error| not_a_line(self, &error))?;
                 let line = self.line;
-                // The last counts: it was written where one before could not be made out.
+                // The last line of a world counts: it was written because an earlier one could not be decoded.
                 self.worlds.insert(world.world_hash, (line, world.world));
                 continue;
             }
@@ -113,7 +112,7 @@ impl<R: BufRead> RecordingReader<R> {
         }
     }
 
-    /// Makes an episode out.
+    /// Decodes an episode.
     ///
     /// # Errors
     /// [`EnvError::Recording`] if its actions or its worlds cannot be read.
@@ -144,10 +143,10 @@ impl<R: BufRead> RecordingReader<R> {
         })
     }
 
-    /// Turns to a place that was marked, for one that has read the file to its end. Places that follow each other are read as one.
+    /// Seeks to a marked place, after the file has been read to its end. Consecutive places are read without seeking.
     ///
     /// # Errors
-    /// [`EnvError::Recording`] if the file refuses.
+    /// [`EnvError::Recording`] if seeking fails.
     pub fn turn_to(&mut self, place: RecordingMark) -> Result<(), EnvError>
     where
         R: Seek,
@@ -159,7 +158,7 @@ impl<R: BufRead> RecordingReader<R> {
         Ok(())
     }
 
-    /// Where the reader stands.
+    /// The reader's current position.
     pub fn mark(&self) -> RecordingMark {
         RecordingMark {
             line: self.line,
@@ -167,13 +166,13 @@ impl<R: BufRead> RecordingReader<R> {
         }
     }
 
-    /// Whether the last line had no end: its writer was stopped in the midst of it.
+    /// Whether the last line was incomplete: its writer was interrupted.
     pub fn is_torn(&self) -> bool {
         self.is_torn
     }
 
-    /// Bytes before a place, and what goes on writing there. It writes worlds again that cannot be made out of their
-    /// lines, such as those that another version wrote.
+    /// The number of bytes before a place, and a writer that continues there. It rewrites worlds whose lines cannot be decoded,
+    /// such as those of another version.
     pub fn into_lines_at(self, place: RecordingMark) -> (u64, RecordingLines) {
         let before = self.worlds.iter().filter(|(_, (line, _))| *line <= place.line);
         let sound = before.filter(|(hash, _)| self.world(place.line, hash).is_ok());
@@ -200,7 +199,7 @@ impl<R: BufRead> RecordingReader<R> {
         Ok(world)
     }
 
-    /// The next line without its end, once its checksum holds.
+    /// The next line without its end, with its checksum verified.
     fn line(&mut self) -> Result<Option<Vec<u8>>, EnvError> {
         let mut line = Vec::new();
         let read = self
@@ -235,7 +234,7 @@ fn wrong(line: u64, found: impl Into<String>, expected: impl Into<String>) -> En
     }
 }
 
-/// What a line says for those who read it without its world must be what the world says, and its version one that there is.
+/// Checks the line's redundant information against the world, and the syntax of its version.
 fn check_said(said: &EpisodeLine, world: &World) -> Result<(), (String, String)> {
     let agent = &world.agent_params;
     let numbers = |version: &str| {
@@ -283,9 +282,9 @@ mod tests {
         recording
     }
 
-    /// The fuzzer found it: what was written behind such a line could not be read back.
+    /// Found by the fuzzer: what was written after such a line could not be read.
     #[test]
-    fn a_world_that_cannot_be_made_out_is_written_again() {
+    fn undecodable_world_is_written_again() {
         let world = sealed(&WorldLine {
             world_hash: World::default().hash(),
             world: deflated(br#"{ "of_another_version": true }"#.iter().copied()),

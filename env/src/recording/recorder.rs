@@ -1,11 +1,11 @@
-//! [`Recorder`]: takes an episode down while it runs.
+//! [`Recorder`]: records an episode while it runs.
 
 use driftworld_spec::World;
 
 use super::{Edit, EpisodeOrigin, Recording};
 use crate::sim::{Action, EndedBy, Environment};
 
-/// The episode that is under way.
+/// The current episode.
 #[derive(Clone, Debug, Default)]
 pub struct Recorder {
     world: Option<World>,
@@ -14,39 +14,39 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// A recorder of what comes from now on in an environment that may have run before.
+    /// Starts recording in an environment that may have run before.
     pub fn from_now(environment: &Environment) -> Self {
         let mut recorder = Self::default();
         recorder.begin(environment.state());
         recorder
     }
 
-    /// Begins an episode in this world, as the environment was reset to it; forgets the one before.
+    /// Begins an episode in this world, to which the environment was reset; discards the previous episode.
     pub fn begin(&mut self, world: World) {
         self.world = Some(world);
         self.edits.clear();
         self.actions.clear();
     }
 
-    /// Notes an action that was carried out.
+    /// Records an action that was carried out.
     pub fn step(&mut self, action: Action) {
         self.actions.push(action);
     }
 
-    /// Notes that the world was changed from outside: it is now as it stands.
+    /// Records that the world was changed from outside.
     pub fn edit(&mut self, environment: &Environment) {
         let (step, world) = (self.num_steps(), environment.state());
-        // Of several changes in one step the last counts.
+        // Of several changes between the same steps, only the last counts.
         self.edits.retain(|edit| edit.step != step);
         self.edits.push(Edit { step, world });
     }
 
-    /// Steps that were noted.
+    /// Number of recorded steps.
     pub fn num_steps(&self) -> u32 {
         u32::try_from(self.actions.len()).unwrap_or(u32::MAX)
     }
 
-    /// The episode so far; `ended_by` is what ended it.
+    /// The episode so far; `ended_by` is the cause of its end.
     pub fn recording(&self, environment: &Environment, ended_by: Option<EndedBy>) -> Recording {
         Recording {
             origin: EpisodeOrigin::default(),

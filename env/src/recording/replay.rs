@@ -1,23 +1,23 @@
-//! [`Replay`]: an episode run once more from its recording, and compared with it. Pictures of it are the callers'.
+//! [`Replay`]: runs a recorded episode again and compares the results.
 
 use super::Recording;
 use crate::EnvError;
 use crate::assets::Catalogue;
 use crate::sim::{EndedBy, Environment, Step};
 
-/// A recorded episode that runs.
+/// A replay in progress.
 pub struct Replay<'a> {
     recording: &'a Recording,
     environment: Environment,
-    /// Steps and changes from outside that were made.
+    /// Numbers of steps and changes from outside so far.
     steps: usize,
     edits: usize,
-    /// What ended it, if anything did.
+    /// The cause of the end, if it has ended.
     ended_by: Option<EndedBy>,
 }
 
 impl<'a> Replay<'a> {
-    /// An episode at its start, its assets from a catalogue: the one that it was recorded with.
+    /// An episode at its start; `catalogue` should be the one that it was recorded with.
     pub fn new(recording: &'a Recording, catalogue: &Catalogue) -> Self {
         let mut replay = Self {
             recording,
@@ -30,27 +30,27 @@ impl<'a> Replay<'a> {
         replay
     }
 
-    /// Goes back to the start.
+    /// Restarts the episode.
     pub fn restart(&mut self) {
         self.environment.reset(self.recording.world.clone());
         (self.steps, self.edits, self.ended_by) = (0, 0, None);
         self.edit();
     }
 
-    /// The environment as it is now, to be looked at.
+    /// The environment in its current state, for inspection.
     pub fn environment(&mut self) -> &mut Environment {
         &mut self.environment
     }
 
-    /// Steps that were made.
+    /// Number of steps so far.
     pub fn num_steps(&self) -> usize {
         self.steps
     }
 
-    /// Makes the next step; nothing after the last.
+    /// Makes the next step; `None` after the last.
     ///
     /// # Errors
-    /// [`EnvError::Replay`] if the action cannot be carried out any more.
+    /// [`EnvError::Replay`] if the action cannot be carried out.
     pub fn step(&mut self) -> Result<Option<Step>, EnvError> {
         let Some(action) = self.recording.actions.get(self.steps) else {
             return Ok(None);
@@ -65,17 +65,17 @@ impl<'a> Replay<'a> {
         Ok(Some(step))
     }
 
-    /// After the last step: whether it paid what was recorded, and ended as it did.
+    /// After the last step, checks that the reward and the end match the recording.
     ///
     /// # Errors
-    /// [`EnvError::Replay`] that says what differs.
+    /// [`EnvError::Replay`] with the difference.
     pub fn check(&self) -> Result<(), EnvError> {
         let (found, expected) = (self.environment.episode_return(), self.recording.reward);
         if found.to_bits() != expected.to_bits() {
             return Err(self.differs("reward", found.to_string(), expected.to_string()));
         }
         let (found, expected) = (self.ended_by, self.recording.ended_by);
-        // A limit of steps may have been set from outside.
+        // A step limit may have been set from outside.
         if found != expected && (found, expected) != (None, Some(EndedBy::Steps)) {
             let word = |ended_by: Option<EndedBy>| ended_by.map_or("nothing", EndedBy::word).to_owned();
             return Err(self.differs("ended_by", word(found), word(expected)));
@@ -83,7 +83,7 @@ impl<'a> Replay<'a> {
         Ok(())
     }
 
-    /// Lays over the world what was changed from outside before the next step.
+    /// Applies recorded changes from outside that came before the next step.
     fn edit(&mut self) {
         while let Some(edit) = self.recording.edits.get(self.edits)
             && edit.step as usize == self.steps
