@@ -1,5 +1,4 @@
-//! Sky and ground by formula: for each row of a picture how far the ground is and in which colours it shows. Which
-//! pixels get them is decided in `compose.rs`.
+//! Sky and ground by formula: for each row of an image, the distance of the ground and its colours.
 
 use super::frame::{CATEGORY_MAP, CATEGORY_SKY};
 use super::lanes::{Lanes, MOST_LANES};
@@ -10,26 +9,26 @@ use crate::scene::Scene;
 /// Side of the squares on the ground in metres.
 pub(crate) const SQUARE: f32 = 2.0;
 
-/// How much lighter or darker than the ground the squares are, and the blocks of 8 × 8 of them.
+/// Contrast of the squares with the ground, and of the blocks of 8 × 8 squares.
 pub(super) const CONTRAST: [f32; 2] = [0.045, 0.03];
 
-/// How squares fade as they get smaller than pixels: by how many of them a pixel covers.
+/// How fast squares and blocks fade as they become smaller than pixels, per square that a pixel covers.
 pub(super) const FADING: [f32; 2] = [1.3, 1.3 / 8.0];
 
-/// What lies behind everything, row by row. Kept from picture to picture.
+/// The background of an image, row by row. Reused between images.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Backdrop {
-    /// How much a ray through the row rises per metre ahead.
+    /// Slope of the ray through each row: metres up per metre ahead.
     pub(super) rise: Vec<f32>,
-    /// 1 / distance of the ground along the view axis; 0 where the row shows sky.
+    /// 1 / distance of the ground along the view axis; 0 in rows of sky.
     pub(super) ground: Vec<f32>,
-    /// Packed pixels: of sky; or of the ground's light and dark squares, in light and in dark blocks.
+    /// Packed pixels: of the sky; or of the ground's light and dark squares, in light and in dark blocks.
     pub(super) pixels: [Vec<u32>; 4],
-    /// Colour into which fog turns everything, as bytes 0 to 255.
+    /// Colour of the fog, as bytes 0 to 255.
     pub(super) fog_color: [f32; 3],
 }
 
-/// What all rows share.
+/// Values shared by all rows.
 struct Look {
     height: f32,
     step: f32,
@@ -87,7 +86,7 @@ impl Backdrop {
         ];
         let sky = pack(l, sky, CATEGORY_SKY);
 
-        // How many squares a pixel covers where its ray meets the ground.
+        // Number of squares that a pixel covers where its ray meets the ground.
         let metres = l.div(one, l.max(ground, l.splat(1e-6)));
         let blur = l.mul(l.mul(metres, metres), l.splat(look.step / (look.height * SQUARE)));
         let (fine, coarse) = (contrast(l, blur, 0), contrast(l, blur, 1));
@@ -115,14 +114,14 @@ fn between<L: Lanes>(l: L, share: L::Float, from: f32, to: f32) -> L::Float {
     l.mul_add(share, l.splat(to - from), l.splat(from))
 }
 
-/// How much squares, or blocks of them, differ from the ground where a pixel covers so many of them.
+/// Contrast of squares, or of blocks, where a pixel covers `blur` squares.
 #[inline(always)]
 fn contrast<L: Lanes>(l: L, blur: L::Float, which: usize) -> L::Float {
     let fade = l.sub(l.splat(1.0), l.mul(blur, l.splat(FADING[which])));
     l.mul(l.max(fade, l.splat(0.0)), l.splat(CONTRAST[which]))
 }
 
-/// Levels 0 to 255, and above, as a word of bytes with a label.
+/// Packs levels, capped at 255, into a word of bytes with a label.
 #[inline(always)]
 fn pack<L: Lanes>(l: L, levels: [L::Float; 3], label: u8) -> L::Word {
     let (red, green, blue) = (byte(l, levels[0]), byte(l, levels[1]), byte(l, levels[2]));

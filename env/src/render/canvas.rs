@@ -1,29 +1,28 @@
-//! What triangles are filled into: depth and packed pixel of each place. Where triangles come from is in `raster.rs`,
-//! what becomes of them in `compose.rs`.
+//! The canvas that triangles are filled into: depth and packed pixel of each position.
 
 use super::lanes::{Lanes, MOST_LANES};
 
-/// Buffers of one picture, kept from picture to picture. Rows are padded to whole vectors.
+/// Buffers of one image, reused between images. Rows are padded to whole vectors.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Canvas {
     pub(super) width: usize,
     pub(super) height: usize,
-    /// Pixels from one row to the next.
+    /// Offset from one row to the next, in pixels.
     pub(super) stride: usize,
     /// 1 / depth; 0 is infinitely far.
     pub(super) inverse_depth: Aligned<f32>,
-    /// Colour in the lower three bytes, red lowest; a label in the highest. Counts where something was drawn.
+    /// Colour in the lower three bytes, red lowest; a label in the highest. Valid only where something was drawn.
     pub(super) pixels: Aligned<u32>,
-    /// Number of the item plus 1, where that is asked for.
+    /// Index of the item plus 1, if requested.
     pub(super) items: Aligned<u32>,
 }
 
-/// A triangle on the screen, ready to be filled. Pixel centres have whole coordinates.
+/// A screen-space triangle, ready to be filled. Pixel centres have integer coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Triangle {
-    /// For each edge `c + a·x + b·y`, which is not negative inside: c, a, b.
+    /// For each edge, c, a and b of `c + a·x + b·y`, which is not negative inside.
     pub(super) edges: [[f32; 3]; 3],
-    /// 1 / depth as `c + a·x + b·y`: c, a, b.
+    /// c, a and b of 1 / depth as `c + a·x + b·y`.
     pub(super) inverse_depth: [f32; 3],
     /// First and last column.
     pub(super) columns: [usize; 2],
@@ -34,9 +33,9 @@ pub(super) struct Triangle {
     pub(super) item: u32,
 }
 
-/// What a triangle's pixels show besides its colour.
+/// A pattern that modifies a triangle's pixels.
 pub(super) trait Texture: Copy {
-    /// The packed pixels that are taken, at these columns of a row, for 1 / depth.
+    /// The packed pixels with the pattern applied, at these columns of a row, for 1 / depth.
     fn shown<L: Lanes>(
         self,
         l: L,
@@ -47,7 +46,7 @@ pub(super) trait Texture: Copy {
     ) -> L::Word;
 }
 
-/// Nothing besides.
+/// No pattern.
 impl Texture for () {
     #[inline(always)]
     fn shown<L: Lanes>(self, _: L, _: L::Mask, packed: L::Word, _: (usize, L::Float), _: L::Float) -> L::Word {
@@ -56,21 +55,21 @@ impl Texture for () {
 }
 
 impl Canvas {
-    /// Empties the canvas, at this size.
+    /// Clears the canvas and sets its size.
     pub(super) fn clear(&mut self, width: usize, height: usize, with_items: bool) {
         let stride = width.next_multiple_of(MOST_LANES);
         let pixels = stride * height;
         (self.width, self.height, self.stride) = (width, height, stride);
         self.inverse_depth.resize(pixels);
         self.inverse_depth.fill(0.0);
-        // What lies in these from before is never read: depth says where something was drawn.
+        // The old contents are never read: depth marks where something was drawn.
         self.pixels.resize(pixels);
         self.items.resize(if with_items { pixels } else { 0 });
     }
 
-    /// Draws a triangle where nothing nearer is.
+    /// Draws a triangle, with a depth test.
     ///
-    /// All numbers of a pixel depend on its place and the triangle's first row alone, whatever the number of lanes.
+    /// A pixel's values depend only on its position and on the triangle's first row, whatever the number of lanes.
     #[inline(always)]
     pub(super) fn fill<L: Lanes, const ITEMS: bool>(&mut self, lanes: L, triangle: &Triangle, texture: impl Texture) {
         let Triangle { columns, rows, .. } = *triangle;
@@ -125,15 +124,15 @@ impl Canvas {
     }
 }
 
-/// Rows from which on it is worth knowing which of them a triangle reaches in a few columns.
+/// Least height in rows for which finding the rows that a triangle reaches in a few columns is worthwhile.
 const TALL: usize = 12;
 
-/// Which rows a triangle reaches in some columns: never fewer than it does, however its edges are rounded.
+/// Computes the rows that a triangle reaches in some columns: never too few, despite rounding.
 struct Reach {
     edges: [[f32; 3]; 3],
-    /// 1 / what each edge gains from row to row.
+    /// 1 / the change of each edge function per row.
     per_row: [f32; 3],
-    /// How far each may be off through rounding.
+    /// Largest rounding error of each edge function.
     off: [f32; 3],
 }
 
@@ -165,14 +164,14 @@ impl Reach {
                 last = last.min(zero + 1.0);
             }
         }
-        // One row at least is gone through, which costs little.
+        // At least one row is visited, at little cost.
         let first = (first as usize).min(rows[1]);
         [first, (last.max(0.0) as usize).clamp(first, rows[1])]
     }
 }
 
-/// A buffer whose first number is at the start of a line of the processor's memory, so that whole vectors lie in one.
-/// The numbers of a clone begin there once it is resized.
+/// A buffer whose first element is aligned to a cache line, so that whole vectors lie within one. A clone is aligned once it is
+/// resized.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Aligned<T> {
     numbers: Vec<T>,
@@ -180,11 +179,11 @@ pub(super) struct Aligned<T> {
     length: usize,
 }
 
-/// Bytes of a line.
+/// Bytes of a cache line.
 const LINE: usize = 64;
 
 impl<T: Copy + Default> Aligned<T> {
-    /// Makes it so long. What is in it then is anything.
+    /// Sets the length. The contents are unspecified afterwards.
     fn resize(&mut self, length: usize) {
         let slack = LINE / size_of::<T>();
         self.numbers.resize(length + slack, T::default());
@@ -222,7 +221,7 @@ mod tests {
     use super::super::lanes::Portable;
     use super::*;
 
-    /// A triangle of these corners, each with its 1 / depth; clockwise on the screen, where rows go down.
+    /// A triangle of these corners, with 1 / depth of each; clockwise on the screen, where rows go down.
     fn triangle(corners: [[f32; 2]; 3], inverse: [f32; 3], size: [usize; 2]) -> Option<Triangle> {
         let edge = |k: usize| {
             let ([px, py], [qx, qy]) = (corners[(k + 1) % 3], corners[(k + 2) % 3]);
@@ -251,7 +250,7 @@ mod tests {
         })
     }
 
-    /// What a triangle leaves, place by place, as `fill` has it: every row gone through.
+    /// Reference result of `fill`, position by position, visiting every row.
     fn plainly(triangle: &Triangle, canvas: &Canvas) -> Vec<f32> {
         let mut depths = vec![0.0; canvas.stride * canvas.height];
         let first = triangle.rows[0] as f32;
@@ -274,7 +273,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn rows_that_are_left_out_hold_nothing_of_a_triangle(
+        fn skipped_rows_contain_no_pixel_of_the_triangle(
             corners in prop::array::uniform3(prop::array::uniform2(prop_oneof![-300.0..400.0_f32, -9.0..99.0_f32, Just(30.0)])),
             inverse in prop::array::uniform3(0.01..9.0_f32),
         ) {
@@ -287,7 +286,7 @@ mod tests {
                 let drawn: Vec<u32> = canvas.inverse_depth.iter().map(|depth| depth.to_bits()).collect();
                 let plain = plainly(&triangle, &canvas);
                 for (place, (drawn, plain)) in drawn.into_iter().zip(plain).enumerate() {
-                    // Beyond its last columns a triangle may fill up a vector, or not.
+                    // Beyond its last column, a triangle may or may not fill up the vector.
                     if (triangle.columns[0]..=triangle.columns[1]).contains(&(place % canvas.stride)) {
                         prop_assert_eq!(drawn, plain.to_bits(), "row {}, column {}", place / canvas.stride, place % canvas.stride);
                         prop_assert_eq!(canvas.items[place] == 3, plain > 0.0);

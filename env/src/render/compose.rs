@@ -1,5 +1,4 @@
-//! From packed pixels to images: what was drawn is laid over ground, sky and the arena's walls, and written out in each
-//! modality. What was drawn is in `canvas.rs`, what the rows behind it look like in `backdrop.rs`.
+//! Composes images from packed pixels: draws the canvas over ground, sky and the arena's walls, and writes each modality.
 
 use std::ops::Range;
 
@@ -12,53 +11,53 @@ use super::target::Target;
 use super::view::View;
 use crate::scene::{ARENA_WALLS, Scene};
 
-/// Bits of a label that hold the reward category; the rest hold the class.
+/// Bits of a label for the reward category; the rest hold the class.
 pub(super) const CATEGORY_BITS: u32 = 3;
 
-/// Ground further than this many squares from the origin shows none: their numbers would not fit.
+/// Ground farther than this many squares from the origin shows no squares: their indices would overflow.
 pub(super) const MOST_SQUARES: f32 = 8000.0;
 
-/// Added to the numbers of squares so that none is negative; a multiple of 16, so that their pattern stays.
+/// Added to indices of squares to make them positive; a multiple of 16, which preserves the pattern.
 pub(super) const SHIFT: f32 = 8192.0;
 
-/// The four walls around the camera, as far as the formulas need them. For each: 1 / distance of the wall along the
-/// view axis is `base + right · x + up · y` for a pixel x to the right and y up at 1 m.
+/// The four walls around the camera, as linear functions. For each, 1 / distance of the wall along the view axis is `base +
+/// right · x + up · y` for a pixel x to the right and y up at 1 m.
 pub(super) struct Walls {
     pub(super) base: [f32; 4],
     pub(super) right: [f32; 4],
     pub(super) up: [f32; 4],
     pub(super) pixels: [u32; 4],
-    /// Metres from the camera up to the walls' upper edge.
+    /// Height of the walls' upper edge above the camera, in metres.
     pub(super) above: f32,
 }
 
-/// One row's part of [`Walls`], and what stands behind them.
+/// One row's part of [`Walls`], and the row's background.
 struct Row {
     walls: [[f32; 2]; 4],
-    /// 1 / distance at which a wall's upper edge is seen in this row; walls that are further away are not seen.
+    /// 1 / distance at which a wall's upper edge is visible in this row; more distant walls are not visible.
     edge: f32,
     ground: f32,
     pixels: [u32; 4],
-    /// Squares along x and y: at the row's middle, and how they change to the right.
+    /// Squares along x and y: the position at the row's middle, and its change to the right.
     squares: [[f32; 2]; 2],
     has_squares: bool,
     has_walls: bool,
-    /// Depth of the ground, or of the sky.
+    /// Depth of the ground or the sky.
     metres: f32,
 }
 
 impl Walls {
-    /// The arena's walls as seen from inside; none if the camera is elsewhere: then they are drawn as panels.
+    /// The arena's walls seen from inside; `None` if the camera is elsewhere, where they are drawn as panels.
     pub(super) fn around(scene: &Scene, view: &View, shader: &Shader) -> Option<Self> {
         let [half_x, half_y] = scene.arena_size().map(|side| side / 2.0);
         let height = scene.walls.first()?.height;
         let [x, y, z] = view.position;
-        // A camera so near to a wall that the near plane cuts it would see through it.
+        // A camera so near to a wall that the near plane intersects it would see through it.
         let inside = half_x - x.abs() > 0.1 && half_y - y.abs() > 0.1 && z > 0.0 && z < height;
         if !inside {
             return None;
         }
-        // West, north, east, south: the order in which the scene puts them up.
+        // West, north, east, south: the scene's order.
         let inward = [[1.0, 0.0], [0.0, -1.0], [-1.0, 0.0], [0.0, 1.0]];
         let mut walls = Self {
             base: [0.0; 4],
@@ -80,32 +79,32 @@ impl Walls {
     }
 }
 
-/// One row's packed pixels and items, kept from picture to picture.
+/// One row's packed pixels and items, reused between images.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
     words: Vec<u32>,
     items: Vec<u32>,
-    /// The nearest of the arena's walls in each column: 1 / distance, and its packed pixel.
+    /// The nearest arena wall in each column: 1 / distance, and its packed pixel.
     walls: Vec<f32>,
     wall_pixels: Vec<u32>,
 }
 
-/// Everything that one picture is composed of.
+/// Everything that an image is composed of.
 pub(super) struct Composition<'a> {
     pub(super) canvas: &'a Canvas,
     pub(super) backdrop: &'a Backdrop,
     pub(super) walls: Option<Walls>,
     pub(super) view: View,
-    /// How far each column is from the picture's middle, to the right, at 1 m.
+    /// Offset of each column from the image's middle, to the right, at 1 m.
     pub(super) offsets: &'a [f32],
-    /// Distance at which half of what is seen is fog, in metres.
+    /// Distance in metres at which fog hides half of what is seen.
     pub(super) fog_distance: Option<f32>,
-    /// Class of each item; empty where the label holds it.
+    /// Class of each item; empty if labels contain it.
     pub(super) classes: &'a [u16],
 }
 
 impl Composition<'_> {
-    /// Writes all images that the target asks for.
+    /// Writes all images that the target requests.
     #[inline(always)]
     pub(super) fn write<L: Lanes, const ITEMS: bool>(&self, l: L, scratch: &mut Scratch, target: &mut Target<'_>) {
         let width = self.canvas.width;
@@ -123,14 +122,14 @@ impl Composition<'_> {
             let row = self.row(y);
             if row.has_walls && !walls_are_known {
                 self.measure_walls(l, &row, scratch);
-                // To a camera that looks straight ahead they are as far in each row.
+                // For a camera that looks straight ahead, walls have the same depth in each row.
                 walls_are_known = self.walls.as_ref().is_some_and(|walls| walls.up == [0.0; 4]);
             }
             let ground = l.splat(row.ground);
             let out = y * width;
             let mut x = 0;
             while x < width {
-                // The last vector of a row goes back over pixels that are done, where there are enough.
+                // The last vector of a row overlaps pixels that are already done, if the row is long enough.
                 let start = if x + L::N > width {
                     width.saturating_sub(L::N)
                 } else {
@@ -166,7 +165,7 @@ impl Composition<'_> {
                         l.store_rgb(word, &mut rgb[3 * (out + start)..]);
                     }
                     if let Some(depth) = &mut target.depth {
-                        // Dividing takes long: what all of a row shares is divided once.
+                        // Division is slow, so values shared by the whole row are divided once.
                         let metres = if covered == 0 && !row.has_walls {
                             l.splat(row.metres)
                         } else {
@@ -274,7 +273,7 @@ impl Composition<'_> {
         row
     }
 
-    /// Packed pixels of ground and sky, from a column on.
+    /// Packed pixels of ground and sky, starting at a column.
     #[inline(always)]
     fn ground<L: Lanes>(&self, l: L, row: &Row, start: usize) -> L::Word {
         let pixel = l.splat_word(row.pixels[0]);
@@ -289,7 +288,7 @@ impl Composition<'_> {
         l.select_words(l.has_bit(both, 3), dark, light)
     }
 
-    /// Notes which of the arena's walls is the nearest in each column of a row.
+    /// Finds the nearest arena wall in each column of a row.
     #[inline(always)]
     fn measure_walls<L: Lanes>(&self, l: L, row: &Row, scratch: &mut Scratch) {
         let Some(walls) = &self.walls else { return };
@@ -306,7 +305,7 @@ impl Composition<'_> {
         }
     }
 
-    /// Colours turned into the fog's with distance; the sky stays.
+    /// Blends colours into the fog with distance; the sky stays unchanged.
     #[inline(always)]
     fn in_fog<L: Lanes>(&self, l: L, word: L::Word, inverse: L::Float, distance: f32) -> L::Word {
         let one = l.splat(1.0);
@@ -335,21 +334,21 @@ fn along<L: Lanes>(l: L, [base, slope]: [f32; 2], offset: L::Float) -> L::Float 
     l.mul_add(l.splat(slope), offset, l.splat(base))
 }
 
-/// Numbers of the squares that a row's pixels show, along one axis.
+/// Indices of the squares in a row's pixels, along one axis.
 #[inline(always)]
 fn square<L: Lanes>(l: L, row: [f32; 2], offset: L::Float) -> L::Word {
     l.truncate(along(l, row, offset))
 }
 
-/// Metres for 1 / depth.
+/// Converts 1 / depth to metres.
 #[inline(always)]
 pub(super) fn metres<L: Lanes>(l: L, inverse: L::Float) -> L::Float {
-    // What divides by 0 is not taken.
+    // Lanes that divide by 0 are not selected.
     let near = l.above(inverse, l.splat(1.0 / FAR_DEPTH));
     l.select(near, l.div(l.splat(1.0), inverse), l.splat(FAR_DEPTH))
 }
 
-/// Colour and depth of a row that is shorter than a vector.
+/// Writes colour and depth of a row that is shorter than a vector.
 #[inline(never)]
 fn narrow<L: Lanes>(l: L, word: L::Word, inverse: L::Float, target: &mut Target<'_>, row: Range<usize>) {
     let count = row.len();

@@ -1,9 +1,7 @@
-//! From packed pixels to images in the natural style: what was drawn gets its texels and is laid over ground, sky or ceiling.
-//! What was drawn is in `canvas.rs`, by `natural.rs`; what lies behind it in `rows.rs`; how texels of walls and objects are
-//! found in `patch.rs`. The plain style is in `compose.rs`.
+//! Composes images in the natural style: adds texels to the canvas and draws it over ground, sky or ceiling.
 //!
-//! A picture is gone through by columns as wide as a vector, each from top to bottom: there sky, wall and ground follow each
-//! other, and what a column shows of a wall changes in one coordinate alone.
+//! An image is processed in columns as wide as a vector, each from top to bottom: sky, wall and ground follow each other there,
+//! and a column's view of a wall changes in only one coordinate.
 
 use std::ops::Range;
 
@@ -18,13 +16,13 @@ use super::surfaces::NEUTRAL;
 use super::target::Target;
 use super::view::View;
 
-/// The share of detail of which nothing is left out.
+/// The share of detail at which all of it is shown.
 const FULL_SHARE: u32 = 255;
 
-/// Metres to what meets the ground in columns where nothing does.
+/// Distance in metres of the foot in columns without one.
 const NOWHERE: f32 = 1e9;
 
-/// Everything that one picture is composed of.
+/// Everything that an image is composed of.
 pub(super) struct Composition<'a> {
     pub(super) canvas: &'a Canvas,
     pub(super) natural: &'a Natural,
@@ -33,50 +31,51 @@ pub(super) struct Composition<'a> {
     pub(super) fog: Option<f32>,
     /// Colour of the fog away from the sun and towards it.
     pub(super) fog_words: [u32; 2],
-    /// What shadow leaves of the ground's light.
+    /// Factor on the ground's light in shadow.
     pub(super) shade: u32,
-    /// Whether items are classes; else these are the classes of items.
+    /// Whether the canvas stores items' classes; otherwise `classes` holds the items' classes.
     pub(super) keeps_classes: bool,
-    /// Whether classes stand in labels.
+    /// Whether labels contain classes.
     pub(super) labels_classes: bool,
     pub(super) classes: &'a [u16],
-    /// Whether walls go up to the ceiling, if there is one.
+    /// Whether walls reach the ceiling, if there is one.
     pub(super) ceiling_meets_walls: bool,
 }
 
-/// A vector's columns, from top to bottom.
+/// State of one vector's columns, from top to bottom.
 struct Columns<'a, L: Lanes> {
-    /// Texels of the last rows that showed ground, clouds or ceiling, and which those were.
+    /// Texels of the last rows that showed ground, clouds or ceiling, and the rows' pair.
     shared: L::Word,
     pair: u32,
     offset: L::Float,
-    /// The same for each two and each four columns: that of their middle.
+    /// Offset of the middle of each two and each four columns.
     offset_of_two: L::Float,
     offset_of_four: L::Float,
-    /// How many of its columns may be looked up at once.
+    /// Most of its columns that may be looked up together.
     most_alike: u32,
     glow: L::Word,
-    /// What covers walls, if columns show it all the way down.
+    /// The covering of walls, if columns show it from top to bottom.
     wall: Option<&'a Patch>,
     run: Run<L>,
-    /// Metres to the last thing that met the ground, and whether it may still darken it.
+    /// Distance in metres of the last object that met the ground, and whether it may still darken the ground.
     foot: L::Float,
     is_near_foot: bool,
-    /// Metres to walls that go up to the ceiling: they are as far there as at the height of the eye.
+    /// Distance in metres of walls that reach the ceiling: the same there as at eye height.
     lintel: L::Float,
-    /// How far rows go down to ground, or up to a ceiling, before walls that go on meet it; metres to the nearest of them.
+    /// Steepest slopes of rows that show ground or ceiling before they come near a continuing wall; distance in metres of the
+    /// nearest wall.
     quiet: [f32; 2],
     nearest: f32,
 }
 
-/// What lies behind a vector: its pixels, and the texels in them.
+/// Background of a vector: its pixels, with their texels.
 #[derive(Clone, Copy)]
 struct Behind<W> {
     word: W,
     texel: W,
 }
 
-/// What a vector shows.
+/// Visible surfaces of a vector.
 #[derive(Clone, Copy)]
 struct Seen<L: Lanes> {
     word: L::Word,
@@ -84,18 +83,18 @@ struct Seen<L: Lanes> {
     inverse: L::Float,
     metres: L::Float,
     in_front: L::Mask,
-    /// Whether something that stands there may meet the ground or the ceiling.
+    /// Whether a standing object there may meet the ground or the ceiling.
     may_meet: bool,
 }
 
 impl Composition<'_> {
-    /// Writes all images that the target asks for.
+    /// Writes all images that the target requests.
     #[inline(always)]
     pub(super) fn write<L: Lanes, const ITEMS: bool>(&self, l: L, target: &mut Target<'_>) {
         let width = self.canvas.width;
         let mut first = 0;
         while first < width {
-            // The last columns are a vector, too, where there are enough: some are gone through again.
+            // The last columns are a whole vector, too, if the image is wide enough: some are processed twice.
             let start = first.min(width.saturating_sub(L::N));
             self.write_columns::<L, ITEMS>(l, start, target);
             first = start + L::N;
@@ -209,7 +208,7 @@ impl Composition<'_> {
             nearest: f32::INFINITY,
         };
         if columns.wall.is_some() {
-            // Where walls are higher than the eye, all are seen in the row at its height.
+            // If walls are higher than the eye, all are visible in the row at eye height.
             let pixel = self.canvas.height / 2 * self.canvas.stride + start;
             let drawn = l.load(&self.canvas.inverse_depth[pixel..]);
             let pixels = l.load_words(&self.canvas.pixels[pixel..]);
@@ -241,7 +240,7 @@ impl Composition<'_> {
         columns
     }
 
-    /// How far the middle of each so many columns is to the right at 1 m.
+    /// Offset at 1 m to the right of the middle of each `count` columns.
     #[inline(always)]
     fn shared_offset<L: Lanes>(&self, l: L, start: usize, count: f32) -> L::Float {
         let column = l.add(l.count_up(), l.splat(start as f32));
@@ -300,7 +299,7 @@ impl Composition<'_> {
         seen
     }
 
-    /// What a vector shows of which more is covered than walls that go on.
+    /// The visible surfaces of a vector that shows more than continuing walls.
     #[inline(always)]
     fn seen_of_many<L: Lanes>(
         &self,
@@ -353,7 +352,7 @@ impl Composition<'_> {
         }
     }
 
-    /// Darker where walls and things meet the ground or the ceiling, on both sides of where they meet.
+    /// Darkens both sides of the lines where walls and objects meet the ground or the ceiling.
     #[inline(always)]
     fn in_contact<L: Lanes>(&self, l: L, columns: &mut Columns<'_, L>, row: &Row, seen: &Seen<L>) -> L::Word {
         let is_ceiling = row.shows == Shows::Ceiling;
@@ -368,7 +367,7 @@ impl Composition<'_> {
         let [most, reach] = CONTACT;
         let (zero, one) = (l.splat(0.0), l.splat(1.0));
         let [below, nearer] = row.plane;
-        // Of what stands: how far it is from the plane. Of the plane: how far before what stands there.
+        // For standing surfaces, the distance from the plane; for the plane, the distance in front of the standing surface.
         let standing = l.has_any(seen.word, NO_MAP | WALLS << MATERIAL_SHIFT);
         let away = l.sub(l.splat(below), l.mul(seen.metres, l.splat(nearer)));
         let away = l.select(standing, away, l.sub(foot, l.splat(row.metres)));
@@ -384,7 +383,7 @@ impl Composition<'_> {
             return seen.word;
         }
         if !is_ceiling {
-            // Only the last pixels of a wall are its foot: seen from above, its edges lean over ground that it does not meet.
+            // Only the lowest pixels of a wall are its foot: seen from above, its edges overlap ground that it does not touch.
             let is_map = l.equal(l.and(seen.word, l.splat_word(NO_MAP)), l.splat_word(0));
             let is_above = l.above(l.mul(away, seen.inverse), l.splat(row.foot));
             let met = l.select(l.both(is_map, is_above), foot, seen.metres);
@@ -432,7 +431,7 @@ impl Composition<'_> {
         }
     }
 
-    /// Colours turned into the fog's with distance; the sky stays.
+    /// Blends colours into the fog with distance; the sky stays unchanged.
     #[inline(always)]
     fn in_fog<L: Lanes>(&self, l: L, word: L::Word, inverse: L::Float, distance: f32, glow: L::Word) -> L::Word {
         let (zero, one) = (l.splat(0.0), l.splat(1.0));
@@ -446,7 +445,7 @@ impl Composition<'_> {
     }
 }
 
-/// Finds a row's texels, if the row above it does not share them.
+/// Looks up a row's texels, unless the row above shares them.
 #[inline(always)]
 fn share<L: Lanes>(l: L, row: &Row, texels: &[u32], columns: &mut Columns<'_, L>) {
     if columns.pair != row.pair {
@@ -454,7 +453,7 @@ fn share<L: Lanes>(l: L, row: &Row, texels: &[u32], columns: &mut Columns<'_, L>
     }
 }
 
-/// A row's texels, of a tile that is so many times as fine.
+/// Looks up a row's texels in a tile that is `finer` times as fine.
 #[inline(always)]
 fn found<L: Lanes>(l: L, row: &Row, texels: &[u32], columns: &Columns<'_, L>, finer: f32) -> L::Word {
     let (offset, alike) = match row.alike {

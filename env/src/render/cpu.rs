@@ -1,5 +1,4 @@
-//! The renderer that needs nothing but a processor: chooses the instruction set, and draws what is in sight, near to
-//! far. Triangles are drawn in `raster.rs`, images made in `compose.rs`.
+//! [`CpuRenderer`]: chooses the instruction set, and draws everything visible from near to far.
 
 use super::backdrop::Backdrop;
 use super::canvas::Canvas;
@@ -21,10 +20,9 @@ use crate::assets::Paint;
 use crate::camera::Camera;
 use crate::scene::{Item, PanelGroup, Scene};
 
-/// Draws scenes on the processor. Keeps its buffers from picture to picture, and allocates nothing once they are large
-/// enough.
+/// Renders scenes on the CPU. Reuses its buffers, and allocates nothing once they are large enough.
 ///
-/// The same scene and camera give the same pixels on every machine, whichever instruction set is used.
+/// The same scene and camera give the same pixels on every machine, whatever the instruction set.
 #[derive(Clone, Debug, Default)]
 pub struct CpuRenderer {
     set: Set,
@@ -35,13 +33,13 @@ pub struct CpuRenderer {
     pub(super) offsets: Vec<f32>,
     pub(super) classes: Vec<u16>,
     pub(super) scratch: Scratch,
-    /// Colours of all points, where there are several in a pixel.
+    /// Colours of all samples, if there are several per pixel.
     points: Vec<u8>,
     hand: Hand,
     pub(super) hidden: Hidden,
 }
 
-/// An instruction set that this processor has.
+/// An instruction set of this CPU.
 #[derive(Clone, Copy, Debug, strum::IntoStaticStr)]
 #[strum(serialize_all = "lowercase")]
 enum Set {
@@ -53,14 +51,14 @@ enum Set {
 }
 
 impl CpuRenderer {
-    /// A renderer with the widest instructions that this processor has.
+    /// A renderer with the widest instructions of this CPU.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// One renderer for each set of instructions that this processor has, with the set's name; the widest last.
+    /// One renderer for each instruction set of this CPU, with the set's name; the widest last.
     ///
-    /// They draw the same pixels: this is for tests and measurements.
+    /// All render the same pixels; for tests and measurements.
     pub fn each_instruction_set() -> Vec<(&'static str, Self)> {
         Set::all()
             .into_iter()
@@ -71,7 +69,7 @@ impl CpuRenderer {
             .collect()
     }
 
-    /// A renderer that draws what walls hide, too, or does not: the pictures are the same.
+    /// A renderer with or without culling of everything behind walls: the images are the same.
     #[cfg(test)]
     pub(super) fn that_hides(mut self, hides: bool) -> Self {
         self.hidden.is_off = !hides;
@@ -83,14 +81,14 @@ impl CpuRenderer {
         self.set.into()
     }
 
-    /// Draws all images of a frame.
+    /// Renders all images of a frame.
     pub fn render(&mut self, scene: &Scene, camera: &Camera, frame: &mut Frame) {
         if frame.width > 0 && frame.height > 0 {
             self.run(scene, camera, &mut frame.target());
         }
     }
 
-    /// Draws the images that the target asks for.
+    /// Renders the images that the target requests.
     ///
     /// # Errors
     /// [`EnvError::PictureSize`] unless both sides are 1 to 4096 pixels, there are at most 2²⁶ points of supersampling,
@@ -104,12 +102,12 @@ impl CpuRenderer {
         Ok(())
     }
 
-    /// Draws the scene's items of these numbers, things that are carried, at the lower edge of the target's colours.
+    /// Draws these items of the scene, which are carried, at the lower edge of the target's colours.
     pub(crate) fn draw_carried(&mut self, scene: &Scene, carried: &[u32], target: &mut Target<'_>) {
         self.hand.draw(scene, carried, target);
     }
 
-    /// Draws all but colours as they are, and colours as the mean of many points.
+    /// Renders colours as the mean of several samples, and everything else with one.
     fn run_sampled(&mut self, scene: &Scene, camera: &Camera, target: &mut Target<'_>, samples: u32) {
         if let Some(rgb) = target.rgb.take() {
             let mut points = std::mem::take(&mut self.points);
@@ -146,14 +144,14 @@ impl CpuRenderer {
                 unsafe_code,
                 reason = "the value in the set proves that the processor has the instructions"
             )]
-            // SAFETY: an `Avx2` exists only where `avx2` was detected.
+            // SAFETY: an `Avx2` exists only if `avx2` was detected.
             Set::Avx2(lanes) => unsafe { self.draw_avx2(lanes, scene, camera, target) },
             #[cfg(target_arch = "x86_64")]
             #[expect(
                 unsafe_code,
                 reason = "the value in the set proves that the processor has the instructions"
             )]
-            // SAFETY: an `Avx512` exists only where `avx512f` and `avx512bw` were detected; both have AVX2 in them.
+            // SAFETY: an `Avx512` exists only if `avx512f` and `avx512bw` were detected; both include AVX2.
             Set::Avx512(lanes) => unsafe { self.draw_avx512(lanes, scene, camera, target) },
         }
     }
@@ -180,7 +178,7 @@ impl CpuRenderer {
             }
             return;
         }
-        // Where class and category do not fit into a label together, pixels remember their item.
+        // If labels have no room for class and category together, pixels store their item.
         let fits = scene.highest_class < 1 << (8 - CATEGORY_BITS);
         if target.instance.is_some() || (target.class.is_some() && !fits) {
             self.draw_with::<L, true>(lanes, scene, camera, target);
@@ -244,7 +242,7 @@ impl CpuRenderer {
         composition.write::<L, ITEMS>(lanes, &mut self.scratch, target);
     }
 
-    /// How far columns are from the picture's middle, padded to whole vectors.
+    /// Computes the columns' offsets from the image's middle, padded to whole vectors.
     pub(super) fn measure_columns(&mut self, view: &View, width: usize) {
         self.offsets.clear();
         let padded = width.next_multiple_of(MOST_LANES);
@@ -321,7 +319,7 @@ impl Default for Set {
 }
 
 impl Set {
-    /// What this processor has, the widest last.
+    /// The instruction sets of this CPU, the widest last.
     fn all() -> Vec<Self> {
         let portable = Self::Portable(Portable);
         #[cfg(target_arch = "x86_64")]
@@ -336,7 +334,7 @@ impl Set {
     }
 }
 
-/// Each pixel as the mean, rounded, of its `samples` × `samples` points.
+/// Averages `samples` × `samples` samples per pixel, rounded.
 pub(super) fn average(points: &[u8], rgb: &mut [u8], width: usize, samples: usize) {
     let row_length = 3 * width * samples;
     let count = (samples * samples) as u32;

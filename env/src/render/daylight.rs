@@ -1,23 +1,22 @@
-//! Light of the natural style: sun and sky by the height of the sun, or the even light under a ceiling. What it falls on is
-//! in `natural.rs`; the light of the plain style in `shade.rs`.
+//! Light of the natural style: sun and sky by the sun's elevation, or even light under a ceiling.
 //!
-//! A face gets the sun by its angle, and light from above and below by how far it looks up. Together they come to about 1 at
-//! full daylight: saturated colours keep their shading. As in the plain style all of it is in gamma space.
+//! Each face gets sunlight by its angle, and ambient light by how much it faces up. The sum is about 1 in full daylight, so
+//! that saturated colours keep their shading. As in the plain style, everything is in gamma space.
 
 use super::shade::FULL_LEVEL;
 use crate::scene::Light;
 
-/// What light does to colours.
+/// Light in one scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Daylight {
     /// Towards the sun, length 1.
     pub(super) direction: [f32; 3],
-    /// For each channel: the share of a colour that the sun gives a face that looks at it, and the shares from all around for a
-    /// face that stands upright, and what a face gets more that looks up.
+    /// Per channel: the factor for a face that points at the sun, the ambient factor of an upright face, and what is added for
+    /// a face that points up.
     pub(super) sun: [f32; 3],
     pub(super) around: [f32; 3],
     pub(super) above: [f32; 3],
-    /// Levels 0 to 255 of the sky: at the zenith, at the horizon away from the sun, and towards it.
+    /// Levels 0 to 255 of the sky: at the zenith, at the horizon away from the sun, and at the horizon towards it.
     pub(super) zenith: [f32; 3],
     pub(super) horizon: [f32; 3],
     pub(super) sunward: [f32; 3],
@@ -27,7 +26,7 @@ pub(super) struct Daylight {
     pub(super) glow: f32,
 }
 
-/// From 0 at `from` to 1 at `to`, smoothly.
+/// Smooth step from 0 at `from` to 1 at `to`.
 pub(super) fn rise(value: f32, from: f32, to: f32) -> f32 {
     let share = ((value - from) / (to - from)).clamp(0.0, 1.0);
     share * share * (3.0 - 2.0 * share)
@@ -39,9 +38,9 @@ pub(super) fn between(a: [f32; 3], b: [f32; 3], share: f32) -> [f32; 3] {
 
 impl Daylight {
     pub(super) fn new(light: &Light, is_inside: bool) -> Self {
-        // Under a ceiling nothing depends on the sun, fog neither.
+        // Under a ceiling nothing depends on the sun, not even fog.
         let height = if is_inside { 1.0 } else { light.direction[2] };
-        // Dim light reads as a low sun, too.
+        // Dim light looks like a low sun, too.
         let low = (1.0 - rise(height, 0.04, 0.5)).max(0.9 * (1.0 - rise(light.exposure, 0.1, 0.8)));
         let exposure = if light.exposure < 1.0 {
             light.exposure.sqrt()
@@ -68,7 +67,7 @@ impl Daylight {
         }
     }
 
-    /// Lamps everywhere under the ceiling: a little more from one side, so that corners are seen.
+    /// Lamps everywhere under the ceiling, slightly brighter from one side, so that corners are visible.
     fn inside(color: [f32; 3], sky: Self) -> Self {
         const LAMPS: [f32; 3] = [0.48, -0.36, 0.8];
         Self {
@@ -80,7 +79,7 @@ impl Daylight {
         }
     }
 
-    /// Levels 0 to 255 and above of a colour on a face by its normal of length 1.
+    /// Levels of a colour on a face with this unit normal: 0 to 255, or above.
     pub(super) fn levels(&self, color: [f32; 3], normal: [f32; 3]) -> [f32; 3] {
         let sun = crate::vector::dot(normal, self.direction).max(0.0);
         std::array::from_fn(|k| {
@@ -88,7 +87,7 @@ impl Daylight {
         })
     }
 
-    /// What is left of the ground's light in shadow, as a texel: 128 for all of it.
+    /// Factor on the ground's light in shadow, as a texel: 128 is full light.
     pub(super) fn shade(&self) -> u32 {
         let sun = self.direction[2].max(0.0);
         let left = [0, 1, 2].map(|k| {
@@ -117,7 +116,7 @@ mod tests {
         }
     }
 
-    /// A low sun is warm, and so is the sky towards it; a high one is white.
+    /// A low sun is warm, and so is the sky towards it; a high sun is white.
     #[test]
     fn a_low_sun_warms_light_and_sky() {
         let warmth = |levels: [f32; 3]| levels[0] / levels[2];
@@ -135,9 +134,9 @@ mod tests {
         assert!(warmth(Daylight::new(&light(0.08, 1.0), false).sun) > 1.7);
     }
 
-    /// Under a ceiling nothing depends on where the sun is, what fog looks like neither.
+    /// Under a ceiling nothing depends on the sun's position, not even the look of fog.
     #[test]
-    fn under_a_ceiling_the_sun_does_nothing() {
+    fn sun_has_no_effect_under_a_ceiling() {
         let noon = Daylight::new(&light(1.0, 0.7), true);
         for height in [-0.5, 0.04, 0.3, 0.9] {
             let inside = Daylight::new(&light(height, 0.7), true);
@@ -145,7 +144,7 @@ mod tests {
         }
     }
 
-    /// A saturated colour in full daylight is not cut off: faces that look elsewhere have other levels.
+    /// In full daylight a saturated colour is not clipped: faces in other directions have other levels.
     #[test]
     fn saturated_colours_keep_their_shading() {
         let day = Daylight::new(&light(0.6, 1.0), false);

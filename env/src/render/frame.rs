@@ -1,22 +1,22 @@
-//! What a render fills: one buffer per modality. The numbers' meaning is here; how they come about, in `cpu.rs`.
+//! [`Frame`]: the output of a render, with one buffer per modality, and the meaning of its values.
 
-/// Depth of the sky, and the greatest depth there is, in metres.
+/// Depth of the sky, and the largest depth, in metres.
 pub const FAR_DEPTH: f32 = 1000.0;
 
 /// Reward category: sky.
 pub const CATEGORY_SKY: u8 = 0;
-/// Reward category: ground, walls, regions: what was not spawned.
+/// Reward category: ground, walls and regions.
 pub const CATEGORY_MAP: u8 = 1;
 /// Reward category: objects of class `building`.
 pub const CATEGORY_BUILDING: u8 = 2;
-/// Reward category: objects that pay.
+/// Reward category: objects with a positive reward.
 pub const CATEGORY_POSITIVE: u8 = 3;
-/// Reward category: objects that are worth nothing.
+/// Reward category: objects without reward.
 pub const CATEGORY_NEUTRAL: u8 = 4;
-/// Reward category: objects that cost.
+/// Reward category: objects with a negative reward.
 pub const CATEGORY_NEGATIVE: u8 = 5;
 
-/// One picture in all modalities; row 0 on top. Buffers are reused from render to render.
+/// An image in all modalities; row 0 on top. Buffers are reused.
 #[derive(Clone, Debug)]
 pub struct Frame {
     /// Width in pixels.
@@ -29,9 +29,9 @@ pub struct Frame {
     pub depth: Vec<f32>,
     /// Reward category, `(height, width)`.
     pub category: Vec<u8>,
-    /// Object class, `(height, width)`: the scene's class number, 0 where there is no object.
+    /// Object class, `(height, width)`: the scene's class number, or 0 for none.
     pub class: Vec<u16>,
-    /// Object, `(height, width)`: the item's index plus 1, 0 where there is no object.
+    /// Object, `(height, width)`: the item's index plus 1, or 0 for none.
     pub instance: Vec<u32>,
 }
 
@@ -51,7 +51,7 @@ impl Frame {
     }
 }
 
-/// The colour by which L2Explorer shows a reward category.
+/// The colour of a reward category in L2Explorer.
 pub fn category_color(category: u8) -> [u8; 3] {
     match category {
         CATEGORY_MAP => [255, 255, 255],
@@ -69,18 +69,18 @@ pub fn depth_to_gray(depth: &[f32]) -> Vec<u8> {
     depth.iter().map(gray).collect()
 }
 
-/// Steps of grey per metre: 255 at 100 m.
+/// Grey levels per metre: 255 at 100 m.
 pub(crate) const GRAY_PER_METRE: f32 = 2.55;
 
-/// The whole number nearest to `number`, halves upwards, within 0..=`most`, which is below 2²³.
+/// The nearest integer, halves rounded up, within 0..=`most`, which must be below 2²³.
 ///
-/// A sum with 2²³ has no room for a fraction: its last bits are the whole number. Compilers make vectors of that, but
-/// not of a cast that watches for what does not fit: a third of the time with SSE2.
+/// A sum with 2²³ has no bits for a fraction: its last bits are the integer. Compilers vectorise this, but not a saturating
+/// cast: it takes a third of the time with SSE2.
 #[inline]
 pub(crate) fn rounded(number: f32, most: f32) -> u32 {
     const SHIFT: f32 = 8_388_608.0;
     let raised = number + 0.5;
-    // Comparisons instead of `clamp`, which would let NaN through.
+    // Comparisons instead of `clamp`, which would pass NaN through.
     let below = if raised < most { raised } else { most };
     let within = if below > 0.0 { below } else { 0.0 };
     let whole = within + SHIFT;

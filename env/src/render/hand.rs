@@ -1,5 +1,5 @@
-//! What the agent carries, as small pictures at the lower edge of what it sees: colours alone, drawn by the processor
-//! whatever draws the rest, so that the pixels are the same.
+//! Draws the things that the agent carries as small pictures at the lower edge of its view: only into colours, and always on
+//! the CPU, so that the pixels do not depend on the renderer.
 
 use driftworld_spec::World;
 
@@ -8,17 +8,17 @@ use super::target::Target;
 use crate::camera::Camera;
 use crate::scene::{Item, Light, Scene};
 
-/// Height of a thing's picture as a share of the whole picture's height.
+/// The image's height divided by this is the height of a thing's picture.
 const SHARE: u32 = 5;
 
-/// The least height of a thing's picture in pixels, as far as there are so many.
+/// Least height of a thing's picture in pixels, if the image is that large.
 const LEAST: u32 = 8;
 
-/// Draws things that are carried. Takes memory when the first is drawn, and then only for larger pictures.
+/// Draws carried things. Allocates when the first is drawn, and afterwards only for larger pictures.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Hand(Option<Box<Studio>>);
 
-/// A place without anything but the thing that is drawn.
+/// An empty scene for the thing that is drawn.
 #[derive(Clone, Debug)]
 struct Studio {
     renderer: CpuRenderer,
@@ -28,8 +28,8 @@ struct Studio {
 }
 
 impl Hand {
-    /// Draws the items of these numbers side by side at the lower edge of the colours, in this order, the last ones if
-    /// there is no room for all.
+    /// Draws these items side by side at the lower edge of the colours, in this order; the last ones if there is no room for
+    /// all.
     pub(super) fn draw(&mut self, scene: &Scene, carried: &[u32], target: &mut Target<'_>) {
         let (width, height) = (target.width, target.height);
         let side = (height / SHARE).max(LEAST).min(width).min(height);
@@ -62,21 +62,21 @@ impl Default for Studio {
 }
 
 impl Studio {
-    /// Draws one thing so large that it fills a square, as bright as the world without its fog.
+    /// Draws one thing so that it fills a square, in the world's light but without fog.
     fn draw(&mut self, item: &Item, light: Light, side: u32) {
-        /// Behind the eyes, to the left and above: all sides that are seen are lit.
+        /// From behind the camera, to its left and above: every visible side is lit.
         const SUN: [f32; 3] = [-0.36, -0.8, 0.48];
-        /// From so far, in lengths of the thing.
+        /// Distance of the camera, in lengths of the thing.
         const DISTANCE: f32 = 3.0;
-        /// From so high above the thing's middle.
+        /// Height of the camera above the thing's centre.
         const ABOVE: f32 = 0.6;
         let length = item.asset.height.max(2.0 * item.asset.radius).max(1e-3);
         let item = Item {
             position: [0.0; 2],
-            // Its face, a little from the side.
+            // Its face, slightly from the side.
             heading_deg: 200.0,
             scale: 1.0 / length,
-            // The number may be higher than those that this scene knows.
+            // Its number may be unknown in this scene.
             class_id: 0,
             visible: true,
             ..item.clone()
@@ -110,7 +110,7 @@ impl Studio {
             .expect("a side is 1 to 4096, and the buffers fit it");
     }
 
-    /// Puts the thing's pixels, and nothing around it, into a picture.
+    /// Copies the thing's pixels, without their background, into an image.
     fn paste(&self, rgb: &mut [u8], width: u32, [left, top]: [u32; 2], side: u32) {
         for (pixel, _) in self.instance.iter().enumerate().filter(|(_, item)| **item > 0) {
             let [x, y] = [pixel as u32 % side, pixel as u32 / side];

@@ -1,28 +1,28 @@
-//! What walls hide: how near a wall stands in each column of a picture. What is behind it and no higher is not drawn. Where
-//! things are is in `visibility.rs`.
+//! Culls what walls hide: records the nearest wall in each column of an image. Lower or equally high things behind it are not
+//! drawn.
 
 use super::view::{NEAR, View};
 use crate::scene::{Item, PanelGroup};
 
-/// Room for how positions round: in columns, and as a share of a depth.
+/// Tolerances for rounding: in columns, and as a fraction of a depth.
 const COLUMN: f32 = 0.01;
 const SHARE: f32 = 1e-3;
 
-/// Walls that were drawn, as columns see them. Only for cameras that look straight ahead, over the ground and below the
-/// tops of walls: there a wall fills its columns from the ground to above the horizon.
+/// The drawn walls by column. Used only for cameras that look straight ahead, between the ground and the tops of walls: there a
+/// wall fills its columns from the ground to above the horizon.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Hidden {
     /// 1 / depth of the nearest wall of each column; 0 without one.
     inverse: Vec<f32>,
-    /// All walls that are noted are at least so high, in metres.
+    /// Least height of all recorded walls, in metres.
     height: Option<f32>,
     is_usable: bool,
-    /// Whether nothing is noted, so that all is drawn.
+    /// Disables culling, so that everything is drawn.
     pub(super) is_off: bool,
 }
 
 impl Hidden {
-    /// Forgets what was noted.
+    /// Clears the recorded walls.
     pub(super) fn clear(&mut self, view: &View) {
         self.inverse.clear();
         self.inverse.resize(view.size[0] as usize, 0.0);
@@ -31,7 +31,7 @@ impl Hidden {
             !self.is_off && view.axes.forward[2] == 0.0 && view.axes.right[2] == 0.0 && view.position[2] > 0.0;
     }
 
-    /// Notes walls that were drawn.
+    /// Records walls that were drawn.
     pub(super) fn note(&mut self, group: &PanelGroup, view: &View) {
         let is_high_enough = match self.height {
             Some(height) => group.height >= height,
@@ -49,7 +49,7 @@ impl Hidden {
     }
 
     fn note_edge(&mut self, mut from: [f32; 2], mut to: [f32; 2], view: &View) {
-        // Walls are seen from their right-hand side.
+        // Walls are visible only from their right-hand side.
         if from[0] * to[1] - from[1] * to[0] >= 0.0 {
             return;
         }
@@ -87,7 +87,7 @@ impl Hidden {
             return false;
         }
         let (mut columns, mut nearest) = ([f32::INFINITY, f32::NEG_INFINITY], f32::INFINITY);
-        // Around a region each edge begins where another ends; a wall of the arena is one edge with two ends.
+        // Around a region, each edge begins where another ends; a wall of the arena is a single edge with two ends.
         let last = group.edges.last().map(|[_, to]| to);
         for corner in group.edges.iter().map(|[from, _]| from).chain(last) {
             let [right, ahead] = place(view, *corner);
@@ -101,7 +101,7 @@ impl Hidden {
         self.hides(columns, nearest)
     }
 
-    /// Whether an item lies behind what was noted.
+    /// Whether an item is behind the recorded walls.
     pub(super) fn hides_item(&self, item: &Item, view: &View) -> bool {
         let [x, y] = item.position;
         let top = item.asset.height * item.scale;
@@ -109,7 +109,7 @@ impl Hidden {
         self.hides_ball([x, y, top / 2.0], radius, top, view)
     }
 
-    /// Whether walls hide a ball, of which nothing is higher than `top`, in metres.
+    /// Whether walls hide a ball whose contents are no higher than `top`, in metres.
     pub(super) fn hides_ball(&self, middle: [f32; 3], radius: f32, top: f32, view: &View) -> bool {
         if !self.may_hide(top) {
             return false;
@@ -142,7 +142,7 @@ impl Hidden {
     }
 }
 
-/// A place on the ground as the camera sees it: to the right and ahead, in metres.
+/// Position of a place on the ground relative to the camera: metres to the right and ahead.
 fn place(view: &View, [x, y]: [f32; 2]) -> [f32; 2] {
     let [right, _, ahead] = view.view_from_world([x, y, 0.0]);
     [right, ahead]
@@ -164,9 +164,9 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 64)))]
 
-        /// To the bit, but for a pixel on a seam of what is in front.
+        /// To the bit, except for a pixel on a seam of what is in front.
         #[test]
-        fn what_is_hidden_is_not_seen(
+        fn culling_hidden_objects_does_not_change_images(
             (seed, standing, wall) in (0_u64..999, 0.3..=1.0, 0.05..1.5_f64),
             at in prop::array::uniform2(-11.5_f32..11.5),
             (heading, eye, low) in (0.0_f32..360.0, 0.1_f32..2.0, 1.0..3.0_f64),

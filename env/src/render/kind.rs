@@ -1,19 +1,18 @@
-//! [`RendererKind`]: the choice between renderers, and its names. The renderers themselves are made in `renderer.rs`.
+//! [`RendererKind`]: the choice between renderers, by name.
 
 use crate::EnvError;
 
-/// What draws pictures.
+/// A choice of renderer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, strum::Display, strum::EnumString, strum::IntoStaticStr)]
 #[cfg_attr(test, derive(strum::EnumIter))]
 #[strum(serialize_all = "lowercase", parse_err_ty = EnvError, parse_err_fn = unknown)]
 pub enum RendererKind {
-    /// The processor: everywhere, and the same pixels on every machine.
+    /// The CPU: works everywhere, with the same pixels on every machine.
     #[default]
     Cpu,
-    /// A graphics card, or software that stands in for one; an error if there is none. Natural looks render on the processor.
+    /// A GPU, or software emulation of one; an error if there is none. The natural style is rendered on the CPU.
     Gpu,
-    /// A graphics card if there is one that works; else the processor. Never software that stands in for a graphics
-    /// card: the processor's own renderer is faster.
+    /// A GPU if one works, otherwise the CPU. Never software emulation of a GPU: the CPU renderer is faster.
     Auto,
 }
 
@@ -35,7 +34,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_lead_back_to_their_kind() {
+    fn names_parse_back_to_their_kind() {
         for kind in RendererKind::iter() {
             assert_eq!(kind.to_string().parse(), Ok(kind));
         }

@@ -1,5 +1,4 @@
-//! Pictures of scenes. The CPU renderer is the default and needs no driver; that for graphics cards is behind the
-//! feature `gpu`.
+//! Renders scenes. The CPU renderer is the default and needs no driver; the GPU renderer requires the feature `gpu`.
 #![expect(
     clippy::inline_always,
     reason = "what works on vectors must end up inside a function that has their instruction set"

@@ -1,7 +1,5 @@
-//! The natural style on the processor: objects are drawn with their texels; walls and zones get the number of what covers them,
-//! and texels are laid over them when the picture is composed, in `compose_natural.rs`. What lies behind everything is in
-//! `rows.rs`, patterns in `surfaces.rs`, light in `daylight.rs`, shadows in `shadows.rs`. The plain style is in `cpu.rs` and
-//! `compose.rs`.
+//! The natural style on the CPU: draws objects with their texels, and marks walls and zones with the number of their covering,
+//! so that `compose_natural.rs` can add the texels.
 
 use driftworld_spec::Surface;
 
@@ -25,41 +23,42 @@ use crate::camera::Camera;
 use crate::looks::NaturalLooks;
 use crate::scene::{Item, PanelGroup, Scene};
 
-/// Where in a packed pixel the number of what covers it stands, above its category; 0 is nothing.
+/// Position in a packed pixel of the covering's number, above the category; 0 means no covering.
 pub(super) const MATERIAL_SHIFT: u32 = 27;
 pub(super) const MATERIAL: u32 = 31 << MATERIAL_SHIFT;
 
-/// Bits of a category that no part of the map has: where they are all 0, the number above them is of what covers it; else it is the
-/// item's class, or 0.
+/// Bits of a category that the map's pixels never have: if all are 0, the number above them is that of the covering; otherwise
+/// it is the item's class, or 0.
 pub(super) const NO_MAP: u32 = 6 << 24;
 
-/// Bare ground in shadow, for which nothing was drawn but the shadow.
+/// Bare ground in shadow, on which only the shadow was drawn.
 pub(super) const BARE: u32 = 1;
-/// What lies on the ground; the next number is that in shadow.
+/// Zones on the ground; the next number is for those in shadow.
 pub(super) const GROUND: u32 = 2;
 pub(super) const GROUND_IN_SHADOW: u32 = GROUND + 1;
-/// Walls that face along x; the next numbers are those along y, and their tops.
+/// Walls that face along x; the next numbers are for those along y, and for their tops.
 pub(super) const WALLS: u32 = 4;
-/// Classes that a label has room for.
+/// Number of classes that fit into a label.
 const CLASSES: u16 = 32;
 
-/// Where in the packed pixel of a covered object's triangle the number of the axis stands that it faces along, until it is filled.
+/// Position, in the packed pixel of a covered object's triangle, of the axis that the face is normal to, until the triangle is
+/// filled.
 const AXIS_SHIFT: u32 = 30;
 
-/// What the style keeps from picture to picture.
+/// State of the style, reused between images.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Natural {
     pub(super) rows: Rows,
-    /// What covers walls that face along x and y, and their tops.
+    /// Coverings of walls that face along x and y, and of their tops.
     pub(super) walls: Option<[Patch; 3]>,
-    /// For each column how much it shows of the sky towards the sun: a byte, in the three of a colour.
+    /// Per column, how much it shows of the sky towards the sun: a byte, in the three of a colour.
     pub(super) glow: Vec<u32>,
 }
 
-/// What all triangles of a material share.
+/// Values shared by all triangles of a material.
 #[derive(Clone, Copy, Debug)]
 struct NaturalParams<'a> {
-    /// Levels 0 to 255 that the sun gives; that come from around; that a face gets more which looks up.
+    /// Levels 0 to 255: of the sun; of ambient light; and what is added for a face that points up.
     sun: [f32; 3],
     around: [f32; 3],
     above: [f32; 3],
@@ -70,13 +69,13 @@ struct NaturalParams<'a> {
     cover: Option<&'a Cover>,
 }
 
-/// What covers an object's faces along x, y and z.
+/// Covering of an object's faces along x, y and z.
 #[derive(Clone, Copy, Debug)]
 struct Cover {
     patches: [Patch; 3],
     /// The object's label.
     label: u32,
-    /// The picture's middle, and metres per pixel at 1 m.
+    /// The image's middle, and metres per pixel at 1 m.
     middle: [f32; 2],
     step: f32,
 }
@@ -159,19 +158,19 @@ impl Shading for NaturalParams<'_> {
     }
 }
 
-/// One picture: where its camera is and how light falls.
+/// An image with its camera and light.
 struct Picture<'a> {
     scene: &'a Scene,
     looks: &'a NaturalLooks,
     view: View,
     daylight: Daylight,
-    /// Whether the canvas keeps items' classes instead of their numbers.
+    /// Whether the canvas stores items' classes instead of their indices.
     keeps_classes: bool,
-    /// Whether labels hold items' classes where those of the map hold what covers it.
+    /// Whether labels hold items' classes, in the bits that hold the covering's number in the map's labels.
     labels_classes: bool,
 }
 
-/// Whether a label has room for the classes of a scene's items: five bits.
+/// Whether the classes of a scene's items fit into a label: five bits.
 pub(super) fn labels_hold_classes(scene: &Scene) -> bool {
     scene.highest_class < CLASSES
 }
@@ -258,7 +257,7 @@ impl CpuRenderer {
         let at = view.placement(&Pose::of(item), picture.daylight.direction);
         for material in level(item, visible, view) {
             let color = color_of(item, material);
-            // A class's own finish is on what has the object's colour: not on handles and feet.
+            // A class's own finish applies only to parts in the object's colour, not to handles and feet.
             let is_covered = item.surface != Surface::Plain || matches!(material.paint, Paint::Main(_));
             let cover = cover.as_ref().filter(|_| is_covered);
             let labels = cover.map_or([label; 3], |_| [0, 1, 2].map(|axis| axis << AXIS_SHIFT));
@@ -347,10 +346,10 @@ impl CpuRenderer {
     }
 }
 
-/// What is left of light on the ground right below things under a ceiling.
+/// Factor on the ground's light directly below things under a ceiling.
 const BELOW_THINGS: u32 = 0x8062_6262;
 
-/// What shadow leaves of the ground's light, as a texel.
+/// Factor on the ground's light in shadow, as a texel.
 pub(super) fn shade(looks: &NaturalLooks, daylight: &Daylight) -> u32 {
     if looks.ceiling.is_some() {
         BELOW_THINGS
@@ -359,22 +358,22 @@ pub(super) fn shade(looks: &NaturalLooks, daylight: &Daylight) -> u32 {
     }
 }
 
-/// Colours of the fog away from the sun and towards it, packed.
+/// Packed colours of the fog away from the sun and towards it.
 pub(super) fn fog_words(daylight: &Daylight) -> [u32; 2] {
     [daylight.horizon, fog_towards_sun(daylight)].map(|levels| packed(levels, 0))
 }
 
-/// Where over the ground the sky glows, length 1; nowhere under a ceiling or with the sun overhead.
+/// Unit vector over the ground towards the sky's glow; `None` under a ceiling or with the sun overhead.
 pub(super) fn glow_towards(looks: &NaturalLooks, daylight: &Daylight) -> Option<[f32; 2]> {
     let [x, y, _] = daylight.direction;
     let length = (x * x + y * y).sqrt();
     (length >= 0.05 && looks.ceiling.is_none()).then(|| [x / length, y / length])
 }
 
-/// How much of a pure colour is grey: paint that weather has been at.
+/// Share of grey in a pure colour: weathered paint.
 const MUTED: f32 = 0.28;
 
-/// A material's colour; the purer it is, the more it is muted.
+/// A material's colour; the purer, the more it is muted.
 fn color_of(item: &Item, material: &Material) -> [f32; 3] {
     let color = match material.paint {
         Paint::Main(own) => item.color.unwrap_or(own),
@@ -387,7 +386,7 @@ fn color_of(item: &Item, material: &Material) -> [f32; 3] {
     color.map(|channel| channel + (gray - channel) * share)
 }
 
-/// What covers an object: its surface, or the finish of its class as large as the object, from its middle on.
+/// The covering of an object: its surface, or the finish of its class, scaled to the object and centred on it.
 fn cover(item: &Item, view: &View, label: u32) -> Option<Cover> {
     let (tile, scale, middle) = match surfaces::tile(item.surface) {
         Some(tile) => (tile, 1.0, 0.0),
@@ -411,7 +410,7 @@ fn fog_towards_sun(daylight: &Daylight) -> [f32; 3] {
 }
 
 impl Natural {
-    /// Finds what covers walls.
+    /// Sets the coverings of walls.
     pub(super) fn cover_walls(&mut self, looks: &NaturalLooks, view: &View) {
         let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
         self.walls = surfaces::tile(looks.walls.surface).map(|tile| {
@@ -420,13 +419,13 @@ impl Natural {
         });
     }
 
-    /// What covers walls, if each column of the picture shows it from top to bottom: up a wall it is the same for all.
+    /// The covering of walls, if each column of the image shows it from top to bottom.
     pub(super) fn upright_walls(&self) -> Option<&Patch> {
         let [along_x, along_y, _] = self.walls.as_ref()?;
         (along_x.is_upright() && along_y.is_upright()).then_some(along_x)
     }
 
-    /// How much each column shows of the sky towards the sun.
+    /// Computes how much each column shows of the sky towards the sun.
     #[inline(always)]
     fn measure_glow<L: Lanes>(&mut self, l: L, picture: &Picture<'_>, offsets: &[f32]) {
         self.glow.clear();

@@ -1,5 +1,4 @@
-//! How texels are found from places on the screen where walls or objects are covered: which tile, which level, which texel. The
-//! patterns are in `surfaces.rs`; those of ground, ceiling and clouds are found row by row, in `rows.rs`.
+//! Maps screen positions on covered walls and objects to texels: tile, level and texel.
 
 use super::canvas::Texture;
 use super::compose::metres;
@@ -7,28 +6,29 @@ use super::lanes::{Lanes, MOST_LANES};
 use super::surfaces::{SIDE, Tile};
 use super::view::View;
 
-/// Metres along a wall or an object are never so many tiles.
+/// Added to positions to make them positive: no wall or object is that many tiles long.
 pub(super) const SHIFT: f32 = 4096.0;
 
-/// How much finer than a pixel texels may be, and the steepest angle that counts.
+/// Texels per pixel, and the smallest cosine of a viewing angle that is used.
 const SHARPNESS: f32 = 1.0;
 pub(super) const GRAZING: f32 = 0.06;
 
-/// What covers faces that lie in one direction: how texels are found from a place on the screen.
+/// Mapping from screen positions to texels, for faces of one direction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Patch {
     texels: &'static [u32],
-    /// Tiles along each side: at the camera; and for each metre of depth at the picture's middle, to the right and up.
+    /// Texture coordinates in tiles: at the camera; and their change per metre of depth at the image's middle, to the right and
+    /// up.
     pub(super) u: [f32; 4],
     pub(super) v: [f32; 4],
-    /// How much the faces look at the camera: at the middle, to the right and up.
+    /// Cosine of the faces' angle to the camera: at the middle, to the right and up.
     pub(super) facing: [f32; 3],
-    /// Texels to a side for a metre of 1 / depth.
+    /// Texels per side of the level, for 1 / depth of 1 per metre.
     pub(super) sharpness: f32,
 }
 
 impl Patch {
-    /// Of a tile, so many times as large, on faces of this normal, along these axes from an origin: all in the world's frame.
+    /// A patch of a tile, scaled, on faces of this normal, along these axes from an origin: all in the world's frame.
     pub(super) fn new(
         (tile, scale): (&'static Tile, f32),
         view: &View,
@@ -51,7 +51,7 @@ impl Patch {
         }
     }
 
-    /// Texels at these columns of a row so far up at 1 m, for 1 / depth.
+    /// Texels at these columns of a row, `up` metres up at 1 m, for 1 / depth.
     #[inline(always)]
     pub(super) fn texel<L: Lanes>(&self, l: L, up: f32, offset: L::Float, inverse: L::Float) -> L::Word {
         let depth = depth(l, inverse);
@@ -61,7 +61,7 @@ impl Patch {
         l.gather(self.texels, l.truncate(l.mul_add(side, l.add(side, u), v)))
     }
 
-    /// Texels to a side of the level whose texels are about as large as a pixel.
+    /// Texels per side of the level whose texels are about as large as a pixel.
     #[inline(always)]
     fn side<L: Lanes>(&self, l: L, up: f32, offset: L::Float, inverse: L::Float) -> L::Float {
         let (zero, one) = (l.splat(0.0), l.splat(1.0));
@@ -72,13 +72,13 @@ impl Patch {
         l.power_of_two(l.min(l.max(side, one), l.splat(SIDE as f32)))
     }
 
-    /// Whether each column of a picture shows it along the tile's v alone: an upright face before a level camera.
+    /// Whether each column of an image shows the patch along the tile's v only: an upright face before a level camera.
     pub(super) fn is_upright(&self) -> bool {
         [self.u[3], self.v[1], self.v[2], self.facing[2]] == [0.0; 4]
     }
 }
 
-/// A patch as what triangles show, in pictures whose middle is at this column and row.
+/// A patch as a triangle's texture, in images whose middle is at this column and row.
 #[derive(Clone, Copy)]
 pub(super) struct Sheet<'a> {
     pub(super) patch: &'a Patch,
@@ -110,7 +110,7 @@ fn depth<L: Lanes>(l: L, inverse: L::Float) -> L::Float {
     l.div(l.splat(1.0), l.max(inverse, l.splat(1e-4)))
 }
 
-/// The number of a texel along a side of a tile of so many.
+/// The index of a texel along a side of a tile of `side` texels.
 #[inline(always)]
 fn part_of_tile<L: Lanes>(
     l: L,
@@ -128,24 +128,23 @@ fn part_of_tile<L: Lanes>(
     )
 }
 
-/// The number in its tile of a texel that is so many texels along.
+/// The index within its tile of the texel at `texels` along the side.
 #[inline(always)]
 fn texel_of<L: Lanes>(l: L, texels: L::Float, side: L::Float) -> L::Float {
     let last = l.truncate(l.sub(side, l.splat(1.0)));
     l.float(l.and(l.truncate(texels), last))
 }
 
-/// What columns show of walls all the way down: as long as neither 1 / depth nor what covers it changes, level and column of
-/// texels stay as well.
+/// A cache of the columns' view of walls: as long as 1 / depth and covering stay the same, so do level and column of texels.
 #[derive(Clone, Copy)]
 pub(super) struct Run<L: Lanes> {
-    /// 1 / depth; below 0 where nothing is known.
+    /// 1 / depth; below 0 if nothing is cached.
     inverse: L::Float,
-    /// The bits of a packed pixel that say what covers it.
+    /// The bits of a packed pixel that identify the covering.
     material: L::Word,
-    /// Metres for the image of depths, and in formulas.
+    /// Distance in metres for depth images, and in formulas.
     pub(super) metres: L::Float,
-    /// Texels to a side; so many for each metre of depth; and the last in a row of them.
+    /// Texels per side; texels per metre of depth; and the last texel of a row.
     side: L::Float,
     density: L::Float,
     last: L::Word,
@@ -167,19 +166,19 @@ impl<L: Lanes> Run<L> {
         }
     }
 
-    /// Where columns show what they are known to show.
+    /// Where the cached values are still valid.
     #[inline(always)]
     pub(super) fn goes_on(&self, l: L, inverse: L::Float, material: L::Word) -> L::Mask {
         l.both(l.same(inverse, self.inverse), l.equal(material, self.material))
     }
 
-    /// Metres to what is known, or so many.
+    /// The cached distance in metres, or `otherwise`.
     #[inline(always)]
     pub(super) fn metres_or(&self, l: L, otherwise: f32) -> L::Float {
         l.select(l.above(self.inverse, l.splat(0.0)), self.metres, l.splat(otherwise))
     }
 
-    /// Least and greatest 1 / depth of the columns that are known, if any is.
+    /// The smallest and largest cached 1 / depth, if any is cached.
     #[inline(always)]
     pub(super) fn known(&self, l: L) -> Option<[f32; 2]> {
         let mut all = [-1.0; MOST_LANES];
@@ -193,7 +192,7 @@ impl<L: Lanes> Run<L> {
         (most > 0.0).then_some([least, most])
     }
 
-    /// Notes what these columns show; the patch is an upright one.
+    /// Caches the values of these columns; the patch must be upright.
     #[inline(always)]
     pub(super) fn note(
         &mut self,
@@ -215,7 +214,7 @@ impl<L: Lanes> Run<L> {
         self.first = l.select_words(columns, l.truncate(l.mul(side, l.add(side, u))), self.first);
     }
 
-    /// Texels of a row so far up at 1 m, of the tile of an upright patch: the same as [`Patch::texel`] finds.
+    /// Texels of a row, `up` metres up at 1 m, from the tile of an upright patch: the same as by [`Patch::texel`].
     #[inline(always)]
     pub(super) fn texel(&self, l: L, patch: &Patch, up: f32) -> L::Word {
         let [at, _, _, above] = patch.v;
@@ -233,7 +232,7 @@ mod tests {
     use super::*;
     use crate::camera::Camera;
 
-    /// Bricks at their own size.
+    /// Bricks at their normal size.
     fn bricks() -> (&'static Tile, f32) {
         (
             surfaces::tile(driftworld_spec::Surface::Brick).expect("bricks have a tile"),
@@ -242,9 +241,9 @@ mod tests {
     }
 
     proptest! {
-        /// A run is a shorter way to the same texels, and says which columns it does not know.
+        /// A run finds the same texels with less work, and marks columns that it does not know.
         #[test]
-        fn a_run_finds_the_texels_of_its_patch(
+        fn run_finds_the_same_texels_as_its_patch(
             (at, heading, eye) in (prop::array::uniform2(-50.0_f32..50.0), 0.0_f32..360.0, 0.1_f32..3.0),
             distances in prop::array::uniform4(0.05_f32..90.0),
             (first, rows) in (0_usize..80, prop::collection::vec(0..84_u16, 1..8)),
@@ -270,7 +269,7 @@ mod tests {
             prop_assert_eq!(run.metres[..3].to_vec(), metres(l, inverse)[..3].to_vec());
         }
 
-        /// A camera that looks up or down sees no wall column by column.
+        /// A camera that looks up or down does not see walls column by column.
         #[test]
         fn only_a_level_camera_sees_upright_patches(heading in 0.0_f32..360.0, pitch in prop_oneof![1.0_f32..80.0, -80.0_f32..-1.0]) {
             let camera = Camera { pitch_deg: pitch, ..Camera::first_person([0.0; 2], heading, 1.0, 60.0) };

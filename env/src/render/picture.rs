@@ -1,15 +1,15 @@
-//! One picture of several that are drawn together. How they are drawn is the renderers'.
+//! [`Picture`]: one image of several that are rendered together.
 
 use super::target::Target;
 use crate::camera::Camera;
 use crate::scene::Scene;
 
-/// What to draw, from where, and into which images.
+/// A scene, a camera, and the images to fill.
 #[derive(Debug)]
 pub struct Picture<'a> {
-    /// What there is to see.
+    /// The scene.
     pub scene: &'a Scene,
-    /// From where it is seen.
+    /// The camera.
     pub camera: Camera,
     /// The images to fill.
     pub target: Target<'a>,

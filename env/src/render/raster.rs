@@ -1,5 +1,4 @@
-//! From blocks of triangles to triangles on the screen: culling, light, projection, cutting at the near plane.
-//! Filling them is in `canvas.rs`.
+//! Turns blocks of triangles into screen-space triangles: culling, light, projection, clipping at the near plane.
 
 use super::canvas::{Canvas, Triangle};
 use super::lanes::Lanes;
@@ -7,42 +6,42 @@ use super::shade::{FULL_LEVEL, ROUNDING, SKY_SHARE};
 use super::view::{NEAR, Placement};
 use crate::assets::{BLOCK, Block};
 
-/// What all triangles of a material share.
+/// Values shared by all triangles of a material.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ShadingParams {
     /// Colour in full light, as bytes: 0 to 255 and above.
     pub(super) color: [f32; 3],
-    /// Share of the light that comes from everywhere.
+    /// Share of ambient light.
     pub(super) ambient: f32,
     /// Label, in the highest byte.
     pub(super) label: u32,
     pub(super) item: u32,
-    /// Whether some of it may be nearer than the near plane.
+    /// Whether parts of it may be in front of the near plane.
     pub(super) may_be_cut: bool,
 }
 
-/// How triangles of a material become pixels.
+/// Converts a material's triangles to pixels.
 pub(super) trait Shading: Copy {
-    /// Number of the item.
+    /// Index of the item.
     fn item(&self) -> u32;
 
-    /// Whether some of it may be nearer than the near plane.
+    /// Whether parts of it may be in front of the near plane.
     fn may_be_cut(&self) -> bool;
 
-    /// Whether triangles turn the other way on the screen than those do that are seen from the front.
+    /// Whether triangles have the opposite winding on the screen from those seen from the front.
     #[inline(always)]
     fn is_turned(&self) -> bool {
         false
     }
 
-    /// Which of a block's faces are drawn: those that look at the camera. `behind` is how far their planes are behind the
+    /// Which of a block's faces are drawn: those that face the camera. `behind` is the distance of their planes behind the
     /// origin.
     #[inline(always)]
     fn facing<L: Lanes>(&self, l: L, normal: [L::Float; 3], behind: L::Float, at: &Placement) -> L::Mask {
         l.above(dot(l, normal, at.eye, behind), l.splat(0.0))
     }
 
-    /// Packed pixels of a block's faces, each with its label.
+    /// Packed pixels of a block's faces, with their labels.
     fn pixels<L: Lanes>(&self, l: L, normal: [L::Float; 3], at: &Placement) -> [u32; BLOCK];
 
     /// Draws a triangle.
@@ -69,7 +68,7 @@ impl Shading for ShadingParams {
     }
 }
 
-/// One value of every lane, for going through lanes one by one.
+/// One value per lane, for processing lanes one by one.
 type PerLane = [f32; BLOCK];
 
 /// Draws the triangles of a block that face the camera.
@@ -108,7 +107,7 @@ fn draw_lanes<L: Lanes, const ITEMS: bool, S: Shading>(
     ];
     let depth = project(l, corners, &at.depth);
     let pixels = params.pixels(l, normal, at);
-    // Which way a triangle goes must not depend on its neighbours: how many there are depends on the instruction set.
+    // The path of a triangle must not depend on its neighbours: their number depends on the instruction set.
     let mut cut = 0;
     if params.may_be_cut() {
         cut = l.bits(l.both(facing, l.above(l.splat(NEAR), least(l, depth))));
@@ -118,7 +117,7 @@ fn draw_lanes<L: Lanes, const ITEMS: bool, S: Shading>(
     let inverse = [l.div(one, depth[0]), l.div(one, depth[1]), l.div(one, depth[2])];
     let x = product(l, project(l, corners, &at.column), inverse);
     let y = product(l, project(l, corners, &at.row), inverse);
-    // Whole coordinates inside the box around the triangle, and inside the picture.
+    // Integer coordinates within the triangle's bounding box and the image.
     let (left, top) = (round_up(l, least(l, x)), round_up(l, least(l, y)));
     let right = l.min(most(l, x), l.splat(canvas.width as f32 - 1.0));
     let bottom = l.min(most(l, y), l.splat(canvas.height as f32 - 1.0));
@@ -127,7 +126,7 @@ fn draw_lanes<L: Lanes, const ITEMS: bool, S: Shading>(
     if seen == 0 {
         return;
     }
-    // Edge k lies opposite to corner k; each is the same line, to the bit, for the triangle on its other side.
+    // Edge k is opposite corner k; the triangle on its other side has exactly the same line, to the bit.
     let edges = if params.is_turned() {
         [edge(l, x, y, 2, 1), edge(l, x, y, 0, 2), edge(l, x, y, 1, 0)]
     } else {
@@ -157,7 +156,7 @@ fn draw_lanes<L: Lanes, const ITEMS: bool, S: Shading>(
     }
 }
 
-/// One lane's triangle.
+/// The triangle of one lane.
 #[inline(always)]
 fn triangle(rows: &[PerLane; 16], lane: usize, pixel: u32, item: u32) -> Triangle {
     let three = |first: usize| [rows[first][lane], rows[first + 1][lane], rows[first + 2][lane]];
@@ -171,7 +170,7 @@ fn triangle(rows: &[PerLane; 16], lane: usize, pixel: u32, item: u32) -> Triangl
     }
 }
 
-/// Three rows of a block from a lane on.
+/// Three consecutive rows of a block, starting at a lane.
 #[inline(always)]
 fn load3<L: Lanes>(l: L, rows: &[PerLane], row: usize, first: usize) -> [L::Float; 3] {
     [
@@ -206,7 +205,7 @@ fn most<L: Lanes>(l: L, a: [L::Float; 3]) -> L::Float {
     l.max(a[0], l.max(a[1], a[2]))
 }
 
-/// The next whole number, from 0 on.
+/// The next integer, at least 0.
 #[inline(always)]
 fn round_up<L: Lanes>(l: L, value: L::Float) -> L::Float {
     let value = l.min(l.max(value, l.splat(0.0)), l.splat(65536.0));
@@ -233,7 +232,7 @@ pub(super) fn dot<L: Lanes>(l: L, point: [L::Float; 3], by: [f32; 3], plus: L::F
     )
 }
 
-/// Packed pixels of a block's faces, with the label above the colour: the formula of `shade.rs`, for all lanes at once.
+/// Packed pixels of a block's faces, with the label above the colour: the formula of `shade.rs` for all lanes at once.
 #[inline(always)]
 fn packed_pixels<L: Lanes>(l: L, normal: [L::Float; 3], at: &Placement, params: &ShadingParams) -> [u32; BLOCK] {
     let (zero, one) = (l.splat(0.0), l.splat(1.0));
@@ -260,7 +259,7 @@ fn byte<L: Lanes>(l: L, share: L::Float, full: f32) -> L::Word {
     l.truncate(l.min(level, l.splat(FULL_LEVEL)))
 }
 
-/// Draws what of these lanes' triangles lies beyond the near plane: one by one, since few are ever so near.
+/// Draws the parts of these lanes' triangles beyond the near plane: one by one, because few are ever so near.
 #[inline(always)]
 fn draw_all_cut<L: Lanes, const ITEMS: bool, S: Shading>(
     lanes: L,
@@ -286,7 +285,7 @@ fn draw_all_cut<L: Lanes, const ITEMS: bool, S: Shading>(
     }
 }
 
-/// Column, row and 1 / depth of the corners of what is left of a triangle beyond the near plane, and how many they are.
+/// Column, row and 1 / depth of the corners of a triangle clipped at the near plane, and their number.
 fn cut(block: &Block, lane: usize, at: &Placement) -> ([[f32; 3]; 4], usize) {
     let corner = |k: usize| {
         let point = [0, 1, 2].map(|axis| block.corners[3 * k + axis][lane]);
@@ -315,7 +314,7 @@ fn cut(block: &Block, lane: usize, at: &Placement) -> ([[f32; 3]; 4], usize) {
     (polygon, count)
 }
 
-/// A triangle by its corners' columns, rows and 1 / depth; none if no pixel's centre may be in it.
+/// A triangle from its corners' columns, rows and 1 / depth; `None` if it cannot contain a pixel's centre.
 fn set_up(corners: [[f32; 3]; 3], size: [usize; 2], pixel: u32, item: u32) -> Option<Triangle> {
     let range = |axis: usize| {
         let values = corners.map(|corner| corner[axis]);

@@ -1,4 +1,4 @@
-//! [`Renderer`]: the processor's renderer or the graphics card's, whichever was chosen. How each draws is its own.
+//! [`Renderer`]: the CPU or GPU renderer, as chosen.
 
 use super::cpu::CpuRenderer;
 use super::frame::Frame;
@@ -13,7 +13,7 @@ use crate::EnvError;
 use crate::camera::Camera;
 use crate::scene::Scene;
 
-/// Draws scenes, on the processor or on a graphics card.
+/// Renders scenes on the CPU or a GPU.
 #[derive(Debug, Default)]
 pub struct Renderer(Inner);
 
@@ -34,7 +34,7 @@ impl Renderer {
     /// A renderer of this kind.
     ///
     /// # Errors
-    /// [`EnvError::NoGpu`] if a graphics card is asked for and none works, or this build cannot use any.
+    /// [`EnvError::NoGpu`] if a GPU is requested and none works, or this build does not support GPUs.
     pub fn new(kind: RendererKind) -> Result<Self, EnvError> {
         match kind {
             RendererKind::Cpu => Ok(Self::default()),
@@ -43,7 +43,7 @@ impl Renderer {
         }
     }
 
-    /// On a graphics card; with `or_software`, else on software that stands in for one.
+    /// A renderer on a GPU; with `or_software`, otherwise on software emulation of one.
     #[cfg(feature = "gpu")]
     fn on_gpu(or_software: bool) -> Result<Self, EnvError> {
         let choice = if or_software {
@@ -60,7 +60,7 @@ impl Renderer {
         Err(EnvError::NoGpu { tried })
     }
 
-    /// What it became: never [`RendererKind::Auto`].
+    /// The renderer in use: never [`RendererKind::Auto`].
     pub fn kind(&self) -> RendererKind {
         match &self.0 {
             Inner::Cpu(_) => RendererKind::Cpu,
@@ -69,7 +69,7 @@ impl Renderer {
         }
     }
 
-    /// What it draws with, in words: the instruction set, or the adapter and its graphics interface.
+    /// The device in use, as text: the instruction set, or the adapter and its graphics API.
     pub fn device(&self) -> String {
         match &self.0 {
             Inner::Cpu(renderer) => format!("processor ({})", renderer.instruction_set()),
@@ -78,7 +78,7 @@ impl Renderer {
         }
     }
 
-    /// Draws all images of a frame.
+    /// Renders all images of a frame.
     ///
     /// # Errors
     /// As [`Renderer::draw_batch`].
@@ -97,7 +97,7 @@ impl Renderer {
         }
     }
 
-    /// Draws the images that the target asks for.
+    /// Renders the images that the target requests.
     ///
     /// # Errors
     /// As [`Renderer::draw_batch`].
@@ -109,7 +109,7 @@ impl Renderer {
         }
     }
 
-    /// Draws the scene's items of these numbers, things that are carried, at the lower edge of the target's colours.
+    /// Draws these items of the scene, which are carried, at the lower edge of the target's colours.
     pub(crate) fn draw_carried(&mut self, scene: &Scene, carried: &[u32], target: &mut Target<'_>) {
         match &mut self.0 {
             Inner::Cpu(renderer) => renderer.draw_carried(scene, carried, target),
@@ -118,11 +118,11 @@ impl Renderer {
         }
     }
 
-    /// Draws many pictures; a graphics card draws those of one size together.
+    /// Renders many images; a GPU renders those of one size together.
     ///
     /// # Errors
-    /// [`EnvError::PictureSize`] for sizes that cannot be; on a graphics card also [`EnvError::GpuPicture`] for
-    /// pictures that it cannot hold, and [`EnvError::Gpu`] when it fails. Some images may be old then.
+    /// [`EnvError::PictureSize`] for sizes out of range; on a GPU also [`EnvError::GpuPicture`] for images too large for it,
+    /// and [`EnvError::Gpu`] if it fails. Some images may be stale then.
     pub fn draw_batch(&mut self, pictures: &mut [Picture<'_>]) -> Result<(), EnvError> {
         match &mut self.0 {
             Inner::Cpu(renderer) => pictures
@@ -149,7 +149,7 @@ mod tests {
 
     #[cfg(not(feature = "gpu"))]
     #[test]
-    fn without_the_feature_the_error_says_how_to_build_it() {
+    fn missing_gpu_feature_error_says_how_to_build_it() {
         let error = Renderer::new(RendererKind::Gpu).expect_err("not in this build");
         assert!(error.to_string().contains("--features gpu"), "{error}");
     }

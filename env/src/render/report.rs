@@ -1,46 +1,46 @@
-//! What there is to draw with on this machine, each tried with a small picture. Who prints it is not known here.
+//! [`RendererReport`]: the renderers of this machine, each tested with a small image.
 
 use super::kind::RendererKind;
 
 /// The renderers of this machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RendererReport {
-    /// The processor's instruction set in use: `portable`, `avx2` or `avx512`.
+    /// The CPU instruction set in use: `portable`, `avx2` or `avx512`.
     pub instruction_set: &'static str,
-    /// Whether this build can draw on graphics cards: the feature `gpu`.
+    /// Whether this build supports GPUs: the feature `gpu`.
     pub has_gpu_feature: bool,
-    /// Every adapter, in the order in which they are tried.
+    /// Every adapter, in order of preference.
     pub adapters: Vec<AdapterReport>,
     /// Why there is no adapter, if there is none.
     pub no_adapter: Option<String>,
-    /// What [`RendererKind::Auto`] takes.
+    /// The renderer that [`RendererKind::Auto`] chooses.
     pub auto: RendererKind,
 }
 
 /// One graphics adapter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AdapterReport {
-    /// Its name, as the driver gives it.
+    /// Its name, as reported by the driver.
     pub name: String,
-    /// The graphics interface: `vulkan`, `metal` or `dx12`.
+    /// The graphics API: `vulkan`, `metal` or `dx12`.
     pub backend: String,
-    /// What kind of thing it is, in words.
+    /// Its type, as text.
     pub kind: String,
     /// The driver's name and version.
     pub driver: String,
-    /// Whether it is software that stands in for a graphics card.
+    /// Whether it is software emulation of a GPU.
     pub is_software: bool,
     /// Why it cannot be used, if so.
     pub problem: Option<String>,
 }
 
 #[cfg(not(feature = "gpu"))]
-/// Why a build without the feature `gpu` has no adapter, and what to do.
+/// Why a build without the feature `gpu` has no adapter, and how to build one that has.
 pub(super) const NO_FEATURE: &str =
     "this build has no GPU renderer; build it with `cargo build --release --features gpu`";
 
 impl RendererReport {
-    /// Tries everything with a small picture.
+    /// Tests every renderer with a small image.
     pub fn make() -> Self {
         #[cfg(feature = "gpu")]
         let found = super::gpu::survey();

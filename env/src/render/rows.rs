@@ -1,6 +1,5 @@
-//! What lies behind all objects in the natural style, row by row: ground, sky with its clouds, or a ceiling. Ground and
-//! ceiling are planes: a row of a picture, whose camera never tilts to a side, is equally far away all along, so that its
-//! texels follow each other evenly and are of one level. Objects are laid over it in `natural.rs`.
+//! The background in the natural style, row by row: ground, sky with clouds, or a ceiling. Ground and ceiling are planes, and
+//! the camera never rolls, so a row of an image has the same depth throughout, with evenly spaced texels of a single level.
 
 use driftworld_spec::Surface;
 
@@ -12,42 +11,43 @@ use super::view::View;
 use crate::looks::NaturalLooks;
 use crate::scene::{Light, Scene};
 
-/// Added to the numbers of texels so that none is negative; a multiple of every side of a tile.
+/// Added to texel indices to make them positive; a multiple of every side of a tile.
 const SHIFT: f32 = 65536.0;
 
 /// How much coarser than a pixel texels may be: a pixel shows less than one texel of its level, and none is skipped.
 const SHARPNESS: f32 = 1.25;
 
-/// How many times as wide as columns that show the same texel it must be.
+/// Columns may share a texel if the texel is wider than them by this factor.
 const WIDER: f32 = 1.25;
 
-/// How many of the finest texels a pixel shows where the first of their detail is seen, and where all of it is.
+/// Finest texels per pixel at which the first of their detail is visible, and at which all of it is.
 const DETAIL: [f32; 2] = [0.5, 0.25];
 
-/// A layer of clouds: metres above the eye, metres to a side of its tile, and from which rise on it is seen in full.
+/// A layer of clouds: metres above the eye, metres per side of its tile, and the slope of the ray from which it is fully
+/// visible.
 const CLOUDS: [f32; 3] = [40.0, 150.0, 0.22];
 
-/// What covers the ceiling.
+/// Covering of the ceiling.
 pub(super) const CEILING: Surface = Surface::Tile;
 
-/// How dark it is where walls, ground, ceiling and things meet, and over how many metres that fades.
+/// Darkness where walls, ground, ceiling and objects meet, and the distance in metres over which it fades.
 pub(super) const CONTACT: [f32; 2] = [0.5, 0.35];
 
-/// The fewest pixels over which it fades, so that it does not flicker; it is fainter then.
+/// Fewest pixels over which it fades, so that it does not flicker; it is fainter then.
 pub(super) const CONTACT_PIXELS: f32 = 1.5;
 
-/// In so many of its last pixels a wall counts as meeting the ground.
+/// Number of a wall's lowest pixels that count as meeting the ground.
 const FOOT_PIXELS: f32 = 3.0;
 
-/// How high fog reaches above the eye, in metres.
+/// Height of fog above the eye, in metres.
 const FOG_HEIGHT: f32 = 30.0;
 
-/// What a row shows, whatever the place and heading of the camera.
+/// The part of a row that does not depend on the camera's position and heading.
 #[derive(Clone, Copy, Debug, Default)]
 struct RowLook {
-    /// Metres along the view axis to what it shows: to the plane, or to the clouds.
+    /// Distance along the view axis to the plane or the clouds, in metres.
     metres: f32,
-    /// How far up a ray through it leads at 1 m.
+    /// Height of the ray through the row at 1 m.
     offset: f32,
     /// Texels per metre at its level, and tiles per texel.
     density: f32,
@@ -58,38 +58,38 @@ struct RowLook {
 /// A row of one picture.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Row {
-    /// 1 / depth; 0 where it shows sky.
+    /// 1 / depth; 0 for sky.
     pub(super) inverse: f32,
     /// Depth in metres.
     pub(super) metres: f32,
-    /// Packed pixel without pattern; of the sky, away from the sun.
+    /// Packed pixel without pattern; for the sky, away from the sun.
     pub(super) base: u32,
-    /// Of the sky towards the sun; of clouds. As `base` where there is no difference.
+    /// Packed pixels of the sky towards the sun, and of clouds; the same as `base` if there is no difference.
     pub(super) sunward: u32,
     pub(super) cloud: u32,
-    /// How a texel is found: at `texels[(u & mask) << bits | v & mask | first]`, each at the middle and how it changes to the
-    /// right at 1 m. A side of 1 has nothing to find.
+    /// Texture coordinates, each at the middle, and its change to the right at 1 m. The texel is
+    /// `texels[(u & mask) << bits | v & mask | first]`. With a side of 1 there is nothing to look up.
     pub(super) u: [f32; 2],
     pub(super) v: [f32; 2],
     pub(super) side: u32,
-    /// How many columns, 1, 2 or 4, show the same texel: where it is wider than those.
+    /// Columns that share a texel, 1, 2 or 4: fewer than the texel is wide.
     pub(super) alike: u32,
-    /// Rows of the same number show the same texels.
+    /// Rows with the same number show the same texels.
     pub(super) pair: u32,
-    /// Texels of the same tile, enlarged, laid over it, where a texel is larger than a pixel: by how much they are finer.
+    /// Scale of the detail, which is the same tile, finer, laid over texels larger than a pixel.
     pub(super) detail: f32,
-    /// How much of them is seen, 1 to 255: more of them the nearer a row is, so that they come in without a seam.
+    /// Strength of the detail, 1 to 255: it increases as rows get nearer, so that it appears without a seam.
     pub(super) detail_share: u32,
     pub(super) shows: Shows,
-    /// Metres from the eye up or down to the plane that it shows, and how much nearer to it a ray through it comes with each.
+    /// Height in metres of the plane above or below the eye, and how much nearer to it a ray through the row comes per metre.
     pub(super) plane: [f32; 2],
-    /// 1 / the metres over which the dark fades where something meets the plane.
+    /// 1 / the distance in metres over which the darkness fades where something meets the plane.
     pub(super) fades: f32,
-    /// Up to which height above the plane a wall's pixel may be its last, for each metre of depth.
+    /// Largest height above the plane, per metre of depth, at which a wall's pixel may be its lowest.
     pub(super) foot: f32,
 }
 
-/// What a row shows.
+/// The content of a row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Shows {
     Floor,
@@ -98,7 +98,7 @@ pub(super) enum Shows {
     Sky,
 }
 
-/// All that rows depend on, but for the camera's place and heading.
+/// Everything that rows depend on except the camera's position and heading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Key {
     size: [f32; 2],
@@ -111,7 +111,7 @@ struct Key {
     looks: NaturalLooks,
 }
 
-/// The rows of a picture, kept to the next: those of one camera in one light differ only in where texels lie.
+/// The rows of an image, cached for the next: those of one camera in one light differ only in the positions of texels.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rows {
     key: Option<Key>,
@@ -123,7 +123,7 @@ pub(super) struct Rows {
 }
 
 impl Rows {
-    /// Makes the rows ready for a picture, and says how light falls in it.
+    /// Prepares the rows for an image, and returns its light.
     pub(super) fn prepare(&mut self, scene: &Scene, looks: &NaturalLooks, view: &View) -> Daylight {
         let ceiling = looks.ceiling.filter(|ceiling| view.position[2] < ceiling.height);
         let key = Key {
@@ -153,7 +153,7 @@ impl Rows {
                     let from = if is_sky { 0.0 } else { view.position[axis] };
                     let ahead = axes.forward[axis] + look.offset * axes.up[axis];
                     let at = (from + ahead * look.metres) * look.density;
-                    // Numbers of texels stay small, so that they are exact.
+                    // Keeps texel indices small, so that they are exact.
                     let turns = (at * look.tiles) as i32 as f32;
                     [
                         at - turns * look.row.side as f32 + SHIFT,
@@ -166,7 +166,7 @@ impl Rows {
         daylight
     }
 
-    /// The texels of what a row shows; none where it has no pattern.
+    /// The texels of a row's content; empty if it has no pattern.
     pub(super) fn texels(&self, shows: Shows) -> &'static [u32] {
         let tile = match shows {
             Shows::Floor => self.ground,
@@ -225,7 +225,7 @@ impl Rows {
     }
 }
 
-/// A plane that a row shows: how steeply the row's rays go, and how far the plane is from the eye's height.
+/// A plane in a row: the slope of the row's rays, and the plane's distance from eye height.
 struct Plane {
     rise: f32,
     below: f32,
@@ -238,7 +238,7 @@ impl Plane {
         let inverse = self.rise.abs() / self.below;
         let base = packed(self.color, CATEGORY_MAP);
         let metres = 1.0 / inverse.max(1e-6);
-        // A pixel is longer than it is wide.
+        // A pixel's footprint on the plane is longer than wide.
         let length = metres * metres * key.step * key.up.abs().max(0.05) / self.below;
         let mut look = RowLook {
             metres,
@@ -274,7 +274,7 @@ impl Plane {
 }
 
 impl RowLook {
-    /// Shows the same texels as the row above it, if those are of one level and higher than a pixel, and show no detail.
+    /// Shares the texels of the row above, if both have the same level, texels higher than a pixel, and no detail.
     fn share_texels(&mut self, above: &Self) {
         let [row, other] = [&self.row, &above.row];
         let has_detail = row.detail > 0.0 || other.detail > 0.0;
@@ -339,7 +339,7 @@ fn sky(key: &Key, daylight: &Daylight, offset: f32, rise: f32) -> RowLook {
     look
 }
 
-/// Levels as a packed pixel with a category.
+/// Packs levels and a category into a pixel.
 pub(super) fn packed(levels: [f32; 3], category: u8) -> u32 {
     let [red, green, blue] = levels.map(|level| (level + ROUNDING).clamp(0.0, FULL_LEVEL) as u8);
     u32::from_le_bytes([red, green, blue, category])
@@ -349,10 +349,10 @@ pub(super) fn packed(levels: [f32; 3], category: u8) -> u32 {
 mod tests {
     use super::*;
 
-    /// Detail of the ground comes in with the first of its rows and grows row by row, the nearer the faster: no row shows much more
-    /// of it than the next.
+    /// Detail of the ground appears in the farthest of its rows and increases row by row, faster when nearer, with no jump
+    /// between neighbouring rows.
     #[test]
-    fn detail_comes_in_row_by_row() {
+    fn detail_increases_gradually_from_row_to_row() {
         let tile = surfaces::tile(Surface::Noise);
         for side in [160.0, 320.0, 640.0] {
             let step = 2.0 * libm::tanf(30_f32.to_radians()) / side;

@@ -1,32 +1,31 @@
-//! Light on surfaces: sun, ambient and sky light on flat faces. The light of a scene is in `scene.rs`.
+//! Light on flat faces: sun, ambient and sky light.
 //!
-//! Light is applied in gamma space: sRGB values are multiplied as they stand, and never made linear. A colour in full
-//! light is then the colour that the task names, and no picture depends on a power function, which platforms round
-//! differently. The price is that half the light looks darker than half a real one.
+//! Light is applied in gamma space: sRGB values are multiplied directly, without linearising. A colour in full light is then
+//! the colour that the task names, and no image depends on a power function, which platforms round differently. The price is
+//! that half the light looks darker than in reality.
 //!
-//! The formula exists three times, for one face (here), for the lanes of a block (`raster.rs`) and on a graphics card
-//! (`objects.wgsl`). All three take their numbers from the constants below.
+//! The formula exists three times: for one face (here), for the lanes of a block (`raster.rs`) and on the GPU (`objects.wgsl`).
+//! All three use the constants below.
 
 use crate::scene::Light;
 use crate::vector::dot;
 
-/// Light from the sky on a face that the sun does not reach, as a share: once for an upright face, twice for the
-/// ground.
+/// Sky light on a face turned away from the sun, as a share of full light: once for an upright face, twice for the ground.
 pub(crate) const SKY_SHARE: f32 = 0.06;
 
 /// The level of a colour of 1 in full light, and the highest that a byte holds.
 pub(crate) const FULL_LEVEL: f32 = 255.0;
 
-/// Added to a level before it is cut to a byte.
+/// Added to a level before truncating it to a byte.
 pub(crate) const ROUNDING: f32 = 0.5;
 
-/// Turns colours and normals into levels 0 to 255 under one light; more than 255 is cut by whoever makes bytes of it.
+/// Computes levels from colours and normals in one light: 0 to 255, or more; the caller clamps them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shader {
     direction: [f32; 3],
-    /// Share of the light that comes from everywhere.
+    /// Share of ambient light.
     pub(crate) ambient: f32,
-    /// The light's colour times how bright it is.
+    /// The light's colour times its brightness.
     pub(crate) tint: [f32; 3],
 }
 
@@ -39,9 +38,9 @@ impl Shader {
         }
     }
 
-    /// How much light reaches a face, by its normal of length 1.
+    /// Share of light on a face with this unit normal.
     ///
-    /// What looks away from the sun still gets a little from the sky, more if it looks up.
+    /// Faces turned away from the sun still get some light from the sky, more if they face up.
     pub(crate) fn share(&self, normal: [f32; 3]) -> f32 {
         let sun = dot(normal, self.direction).max(0.0);
         self.ambient + (1.0 - self.ambient) * sun + SKY_SHARE * (normal[2] + 1.0) * (1.0 - sun)

@@ -1,5 +1,5 @@
-//! Shadows on the ground: what casts them is flattened along the light onto the ground, and drawn where ground is seen. How
-//! much darker it is there is `daylight.rs`'s to say. Nothing else gets shadows.
+//! Shadows on the ground: objects are flattened along the light onto the ground and drawn where ground is visible. Only the
+//! ground gets shadows.
 
 use super::canvas::{Canvas, Triangle, at_top};
 use super::daylight::Daylight;
@@ -13,19 +13,19 @@ use crate::assets::{BLOCK, Material};
 use crate::looks::NaturalLooks;
 use crate::scene::{ARENA_WALLS, Item, Scene};
 
-/// How far above the ground shadows are drawn, as a share of the camera's height: more than zones are.
+/// Height of shadows above the ground, as a fraction of the camera's height: more than that of zones.
 const LIFT: f32 = 2e-3;
 
-/// Metres that a shadow is longer than what casts it is high, at most.
+/// Longest shadow, as a multiple of the object's height.
 const LONGEST: f32 = 2.5;
 
-/// How many times as wide as a thing the dark below it is where light comes from everywhere.
+/// Width of the shadow below a thing in diffuse light, as a multiple of the thing's width.
 const SPREAD: f32 = 1.2;
 
 /// Largest error of a simplified mesh that casts a shadow, in pixels.
 const TOLERANCE: f32 = 2.5;
 
-/// Where shadows fall: against this direction, of height 1.
+/// Shadow direction: opposite to this vector, of height 1.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cast {
     toward: [f32; 3],
@@ -33,7 +33,7 @@ pub(super) struct Cast {
 }
 
 impl Cast {
-    /// The shadows of a picture, if there are any.
+    /// The shadows of an image, if there are any.
     pub(super) fn of(looks: &NaturalLooks, daylight: &Daylight, view: &View) -> Option<Self> {
         if !looks.has_shadows || view.position[2] <= 0.0 {
             return None;
@@ -44,7 +44,7 @@ impl Cast {
         }
     }
 
-    /// The shadows of a sun in this direction; none if it is too low.
+    /// Shadows of a sun in this direction; `None` if it is too low.
     fn of_sun([x, y, z]: [f32; 3]) -> Option<Self> {
         if z < 0.02 {
             return None;
@@ -57,7 +57,7 @@ impl Cast {
         })
     }
 
-    /// The dark right below things, where light comes from everywhere.
+    /// Shadows directly below things, in diffuse light.
     fn below() -> Self {
         Self {
             toward: [0.0, 0.0, 1.0],
@@ -65,19 +65,19 @@ impl Cast {
         }
     }
 
-    /// A ball around the shadow of a thing that stands in the middle of a circle.
+    /// Bounding ball of the shadow of a thing, which stands in the middle of a circle.
     fn ball(&self, [x, y]: [f32; 2], radius: f32, height: f32) -> ([f32; 3], f32) {
         let away = [self.toward[0], self.toward[1]].map(|part| part * height / 2.0);
         let length = (away[0] * away[0] + away[1] * away[1]).sqrt();
         ([x - away[0], y - away[1], 0.0], radius * self.spread + length)
     }
 
-    /// Whether a shadow is too flat to be seen: less than two pixels high.
+    /// Whether a shadow is too flat to be visible: less than two pixels high.
     fn is_too_flat(view: &View, depth: f32, radius: f32) -> bool {
         depth > radius && 2.0 * radius * view.position[2].abs() * view.scale < 2.0 * depth * depth
     }
 
-    /// The way from an object's frame to its shadow on the screen.
+    /// The projection from an object's frame to its shadow on the screen.
     pub(super) fn placement(&self, view: &View, pose: &Pose) -> Placement {
         let mut at = view.placement(pose, self.toward);
         let lift = LIFT * view.position[2].clamp(0.0, 1000.0) / pose.scale;
@@ -92,8 +92,8 @@ impl Cast {
     }
 }
 
-/// Finds what casts shadows that may be seen: things, and under the sky the walls within the arena. Without `hidden`, what
-/// walls hide is found, too. How near each is, is how near its shadow is.
+/// Collects the casters of shadows that may be visible: things, and outdoors also the walls within the arena. Without `hidden`,
+/// includes those behind walls. The depth of each is that of its shadow.
 pub(super) fn find(
     scene: &Scene,
     looks: &NaturalLooks,
@@ -130,18 +130,18 @@ pub(super) fn find(
     }
 }
 
-/// The mesh of an item that is fine enough for its shadow.
+/// The level of an item's mesh that is fine enough for its shadow.
 pub(super) fn level<'a>(item: &'a Item, shadow: Visible, view: &View) -> &'a [Material] {
     let pixels_per_metre = view.scale * item.scale / shadow.nearest.max(NEAR);
     item.asset.level(TOLERANCE / pixels_per_metre)
 }
 
-/// What all triangles of a shadow share.
+/// Values shared by all triangles of a shadow.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ShadowParams {
     pub(super) may_be_cut: bool,
-    /// Whether it is cast by the faces that look away from the light. Walls have no tops: their shadow ends where that of the edge
-    /// does which is furthest from the light.
+    /// Whether the faces turned away from the light cast it. Walls have no tops, so their shadow ends with that of the edge
+    /// farthest from the light.
     pub(super) from_behind: bool,
 }
 
@@ -161,7 +161,7 @@ impl Shading for ShadowParams {
         self.from_behind
     }
 
-    /// Those that look at the light, which turn, from above, as the triangles that they become; or those that look away from it.
+    /// Faces towards the light, which have the same winding from above as the resulting triangles; or faces away from it.
     #[inline(always)]
     fn facing<L: Lanes>(&self, l: L, normal: [L::Float; 3], _behind: L::Float, at: &Placement) -> L::Mask {
         let zero = l.splat(0.0);
@@ -184,7 +184,7 @@ impl Shading for ShadowParams {
     }
 }
 
-/// Notes a shadow where there is bare ground or a zone.
+/// Marks a shadow on bare ground and zones.
 #[inline(always)]
 fn shade<L: Lanes, const ITEMS: bool>(l: L, canvas: &mut Canvas, triangle: &Triangle) {
     let Triangle { columns, rows, .. } = *triangle;

@@ -4,15 +4,15 @@ use super::daylight::{Daylight, between, rise};
 use super::shade::{FULL_LEVEL, Shader};
 use crate::scene::Light;
 
-/// How bright the sky is: without any light, what each unit of the brightest channel adds, and at most.
+/// Brightness of the sky: without light, per unit of the brightest channel, and at most.
 const SKY_BRIGHTNESS: [f32; 3] = [0.12, 0.88, 1.06];
 
-/// The horizon's colour: this share of the zenith's, and so much white.
+/// The horizon's colour: this share of the zenith's, plus this much white.
 const HORIZON: [f32; 2] = [0.42, 0.55];
 
 impl Shader {
-    /// The sky's colours at the zenith and at the horizon, for its own colour. It dims with the light, less than the
-    /// ground does.
+    /// The sky's colours at the zenith and at the horizon, for its own colour. It dims with the light, but less than the
+    /// ground.
     pub(crate) fn sky(&self, color: [f32; 3]) -> [[f32; 3]; 2] {
         let brightest = self.tint[0].max(self.tint[1]).max(self.tint[2]);
         let [dark, gain, most] = SKY_BRIGHTNESS;
@@ -23,7 +23,7 @@ impl Shader {
 }
 
 impl Daylight {
-    /// The sky under a light whose sun stands this high, and reads as this low.
+    /// The sky for a light with this elevation of the sun, and how low the sun looks.
     pub(super) fn sky(light: &Light, exposure: f32, low: f32, height: f32) -> Self {
         let bright = exposure * (0.62 + 0.38 * rise(height, -0.1, 0.35)) * FULL_LEVEL;
         let tint = between([1.0; 3], [0.7, 0.62, 0.74], low);

@@ -1,8 +1,8 @@
-//! Patterns of the natural style as tiles that repeat: brighter and darker than the colour that they cover, from fine to
-//! coarse. Who covers what with them is in `natural.rs`.
+//! Patterns of the natural style as repeating tiles: factors, brighter and darker, on the colour that they cover, at several
+//! levels.
 //!
-//! A tile is computed once, when it is first needed. Its finest level has 256 × 256 texels, each next one half as many to a
-//! side, down to one, which is the colour as it is: what is so far away that a pixel holds a whole tile shows no pattern.
+//! Each tile is computed once, on first use. Its finest level has 256 × 256 texels, and each coarser one half as many per side,
+//! down to a single texel, which is neutral: where a pixel covers a whole tile there is no pattern.
 
 use std::sync::LazyLock;
 
@@ -10,22 +10,22 @@ use driftworld_spec::Surface;
 
 use crate::looks::Finish;
 
-/// Texels to a side of a tile's finest level.
+/// Texels per side of a tile's finest level.
 pub(super) const SIDE: usize = 256;
 
-/// The factor of 1 in each byte of a texel.
+/// The factor 1 in each byte of a texel.
 pub(super) const NEUTRAL: u32 = 0x8080_8080;
 
 /// A pattern.
 #[derive(Debug)]
 pub(super) struct Tile {
-    /// Texels: a factor for each channel, 128 for 1; the highest byte is 128. The level whose side is s begins at s².
+    /// Texels: a factor per channel, with 128 for 1; the highest byte is 128. The level with side s begins at s².
     pub(super) texels: Vec<u32>,
-    /// Metres to a side.
+    /// Metres per side.
     pub(super) period: f32,
-    /// Whether it looks like itself when it is enlarged, so that it serves as its own detail.
+    /// Whether it looks similar when enlarged, so that it can serve as its own detail.
     pub(super) is_grain: bool,
-    /// Texels of a pixel: less than 1 where edges are hard and the same all along, so that they do not flicker.
+    /// Texels per pixel: less than 1 for hard continuous edges, so that they do not flicker.
     pub(super) sharpness: f32,
 }
 
@@ -36,7 +36,7 @@ macro_rules! baked {
     }};
 }
 
-/// The tile of a surface; none of a plain one.
+/// The tile of a surface; `None` for a plain one.
 pub(super) fn tile(surface: Surface) -> Option<&'static Tile> {
     Some(match surface {
         Surface::Plain => return None,
@@ -53,7 +53,7 @@ pub(super) fn tile(surface: Surface) -> Option<&'static Tile> {
 }
 
 impl Finish {
-    /// Its tile, in metres of a model at scale 1; 0 is the middle.
+    /// The finish's tile, in metres of a model at scale 1; 0 is the middle.
     pub(super) fn tile(self) -> &'static Tile {
         match self {
             Self::Door => baked!(2.0, false, 1.0, door),
@@ -63,7 +63,7 @@ impl Finish {
     }
 }
 
-/// How much of the sky clouds hide: the same in each byte but the highest, 0 to 255.
+/// Cloud cover: the same in each byte but the highest, 0 to 255.
 pub(super) fn clouds() -> &'static Tile {
     static TILE: LazyLock<Tile> = LazyLock::new(|| {
         let cover = |x: f32, y: f32| smooth((fractal(x, y, 3, 6, 0.55, 71) + 0.02) / 0.34);
@@ -81,7 +81,7 @@ pub(super) fn clouds() -> &'static Tile {
 impl Tile {
     fn baked(period: f32, is_grain: bool, sharpness: f32, texel: fn(f32, f32) -> [f32; 3]) -> Self {
         let mut levels = levels(texel);
-        // On the whole no channel is brighter or darker than the colour.
+        // Normalises each channel, so that its mean is the colour.
         let mean = levels.last().map_or([1.0; 3], |coarsest| coarsest[0]);
         for texel in levels.iter_mut().flatten() {
             (0..3).for_each(|channel| texel[channel] /= mean[channel]);
@@ -95,8 +95,8 @@ impl Tile {
     }
 }
 
-/// All levels of a pattern, the finest first, column by column, as pictures are composed; it is given by where in the tile, 0..1
-/// along each side.
+/// All levels of a pattern, the finest first, column by column, in the order in which images are composed; `texel` gives the
+/// pattern by position in the tile, 0..1 along each side.
 fn levels(texel: impl Fn(f32, f32) -> [f32; 3]) -> Vec<Vec<[f32; 3]>> {
     let at = |k: usize| (k as f32 + 0.5) / SIDE as f32;
     let finest = (0..SIDE * SIDE).map(|k| texel(at(k / SIDE), at(k % SIDE))).collect();
@@ -115,7 +115,7 @@ fn levels(texel: impl Fn(f32, f32) -> [f32; 3]) -> Vec<Vec<[f32; 3]>> {
     levels
 }
 
-/// Levels as the words of a tile.
+/// Packs levels into the words of a tile.
 fn words(levels: &[Vec<[f32; 3]>], byte: impl Fn(f32) -> u32, highest: u32) -> Vec<u32> {
     let mut words = vec![0; 2 * SIDE * SIDE];
     for level in levels {
@@ -127,7 +127,7 @@ fn words(levels: &[Vec<[f32; 3]>], byte: impl Fn(f32) -> u32, highest: u32) -> V
     words
 }
 
-/// A number in 0..1 that depends on its arguments alone.
+/// A number in 0..1 that depends only on its arguments.
 fn hash(x: u32, y: u32, seed: u32) -> f32 {
     let mut bits = x.wrapping_mul(0x9E37_79B9) ^ y.wrapping_mul(0x85EB_CA6B) ^ seed.wrapping_mul(0xC2B2_AE35);
     bits ^= bits >> 15;
@@ -138,13 +138,13 @@ fn hash(x: u32, y: u32, seed: u32) -> f32 {
     (bits >> 8) as f32 / (1 << 24) as f32
 }
 
-/// 0 to 1 as a curve that begins and ends level.
+/// Smooth step from 0 to 1.
 fn smooth(share: f32) -> f32 {
     let share = share.clamp(0.0, 1.0);
     share * share * (3.0 - 2.0 * share)
 }
 
-/// Numbers −1..1 between those of the corners of a lattice of so many cells along x and y, which repeats.
+/// Value noise, −1..1, on a repeating lattice of `cells` along x and y.
 fn lattice(x: f32, y: f32, cells: [u32; 2], seed: u32) -> f32 {
     let place = [x * cells[0] as f32, y * cells[1] as f32];
     let cell = place.map(|at| at as u32);
@@ -154,7 +154,7 @@ fn lattice(x: f32, y: f32, cells: [u32; 2], seed: u32) -> f32 {
     2.0 * (row(0) + (row(1) - row(0)) * share[1]) - 1.0
 }
 
-/// Lattices each twice as fine as the one before, and so much weaker.
+/// Sum of lattices, each twice as fine as the one before and `gain` times as strong.
 fn fractal(x: f32, y: f32, cells: u32, octaves: u32, gain: f32, seed: u32) -> f32 {
     let mut sum = 0.0;
     let mut strength = 1.0;
@@ -166,7 +166,7 @@ fn fractal(x: f32, y: f32, cells: u32, octaves: u32, gain: f32, seed: u32) -> f3
     sum * (1.0 - gain)
 }
 
-/// A factor, warmer or colder by a share.
+/// A factor, made warmer or colder by `warmth`.
 fn tinted(factor: f32, warmth: f32) -> [f32; 3] {
     [factor * (1.0 + warmth), factor, factor * (1.0 - warmth)]
 }
@@ -177,13 +177,13 @@ fn noise(x: f32, y: f32) -> [f32; 3] {
     tinted(1.0 + 0.4 * coarse + 0.7 * fine, 0.14 * fractal(x, y, 5, 3, 0.6, 9))
 }
 
-/// Which of so many pieces along an axis, and where in it, 0..1.
+/// Index of the piece along an axis of `count` pieces, and the position in it, 0..1.
 fn piece(at: f32, count: u32) -> (u32, f32) {
     let scaled = at * count as f32;
     (scaled as u32 % count, scaled - scaled as u32 as f32)
 }
 
-/// 1 within a piece, 0 in the joint around it, which is this share of the piece wide.
+/// 1 within a piece, 0 in the joint around it, whose width is this fraction of the piece.
 fn within(at: f32, joint: f32) -> f32 {
     smooth((at.min(1.0 - at) - joint / 2.0) / (joint / 2.0) + 0.5)
 }
@@ -237,7 +237,7 @@ fn checker(x: f32, y: f32) -> [f32; 3] {
 fn stone(x: f32, y: f32) -> [f32; 3] {
     let (course, up) = piece(y, 6);
     let shifted = 4.0 * (1.0 + x + hash(course, 7, 51));
-    // Which of four stones, between joints that are off by up to a quarter.
+    // Index of one of four stones, with joints shifted by up to a quarter.
     let joint = |k: u32| k as f32 + 0.5 * (hash(k % 4, course, 52) - 0.5);
     let near = (shifted + 0.5) as u32;
     let number = if shifted < joint(near) { near - 1 } else { near };
@@ -279,7 +279,7 @@ fn cobbles(x: f32, y: f32) -> [f32; 3] {
     tinted(0.5 + (tone - 0.5) * body, 0.1 * (hash(own[0], own[1], 84) - 0.5) * body)
 }
 
-/// A place in a tile, 0..1, as one around its middle, −0.5..0.5.
+/// Converts a position in a tile, 0..1, to one around its middle, −0.5..0.5.
 fn around_middle(at: f32) -> f32 {
     if at < 0.5 { at } else { at - 1.0 }
 }
@@ -291,7 +291,7 @@ fn door(x: f32, y: f32) -> [f32; 3] {
     let [low, high] = if up < 0.0 { [-0.82, -0.12] } else { [0.08, 0.86] };
     let sides = [across.abs() - 0.06, 0.38 - across.abs(), up - low, high - up];
     let inside = sides.into_iter().fold(f32::INFINITY, f32::min);
-    // Light comes from above: of a panel's rim the lower part shines, the upper part is dark.
+    // Light comes from above: the lower part of a panel's rim is bright, the upper part dark.
     let rim = if inside == sides[2] {
         1.3
     } else if inside == sides[3] {
@@ -301,7 +301,7 @@ fn door(x: f32, y: f32) -> [f32; 3] {
     };
     let edge = across.abs().max(up.abs() - 0.5);
     let own = match inside {
-        // Beyond the door there is nothing to see.
+        // Outside the door nothing is visible.
         _ if across.abs() > 0.5 => 0.97,
         _ if edge > 0.482 => 0.62,
         0.0..0.04 => rim,
@@ -329,7 +329,7 @@ fn wooden_box(x: f32, y: f32) -> [f32; 3] {
     tinted(own + 0.08 * grain, 0.04 * grain)
 }
 
-/// Brushed along, with what it mirrors in bands.
+/// Brushed metal with bands of reflections.
 fn metal(x: f32, y: f32) -> [f32; 3] {
     let brushed = lattice(x, y, [4, 128], 98) + 0.6 * lattice(x, y, [8, 64], 99);
     let wave = lattice(x, y, [2, 8], 100) + 0.5 * lattice(x, y, [3, 16], 101);
@@ -346,9 +346,9 @@ mod tests {
         serde_json::from_str(names).expect("they are surfaces")
     }
 
-    /// From afar a surface is its colour: at every level its mean is 1, and the coarsest level has no pattern.
+    /// From a distance a surface has its plain colour: the mean at every level is 1, and the coarsest level has no pattern.
     #[test]
-    fn every_level_of_every_surface_is_on_the_whole_its_colour() {
+    fn mean_of_every_surface_level_is_neutral() {
         for surface in all() {
             let tile = tile(surface).expect("it is not plain");
             let mut side = 1;
@@ -371,7 +371,7 @@ mod tests {
         assert!(tile(Surface::Plain).is_none());
     }
 
-    /// The next texel beyond an edge of a tile is that of the other edge: no seam is seen.
+    /// Texels match across the edges of a tile, so that no seam is visible.
     #[test]
     fn grain_repeats_without_a_seam() {
         let tile = tile(Surface::Noise).expect("it is not plain");

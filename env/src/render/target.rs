@@ -1,5 +1,4 @@
-//! Where images go: slices that the caller owns, one for each modality that is wanted. What their numbers mean is in
-//! `frame.rs`.
+//! [`Target`]: the caller's buffers for images, one slice per requested modality.
 
 use driftworld_spec::MAX_POINTS;
 
@@ -7,14 +6,14 @@ use super::frame::Frame;
 use crate::EnvError;
 use crate::scene::Light;
 
-/// The images that a render is to fill; what is `None` is not computed. Row 0 is on top.
+/// The images to fill; `None` is not computed. Row 0 is on top.
 #[derive(Debug, Default)]
 pub struct Target<'a> {
     /// Width in pixels, 1 to 4096.
     pub width: u32,
     /// Height in pixels, 1 to 4096.
     pub height: u32,
-    /// Points per pixel along each side that colours are the mean of, 1 to 4; 0 is as 1.
+    /// Samples per pixel along each side, whose mean is the colour, 1 to 4; 0 means 1.
     pub supersampling: u32,
     /// Colour, `(height, width, 3)` bytes, sRGB.
     pub rgb: Option<&'a mut [u8]>,
@@ -22,14 +21,14 @@ pub struct Target<'a> {
     pub depth: Option<&'a mut [f32]>,
     /// Reward category, `(height, width)`.
     pub category: Option<&'a mut [u8]>,
-    /// Object class, `(height, width)`: the scene's class number, 0 where there is no object.
+    /// Object class, `(height, width)`: the scene's class number, or 0 for none.
     pub class: Option<&'a mut [u16]>,
-    /// Object, `(height, width)`: the item's index plus 1, 0 where there is no object.
+    /// Object, `(height, width)`: the item's index plus 1, or 0 for none.
     pub instance: Option<&'a mut [u32]>,
 }
 
 impl Target<'_> {
-    /// The same images, lent for a while.
+    /// The same images, reborrowed.
     pub fn reborrow(&mut self) -> Target<'_> {
         Target {
             width: self.width,
@@ -55,7 +54,7 @@ impl Target<'_> {
         }
     }
 
-    /// Whether sizes are in their range and every slice has one element for each pixel (three bytes for colour).
+    /// Whether sizes are in range and every slice has one element per pixel (three bytes for colour).
     fn is_sound(&self) -> bool {
         let pixels = self.width as usize * self.height as usize;
         let fits = |length: Option<usize>, each: usize| length.is_none_or(|length| length == pixels * each);
@@ -70,7 +69,7 @@ impl Target<'_> {
             && fits(self.instance.as_ref().map(|instance| instance.len()), 1)
     }
 
-    /// Shortens distances to what is seen of them through fog, if depth sees it.
+    /// Shortens depths to what is visible through fog, if depth images include fog.
     pub(super) fn see_fog(&mut self, light: &Light) {
         let (Some(depth), Some(fog), true) = (&mut self.depth, light.fog_distance, light.fog_in_depth) else {
             return;
@@ -80,12 +79,12 @@ impl Target<'_> {
         }
     }
 
-    /// Whether nothing is wanted.
+    /// Whether nothing is requested.
     pub(crate) fn is_empty(&self) -> bool {
         self.rgb.is_none() && self.depth.is_none() && !self.has_labels()
     }
 
-    /// Whether any segmentation is wanted.
+    /// Whether any segmentation is requested.
     #[inline(always)]
     pub(super) fn has_labels(&self) -> bool {
         self.category.is_some() || self.class.is_some() || self.instance.is_some()

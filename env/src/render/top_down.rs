@@ -1,4 +1,4 @@
-//! The map of a scene: seen from straight above, north on top, with the agent on it.
+//! Draws the map of a scene from straight above, north on top, with the agent.
 
 use super::cpu::CpuRenderer;
 use super::frame::Frame;
@@ -6,13 +6,13 @@ use crate::assets::{ColliderShape, Paint};
 use crate::camera::Camera;
 use crate::scene::{ARENA_WALLS, Item, Scene};
 
-/// Least radius of an object on the map, as a share of the map's height.
+/// Least radius of an object on the map, as a fraction of the map's height.
 const LEAST_SIZE: f32 = 0.014;
 
-/// Classes of which little is seen from above.
+/// Classes that are hardly visible from above.
 const THIN: [&str; 4] = ["door", "key", "switch", "sign"];
 
-/// A picture: 8-bit RGB, row 0 on top.
+/// An 8-bit RGB image, row 0 on top.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image {
     /// Width in pixels.
@@ -23,15 +23,15 @@ pub struct Image {
     pub rgb: Vec<u8>,
 }
 
-/// The scene from above, with the agent's position and heading as an arrow if it is given.
+/// A map of the scene, with an arrow for the agent's position and heading if given.
 ///
-/// All of the arena and every object is on it; objects that would be specks are drawn larger than they are. Walls are
-/// filled, with a dark rim, and doors, keys, switches and signs are bars and dots.
+/// Shows the whole arena and every object; tiny objects are enlarged. Walls are filled, with a dark rim; doors, keys, switches
+/// and signs are bars and dots.
 pub fn top_down(scene: &Scene, width: u32, height: u32, agent: Option<([f32; 2], f32)>) -> Image {
     top_down_with_way(scene, width, height, agent, &[])
 }
 
-/// As [`top_down`], with a way over these places, in metres, as a line below the arrow.
+/// Like [`top_down`], with a path over these places, in metres, as a line below the arrow.
 pub fn top_down_with_way(
     scene: &Scene,
     width: u32,
@@ -40,7 +40,7 @@ pub fn top_down_with_way(
     way: &[[f32; 2]],
 ) -> Image {
     let span = span(scene, width as f32 / height as f32);
-    // From so high that nothing leans.
+    // High enough to avoid perspective.
     let camera_height = 40.0 * span;
     let camera = Camera {
         position: [0.0, 0.0, camera_height],
@@ -49,7 +49,7 @@ pub fn top_down_with_way(
         field_of_view_deg: 2.0 * libm::atanf(span / 2.0 / camera_height).to_degrees(),
     };
     let mut scene = scene.clone().with_wall_tops();
-    // A map is a drawing: nothing in it has a surface or a shadow.
+    // A map is a drawing, without surfaces or shadows.
     scene.natural = None;
     for item in &mut scene.items {
         item.scale = item.scale.max(LEAST_SIZE * span / item.asset.radius);
@@ -63,7 +63,7 @@ pub fn top_down_with_way(
     };
     let scale = height as f32 / span;
     let pixel = |[x, y]: [f32; 2]| [width as f32 / 2.0 + x * scale, height as f32 / 2.0 - y * scale];
-    // Dark rims, where there are walls beside the arena's own.
+    // Dark rims, if there are walls besides the arena's own.
     let brightness = if scene.walls.len() > ARENA_WALLS { 90.0 } else { 200.0 };
     for wall in &scene.walls {
         image.line([wall.from, wall.to].map(pixel), 0, darkened(wall.color, brightness));
@@ -87,12 +87,12 @@ pub fn top_down_with_way(
     image
 }
 
-/// Pixels in each metre of the map that [`top_down`] draws of a scene in this size; the arena's middle is the picture's.
+/// Pixels per metre of the map that [`top_down`] draws at this size; the arena's middle is the image's.
 pub fn top_down_scale(scene: &Scene, width: u32, height: u32) -> f32 {
     height as f32 / span(scene, width as f32 / height as f32)
 }
 
-/// Height of the ground that the map shows, in metres: arena and objects, with a margin of 6 %.
+/// Height in metres of the ground that the map shows: arena and objects, with a margin of 6 %.
 fn span(scene: &Scene, aspect: f32) -> f32 {
     let [mut wide, mut deep] = scene.arena_size();
     for item in scene.items.iter().filter(|item| item.visible) {
@@ -103,13 +103,13 @@ fn span(scene: &Scene, aspect: f32) -> f32 {
     deep.max(wide / aspect).max(1.0) * 1.06
 }
 
-/// A colour in bytes, at most as bright as said.
+/// A colour in bytes, scaled to this brightness.
 fn darkened(color: [f32; 3], brightness: f32) -> [u8; 3] {
     color.map(|channel| (channel * brightness) as u8)
 }
 
 impl Image {
-    /// A door as a bar along its leaf, what is round as a dot, in its main colour with a dark rim.
+    /// Draws a door as a bar along its leaf, and round objects as a dot, in their main colour with a dark rim.
     fn bar(&mut self, item: &Item, pixel: impl Fn([f32; 2]) -> [f32; 2]) {
         let half = match item.body.collider {
             ColliderShape::Box {
@@ -129,15 +129,14 @@ impl Image {
         self.line(ends, more, darkened(item.color.or(own).unwrap_or([0.5; 3]), 255.0));
     }
 
-    /// A line as thick as a hundredth of the picture, at least two pixels, and so many pixels more: walls are thin from
-    /// above.
+    /// Draws a line with a thickness relative to the image, at least two pixels, plus `more` pixels: walls are thin from above.
     fn line(&mut self, [from, to]: [[f32; 2]; 2], more: i32, rgb: [u8; 3]) {
         let thick = (self.height as i32 / 150).max(1) + more;
         let along = [to[0] - from[0], to[1] - from[1]];
         let steps = along[0].abs().max(along[1].abs()).ceil().clamp(1.0, 10_000.0);
         for k in 0..=steps as i32 {
             let share = k as f32 / steps;
-            // Far outside is far outside: corners may lie anywhere.
+            // Clamped, because corners may be anywhere.
             let pixel = |axis: usize| (from[axis] + along[axis] * share).clamp(-1e6, 1e6) as i32;
             let (x, y) = (pixel(0), pixel(1));
             for (dx, dy) in (0..=thick).flat_map(|dx| (0..=thick).map(move |dy| (dx, dy))) {
@@ -146,7 +145,7 @@ impl Image {
         }
     }
 
-    /// An arrowhead with a dark rim.
+    /// Draws an arrowhead with a dark rim.
     fn arrow(&mut self, [x, y]: [f32; 2], heading_deg: f32) {
         let size = (self.height as f32 / 22.0).max(5.0);
         let heading = heading_deg.to_radians();

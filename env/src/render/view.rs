@@ -1,4 +1,4 @@
-//! A camera ready to project, and what an object's own frame looks like from it. Filling is in `canvas.rs`.
+//! [`View`]: a camera ready to project, and the projection of an object's frame.
 
 use crate::camera::{Axes, Camera};
 use crate::scene::{Item, PanelGroup};
@@ -7,7 +7,7 @@ use crate::vector::{add, dot, scaled, sub};
 /// Nearest distance at which anything is drawn, in metres.
 pub(crate) const NEAR: f32 = 0.05;
 
-/// A camera at a size of picture. Pixel centres have whole coordinates.
+/// A camera for a size of image. Pixel centres have integer coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View {
     pub(crate) axes: Axes,
@@ -20,7 +20,7 @@ pub(crate) struct View {
     pub(crate) step: f32,
 }
 
-/// How points of an object's frame come onto the screen: `row · (x, y, z, 1)`.
+/// Projection of points of an object's frame onto the screen: `row · (x, y, z, 1)`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placement {
     /// Column times depth.
@@ -29,13 +29,13 @@ pub(crate) struct Placement {
     pub(crate) row: [f32; 4],
     /// Depth in metres.
     pub(crate) depth: [f32; 4],
-    /// Where the camera is, in the object's frame.
+    /// The camera's position, in the object's frame.
     pub(crate) eye: [f32; 3],
     /// Towards the sun, in the object's frame.
     pub(crate) sun: [f32; 3],
 }
 
-/// An object's frame in the world: turned about the upright axis, scaled, moved.
+/// An object's frame in the world: rotated about the upright axis, scaled and translated.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pose {
     pub(crate) position: [f32; 3],
@@ -44,16 +44,16 @@ pub(crate) struct Pose {
 }
 
 impl Pose {
-    /// That of what is given in the world's own frame.
+    /// The world's own frame.
     pub(crate) const WORLD: Self = Self {
         position: [0.0; 3],
         heading_deg: 0.0,
         scale: 1.0,
     };
 
-    /// That of panels: what lies on the ground is a little above it, as the camera sees it.
+    /// The frame of panels: flat ones are lifted slightly off the ground, depending on the camera.
     pub(crate) fn of_panels(group: &PanelGroup, view: &View) -> Self {
-        /// Metres above the ground from which on it is lifted no more.
+        /// Largest camera height in metres that is used for the lift.
         const HIGHEST: f32 = 1000.0;
         let height = view.position[2].clamp(0.0, HIGHEST);
         Self {
@@ -83,7 +83,7 @@ impl View {
         }
     }
 
-    /// How far a column or row is from the picture's middle, at 1 m: to the right, or down.
+    /// Offset of a column or row from the image's middle, at 1 m: to the right, or down.
     pub(crate) fn offset(&self, axis: usize, pixel: f32) -> f32 {
         (pixel + 0.5 - self.size[axis] / 2.0) * self.step
     }
@@ -94,13 +94,13 @@ impl View {
         [dot(d, self.axes.right), dot(d, self.axes.up), dot(d, self.axes.forward)]
     }
 
-    /// Whether a ball may be in the picture.
+    /// Whether a ball may be in the image.
     pub(crate) fn sees(&self, [right, up, forward]: [f32; 3], radius: f32) -> bool {
         if forward + radius < NEAR {
             return false;
         }
         let [tx, ty] = self.size.map(|pixels| pixels / 2.0 * self.step);
-        // Compared without roots: a ball is out if it lies beyond a side by more than its radius.
+        // Avoids square roots: a ball is outside if it is beyond a side by more than its radius.
         let beyond = |across: f32, tangent: f32| {
             let over = across.abs() - tangent * forward;
             over > 0.0 && over * over > radius * radius * (1.0 + tangent * tangent)
@@ -108,7 +108,7 @@ impl View {
         !(beyond(right, tx) || beyond(up, ty))
     }
 
-    /// The way from an object's frame to the screen.
+    /// The projection from an object's frame to the screen.
     pub(crate) fn placement(&self, pose: &Pose, sun: [f32; 3]) -> Placement {
         let heading = pose.heading_deg.to_radians();
         let (sin, cos) = if heading == 0.0 {

@@ -1,4 +1,4 @@
-//! What of a scene may be in a picture, and how closely it is looked at. How it is drawn is each renderer's.
+//! Finds the parts of a scene that may be visible, and their level of detail.
 
 use super::view::{NEAR, View};
 use crate::assets::Material;
@@ -7,7 +7,7 @@ use crate::scene::{ARENA_WALLS, Item, Scene};
 /// Largest error of a simplified mesh that is drawn, in pixels.
 const TOLERANCE: f32 = 0.5;
 
-/// Something that may be in the picture.
+/// An object that may be visible.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Visible {
     /// Depth of its nearest point in metres.
@@ -15,14 +15,14 @@ pub(super) struct Visible {
     pub(super) drawable: Drawable,
 }
 
-/// Which item of a scene, or which group of its panels.
+/// An item of a scene, or a group of its panels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Drawable {
     Item(u32),
     Panels(u32),
 }
 
-/// Finds what may be seen, in the scene's order; the arena's own walls only if they are not drawn by formula.
+/// Collects what may be visible, in the scene's order; the arena's own walls only if they are not drawn by formula.
 pub(super) fn find(scene: &Scene, view: &View, walls_are_drawn: bool, found: &mut Vec<Visible>) {
     found.clear();
     let mut note = |middle: [f32; 3], radius: f32, drawable: Drawable| {
@@ -52,13 +52,13 @@ pub(super) fn find(scene: &Scene, view: &View, walls_are_drawn: bool, found: &mu
     }
 }
 
-/// Puts what may be seen in order, near to far: what is behind is then mostly hidden when it comes.
+/// Sorts from near to far, so that later objects are mostly hidden.
 pub(super) fn sort(found: &mut [Visible]) {
     found.sort_unstable_by(|a, b| a.nearest.total_cmp(&b.nearest).then(a.drawable.cmp(&b.drawable)));
 }
 
-/// The same, with the arena's own walls at the end: they are long, so that some of each is near, but all else stands before
-/// them.
+/// Like [`sort`], with the arena's own walls last: they are long, so parts of each are near, but everything else stands in
+/// front of them.
 pub(super) fn sort_arena_last(found: &mut [Visible]) {
     found.sort_unstable_by(|a, b| {
         let of_arena =
@@ -71,7 +71,7 @@ pub(super) fn sort_arena_last(found: &mut [Visible]) {
     });
 }
 
-/// The mesh of an item that is fine enough for how near it is.
+/// The level of an item's mesh that is fine enough for its distance.
 pub(super) fn level<'a>(item: &'a Item, visible: Visible, view: &View) -> &'a [Material] {
     let pixels_per_metre = view.scale * item.scale / visible.nearest.max(NEAR);
     item.asset.level(TOLERANCE / pixels_per_metre)
@@ -84,7 +84,7 @@ mod tests {
     use driftworld_spec::{Object, WorldDraft};
 
     #[test]
-    fn what_is_ahead_comes_near_to_far_and_what_is_behind_not_at_all() {
+    fn objects_ahead_are_sorted_near_to_far_and_those_behind_left_out() {
         let objects = [[0.0, 30.0], [0.0, -10.0], [0.0, 10.0]].map(|place| Object::new("cube", place));
         let world = WorldDraft {
             objects: objects.to_vec(),

@@ -1,26 +1,24 @@
-//! Finding graphics cards: which there are, in which order they are tried, and why one cannot be used. Opening one is
-//! in
-//! `device.rs`.
+//! Lists GPU adapters in order of preference, and explains why one cannot be used.
 
 use crate::EnvError;
 
 use super::device::{Clipping, Device};
 
-/// Which adapters a renderer may be made on.
+/// The adapters that a renderer may use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GpuChoice {
-    /// Any, graphics cards first; software that stands in for one, such as Mesa's llvmpipe, last.
+    /// Any, GPUs first; software emulation, such as Mesa's llvmpipe, last.
     #[default]
     Any,
-    /// Graphics cards alone.
+    /// Only GPUs.
     Hardware,
 }
 
-/// All adapters of this machine, the most able first, and what the graphics interfaces say if there is none.
+/// All adapters of this machine, best first; if there are none, the error from the graphics APIs.
 pub(super) fn all() -> Result<Vec<wgpu::Adapter>, String> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = wgpu::Backends::PRIMARY;
-    // No debug layers: they are not part of what is drawn, and slow.
+    // No debug layers: they do not affect the image, and are slow.
     descriptor.flags = wgpu::InstanceFlags::empty();
     let instance = wgpu::Instance::new(descriptor);
     let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
@@ -33,7 +31,7 @@ pub(super) fn all() -> Result<Vec<wgpu::Adapter>, String> {
     Ok(adapters)
 }
 
-/// What wgpu says of a machine without adapters, but for the interfaces that this system or this build does not have.
+/// wgpu's message about a machine without adapters, without the APIs that this system or build lacks.
 fn shortened(said: &str) -> String {
     let (what, why) = said.split_once("; ").unwrap_or((said, ""));
     let idle = |part: &&str| part.ends_with("not compiled in") || part.ends_with("not requested");
@@ -44,10 +42,10 @@ fn shortened(said: &str) -> String {
     format!("{}: {}", what.to_lowercase(), why.join(", "))
 }
 
-/// Opens the first adapter on which `prove` succeeds.
+/// Opens the first adapter for which `prove` succeeds.
 ///
 /// # Errors
-/// [`EnvError::NoGpu`], with what was tried.
+/// [`EnvError::NoGpu`] with the adapters that were tried.
 pub(super) fn first<T>(choice: GpuChoice, prove: impl Fn(Device) -> Result<T, EnvError>) -> Result<T, EnvError> {
     let adapters = all().map_err(|reason| EnvError::NoGpu { tried: vec![reason] })?;
     let mut tried = Vec::new();
@@ -81,7 +79,7 @@ fn rank(kind: wgpu::DeviceType) -> u8 {
     }
 }
 
-/// The kind of an adapter in words.
+/// An adapter's type as text.
 pub(super) fn kind_name(info: &wgpu::AdapterInfo) -> &'static str {
     match info.device_type {
         wgpu::DeviceType::DiscreteGpu => "discrete graphics card",
@@ -97,7 +95,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_interfaces_that_could_be_used_are_blamed() {
+    fn error_names_only_apis_that_could_be_used() {
         for (said, expected) in [
             (
                 "No suitable adapter found; noop not requested, vulkan drivers could not be loaded, metal support not compiled in",

@@ -1,28 +1,27 @@
-//! Where tiles are drawn: textures that hold many of them side by side, and the buffer through which they come back.
-//! What is drawn is said in `pass.rs`.
+//! Atlases: textures that hold many tiles side by side, and buffers for reading them back.
 
 use super::device::Device;
 use super::pipelines::{DEPTH_FORMAT, WORD_FORMAT};
 
-/// Bytes of a pixel in each texture.
+/// Bytes per pixel in each texture.
 const BYTES: u32 = 4;
 
-/// Rows that are copied from a texture must begin at multiples of so many pixels.
+/// Alignment in pixels of rows that are copied from a texture.
 const ALIGNED: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT / BYTES;
 
-/// The most pixels of a pass, unless a single tile has more.
+/// Most pixels of a pass, unless a single tile has more.
 const MOST_PIXELS: u32 = 1 << 24;
 
-/// Which images a pass is to bring back.
+/// The images that a pass reads back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Planes {
-    /// Colour, and labels beside it.
+    /// Colour, with labels.
     pub(super) words: bool,
     pub(super) depth: bool,
     pub(super) items: bool,
 }
 
-/// How tiles of one size lie side by side.
+/// Arrangement of tiles of one size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Grid {
     /// Width and height of a tile in pixels.
@@ -32,11 +31,11 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// A grid for up to `count` tiles, near to a square, on a device whose textures are at most `most` pixels wide and
-    /// high; none if not even one tile fits.
+    /// A nearly square grid for up to `count` tiles, on a device with textures of at most `most` pixels per side; `None` if not
+    /// even one tile fits.
     pub(super) fn new(tile: [u32; 2], count: usize, most: u32) -> Option<Self> {
         let [width, height] = tile;
-        // Textures are padded to whole aligned rows.
+        // Textures are padded to aligned rows.
         let most_columns = most / ALIGNED * ALIGNED / width.max(1);
         let most_rows = most / height.max(1);
         if most_columns == 0 || most_rows == 0 {
@@ -52,12 +51,12 @@ impl Grid {
         Some(Self { tile, columns, rows })
     }
 
-    /// How many tiles there is room for.
+    /// Most tiles that fit.
     pub(super) fn capacity(self) -> usize {
         self.columns as usize * self.rows as usize
     }
 
-    /// The left upper corner of a tile in pixels.
+    /// The upper left corner of a tile in pixels.
     pub(super) fn corner(self, number: usize) -> [u32; 2] {
         let number = number as u32;
         [
@@ -66,27 +65,27 @@ impl Grid {
         ]
     }
 
-    /// Pixels from side to side, padded to whole aligned rows, and from top to bottom.
+    /// Width and height in pixels; the width is padded to aligned rows.
     fn size(self) -> [u32; 2] {
         let width = (self.columns * self.tile[0]).next_multiple_of(ALIGNED);
         [width, self.rows * self.tile[1]]
     }
 }
 
-/// A few more tiles than asked for, so that passes of about as many can use the same textures.
+/// Rounds up the number of tiles, so that passes with similar counts share textures.
 fn rounded(count: usize) -> usize {
     count.next_multiple_of((count.next_power_of_two() / 8).max(1))
 }
 
-/// The most atlases that are kept, and the most pixels that they have together.
+/// Most atlases kept, and most pixels of all of them together.
 const MOST_KEPT: (usize, u64) = (16, 1 << 25);
 
-/// Atlases of several sizes: depths can only be copied from whole textures, so that each grid needs its own.
+/// Cached atlases of several sizes: depths can only be copied from whole textures, so each grid needs its own.
 #[derive(Debug, Default)]
 pub(super) struct Atlases(pub(super) Vec<Atlas>);
 
 impl Atlases {
-    /// One for this grid; a new one if there is none.
+    /// Takes an atlas for this grid, or creates one.
     pub(super) fn take(&mut self, device: &Device, grid: Grid, planes: Planes) -> Atlas {
         let serves = |atlas: &Atlas| {
             let room = atlas.back.size() >= bytes_back(grid, planes);
@@ -98,7 +97,7 @@ impl Atlases {
         let pixels = |size: [u32; 2]| u64::from(size[0]) * u64::from(size[1]);
         let (most, most_pixels) = MOST_KEPT;
         let mut total = pixels(grid.size());
-        // The oldest go first.
+        // Evicts the oldest first.
         let kept = self.0.iter().rev().take(most - 1).take_while(|atlas| {
             total += pixels(atlas.size);
             total <= most_pixels
@@ -109,7 +108,7 @@ impl Atlases {
     }
 }
 
-/// Textures and the buffer behind them.
+/// Textures, and the buffer that they are copied to.
 #[derive(Debug)]
 pub(super) struct Atlas {
     /// Width and height in pixels.
@@ -145,7 +144,7 @@ impl Atlas {
         }
     }
 
-    /// Begins a pass over all of it.
+    /// Begins a pass over the whole atlas.
     pub(super) fn begin<'a>(&self, encoder: &'a mut wgpu::CommandEncoder, planes: Planes) -> wgpu::RenderPass<'a> {
         let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
         let words = view(&self.words);
@@ -172,7 +171,7 @@ impl Atlas {
         })
     }
 
-    /// Copies what was drawn into the buffer; says where each image begins there.
+    /// Copies the images into the buffer; returns their offsets.
     pub(super) fn copy_back(&self, encoder: &mut wgpu::CommandEncoder, grid: Grid, planes: Planes) -> Layout {
         let [width, height] = grid.size();
         let mut layout = Layout {
@@ -216,10 +215,10 @@ impl Atlas {
     }
 }
 
-/// Where images are in the buffer, in bytes.
+/// Offsets of the images in the buffer, in bytes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Layout {
-    /// From one row to the next.
+    /// Bytes per row.
     pub(super) row: usize,
     pub(super) words: Option<usize>,
     pub(super) depth: Option<usize>,
@@ -232,7 +231,7 @@ fn plane_bytes(grid: Grid) -> u64 {
     u64::from(width) * u64::from(height) * u64::from(BYTES)
 }
 
-/// How many bytes a pass brings back.
+/// Bytes that a pass reads back.
 pub(super) fn bytes_back(grid: Grid, planes: Planes) -> u64 {
     let count = [planes.words, planes.depth, planes.items]
         .into_iter()
@@ -270,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn tiles_lie_in_a_square_as_far_as_textures_allow() {
+    fn grid_is_square_as_far_as_textures_allow() {
         check([84, 84], 1, 8192, Some([1, 1]));
         check([84, 84], 64, 8192, Some([8, 8]));
         check([84, 84], 65, 8192, Some([9, 9]));
@@ -286,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn corners_go_along_rows() {
+    fn corners_follow_row_order() {
         let grid = Grid::new([10, 20], 8, 4096).expect("it fits");
         assert_eq!([grid.columns, grid.rows], [4, 2]);
         assert_eq!(grid.corner(5), [10, 20]);

@@ -1,30 +1,29 @@
-//! A graphics device that never panics: what goes wrong on it is noted and handed out as an error. Which device it is,
-//! is chosen in `adapter.rs`.
+//! [`Device`]: a GPU device that never panics: errors are recorded and returned.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::EnvError;
 
-/// A device with its queue, its limits and what it complains about.
+/// A device with its queue, its limits and its recorded errors.
 #[derive(Debug)]
 pub(super) struct Device {
     pub(super) card: wgpu::Device,
     pub(super) queue: wgpu::Queue,
     pub(super) info: wgpu::AdapterInfo,
     pub(super) limits: wgpu::Limits,
-    /// Whether triangles can be cut at the edges of their tile; else there is a pass of draws for each tile.
+    /// Whether triangles can be clipped at the edges of their tile; otherwise each tile is drawn separately.
     pub(super) has_clip_distances: bool,
     complaints: Complaints,
 }
 
-/// What went wrong since it was last asked for, and whether the device is lost for good.
+/// The first error since the last check, and the reason if the device is lost for good.
 #[derive(Clone, Debug, Default)]
 struct Complaints(Arc<Mutex<(Vec<String>, Option<String>)>>);
 
 impl Complaints {
     fn note(&self, text: String) {
         let (first, _) = &mut *self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        // What follows from a first mistake explains nothing.
+        // Errors that follow from the first one explain nothing.
         if first.is_empty() {
             first.push(text);
         }
@@ -34,7 +33,7 @@ impl Complaints {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).1 = Some(text);
     }
 
-    /// The reason for the loss of the device, or the first mistake since this was last asked.
+    /// The reason why the device was lost, or the first error since the last call.
     fn take(&self) -> Option<String> {
         let (first, lost) = &mut *self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let mistake = first.pop();
@@ -45,8 +44,7 @@ impl Complaints {
 }
 
 impl Device {
-    /// Opens an adapter with all that it allows; with `clipping`, triangles are cut at their tile's edges if it can do
-    /// that.
+    /// Opens an adapter with its full limits; with `clipping`, triangles are clipped at their tile's edges if supported.
     pub(super) fn open(adapter: &wgpu::Adapter, clipping: Clipping) -> Result<Self, String> {
         let clip = wgpu::Features::CLIP_DISTANCES;
         let features = match clipping {
@@ -98,16 +96,16 @@ impl Device {
     }
 }
 
-/// Whether triangles are to be cut at the edges of their tile.
+/// Whether to clip triangles at the edges of their tile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Clipping {
     IfPossible,
-    /// As on an adapter that cannot: for tests.
+    /// As on an adapter without support; for tests.
     #[cfg(test)]
     Never,
 }
 
-/// An error in one line.
+/// An error as one line.
 fn explained(error: &wgpu::Error) -> String {
     let text = match error {
         wgpu::Error::OutOfMemory { .. } => "out of graphics memory".to_owned(),

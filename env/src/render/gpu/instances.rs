@@ -1,5 +1,4 @@
-//! What of one scene is drawn into one tile: an instance for each object in sight, and for each triangle of walls that
-//! are not drawn by formula. The triangles of objects are kept in `library.rs`.
+//! Collects the instances of one tile: one per visible object, and one per triangle of walls that are not drawn by formula.
 
 use std::sync::Arc;
 
@@ -14,36 +13,36 @@ use crate::assets::{Asset, BLOCK, Block};
 use crate::camera::Camera;
 use crate::scene::{Item, PanelGroup, Scene};
 
-/// Words of an instance: the size of `Instance` in `objects.wgsl`.
+/// Words per instance: the size of `Instance` in `objects.wgsl`.
 pub(super) const WORDS: usize = 22;
 
-/// The word of an instance that holds the number of its tile.
+/// Index of the word with the instance's tile.
 const TILE: usize = 19;
 
 /// One instance, in the order of `Instance` in `objects.wgsl`.
 pub(super) type InstanceWords = [u32; WORDS];
 
-/// What an instance is one of.
+/// The shape of an instance.
 #[derive(Clone, Debug)]
 pub(super) enum Shape {
-    /// The triangle whose corners the instance holds itself.
+    /// A triangle whose corners are in the instance itself.
     Triangle,
-    /// An asset, and which of its levels: the address of the level's materials, which lasts as long as the asset.
+    /// An asset and its level: the address of the level's materials, which is valid as long as the asset.
     Asset(Arc<Asset>, usize),
 }
 
-/// What is drawn into one tile. Kept from pass to pass.
+/// Contents of one tile. Reused between passes.
 #[derive(Debug, Default)]
 pub(super) struct TileContents {
     pub(super) tile: TileWords,
     pub(super) instances: Vec<InstanceWords>,
-    /// One for each instance.
+    /// One shape per instance.
     pub(super) shapes: Vec<Shape>,
     visible: Vec<Visible>,
 }
 
 impl TileContents {
-    /// Finds what a camera sees of a scene in a picture of this size. Where the tile will lie is not known yet: see
+    /// Collects everything that a camera sees of a scene in an image of this size. The tile's position is set later, by
     /// [`TileContents::place`].
     pub(super) fn gather(&mut self, scene: &Scene, camera: &Camera, size: [u32; 2], labels: Labels) {
         let view = View::new(camera, size[0] as usize, size[1] as usize);
@@ -65,7 +64,7 @@ impl TileContents {
         self.visible = all_visible;
     }
 
-    /// Puts the tile where it will be drawn: its number in the pass, and its left upper corner in the atlas.
+    /// Sets the tile's index in the pass and its upper left corner in the atlas.
     pub(super) fn place(&mut self, number: u32, corner: [u32; 2]) {
         self.tile[0][0] = (corner[0] as f32).to_bits();
         self.tile[0][1] = (corner[1] as f32).to_bits();
@@ -103,16 +102,16 @@ impl TileContents {
     }
 }
 
-/// What the highest byte of a pixel's word holds.
+/// Contents of the highest byte of a pixel's word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Labels {
-    /// The category alone: the class follows from the item.
+    /// Only the category: the class follows from the item.
     CategoryOnly,
     /// Class and category.
     WithClass,
 }
 
-/// The lanes of a block that hold a triangle.
+/// The lanes of a block that contain a triangle.
 pub(super) fn triangles(block: &Block) -> impl Iterator<Item = (&Block, usize)> {
     let real = |lane: &usize| normal(block, *lane) != [0.0; 3];
     (0..BLOCK).filter(real).map(move |lane| (block, lane))
@@ -126,7 +125,7 @@ pub(super) fn corners(block: &Block, lane: usize) -> [[f32; 3]; 3] {
     [0, 3, 6].map(|first| [0, 1, 2].map(|axis| block.corners[first + axis][lane]))
 }
 
-/// The way of a triangle's corners to the screen, as rows for corners (1, 0, 0), (0, 1, 0) and (0, 0, 1): neighbours
+/// The projection of a triangle's corners, as rows for the corners (1, 0, 0), (0, 1, 0) and (0, 0, 1): neighbouring triangles
 /// then share their edges to the bit.
 fn corners_as_rows(at: &Placement, corners: [[f32; 3]; 3]) -> Placement {
     let row = |row: &[f32; 4]| {
@@ -141,7 +140,7 @@ fn corners_as_rows(at: &Placement, corners: [[f32; 3]; 3]) -> Placement {
     }
 }
 
-/// The words of an instance; the tile's number comes later.
+/// The words of an instance, without the tile's index.
 fn instance(at: &Placement, sun: [f32; 3], color: [f32; 4], [label, item]: [u32; 2]) -> InstanceWords {
     let mut words = [0; WORDS];
     let numbers = at

@@ -1,5 +1,4 @@
-//! The triangles of every asset that was drawn so far, on the graphics card, and where each begins. What is drawn in a
-//! picture is found in `instances.rs`.
+//! Caches the triangles of all assets on the GPU.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -9,26 +8,26 @@ use super::device::Device;
 use super::instances::{Shape, corners, normal, triangles};
 use crate::assets::{Asset, Material, Paint};
 
-/// Numbers of a vertex: place, normal, colour, and whether the object's own colour takes its place.
+/// Numbers per vertex: position, normal, colour, and whether the object's colour replaces it.
 pub(super) const VERTEX_LENGTH: usize = 10;
 
-/// More vertices than this are forgotten, so that no stream of ever new assets fills the memory: 160 MiB.
+/// Above this many vertices the cache is cleared, so that endless new assets cannot fill the memory: 160 MiB.
 const MOST_VERTICES: usize = 1 << 22;
 
-/// Where an asset's triangles are among all vertices.
+/// Range of an asset's triangles among all vertices.
 pub(super) type Mesh = Range<u32>;
 
-/// All meshes, the triangle of [`Shape::Triangle`] first.
+/// All meshes, starting with the triangle of [`Shape::Triangle`].
 #[derive(Debug, Default)]
 pub(super) struct Library {
     pub(super) meshes: Vec<Mesh>,
-    /// Numbers of meshes by the address of their materials.
+    /// Indices of meshes, by the address of their materials.
     known: HashMap<usize, u32>,
-    /// Keeps the addresses from being used anew.
+    /// Keeps the assets alive, so that addresses are not reused.
     assets: Vec<Arc<Asset>>,
     vertices: Vec<f32>,
     buffer: Option<wgpu::Buffer>,
-    /// How many of the vertices are in the buffer.
+    /// Number of vertices already in the buffer.
     uploaded: usize,
 }
 
@@ -37,21 +36,21 @@ impl Library {
         let mut library = Self::default();
         for corner in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
             library.vertices.extend(corner);
-            // An upright face that takes its instance's colour.
+            // An upright face with its instance's colour.
             library.vertices.extend([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
         }
         library.meshes.push(0..3);
         library
     }
 
-    /// Forgets all assets if there are too many; numbers of meshes from before are void then.
+    /// Clears the cache if it is too large, which invalidates all mesh indices.
     pub(super) fn make_room(&mut self) {
         if self.vertices.len() / VERTEX_LENGTH > MOST_VERTICES {
             *self = Self::new();
         }
     }
 
-    /// The number of a shape's mesh; what is new is put down.
+    /// The index of a shape's mesh; adds new ones.
     pub(super) fn number(&mut self, shape: &Shape) -> u32 {
         let Shape::Asset(asset, address) = shape else { return 0 };
         if let Some(&number) = self.known.get(address) {
@@ -89,7 +88,7 @@ impl Library {
         }
     }
 
-    /// The vertices on the card; what is new goes there first.
+    /// The vertex buffer, after uploading new vertices.
     pub(super) fn upload(&mut self, device: &Device) -> &wgpu::Buffer {
         let length = self.vertices.len();
         let bytes = bytemuck::cast_slice(&self.vertices);
@@ -107,7 +106,7 @@ impl Library {
         self.uploaded = length;
         self.buffer.get_or_insert_with(|| {
             let usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST;
-            // Room for as many again, so that the next few assets need no other buffer.
+            // Twice the size needed, so that the next few assets fit as well.
             let needed = bytes.len() as u64;
             let size = (2 * needed).min(device.limits.max_buffer_size).max(needed);
             let buffer = device.buffer("vertices", size, usage);
@@ -124,7 +123,7 @@ mod tests {
     use driftworld_spec::Model;
 
     #[test]
-    fn an_asset_is_put_down_once_with_all_its_triangles() {
+    fn asset_is_cached_once_with_all_its_triangles() {
         let mut library = Library::new();
         let asset = asset("tree", &Model::default());
         let materials = asset.level(0.0);

@@ -1,8 +1,7 @@
-//! [`GpuRenderer`]: the same pictures drawn by a graphics card, many at once. How one pass is drawn is in `pass.rs`;
-//! who decides for this renderer or the processor's is `renderer.rs`.
+//! [`GpuRenderer`]: renders many images at once on a GPU.
 //!
-//! The pictures of a batch are tiles of one large target. All objects of one mesh, whichever tile they are in, are
-//! drawn together, cut at the edges of their tiles; one buffer brings all images back.
+//! The images of a batch are tiles of one large target. All objects with the same mesh, in any tile, are drawn together and
+//! clipped at the edges of their tiles; all images are read back in one buffer.
 
 mod adapter;
 mod atlas;
@@ -34,11 +33,10 @@ use crate::EnvError;
 use crate::camera::Camera;
 use crate::scene::Scene;
 
-/// Draws scenes on a graphics card. Keeps its buffers from picture to picture.
+/// Renders scenes on a GPU. Reuses its buffers.
 ///
-/// Pictures are those of [`CpuRenderer`] but for single pixels at edges: each adapter rounds a little differently.
-/// Natural looks are drawn by that renderer. One renderer draws one batch at a time, on the thread that asks and with rayon's threads beside
-/// it.
+/// Images equal those of [`CpuRenderer`] except for single pixels at edges, because each adapter rounds slightly differently.
+/// The natural style is rendered by [`CpuRenderer`]. Draws one batch at a time, on the calling thread and rayon's threads.
 #[derive(Debug)]
 pub struct GpuRenderer {
     device: Device,
@@ -47,27 +45,27 @@ pub struct GpuRenderer {
     hand: Hand,
 }
 
-/// One picture to draw, or its colours alone at several points per pixel.
+/// An image to render, or only its colours with several samples per pixel.
 #[derive(Clone, Copy, Debug)]
 struct Job {
     picture: usize,
     size: [u32; 2],
     planes: Planes,
     labels: Labels,
-    /// Points per pixel along each side.
+    /// Samples per pixel along each side.
     samples: u32,
 }
 
 impl GpuRenderer {
-    /// A renderer on the first adapter that draws a small picture.
+    /// A renderer on the first adapter that renders a small test image correctly.
     ///
     /// # Errors
-    /// [`EnvError::NoGpu`], with what was tried and why it failed.
+    /// [`EnvError::NoGpu`] with the adapters that were tried, and why each failed.
     pub fn new(choice: GpuChoice) -> Result<Self, EnvError> {
         adapter::first(choice, Self::proven)
     }
 
-    /// A renderer on this device, after it has drawn a small picture.
+    /// A renderer on this device, if it renders a small test image.
     fn proven(device: Device) -> Result<Self, EnvError> {
         let stage = Stage::new(&device);
         device.check()?;
@@ -82,22 +80,22 @@ impl GpuRenderer {
         Ok(renderer)
     }
 
-    /// The adapter's name, as its driver gives it.
+    /// The adapter's name, as reported by its driver.
     pub fn adapter_name(&self) -> &str {
         &self.device.info.name
     }
 
-    /// The graphics interface in use: `vulkan`, `metal` or `dx12`.
+    /// The graphics API in use: `vulkan`, `metal` or `dx12`.
     pub fn backend(&self) -> &'static str {
         self.device.info.backend.to_str()
     }
 
-    /// Whether the adapter is software that stands in for a graphics card.
+    /// Whether the adapter is software emulation of a GPU.
     pub fn is_software(&self) -> bool {
         adapter::is_software(&self.device.info)
     }
 
-    /// Draws all images of a frame.
+    /// Renders all images of a frame.
     ///
     /// # Errors
     /// As [`GpuRenderer::draw_batch`].
@@ -108,7 +106,7 @@ impl GpuRenderer {
         self.draw(scene, camera, &mut frame.target())
     }
 
-    /// Draws the images that the target asks for.
+    /// Renders the images that the target requests.
     ///
     /// # Errors
     /// As [`GpuRenderer::draw_batch`].
@@ -120,17 +118,17 @@ impl GpuRenderer {
         }])
     }
 
-    /// Draws things that are carried onto colours: the processor does it here, too.
+    /// Draws carried things onto the colours, on the CPU.
     pub(super) fn draw_carried(&mut self, scene: &Scene, carried: &[u32], target: &mut Target<'_>) {
         self.hand.draw(scene, carried, target);
     }
 
-    /// Draws many pictures, those of one size together. The processor draws natural looks.
+    /// Renders many images, those of one size together. The natural style is rendered on the CPU.
     ///
     /// # Errors
-    /// [`EnvError::PictureSize`] as for [`CpuRenderer::draw`](super::CpuRenderer::draw), and [`EnvError::GpuPicture`]
-    /// for pictures that this adapter cannot hold, before anything is drawn; [`EnvError::Gpu`] when the device fails:
-    /// some images may be old then.
+    /// [`EnvError::PictureSize`] as for [`CpuRenderer::draw`](super::CpuRenderer::draw), and [`EnvError::GpuPicture`] for
+    /// images too large for this adapter, before anything is drawn; [`EnvError::Gpu`] if the device fails: some images may be
+    /// stale then.
     pub fn draw_batch(&mut self, pictures: &mut [Picture<'_>]) -> Result<(), EnvError> {
         let mut jobs = Vec::with_capacity(pictures.len());
         for (index, picture) in pictures.iter().enumerate() {
@@ -177,7 +175,7 @@ impl GpuRenderer {
             })
     }
 
-    /// Draws jobs that are alike and fit into one pass; or in halves, if they hold too many objects.
+    /// Draws similar jobs in one pass; splits them in half if they contain too many objects.
     fn draw_pass(&mut self, jobs: &[Job], pictures: &mut [Picture<'_>]) -> Result<(), EnvError> {
         let mut contents = std::mem::take(&mut self.contents);
         if contents.len() < jobs.len() {
@@ -229,7 +227,7 @@ impl GpuRenderer {
             contents,
         };
         self.stage.run(&self.device, pass, |bytes, layout| {
-            // Jobs of a pass are for different pictures, in their order.
+            // Jobs of a pass belong to different images, in order.
             let mut tiles = jobs.iter().enumerate().peekable();
             let work: Vec<_> = pictures
                 .iter_mut()
@@ -258,7 +256,7 @@ impl GpuRenderer {
     }
 }
 
-/// What must be drawn for a picture: everything at once, or colours apart if they are the mean of several points.
+/// The jobs for an image: everything at once, or colours separately if they have several samples per pixel.
 fn jobs_for(index: usize, picture: &Picture<'_>) -> impl Iterator<Item = Job> + use<> {
     let target = &picture.target;
     let fits = picture.scene.highest_class < 1 << (8 - CATEGORY_BITS);
@@ -297,7 +295,7 @@ mod tests {
     use super::device::Clipping;
     use super::*;
 
-    /// A renderer on each adapter of this machine; none where there is none.
+    /// A renderer on each adapter of this machine, if any.
     fn each(clipping: Clipping) -> Vec<GpuRenderer> {
         let adapters = adapter::all().unwrap_or_default();
         let open = |adapter: &wgpu::Adapter| Device::open(adapter, clipping).map(GpuRenderer::proven);
@@ -325,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn an_adapter_that_cannot_clip_draws_tile_by_tile_to_the_same_end() {
+    fn adapter_without_clipping_renders_the_same_images() {
         let together = each(Clipping::IfPossible).into_iter();
         for (mut clips, mut does_not) in together.zip(each(Clipping::Never)) {
             assert!(!does_not.device.has_clip_distances);
@@ -342,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lost_device_is_an_error_and_no_panic() {
+    fn lost_device_returns_an_error_without_panic() {
         for mut renderer in each(Clipping::IfPossible) {
             renderer.device.card.destroy();
             for _ in 0..2 {

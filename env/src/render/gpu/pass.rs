@@ -1,5 +1,4 @@
-//! One pass: tiles of one size drawn into an atlas and brought back. Which tiles go together is decided in `mod.rs`;
-//! what their bytes become, in `unpack.rs`.
+//! Runs one pass: draws tiles of one size into an atlas and reads them back.
 
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
@@ -12,7 +11,7 @@ use super::pipelines::{Kind, Pipelines};
 use super::tile::{QUADS, TileWords};
 use crate::EnvError;
 
-/// Everything that passes need, kept from one to the next.
+/// Buffers and pipelines shared by passes.
 #[derive(Debug)]
 pub(super) struct Stage {
     pipelines: Pipelines,
@@ -21,7 +20,7 @@ pub(super) struct Stage {
     tiles: Growing,
     instances: Growing,
     sizes: wgpu::Buffer,
-    /// Instances of all tiles, those of one mesh together.
+    /// Instances of all tiles, grouped by mesh.
     sorted: Vec<InstanceWords>,
     tile_words: Vec<TileWords>,
     draws: Vec<Draw>,
@@ -29,7 +28,7 @@ pub(super) struct Stage {
     counts: Vec<u32>,
 }
 
-/// Instances of one mesh, drawn together; all inside one tile if triangles cannot be cut at tiles' edges.
+/// Instances of one mesh, drawn together; within one tile if triangles cannot be clipped at tiles' edges.
 #[derive(Clone, Debug)]
 struct Draw {
     mesh: Mesh,
@@ -37,7 +36,7 @@ struct Draw {
     tile: usize,
 }
 
-/// A buffer that is replaced by a larger one when it must hold more.
+/// A buffer that is replaced by a larger one when necessary.
 #[derive(Debug)]
 struct Growing {
     label: &'static str,
@@ -75,7 +74,7 @@ impl Growing {
     }
 }
 
-/// Tiles that go together.
+/// Tiles to draw together.
 pub(super) struct Pass<'a> {
     pub(super) grid: Grid,
     pub(super) planes: Planes,
@@ -100,10 +99,10 @@ impl Stage {
         }
     }
 
-    /// Draws the tiles, and hands their bytes to `take`.
+    /// Draws the tiles, and passes their bytes to `take`.
     ///
     /// # Errors
-    /// [`EnvError::Gpu`] for whatever the device complains about; what was kept for the next pass is dropped then.
+    /// [`EnvError::Gpu`] for any error of the device; the cached buffers are dropped then.
     pub(super) fn run(
         &mut self,
         device: &Device,
@@ -189,7 +188,7 @@ impl Stage {
         Ok(())
     }
 
-    /// Puts instances of one mesh together: of all tiles, or of each tile where each is drawn by itself.
+    /// Groups instances by mesh: over all tiles, or within each tile if tiles are drawn separately.
     fn sort(&mut self, contents: &[TileContents], all_together: bool) {
         self.draws.clear();
         self.sorted.clear();
@@ -202,7 +201,7 @@ impl Stage {
         }
     }
 
-    /// A counting sort: numbers of meshes are small.
+    /// Counting sort: mesh indices are small.
     fn sort_part(&mut self, contents: &[TileContents], first_tile: usize) {
         self.numbers.clear();
         for shape in contents.iter().flat_map(|content| &content.shapes) {
@@ -216,7 +215,7 @@ impl Stage {
         let mut start = self.sorted.len() as u32;
         for (number, count) in self.counts.iter_mut().enumerate() {
             let instances = start..start + *count;
-            // From here on it counts where the next instance goes.
+            // From here on, holds the position of the next instance.
             *count = start;
             start = instances.end;
             if !instances.is_empty() {
@@ -237,7 +236,7 @@ impl Stage {
     }
 }
 
-/// The most tiles and instances that this device takes in one pass.
+/// Most tiles and instances per pass on this device.
 pub(super) fn most_in_a_pass(limits: &wgpu::Limits) -> [usize; 2] {
     let storage = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
     let tile = (QUADS * 16) as u64;
@@ -245,7 +244,7 @@ pub(super) fn most_in_a_pass(limits: &wgpu::Limits) -> [usize; 2] {
     [storage / tile, limits.max_buffer_size / instance].map(|most| usize::try_from(most).unwrap_or(usize::MAX))
 }
 
-/// Waits for the images and hands them over.
+/// Waits for the images and passes them to `take`.
 fn read(device: &Device, atlas: &Atlas, layout: Layout, take: impl FnOnce(&[u8], Layout)) -> Result<(), EnvError> {
     let failed = |reason: &dyn std::fmt::Display| {
         let known = device.check();

@@ -1,5 +1,4 @@
-//! The shaders made ready for a device: one pair of pipelines, for what lies behind and for objects, for each kind of
-//! pass. What the shaders do is said in the `.wgsl` files.
+//! Compiles the shaders for a device: a pair of pipelines, for the background and for objects, per kind of pass.
 
 use super::super::backdrop::{CONTRAST, FADING, SQUARE};
 use super::super::compose::{MOST_SQUARES, SHIFT};
@@ -10,16 +9,16 @@ use super::device::Device;
 use super::instances::WORDS;
 use super::library::VERTEX_LENGTH;
 
-/// Colour bytes and label, or an item's number.
+/// Colour bytes with a label, or an item's index.
 pub(super) const WORD_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 
-/// Near plane / depth, so that floats are dense where depths are large.
+/// Near plane / depth: floats are dense where depths are large.
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// What kind of pass a pair of pipelines is for.
+/// The kind of pass that a pair of pipelines is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Kind {
-    /// Whether items' numbers are written beside the words.
+    /// Whether items' indices are written as well.
     pub(super) items: bool,
     /// Whether any tile has fog.
     pub(super) fog: bool,
@@ -32,7 +31,7 @@ pub(super) struct Pair {
     pub(super) objects: wgpu::RenderPipeline,
 }
 
-/// All pipelines that were needed so far.
+/// All pipelines created so far.
 #[derive(Debug)]
 pub(super) struct Pipelines {
     program: Program,
@@ -40,7 +39,7 @@ pub(super) struct Pipelines {
     made: [Option<Pair>; 4],
 }
 
-/// What all pipelines share.
+/// State shared by all pipelines.
 #[derive(Debug)]
 struct Program {
     module: wgpu::ShaderModule,
@@ -72,7 +71,7 @@ impl Pipelines {
         }
     }
 
-    /// The pipelines for a kind of pass, made when they are first asked for.
+    /// The pipelines for a kind of pass, created on first use.
     pub(super) fn pair(&mut self, device: &Device, kind: Kind) -> &Pair {
         let place = usize::from(kind.items) + 2 * usize::from(kind.fog);
         self.made[place].get_or_insert_with(|| Pair {
@@ -82,7 +81,7 @@ impl Pipelines {
     }
 }
 
-/// The whole program: constants as the processor's renderer has them, then the files.
+/// The shader source: the CPU renderer's constants, then the files.
 fn source(has_clip_distances: bool) -> String {
     let constants = format!(
         "const NEAR: f32 = {NEAR:?};\nconst SQUARE: f32 = {SQUARE:?};\nconst CONTRAST: vec2f = vec2f({:?}, {:?});\n\
@@ -120,7 +119,7 @@ fn binding(binding: u32, ty: wgpu::BufferBindingType) -> wgpu::BindGroupLayoutEn
     }
 }
 
-/// In what the two pipelines of a pair differ.
+/// Differences between the two pipelines of a pair.
 struct Stages<'a> {
     label: &'a str,
     vertex: &'a str,
@@ -131,7 +130,7 @@ struct Stages<'a> {
 }
 
 impl Program {
-    /// What lies behind: it is drawn first and overwrites whatever was there.
+    /// The background: drawn first, over anything left from before.
     fn backdrop(&self, device: &Device, kind: Kind) -> wgpu::RenderPipeline {
         let stages = Stages {
             label: "backdrop",
@@ -144,7 +143,7 @@ impl Program {
         self.pipeline(device, kind, &stages)
     }
 
-    /// Objects: drawn where nothing nearer is, and seen from the front alone.
+    /// Objects: with depth test and back-face culling.
     fn objects(&self, device: &Device, kind: Kind) -> wgpu::RenderPipeline {
         let corner = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x4];
         let instance = wgpu::vertex_attr_array![

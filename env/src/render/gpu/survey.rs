@@ -1,4 +1,4 @@
-//! Trying every adapter of this machine, for a report. What it is compared with is the processor's picture.
+//! Tests every adapter of this machine for a report, by comparing its image with the CPU renderer's.
 
 use super::super::cpu::CpuRenderer;
 use super::super::frame::Frame;
@@ -9,13 +9,13 @@ use crate::camera::Camera;
 use crate::scene::Scene;
 use driftworld_spec::{Object, WorldDraft};
 
-/// Side of the picture that is drawn as a proof, in pixels.
+/// Side of the test image, in pixels.
 const SIDE: u32 = 64;
 
-/// Share of pixels that must be as the processor draws them, but for a little.
+/// Share of pixels that must match the CPU's image, within a tolerance.
 const ALIKE: f64 = 0.98;
 
-/// Every adapter with what becomes of a small picture on it; or why there is none.
+/// Every adapter with its test result; or the reason why there is none.
 pub(in super::super) fn survey() -> Result<Vec<AdapterReport>, String> {
     Ok(adapter::all()?.iter().map(report).collect())
 }
@@ -32,7 +32,7 @@ fn report(adapter: &wgpu::Adapter) -> AdapterReport {
     }
 }
 
-/// Draws a small picture and looks whether it is the right one.
+/// Renders a small image and checks it.
 fn prove(adapter: &wgpu::Adapter) -> Result<(), String> {
     let device = Device::open(adapter, Clipping::IfPossible)?;
     let mut renderer = GpuRenderer::proven(device).map_err(|error| error.to_string())?;

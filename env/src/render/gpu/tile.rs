@@ -1,18 +1,17 @@
-//! One picture of a pass in numbers for the shaders: camera, light, ground, walls. `tile.wgsl` reads what is written
-//! here; which objects are in it is found in `instances.rs`.
+//! Encodes one image of a pass for the shaders: camera, light, ground and walls, as read by `tile.wgsl`.
 
 use super::super::compose::Walls;
 use super::super::shade::{FULL_LEVEL, Shader};
 use super::super::view::View;
 use crate::scene::Scene;
 
-/// Numbers of four in a tile: the size of `Tile` in `tile.wgsl`.
+/// Vectors of four per tile: the size of `Tile` in `tile.wgsl`.
 pub(super) const QUADS: usize = 14;
 
 /// The words of one tile, in the order of `Tile` in `tile.wgsl`.
 pub(super) type TileWords = [[u32; 4]; QUADS];
 
-/// Describes a picture whose left upper corner is at `corner` of the atlas, in pixels.
+/// Describes an image whose upper left corner is at `corner` of the atlas, in pixels.
 pub(super) fn words(scene: &Scene, view: &View, shader: &Shader, walls: Option<&Walls>, corner: [u32; 2]) -> TileWords {
     let with = |[a, b, c]: [f32; 3], d: f32| [a, b, c, d].map(f32::to_bits);
     let four = |numbers: [f32; 4]| numbers.map(f32::to_bits);
@@ -45,7 +44,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn there_is_a_quad_for_each_field_of_the_shader() {
+    fn number_of_quads_matches_the_shaders_struct() {
         let text = include_str!("tile.wgsl");
         let fields = text
             .split("struct Tile {")

@@ -1,4 +1,4 @@
-//! From the bytes of a pass to the images of one tile. What a word means is decided in `tile.wgsl` and in `compose.rs`.
+//! Converts the bytes of a pass to the images of one tile.
 
 use super::super::compose::CATEGORY_BITS;
 use super::super::frame::FAR_DEPTH;
@@ -8,10 +8,10 @@ use super::atlas::Layout;
 use super::instances::Labels;
 use crate::scene::Scene;
 
-/// Bytes of a pixel in each plane.
+/// Bytes per pixel in each plane.
 const BYTES: usize = 4;
 
-/// Fills all images that a target asks for from the tile whose left upper corner is at `corner`.
+/// Fills all images that a target requests, from the tile whose upper left corner is at `corner`.
 pub(super) fn unpack(
     bytes: &[u8],
     layout: Layout,
@@ -71,7 +71,7 @@ pub(super) fn unpack(
     }
 }
 
-/// Metres for near plane / depth.
+/// Converts near plane / depth to metres.
 fn metres(inverse: f32) -> f32 {
     if inverse > NEAR / FAR_DEPTH {
         NEAR / inverse
@@ -85,7 +85,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn depth_is_metres_and_the_sky_is_far() {
+    fn depth_is_in_metres_and_the_sky_has_far_depth() {
         for (inverse, expected) in [(1.0, NEAR), (0.005, 10.0), (0.0, FAR_DEPTH), (1e-9, FAR_DEPTH)] {
             assert!((metres(inverse) - expected).abs() < 1e-5 * expected, "{inverse}");
         }

@@ -20,12 +20,12 @@ use std::arch::x86_64::{
 
 use super::{Lanes, first, first_mut, operations};
 
-/// Proof that the processor has AVX2.
+/// Proof that the CPU has AVX2.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Avx2(());
 
 impl Avx2 {
-    /// The proof, if this processor has it.
+    /// The proof, if this CPU has AVX2.
     pub(crate) fn detect() -> Option<Self> {
         std::arch::is_x86_feature_detected!("avx2").then_some(Self(()))
     }
@@ -110,13 +110,13 @@ impl Lanes for Avx2 {
         gather(table: &[u32], at: Word) -> Word = {
             assert!(!table.is_empty(), "a table has words");
             let last = _mm256_set1_epi32((table.len() - 1).min(i32::MAX as usize) as i32);
-            // No place is beyond the last word of the table.
+            // Clamped to the last word of the table.
             _mm256_i32gather_epi32::<4>(table.as_ptr().cast(), _mm256_min_epu32(at, last))
         };
         gather_alike(table: &[u32], at: Word, alike: u32) -> Word = {
             assert!(!table.is_empty(), "a table has words");
             let last = _mm256_set1_epi32((table.len() - 1).min(i32::MAX as usize) as i32);
-            // No place is beyond the last word of the table.
+            // Clamped to the last word of the table.
             let at = _mm256_min_epu32(at, last);
             if alike < 2 {
                 _mm256_i32gather_epi32::<4>(table.as_ptr().cast(), at)
@@ -137,7 +137,7 @@ impl Lanes for Avx2 {
 
         store_rgb(value: Word, to: &mut [u8]) -> () = {
             let to: &mut [u8; 3 * N] = to.first_chunk_mut().expect("callers hand in three bytes a lane");
-            // Within each half the fourth bytes go out; then the halves close up.
+            // Drops the fourth bytes within each half, then joins the halves.
             let halves = _mm256_setr_epi8(
                 0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, -1, -1, -1, -1, 0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, -1, -1,
                 -1, -1,
@@ -151,7 +151,7 @@ impl Lanes for Avx2 {
         };
         store_bytes(value: Word, to: &mut [u8]) -> () = {
             let to: &mut [u8; N] = first_mut(to);
-            // Each half's bytes into its first word, and the words together.
+            // Moves each half's bytes into its first word, then joins the words.
             let halves = _mm256_shuffle_epi8(value, _mm256_set1_epi32(0x0C08_0400));
             let packed = _mm256_permutevar8x32_epi32(halves, _mm256_setr_epi32(0, 4, 0, 4, 0, 4, 0, 4));
             _mm_storel_epi64(to.as_mut_ptr().cast(), _mm256_castsi256_si128(packed));

@@ -21,12 +21,12 @@ use std::arch::x86_64::{
 
 use super::{Lanes, first, first_mut, operations};
 
-/// Proof that the processor has AVX-512 F and BW.
+/// Proof that the CPU has AVX-512 F and BW.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Avx512(());
 
 impl Avx512 {
-    /// The proof, if this processor has it.
+    /// The proof, if this CPU has both.
     pub(crate) fn detect() -> Option<Self> {
         (std::arch::is_x86_feature_detected!("avx512f") && std::arch::is_x86_feature_detected!("avx512bw"))
             .then_some(Self(()))
@@ -108,13 +108,13 @@ impl Lanes for Avx512 {
         gather(table: &[u32], at: Word) -> Word = {
             assert!(!table.is_empty(), "a table has words");
             let last = _mm512_set1_epi32((table.len() - 1).min(i32::MAX as usize) as i32);
-            // No place is beyond the last word of the table.
+            // Clamped to the last word of the table.
             _mm512_i32gather_epi32::<4>(_mm512_min_epu32(at, last), table.as_ptr().cast())
         };
         gather_alike(table: &[u32], at: Word, alike: u32) -> Word = {
             assert!(!table.is_empty(), "a table has words");
             let last = _mm512_set1_epi32((table.len() - 1).min(i32::MAX as usize) as i32);
-            // No place is beyond the last word of the table.
+            // Clamped to the last word of the table.
             let at = _mm512_min_epu32(at, last);
             let table = table.as_ptr().cast();
             match alike {
@@ -144,7 +144,7 @@ impl Lanes for Avx512 {
 
         store_rgb(value: Word, to: &mut [u8]) -> () = {
             let to: &mut [u8; 3 * N] = to.first_chunk_mut().expect("callers hand in three bytes a lane");
-            // Within each quarter the fourth bytes go out; then the quarters close up.
+            // Drops the fourth bytes within each quarter, then joins the quarters.
             let quarter = _mm_setr_epi8(0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, -1, -1, -1, -1);
             let packed = _mm512_permutexvar_epi32(
                 _mm512_setr_epi32(0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, 3, 7, 11, 15),

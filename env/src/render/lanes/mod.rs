@@ -1,11 +1,10 @@
-//! Several pixels or triangles at a time: the operations that the renderer is made of, for each instruction set.
-//! What is drawn with them is in the files beside this folder.
+//! SIMD operations for the renderer, for each instruction set.
 //!
-//! Every set rounds alike: no fused multiply-add, the same order, IEEE division and square root. So one scene gives the
-//! same pixels on every machine, and a test holds all sets of the machine against each other.
+//! Every set rounds the same way: no fused multiply-add, the same order, IEEE division and square root. So a scene gives the
+//! same pixels on every machine, and a test compares all sets of the machine.
 //!
-//! Code between these operations avoids closures: they are functions without the instruction set, and the compiler then
-//! calls each operation instead of putting it in place (measured: three times slower).
+//! Code between these operations avoids closures: closures lack the target feature, so the compiler calls each operation
+//! instead of inlining it (measured: three times slower).
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -21,7 +20,7 @@ pub(super) use avx512::Avx512;
 use operations::operations;
 pub(super) use portable::Portable;
 
-/// The most lanes that any set has: buffers are padded to it.
+/// Most lanes of any set: buffers are padded to it.
 pub(super) const MOST_LANES: usize = crate::assets::BLOCK;
 
 /// The first `N` elements of a slice, for reading.
@@ -38,18 +37,18 @@ fn first_mut<T, const N: usize>(to: &mut [T]) -> &mut [T; N] {
 
 const TOO_SHORT: &str = "callers hand in at least as much as a vector holds";
 
-/// Vectors of `N` numbers and what can be done with them.
+/// Vectors of `N` numbers and their operations.
 ///
-/// A value of the implementing type is the proof that the processor knows its instructions.
+/// A value of the implementing type proves that the CPU supports the instructions.
 /// Methods that take slices use their first `N` elements and panic on shorter ones.
 pub(super) trait Lanes: Copy {
-    /// How many numbers a vector holds.
+    /// Numbers per vector.
     const N: usize;
     /// `N` floats.
     type Float: Copy;
     /// `N` words of 32 bits.
     type Word: Copy;
-    /// `N` answers.
+    /// `N` booleans.
     type Mask: Copy;
 
     fn splat(self, value: f32) -> Self::Float;
@@ -61,19 +60,19 @@ pub(super) trait Lanes: Copy {
     fn sub(self, a: Self::Float, b: Self::Float) -> Self::Float;
     fn mul(self, a: Self::Float, b: Self::Float) -> Self::Float;
     fn div(self, a: Self::Float, b: Self::Float) -> Self::Float;
-    /// The lesser; `b` where either is not a number.
+    /// The smaller one; `b` if either is NaN.
     fn min(self, a: Self::Float, b: Self::Float) -> Self::Float;
-    /// The greater; `b` where either is not a number.
+    /// The larger one; `b` if either is NaN.
     fn max(self, a: Self::Float, b: Self::Float) -> Self::Float;
     fn at_least(self, a: Self::Float, b: Self::Float) -> Self::Mask;
     fn above(self, a: Self::Float, b: Self::Float) -> Self::Mask;
-    /// Where both are the same number.
+    /// Where both are equal.
     fn same(self, a: Self::Float, b: Self::Float) -> Self::Mask;
     fn root(self, a: Self::Float) -> Self::Float;
     fn both(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
-    /// One bit for each lane, the first lane's lowest.
+    /// One bit per lane, the first lane's lowest.
     fn bits(self, mask: Self::Mask) -> u32;
-    /// `a` where the mask holds, else `b`.
+    /// `a` where the mask holds, otherwise `b`.
     fn select(self, mask: Self::Mask, a: Self::Float, b: Self::Float) -> Self::Float;
 
     fn splat_word(self, value: u32) -> Self::Word;
@@ -83,43 +82,43 @@ pub(super) trait Lanes: Copy {
     fn or(self, a: Self::Word, b: Self::Word) -> Self::Word;
     fn xor(self, a: Self::Word, b: Self::Word) -> Self::Word;
     fn and(self, a: Self::Word, b: Self::Word) -> Self::Word;
-    /// Where both are the same.
+    /// Where both are equal.
     fn equal(self, a: Self::Word, b: Self::Word) -> Self::Mask;
-    /// So many bits to the left, less than 32.
+    /// Shifts left by `bits`, less than 32.
     fn shift_left(self, value: Self::Word, bits: u32) -> Self::Word;
-    /// So many bits to the right, less than 32; zeros come in.
+    /// Shifts right by `bits`, less than 32, filling with zeros.
     fn shift_right(self, value: Self::Word, bits: u32) -> Self::Word;
-    /// One byte to the left.
+    /// Shifts left by one byte.
     fn shift_byte(self, value: Self::Word) -> Self::Word;
-    /// Where the bit of this number is set.
+    /// Where this bit is set.
     fn has_bit(self, value: Self::Word, bit: u32) -> Self::Mask;
     /// Where any of these bits is set.
     fn has_any(self, value: Self::Word, bits: u32) -> Self::Mask;
-    /// Each byte of `a` times that of `b`, which is 1 at 128; at most 255.
+    /// Multiplies bytes, where 128 in `b` stands for 1; capped at 255.
     fn modulate(self, a: Self::Word, b: Self::Word) -> Self::Word;
-    /// Each byte of `a`, or that of `b`, or between them: `a` where the byte of `share` is 0, `b` where it is 255.
+    /// Interpolates bytes: `a` where the byte of `share` is 0, `b` where it is 255.
     fn mix(self, a: Self::Word, b: Self::Word, share: Self::Word) -> Self::Word;
-    /// The words of a table at these places; the last one for places beyond it.
+    /// The words of a table at these indices; the last one for indices beyond it.
     ///
     /// # Panics
     /// On an empty table.
     fn gather(self, table: &[u32], at: Self::Word) -> Self::Word;
-    /// The same where each two or each four lanes have one place: the number of those says how many.
+    /// Like `gather`, where each group of `alike` lanes, two or four, has the same index.
     fn gather_alike(self, table: &[u32], at: Self::Word, alike: u32) -> Self::Word;
-    /// The power of two that is next below each float, which is above 0.
+    /// The largest power of two up to each float, which must be above 0.
     fn power_of_two(self, value: Self::Float) -> Self::Float;
-    /// Floats cut to whole numbers; they must be within ±2³¹.
+    /// Truncates floats to integers; they must be within ±2³¹.
     fn truncate(self, value: Self::Float) -> Self::Word;
-    /// Words, as signed numbers, as floats.
+    /// Converts words, as signed integers, to floats.
     fn float(self, value: Self::Word) -> Self::Float;
 
-    /// The lowest three bytes of each word, `3 * N` bytes in all.
+    /// Stores the lowest three bytes of each word, `3 * N` bytes in total.
     fn store_rgb(self, value: Self::Word, to: &mut [u8]);
 
-    /// The lowest byte of each word.
+    /// Stores the lowest byte of each word.
     fn store_bytes(self, value: Self::Word, to: &mut [u8]);
 
-    /// The lower half of each word, which is less than 65,536.
+    /// Stores the lower half of each word, which must be less than 65,536.
     fn store_halves(self, value: Self::Word, to: &mut [u16]);
 
     /// `a * b + c`, rounded twice.
@@ -128,7 +127,7 @@ pub(super) trait Lanes: Copy {
         self.add(self.mul(a, b), c)
     }
 
-    /// The lowest byte of each word, of which the rest is 0, in the lowest three.
+    /// Copies the lowest byte of each word into the lowest three; the rest of the word must be 0.
     #[inline(always)]
     fn three_times(self, value: Self::Word) -> Self::Word {
         self.or(value, self.shift_byte(self.or(value, self.shift_byte(value))))
@@ -157,7 +156,7 @@ mod tests {
 
     const TABLE: [u32; 12] = [3, 1, 4, 1, 5, 9, 2, 6, 5, 3, 5, 8];
 
-    /// What is written to the first of many numbers, and to no more of them.
+    /// The first `count` numbers after a write, which must not change any others.
     fn kept<T: Copy + PartialEq>(filler: T, count: usize, write: impl FnOnce(&mut [T])) -> Vec<T> {
         let mut all = [filler; 3 * MOST_LANES + 1];
         write(&mut all);
@@ -165,7 +164,7 @@ mod tests {
         all[..count].to_vec()
     }
 
-    /// What every operation makes of these numbers, one vector after another: the same for all sets.
+    /// Results of every operation on these numbers, vector by vector: the same for all sets.
     fn all_operations<L: Lanes>(lanes: L, a: &[f32], b: &[f32], words: &[u32]) -> Vec<Vec<u32>> {
         let mut made: Vec<Vec<u32>> = Vec::new();
         for first in (0..MOST_LANES).step_by(L::N) {
@@ -239,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_are_scaled_and_mixed_as_bytes_are() {
+    fn bytes_are_scaled_and_mixed_independently() {
         let one = |word: [u32; 4]| word[0];
         let splat = |word: u32| Portable.splat_word(word);
         for byte in 0..=255 {
@@ -258,7 +257,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_operation_of_every_set_makes_the_same(
+        fn operations_agree_between_instruction_sets(
             a in prop::collection::vec(prop_oneof![-1e3..1e3_f32, Just(0.0), Just(-0.0)], MOST_LANES),
             b in prop::collection::vec(prop_oneof![0.1..1e3_f32, -1e3..-0.1_f32], MOST_LANES),
             words in prop::collection::vec(0..1_u32 << 30, MOST_LANES),

@@ -1,7 +1,7 @@
-//! The form in which each set of instructions lists its operations: one in a line.
+//! A macro for listing the operations of an instruction set, one per line.
 
-/// Functions of an `impl` of [`Lanes`](super::Lanes), each as what it makes of its operands. Those under `intrinsics` may
-/// call what only some processors have, in a set whose values prove that the processor has it.
+/// Defines functions of an `impl` of [`Lanes`](super::Lanes) by their result. Those under `intrinsics` may use instructions
+/// that only some CPUs have, in a set whose values prove that the CPU has them.
 macro_rules! operations {
     (plain: $($name:ident($($operand:ident: $from:ty),*) -> $to:ty = $made:expr;)*) => {
         $(
@@ -15,8 +15,8 @@ macro_rules! operations {
         $(
             #[inline(always)]
             fn $name(self, $($operand: $from),*) -> $to {
-                // SAFETY: a value of the set exists only where the processor has its instructions, and each pointer is
-                // that of an array of at least as many elements as the instruction reads or writes; none needs alignment.
+                // SAFETY: a value of the set exists only if the CPU has its instructions, and each pointer is to an array of at
+                // least as many elements as the instruction reads or writes; none needs alignment.
                 unsafe { $made }
             }
         )*

@@ -1,8 +1,8 @@
-//! Lanes as plain arrays, for processors of any kind; the compiler makes vectors of them where it can.
+//! Lanes as plain arrays, for any CPU; the compiler vectorises them where it can.
 
 use super::{Lanes, first, first_mut, operations};
 
-/// Four lanes without any instruction of a particular processor.
+/// Four lanes without instructions of a particular CPU.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Portable;
 
