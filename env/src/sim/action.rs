@@ -1,28 +1,28 @@
-//! What an agent can do, and what comes of it as motion. What the motion runs into is in `collision_world.rs`.
+//! [`Action`]: what an agent can do, and its conversion to a motion of the body.
 
 use driftworld_spec::{ActionModel, ActionSpace, AgentParams, World};
 
 use crate::EnvError;
 
-/// What an agent does in a step. The action is held for all time steps of it; who interacts does so in the first.
+/// An agent's action for one step. It is held for all time steps of the step; an interaction happens only in the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
-    /// Three numbers: in the units of the world's action model, or in −1..1 where its actions are normalised.
+    /// Three numbers: in the units of the world's action model, or in −1..1 if its actions are normalised.
     Continuous([f64; 3]),
     /// A row of the world's action table, from 0.
     Discrete(usize),
 }
 
-/// An action that can be carried out: limits are kept, numbers are finite.
+/// A valid command for the body: finite, and within the agent's limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Intent {
     /// Degrees to turn clockwise, before moving.
     pub(crate) turn_deg: f32,
     /// Metres to move along the new heading.
     pub(crate) ahead: f32,
-    /// A point to walk towards instead, and how many metres of the way.
+    /// A point to walk towards instead, and the distance to walk in metres.
     pub(crate) towards: Option<([f32; 2], f32)>,
-    /// Whether to interact with what is ahead.
+    /// Whether to interact with objects ahead.
     pub(crate) interact: bool,
 }
 
@@ -30,7 +30,7 @@ impl Action {
     /// The three numbers of the action, in the units of the world's action model.
     ///
     /// # Errors
-    /// [`EnvError`] for a row that is not there and for numbers that are not finite.
+    /// [`EnvError`] for a row that does not exist, and for numbers that are not finite.
     pub(crate) fn numbers(self, world: &World) -> Result<[f64; 3], EnvError> {
         let agent = &world.agent_params;
         match self {
@@ -45,7 +45,7 @@ impl Action {
                     found,
                     last: rows.saturating_sub(1),
                 })?;
-                // A table that was built in code may hold anything.
+                // A table that was built in code may contain anything.
                 if row.iter().all(|number| number.is_finite()) {
                     Ok(row)
                 } else {
@@ -56,7 +56,7 @@ impl Action {
     }
 }
 
-/// Numbers in −1..1 as numbers in the units of the action model.
+/// Converts numbers in −1..1 to the units of the action model.
 pub(crate) fn in_units(shares: [f64; 3], world: &World) -> [f64; 3] {
     let agent = &world.agent_params;
     let [a, b, c] = shares.map(|share| share.clamp(-1.0, 1.0));
@@ -73,7 +73,7 @@ pub(crate) fn in_units(shares: [f64; 3], world: &World) -> [f64; 3] {
 }
 
 impl Intent {
-    /// What the three numbers mean under an action model, within the agent's limits.
+    /// Interprets the three numbers under an action model, within the agent's limits.
     pub(crate) fn new(model: ActionModel, [a, b, c]: [f64; 3], agent: &AgentParams) -> Self {
         let seconds = agent.time_step;
         let turn = |rate: f64| (rate.clamp(-agent.max_angular_speed, agent.max_angular_speed) * seconds) as f32;

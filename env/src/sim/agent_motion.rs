@@ -1,5 +1,4 @@
-//! How the agent moves in a time step: it turns, pushes what is in its way, and slides along what stands fast. What it
-//! touches counts as `contact.rs` says.
+//! Moves the agent in a time step: it turns, pushes movable objects in its way, and slides along static ones.
 
 use driftworld_spec::World;
 
@@ -13,7 +12,7 @@ use super::slide::{Obstacles, SKIN};
 use super::state::{SimState, wrapped};
 use super::views::Views;
 
-/// Turns and moves the agent, and notes the objects it meets on the way.
+/// Turns and moves the agent, and records the objects that it meets on the way.
 pub(super) fn apply_action(
     world: &World,
     state: &mut SimState,
@@ -37,7 +36,7 @@ pub(super) fn apply_action(
     let position = slide(&mut views.bodies, start, by, &mut budget);
     #[cfg(test)]
     (encounters.looked += budget::AGENTS - budget.left());
-    // Ghosts that move are met where both ways lead, which is known when they have moved.
+    // Contacts with moving ghosts depend on both paths, and are found once the ghosts have moved.
     let moves = |object: u32| {
         let movers = &state.movers;
         movers
@@ -54,9 +53,9 @@ pub(super) fn apply_action(
     state.agent.velocity = [0, 1].map(|axis| (position[axis] - start[axis]) / seconds);
 }
 
-/// Moves the agent's body as far as solid things let it, sliding along them; hands back where it comes to.
+/// Moves the agent's body as far as solid objects allow, sliding along them; returns its new position.
 ///
-/// Nothing is passed through at any speed. The way is noted for [`CollisionWorld::path`].
+/// Nothing is passed through at any speed. Stores the path for [`CollisionWorld::path`].
 fn slide(bodies: &mut CollisionWorld, from: [f32; 2], by: [f32; 2], budget: &mut Budget) -> [f32; 2] {
     let start = from.map(f64::from);
     let way = by.map(f64::from);
@@ -77,7 +76,7 @@ fn slide(bodies: &mut CollisionWorld, from: [f32; 2], by: [f32; 2], budget: &mut
     if obstacles.is_clear(start, way, bodies.radius) {
         bodies.scratch.path.push(to);
     } else {
-        // It may turn anywhere, but it goes no farther than it meant to.
+        // It may turn in any direction, but walks no farther than intended.
         let whole = bodies.gather(SOLID | WALL, None, [start, start], length + 2.0 + reach, budget);
         let Some(num_corners) = whole else { return from };
         let mut scratch = std::mem::take(&mut bodies.scratch);
@@ -109,7 +108,7 @@ fn slide(bodies: &mut CollisionWorld, from: [f32; 2], by: [f32; 2], budget: &mut
     let inside = bodies.half.map(|half| half - (bodies.radius + SKIN) as f32);
     let is_within = (0..2).all(|axis| inside[axis] > 0.0 && from[axis].abs() <= inside[axis] + SKIN as f32);
     for axis in 0..2 {
-        // Rounding brings nothing out of the arena that came from within.
+        // Rounding must not move an agent inside the arena to the outside.
         if is_within {
             place[axis] = place[axis].clamp(-inside[axis], inside[axis]);
         }

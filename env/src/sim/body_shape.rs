@@ -1,11 +1,11 @@
-//! Objects' bodies as shapes of the physics engine. What they cover of the ground is in `outline.rs`.
+//! Converts objects' colliders to shapes of the physics engine.
 
 use rapier3d::prelude::*;
 
 use crate::assets::ColliderShape;
 use crate::scene::Item;
 
-/// The shape of an object's body, and where it is in the object's frame: on the ground, facing +y.
+/// The shape of an object's collider, and its pose in the object's frame: on the ground, facing +y.
 pub(super) fn body_shape(item: &Item) -> (SharedShape, Pose) {
     let scale = item.scale;
     let least = |metres: f32| (metres * scale).max(0.005);
@@ -32,7 +32,7 @@ pub(super) fn body_shape(item: &Item) -> (SharedShape, Pose) {
             if let Some(shape) = SharedShape::convex_hull(&corners) {
                 (shape, 0.0, 0.0)
             } else {
-                // Points in one plane hold nothing: the cylinder around them.
+                // Coplanar points have no volume, so they get their bounding cylinder.
                 let (radius, half) = (least(item.body.collider.radius()), least(item.body.height / 2.0));
                 (SharedShape::cylinder(half, radius), half, std::f32::consts::FRAC_PI_2)
             }
@@ -42,13 +42,13 @@ pub(super) fn body_shape(item: &Item) -> (SharedShape, Pose) {
     (shape, from_ground)
 }
 
-/// Whether a body shows where it faces: round ones do not.
+/// Whether a body's shape depends on its heading: round ones do not.
 pub(super) fn shows_heading(shape: &SharedShape) -> bool {
     matches!(shape.shape_type(), ShapeType::Cuboid | ShapeType::ConvexPolyhedron)
 }
 
-/// The box around a shape, sides along the axes. The engine asks upright cylinders and hulls for their farthest point six
-/// times; here it is one formula, and one pass over the corners.
+/// The axis-aligned bounding box of a shape. For upright cylinders and hulls, the engine computes six support points; this uses
+/// a formula, and one pass over the corners.
 pub(super) fn area_of(shape: &dyn Shape, pose: &Pose) -> Aabb {
     match shape.as_typed_shape() {
         TypedShape::Cylinder(cylinder) => {
@@ -74,7 +74,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_box_around_a_body_is_the_engines(
+        fn bounding_box_matches_the_engines(
             at in prop::array::uniform3(-300.0_f32..300.0), heading in -7.0_f32..7.0, tilt in -2.0_f32..2.0,
             [radius, half] in [0.005_f32..9.0, 0.005_f32..9.0],
             corners in prop::collection::vec(prop::array::uniform3(-9.0_f32..9.0), 4..24),

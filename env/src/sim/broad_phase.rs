@@ -1,23 +1,22 @@
-//! Where bodies are: which of them lie around a place. What they are is in `collision_world.rs`.
+//! Broad phase: finds the bodies around a place.
 //!
-//! Walls, what is solid and what is passed through have a tree each, so that who asks for some is not held up by the
-//! others.
+//! Walls, solid bodies and ghosts have separate trees, so that queries for one kind are not slowed down by the others.
 
 use rapier3d::parry::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 use rapier3d::prelude::*;
 
 use super::groups::{AGENT, GHOST, SOLID, WALL};
 
-/// The trees, and which groups each holds.
+/// The trees, with the groups in each.
 const HELD: [Group; 3] = [WALL, SOLID.union(AGENT), GHOST];
 
-/// Bodies below which a tree is quick whatever its shape.
+/// With fewer bodies, a tree of any shape is fast.
 const FEW: usize = 64;
 
-/// How often as many bodies as there are may have moved before a tree is built anew.
+/// A tree is rebuilt after this many moves per body.
 const WORN: usize = 4;
 
-/// Trees of boxes around bodies, by the numbers of their handles.
+/// Trees of bounding boxes, by handle number.
 #[derive(Default)]
 pub(super) struct BroadPhase {
     trees: [Tree; 3],
@@ -26,16 +25,16 @@ pub(super) struct BroadPhase {
 
 #[derive(Default)]
 struct Tree {
-    /// The engine's own broad phase, made for its step, lost bodies that were taken away and put back many times
-    /// without one.
+    /// The engine's own broad phase is meant for its step; without one, it lost bodies that were removed and inserted many
+    /// times.
     boxes: Bvh,
-    /// How often a body was put somewhere since the tree was built. The boxes around boxes only grow when one moves, so
-    /// that in the end every question would lead to every body.
+    /// Number of moves since the tree was built. Inner boxes only grow when bodies move, so that eventually every query would
+    /// visit every body.
     moved: usize,
 }
 
 impl BroadPhase {
-    /// Notes where a body of a group is now.
+    /// Records the current bounding box of a body of a group.
     pub(super) fn put(&mut self, group: Group, number: u32, area: Aabb) {
         let tree = &mut self.trees[place_of(group)];
         tree.boxes.insert(area, number);
@@ -47,12 +46,12 @@ impl BroadPhase {
         }
     }
 
-    /// Forgets a body of a group.
+    /// Removes a body of a group.
     pub(super) fn remove(&mut self, group: Group, number: u32) {
         self.trees[place_of(group)].boxes.remove(number);
     }
 
-    /// The trees that hold any of these groups.
+    /// The trees that contain any of these groups.
     pub(super) fn of(&self, groups: Group) -> impl Iterator<Item = &Bvh> {
         let held = HELD.into_iter().zip(&self.trees);
         held.filter(move |(held, _)| held.intersects(groups))

@@ -1,24 +1,24 @@
-//! How much one time step may look at, so that no heap of bodies can freeze it. Who looks is in `slide.rs`,
-//! `moving_body.rs`, `motion.rs` and `pushing.rs`; what each does when its budget is used up is said there.
+//! Limits the work of a time step, so that no crowd of bodies can freeze it. Users of a budget define what happens when it is
+//! used up: `slide.rs`, `moving_body.rs`, `motion.rs` and `pushing.rs`.
 //!
-//! A look is a question about one corner of one body. Looks are counted and not timed: a world goes the same way on
-//! every machine, alone or in a batch. What is counted depends on where things stand alone, so that a world that was
-//! written down goes on to the last bit. Worlds of some thousand bodies that keep apart use a small part.
+//! The unit is a query about one corner of one body. Queries are counted, not timed, so that a world runs the same on every
+//! machine, alone or in a batch. Counts depend only on where objects are, so that a saved world resumes exactly. Worlds of some
+//! thousand bodies that are not crowded use a small part of the budget.
 
-/// What the agent may look at on its way of one time step; then its way ends where it has come to.
+/// Queries for the agent's path in one time step; when they are used up, its path ends there.
 pub(super) const AGENTS: u64 = 4_000_000;
 
-/// What all objects that move by themselves may look at together in one time step, and on top of that for each of them.
-/// Those for which too little is left wait.
+/// Queries per time step for all objects that move by themselves: a shared amount, plus an amount for each. Objects for which
+/// too little is left wait.
 pub(super) const MOVERS: u64 = 1_000_000;
 pub(super) const EACH_MOVER: u64 = 100;
 
-/// What all objects that come back may look at together in one time step, and on top of that for each of them. Those
-/// for which nothing is left come back in a later one.
+/// Queries per time step for all objects that respawn: a shared amount, plus an amount for each. Objects for which nothing is
+/// left respawn in a later time step.
 pub(super) const RETURNS: u64 = 500_000;
 pub(super) const EACH_RETURN: u64 = 20;
 
-/// Looks that are left.
+/// A number of remaining queries.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Budget {
     left: u64,
@@ -29,33 +29,33 @@ impl Budget {
         Self { left: count }
     }
 
-    /// Takes so many; false, and none is left, if there are fewer.
+    /// Takes `count` queries; if there are fewer, returns false and leaves none.
     pub(super) fn take(&mut self, count: usize) -> bool {
         let rest = self.left.checked_sub(count as u64);
         self.left = rest.unwrap_or(0);
         rest.is_some()
     }
 
-    /// How many are left.
+    /// The number of remaining queries.
     pub(super) fn left(self) -> u64 {
         self.left
     }
 }
 
-/// Looks for which many wait in a row, always in the same order. Half of them is kept for those from a place on that
-/// changes with each time step, so that nobody waits for ever behind the same crowd.
+/// Queries for a queue that is always in the same order. Half of them is reserved for those from a position on that changes
+/// with every time step, so that nobody waits forever behind the same crowd.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SharedBudget {
     budget: Budget,
     kept: u64,
-    /// From which place on the kept half is given.
+    /// Position from which the reserved half is available.
     from: usize,
 }
 
 impl SharedBudget {
-    /// So many looks for `waiting` in a row, in this time step.
+    /// `count` queries for `waiting` in the queue, in this time step.
     pub(super) fn new(count: u64, waiting: usize, tick: u64) -> Self {
-        /// A prime, so that every place has its turn, and neighbours do not have theirs one after another.
+        /// A prime, so that every position gets its turn, and neighbours do not get theirs in succession.
         const TURN: u64 = 7919;
         let waiting = waiting.max(1) as u64;
         let turn = if waiting.is_multiple_of(TURN) { 1 } else { TURN };
@@ -66,7 +66,7 @@ impl SharedBudget {
         }
     }
 
-    /// The budget of the one at a place in the row; places are asked for in rising order.
+    /// The budget for a position in the queue; positions must be requested in rising order.
     pub(super) fn at(&mut self, place: usize) -> &mut Budget {
         if place >= self.from {
             self.budget.left += std::mem::take(&mut self.kept);
@@ -74,7 +74,7 @@ impl SharedBudget {
         &mut self.budget
     }
 
-    /// How many are left in all.
+    /// The total number of remaining queries.
     #[cfg(test)]
     pub(super) fn left(self) -> u64 {
         self.budget.left + self.kept
@@ -87,9 +87,9 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// All take what they can: never more than there is, and over the time steps everyone gets some.
+        /// Whatever each takes, the total is never exceeded, and over several time steps everyone gets some.
         #[test]
-        fn nobody_takes_more_than_there_is_and_nobody_waits_for_ever(
+        fn shared_budget_is_never_exceeded_and_starves_nobody(
             count in 2u64..500,
             wants in prop::collection::vec(1usize..60, 1..40),
         ) {

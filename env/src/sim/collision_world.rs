@@ -1,5 +1,4 @@
-//! Bodies on the ground: what the agent bumps into, slides along and touches. How far apart
-//! two are is in `footprint.rs`, what counts as a touch in `contact.rs`, what one is worth in `interactions.rs`.
+//! [`CollisionWorld`]: the bodies on the ground that the agent bumps into, slides along and touches.
 
 use driftworld_spec::World;
 use rapier3d::prelude::*;
@@ -14,23 +13,23 @@ use super::outline::Outline;
 use crate::polygon::to_f32;
 use crate::scene::{Item, Scene};
 
-/// Where the world ends for what starts outside the arena, in metres from the origin: a document knows no place beyond.
+/// Boundary for bodies that start outside the arena, in metres from the origin: documents allow no places beyond it.
 pub(super) const EDGE: f32 = 300.0;
 
-/// All bodies of a world. Nothing moves by forces, so there is no time step here: only questions about shapes.
+/// All bodies of a world. Nothing moves by forces, so there are no time steps here, only queries about shapes.
 pub(crate) struct CollisionWorld {
     bodies: RigidBodySet,
     pub(super) colliders: ColliderSet,
-    /// Where colliders are, by the numbers of their handles.
+    /// Positions of colliders, by handle number.
     pub(super) places: BroadPhase,
     pub(super) narrow_phase: NarrowPhase,
     islands: IslandManager,
     soft_bodies: SoftBodySet,
-    /// For each object, its collider while it is there.
+    /// For each object, its collider while it is present.
     pub(super) handles: Vec<Option<ColliderHandle>>,
-    /// The colliders of things that are carried, out of the trees: they are put back without taking memory.
+    /// Colliders of carried things, removed from the trees: kept so that they can be put back without allocating.
     pub(super) put_by: Vec<(u32, ColliderHandle)>,
-    /// The agent's own collider, where objects move and may meet it.
+    /// The agent's own collider, if objects move and may meet it.
     pub(super) agent_handle: Option<ColliderHandle>,
     pub(super) agent: SharedShape,
     /// Half the agent's width.
@@ -38,43 +37,42 @@ pub(crate) struct CollisionWorld {
     height: f32,
     /// Half the arena's sides.
     pub(super) half: [f32; 2],
-    /// What stands around, by the numbers of the colliders' handles.
+    /// Static data of each body, by handle number of its collider.
     pub(super) standing: Vec<Standing>,
-    /// What each covers of the ground up to the agent's height.
+    /// Footprint of each body up to the agent's height.
     pub(super) low: Vec<Footprint>,
-    /// What each covers of the ground in all.
+    /// Whole footprint of each body.
     pub(super) whole: Vec<Footprint>,
     pub(super) scratch: Scratch,
 }
 
-/// One body, as questions about the ground see it.
+/// One body, for queries about the ground.
 pub(super) struct Standing {
-    /// Its outline before it was turned and moved.
+    /// Its outline before rotation and translation.
     pub(super) outline: Outline,
-    /// Its object; walls and the agent are nobody's.
+    /// Its object; `None` for walls and the agent.
     pub(super) object: Option<u32>,
-    /// A number that depends on the world alone: walls are told apart by the number that they were given, objects by
-    /// theirs.
+    /// A number that depends only on the world: walls are ordered by their number of creation, objects by their index.
     pub(super) rank: u64,
 }
 
-/// Lists that each motion uses again.
+/// Buffers reused by each motion.
 #[derive(Default)]
 pub(super) struct Scratch {
-    /// The bodies around a motion, by the numbers of their handles.
+    /// The bodies around a motion, by handle number.
     pub(super) numbers: Vec<u32>,
     pub(super) touched: Vec<Gap>,
-    /// Where the agent's way of this time step began, bent and ended.
+    /// The points where the agent's path of this time step began, bent and ended.
     pub(super) path: Vec<Point>,
-    /// The way of an object that moves by itself.
+    /// The path of an object that moves by itself.
     pub(super) strides: Vec<Point>,
-    /// The numbers of widened footprints.
+    /// Indices of widened footprints.
     pub(super) places: Vec<u32>,
-    /// The body of an object that moves, turned.
+    /// The rotated body of an object that moves.
     pub(super) body: Footprint,
-    /// Where bodies would overlap with a door.
+    /// Places where bodies would overlap with a door.
     pub(super) doorway: Footprint,
-    /// Footprints widened by it.
+    /// Footprints widened by that body.
     pub(super) widened: Vec<Footprint>,
 }
 
@@ -82,7 +80,7 @@ impl CollisionWorld {
     pub(crate) fn new(world: &World, scene: &Scene) -> Self {
         let agent = &world.agent_params;
         let (radius, height) = (agent.agent_width as f32 / 2.0, agent.agent_height as f32);
-        // An upright cylinder for all that stands on the ground: the round ends lie below it and above the head.
+        // An upright cylinder for everything on the ground: the round ends are below the ground and above the head.
         let capsule = |radius: f32| SharedShape::capsule(Vector::ZERO, Vector::new(0.0, 0.0, height), radius);
         let mut bodies = Self {
             bodies: RigidBodySet::new(),
@@ -119,7 +117,7 @@ impl CollisionWorld {
         bodies
     }
 
-    /// Puts a body where it belongs; `heading_deg` turns its outline.
+    /// Adds a body; `heading_deg` rotates its outline.
     pub(super) fn insert(
         &mut self,
         collider: ColliderBuilder,
@@ -142,7 +140,7 @@ impl CollisionWorld {
             object: (group == SOLID || group == GHOST).then_some(user_data as u32),
             rank: user_data | u64::from(group == WALL) << 32 | u64::from(group == AGENT) << 33,
         };
-        // A new handle has the next number, or that of a body that is gone.
+        // A new handle has the next number, or that of a removed body.
         if let Some(place) = self.standing.get_mut(slot) {
             *place = standing;
         } else {
@@ -154,7 +152,7 @@ impl CollisionWorld {
         handle
     }
 
-    /// Notes where a body is now, and where it faces.
+    /// Records a body's current position and heading.
     pub(super) fn note_place(&mut self, handle: ColliderHandle, heading_deg: f32) {
         let collider = &self.colliders[handle];
         let area = area_of(collider.shape(), collider.position());
@@ -167,7 +165,7 @@ impl CollisionWorld {
         outline.place_into(heading_deg, at, &mut self.low[slot], &mut self.whole[slot]);
     }
 
-    /// Four thick walls around the arena.
+    /// Adds four thick walls around the arena.
     fn add_arena(&mut self, [width, depth]: [f32; 2]) {
         const THICK: f32 = 2.0;
         let (x, y) = (width / 2.0, depth / 2.0);
@@ -183,12 +181,12 @@ impl CollisionWorld {
         }
     }
 
-    /// Walls are endless to the agent: higher than it, and deeper than its feet.
+    /// Walls extend beyond the agent: above its head and below its feet.
     fn wall_half_height(&self) -> f32 {
         self.height + 1.0
     }
 
-    /// A thin wall along every edge of a polygon: no triangulation that a strange polygon could break.
+    /// Adds a thin wall along every edge of a polygon: unlike a triangulation, this works for every polygon.
     fn add_region(&mut self, corners: &[[f64; 2]]) {
         let corners = to_f32(corners);
         for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
@@ -205,13 +203,13 @@ impl CollisionWorld {
         }
     }
 
-    /// Puts an object's body where its item stands.
+    /// Adds an object's body at its item's position.
     pub(super) fn add_object(&mut self, index: u32, item: &Item, solid: bool) {
         let (shape, from_ground) = body_shape(item);
-        // Put together by hand: a product of poses would round the height in a way that depends on the heading.
+        // Composed by hand: a product of poses would make the rounding of the height depend on the heading.
         let at = from_ground.translation + Vector::new(item.position[0], item.position[1], 0.0);
         let pose = if shows_heading(&shape) {
-            // Headings turn clockwise.
+            // Headings are clockwise.
             Pose::new(at, Vector::new(0.0, 0.0, -item.heading_deg.to_radians()))
         } else {
             Pose {
@@ -229,7 +227,7 @@ impl CollisionWorld {
         self.handles[index as usize] = Some(handle);
     }
 
-    /// Puts a body at a place and turns it to a heading in degrees.
+    /// Moves a body to a place and a heading in degrees.
     pub(super) fn put(&mut self, handle: ColliderHandle, at: [f32; 2], heading_deg: f32) {
         let collider = &self.colliders[handle];
         let mut pose = *collider.position();
@@ -241,7 +239,7 @@ impl CollisionWorld {
         self.note_place(handle, heading_deg);
     }
 
-    /// Takes an object away.
+    /// Removes an object's body.
     pub(super) fn remove(&mut self, index: u32) {
         if let Some(handle) = self.handles[index as usize].take() {
             let group = self.colliders[handle].collision_groups().memberships;
@@ -256,7 +254,7 @@ impl CollisionWorld {
         }
     }
 
-    /// Questions about bodies of these groups, one body left aside: one for each tree that they are in.
+    /// Queries about bodies of these groups, except one body: one query for each tree that contains them.
     pub(super) fn queries_but(
         &self,
         groups: Group,
@@ -274,7 +272,7 @@ impl CollisionWorld {
         })
     }
 
-    /// The bodies of these groups, one left aside, whose boxes meet a rectangle on the ground.
+    /// The bodies of these groups, except one, whose bounding boxes meet a rectangle on the ground.
     pub(super) fn around(
         &self,
         groups: Group,
@@ -295,10 +293,10 @@ impl CollisionWorld {
         })
     }
 
-    /// Notes in `scratch.numbers` the bodies of these groups, one left aside, around the places from one to another,
-    /// and hands back how many corners they have in all.
+    /// Collects in `scratch.numbers` the bodies of these groups, except one, around the path from one place to another, and
+    /// returns their total number of corners.
     ///
-    /// Nothing, and the list is not whole, if there are more of them than the budget has looks; each body takes one.
+    /// `None`, with an incomplete list, if there are more bodies than queries in the budget; each body takes one.
     pub(super) fn gather(
         &mut self,
         groups: Group,
@@ -309,7 +307,7 @@ impl CollisionWorld {
     ) -> Option<usize> {
         let mut numbers = std::mem::take(&mut self.scratch.numbers);
         numbers.clear();
-        // Room for what most ways meet, so that no step takes memory.
+        // Room for what most paths meet, so that steps do not allocate.
         numbers.reserve(64);
         self.scratch.touched.reserve(16);
         self.scratch.path.reserve(64);
@@ -317,13 +315,13 @@ impl CollisionWorld {
         self.scratch.places.reserve(64);
         let least = [0, 1].map(|axis| (from[axis].min(to[axis]) - reach) as f32);
         let most = [0, 1].map(|axis| (from[axis].max(to[axis]) + reach) as f32);
-        // One more than may be looked at is one too many, wherever it stands in the tree.
+        // One more than the budget is too many, wherever it is in the tree.
         let at_most = usize::try_from(budget.left()).unwrap_or(usize::MAX).saturating_add(1);
         let around = self.around(groups, but, [least, most]).take(at_most);
         numbers.extend(around.map(|handle| slot(handle) as u32));
         let is_whole = budget.take(numbers.len());
         if is_whole {
-            // The tree's order depends on its past, which a world that was written down does not have.
+            // The tree's order depends on its history, which a saved world does not have.
             numbers.sort_unstable_by_key(|number| self.standing[*number as usize].rank);
         }
         let corners = || numbers.iter().map(|number| self.whole[*number as usize].corners.len());
@@ -332,23 +330,23 @@ impl CollisionWorld {
         num_corners
     }
 
-    /// The outline of an object, while it is there.
+    /// The outline of an object while it is present.
     pub(super) fn outline_of(&self, object: u32) -> Option<&Outline> {
         self.handles[object as usize].map(|handle| &self.standing[slot(handle)].outline)
     }
 
-    /// Where the agent's way of this time step began, bent and ended.
+    /// The points where the agent's path of this time step began, bent and ended.
     pub(super) fn path(&self) -> &[Point] {
         &self.scratch.path
     }
 
-    /// Where the agent was at the beginning of this time step.
+    /// The agent's position at the beginning of this time step.
     pub(super) fn began(&self) -> [f32; 2] {
         let start = self.scratch.path.first().copied().unwrap_or_default();
         start.map(|metres| metres as f32)
     }
 
-    /// The solid objects that the agent's body would be inside of at a place, by index in rising order.
+    /// The solid objects that the agent's body would overlap at a place, by rising index.
     pub(crate) fn blocking(&self, at: [f32; 2], found: &mut Vec<u32>) {
         found.clear();
         let radius = self.radius as f32;
@@ -361,7 +359,7 @@ impl CollisionWorld {
         found.sort_unstable();
     }
 
-    /// Finds the objects in the 1 m cube right in front of the agent, by index in rising order.
+    /// Finds the objects in the 1 m cube directly in front of the agent, by rising index.
     pub(crate) fn in_reach(&self, at: [f32; 2], forward: [f32; 2], found: &mut Vec<u32>) {
         found.clear();
         let cube = Cuboid::new(Vector::new(0.5, 0.5, 0.5));
@@ -379,7 +377,7 @@ impl CollisionWorld {
     }
 }
 
-/// The number of a handle: colliders that are gone give theirs to new ones.
+/// The number of a handle; numbers of removed colliders are reused.
 pub(super) fn slot(handle: ColliderHandle) -> usize {
     handle.into_raw_parts().0 as usize
 }

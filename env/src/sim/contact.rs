@@ -1,24 +1,22 @@
-//! What counts as a touch, and how long it lasts. What a touch pays is in `interactions.rs`.
+//! Defines when a touch begins and ends.
 //!
-//! A contact begins when the gap between the agent and an object is no wider than [`TOUCH`] anywhere on their ways, and
-//! ends when it is wider than [`RELEASE`], both when the agent has moved and when the objects have: who follows another
-//! at its heels stays in touch. These are places, not times: how often one pass touches does not depend on speed or
-//! time step.
+//! A contact begins when the gap between the agent and an object is at most [`TOUCH`] anywhere along their paths, and ends when
+//! it exceeds [`RELEASE`], both after the agent and after the objects have moved: an agent that closely follows an object stays
+//! in touch. These are distances, not times: the number of touches while passing does not depend on speed or time step.
 
 use super::budget::Budget;
 use super::collision_world::{CollisionWorld, slot};
 use super::footprint::Point;
 use super::groups::{GHOST, SOLID};
 
-/// Widest gap that is a touch, in metres: a little more than the skin.
+/// Widest gap that is a touch, in metres: slightly more than the skin.
 const TOUCH: f64 = 0.03;
 
-/// Widest gap at which a contact lasts, in metres; a range is left as far beyond its edge.
+/// Widest gap at which a contact continues, in metres; a range ends the same distance beyond its edge.
 pub(super) const RELEASE: f64 = 0.25;
 
 impl CollisionWorld {
-    /// Notes the objects that the agent touched on its way of this time step, each once, but for those that are
-    /// `skipped`.
+    /// Records the objects that the agent touched along its path of this time step, each once, except `skipped` ones.
     pub(super) fn note_passed(&mut self, met: &mut Vec<u32>, skipped: impl Fn(u32) -> bool) {
         let Some((mut least, mut most)) = self.path().first().map(|&start| (start, start)) else {
             return;
@@ -46,14 +44,14 @@ impl CollisionWorld {
         }
     }
 
-    /// Notes an object that touched the agent while it came `by` metres to where it is now, and the agent from one
+    /// Records an object if it touched the agent while it moved by `by` metres to its current place, and the agent from one
     /// place to another.
     pub(super) fn note_passing(&self, object: u32, by: [f32; 2], agent: [[f32; 2]; 2], met: &mut Vec<u32>) {
         let Some(handle) = self.handles[object as usize] else {
             return;
         };
         let footprint = &self.low[slot(handle)];
-        // As the object sees it.
+        // In the object's frame.
         let [start, end] = agent.map(|at| at.map(f64::from));
         let from = [0, 1].map(|axis| start[axis] + f64::from(by[axis]));
         let way = [0, 1].map(|axis| end[axis] - from[axis]);
@@ -62,7 +60,7 @@ impl CollisionWorld {
         }
     }
 
-    /// Notes the objects that the agent's body touches where it is now.
+    /// Records the objects that the agent's body touches at its current place.
     pub(super) fn note_touching(&mut self, at: [f32; 2], met: &mut Vec<u32>) {
         let at: Point = at.map(f64::from);
         let reach = self.radius + TOUCH;
@@ -76,15 +74,15 @@ impl CollisionWorld {
         }
     }
 
-    /// Whether an agent that goes straight from place to place touches an object, or comes nearer to a touch than so many metres,
-    /// without going away from it.
+    /// Whether an agent that goes straight from place to place touches an object, or comes nearer to a touch than `metres`,
+    /// without moving away from it.
     pub(super) fn would_touch(&self, object: u32, path: &[Point], metres: f64) -> bool {
         let Some(handle) = self.handles[object as usize] else {
             return false;
         };
         let footprint = &self.low[slot(handle)];
         let reach = self.radius + TOUCH + metres;
-        // Who is nearer already may go away.
+        // An agent that is already nearer may move away.
         let reach = path
             .first()
             .map_or(reach, |at| reach.min(footprint.gap(*at).distance - 1e-9));
@@ -94,7 +92,7 @@ impl CollisionWorld {
         })
     }
 
-    /// Whether an object is so near to the agent that a contact lasts.
+    /// Whether an object is near enough to the agent for a contact to continue.
     pub(super) fn is_still_touched(&self, object: u32, at: [f32; 2]) -> bool {
         self.handles[object as usize].is_some_and(|handle| {
             let gap = self.low[slot(handle)].gap(at.map(f64::from));
@@ -103,9 +101,9 @@ impl CollisionWorld {
     }
 }
 
-/// What is noted twice is met once: who reads the list sorts it.
+/// Duplicates are removed when the list is sorted.
 fn note(met: &mut Vec<u32>, object: u32) {
-    // Room for what most steps touch, so that no step takes memory.
+    // Room for what most steps touch, so that steps do not allocate.
     met.reserve(64);
     met.push(object);
 }

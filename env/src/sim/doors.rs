@@ -1,4 +1,4 @@
-//! Doors: how they open, what their clocks do, and when they close. Who sets them going is in `things.rs`.
+//! Opens and closes doors, by events and by their clocks.
 
 use driftworld_spec::{Door, MotionModel, World};
 
@@ -7,17 +7,17 @@ use super::groups::{GHOST, SOLID};
 use super::state::SimState;
 use super::views::Views;
 
-/// How deep bodies must be in each other to count as one standing in the other, in metres.
+/// Overlap in metres from which a body counts as standing in a door.
 const INSIDE: f64 = 1e-6;
 
-/// What a door has beside being open or not.
+/// A door's state besides being open or closed.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct DoorState {
     /// Index of its object.
     pub(super) object: usize,
     /// Whether its key was used.
     pub(super) unlocked: bool,
-    /// The time step from which on it closes as soon as nobody stands in it.
+    /// The time step from which it closes as soon as nothing stands in it.
     pub(super) closes_at: Option<u64>,
 }
 
@@ -34,13 +34,13 @@ impl DoorState {
     }
 }
 
-/// Time steps that have passed when so many seconds have: at least one.
+/// Number of time steps until `seconds` have passed: at least one.
 fn ticks_of(seconds: f64, time_step: f64) -> u64 {
-    // A little less, so that 60 s are 600 time steps of 0.1 s, which is no number of binary digits.
+    // Slightly less, because 0.1 is inexact in binary: 60 s are 600 time steps of 0.1 s.
     ((seconds / time_step - 1e-6).ceil() as u64).max(1)
 }
 
-/// Opens a door. One that is open is then as one that has just been opened: what was to close it is forgotten.
+/// Opens a door. Opening an open door restarts its closing timer.
 pub(super) fn open(world: &World, state: &mut SimState, views: &mut Views, index: usize) {
     let object = &world.objects[index];
     let after = object.door.as_ref().and_then(|door| door.closes_after);
@@ -52,22 +52,22 @@ pub(super) fn open(world: &World, state: &mut SimState, views: &mut Views, index
     views.sync_object(index, object, &state.objects[index]);
 }
 
-/// Lets an open door close at the end of this time step, or as soon as nobody stands in it.
+/// Makes an open door close at the end of this time step, or as soon as nothing stands in it.
 pub(super) fn close_soon(state: &mut SimState, index: usize) {
-    // It is due since the last time step: from now on it waits to close, where one whose time runs out now does not yet.
+    // Due since the last time step, so it already waits to close; a door whose timer expires now does not yet.
     let due = state.ticks.saturating_sub(1);
     if let Some(door) = state.doors.iter_mut().find(|door| door.object == index) {
         door.closes_at = Some(door.closes_at.map_or(due, |tick| tick.min(due)));
     }
 }
 
-/// Whether an open door was to close before, and waits until nobody stands in it.
+/// Whether an open door was due to close before, and waits until nothing stands in it.
 pub(super) fn waits_to_close(state: &SimState, index: usize) -> bool {
     let closes_at = state.door_of(index).and_then(|door| door.closes_at);
     state.objects[index].open && closes_at.is_some_and(|tick| tick < state.ticks)
 }
 
-/// The end of a time step: clocks first, then what is to close and can.
+/// Advances doors at the end of a time step: first the clocks, then doors that are due to close and can.
 pub(super) fn advance_doors(world: &World, state: &mut SimState, views: &mut Views) {
     for place in 0..state.doors.len() {
         let index = state.doors[place].object;
@@ -94,7 +94,7 @@ pub(super) fn advance_doors(world: &World, state: &mut SimState, views: &mut Vie
     }
 }
 
-/// Whether a door is to be open, in the time steps in which its clock turns it.
+/// Whether a door's clock opens or closes it in this time step; `None` if neither.
 fn clock(door: &Door, ticks: u64, time_step: f64) -> Option<bool> {
     let half = door.period? / 2.0;
     let halves = |ticks: u64| (ticks as f64 * time_step / half + 1e-6).floor() as u64;
@@ -102,7 +102,7 @@ fn clock(door: &Door, ticks: u64, time_step: f64) -> Option<bool> {
     (now != halves(ticks.saturating_sub(1))).then_some(door.open == now.is_multiple_of(2))
 }
 
-/// Whether the agent stands in a door, or a body that can move.
+/// Whether the agent or a movable body stands in a door.
 fn is_stood_in(world: &World, state: &SimState, views: &mut Views, index: usize) -> bool {
     if !world.objects[index].solid {
         return false;
@@ -150,7 +150,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_clock_turns_its_door_each_half_round() {
+    fn clock_toggles_its_door_every_half_period() {
         for (is_open, time_step) in [(false, 0.1), (true, 0.1), (false, 0.3)] {
             let door = Door {
                 period: Some(2.0),

@@ -1,5 +1,4 @@
-//! Changing a world while it runs, from outside: new objects, fewer objects, another place for the agent. What the
-//! agent itself changes is in `interactions.rs`.
+//! Changes a running world from outside: adds and removes objects, and moves the agent.
 
 use std::sync::Arc;
 
@@ -12,21 +11,19 @@ use super::walls;
 use crate::EnvError;
 
 impl Environment {
-    /// The index of the object of this `unique_name`, whether it is there now or not.
+    /// The index of the object with this `unique_name`, whether it is present or not.
     pub fn find(&self, unique_name: &str) -> Option<usize> {
         let named = |object: &Object| object.unique_name.as_deref() == Some(unique_name);
         self.world.objects.iter().position(named)
     }
 
-    /// Puts a new object into the running world and hands back its index: the next number, for indices stay as they
-    /// are.
+    /// Adds a new object to the running world and returns its index: the next number, because existing indices do not change.
     ///
-    /// It stands wherever it is put, even in a wall. If it stands where the agent is, the next step is its first
-    /// contact.
+    /// It is placed as given, even in a wall. If it is at the agent's position, contact begins in the next step.
     ///
     /// # Errors
-    /// [`EnvError::BadObject`] where a document with this object would be refused, [`EnvError::NameTaken`], and
-    /// [`EnvError::TooManyObjects`] beyond [`MAX_OBJECTS`], the destroyed ones among them. On error nothing is changed.
+    /// [`EnvError::BadObject`] if a document with this object would be refused, [`EnvError::NameTaken`], and
+    /// [`EnvError::TooManyObjects`] beyond [`MAX_OBJECTS`], which counts destroyed ones. On error nothing is changed.
     pub fn spawn(&mut self, object: Object) -> Result<usize, EnvError> {
         let index = self.world.objects.len();
         if index >= MAX_OBJECTS {
@@ -39,8 +36,8 @@ impl Environment {
             let name = name.clone();
             return Err(EnvError::NameTaken { name, object: first });
         }
-        // Without a seed, random numbers depend on where things stood before anything was spawned. Where it was not
-        // known, nothing has drawn from it.
+        // Without a seed, random numbers depend on the initial places of the objects. If that seed is not known yet, nothing
+        // has drawn from it, so it is computed before the new object is added.
         let mut seed = self.seed.clone();
         seed.learn(&self.world);
         let refused = |problem| EnvError::BadObject { problem };
@@ -56,13 +53,12 @@ impl Environment {
         Ok(index)
     }
 
-    /// Takes an object out of the running world for good: it pays nothing, and does not come back.
+    /// Removes an object from the running world for good: it pays nothing and does not respawn.
     ///
-    /// It counts as collected, so that a sequence of which it was a part can go on. Its index stays taken.
+    /// It counts as collected, so that a sequence that it was part of can continue. Its index is not reused.
     ///
     /// # Errors
-    /// [`EnvError::NoSuchObject`], and [`EnvError::AlreadyGone`] where there is nothing to take away; nothing is
-    /// changed then.
+    /// [`EnvError::NoSuchObject`], and [`EnvError::AlreadyGone`] if it is already gone; nothing is changed then.
     pub fn destroy(&mut self, object: usize) -> Result<(), EnvError> {
         let count = self.state.objects.len();
         if object >= count {
@@ -85,13 +81,14 @@ impl Environment {
         Ok(())
     }
 
-    /// Puts the agent somewhere else, looking along a heading in degrees clockwise from +y; any number of turns.
+    /// Moves the agent to another place, with a heading in degrees clockwise from +y, which may exceed a full turn.
     ///
-    /// It arrives at rest. What it touches there, is near to or in, is no news: only what it meets by its own motion pays.
+    /// It arrives at rest. Objects and zones that it touches, is near to or in there cause no events: only what it meets by its
+    /// own motion pays.
     ///
     /// # Errors
-    /// [`EnvError::NoRoom`] for places outside the arena, in walls, in regions that cannot be entered and in solid
-    /// objects; [`EnvError::NoHeading`] for one that is not finite. On error it stays where it is.
+    /// [`EnvError::NoRoom`] for places outside the arena, in walls, in regions that cannot be entered and in solid objects;
+    /// [`EnvError::NoHeading`] for a heading that is not finite. On error it stays where it is.
     pub fn teleport(&mut self, position: [f64; 2], heading_deg: f64) -> Result<(), EnvError> {
         if !heading_deg.is_finite() {
             return Err(EnvError::NoHeading { found: heading_deg });

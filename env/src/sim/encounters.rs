@@ -1,24 +1,23 @@
-//! What the motions of one time step led to: who met whom, who moved, who came back. `interactions.rs` makes stimuli of
-//! it.
+//! [`Encounters`]: results of one time step's motions, for `interactions.rs`.
 
-/// The events of one time step's motions. The lists are used again in the next.
+/// Results of one time step's motions. The lists are reused.
 #[derive(Default)]
 pub(super) struct Encounters {
-    /// Objects that the agent met on its way, and that met it on theirs; some of them twice.
+    /// Objects that the agent met on its path, or that met it on theirs; may contain duplicates.
     pub(super) met: Vec<u32>,
-    /// Contacts that last although a moving object ran ahead, in rising order.
+    /// Contacts that continue although a moving object ran ahead, in rising order.
     pub(super) kept: Vec<u32>,
-    /// Objects that moved, by index, and where they came from.
+    /// Objects that moved, by index, and their previous positions.
     pub(super) moved: Vec<(usize, [f32; 2])>,
-    /// Objects that came back.
+    /// Objects that respawned.
     pub(super) returned: Vec<usize>,
-    /// How much the time steps so far looked at.
+    /// Total queries of all time steps so far.
     #[cfg(test)]
     pub(super) looked: u64,
 }
 
 impl Encounters {
-    /// Forgets the last time step, and keeps the memory.
+    /// Clears the lists, but keeps the allocated memory.
     pub(super) fn clear(&mut self) {
         self.met.clear();
         self.kept.clear();

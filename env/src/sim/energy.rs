@@ -1,11 +1,11 @@
-//! The agent's energy: what time and way use up, what objects give. How it ends an episode is in `termination.rs`.
+//! The agent's energy: consumption by time and distance, and gains from objects.
 
 use driftworld_spec::{Energy, World};
 
 use super::state::SimState;
 use super::views::Views;
 
-/// Takes what a time step, and the agent's way in it, use up.
+/// Subtracts the consumption of a time step and of the agent's path in it.
 pub(super) fn use_energy(world: &World, state: &mut SimState, views: &Views) {
     let Some(energy) = &world.agent_params.energy else {
         return;
@@ -23,7 +23,7 @@ pub(super) fn use_energy(world: &World, state: &mut SimState, views: &Views) {
     add(energy, state, change);
 }
 
-/// Gives the agent what an object holds.
+/// Adds an object's energy to the agent's.
 pub(super) fn give_energy(world: &World, state: &mut SimState, gain: f64) {
     if let Some(energy) = &world.agent_params.energy {
         add(energy, state, gain);

@@ -1,5 +1,4 @@
-//! [`Environment`]: a state, the systems that change it, the views on it, and a renderer beside them. How a step runs
-//! through the systems is in `step.rs`, pictures are in `observation.rs`, agents in `agents`.
+//! [`Environment`]: a running world, with its state, the systems that change it, and a renderer.
 
 use std::sync::Arc;
 
@@ -22,7 +21,7 @@ use crate::assets::Catalogue;
 use crate::render::{Frame, Renderer, RendererKind};
 use crate::scene::Scene;
 
-/// A world that runs: reset, step, look.
+/// A running world: reset, step, observe.
 ///
 /// Everything is deterministic: the same world and the same actions give the same rewards, poses and pixels.
 ///
@@ -37,14 +36,14 @@ use crate::scene::Scene;
 /// # Ok::<(), driftworld_env::EnvError>(())
 /// ```
 pub struct Environment {
-    /// The world at its start, and with it what was spawned later.
+    /// The initial world, plus objects that were spawned later.
     pub(super) world: Arc<World>,
     pub(super) seed: Seed,
-    /// Which random numbers belong to which object.
+    /// Identities of objects, which determine their random numbers.
     pub(super) identities: Identities,
     pub(super) state: SimState,
     pub(super) views: Views,
-    /// Who steers in a world on rails.
+    /// The policy that steers in a world on rails.
     pub(super) rails: Option<OnRailsAgent>,
     pub(super) had_targets: bool,
     /// The objects' tags, for events.
@@ -56,14 +55,14 @@ pub struct Environment {
 }
 
 impl Environment {
-    /// A world of built-in assets at its start: every checked world can start.
+    /// A world with built-in assets at its start: every checked world can start.
     pub fn new(world: World) -> Self {
         Self::with_catalogue(world, Catalogue::default())
     }
 
-    /// A world at its start, its assets from a catalogue; the worlds that follow it take theirs from there too.
+    /// A world at its start, with assets from a catalogue, which later worlds use as well.
     ///
-    /// What the catalogue does not know is drawn as a placeholder, with a warning.
+    /// Objects unknown to the catalogue are drawn as placeholders, with a warning.
     #[expect(
         clippy::needless_pass_by_value,
         reason = "a catalogue is cheap to clone, and the environment keeps it"
@@ -73,27 +72,27 @@ impl Environment {
         Self::build(Arc::new(world), &catalogue, Renderer::default(), frame)
     }
 
-    /// A world at its start, drawn by a renderer of this kind.
+    /// A world at its start, with a renderer of this kind.
     ///
     /// # Errors
-    /// [`EnvError::NoGpu`] if a graphics card is asked for and none works.
+    /// [`EnvError::NoGpu`] if a GPU is requested and none works.
     pub fn with_renderer(world: World, kind: RendererKind) -> Result<Self, EnvError> {
         let mut environment = Self::new(world);
         environment.set_renderer(Renderer::new(kind)?);
         Ok(environment)
     }
 
-    /// What draws this world's pictures.
+    /// The renderer of this environment.
     pub fn renderer(&self) -> &Renderer {
         &self.renderer
     }
 
-    /// Lets another renderer draw from now on.
+    /// Replaces the renderer.
     pub fn set_renderer(&mut self, renderer: Renderer) {
         self.renderer = renderer;
     }
 
-    /// Leaves this world for another, or for the same from its start; buffers for pictures are kept.
+    /// Resets to another world, or to the same one; keeps the image buffers.
     pub fn reset(&mut self, world: World) {
         let catalogue = self.views.scene.catalogue().clone();
         self.start_with(Arc::new(world), &catalogue);
@@ -107,13 +106,12 @@ impl Environment {
             std::mem::take(&mut self.views.bodies.scratch),
         );
         *self = Self::build(world, catalogue, std::mem::take(&mut self.renderer), frame);
-        // Lists that have grown are used again; each step clears them.
+        // Lists that have grown are reused; each step clears them.
         (self.encounters, self.stimuli, self.views.bodies.scratch) = (encounters, stimuli, scratch);
     }
 
     fn build(mut world: Arc<World>, catalogue: &Catalogue, renderer: Renderer, frame: Frame) -> Self {
-        // A world that was written down while it ran is taken back to its start, and then goes on from where it had
-        // come.
+        // A world that was saved while running is first taken back to its start, and then resumed.
         let resume = world.progress.is_some().then(|| ResumeState::out_of(&mut world));
         let mut views = Views::new(&world, catalogue);
         let seed = Seed::of(&world, resume.as_ref().and_then(|resume| resume.progress.seed.clone()));
@@ -148,7 +146,7 @@ impl Environment {
         }
     }
 
-    /// This world as it is now, to be read.
+    /// A read-only view of the running world.
     pub(crate) fn sim(&self) -> SimRef<'_> {
         SimRef {
             world: &self.world,
@@ -157,22 +155,22 @@ impl Environment {
         }
     }
 
-    /// The world as it was at its start, and behind its objects those that were spawned since.
+    /// The world at its start, with spawned objects appended.
     pub fn world(&self) -> &World {
         &self.world
     }
 
-    /// Where the agent is.
+    /// The agent's current state.
     pub fn agent(&self) -> AgentState {
         self.state.agent
     }
 
-    /// The objects as they are now, in the world's order.
+    /// The objects' current states, in the world's order.
     pub fn objects(&self) -> &[ObjectState] {
         &self.state.objects
     }
 
-    /// What there is to see now.
+    /// The current scene.
     pub fn scene(&self) -> &Scene {
         &self.views.scene
     }
@@ -182,7 +180,7 @@ impl Environment {
         self.state.steps
     }
 
-    /// Seconds of the world's own time since the start.
+    /// Seconds of simulated time since the start.
     pub fn seconds(&self) -> f64 {
         self.state.ticks as f64 * self.world.agent_params.time_step
     }
@@ -192,17 +190,17 @@ impl Environment {
         self.state.earned
     }
 
-    /// The energy that the agent has left; none where its world gives it none to use.
+    /// The agent's remaining energy; `None` if the world has no energy.
     pub fn energy(&self) -> Option<f64> {
         self.world.agent_params.energy.map(|_| self.state.energy)
     }
 
-    /// Whether the episode is over, so that a reset must come before the next step.
+    /// Whether the episode has ended, so that it must be reset before the next step.
     pub fn ended(&self) -> bool {
         self.state.ended
     }
 
-    /// What this world asks for that is not as its author may think.
+    /// Warnings about settings that may not be as intended.
     pub fn warnings(&self) -> Vec<Warning> {
         let mut warnings = Vec::new();
         if self.world.game_mode == GameMode::CollectImages {
@@ -249,7 +247,7 @@ impl Environment {
     }
 }
 
-/// The tags of a world's objects; neighbours of one group share theirs.
+/// The tags of a world's objects; consecutive objects of a group share theirs.
 fn tags(world: &World) -> Vec<Option<Arc<str>>> {
     let mut tags: Vec<Option<Arc<str>>> = Vec::with_capacity(world.objects.len());
     for object in &world.objects {

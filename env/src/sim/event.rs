@@ -1,35 +1,35 @@
-//! What happened in a step, and what it was worth. Why it happened is in `interactions.rs`.
+//! Results of a step: events, rewards, and the cause of an end.
 
 use std::sync::Arc;
 
 use driftworld_spec::Stimulus;
 
-/// One thing that happened to one object.
+/// An event that happened to one object.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Event {
     /// Index of the object in the world.
     pub object: usize,
     /// Its tag, if it has one.
     pub tag: Option<Arc<str>>,
-    /// What set it off.
+    /// The stimulus that triggered it.
     pub stimulus: Stimulus,
-    /// What was paid for it.
+    /// Its reward.
     pub reward: f64,
     /// Whether it destroyed the object.
     pub destroyed: bool,
-    /// What the object did, if it is a door, a switch or a thing that is carried.
+    /// The object's reaction, if it is a door, a switch or a thing that can be carried.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub effect: Option<Effect>,
 }
 
-/// What a door, a switch or a thing that is carried did at a stimulus.
+/// The reaction of a door, a switch or a carriable thing to a stimulus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum Effect {
     /// The door opened.
     Opened,
-    /// The door was set to close: it does at the end of the time step, or when nobody stands in it.
+    /// The door was told to close: it does so at the end of the time step, or as soon as nothing stands in it.
     Closed,
     /// The switch moved its doors.
     Switched,
@@ -40,19 +40,19 @@ pub enum Effect {
 }
 
 impl Effect {
-    /// Its name, as events are written.
+    /// Its name in serialised events.
     pub fn name(self) -> &'static str {
         self.into()
     }
 }
 
-/// Why an episode ended. Whether that was a success is said beside it.
+/// The cause of an episode's end; success is stored separately.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, strum::EnumString, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 #[non_exhaustive]
 pub enum EndedBy {
-    /// No object is left that pays a positive reward.
+    /// No object with a positive reward is left.
     AllCollected,
     /// The agent touched, or interacted with, an object that ends the episode.
     Touch,
@@ -60,7 +60,7 @@ pub enum EndedBy {
     Opened,
     /// The agent carried a thing that ends the episode.
     Carried,
-    /// All that was to be delivered lay where it should.
+    /// Everything that had to be delivered was in place.
     Delivered,
     /// The return reached a bound.
     Return,
@@ -68,33 +68,33 @@ pub enum EndedBy {
     Energy,
     /// A zone ended it.
     Zone,
-    /// So many steps were over.
+    /// The step limit was reached.
     Steps,
-    /// So much of the world's own time was over.
+    /// The limit of simulated time was reached.
     Time,
 }
 
 impl EndedBy {
-    /// The word that logs have for it.
+    /// Its word in logs.
     pub fn word(self) -> &'static str {
         self.into()
     }
 }
 
-/// What a step led to.
+/// The result of a step.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Step {
-    /// What the step paid in all.
+    /// The step's total reward.
     pub reward: f64,
-    /// Whether the episode has come to its end by itself.
+    /// Whether the episode ended by itself.
     pub terminated: bool,
-    /// Whether the episode was cut off by the limit of steps.
+    /// Whether the episode was cut off by the step limit.
     pub truncated: bool,
     /// Whether it ended as a success.
     pub success: bool,
-    /// Why the episode ended, if it did.
+    /// The cause of the end, if the episode ended.
     pub ended_by: Option<EndedBy>,
-    /// What happened, in the order of objects.
+    /// The events, in the order of objects.
     pub events: Vec<Event>,
 }
 
@@ -104,7 +104,7 @@ impl Step {
         self.terminated || self.truncated
     }
 
-    /// Forgets what happened, and keeps the memory.
+    /// Clears the results, but keeps the allocated memory.
     pub(crate) fn clear(&mut self) {
         self.events.clear();
         (self.reward, self.terminated, self.truncated, self.success) = (0.0, false, false, false);

@@ -1,4 +1,4 @@
-//! The state vector: the features that a world asks for, as numbers. What each means is said in `StateFeature`.
+//! The state vector: the numbers of the features that a world requests.
 
 use driftworld_spec::{Object, StateFeature, Stimulus, World};
 
@@ -8,18 +8,18 @@ use super::termination::pays_now;
 use super::zones::Zones;
 
 impl Environment {
-    /// The numbers of the features that the world asks for, in its order; then its instruction. By default these are position,
-    /// heading and velocity.
+    /// The numbers of the requested features, in the world's order, followed by its instruction. The default features are
+    /// position, heading and velocity.
     pub fn state_vector(&self) -> Vec<f32> {
         let mut state = vec![0.0; self.world.agent_params.state_len()];
         self.fill_state(&mut state);
         state
     }
 
-    /// Writes the state vector into memory of the caller's.
+    /// Writes the state vector into a buffer.
     ///
     /// # Errors
-    /// [`EnvError::StateLength`](crate::EnvError::StateLength) unless there is room for exactly its numbers.
+    /// [`EnvError::StateLength`](crate::EnvError::StateLength) unless the buffer has exactly its length.
     pub fn write_state(&self, state: &mut [f32]) -> Result<(), crate::EnvError> {
         let expected = self.world.agent_params.state_len();
         if state.len() != expected {
@@ -35,7 +35,7 @@ impl Environment {
         for feature in &self.world.agent_params.state_features {
             let mut numbers = values(&self.world, &self.state, &self.views.zones, *feature);
             if *feature == StateFeature::Carrying {
-                // Numbers of classes are those of the scene.
+                // Class numbers are those of the scene.
                 let last = self.state.carried.last().map(|index| *index as usize);
                 let class = last.map_or(0, |index| self.views.scene.items[index].class_id);
                 numbers[1] = f32::from(class);
@@ -50,7 +50,7 @@ impl Environment {
     }
 }
 
-/// The numbers of one feature, followed by zeros.
+/// The numbers of one feature, padded with zeros.
 fn values(world: &World, state: &SimState, zones: &Zones, feature: StateFeature) -> [f32; 3] {
     let agent = &state.agent;
     let [x, y] = agent.position;
@@ -105,7 +105,7 @@ fn values(world: &World, state: &SimState, zones: &Zones, feature: StateFeature)
     }
 }
 
-/// What the goal feature points to: the tag of the shaping, else those whose touch is a success.
+/// Whether the goal feature may point to this object: by the shaping's tag, otherwise by tags whose touch is a success.
 fn is_goal(world: &World, object: &Object, own: &ObjectState) -> bool {
     let Some(tag) = &object.tag else { return false };
     let rules = &world.rules;
@@ -114,7 +114,7 @@ fn is_goal(world: &World, object: &Object, own: &ObjectState) -> bool {
     own.present && wanted.map_or_else(is_touched, |wanted| wanted == tag)
 }
 
-/// The way to an object ahead and to the right in metres, and 1; all 0 without an object.
+/// The vector to an object, ahead and to the right in metres, and 1; all 0 without an object.
 fn way_in_own_axes(state: &SimState, index: Option<usize>) -> [f32; 3] {
     index.map_or([0.0; 3], |index| {
         let [ahead, right] = own_axes(state, state.way_to(index));
@@ -122,7 +122,7 @@ fn way_in_own_axes(state: &SimState, index: Option<usize>) -> [f32; 3] {
     })
 }
 
-/// A vector of the world as the agent has it: ahead and to the right.
+/// Converts a world vector to the agent's axes: ahead and to the right.
 fn own_axes(state: &SimState, [x, y]: [f32; 2]) -> [f32; 2] {
     let [east, north] = state.agent.forward();
     [x * east + y * north, x * north - y * east]

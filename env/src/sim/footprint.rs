@@ -1,29 +1,28 @@
-//! What a body covers of the ground: a disc or a convex polygon. How far a point is from one is in `gap.rs`; who slides
-//! along footprints, in `slide.rs`; where bodies stand, in `collision_world.rs`.
+//! [`Footprint`]: the ground that a body covers, as a disc or a convex polygon.
 //!
-//! All bodies stand upright and move in the plane, so that what stops them is a question of two dimensions. Its answers
-//! are exact: closed forms in `f64`, with no iteration that could end early.
+//! All bodies are upright and move in the plane, so collisions are a two-dimensional problem. The results are exact: closed
+//! forms in `f64`, with no iteration that could end early.
 
 use smallvec::{SmallVec, smallvec};
 
 use super::gap::{Gap, away_from, gap_to_line, gap_to_polygon};
 
-/// A point or a way on the ground, in metres.
+/// A point or a vector on the ground, in metres.
 pub(super) type Point = [f64; 2];
 
-/// A convex polygon, a straight line or a point, widened by a radius.
+/// A convex polygon, a line segment or a point, widened by a radius.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Footprint {
-    /// One for a disc, two for a wall of round ends; else more, counterclockwise, no two of them alike.
+    /// One for a disc, two for a wall with round ends; otherwise more, counter-clockwise and distinct.
     pub(super) corners: SmallVec<[Point; 4]>,
-    /// How far beyond its corners and edges it reaches, in metres.
+    /// The radius by which corners and edges are widened, in metres.
     pub(super) rounding: f64,
 }
 
-/// How near to its end a way counts as there, in metres.
+/// Distance from the target, in metres, at which the search for a time stops.
 const NEAR_ENOUGH: f64 = 1e-7;
 
-/// How often the search for the first time goes on; it needs five rounds or so, and twenty where a way only grazes.
+/// Most iterations of the search for the first time; it needs about five, and twenty if a path only grazes.
 const MOST_ROUNDS: usize = 64;
 
 impl Footprint {
@@ -35,7 +34,7 @@ impl Footprint {
         }
     }
 
-    /// One of no corners, with room for those of two rectangles.
+    /// An empty footprint, with capacity for the corners of two rectangles.
     pub(super) fn with_room() -> Self {
         Self {
             corners: SmallVec::with_capacity(8),
@@ -43,8 +42,8 @@ impl Footprint {
         }
     }
 
-    /// A line of this half length along x around the origin, widened: its ends are round, so that where two walls meet,
-    /// they make one corner without a notch.
+    /// A segment of this half length along x around the origin, widened: its ends are round, so that two walls meet in a corner
+    /// without a notch.
     pub(super) fn line(half_length: f64, radius: f64) -> Self {
         Self {
             corners: smallvec![[-half_length, 0.0], [half_length, 0.0]],
@@ -52,7 +51,7 @@ impl Footprint {
         }
     }
 
-    /// A rectangle around the origin, its sides along the axes.
+    /// An axis-aligned rectangle around the origin.
     pub(super) fn rectangle([x, y]: Point) -> Self {
         Self {
             corners: smallvec![[-x, -y], [x, -y], [x, y], [-x, y]],
@@ -60,14 +59,14 @@ impl Footprint {
         }
     }
 
-    /// What points enclose; nothing if they lie on a line.
+    /// The convex hull of points; `None` if they are collinear.
     pub(super) fn around(points: Vec<Point>) -> Option<Self> {
         let corners = SmallVec::from_vec(convex_hull(points));
         (corners.len() >= 3).then_some(Self { corners, rounding: 0.0 })
     }
 
-    /// This footprint turned by an angle whose sine and cosine are given, counterclockwise, and then moved; in the
-    /// memory of another one.
+    /// Writes to `placed` this footprint, rotated counter-clockwise by an angle given by its sine and cosine, and then
+    /// translated.
     pub(super) fn place_into(&self, [sine, cosine]: Point, at: Point, placed: &mut Self) {
         placed.rounding = self.rounding;
         placed.corners.clear();
@@ -82,13 +81,14 @@ impl Footprint {
         (self.corners.len() == 1).then_some(self.rounding)
     }
 
-    /// How far it reaches from the origin, in metres.
+    /// Largest distance from the origin, in metres.
     pub(super) fn reach(&self) -> f64 {
         let far = |corner: &Point| (corner[0] * corner[0] + corner[1] * corner[1]).sqrt();
         self.corners.iter().map(far).fold(0.0, f64::max) + self.rounding
     }
 
-    /// All places of a body's middle at which it touches or overlaps this footprint; `body` stands around the origin.
+    /// The Minkowski sum: all positions of a body's centre at which it touches or overlaps this footprint; `body` is around the
+    /// origin.
     pub(super) fn widened_into(&self, body: &Self, widened: &mut Self) {
         widened.rounding = self.rounding + body.rounding;
         widened.corners.clear();
@@ -106,7 +106,7 @@ impl Footprint {
                 .extend(corners.map(|corner| [middle[0] - corner[0], middle[1] - corner[1]]));
             return;
         }
-        // The edges of both, in the order of their angles; those of the body are turned by half a circle.
+        // The edges of both, ordered by angle; those of the body are rotated by 180 degrees.
         let lowest = |corners: &[Point], sign: f64| {
             let key = |index: &usize| corners[*index].map(|part| part * sign);
             let below = |a: &usize, b: &usize| {
@@ -136,9 +136,9 @@ impl Footprint {
         }
     }
 
-    /// How far a point is from this footprint.
+    /// The gap between this footprint and a point.
     ///
-    /// The distance is a convex function of the point, inside too: on a straight way it falls, and then it rises.
+    /// The distance is a convex function of the point, also inside: along a straight path it first falls and then rises.
     pub(super) fn gap(&self, at: Point) -> Gap {
         let gap = match self.corners.as_slice() {
             [middle] => away_from(*middle, at),
@@ -151,9 +151,10 @@ impl Footprint {
         }
     }
 
-    /// The first time, 0..1, at which a point on a straight way is no farther than `reach` from this footprint.
+    /// The first time, 0..1, at which a point on a straight path is within `reach` of this footprint.
     ///
-    /// Never late: on a straight way the distance is convex, so that each tangent meets `reach` no later than it does.
+    /// Never late: along a straight path the distance is convex, so each tangent reaches `reach` no later than the distance
+    /// does.
     pub(super) fn time_within(&self, from: Point, by: Point, reach: f64) -> Option<f64> {
         let mut time = 0.0;
         for _ in 0..MOST_ROUNDS {
@@ -172,7 +173,7 @@ impl Footprint {
     }
 }
 
-/// The corners of what points enclose, counterclockwise (monotone chain).
+/// The corners of the convex hull of points, counter-clockwise (monotone chain).
 fn convex_hull(mut points: Vec<Point>) -> Vec<Point> {
     points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     points.dedup();
@@ -218,7 +219,7 @@ mod tests {
         prop_oneof![disc, polygon, line]
     }
 
-    /// The nearest of many points on the boundary: another way to the same distance, to a few millimetres.
+    /// The distance to the nearest of many points on the boundary: a cross-check, accurate to a few millimetres.
     fn sampled_distance(footprint: &Footprint, at: Point) -> f64 {
         let corners = &footprint.corners;
         let mut least = f64::INFINITY;
@@ -245,7 +246,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_gap_is_that_to_the_nearest_of_many_points(footprint in footprint(), at in point()) {
+        fn gap_matches_the_nearest_of_many_boundary_points(footprint in footprint(), at in point()) {
             let gap = footprint.gap(at);
             let sampled = sampled_distance(&footprint, at);
             if footprint.corners.len() > 2 && is_inside(&footprint.corners, at) {
@@ -253,27 +254,27 @@ mod tests {
             } else {
                 prop_assert!((gap.distance - sampled).abs() < 0.01, "{} {sampled}", gap.distance);
             }
-            // The way out leads out, by as much as one goes.
+            // Moving outwards increases the distance by the same amount.
             let there = footprint.gap([at[0] + gap.out[0] * 0.1, at[1] + gap.out[1] * 0.1]);
             prop_assert!((there.distance - gap.distance - 0.1).abs() < 1e-9 || gap.distance < -0.1 - 1e-9 || gap.distance < 0.0);
         }
 
         #[test]
-        fn the_gap_is_convex_on_a_straight_way(footprint in footprint(), a in point(), b in point(), share in 0.0..1.0_f64) {
+        fn gap_is_convex_along_a_straight_path(footprint in footprint(), a in point(), b in point(), share in 0.0..1.0_f64) {
             let middle = [a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share];
             let [at_a, at_b, at_middle] = [a, b, middle].map(|at| footprint.gap(at).distance);
             prop_assert!(at_middle <= at_a + (at_b - at_a) * share + 1e-9);
         }
 
         #[test]
-        fn the_first_time_is_the_first(footprint in footprint(), from in point(), by in point(), reach in 0.0..0.6_f64) {
+        fn time_within_is_the_first_time(footprint in footprint(), from in point(), by in point(), reach in 0.0..0.6_f64) {
             let at = |time: f64| footprint.gap([from[0] + by[0] * time, from[1] + by[1] * time]).distance;
             let found = footprint.time_within(from, by, reach);
             let steps = 4000;
             let sampled = (0..=steps).map(|k| f64::from(k) / f64::from(steps)).find(|time| at(*time) <= reach);
             match (found, sampled) {
                 (Some(time), Some(sampled)) => prop_assert!(time <= sampled + 1e-6 && at(time) <= reach + 1e-5),
-                // The way grazes between two samples.
+                // The path grazes between two samples.
                 (Some(time), None) => prop_assert!(at(time) <= reach + 1e-5),
                 (None, Some(_)) => prop_assert!(false, "missed"),
                 (None, None) => {}
@@ -281,7 +282,7 @@ mod tests {
         }
 
         #[test]
-        fn a_widened_footprint_is_met_where_the_body_meets_it(
+        fn widened_footprint_is_met_where_the_body_meets_the_original(
             standing in footprint(),
             points in prop::collection::vec(point(), 3..9),
             at in point(),
@@ -289,7 +290,7 @@ mod tests {
             let Some(body) = Footprint::around(points) else { return Ok(()) };
             let mut widened = Footprint::disc([0.0; 2], 0.0);
             standing.widened_into(&body, &mut widened);
-            // The distance of two convex shapes is the least over the boundary of one of them.
+            // The distance of two convex shapes is the minimum over the boundary of one of them.
             let mut least = f64::INFINITY;
             for (from, to) in body.corners.iter().zip(body.corners.iter().cycle().skip(1)) {
                 for k in 0..=500 {

@@ -1,22 +1,22 @@
-//! [`Gap`]: how far a point is from a point, a straight line or a convex polygon, and which way leads out. Its tests are
-//! those of `footprint.rs`, which widens all three.
+//! [`Gap`]: distance and direction from a point, a line segment or a convex polygon. Tested in `footprint.rs`, which widens all
+//! three.
 
 use super::footprint::Point;
 
-/// How far a point is from a footprint.
+/// The gap between a footprint and a point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gap {
     /// In metres; below 0 inside.
     pub(super) distance: f64,
-    /// The shortest way out, or on: a vector of length 1, away from the footprint.
+    /// Direction of the shortest way out, or farther away: a unit vector away from the footprint.
     pub(super) out: Point,
 }
 
-/// How far a point is from another.
+/// The gap between two points.
 pub(super) fn away_from(middle: Point, at: Point) -> Gap {
     let way = [at[0] - middle[0], at[1] - middle[1]];
     let distance = (way[0] * way[0] + way[1] * way[1]).sqrt();
-    // From the very middle all ways out are as short.
+    // At the exact centre all directions are equally short.
     let out = if distance > 0.0 {
         way.map(|part| part / distance)
     } else {
@@ -25,7 +25,7 @@ pub(super) fn away_from(middle: Point, at: Point) -> Gap {
     Gap { distance, out }
 }
 
-/// How far a point is from a straight line.
+/// The gap between a line segment and a point.
 pub(super) fn gap_to_line(from: Point, to: Point, at: Point) -> Gap {
     let line = [to[0] - from[0], to[1] - from[1]];
     let way = [at[0] - from[0], at[1] - from[1]];
@@ -47,7 +47,7 @@ pub(super) fn gap_to_line(from: Point, to: Point, at: Point) -> Gap {
     }
 }
 
-/// How far a point is from a convex polygon, its corners counterclockwise.
+/// The gap between a convex polygon, with corners counter-clockwise, and a point.
 pub(super) fn gap_to_polygon(corners: &[Point], at: Point) -> Gap {
     let mut inside = Gap {
         distance: f64::NEG_INFINITY,

@@ -1,12 +1,12 @@
-//! The groups of bodies that questions about the ground tell apart.
+//! Collision groups of bodies.
 
 use rapier3d::prelude::Group;
 
 /// Bodies that stop the agent.
 pub(super) const SOLID: Group = Group::GROUP_1;
-/// Bodies that it passes through.
+/// Bodies that the agent passes through.
 pub(super) const GHOST: Group = Group::GROUP_2;
-/// Walls: they stop it, and are nobody's object.
+/// Walls: they stop the agent, and belong to no object.
 pub(super) const WALL: Group = Group::GROUP_3;
-/// The agent, as objects that move meet it.
+/// The agent, for objects that move and may meet it.
 pub(super) const AGENT: Group = Group::GROUP_4;

@@ -1,5 +1,4 @@
-//! What motion sets off: stimuli, what they pay, what they destroy. What doors and things do is in `things.rs`, endings are in
-//! `termination.rs`.
+//! Turns encounters into stimuli, and applies their effects: rewards and destruction.
 
 use std::sync::Arc;
 
@@ -17,21 +16,21 @@ use super::state::SimState;
 use super::things::{answering, apply_effect, effect_of, follow, listens, put_down, put_down_place};
 use super::views::Views;
 
-/// Lists that each time step uses again.
+/// Lists reused by each time step.
 #[derive(Default)]
 pub(super) struct Stimuli {
     reached: Vec<u32>,
     triggered: Vec<(u32, Stimulus)>,
 }
 
-/// What an object's stimuli are applied to: the world as it was at its start, and the objects' tags.
+/// The context for applying stimuli: the initial world, and the objects' tags.
 #[derive(Clone, Copy)]
 pub(super) struct Objects<'a> {
     pub(super) world: &'a World,
     pub(super) tags: &'a [Option<Arc<str>>],
 }
 
-/// Finds what the time step's encounters set off, and pays for it.
+/// Finds the stimuli of the time step's encounters, and applies them.
 pub(super) fn apply_stimuli(
     objects: Objects,
     state: &mut SimState,
@@ -54,7 +53,7 @@ pub(super) fn apply_stimuli(
             .in_reach(state.agent.position, state.agent.forward(), reached);
         triggered.extend(reached.iter().map(|index| (*index, Stimulus::AgentInteract)));
     }
-    // An interaction moves one thing: what is in front, or else what is carried.
+    // An interaction moves one thing: the one in front, otherwise the carried one.
     let mut put_down_now = None;
     let hand = (intent.interact && state.has_things)
         .then(|| {
@@ -92,7 +91,7 @@ pub(super) fn apply_stimuli(
         if let Some((index, place)) = put_down_now {
             put_down(world, state, views, index, place);
             let sim = SimRef { world, state, views };
-            // That it is near to where it is put is no news.
+            // Being near to the place where it is put down is not an event.
             state.objects[index as usize].in_range = is_in_range(sim, index as usize);
             step.events.push(Event {
                 object: index as usize,
@@ -113,7 +112,7 @@ pub(super) fn apply_stimuli(
     state.contacts.retain(|contact| states[*contact as usize].present);
 }
 
-/// Notes what is touched and near now, as no news.
+/// Marks everything that is touched or near now as known, without events.
 pub(super) fn init_contacts(world: &World, state: &mut SimState, views: &mut Views) {
     state.contacts.clear();
     views.bodies.note_touching(state.agent.position, &mut state.contacts);
@@ -123,7 +122,7 @@ pub(super) fn init_contacts(world: &World, state: &mut SimState, views: &mut Vie
     }
 }
 
-/// Contacts that begin and that end.
+/// Updates contacts that begin or end.
 fn update_contacts(
     world: &World,
     state: &mut SimState,
@@ -149,7 +148,7 @@ fn update_contacts(
     }
     contacts.sort_unstable();
     let stays = |index: &u32| {
-        // What was met in front of the agent, and moved on since, was touched when the agent had moved.
+        // An object met in front of the agent that has moved on since was touched when the agent had moved.
         let is_new = triggered.binary_search_by_key(index, |(other, _)| *other).is_ok();
         let has_moved = || {
             moved
@@ -161,7 +160,7 @@ fn update_contacts(
     contacts.retain(stays);
 }
 
-/// Whether the agent is in an object's range anywhere on both their ways of this time step.
+/// Whether the agent is in an object's range anywhere along their paths of this time step.
 fn comes_near(sim: SimRef, index: usize, encounters: &Encounters) -> bool {
     if encounters.returned.binary_search(&index).is_ok() || is_in_range(sim, index) {
         return is_in_range(sim, index);
@@ -170,7 +169,7 @@ fn comes_near(sim: SimRef, index: usize, encounters: &Encounters) -> bool {
     let bodies = &sim.views.bodies;
     let moved = &encounters.moved;
     let nearest = if let Ok(place) = moved.binary_search_by_key(&index, |(other, _)| *other) {
-        // As the agent sees it, the object comes from where it was then to where it is now.
+        // In the agent's frame, the object moves from its old to its new relative position.
         let from = moved[place].1.map(f64::from);
         let (began, ends) = (bodies.began(), sim.agent().position);
         let then = [0, 1].map(|axis| from[axis] - f64::from(began[axis]));
@@ -184,7 +183,7 @@ fn comes_near(sim: SimRef, index: usize, encounters: &Encounters) -> bool {
     is_range(sim, index, nearest, sim.world.objects[index].range_stimulus_distance)
 }
 
-/// One stimulus on one object: what it pays, whether it destroys. No event where the object is gone. `hand` is the object that
+/// Applies one stimulus to one object: its reward, its destruction. No event if the object is gone. `hand` is the object that
 /// an interaction moves.
 fn trigger(
     objects: Objects,
@@ -199,14 +198,14 @@ fn trigger(
     }
     let once = object.reward_once_stimulus.contains(&stimulus);
     let would_pay = once || object.reward_stimulus.contains(&stimulus);
-    // Out of its turn an object neither pays nor goes: the sequence could not be finished otherwise.
+    // Out of turn an object neither pays nor disappears: otherwise the sequence could not be finished.
     let due = state.is_due(object.order);
     let destroyed = due && object.destroy_stimulus.contains(&stimulus);
     let is_hand = stimulus != Stimulus::AgentInteract || hand == Some(index as u32);
     let effect = (object.is_used() && !destroyed && is_hand)
         .then(|| effect_of(world, state, index, stimulus))
         .flatten();
-    // What a stimulus is to move pays for it only if it moves, and a door not for being closed.
+    // An object that a stimulus is meant to move pays for it only if it moves, and a door not for being closed.
     let is_moved = effect.is_some_and(|effect| effect != Effect::Closed);
     let would_pay = would_pay && (is_moved || destroyed || !due || !listens(object, stimulus));
     let odds = object.reward_probability;
@@ -222,7 +221,7 @@ fn trigger(
         0.0
     };
     let gives_energy = destroyed || pays && !(once && own.collected);
-    // What pays nothing has its turn in a sequence when it moves.
+    // An object that pays nothing takes its turn in a sequence by moving.
     own.collected |= pays || destroyed || (is_moved && object.order.is_some());
     own.present = !destroyed;
     if pays && once {
@@ -252,7 +251,7 @@ fn trigger(
     })
 }
 
-/// Centre to centre in 3D: the agent's at half its height, the object's at half of its own.
+/// Whether the agent is in an object's range: centre to centre in 3D, with both centres at half of the height.
 fn is_in_range(sim: SimRef, index: usize) -> bool {
     is_within(sim, index, sim.world.objects[index].range_stimulus_distance)
 }
@@ -262,7 +261,7 @@ fn is_within(sim: SimRef, index: usize, reach: f64) -> bool {
     is_range(sim, index, x * x + y * y, reach)
 }
 
-/// Whether so much reach covers a distance on the ground, whose square is given.
+/// Whether `reach` covers a distance on the ground, given as its square.
 fn is_range(sim: SimRef, index: usize, squared: f64, reach: f64) -> bool {
     if reach <= 0.0 || !sim.objects()[index].present {
         return false;
@@ -273,7 +272,7 @@ fn is_range(sim: SimRef, index: usize, squared: f64, reach: f64) -> bool {
     squared + dz * dz < reach * reach
 }
 
-/// The square of the distance of a point from a straight way.
+/// The squared distance between a point and a line segment.
 pub(super) fn squared_distance(point: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
     let way = [to[0] - from[0], to[1] - from[1]];
     let off = [point[0] - from[0], point[1] - from[1]];

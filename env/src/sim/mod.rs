@@ -1,4 +1,4 @@
-//! Running a world: one state, the systems that change it, the views on it.
+//! Simulation of a world: one state, the systems that change it, and the views on it.
 
 mod action;
 mod agent_motion;

@@ -1,5 +1,4 @@
-//! How objects that move by themselves move in a time step. Where each wants to go is decided in `mover.rs`, how far it
-//! comes is found in `moving_body.rs`.
+//! Moves the objects that move by themselves, for one time step.
 
 use driftworld_spec::World;
 
@@ -9,7 +8,7 @@ use super::mover::View;
 use super::state::SimState;
 use super::views::Views;
 
-/// Lets every object that moves by itself go its way, and notes whom it meets.
+/// Moves every object that moves by itself, and records its encounters.
 pub(super) fn move_objects(world: &World, state: &mut SimState, views: &mut Views, encounters: &mut Encounters) {
     if state.movers.is_empty() {
         return;
@@ -48,7 +47,7 @@ pub(super) fn move_objects(world: &World, state: &mut SimState, views: &mut View
         if has_moved {
             encounters.moved.push((index, from));
         }
-        // The agent and a ghost go their ways at once; a solid body stops for the agent, and moves when that has moved.
+        // The agent and a ghost move simultaneously; a solid body stops for the agent, and moves after it.
         let began = if object.solid { agent } else { views.bodies.began() };
         if has_moved || !object.solid {
             views

@@ -1,4 +1,4 @@
-//! How objects move by themselves: where each wants to go. How far it comes is found in `moving_body.rs`.
+//! [`Mover`]: decides where an object that moves by itself wants to go.
 
 use driftworld_spec::{MotionModel, Object};
 
@@ -7,32 +7,32 @@ use super::rng::{Purpose, Seed, Stream};
 /// Distance at which a waypoint counts as reached, in metres.
 const REACHED: f32 = 0.3;
 
-/// Share of the way it meant to go below which a wanderer gives its goal up.
+/// A wanderer gives up its goal if it moved less than this fraction of the intended distance.
 const STUCK: f32 = 0.2;
 
-/// An object that moves: what it is about to do.
+/// State of an object that moves by itself.
 #[derive(Clone, Debug)]
 pub(super) struct Mover {
-    /// The object's number in the world.
+    /// The object's index in the world.
     pub(crate) object: usize,
-    /// Number of the next point of a patrol.
+    /// Index of the next point of a patrol.
     next: usize,
-    /// Where a wanderer is going.
+    /// A wanderer's goal.
     goal: Option<[f32; 2]>,
-    /// The wanderer's random numbers: they depend on the world's seed and the object alone.
+    /// The wanderer's random numbers, which depend only on the world's seed and the object.
     goal_stream: Stream,
-    /// How many goals it has drawn.
+    /// Number of goals drawn so far.
     goals: u64,
 }
 
-/// What a mover sees before it decides.
+/// What a mover knows when it decides.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct View {
-    /// Where it is, in metres.
+    /// Its position, in metres.
     pub(crate) position: [f32; 2],
-    /// Where it faces, in degrees.
+    /// Its heading, in degrees.
     pub(crate) heading_deg: f32,
-    /// Where the agent is.
+    /// The agent's position.
     pub(crate) agent: [f32; 2],
     /// Half the arena's sides.
     pub(crate) half: [f32; 2],
@@ -40,17 +40,17 @@ pub(super) struct View {
     pub(crate) seconds: f32,
 }
 
-/// What a mover means to do in a step.
+/// A mover's intended motion for a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stride {
     /// Its new heading in degrees.
     pub(crate) heading_deg: f32,
-    /// The way it means to go, in metres.
+    /// Its intended displacement, in metres.
     pub(crate) by: [f32; 2],
 }
 
 impl Mover {
-    /// The mover of an object, if it moves.
+    /// The mover of an object; `None` if the object does not move by itself.
     pub(super) fn new(index: usize, object: &Object, seed: &Seed, identity: u64) -> Option<Self> {
         moves(object).then(|| Self {
             object: index,
@@ -61,20 +61,20 @@ impl Mover {
         })
     }
 
-    /// The number of its next point, where it is going, and how many goals it has drawn.
+    /// The index of its next point, its goal, and the number of goals drawn.
     pub(super) fn progress(&self) -> (u32, Option<[f64; 2]>, u64) {
         let goal = self.goal.map(|goal| goal.map(f64::from));
         (self.next as u32, goal, self.goals)
     }
 
-    /// Goes on from what [`Mover::progress`] said.
+    /// Resumes from the result of [`Mover::progress`].
     pub(super) fn resume(&mut self, next: u32, goal: Option<[f64; 2]>, goals: u64) {
         self.next = next as usize;
         self.goal = goal.map(|goal| goal.map(|metres| metres as f32));
         self.goals = goals;
     }
 
-    /// What the object means to do; `None` if it stands still.
+    /// The object's intended motion; `None` if it stands still.
     pub(super) fn decide(&mut self, object: &Object, view: View) -> Option<Stride> {
         let wanted = self.direction(object, view)?;
         let bearing = libm::atan2f(wanted[0], wanted[1]).to_degrees();
@@ -82,10 +82,10 @@ impl Mover {
         let most = object.turn_rate.map_or(180.0, |rate| rate as f32 * view.seconds);
         let heading_deg = (view.heading_deg + turn.clamp(-most, most)).rem_euclid(360.0);
         let mut metres = object.speed as f32 * view.seconds;
-        // Not past a waypoint, so that it is met; who runs or hunts has no such end.
+        // Stops at waypoints, so that they are reached; fleeing and hunting have no such end.
         if matches!(object.motion_model, MotionModel::Patrol | MotionModel::RandomWaypoint) {
             metres = metres.min(length(wanted));
-            // Nor around and around one that it cannot turn to in time: it slows down while it looks elsewhere.
+            // Slows down while facing elsewhere, so that it does not circle around a waypoint that it cannot turn to in time.
             metres *= libm::cosf((turn - turn.clamp(-most, most)).to_radians()).max(0.0);
         }
         let heading = heading_deg.to_radians();
@@ -95,7 +95,7 @@ impl Mover {
         })
     }
 
-    /// The way to where the object wants to be, in metres; for prey, away from the agent.
+    /// The vector to where the object wants to be, in metres; for prey, away from the agent.
     fn direction(&mut self, object: &Object, view: View) -> Option<[f32; 2]> {
         let to = |point: [f32; 2]| [point[0] - view.position[0], point[1] - view.position[1]];
         let to_agent = to(view.agent);
@@ -127,7 +127,7 @@ impl Mover {
         (length(way) > 1e-4).then_some(way)
     }
 
-    /// Hears how far it came: a wanderer that hardly moved looks for another goal.
+    /// Reports how far it moved: a wanderer that hardly moved chooses another goal.
     pub(super) fn moved(&mut self, meant: [f32; 2], came: [f32; 2]) {
         if length(came) < STUCK * length(meant) {
             self.goal = None;

@@ -1,5 +1,4 @@
-//! Bodies of objects that move: how far one comes before it meets something, and where one may come back. Where it
-//! wants to go is decided in `mover.rs`, what the agent bumps into is in `collision_world.rs`.
+//! Moves the bodies of objects that move by themselves until they meet something, and finds places for respawning.
 
 use rapier3d::prelude::*;
 
@@ -10,21 +9,21 @@ use super::groups::{AGENT, SOLID, WALL};
 use super::outline::Outline;
 use super::slide::{Obstacles, SKIN};
 
-/// How far a body that turns beside a wall is moved for its corners, in metres.
+/// Largest displacement, in metres, that makes room for a body that turns beside a wall.
 const TURN_ROOM: f64 = 0.25;
 
-/// With so many bodies around a place, it is taken.
+/// With this many bodies around it, a place counts as taken.
 const MOST_NEAR: usize = 256;
 
-/// What it costs to ask whether two shapes meet.
+/// Queries that a test of two shapes costs.
 const LOOKS_PER_SHAPE: usize = 16;
 
-/// How often each body is asked for before one with corners moves: its corners are given to it twice at most, and room
-/// is looked for eight times.
+/// Queries per body before a body with corners moves: its corners are added to each other body at most twice, and room is
+/// searched for eight times.
 const LOOKS_TO_TURN: usize = 12;
 
 impl CollisionWorld {
-    /// Tells the objects where the agent is: they stop in front of it.
+    /// Updates the agent's collider, so that objects stop in front of it.
     pub(crate) fn place_agent(&mut self, at: [f32; 2]) {
         let handle = if let Some(handle) = self.agent_handle {
             handle
@@ -38,10 +37,10 @@ impl CollisionWorld {
         self.note_place(handle, 0.0);
     }
 
-    /// Where an object's body comes to that turns from one heading in degrees to another and goes where it means to; it
-    /// stops at walls, solid objects and the agent, and slides along them. A body with corners turns only where it
-    /// finds room for them; else it slides on as it stands. Hands back its place and its heading then; nothing for
-    /// an object that is not there, and for one with more around it than it may look at, which waits.
+    /// Moves an object's body that turns from one heading in degrees to another; it stops at walls, solid objects and the
+    /// agent, and slides along them. A body with corners turns only if it finds room for them; otherwise it slides on without
+    /// turning. Returns its place and heading; `None` for an absent object, and for one with more around it than the budget
+    /// allows, which waits.
     pub(crate) fn push(
         &mut self,
         index: u32,
@@ -60,7 +59,7 @@ impl CollisionWorld {
         outline.turned_into(heading_deg, &mut body);
         let reach = length + TURN_ROOM + body.reach() + 2.0 * SKIN;
         let around = self.gather(SOLID | WALL | AGENT, Some(handle), [from, from], reach, budget);
-        // Corners are given to corners, and there is room to be found.
+        // Corners are added to corners, and room has to be found.
         let given = if body.as_disc().is_some() {
             0
         } else {
@@ -81,11 +80,11 @@ impl CollisionWorld {
             };
             obstacles.slide(from, way, radius, budget, &mut scratch.touched, &mut scratch.strides);
         } else {
-            // Its corners are given to what it may meet, so that it is a point among wider bodies.
+            // The obstacles are widened by the body, so that the body becomes a point.
             let count = scratch.numbers.len();
             scratch.places.clear();
             scratch.places.extend(0..count as u32);
-            // Room for what most ways meet, so that no step takes memory.
+            // Room for what most paths meet, so that steps do not allocate.
             while scratch.widened.len() < count.max(16) {
                 scratch.widened.push(Footprint::with_room());
             }
@@ -128,15 +127,15 @@ impl CollisionWorld {
         Some((place, heading_deg))
     }
 
-    /// The footprints of these numbers, widened by a body.
+    /// Widens the footprints of these numbers by a body.
     fn widen(&self, numbers: &[u32], body: &Footprint, widened: &mut [Footprint]) {
         for (number, widened) in numbers.iter().zip(widened) {
             self.whole[*number as usize].widened_into(body, widened);
         }
     }
 
-    /// Whether an object's body, taken away before, would stand free at a place. It would not where there is more
-    /// around it than may be looked at.
+    /// Whether an object's body, which was removed before, has room at a place. False if there is more around it than the
+    /// budget allows.
     pub(crate) fn is_free(&self, at: [f32; 2], radius: f32, budget: &mut Budget) -> bool {
         let [x, y] = [0, 1].map(|axis| self.half[axis] - radius - SKIN as f32 - at[axis].abs());
         if x < 0.0 || y < 0.0 {
@@ -147,7 +146,7 @@ impl CollisionWorld {
         let around = ball.compute_aabb(&pose);
         let area = [around.mins, around.maxs].map(|corner| [corner.x, corner.y]);
         let mut near: Vec<ColliderHandle> = self.around(SOLID | WALL | AGENT, None, area).take(MOST_NEAR).collect();
-        // The tree's order depends on its past, and looks are counted until one is met.
+        // The tree's order depends on its history, and queries are counted until one meets.
         near.sort_unstable_by_key(|handle| self.standing[slot(*handle)].rank);
         let meets = |handle: &ColliderHandle| {
             let collider = &self.colliders[*handle];

@@ -1,8 +1,8 @@
-//! Which of the bodies that can be pushed move in a time step: those that the agent may meet or that are moving, and
-//! what these may meet in turn. How they move is in `pushing.rs`.
+//! Chooses the pushable bodies that move in a time step: those that the agent may meet or that are moving, and those that these
+//! may meet in turn.
 //!
-//! Physics costs as much as bodies meet, and in a heap all meet all. So there is a limit to how many meet in a time
-//! step; what is over it stands fast for this time step, and is at rest after it.
+//! The cost of physics grows with the number of contacts, and in a heap everything touches. So the number of contacts per time
+//! step is limited; bodies beyond the limit stand still in this time step, and are at rest after it.
 
 use rapier3d::prelude::ColliderHandle;
 
@@ -12,57 +12,57 @@ use super::groups::{SOLID, WALL};
 use super::sim_ref::SimRef;
 use super::warning::Warning;
 
-/// Distance in metres within which bodies are taken to be able to meet, on top of their ways.
+/// Distance in metres within which bodies count as able to meet, in addition to their paths.
 pub(super) const MARGIN: f32 = 0.2;
 
-/// How many bodies are looked at around all that may move.
+/// Most bodies checked around all that may move.
 const LOOKS: u64 = 200_000;
 
-/// How many bodies all that move may meet on their ways in a time step, each as often as it may be met.
+/// Most bodies that all moving bodies may meet on their paths in a time step, counted once per possible encounter.
 const MAY_MEET: u64 = 40_000;
 
-/// How many bodies move, times the parts that the physics takes the time step in.
+/// Most moving bodies, times the physics steps in the time step.
 const MOVE: u64 = 36_000;
 
-/// How many bodies all that move overlap from the start, by the boxes around them, times these parts; and fewest.
+/// Most initial overlaps of all moving bodies, by bounding boxes, times these physics steps; and a lower bound.
 const OVERLAP: u64 = 30_000;
 const FEWEST_OVERLAPS: u64 = 1_500;
 
-/// How many pairs of bodies may be near to each other while they move, times these parts; and fewest.
+/// Most pairs of bodies that may be near each other while they move, times these physics steps; and a lower bound.
 const PAIRS: u64 = 60_000;
 const FEWEST_PAIRS: u64 = 4_000;
 
-/// How many bodies are looked at around one, how many it may meet, and overlap: what many hold at once costs more than
-/// its share.
+/// Most bodies checked around one body, that it may meet, and that it overlaps: a body held by many at once costs more than its
+/// share.
 const ONE_LOOKS: usize = 8192;
 const ONE_MAY_MEET: usize = 1024;
 const ONE_OVERLAPS: usize = 256;
 
 /// The bodies that move in a time step.
 pub(super) struct Chosen {
-    /// Numbers among the pushed bodies, rising.
+    /// Indices among the pushed bodies, rising.
     pub(super) indices: Vec<usize>,
-    /// Whether all that should move do.
+    /// Whether all bodies that should move do.
     pub(super) is_whole: bool,
-    /// How many pairs may be near to each other while they move.
+    /// Most pairs that may be near each other while they move.
     pub(super) most_pairs: usize,
-    /// How many bodies were looked at.
+    /// Number of bodies checked.
     #[cfg(test)]
     pub(super) looked: u64,
 }
 
-/// What is around one body.
+/// The surroundings of one body.
 #[derive(Default)]
 struct Around {
-    /// Other bodies that can be pushed and that it may meet, by their numbers among these.
+    /// Other pushable bodies that it may meet, by index among the pushed bodies.
     neighbours: Vec<usize>,
-    /// How many bodies it may meet.
+    /// Number of bodies that it may meet.
     may_meet: usize,
-    /// How many it overlaps from the start.
+    /// Number of bodies that it overlaps initially.
     overlaps: usize,
 }
 
-/// The bodies that move in a time step of so many parts: the first ones, and what these may meet.
+/// The bodies that move in a time step of `parts` physics steps: `first`, and those that they may meet.
 pub(super) fn with_neighbours(sim: SimRef, first: Vec<usize>, seconds: f32, parts: u32) -> Chosen {
     let pushed = &sim.state.pushed;
     let radii = pushed.iter().map(|body| sim.body_radius(body.object));
@@ -110,7 +110,7 @@ pub(super) fn with_neighbours(sim: SimRef, first: Vec<usize>, seconds: f32, part
     }
 }
 
-/// What is around a body that may move; nothing if that is more than may be looked at.
+/// The surroundings of a body that may move; `None` if they exceed the budget.
 fn around_pushed(sim: SimRef, index: usize, seconds: f32, widest: f32, budget: &mut Budget) -> Option<Around> {
     let pushed = &sim.state.pushed;
     let object = pushed[index].object;
@@ -138,7 +138,7 @@ fn around_pushed(sim: SimRef, index: usize, seconds: f32, widest: f32, budget: &
             let other = pushed[place].object;
             let to = sim.objects()[other].position;
             let distance = ((to[0] - at[0]).powi(2) + (to[1] - at[1]).powi(2)).sqrt();
-            // In this order, for the sum is rounded.
+            // In this order, because the sum is rounded.
             let way = pushed_way(sim, index, seconds);
             let is_near = distance < radius + sim.body_radius(other) + way + MARGIN;
             if is_near {
@@ -150,12 +150,12 @@ fn around_pushed(sim: SimRef, index: usize, seconds: f32, widest: f32, budget: &
         };
         around.may_meet += usize::from(may_be_met);
     }
-    // The tree's order depends on its past, which a world that was written down does not have.
+    // The tree's order depends on its history, which a saved world does not have.
     around.neighbours.sort_unstable();
     Some(around)
 }
 
-/// The first object that can be pushed and that more bodies overlap than may.
+/// The first pushable object that more bodies overlap than allowed.
 pub(super) fn heap(sim: SimRef) -> Option<Warning> {
     let others = |object: usize| {
         let own = sim.views.bodies.handles[object];
@@ -172,22 +172,21 @@ pub(super) fn heap(sim: SimRef) -> Option<Warning> {
     })
 }
 
-/// How far a pushed body may come in a time step, in metres.
+/// Longest path of a pushed body in a time step, in metres.
 pub(super) fn pushed_way(sim: SimRef, index: usize, seconds: f32) -> f32 {
     let agent_speed = sim.world.agent_params.max_linear_speed as f32;
     let [vx, vy] = sim.state.pushed[index].velocity;
     (vx * vx + vy * vy).sqrt().max(agent_speed) * seconds
 }
 
-/// How far from a pushed body's middle the bodies lie that stand fast and that it may meet, in metres along each
-/// axis.
+/// Largest distance from a pushed body's centre of static bodies that it may meet, in metres along each axis.
 pub(super) fn standing_reach(sim: SimRef, index: usize, seconds: f32) -> f32 {
     let radius = sim.body_radius(sim.state.pushed[index].object).max(0.05);
     radius + pushed_way(sim, index, seconds) + MARGIN
 }
 
 impl CollisionWorld {
-    /// The box around a body on the ground.
+    /// The bounding box of a body on the ground.
     fn box_of(&self, handle: ColliderHandle) -> [[f32; 2]; 2] {
         let area = self.colliders[handle].compute_aabb();
         [area.mins, area.maxs].map(|corner| [corner.x, corner.y])

@@ -1,5 +1,4 @@
-//! Looking at a running world: the agent's observation, its camera, pictures from anywhere. How they are drawn is in
-//! `render`.
+//! Views of a running world: the agent's observation, its camera, and images from any camera.
 
 use driftworld_spec::World;
 
@@ -10,9 +9,9 @@ use crate::camera::Camera;
 use crate::render::{CpuRenderer, Frame, Target};
 
 impl Environment {
-    /// What the agent sees now, at the world's observation size. Drawn when asked for, never before.
+    /// The agent's current view, at the world's observation size. Rendered on demand.
     ///
-    /// Should a graphics card fail, the processor draws in its place.
+    /// If a GPU fails, the CPU renders instead.
     pub fn observe(&mut self) -> &Frame {
         let [width, height] = self.world.agent_params.picture_size();
         let mut frame = std::mem::replace(&mut self.frame, Frame::new(0, 0));
@@ -20,7 +19,7 @@ impl Environment {
             frame = Frame::new(width, height);
         }
         if self.draw_into(frame.target()).is_err() {
-            // On the processor: only for so many points that no buffer holds them, then one a pixel.
+            // The CPU renderer fails only if no buffer can hold the samples; then it uses one per pixel.
             let mut renderer = CpuRenderer::new();
             renderer.render(self.scene(), &self.camera(), &mut frame);
             self.draw_carried(&mut renderer, &mut frame.target());
@@ -29,7 +28,7 @@ impl Environment {
         &self.frame
     }
 
-    /// Draws what the agent sees into images of any size; those that are not in the target are left alone.
+    /// Renders the agent's view into images of any size; images that are not in the target stay unchanged.
     pub(crate) fn draw_into(&mut self, target: Target) -> Result<(), EnvError> {
         let mut target = Target {
             supersampling: self.world.agent_params.supersampling,
@@ -42,18 +41,18 @@ impl Environment {
         Ok(())
     }
 
-    /// The numbers of the things that pictures from the agent's eyes show as carried: none unless the world says so.
+    /// The indices of the carried things to show in images from the agent's view: empty unless the world shows them.
     pub(crate) fn shown_carried(&self) -> &[u32] {
         shown(&self.world, &self.state)
     }
 
-    /// Draws what the agent carries onto a picture from its eyes, if the world shows it: at the lower edge of the
-    /// target's colours. The other images stay as they are.
+    /// Draws what the agent carries onto an image of its view, if the world shows it: at the lower edge of the target's
+    /// colours. Other images stay unchanged.
     pub fn draw_carried(&self, renderer: &mut CpuRenderer, target: &mut Target<'_>) {
         renderer.draw_carried(&self.views.scene, self.shown_carried(), target);
     }
 
-    /// What the agent sees now, at any size, one point a pixel.
+    /// The agent's current view, at any size, with one sample per pixel.
     ///
     /// # Errors
     /// As [`Environment::render`].
@@ -76,10 +75,10 @@ impl Environment {
         )
     }
 
-    /// A picture of any size from any camera.
+    /// An image of any size from any camera.
     ///
     /// # Errors
-    /// [`EnvError::PictureSize`] unless both sides are 1 to 4096 pixels; on a graphics card, as
+    /// [`EnvError::PictureSize`] unless both sides are 1 to 4096 pixels; on a GPU, as
     /// [`Renderer::draw_batch`](crate::Renderer::draw_batch).
     pub fn render(&mut self, camera: &Camera, width: u32, height: u32) -> Result<Frame, EnvError> {
         if !(1..=4096).contains(&width) || !(1..=4096).contains(&height) {
@@ -91,7 +90,7 @@ impl Environment {
     }
 }
 
-/// What is carried, if the world shows it.
+/// The carried things, if the world shows them.
 fn shown<'a>(world: &World, state: &'a SimState) -> &'a [u32] {
     if world.agent_params.show_carried {
         state.carried()

@@ -1,16 +1,17 @@
-//! What an asset's body covers of the ground before it is turned and moved: in all, and up to the agent's height.
+//! [`Outline`]: the ground that an asset's body covers, before rotation and translation: in total, and up to the agent's
+//! height.
 //!
-//! The agent is an upright cylinder: of balls, capsules and hulls, what is above its head does not stop it. Boxes and
-//! cylinders are as wide above as below. Other bodies keep apart by all that they cover.
+//! The agent is an upright cylinder: the parts of balls, capsules and hulls above its head do not stop it. Boxes and cylinders
+//! are equally wide at every height. Other bodies collide by their whole footprints.
 
 use rapier3d::prelude::{SharedShape, Vector};
 
 use super::footprint::{Footprint, Point};
 use crate::assets::ColliderShape;
 
-/// What a body covers of the ground, in its own frame: around the origin, facing +y.
+/// A body's footprints in its own frame: around the origin, facing +y.
 pub(super) struct Outline {
-    /// Up to the agent's height; nothing if that is all of it.
+    /// Up to the agent's height; `None` if it is the same as the whole.
     low: Option<Footprint>,
     whole: Footprint,
 }
@@ -23,7 +24,7 @@ impl Outline {
         }
     }
 
-    /// A thin wall of round ends, of this half length along x.
+    /// A thin wall with round ends, of this half length along x.
     pub(super) fn wall(half_length: f32, half_thickness: f32) -> Self {
         Self {
             low: None,
@@ -31,7 +32,7 @@ impl Outline {
         }
     }
 
-    /// A rectangle of these half sides.
+    /// A rectangle with these half sides.
     pub(super) fn rectangle(half: [f32; 2]) -> Self {
         Self {
             low: None,
@@ -49,7 +50,7 @@ impl Outline {
                 whole: Footprint::rectangle([least(*x), least(*y)]),
             },
             ColliderShape::Cylinder { radius, .. } => Self::disc(least(*radius) as f32),
-            // Both stand on a half ball, which a low agent meets below its middle.
+            // Both stand on a half ball, which a low agent meets below its centre.
             ColliderShape::Ball { radius } | ColliderShape::Capsule { radius, .. } => {
                 let radius = least(*radius);
                 let below = (radius - agent_height).max(0.0);
@@ -81,9 +82,9 @@ impl Outline {
         self.whole.as_disc().is_some()
     }
 
-    /// All of the outline as a shape for the physics of what is pushed, around the origin: a ball, or a prism.
+    /// The whole outline as a shape for the physics of pushed bodies, around the origin: a ball, or a prism.
     ///
-    /// All of these meet at the height of their middles, where their contacts are those of their outlines, and exact.
+    /// All of them meet at the height of their centres, where contacts are exactly those of their outlines.
     pub(super) fn upright(&self) -> SharedShape {
         /// Half the height of prisms, in metres.
         const TALL: f32 = 4.0;
@@ -110,21 +111,21 @@ impl Outline {
         prism.flatten().unwrap_or_else(|| SharedShape::cuboid(x, y, TALL))
     }
 
-    /// All of the outline, turned to a heading in degrees, around the origin.
+    /// The whole outline around the origin, rotated to a heading in degrees.
     pub(super) fn turned_into(&self, heading_deg: f32, whole: &mut Footprint) {
         self.whole.place_into(turn(heading_deg), [0.0; 2], whole);
     }
 
-    /// Turns the outline to a heading in degrees, and moves it to a place.
+    /// Rotates the outline to a heading in degrees, and moves it to a place.
     pub(super) fn place_into(&self, heading_deg: f32, at: Point, low: &mut Footprint, whole: &mut Footprint) {
-        // Discs show no heading.
+        // Discs do not depend on the heading.
         let turn = if self.is_disc() { [0.0, 1.0] } else { turn(heading_deg) };
         self.whole.place_into(turn, at, whole);
         self.low.as_ref().unwrap_or(&self.whole).place_into(turn, at, low);
     }
 }
 
-/// Sine and cosine of a heading; headings turn clockwise.
+/// Sine and cosine of a heading; headings are clockwise.
 fn turn(heading_deg: f32) -> Point {
     if heading_deg == 0.0 {
         return [0.0, 1.0];
@@ -133,7 +134,7 @@ fn turn(heading_deg: f32) -> Point {
     [sine, cosine]
 }
 
-/// What of a convex body is below a height, seen from above: its corners there, and where its edges are cut.
+/// The part of a convex body below a height, seen from above: its corners there, and the points where its edges are cut.
 fn points_below(corners: &[[f64; 3]], height: f64) -> Vec<Point> {
     let is_low = |corner: &&[f64; 3]| corner[2] <= height;
     let mut points: Vec<Point> = corners.iter().filter(is_low).map(|&[x, y, _]| [x, y]).collect();
@@ -158,14 +159,14 @@ mod tests {
     }
 
     #[test]
-    fn a_low_agent_meets_a_ball_below_its_middle() {
+    fn low_agent_meets_a_ball_below_its_centre() {
         let ball = Outline::of(&ColliderShape::Ball { radius: 2.0 }, 1.0, 1.0);
         let [low, whole] = reach(&ball, 0.0, [10.0, 0.0]);
         assert!((whole - 8.0).abs() < 1e-9 && (low - (10.0 - 3.0_f64.sqrt())).abs() < 1e-9);
     }
 
     #[test]
-    fn a_tent_is_wider_at_its_foot_and_turns_clockwise() {
+    fn tent_is_wider_at_its_base_and_rotates_clockwise() {
         let points = vec![
             [-1.0, -2.0, 0.0],
             [1.0, -2.0, 0.0],
@@ -176,7 +177,7 @@ mod tests {
         let tent = Outline::of(&ColliderShape::Hull { points: points.clone() }, 1.0, 1.0);
         let [low, whole] = reach(&tent, 90.0, [10.0, 0.0]);
         assert!((whole - 8.0).abs() < 1e-9 && (low - 8.0).abs() < 1e-9);
-        // Standing on its top it is a quarter as wide up to a quarter of its height.
+        // Upside down, it is a quarter as wide up to a quarter of its height.
         let upside_down = points.iter().map(|&[x, y, z]| [x, y, 4.0 - z]).collect();
         let funnel = Outline::of(&ColliderShape::Hull { points: upside_down }, 1.0, 1.0);
         let [low, whole] = reach(&funnel, 0.0, [10.0, 0.0]);

@@ -1,5 +1,4 @@
-//! Keeping an object's body up to date: where it stands, whether it is there, whether it stops others. What bodies are is in
-//! `collision_world.rs`.
+//! Keeps an object's body up to date: its position, its presence, and whether it is solid.
 
 use rapier3d::prelude::*;
 
@@ -8,7 +7,7 @@ use super::groups::{GHOST, SOLID};
 use crate::scene::Item;
 
 impl CollisionWorld {
-    /// Brings an object's body up to date with its item: puts it where that stands, or takes it away.
+    /// Updates an object's body from its item: moves, adds or removes it.
     pub(super) fn sync_object(&mut self, index: u32, item: &Item, solid: bool, is_portable: bool) {
         let body = self.handles.get(index as usize).copied().flatten();
         match (body, item.visible) {
@@ -36,7 +35,7 @@ impl CollisionWorld {
         }
     }
 
-    /// Lets a body stop others from now on, or none.
+    /// Makes a body solid, or a ghost.
     fn set_solid(&mut self, handle: ColliderHandle, solid: bool) {
         let group = if solid { SOLID } else { GHOST };
         let groups = self.colliders[handle].collision_groups();

@@ -1,4 +1,4 @@
-//! A running world as a document of progress, and going on from one. The form that stays in memory is in `snapshot.rs`.
+//! Saves a running world as a document of its progress, and resumes from one.
 
 use std::sync::Arc;
 
@@ -10,15 +10,15 @@ use super::sim_ref::SimRef;
 use super::state::{SimState, wrapped};
 use super::views::Views;
 
-/// What a world that was written down says of its course, when the world itself has been taken back to its start.
+/// The progress of a saved world, once the world itself has been taken back to its start.
 pub(super) struct ResumeState {
     pub(super) progress: Progress,
     agent: ([f32; 2], f32),
-    /// Where each object stands and faces, and what it is worth.
+    /// Position, heading and reward of each object.
     objects: Vec<([f32; 2], f32, f64)>,
 }
 
-/// A world as it is now, as a document: see [`Environment::state`](super::Environment::state).
+/// The current state of a world as a document: see [`Environment::state`](super::Environment::state).
 pub(super) fn to_world(sim: SimRef, seed: &Seed, rails: Option<RailsProgress>) -> World {
     let mut world = sim.world.clone().into_draft();
     let agent = sim.agent();
@@ -60,7 +60,7 @@ pub(super) fn to_world(sim: SimRef, seed: &Seed, rails: Option<RailsProgress>) -
         .expect("steps keep the rules that the world started with")
 }
 
-/// The agent of the world, where it is now: to the bit where it started if it is there.
+/// The world's agent at its current place: to the bit the start if it is there.
 pub(super) fn agent_now(sim: SimRef) -> AgentParams {
     let agent = sim.agent();
     let mut now = sim.world.agent_params.clone();
@@ -73,14 +73,14 @@ pub(super) fn agent_now(sim: SimRef) -> AgentParams {
     now
 }
 
-/// An object of the world, where it is now and with what is left of its reward.
+/// A world's object at its current place, with its remaining reward.
 pub(super) fn object_now(sim: SimRef, index: usize) -> Object {
     let mut now = sim.world.objects[index].clone();
     put_where_it_is(sim, index, &mut now);
     now
 }
 
-/// Puts an object where it is now; hands back where it was if that is elsewhere.
+/// Moves an object to its current place; returns its original place if that differs.
 fn put_where_it_is(sim: SimRef, index: usize, object: &mut Object) -> Option<Origin> {
     let own = &sim.objects()[index];
     let stands = object.coordinates.map(|metres| metres as f32) == own.position
@@ -99,12 +99,12 @@ fn put_where_it_is(sim: SimRef, index: usize, object: &mut Object) -> Option<Ori
     origin
 }
 
-/// How far an object has come; the object is put where it is now.
+/// The progress of an object, which is moved to its current place.
 fn note_object(sim: SimRef, index: usize, object: &mut Object) -> ObjectProgress {
     let own = &sim.objects()[index];
     let origin = put_where_it_is(sim, index, object);
     let state = sim.state;
-    // All of these lists rise.
+    // All of these lists are sorted.
     let mover = state.movers.binary_search_by_key(&index, |mover| mover.object);
     let pushed = state.pushed.binary_search_by_key(&index, |body| body.object);
     let returns = state.returning.binary_search_by_key(&index, |(other, _)| *other);
@@ -143,7 +143,7 @@ fn note_object(sim: SimRef, index: usize, object: &mut Object) -> ObjectProgress
 }
 
 impl ResumeState {
-    /// Takes a world's progress out of it, and the world back to its start.
+    /// Extracts a world's progress, and takes the world back to its start.
     pub(super) fn out_of(world: &mut Arc<World>) -> Self {
         let mut draft = Arc::unwrap_or_clone(std::mem::take(world)).into_draft();
         let progress = draft.progress.take().unwrap_or_default();
@@ -179,7 +179,7 @@ impl ResumeState {
         }
     }
 
-    /// Whether the world ran before: progress that says no more than a seed is that of a start.
+    /// Whether the world ran before: progress with only a seed is that of a start.
     pub(super) fn has_begun(&self) -> bool {
         let only_seed = Progress {
             seed: self.progress.seed.clone(),
@@ -189,7 +189,7 @@ impl ResumeState {
         self.progress != only_seed
     }
 
-    /// Goes on from where a world had come when it was written down: the state and the views are at its start.
+    /// Resumes a saved world: the state and the views must be at its start.
     pub(super) fn apply(&self, world: &World, state: &mut SimState, views: &mut Views) {
         let progress = &self.progress;
         (state.agent.position, state.agent.heading_deg) = self.agent;

@@ -1,11 +1,11 @@
-//! The motion of an object that is pushed, and which objects are. The physics is in `pushing.rs`.
+//! Motion of pushable objects.
 
 use driftworld_spec::{MotionModel, Object};
 
-/// The motion of one body that is pushed.
+/// The motion of one pushable body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pushed {
-    /// The object's number in the world.
+    /// The object's index in the world.
     pub(super) object: usize,
     /// In metres per second.
     pub(super) velocity: [f32; 2],
@@ -14,7 +14,7 @@ pub(super) struct Pushed {
 }
 
 impl Pushed {
-    /// An object's motion, at rest, if it can be pushed.
+    /// An object's motion, at rest; `None` if it cannot be pushed.
     pub(super) fn new(object_index: usize, object: &Object) -> Option<Self> {
         is_pushed(object).then_some(Self {
             object: object_index,
@@ -33,7 +33,7 @@ impl Pushed {
     }
 }
 
-/// Whether an object can be pushed: it says so, is solid, and does not move by itself.
+/// Whether an object can be pushed: it is pushable and solid, and does not move by itself.
 pub(super) fn is_pushed(object: &Object) -> bool {
     object.pushable.is_some() && object.door.is_none() && object.solid && object.motion_model == MotionModel::Stationary
 }

@@ -1,9 +1,8 @@
-//! Bodies that are pushed: rigid bodies on the ground, stepped by rapier. What else the agent bumps into is in
-//! `collision_world.rs`.
+//! Pushes bodies: rigid bodies on the ground, simulated by rapier.
 //!
-//! Each time step starts a physics world of its own, made of the pushed bodies that may move, what stands around them
-//! and the agent; nothing but places and velocities goes from one time step to the next. So a world that was written
-//! down goes on to the last bit, and a world at rest costs nothing.
+//! Each time step creates its own physics world from the pushed bodies that may move, their surroundings and the agent; only
+//! positions and velocities carry over to the next time step. So a saved world resumes exactly, and a world at rest costs
+//! nothing.
 
 use driftworld_spec::World;
 use rapier3d::prelude::*;
@@ -20,32 +19,32 @@ use super::slide::SKIN;
 use super::state::{SimState, wrapped};
 use super::views::Views;
 
-/// What the agent weighs, in kilograms. In each time step it meets what it pushes with this mass at its own speed.
+/// The agent's mass, in kilograms. In each time step it meets the bodies that it pushes with this mass at its own speed.
 const AGENT_MASS: f32 = 80.0;
 
 /// Longest step of the physics, in seconds.
 const LONGEST: f32 = 1.0 / 60.0;
 
-/// Fewest steps of the physics in a time step: in the first of a new physics world, what touches already is not seen.
+/// Fewest physics steps in a time step: the first one of a new physics world ignores bodies that already touch.
 const FEWEST_PARTS: u32 = 2;
 
-/// Most steps of the physics in a time step: longer ones are taken in larger parts.
+/// Most physics steps in a time step: longer time steps use longer physics steps.
 const MOST_PARTS: u32 = 60;
 
-/// Standard gravity in metres per second squared: what friction with the ground grows with.
+/// Standard gravity in metres per second squared, for friction with the ground.
 const GRAVITY: f32 = 9.806_65;
 
 /// A body in the physics world of a time step.
 struct Active {
-    /// Its number among the pushed bodies.
+    /// Its index among the pushed bodies.
     index: usize,
     handle: RigidBodyHandle,
     radius: f32,
     friction: f32,
 }
 
-/// Lets the agent push what is in its way, and what was pushed slide on. Hands back how far the agent's own way leads
-/// when what it pushes holds it up; notes what it pushed.
+/// Lets the agent push what is in its way, and lets pushed bodies slide on. Returns the agent's own displacement if what it
+/// pushes holds it up; records what it pushed.
 pub(super) fn push_bodies(
     world: &World,
     state: &mut SimState,
@@ -91,7 +90,7 @@ pub(super) fn push_bodies(
         #[cfg(test)]
         (encounters.looked += num_pairs as u64);
         if num_pairs > chosen.most_pairs {
-            // More have met on their ways than may: there they stay.
+            // More bodies have met on their paths than allowed: they stop there.
             is_jammed = true;
             break;
         }
@@ -106,14 +105,14 @@ pub(super) fn push_bodies(
     [end.x - start[0], end.y - start[1]]
 }
 
-/// Whether the agent's way may lead to a pushed body.
+/// Whether the agent's path may lead to a pushed body.
 fn may_meet_agent(sim: SimRef, body: &Pushed, by: [f32; 2]) -> bool {
     let reach = (by[0] * by[0] + by[1] * by[1]).sqrt() + sim.world.agent_params.agent_width as f32 / 2.0;
     let [x, y] = sim.state.way_to(body.object);
     (x * x + y * y).sqrt() < reach + sim.body_radius(body.object) + MARGIN
 }
 
-/// Brings all pushed bodies but these to rest; their numbers rise.
+/// Stops all pushed bodies except these; `indices` rise.
 fn stop_all_but(pushed: &mut [Pushed], indices: &[usize]) {
     for (index, body) in pushed.iter_mut().enumerate() {
         if indices.binary_search(&index).is_err() {
@@ -142,12 +141,12 @@ fn add_active(sim: SimRef, physics: &mut PhysicsWorld, index: usize) -> Active {
             .enabled_translations(true, true, false)
             .enabled_rotations(false, false, true)
             .ccd_enabled(true)
-            // Contacts are foreseen: else a body stands still for the rest of the part of the step in which it meets a
+            // Contacts are predicted: otherwise a body would stand still for the rest of the physics step in which it meets a
             // wall.
             .soft_ccd_prediction(farthest)
             .can_sleep(false),
     );
-    // It weighs and turns as the solid that it is, and meets others as its outline.
+    // Its mass and inertia are those of the solid; its contacts are those of its outline.
     let mut mass_properties = shape.mass_properties(1.0);
     mass_properties.set_mass(mass, true);
     let outline = sim.views.bodies.outline_of(body.object as u32);
@@ -167,10 +166,10 @@ fn add_active(sim: SimRef, physics: &mut PhysicsWorld, index: usize) -> Active {
     }
 }
 
-/// Walls and objects that stand fast around the bodies, in an order that does not depend on how the world came to be.
+/// Adds walls and static objects around the bodies, in an order that does not depend on the world's history.
 fn add_surroundings(sim: SimRef, physics: &mut PhysicsWorld, active: &[Active], seconds: f32) {
     let mut around: Vec<(u64, ColliderHandle)> = Vec::new();
-    // Both rise: numbers among the pushed bodies, and their objects.
+    // Both are sorted: indices among the pushed bodies, and their objects.
     let moves = |object: u32| {
         let own = |body: &Active| sim.state.pushed[body.index].object;
         active.binary_search_by_key(&(object as usize), own).is_ok()
@@ -197,7 +196,7 @@ fn add_surroundings(sim: SimRef, physics: &mut PhysicsWorld, active: &[Active], 
             place.rotation = Rotation::IDENTITY;
         }
         let collider = ColliderBuilder::new(outline.upright()).position(place);
-        // Along walls everything slides, as the agent does: what leads along one is kept.
+        // Everything slides along walls without friction, as the agent does: motion along them is kept.
         let is_wall = standing.collision_groups().memberships == WALL;
         let collider = if is_wall {
             collider
@@ -210,7 +209,7 @@ fn add_surroundings(sim: SimRef, physics: &mut PhysicsWorld, active: &[Active], 
     }
 }
 
-/// The agent as a body with its own mass, on the way that it means to go.
+/// Adds the agent as a body with its own mass, on its intended path.
 fn add_agent(sim: SimRef, physics: &mut PhysicsWorld, by: [f32; 2], seconds: f32) -> (RigidBodyHandle, ColliderHandle) {
     let [x, y] = sim.agent().position;
     let body = RigidBodyBuilder::dynamic()
@@ -221,8 +220,8 @@ fn add_agent(sim: SimRef, physics: &mut PhysicsWorld, by: [f32; 2], seconds: f32
         .ccd_enabled(true)
         .can_sleep(false);
     let body = physics.bodies.insert(body);
-    // What it pushes is not held back by its sides, nor is it by walls.
-    // With its skin, which is where it meets what it pushes.
+    // Neither pushed bodies nor walls slow it by friction.
+    // With its skin, at which it meets pushed bodies.
     let collider = ColliderBuilder::ball((sim.views.bodies.radius + SKIN) as f32)
         .mass(AGENT_MASS)
         .friction(0.0)
@@ -242,7 +241,7 @@ fn note_contacts(pushed: &[Pushed], physics: &PhysicsWorld, agent: ColliderHandl
             pair.collider1
         };
         let body = &physics.colliders[other];
-        // What stands fast has no body.
+        // Static objects have no rigid body.
         if body.parent().is_some() && pair.has_any_active_contact() {
             let index = body.user_data as usize;
             met.push(pushed[index].object as u32);
@@ -250,7 +249,7 @@ fn note_contacts(pushed: &[Pushed], physics: &PhysicsWorld, agent: ColliderHandl
     }
 }
 
-/// Puts the bodies where the physics has brought them; one that it brought through a wall stays, at rest.
+/// Copies positions back from the physics; a body that went through a wall stays where it was, at rest.
 fn read_back(
     physics: &PhysicsWorld,
     active: &[Active],
@@ -276,7 +275,7 @@ fn read_back(
         pushed.spin_deg = -turn_speed.to_degrees();
         let yaw = 2.0 * libm::atan2f(turn.z, turn.w);
         let heading_deg = wrapped(-yaw.to_degrees());
-        // A body at rest keeps its very place, whatever solvers make of it.
+        // A body at rest keeps its exact position, whatever the solver does.
         if position != own.position || pushed.moves() {
             encounters.moved.push((object, own.position));
             (own.position, own.heading_deg) = (position, heading_deg);
@@ -285,7 +284,7 @@ fn read_back(
     }
 }
 
-/// Whether the straight way of an object's body between two places leads through a wall.
+/// Whether the straight path of an object's body between two places crosses a wall.
 fn leads_through(bodies: &CollisionWorld, from: [f32; 2], to: [f32; 2], object: u32) -> bool {
     let way = Vector::new(to[0] - from[0], to[1] - from[1], 0.0);
     let ray = Ray::new(Vector::new(from[0], from[1], 0.05), way);
@@ -294,7 +293,7 @@ fn leads_through(bodies: &CollisionWorld, from: [f32; 2], to: [f32; 2], object: 
     bodies.queries_but(WALL, own).any(hit)
 }
 
-/// Friction with the ground: it slows what slides and what turns, down to rest.
+/// Friction with the ground: slows sliding and rotating bodies until they rest.
 fn rub(physics: &mut PhysicsWorld, active: &[Active]) {
     let seconds = physics.integration_parameters.dt;
     for body in active {
@@ -303,7 +302,7 @@ fn rub(physics: &mut PhysicsWorld, active: &[Active]) {
         let slower = |speed: f32, loss: f32| if speed > loss { (speed - loss) / speed } else { 0.0 };
         let along = moved.linvel();
         moved.set_linvel(along * slower(along.length(), loss), true);
-        // A disc that turns in place loses speed at its rim 4/3 as fast as it would sliding.
+        // A disc that rotates in place loses speed at its rim 4/3 times as fast as it would by sliding.
         let around = moved.angvel();
         moved.set_angvel(around * slower(around.length(), loss * 4.0 / 3.0 / body.radius), true);
     }

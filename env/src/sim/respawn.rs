@@ -1,4 +1,4 @@
-//! How destroyed objects come back: near their first place, where nothing stands.
+//! Respawns destroyed objects at free places near their first place.
 
 use driftworld_spec::World;
 
@@ -9,7 +9,7 @@ use super::state::SimState;
 use super::views::Views;
 use super::walls;
 
-/// Puts back the destroyed objects whose time has come.
+/// Respawns the destroyed objects that are due.
 pub(super) fn respawn(world: &World, state: &mut SimState, views: &mut Views, encounters: &mut Encounters) {
     let now = state.ticks;
     let mut returning = std::mem::take(&mut state.returning);
@@ -31,13 +31,13 @@ pub(super) fn respawn(world: &World, state: &mut SimState, views: &mut Views, en
     (encounters.looked += count - budget.left());
 }
 
-/// How many corners the walls of the world have.
+/// Number of corners of the world's walls.
 fn num_wall_corners(world: &World) -> usize {
     world.obstacles().map(<[_]>::len).sum()
 }
 
-/// Puts an object back at a free place; false if none is found in this step. Each place that is tried takes
-/// `per_place` looks.
+/// Puts an object back at a free place; false if none is found in this step. Each place that is tried takes `per_place`
+/// queries.
 fn try_respawn(
     world: &World,
     state: &mut SimState,
@@ -46,7 +46,7 @@ fn try_respawn(
     per_place: usize,
     budget: &mut Budget,
 ) -> bool {
-    /// Places tried in one step.
+    /// Places tried per step.
     const TRIES: u32 = 16;
     let object = &world.objects[index];
     let Some(respawn) = &object.respawn else { return true };
@@ -57,7 +57,7 @@ fn try_respawn(
         if !budget.take(per_place) {
             return false;
         }
-        // What comes back has its random numbers: they are made with the state, or when it is spawned.
+        // Objects that respawn have their random numbers, which are created with the state or when the object is spawned.
         let Some(rng) = state.rng_of(index) else { return true };
         let [out, around] = rng.draw_place().map(|unit| unit as f32);
         let distance = respawn.radius as f32 * out.sqrt();

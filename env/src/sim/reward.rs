@@ -1,28 +1,28 @@
-//! What a step pays by the world's rules: per step, per second and by shaping. `interactions.rs` adds what objects pay.
+//! Rewards by the world's rules: per step, per second, and by the shaping's potential.
 
 use driftworld_spec::World;
 
 use super::state::SimState;
 use super::termination::pays_now;
 
-/// What every step pays.
+/// The reward per step.
 pub(super) fn per_step(world: &World) -> f64 {
     world.rules.step_reward
 }
 
-/// What every second pays, for one time step.
+/// The reward per second, for one time step.
 pub(super) fn per_tick(world: &World) -> f64 {
     world.rules.reward_per_second * world.agent_params.time_step
 }
 
-/// What shaping adds to a step between two potentials; an end has the potential 0.
+/// The shaping reward of a step, from the potentials before and after it; an end has the potential 0.
 pub(super) fn shaping(world: &World, state: &SimState, before: f64, terminated: bool) -> Option<f64> {
     let shaping = world.rules.shaping.as_ref()?;
     let after = if terminated { 0.0 } else { potential(world, state) };
     Some(shaping.discount * after - before)
 }
 
-/// The potential that the world's shaping gives to this moment; 0 without shaping and where nothing draws the agent.
+/// The shaping potential of the current state; 0 without shaping, and without an object to approach.
 pub(super) fn potential(world: &World, state: &SimState) -> f64 {
     let Some(shaping) = &world.rules.shaping else {
         return 0.0;

@@ -1,8 +1,7 @@
-//! The random numbers of a running world: a stream for each object and purpose. Who draws from them is in
-//! `interactions.rs`, `motion.rs` and `mover.rs`.
+//! Random numbers of a running world: a stream per object and purpose.
 //!
-//! Every draw has a number, and is had without the draws before it: what an object draws for the third time depends on
-//! the world's seed, on the object's own and on the 3, and on nothing else that is in the world or happens in it.
+//! Every draw has an index, and does not depend on the draws before it: an object's third draw depends only on the world's
+//! seed, the object's identity and the 3, and on nothing else that is in the world or happens there.
 
 use std::collections::BTreeMap;
 
@@ -10,20 +9,20 @@ use driftworld_spec::{Object, World};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// What the key of a world with a seed is filled up with.
+/// Padding of the key of a world with a seed.
 const DOMAIN: [u8; 24] = *b"driftworld chance 1\0\0\0\0\0";
 
-/// What all random numbers of a world depend on: its `seed`, or the hash of where things stood at its start.
+/// The seed of all random numbers of a world: its `seed`, or the hash of the initial places.
 ///
-/// Hashing costs as much as reading the world, so it waits until something draws.
+/// Hashing costs as much as reading the world, so it is postponed until something draws.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) enum Seed {
     /// A world without a seed in which nothing has drawn yet.
     #[default]
     Unknown,
-    /// The world's own.
+    /// The world's own seed.
     Own(u64),
-    /// The hash of its places, 64 hexadecimal letters.
+    /// The hash of its places, 64 hexadecimal digits.
     Places(String),
 }
 
@@ -39,7 +38,7 @@ impl Seed {
         }
     }
 
-    /// The hash of places, if that is the seed.
+    /// The hash of the places, if that is the seed.
     pub(super) fn hash(&self) -> Option<&str> {
         match self {
             Self::Places(hash) => Some(hash),
@@ -47,7 +46,7 @@ impl Seed {
         }
     }
 
-    /// Finds the seed if it is not known yet; `start` is the world before anything was spawned.
+    /// Computes the seed if it is not known yet; `start` is the world before anything was spawned.
     pub(super) fn learn(&mut self, start: &World) {
         if *self == Self::Unknown {
             *self = Self::Places(start.hash_of_places());
@@ -62,7 +61,7 @@ impl Seed {
                 key[..8].copy_from_slice(&seed.to_le_bytes());
                 key[8..].copy_from_slice(&DOMAIN);
             }
-            // The letters, not the bytes that they stand for: half of them is as good a key as any.
+            // The digits, not the bytes that they encode: half of them is a good enough key.
             Self::Places(hash) => key
                 .iter_mut()
                 .zip(hash.bytes())
@@ -72,35 +71,35 @@ impl Seed {
     }
 }
 
-/// What an object draws for.
+/// The purpose of a draw.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Purpose {
-    /// Where a wanderer goes.
+    /// A wanderer's goals.
     Goals = 1,
     /// Whether a bandit arm pays.
     Pulls = 2,
-    /// Where an object comes back.
+    /// Places for respawning.
     Returns = 3,
 }
 
-/// Which of a world's objects is meant, by what it is and not by where it stands in the list.
+/// Identities of a world's objects, independent of their position in the list.
 ///
-/// Objects with one seed, or without one at one place, are told apart by their order among each other.
+/// Objects with the same seed, or without one at the same place, are distinguished by their order among each other.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Identities {
-    /// How many objects there are of each so far.
+    /// Number of objects so far with each base identity.
     taken: BTreeMap<u64, u64>,
 }
 
 impl Identities {
-    /// The identity of the next object of a world; `object` is as it was at its start.
+    /// The identity of the next object of a world; `object` is its initial state.
     pub(super) fn take(&mut self, object: &Object) -> u64 {
         let own = match object.seed {
             Some(seed) => mix(mix(1) ^ seed),
             None => object
                 .coordinates
                 .iter()
-                // 0 has one form.
+                // 0 and −0 are the same.
                 .fold(mix(2), |mixed, metres| mix(mixed ^ (metres + 0.0).to_bits())),
         };
         let before = self.taken.entry(own).or_insert(0);
@@ -109,7 +108,7 @@ impl Identities {
     }
 }
 
-/// The numbers that one object draws for one purpose.
+/// The random numbers of one object for one purpose.
 #[derive(Clone, Debug)]
 pub(super) struct Stream {
     key: [u8; 32],
@@ -124,27 +123,27 @@ impl Stream {
         }
     }
 
-    /// Draw number `draw`: two numbers, from 0 up to but not including 1.
+    /// Draw number `draw`: two numbers in 0..1, excluding 1.
     pub(super) fn draw(&self, draw: u64) -> [f64; 2] {
         self.redraw(draw, 0)
     }
 
-    /// What draw number `draw` is replaced by for the `attempt`th time; the first is number 0.
+    /// The `attempt`th replacement of draw number `draw`; 0 is the draw itself.
     pub(super) fn redraw(&self, draw: u64, attempt: u64) -> [f64; 2] {
-        /// Words of 32 bits that one draw takes.
+        /// 32-bit words per draw.
         const WORDS: u128 = 4;
         let mut rng = ChaCha8Rng::from_seed(self.key);
         rng.set_stream(self.number);
-        // Attempts in the lower half, so that neither runs into the other's numbers.
+        // Attempts are in the lower half, so that draws and attempts do not overlap.
         rng.set_word_pos(WORDS * (u128::from(draw) << 32 | u128::from(attempt)));
         [rng.random(), rng.random()]
     }
 }
 
-/// The random numbers of a bandit arm, or of an object that comes back, and how many of them it has drawn.
+/// The random numbers of a bandit arm, or of a respawning object, with their positions.
 #[derive(Clone, Debug)]
 pub(super) struct ObjectRng {
-    /// The object's number in the world.
+    /// The object's index in the world.
     pub(super) object: usize,
     pulling: Stream,
     returning: Stream,
@@ -152,12 +151,12 @@ pub(super) struct ObjectRng {
     pub(super) pulls: u64,
     /// Returns so far.
     pub(super) returns: u64,
-    /// Places tried for the next return.
+    /// Places tried for the next respawn.
     pub(super) tries: u64,
 }
 
 impl ObjectRng {
-    /// Those of an object that needs any.
+    /// The random numbers of an object; `None` if it needs none.
     pub(super) fn new(index: usize, object: &Object, seed: &Seed, identity: u64) -> Option<Self> {
         (object.reward_probability < 1.0 || object.respawn.is_some()).then(|| Self {
             object: index,
@@ -169,29 +168,29 @@ impl ObjectRng {
         })
     }
 
-    /// Whether the next pull pays, with this probability. The same number decides whatever the probability: lowering it
-    /// takes payments away and adds none.
+    /// Whether the next pull pays, with this probability. The same number decides at every probability, so a lower probability
+    /// only removes payments.
     pub(super) fn pull(&mut self, probability: f64) -> bool {
         let [unit, _] = self.pulling.draw(self.pulls);
         self.pulls += 1;
         unit < probability
     }
 
-    /// Two numbers for the next place that is tried.
+    /// Two numbers for the next place to try.
     pub(super) fn draw_place(&mut self) -> [f64; 2] {
         let place = self.returning.redraw(self.returns, self.tries);
         self.tries += 1;
         place
     }
 
-    /// Notes that the object has come back.
+    /// Records that the object has respawned.
     pub(super) fn note_return(&mut self) {
         self.returns += 1;
         self.tries = 0;
     }
 }
 
-/// Spreads 64 bits over 64 bits, one to one (the finaliser of `SplitMix64`).
+/// A bijective mix of 64 bits (the finaliser of `SplitMix64`).
 fn mix(bits: u64) -> u64 {
     let mut z = bits.wrapping_add(0x9E37_79B9_7F4A_7C15);
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -211,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn every_draw_of_every_object_for_every_purpose_is_another() {
+    fn draws_differ_by_index_object_and_purpose() {
         let mut drawn = Vec::new();
         for seed in [Seed::Own(1), Seed::Own(2), Seed::Places("ab".repeat(32))] {
             let mut identities = Identities::default();
@@ -238,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn an_object_is_known_by_its_seed_wherever_it_stands_in_the_list() {
+    fn identity_follows_the_objects_seed_not_its_index() {
         let objects: Vec<Object> = (0..5).map(|seed| at([1.0, 2.0], Some(seed))).collect();
         let identities = |order: &[usize]| -> BTreeMap<usize, u64> {
             let mut identities = Identities::default();
@@ -250,9 +249,9 @@ mod tests {
         assert_eq!(identities(&[3]), [(3, all[&3])].into());
     }
 
-    /// Pinned: if it changes, so does every world that draws.
+    /// Pinned: a change would affect every world that draws.
     #[test]
-    fn the_numbers_stay_as_they_are() {
+    fn random_numbers_are_stable() {
         let identity = Identities::default().take(&at([3.0, 4.0], Some(7)));
         let stream = Stream::new(&Seed::Own(5), identity, Purpose::Goals);
         assert_eq!(
@@ -265,13 +264,13 @@ mod tests {
     }
 
     #[test]
-    fn draws_are_spread_evenly() {
+    fn draws_are_uniform() {
         let identity = Identities::default().take(&at([3.0, 4.0], None));
         let stream = Stream::new(&Seed::Own(5), identity, Purpose::Pulls);
         for axis in 0..2 {
             let mut units: Vec<f64> = (0..20_000).map(|draw| stream.draw(draw)[axis]).collect();
             units.sort_unstable_by(f64::total_cmp);
-            // Kolmogorov and Smirnov: 1.95 / √n is α = 0.001.
+            // Kolmogorov–Smirnov: 1.95 / √n is α = 0.001.
             let gap = |(number, unit): (usize, &f64)| (unit - (number as f64 + 0.5) / 20_000.0).abs();
             let most = units.iter().enumerate().map(gap).fold(0.0, f64::max);
             assert!(most < 1.95 / 20_000_f64.sqrt(), "{most}");

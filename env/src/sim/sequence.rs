@@ -1,18 +1,18 @@
-//! Whose turn it is in a scavenger sequence. What is paid in turn, and out of it, is in `interactions.rs`.
+//! [`Sequence`]: whose turn it is in a scavenger sequence.
 
 use driftworld_spec::Object;
 
-/// The places of a sequence in their order, and how many of them have been collected from the first on.
+/// The places of a sequence in order, and how many from the first on have been collected.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sequence {
     /// Place and object, in rising order.
     places: Vec<(u32, u32)>,
-    /// All before this one have been collected.
+    /// All places before this one have been collected.
     next: usize,
 }
 
 impl Sequence {
-    /// The sequence of a world in which nothing has been collected yet.
+    /// The sequence of a world at its start.
     pub(super) fn of(objects: &[Object]) -> Self {
         let ordered = objects.iter().zip(0..);
         let mut places: Vec<(u32, u32)> = ordered
@@ -22,7 +22,7 @@ impl Sequence {
         Self { places, next: 0 }
     }
 
-    /// Adds an object that has not been collected, if it has a place.
+    /// Adds an uncollected object, if it has a place.
     pub(super) fn add(&mut self, index: usize, order: Option<u32>) {
         let Some(order) = order else { return };
         let own = (order, index as u32);
@@ -31,7 +31,7 @@ impl Sequence {
         self.next = self.next.min(place);
     }
 
-    /// Takes note of what has been collected; nothing ever becomes uncollected.
+    /// Updates the sequence after objects were collected; nothing ever becomes uncollected.
     pub(super) fn advance(&mut self, is_collected: impl Fn(usize) -> bool) {
         let is_done = |(_, index): &(u32, u32)| is_collected(*index as usize);
         while self.places.get(self.next).is_some_and(is_done) {
@@ -52,9 +52,9 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// Against the rule as it reads: every lower place has been collected.
+        /// Compared with the definition: every lower place has been collected.
         #[test]
-        fn it_is_ones_turn_when_all_lower_places_have_been_collected(
+        fn object_is_due_once_all_lower_places_are_collected(
             orders in prop::collection::vec(prop::option::of(1u32..6), 1..12),
             spawned in prop::collection::vec((0usize..30, prop::option::of(1u32..6)), 0..6),
             collected in prop::collection::vec(0usize..18, 0..30),

@@ -1,4 +1,4 @@
-//! A running world, borrowed to be read: what policies that know the map, and questions about this moment, are handed.
+//! [`SimRef`]: a borrowed, read-only view of a running world, for policies that know the map and for queries.
 
 use driftworld_spec::World;
 
@@ -6,39 +6,39 @@ use super::state::{AgentState, ObjectState, SimState};
 use super::views::Views;
 use crate::scene::Scene;
 
-/// A running world, to be read.
+/// A read-only view of a running world.
 #[derive(Clone, Copy)]
 pub(crate) struct SimRef<'a> {
-    /// The world at its start, and with it what was spawned later.
+    /// The initial world, plus objects that were spawned later.
     pub(crate) world: &'a World,
     pub(crate) state: &'a SimState,
     pub(crate) views: &'a Views,
 }
 
 impl<'a> SimRef<'a> {
-    /// Where the agent is.
+    /// The agent's current state.
     pub(crate) fn agent(self) -> AgentState {
         self.state.agent
     }
 
-    /// The objects as they are now, in the world's order.
+    /// The objects' current states, in the world's order.
     pub(crate) fn objects(self) -> &'a [ObjectState] {
         &self.state.objects
     }
 
-    /// What there is to see now.
+    /// The current scene.
     pub(crate) fn scene(self) -> &'a Scene {
         &self.views.scene
     }
 
-    /// Finds the objects that an interaction would reach now, by index in rising order.
+    /// Finds the objects that an interaction would reach now, by rising index.
     pub(crate) fn reached_by_hand(self, found: &mut Vec<u32>) {
         let agent = self.agent();
         self.views.bodies.in_reach(agent.position, agent.forward(), found);
     }
 
-    /// Whether an agent that goes straight from place to place touches an object, or comes nearer to a touch than so many metres,
-    /// without going away from it.
+    /// Whether an agent that goes straight from place to place touches an object, or comes nearer to a touch than `metres`,
+    /// without moving away from it.
     pub(crate) fn would_touch(self, object: u32, path: &[[f64; 2]], metres: f64) -> bool {
         self.views.bodies.would_touch(object, path, metres)
     }

@@ -1,40 +1,36 @@
-//! Sliding: the way of a body that is driven one way, without friction, among footprints. Which bodies these are is in
-//! `collision_world.rs` and
-//! `moving_body.rs`.
+//! Sliding: the path of a body that is driven in one direction among footprints, without friction.
 //!
-//! The law: at each moment the body moves as it is driven, less what leads into something that it touches. So on its
-//! way along a wall it keeps the part of its speed that points along the wall, whatever the wall's length, the body's
-//! width or the time step.
+//! At each moment the body moves as it is driven, minus the component into anything that it touches. So along a wall it keeps
+//! the component of its velocity parallel to the wall, whatever the wall's length, the body's width or the time step.
 
 use super::budget::Budget;
 use super::footprint::{Footprint, Point};
 use super::gap::Gap;
 
-/// Distance that a body keeps from what it slides along, in metres.
+/// Gap that a body keeps from what it slides along, in metres.
 pub(super) const SKIN: f64 = 0.01;
 
-/// How much wider than the skin a gap may be that still counts as contact, in metres: more than rounding to `f32` at
-/// the edge of the world.
+/// How much wider than the skin a gap may be to count as contact, in metres: more than the rounding to `f32` at the edge of the
+/// world.
 const SLACK: f64 = 2e-4;
 
-/// How far a part of the way may leave a round edge before it is brought back to it, in metres.
+/// How far a section of the path may depart from a round edge before it is corrected, in metres.
 const SAGITTA: f64 = 1e-3;
 
-/// Most parts of a way: each is a straight way along one thing. A way of 1 km along a thousand bodies ends early.
+/// Most sections of a path: each is straight along one obstacle. A path of 1 km along a thousand bodies ends early.
 const MOST_PARTS: usize = 4096;
 
-/// How often each body is asked for in a part of a way: whether it is touched, when it will be, and whether it is what
-/// is followed.
+/// Queries per body in a section of a path: whether it is touched, when it will be, and whether it is being followed.
 const LOOKS_PER_PART: usize = 4;
 
-/// What may be in the way: the footprints of these numbers.
+/// Potential obstacles: the footprints of these numbers.
 #[derive(Clone, Copy)]
 pub(super) struct Obstacles<'a> {
     /// The footprints by number.
     pub(super) footprints: &'a [Footprint],
-    /// The numbers of those that may be met, in an order that depends on the world alone.
+    /// The numbers of those that may be met, in an order that depends only on the world.
     pub(super) numbers: &'a [u32],
-    /// How many corners these have in all.
+    /// Their total number of corners.
     pub(super) num_corners: usize,
 }
 
@@ -43,8 +39,7 @@ impl Obstacles<'_> {
         self.numbers.iter().map(|number| &self.footprints[*number as usize])
     }
 
-    /// The first time, 0..1, at which a body of this radius comes within the skin of something that it does not touch
-    /// already.
+    /// The first time, 0..1, at which a body of this radius comes within the skin of something that it does not touch already.
     fn first_time(&self, from: Point, by: Point, radius: f64) -> Option<f64> {
         self.footprints()
             .filter(|footprint| footprint.gap(from).distance - radius > SKIN + SLACK)
@@ -52,13 +47,13 @@ impl Obstacles<'_> {
             .min_by(f64::total_cmp)
     }
 
-    /// Whether a straight way comes within the skin of nothing.
+    /// Whether a straight path stays outside the skin of everything.
     pub(super) fn is_clear(&self, from: Point, by: Point, radius: f64) -> bool {
         self.footprints()
             .all(|footprint| footprint.time_within(from, by, radius + SKIN).is_none())
     }
 
-    /// The gap to what the body overlaps most deeply, but for what its middle is inside of.
+    /// The gap to the deepest overlap, ignoring footprints that contain the body's centre.
     fn deepest_overlap(&self, at: Point, radius: f64) -> Option<Gap> {
         self.footprints()
             .map(|footprint| footprint.gap(at))
@@ -66,9 +61,9 @@ impl Obstacles<'_> {
             .min_by(|a, b| a.distance.total_cmp(&b.distance))
     }
 
-    /// Moves a round body out of what it overlaps, by half a metre at most and never through anything else.
+    /// Moves a round body out of overlaps, by at most half a metre and never through anything else.
     ///
-    /// Where that leads into other things as deeply, it stays.
+    /// If that would lead into other obstacles equally deeply, it stays.
     pub(super) fn out_of_overlap(&self, start: Point, radius: f64) -> Point {
         let mut at = start;
         for _ in 0..3 {
@@ -87,7 +82,7 @@ impl Obstacles<'_> {
         if depth(at) < depth(start) { at } else { start }
     }
 
-    /// A place near to one, at most this far, where a body without a radius overlaps nothing; nothing if none is found.
+    /// A place at most `most` away where a body without radius overlaps nothing; `None` if none is found.
     pub(super) fn room_near(&self, start: Point, most: f64) -> Option<Point> {
         let mut at = start;
         for _ in 0..8 {
@@ -105,10 +100,10 @@ impl Obstacles<'_> {
         None
     }
 
-    /// Lets a round body, driven a way in a unit of time, slide; notes in `path` where its way bends, and its end.
+    /// Lets a round body, driven in a direction for a unit of time, slide; stores in `path` its bends and its end.
     ///
-    /// What its middle is inside of does not hold it: where something was put on it, it walks out whichever way it
-    /// likes. Its way ends where its budget does.
+    /// A footprint that contains its centre does not hold it: if something was put onto it, it can walk out in any direction.
+    /// Its path ends when the budget does.
     pub(super) fn slide(
         &self,
         from: Point,
@@ -148,10 +143,9 @@ impl Obstacles<'_> {
         }
     }
 
-    /// Follows the edge of what holds the body for so much time, or for less where it bends away; hands back the place
-    /// and the time.
+    /// Follows the edge of the obstacle for this much time, or less if the edge bends away; returns the place and the time.
     fn along(&self, at: Point, by: Point, way: Point, most: f64, out: Point, radius: f64) -> (Point, f64) {
-        // What is touched now, and gives this way out, is what is followed.
+        // The obstacle being followed is touched now, and has this outward direction.
         let holds = |footprint: &&Footprint| {
             let gap = footprint.gap(at);
             is_touched(&gap, radius) && gap.out == out
@@ -166,23 +160,23 @@ impl Obstacles<'_> {
             let gap = held.gap(end);
             let apart = gap.distance - kept;
             if apart <= SAGITTA {
-                // Driven away from the edge, the body leaves it.
+                // If driven away from the edge, the body leaves it.
                 let into = dot(by, gap.out).min(0.0);
                 let back = if into < 0.0 { apart.max(0.0) } else { 0.0 };
                 let onward = add(by, gap.out, -into);
                 let taken = time * share_of_time(dot(way, way).sqrt(), dot(onward, onward).sqrt());
                 return (add(end, gap.out, -back), taken);
             }
-            // Behind a bend the edge falls away with the square of the way.
+            // Beyond a bend, the edge recedes with the square of the distance.
             time *= (0.9 * (SAGITTA / apart).sqrt()).clamp(0.05, 0.9);
         }
     }
 }
 
-/// The share of the time that a part of the way takes at the speed of its beginning, if the speed grows evenly with the
-/// way.
+/// The fraction of the time that a section of the path takes at its initial speed, if the speed grows linearly with the
+/// distance.
 ///
-/// It does so around a corner, but for the third power of the angle.
+/// Around a corner it does, up to the third power of the angle.
 fn share_of_time(first: f64, last: f64) -> f64 {
     let growth = last / first - 1.0;
     if growth > 1e-6 {
@@ -192,17 +186,17 @@ fn share_of_time(first: f64, last: f64) -> f64 {
     }
 }
 
-/// Whether something holds a body of this radius. A body without one stands for others' outlines, which hold it from
-/// inside, too.
+/// Whether something holds a body of this radius. A body without radius stands for outlines of others, which hold it from
+/// inside as well.
 fn is_touched(gap: &Gap, radius: f64) -> bool {
     gap.distance - radius <= SKIN + SLACK && (gap.distance >= 0.0 || radius == 0.0)
 }
 
-/// The part of a way that leads into nothing that is touched, and the way out of what turned it; nothing where no way
-/// is left.
+/// The part of a direction that leads into nothing that is touched, and the outward direction of the obstacle that deflected
+/// it; `None` if no direction is left.
 fn allowed(by: Point, touched: &[Gap], budget: &mut Budget) -> Option<(Point, Option<Point>)> {
     let length = dot(by, by).sqrt();
-    // What a way led into, the next one is likely to lead into, too.
+    // The next direction is likely to be blocked by the same obstacle as the last.
     let mut suspect = 0;
     let mut free = |way: Point, slack: f64| {
         let leads_into = |gap: &Gap| dot(way, gap.out) < -slack;
@@ -219,9 +213,9 @@ fn allowed(by: Point, touched: &[Gap], budget: &mut Budget) -> Option<(Point, Op
     if free(by, 0.0) {
         return Some((by, None));
     }
-    // Of the ways along one thing each, the nearest to what was meant among those that lead into no other. It is as far
-    // from what was meant as that leads into the deepest, less what the slack allows: ways that are nearer need not be
-    // looked at.
+    // Among the directions along one obstacle each that lead into no other, chooses the nearest to the intended one. It is at
+    // least as far from the intended one as that leads into the deepest obstacle, minus the slack: nearer ones need not be
+    // checked.
     let deepest = touched.iter().map(|gap| -dot(by, gap.out)).fold(0.0, f64::max);
     let mut best: Option<(f64, Point, Point)> = None;
     for gap in touched {
@@ -254,7 +248,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The rule as it reads: every way along everything, against everything.
+    /// The definition: every direction along every obstacle, against all obstacles.
     fn allowed_by_all(by: Point, touched: &[Gap]) -> Option<(Point, Option<Point>)> {
         let length = dot(by, by).sqrt();
         let free = |way: Point, slack: f64| touched.iter().all(|gap| dot(way, gap.out) >= -slack);
@@ -276,7 +270,7 @@ mod tests {
         (dot(way, way).sqrt() > 1e-6 * length).then_some((way, Some(out)))
     }
 
-    /// Directions from a few degrees, with some that are nearly or exactly alike.
+    /// Directions in steps of a few degrees, some nearly or exactly equal.
     fn direction() -> impl Strategy<Value = Point> {
         let noise = prop_oneof![Just(0.0), -1e-5..1e-5_f64, -1e-7..1e-7_f64, -0.5..0.5_f64];
         (0..24_i32, noise).prop_map(|(step, noise)| {
@@ -289,7 +283,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 2000)))]
 
         #[test]
-        fn the_allowed_way_is_that_of_the_rule_to_the_last_bit(
+        fn allowed_direction_equals_the_definition_to_the_bit(
             by in direction(),
             length in prop_oneof![1e-8..1e-3_f64, 1e-3..1e3_f64],
             outs in prop::collection::vec(direction(), 0..12),

@@ -1,5 +1,4 @@
-//! Keeping a moment of a running world, and going back to it: in memory, or as a world that is written down. What the
-//! written form says is in `progress.rs`.
+//! [`Snapshot`]: saves a moment of a running world in memory and restores it, or saves it as a world document.
 
 use std::fmt;
 use std::sync::Arc;
@@ -15,8 +14,8 @@ use crate::assets::Catalogue;
 
 /// A moment of a running world, in memory.
 ///
-/// Taking one copies what changes and shares what does not, so it is much cheaper than
-/// [`Environment::state`], which writes everything down.
+/// Taking one copies what changes and shares the rest, so it is much cheaper than [`Environment::state`], which saves
+/// everything as a document.
 #[derive(Clone)]
 pub struct Snapshot {
     world: Arc<World>,
@@ -37,7 +36,7 @@ impl fmt::Debug for Snapshot {
 }
 
 impl Environment {
-    /// This moment, to be gone back to with [`Environment::restore`].
+    /// Saves this moment, for [`Environment::restore`].
     ///
     /// # Example
     /// ```
@@ -60,7 +59,7 @@ impl Environment {
         }
     }
 
-    /// Goes back to a moment of this environment or of another one; what follows is the same to the last bit.
+    /// Restores a moment of this environment or of another one; everything afterwards is the same to the bit.
     pub fn restore(&mut self, moment: &Snapshot) {
         if !Arc::ptr_eq(&self.world, &moment.world) {
             self.start_with(Arc::clone(&moment.world), &moment.catalogue);
@@ -71,10 +70,10 @@ impl Environment {
         self.views.sync_objects(&self.world, &self.state);
     }
 
-    /// The world as it is now, as a document: objects where they stand with the rewards that are left, and in
-    /// `progress` all else that a reset to it needs to go on as if nothing had been.
+    /// The current state of the world as a document: objects at their places with their remaining rewards, and in `progress`
+    /// everything else that a reset to it needs to resume.
     ///
-    /// Destroyed objects are among the objects, so that numbers stay; their progress says that they are not there.
+    /// Includes destroyed objects, so that indices stay the same; their progress marks them as absent.
     ///
     /// # Example
     /// ```
@@ -91,12 +90,12 @@ impl Environment {
         to_world(self.sim(), &self.seed, self.rails.as_ref().map(OnRailsAgent::progress))
     }
 
-    /// The agent of the world, where it is now: to the bit where it started if it is there.
+    /// The world's agent at its current place: to the bit the start if it is there.
     pub(crate) fn agent_now(&self) -> AgentParams {
         agent_now(self.sim())
     }
 
-    /// An object of the world, where it is now and with what is left of its reward.
+    /// A world's object at its current place, with its remaining reward.
     pub(crate) fn object_now(&self, index: usize) -> Object {
         object_now(self.sim(), index)
     }

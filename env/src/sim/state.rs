@@ -1,5 +1,4 @@
-//! All that changes while a world runs, in one value: what a snapshot copies, and what a document of progress writes
-//! down. Systems change it; what is derived from it is in `views.rs`.
+//! [`SimState`]: everything that changes while a world runs, as one value for snapshots and documents of progress.
 
 use driftworld_spec::{LastEvent, Object, World};
 
@@ -9,7 +8,7 @@ use super::pushed::Pushed;
 use super::rng::{Identities, ObjectRng, Seed};
 use super::sequence::Sequence;
 
-/// Where the agent is and how it moves.
+/// The agent's pose and velocity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct AgentState {
     /// Position in metres.
@@ -21,39 +20,39 @@ pub struct AgentState {
 }
 
 impl AgentState {
-    /// The direction in which the agent looks: length 1.
+    /// Unit vector of the agent's heading.
     pub fn forward(&self) -> [f32; 2] {
         let heading = self.heading_deg.to_radians();
         [libm::sinf(heading), libm::cosf(heading)]
     }
 }
 
-/// One object while its world runs.
+/// The state of one object in a running world.
 #[derive(Clone, Debug, PartialEq)]
 #[expect(
     clippy::struct_excessive_bools,
     reason = "facts that have nothing to do with each other"
 )]
 pub struct ObjectState {
-    /// Position in metres; the last one of an object that is gone.
+    /// Position in metres; for an absent object, the last one.
     pub position: [f32; 2],
     /// Heading in degrees, clockwise from +y.
     pub heading_deg: f32,
-    /// What a triggering pays now; 0 once it has paid what pays once.
+    /// Current reward of a stimulus; 0 once a reward that is paid only once has been paid.
     pub reward: f64,
-    /// Whether it is still there.
+    /// Whether it is present.
     pub present: bool,
-    /// Whether it has paid, or was destroyed: places in a sequence count on it.
+    /// Whether it has paid, or was destroyed: sequences depend on it.
     pub collected: bool,
-    /// Whether it is a door that is open: a body that stops nobody.
+    /// Whether it is an open door, which stops nothing.
     pub open: bool,
-    /// Whether the agent carries it: it is not there then, and its position is the agent's.
+    /// Whether the agent carries it: it is absent then, and its position is the agent's.
     pub carried: bool,
     pub(super) in_range: bool,
 }
 
 impl ObjectState {
-    /// An object at its start.
+    /// An object's initial state.
     pub(super) fn new(object: &Object) -> Self {
         Self {
             position: object.coordinates.map(|metres| metres as f32),
@@ -68,14 +67,13 @@ impl ObjectState {
     }
 }
 
-/// A heading brought to 0..360 degrees, 360 excluded, which rounding can lead to.
+/// Wraps a heading to 0..360 degrees, excluding 360, which rounding can produce.
 pub(super) fn wrapped(heading_deg: f32) -> f32 {
     let heading_deg = heading_deg.rem_euclid(360.0);
     if heading_deg < 360.0 { heading_deg } else { 0.0 }
 }
 
-/// Where a world stands in its course: the only place that says where things are, whether they are there and what they
-/// pay.
+/// The state of a running world: the single source for where objects are, whether they are present and what they pay.
 #[derive(Clone, Default)]
 pub(crate) struct SimState {
     pub(super) agent: AgentState,
@@ -85,40 +83,40 @@ pub(crate) struct SimState {
     pub(super) ticks: u64,
     /// The sum of rewards since the start.
     pub(super) earned: f64,
-    /// The same without what shaping paid: what conditions on the return count.
+    /// The sum of rewards without shaping, for conditions on the return.
     pub(super) unshaped: f64,
-    /// What the last step paid.
+    /// The reward of the last step.
     pub(super) last_reward: f64,
     pub(super) last_event: Option<LastEvent>,
     pub(super) ended: bool,
-    /// What bandit arms and returning objects draw, in rising order of their objects.
+    /// Random numbers of bandit arms and respawning objects, ordered by object.
     pub(super) rngs: Vec<ObjectRng>,
     /// Objects in contact at the end of the last step, in rising order.
     pub(super) contacts: Vec<u32>,
     /// The objects that move by themselves, in rising order.
     pub(super) movers: Vec<Mover>,
-    /// The objects that are pushed, in rising order.
+    /// The pushable objects, in rising order.
     pub(super) pushed: Vec<Pushed>,
-    /// Destroyed objects that come back, in rising order, with the time step in which they do.
+    /// Destroyed objects that will respawn, in rising order, with the time step in which they are due.
     pub(super) returning: Vec<(usize, u64)>,
-    /// Whose turn it is, where objects have one.
+    /// The sequence, if objects are in one.
     pub(super) sequence: Sequence,
-    /// For each of the views' zones, whether the agent has entered it and is in it.
+    /// For each of the views' zones, whether the agent has entered it and is still inside.
     pub(super) inside: Vec<bool>,
     /// The objects that are doors, in rising order.
     pub(super) doors: Vec<DoorState>,
     /// The objects that the agent carries, in the order in which it picked them up.
     pub(super) carried: Vec<u32>,
-    /// Whether any object is a door, a switch or a thing that is carried.
+    /// Whether any object is a door, a switch or a carriable thing.
     pub(crate) has_things: bool,
     /// Seconds of a time step.
     time_step: f64,
-    /// The agent's energy; 0 in a world without.
+    /// The agent's energy; 0 in a world without energy.
     pub(super) energy: f64,
 }
 
 impl SimState {
-    /// The start of a world. Nothing is touched or near yet: where the agent starts counts as news in the first step.
+    /// The start of a world. Nothing is touched or near yet: contacts at the agent's start count as new in the first step.
     pub(super) fn new(world: &World, seed: &Seed, identities: &mut Identities) -> Self {
         let start = &world.agent_params;
         let mut state = Self {
@@ -137,16 +135,16 @@ impl SimState {
             state.add_object(object, seed, identities);
         }
         if state.has_things {
-            // Room for all that is picked up, so that no step takes memory.
+            // Room for everything that may be picked up, so that steps do not allocate.
             state.carried.reserve_exact(start.carry_limit as usize);
         }
         state
     }
 
-    /// Adds an object at its start, but for its place in the sequence.
+    /// Adds an object in its initial state, except its place in the sequence.
     pub(super) fn add_object(&mut self, object: &Object, seed: &Seed, identities: &mut Identities) {
         let index = self.objects.len();
-        // Most objects of most worlds draw nothing, and then nobody asks who they are.
+        // Most objects draw nothing, and then need no identity.
         let identity = if object.takes_chances() {
             identities.take(object)
         } else {
@@ -162,13 +160,13 @@ impl SimState {
         self.has_things |= object.is_used();
     }
 
-    /// What a door has beside being open or not.
+    /// A door's state besides being open or closed.
     pub(super) fn door_of(&self, object: usize) -> Option<&DoorState> {
         let found = self.doors.binary_search_by_key(&object, |door| door.object).ok()?;
         self.doors.get(found)
     }
 
-    /// What the agent carries, in the order in which it picked it up.
+    /// The carried objects, in the order in which the agent picked them up.
     pub(crate) fn carried(&self) -> &[u32] {
         &self.carried
     }
@@ -178,18 +176,18 @@ impl SimState {
         self.door_of(object).is_some_and(|door| door.unlocked)
     }
 
-    /// For each door whether it was unlocked by its key.
+    /// Whether each door was unlocked by its key.
     pub(crate) fn unlocked(&self) -> impl Iterator<Item = bool> {
         self.doors.iter().map(|door| door.unlocked)
     }
 
-    /// The motion of an object that is pushed.
+    /// The motion of a pushable object.
     pub(super) fn pushed_of(&mut self, object: usize) -> Option<&mut Pushed> {
         let found = self.pushed.binary_search_by_key(&object, |body| body.object).ok()?;
         self.pushed.get_mut(found)
     }
 
-    /// What an object draws, if it draws for pulls or returns.
+    /// An object's random numbers, if it draws for pulls or respawning.
     pub(super) fn rng_of(&mut self, object: usize) -> Option<&mut ObjectRng> {
         let found = self.rngs.binary_search_by_key(&object, |rng| rng.object).ok()?;
         self.rngs.get_mut(found)
@@ -205,19 +203,19 @@ impl SimState {
         self.sequence.is_due(order)
     }
 
-    /// Takes note of what has been collected since the last call.
+    /// Updates the sequence after objects were collected.
     pub(super) fn advance_sequence(&mut self) {
         let objects = &self.objects;
         self.sequence.advance(|index| objects[index].collected);
     }
 
-    /// The way from the agent to an object along x and y, in metres.
+    /// The vector from the agent to an object along x and y, in metres.
     pub(super) fn way_to(&self, index: usize) -> [f32; 2] {
         let (to, from) = (self.objects[index].position, self.agent.position);
         [to[0] - from[0], to[1] - from[1]]
     }
 
-    /// The index of the nearest object, centre to centre on the ground, for which a condition holds.
+    /// The index of the nearest object, centre to centre on the ground, for which `holds` is true.
     pub(super) fn nearest(&self, world: &World, holds: impl Fn(&Object, &ObjectState) -> bool) -> Option<usize> {
         let objects = world.objects.iter().zip(&self.objects).enumerate();
         let distance = |index: usize| {

@@ -1,4 +1,4 @@
-//! One step of a world: the action, its time steps, its reward and its end.
+//! [`Environment::step`]: the action, its time steps, the reward and the end.
 
 use driftworld_spec::{ActionModel, LastEvent, ZoneEnd};
 
@@ -17,20 +17,20 @@ use super::zones::{apply_zones, slowed};
 use crate::EnvError;
 
 impl Environment {
-    /// Lets the agent act for one step: in each of its time steps it turns, moves, and what it meets answers.
+    /// Steps the agent: in each time step it turns and moves, and the objects that it meets react.
     ///
     /// # Errors
-    /// [`EnvError`] for an action that cannot be carried out, or after the end; nothing is changed then.
+    /// [`EnvError`] for an invalid action, or after the end; nothing is changed then.
     pub fn step(&mut self, action: Action) -> Result<Step, EnvError> {
         let mut step = Step::default();
         self.step_into(action, &mut step)?;
         Ok(step)
     }
 
-    /// As [`Environment::step`], into a step whose memory is used again.
+    /// Like [`Environment::step`], but reuses the memory of `step`.
     ///
     /// # Errors
-    /// Those of [`Environment::step`]; `step` is as it was then.
+    /// Those of [`Environment::step`]; `step` is unchanged then.
     pub fn step_into(&mut self, action: Action, step: &mut Step) -> Result<(), EnvError> {
         let numbers = self.numbers(action)?;
         let intent = self.intent(numbers);
@@ -38,7 +38,7 @@ impl Environment {
         Ok(())
     }
 
-    /// One step by a command of the body, whatever action it comes from.
+    /// One step with a command of the body, whatever action it comes from.
     pub(crate) fn step_by(&mut self, mut intent: Intent, step: &mut Step) {
         step.clear();
         let potential_before = reward::potential(&self.world, &self.state);
@@ -76,7 +76,7 @@ impl Environment {
         state.ended = step.ended();
     }
 
-    /// Whether the action could be carried out now.
+    /// Checks whether the action could be carried out now.
     ///
     /// # Errors
     /// Those of [`Environment::step`].
@@ -84,7 +84,7 @@ impl Environment {
         self.numbers(action).map(drop)
     }
 
-    /// What the action says, if it can be carried out now.
+    /// The numbers of the action, if it can be carried out now.
     pub(super) fn numbers(&self, action: Action) -> Result<[f64; 3], EnvError> {
         if self.state.ended {
             return Err(EnvError::Ended);
@@ -92,7 +92,7 @@ impl Environment {
         action.numbers(&self.world)
     }
 
-    /// What the agent means to do: in a world on rails, what its policy says in place of the action.
+    /// The agent's command: in a world on rails, the policy's instead of the action's.
     pub(super) fn intent(&mut self, numbers: [f64; 3]) -> Intent {
         let Self {
             world, state, views, ..
@@ -108,7 +108,7 @@ impl Environment {
         }
     }
 
-    /// One time step; hands back how a zone ends the episode.
+    /// Runs one time step; returns how a zone ends the episode, if one does.
     fn tick(&mut self, intent: Intent, step: &mut Step) -> Option<ZoneEnd> {
         let Self {
             world,

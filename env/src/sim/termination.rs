@@ -1,11 +1,11 @@
-//! What ends an episode: the conditions of success and failure, and zones.
+//! Checks what ends an episode: conditions of success and failure, and zones.
 
 use driftworld_spec::{Delivery, EndCondition, Object, Stimulus, World, ZoneEnd};
 
 use super::event::{Effect, EndedBy, Event, Step};
 use super::state::{ObjectState, SimState};
 
-/// Notes whether the step so far ended the episode by itself, and how. `had_targets`: whether there ever was a target; `zone`: how a
+/// Records whether the step ended the episode by itself, and how. `had_targets`: whether there ever was a target; `zone`: how a
 /// zone ends it.
 pub(super) fn check_termination(
     world: &World,
@@ -45,7 +45,7 @@ pub(super) fn check_termination(
     (step.success, step.terminated) = (success.is_some(), step.ended_by.is_some());
 }
 
-/// What an end condition is called as the reason of an end.
+/// The cause of an end by this condition.
 fn reason(condition: &EndCondition) -> EndedBy {
     match condition {
         EndCondition::AllCollected => EndedBy::AllCollected,
@@ -58,12 +58,12 @@ fn reason(condition: &EndCondition) -> EndedBy {
     }
 }
 
-/// Whether the agent met the event's object, or used it.
+/// Whether the agent touched or used the event's object.
 fn is_touch(event: &Event) -> bool {
     event.stimulus != Stimulus::AgentInRange && event.effect != Some(Effect::PutDown)
 }
 
-/// The objects of a tag, as they are now.
+/// The current states of the objects with a tag.
 fn of_tag<'a>(world: &'a World, state: &'a SimState, tag: &'a str) -> impl Iterator<Item = &'a ObjectState> {
     let objects = world.objects.iter().zip(&state.objects);
     objects
@@ -71,7 +71,7 @@ fn of_tag<'a>(world: &'a World, state: &'a SimState, tag: &'a str) -> impl Itera
         .map(|(_, own)| own)
 }
 
-/// Whether all that is to be delivered lies where it should.
+/// Whether everything to be delivered is in place.
 fn is_delivered(world: &World, state: &SimState, delivery: &Delivery) -> bool {
     let mut count = 0;
     let lies_there = |own: &ObjectState| {
@@ -89,7 +89,7 @@ fn is_delivered(world: &World, state: &SimState, delivery: &Delivery) -> bool {
     all && count > 0
 }
 
-/// Whether an object is a target that is there and still pays.
+/// Whether an object is a present target that still pays.
 pub(super) fn pays_now(object: &Object, state: &ObjectState) -> bool {
     object.is_target() && state.present && state.reward > 0.0
 }

@@ -1,4 +1,4 @@
-//! The law of crowds, tested: what a time step looks at grows no faster than the number of bodies, wherever they stand.
+//! Crowds: the work of a time step grows at most linearly with the number of bodies, wherever they are.
 
 use driftworld_spec::{MotionModel, Object, Pushable, Respawn, Stimulus, WorldDraft};
 use proptest::prelude::*;
@@ -7,7 +7,7 @@ use super::action::Action;
 use super::budget;
 use super::environment::Environment;
 
-/// What the bodies of a crowd are.
+/// The kind of bodies in a crowd.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
     Pushable,
@@ -58,7 +58,7 @@ fn body(kind: Kind, class: &str, at: [f64; 2]) -> Object {
     object
 }
 
-/// Bodies within so many metres of a place in front of the agent, in the order of the golden angle.
+/// Bodies within `spread` metres of a place in front of the agent, placed by the golden angle.
 fn crowd(kinds: &[Kind], class: &str, count: usize, spread: f64, time_step: f64) -> WorldDraft {
     let at = |k: usize| {
         let out = spread * (k as f64 / count as f64).sqrt();
@@ -75,7 +75,7 @@ fn crowd(kinds: &[Kind], class: &str, count: usize, spread: f64, time_step: f64)
     world
 }
 
-/// The most that one of some steps looked at.
+/// Most queries of any of several steps.
 fn looked(world: WorldDraft) -> u64 {
     let world = world.check().expect("the world is sound");
     let mut environment = Environment::new(world);
@@ -90,7 +90,7 @@ fn looked(world: WorldDraft) -> u64 {
     most
 }
 
-/// What no time step with so many objects goes beyond, whatever they are: looks, and sixty parts of physics.
+/// Upper bound for a time step with `count` objects of any kind: queries, and sixty physics steps.
 fn bound(count: usize) -> u64 {
     let each = (budget::EACH_MOVER + budget::EACH_RETURN + 4) * count as u64;
     budget::AGENTS + budget::MOVERS + budget::RETURNS + 1_000_000 + each
@@ -100,7 +100,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn no_crowd_is_looked_at_more_than_in_proportion(
+    fn work_of_any_crowd_stays_within_the_linear_bound(
         first in 0usize..6,
         second in 0usize..6,
         class in prop::sample::select(vec!["cube", "barrel", "ball", "tree"]),
@@ -115,12 +115,11 @@ proptest! {
 }
 
 #[test]
-fn a_crowd_of_twice_as_many_is_looked_at_twice_as_much_and_not_four_times() {
+fn doubling_a_crowd_at_most_doubles_the_work() {
     for kind in KINDS {
         for spread in [0.0, 1.0] {
             let [some, more] = [4000, 8000].map(|count| looked(crowd(&[kind], "cube", count, spread, 0.1)));
-            // Where limits bind, what is over them does not count; below them twice as many are looked at twice as
-            // much.
+            // Where limits apply, work beyond them does not count; below them, twice as many bodies cause twice the work.
             let fixed = budget::MOVERS + budget::RETURNS;
             assert!(
                 more <= 2 * some + fixed / 2,

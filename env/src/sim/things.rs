@@ -1,5 +1,4 @@
-//! Doors, switches, and things that the agent carries: which of them answers a stimulus, and what it does then. When stimuli
-//! are, and what they pay, is in `interactions.rs`; clocks and doors that close are in `doors.rs`.
+//! Doors, switches and carriable things: which of them reacts to a stimulus, and how.
 
 use driftworld_spec::{Object, Stimulus, SwitchAction, World};
 
@@ -12,10 +11,10 @@ use super::sim_ref::SimRef;
 use super::state::SimState;
 use super::views::Views;
 
-/// Between the agent's body and that of a thing that it puts down, in metres: less than its reach, more than a touch.
+/// Gap in metres between the agent's body and a thing that it puts down: within reach, but more than a touch.
 const APART: f32 = 0.1;
 
-/// Whether an object is moved by a stimulus at all: it opens, closes, sets doors going, or is picked up.
+/// Whether an object reacts to a stimulus at all: opens, closes, moves doors, or is picked up.
 pub(super) fn listens(object: &Object, stimulus: Stimulus) -> bool {
     let door = object.door.as_ref();
     let door = door.is_some_and(|door| door.opens_on.contains(&stimulus) || door.closes_on.contains(&stimulus));
@@ -32,14 +31,14 @@ fn is_picked_up(object: &Object, stimulus: Stimulus) -> bool {
     portable.is_some_and(|portable| portable.on.contains(&stimulus))
 }
 
-/// What an object does at a stimulus as things are; `None` if nothing.
+/// An object's current reaction to a stimulus; `None` if there is none.
 pub(crate) fn effect_of(world: &World, state: &SimState, index: usize, stimulus: Stimulus) -> Option<Effect> {
     let (object, own) = (&world.objects[index], &state.objects[index]);
     if !own.present || !state.is_due(object.order) {
         return None;
     }
     if let Some(door) = &object.door {
-        // One that waits to close hears what a closed one does.
+        // A door that waits to close reacts as a closed one.
         let is_as_closed = !own.open || waits_to_close(state, index);
         if is_as_closed && door.opens_on.contains(&stimulus) && !is_locked(world, state, index) {
             return Some(Effect::Opened);
@@ -55,20 +54,20 @@ pub(crate) fn effect_of(world: &World, state: &SimState, index: usize, stimulus:
     (has_room && is_picked_up(object, stimulus)).then_some(Effect::PickedUp)
 }
 
-/// Whether a door is locked to who carries what the agent carries.
+/// Whether a door is locked, given what the agent carries.
 fn is_locked(world: &World, state: &SimState, index: usize) -> bool {
     let key = world.objects[index].door.as_ref().and_then(|door| door.key.as_ref());
     key.is_some_and(|key| !state.is_unlocked(index) && carried_of_tag(world, state, key).is_none())
 }
 
-/// The place among what is carried of the first thing of a tag.
+/// The position of the first carried thing with a tag.
 fn carried_of_tag(world: &World, state: &SimState, tag: &str) -> Option<usize> {
     let tag_of = |index: u32| world.objects[index as usize].tag.as_deref();
     state.carried.iter().position(|index| tag_of(*index) == Some(tag))
 }
 
-/// Which of the objects in reach answers an interaction by doing something: that whose body is nearest to the point of the
-/// agent's rim where it looks; the first of equals.
+/// The object in reach that reacts to an interaction: the one whose body is nearest to the point of the agent's rim that faces
+/// ahead; ties go to the first.
 pub(crate) fn answering(sim: SimRef, reached: &[u32]) -> Option<u32> {
     let agent = sim.agent();
     let (radius, [east, north]) = (sim.world.agent_params.agent_width / 2.0, agent.forward());
@@ -82,8 +81,8 @@ pub(crate) fn answering(sim: SimRef, reached: &[u32]) -> Option<u32> {
     of_all.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(index, _)| index)
 }
 
-/// Which thing an interaction that nothing answers puts down, and where: the last that was picked up, right in front of the
-/// agent. `None` if nothing is carried or there is no room.
+/// The thing that an interaction without any reaction puts down, and its place: the last one that was picked up, directly in
+/// front of the agent. `None` if nothing is carried or there is no room.
 pub(crate) fn put_down_place(sim: SimRef) -> Option<(u32, [f32; 2])> {
     let index = *sim.state.carried.last()?;
     let agent = sim.agent();
@@ -91,13 +90,13 @@ pub(crate) fn put_down_place(sim: SimRef) -> Option<(u32, [f32; 2])> {
     let ahead = sim.world.agent_params.agent_width as f32 / 2.0 + radius + APART;
     let [east, north] = agent.forward();
     let place = [agent.position[0] + east * ahead, agent.position[1] + north * ahead];
-    // Beyond the edge of worlds nothing can be said to stand.
+    // Documents allow no places beyond the edge of worlds.
     let is_inside = place.iter().all(|metres| metres.abs() <= EDGE);
     let is_free = is_inside && sim.views.bodies.is_way_free(agent.position, place, f64::from(radius));
     is_free.then_some((index, place))
 }
 
-/// Does what an object does.
+/// Applies an object's reaction.
 pub(super) fn apply_effect(world: &World, state: &mut SimState, views: &mut Views, index: usize, effect: Effect) {
     let object = &world.objects[index];
     match effect {
@@ -122,7 +121,7 @@ pub(super) fn apply_effect(world: &World, state: &mut SimState, views: &mut View
             views.sync_object(index, object, own);
             state.carried.push(index as u32);
         }
-        // Nothing puts itself down.
+        // Things do not put themselves down.
         Effect::PutDown => {}
     }
 }
@@ -137,7 +136,7 @@ fn set_going(world: &World, state: &mut SimState, views: &mut Views, door: usize
     }
 }
 
-/// Uses the key that a door wants, if it wants one.
+/// Uses up the key of a door, if it needs one.
 fn unlock(world: &World, state: &mut SimState, index: usize) {
     let key = world.objects[index].door.as_ref().and_then(|door| door.key.as_deref());
     let (Some(key), Some(door)) = (key, state.doors.iter().position(|door| door.object == index)) else {
@@ -161,7 +160,7 @@ fn unlock(world: &World, state: &mut SimState, index: usize) {
     }
 }
 
-/// Puts a thing down that is carried.
+/// Puts down a carried thing.
 pub(super) fn put_down(world: &World, state: &mut SimState, views: &mut Views, index: u32, place: [f32; 2]) {
     state.carried.retain(|carried| *carried != index);
     let index = index as usize;
@@ -173,7 +172,7 @@ pub(super) fn put_down(world: &World, state: &mut SimState, views: &mut Views, i
     }
 }
 
-/// What is carried is where the agent is.
+/// Moves carried things along with the agent.
 pub(super) fn follow(state: &mut SimState) {
     for index in &state.carried {
         state.objects[*index as usize].position = state.agent.position;
@@ -181,12 +180,12 @@ pub(super) fn follow(state: &mut SimState) {
 }
 
 impl CollisionWorld {
-    /// How far a point is from an object's body up to the agent's height, in metres; `None` while it is not there.
+    /// The distance between a point and an object's body up to the agent's height, in metres; `None` while it is absent.
     pub(super) fn distance_of(&self, object: u32, at: Point) -> Option<f64> {
         self.handles[object as usize].map(|handle| self.low[slot(handle)].gap(at).distance)
     }
 
-    /// Whether a round body comes straight from one place to another without meeting a wall or a solid object.
+    /// Whether a round body can move straight from one place to another without meeting a wall or a solid object.
     pub(super) fn is_way_free(&self, from: [f32; 2], to: [f32; 2], radius: f64) -> bool {
         let reach = radius as f32 + 0.01;
         let area = [

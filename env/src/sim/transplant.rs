@@ -1,5 +1,5 @@
-//! Two worlds with the same objects in the same state: putting one where the other is, stepping both by one command, and
-//! saying what of their states differs. What follows from a difference is said by `experiment`.
+//! For two worlds with the same objects: copies the state of one into the other, steps both with one command, and finds
+//! differences between their states.
 
 use driftworld_spec::{World, Zone};
 use driftworld_text::shortened;
@@ -12,10 +12,10 @@ use super::state::SimState;
 use super::walls::agent_obstacle;
 use crate::EnvError;
 
-/// The most characters that a message shows of a value: lists of corners have no end.
+/// Most characters of a value in a message: lists of corners may be arbitrarily long.
 const MOST_CHARACTERS: usize = 200;
 
-/// What differs, in words, and how it is in each of the two.
+/// A difference, as text, with the value on each side.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Unlike {
     pub(crate) what: String,
@@ -33,17 +33,17 @@ impl Unlike {
         }
     }
 
-    /// `None` if both are the same.
+    /// `None` if both are equal.
     pub(crate) fn of<T: PartialEq + std::fmt::Debug>(what: impl Into<String>, own: &T, other: &T) -> Option<Self> {
         (own != other).then(|| Self::new(what, own, other))
     }
 }
 
 impl Environment {
-    /// Takes over where the agent and the objects of another environment are, what has become of them, their chance and the
-    /// clock. What objects pay, how bodies are made and what the rules say stays this world's own.
+    /// Copies from another environment the states of the agent and the objects, their random numbers and the clock. Rewards,
+    /// bodies and rules stay this world's own.
     ///
-    /// Both worlds have as many objects, each the counterpart of the one of its number.
+    /// Both worlds must have the same number of objects, with counterparts at the same index.
     pub(crate) fn take_state_of(&mut self, other: &Self) {
         let (theirs, seconds) = (&other.state, self.world.agent_params.time_step);
         let has_same_zones = have_same_zones(&self.world, &other.world);
@@ -97,12 +97,12 @@ impl Environment {
         self.views.sync_objects(&self.world, &self.state);
     }
 
-    /// Lets an object pay nothing any more.
+    /// Sets an object's reward to 0.
     pub(crate) fn take_reward_of(&mut self, object: usize) {
         self.state.objects[object].reward = 0.0;
     }
 
-    /// Sets the clock to the last step before a world's limit of steps or seconds; whether there is one.
+    /// Sets the clock to the last step before a world's limit of steps or seconds; returns whether it has one.
     pub(crate) fn wind_to_limit_of(&mut self, limited: &World) -> bool {
         let Some(limit) = limited.step_limit().filter(|limit| *limit > 0) else {
             return false;
@@ -114,13 +114,12 @@ impl Environment {
         true
     }
 
-    /// Whether the agent stands where its body has room.
+    /// Whether the agent's body has room where it stands.
     pub(crate) fn agent_has_room(&self) -> bool {
         agent_obstacle(self.sim(), self.state.agent.position.map(f64::from)).is_none()
     }
 
-    /// The command that the body gets from an action: in this world, and in one that has this action space and time steps of so
-    /// many seconds.
+    /// The body's commands for an action: in this world, and in one with this action space and time steps of `seconds`.
     pub(crate) fn commands(&mut self, action: Action, seconds: f64) -> Result<[Intent; 2], EnvError> {
         let numbers = self.numbers(action)?;
         let own = self.intent(numbers);
@@ -138,7 +137,7 @@ impl Environment {
         Ok([own, other])
     }
 
-    /// What of the states of two worlds with the same objects differs first. What objects pay is no part of it.
+    /// The first difference between the states of two worlds with the same objects, ignoring rewards.
     pub(crate) fn state_unlike(&self, other: &Self) -> Option<Unlike> {
         let (own, their) = (&self.state, &other.state);
         let (agent, its) = (&own.agent, &their.agent);
@@ -149,7 +148,7 @@ impl Environment {
             .or_else(|| (0..own.objects.len()).find_map(|index| self.object_unlike(other, index)))
             .or_else(|| Unlike::of("the objects that the agent touches", &own.contacts, &their.contacts))
             .or_else(|| {
-                // Where zones are others, being in one follows from where the agent is, and is no state of its own.
+                // If the zones differ, being inside one follows from the agent's position, and is not a state of its own.
                 let [own, their] = [self, other].map(|one| one.views.zones.entered(&one.state));
                 let unlike = Unlike::of("the zones that the agent is in", &own, &their);
                 unlike.filter(|_| have_same_zones(&self.world, &other.world))
@@ -160,14 +159,14 @@ impl Environment {
             .or_else(|| Unlike::of("when objects come back", &self.returns(), &other.returns()))
     }
 
-    /// When destroyed objects come back: their numbers, and seconds.
+    /// Respawning objects: their indices, and the times in seconds at which they are due.
     fn returns(&self) -> Vec<(usize, f64)> {
         let seconds = |ticks: u64| ticks as f64 * self.world.agent_params.time_step;
         let returning = self.state.returning.iter();
         returning.map(|(index, tick)| (*index, seconds(*tick))).collect()
     }
 
-    /// The second at which an open door closes.
+    /// The time in seconds at which an open door closes.
     fn closes_at(&self, index: usize) -> Option<f64> {
         let ticks = self.state.door_of(index)?.closes_at?;
         Some(ticks as f64 * self.world.agent_params.time_step)
@@ -205,7 +204,7 @@ impl Environment {
     }
 }
 
-/// Takes over what others have for the same objects; both are sorted by object.
+/// Copies others' entries for the same objects; both lists are sorted by object.
 fn take_over<T: Clone>(own: &mut [T], theirs: &[T], object: impl Fn(&T) -> usize) {
     for one in own {
         if let Ok(place) = theirs.binary_search_by_key(&object(one), &object) {
@@ -214,14 +213,14 @@ fn take_over<T: Clone>(own: &mut [T], theirs: &[T], object: impl Fn(&T) -> usize
     }
 }
 
-/// Whether the zones of two worlds lie where those of the other do, each with its counterpart of the same number.
+/// Whether two worlds have the same zones, in the same order.
 fn have_same_zones(a: &World, b: &World) -> bool {
     let [own, other] = [a, b].map(|world| &world.environment_params.zones);
     let is_same = |(own, other): (&Zone, &Zone)| own.disc == other.disc && own.polygon == other.polygon;
     own.len() == other.len() && own.iter().zip(other).all(is_same)
 }
 
-/// What people call an object: its tag, or else its class.
+/// An object's name in messages: its tag, otherwise its class.
 fn name(world: &World, index: usize) -> &str {
     let object = &world.objects[index];
     object.tag.as_deref().unwrap_or(&object.class)

@@ -1,5 +1,4 @@
-//! What is derived from the state: the scene that renderers draw, and the bodies that motion asks about. Neither has
-//! anything of its own to say about a place, a heading, a presence or a reward.
+//! [`Views`]: data derived from the state: the scene for renderers, and the bodies for motion.
 
 use driftworld_spec::{Object, World};
 
@@ -17,7 +16,7 @@ pub(crate) struct Views {
 }
 
 impl Views {
-    /// Those of a world at its start, its assets from a catalogue.
+    /// Views of a world at its start, with assets from a catalogue.
     pub(super) fn new(world: &World, catalogue: &Catalogue) -> Self {
         let scene = Scene::from_world_with(world, catalogue);
         let bodies = CollisionWorld::new(world, &scene);
@@ -28,8 +27,8 @@ impl Views {
         }
     }
 
-    /// Brings an object's item and body up to date with its state. Whoever changes a state calls this, and nothing
-    /// else changes the views.
+    /// Updates an object's item and body from its state. Must be called after every change of a state; nothing else changes the
+    /// views.
     pub(super) fn sync_object(&mut self, index: usize, object: &Object, state: &ObjectState) {
         let item = &mut self.scene.items[index];
         (item.position, item.heading_deg) = (state.position, state.heading_deg);
@@ -42,7 +41,7 @@ impl Views {
         }
     }
 
-    /// Brings all objects up to date.
+    /// Updates all objects.
     pub(super) fn sync_objects(&mut self, world: &World, state: &SimState) {
         for (index, (object, state)) in world.objects.iter().zip(&state.objects).enumerate() {
             self.sync_object(index, object, state);

@@ -1,15 +1,15 @@
-//! Where walls, and what stands fast, leave no room. How walls stop a body is in `collision_world.rs`.
+//! Checks whether walls and solid objects leave room for a body.
 
 use driftworld_spec::World;
 
 use super::sim_ref::SimRef;
 use crate::polygon::is_near_or_inside;
 
-/// What stands where the agent should stand.
+/// An obstacle where the agent should stand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, strum::Display)]
 #[non_exhaustive]
 pub enum Obstacle {
-    /// Nothing: the place is outside the arena, or not a place at all.
+    /// The place is outside the arena, or not finite.
     #[strum(to_string = "no ground of the arena")]
     Outside,
     /// A wall, or a region that cannot be entered.
@@ -23,7 +23,7 @@ pub enum Obstacle {
     },
 }
 
-/// What of the arena and its walls is in the way of a round body of this radius in metres.
+/// The part of the arena's boundary or walls that is in the way of a round body of this radius in metres.
 pub(super) fn obstacle(world: &World, position: [f64; 2], radius: f64) -> Option<Obstacle> {
     let environment = &world.environment_params;
     if !position.iter().all(|metres| metres.is_finite()) || !environment.contains(position) {
@@ -35,7 +35,7 @@ pub(super) fn obstacle(world: &World, position: [f64; 2], radius: f64) -> Option
     (beyond || world.obstacles().any(inside)).then_some(Obstacle::Wall)
 }
 
-/// What is in the way of the agent's body at a place: of the arena and its walls, or a solid object.
+/// The obstacle to the agent's body at a place: the arena's boundary, a wall, or a solid object.
 pub(super) fn agent_obstacle(sim: SimRef, position: [f64; 2]) -> Option<Obstacle> {
     let radius = sim.world.agent_params.agent_width / 2.0;
     obstacle(sim.world, position, radius).or_else(|| {
@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn a_body_has_room_where_no_wall_is_nearer_than_its_radius() {
+    fn body_has_room_if_no_wall_is_within_its_radius() {
         check([0.0, 0.0], None);
         check([9.6, 0.0], Some(Obstacle::Wall));
         check([10.1, 0.0], Some(Obstacle::Outside));

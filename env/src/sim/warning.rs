@@ -1,14 +1,14 @@
-//! What of a world is not as its author may think. What happens in a step is in `event.rs`.
+//! [`Warning`]: settings of a world that may not be as intended.
 
 use driftworld_spec::Enclosure;
 
 use super::walls::Obstacle;
 
-/// Something that the world asks for and that is not as its author may think.
+/// A setting of a world that may not be as intended.
 #[derive(Clone, Debug, PartialEq, Eq, strum::Display)]
 #[non_exhaustive]
 pub enum Warning {
-    /// Class and model are not known: a placeholder stands there.
+    /// The class or model is unknown: a placeholder is shown.
     #[strum(to_string = "/objects/{object}: class {class:?} model {model:?} is not known; a placeholder stands there")]
     UnknownAsset {
         /// Index of the object.
@@ -18,7 +18,7 @@ pub enum Warning {
         /// Its model.
         model: String,
     },
-    /// The object asks to move, and stands still: it has no speed, or a patrol no waypoints.
+    /// The object should move but stands still: it has no speed, or a patrol without waypoints.
     #[strum(
         to_string = "/objects/{object}/motion_model: found no speed, or a patrol without waypoints; it stands still"
     )]
@@ -26,21 +26,21 @@ pub enum Warning {
         /// Index of the object.
         object: usize,
     },
-    /// The object stands inside a wall or a region that cannot be entered: nobody comes to it.
+    /// The object is inside a wall or a region that cannot be entered, out of reach.
     #[strum(to_string = "/objects/{object}/coordinates: found a place inside {enclosure}; it is kept, out of reach")]
     StandsInWall {
         /// Index of the object.
         object: usize,
-        /// Which wall or region.
+        /// The wall or region.
         enclosure: Enclosure,
     },
-    /// The agent starts inside something; it cannot move until it is put elsewhere.
+    /// The agent starts inside an obstacle; it cannot move until it is moved out.
     #[strum(to_string = "/agent_params/coordinates: found {obstacle}, expected free ground; it may not get out")]
     StartsInside {
-        /// What it starts in.
+        /// The obstacle.
         obstacle: Obstacle,
     },
-    /// The object asks to be pushed, and is not: it is not solid, or moves by itself.
+    /// The object is pushable but cannot be pushed: it is not solid, or moves by itself.
     #[strum(
         to_string = "/objects/{object}/pushable: found an object that moves by itself or is not solid; it is not pushed"
     )]
@@ -48,8 +48,8 @@ pub enum Warning {
         /// Index of the object.
         object: usize,
     },
-    /// The object can be pushed, and stands in a heap: more bodies are in its place than are moved out of each other in
-    /// a time step. It stands fast until there are fewer. The first such object of a world stands for all.
+    /// A pushable object is in a heap: more bodies overlap it than a time step separates. It stands fast until there are fewer.
+    /// Only the first such object of a world is reported.
     #[strum(
         to_string = "/objects/{object}/coordinates: found {bodies} bodies in the place of one that can be pushed, expected at \
         most {limit}; it stands fast until there are fewer: spread them"
@@ -57,12 +57,12 @@ pub enum Warning {
     Heap {
         /// Index of the object.
         object: usize,
-        /// How many others overlap it, by the boxes around them.
+        /// Number of other objects that overlap it, by bounding boxes.
         bodies: usize,
-        /// How many may.
+        /// Largest number allowed.
         limit: usize,
     },
-    /// The world is for photographs of its objects ([`Studio`](crate::Studio)); stepped, it runs as if it were for
+    /// The world is meant for photographs of its objects ([`Studio`](crate::Studio)); when stepped, it runs as if it were for
     /// learning.
     #[strum(
         to_string = "/game_mode: collect_images is for `driftworld photograph` and driftworld-unity; stepped, the world runs as learn"

@@ -1,5 +1,4 @@
-//! What zones do to the agent in a time step: what they pay, how they slow it, whether they end the episode or put it elsewhere.
-//! Which zones there are is the world's to say; how they are drawn is in `render`.
+//! Applies zones to the agent in a time step: rewards, speed, ends of the episode, and teleports.
 
 use driftworld_spec::{World, Zone, ZoneEnd};
 
@@ -12,8 +11,8 @@ use super::state::SimState;
 use super::views::Views;
 use super::walls::agent_obstacle;
 
-/// The zones of a world, in an order that does not depend on that of the list: sums and products over them come out the same to
-/// the last bit.
+/// The zones of a world, in an order that does not depend on the list's, so that sums and products over them are the same to
+/// the bit.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Zones(Vec<Area>);
 
@@ -21,9 +20,9 @@ pub(crate) struct Zones(Vec<Area>);
 #[derive(Clone, Debug)]
 pub(crate) struct Area {
     pub(crate) zone: Zone,
-    /// Least and largest x and y in metres.
+    /// Smallest and largest x and y in metres.
     bounds: [Point; 2],
-    /// Its place in the world's list.
+    /// Its index in the world's list.
     index: usize,
 }
 
@@ -50,14 +49,14 @@ impl Zones {
         Self(areas)
     }
 
-    /// Notes the zones that the agent is in, as no news.
+    /// Marks the zones that the agent is in as known, without events.
     pub(super) fn locate(&self, state: &mut SimState) {
         let here = state.agent.position.map(f64::from);
         state.inside.clear();
         state.inside.extend(self.0.iter().map(|area| area.contains(here)));
     }
 
-    /// The places in the world's list of the zones that the agent has entered and is in, rising.
+    /// Indices in the world's list of the zones that the agent has entered and is still in, rising.
     pub(super) fn entered(&self, state: &SimState) -> Vec<u32> {
         let areas = self.0.iter().zip(&state.inside);
         let entered = areas.filter(|(_, inside)| **inside);
@@ -66,14 +65,14 @@ impl Zones {
         entered
     }
 
-    /// Goes on from where [`Self::entered`] was written.
+    /// Resumes from the result of [`Self::entered`].
     pub(super) fn resume(&self, entered: &[u32], state: &mut SimState) {
         state.inside.clear();
         let is_entered = |area: &Area| entered.contains(&(area.index as u32));
         state.inside.extend(self.0.iter().map(is_entered));
     }
 
-    /// Whether a way leads into one of some zones from outside.
+    /// Whether a path enters one of the chosen zones from outside.
     pub(crate) fn are_entered(&self, path: &[Point], is_meant: impl Fn(&Zone) -> bool) -> bool {
         let (Some(start), Some(end)) = (path.first(), path.last()) else {
             return false;
@@ -82,7 +81,7 @@ impl Zones {
         self.0.iter().any(|area| is_meant(&area.zone) && is_entered(area))
     }
 
-    /// The zones that a place is in.
+    /// The zones that contain a place.
     pub(super) fn around(&self, point: Point) -> impl Iterator<Item = &Zone> {
         let areas = self.0.iter().filter(move |area| area.contains(point));
         areas.map(|area| &area.zone)
@@ -90,13 +89,13 @@ impl Zones {
 }
 
 impl Area {
-    /// Whether a place is in it.
+    /// Whether it contains a place.
     pub(crate) fn contains(&self, point: Point) -> bool {
         let [low, high] = self.bounds;
         (0..2).all(|axis| low[axis] <= point[axis] && point[axis] <= high[axis]) && self.zone.contains(point)
     }
 
-    /// Whether any point of a way is in it.
+    /// Whether it contains any point of a path.
     fn is_crossed(&self, path: &[Point]) -> bool {
         let [low, high] = self.bounds;
         path.windows(2).any(|ends| {
@@ -108,7 +107,7 @@ impl Area {
         })
     }
 
-    /// Whether a straight way between two places goes over its border.
+    /// Whether a straight path between two places crosses its border.
     fn is_cut(&self, from: Point, to: Point) -> bool {
         if let Some(disc) = &self.zone.disc {
             return squared_distance(disc.center, from, to) < disc.radius * disc.radius;
@@ -126,7 +125,7 @@ fn side(from: Point, to: Point, point: Point) -> bool {
     (to[0] - from[0]) * (point[1] - from[1]) > (to[1] - from[1]) * (point[0] - from[0])
 }
 
-/// A command of the body as the zones let it be carried out where the agent is.
+/// A command of the body, slowed by the zones that the agent is in.
 pub(super) fn slowed(intent: Intent, state: &SimState, zones: &Zones) -> Intent {
     if zones.0.is_empty() {
         return intent;
@@ -140,8 +139,8 @@ pub(super) fn slowed(intent: Intent, state: &SimState, zones: &Zones) -> Intent 
     }
 }
 
-/// Pays for the zones that the agent is in and that it entered in this time step, and puts it elsewhere if one says so. Hands
-/// back how they end the episode.
+/// Pays for the zones that the agent is in and for those that it entered in this time step, and teleports it if one does.
+/// Returns how they end the episode.
 pub(super) fn apply_zones(world: &World, state: &mut SimState, views: &Views, step: &mut Step) -> Option<ZoneEnd> {
     let zones = &views.zones;
     if zones.0.is_empty() {
@@ -190,7 +189,7 @@ pub(super) fn apply_zones(world: &World, state: &mut SimState, views: &Views, st
     end
 }
 
-/// Of two ends in one time step, a success if there is one.
+/// Of two ends in one time step, a success takes precedence.
 fn first_of(a: Option<ZoneEnd>, b: Option<ZoneEnd>) -> Option<ZoneEnd> {
     match (a, b) {
         (Some(ZoneEnd::Success), _) | (_, Some(ZoneEnd::Success)) => Some(ZoneEnd::Success),
@@ -198,9 +197,9 @@ fn first_of(a: Option<ZoneEnd>, b: Option<ZoneEnd>) -> Option<ZoneEnd> {
     }
 }
 
-/// The place nearest to this one, of some on rings around it, where the agent's body has room; `None` if none has.
+/// The nearest place, among some on rings around this one, where the agent's body has room; `None` if there is none.
 fn free_place(sim: SimRef, wanted: Point) -> Option<Point> {
-    /// Rings, each half the agent's width wider.
+    /// Number of rings, each wider than the last by half the agent's width.
     const RINGS: u32 = 8;
     const DIAGONAL: f64 = std::f64::consts::FRAC_1_SQRT_2;
     const DIRECTIONS: [Point; 8] = [
