@@ -20,8 +20,8 @@ pub(super) const MOST_SQUARES: f32 = 8000.0;
 /// Added to indices of squares to make them positive; a multiple of 16, which preserves the pattern.
 pub(super) const SHIFT: f32 = 8192.0;
 
-/// The four walls around the camera, as linear functions. For each, 1 / distance of the wall along the view axis is `base +
-/// right · x + up · y` for a pixel x to the right and y up at 1 m.
+/// The four walls around the camera, as linear functions. For each, 1 / distance of the wall along the view axis is
+/// `base + right · x + up · y` for a pixel x to the right and y up at 1 m.
 pub(super) struct Walls {
     pub(super) base: [f32; 4],
     pub(super) right: [f32; 4],
