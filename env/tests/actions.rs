@@ -1,4 +1,4 @@
-//! Actions in all their forms, and what the rules make of a step: frame skip, penalties out of order, shaping.
+//! All forms of actions, and rules about steps: frame skip, penalties for wrong order, shaping.
 
 use driftworld_env::{Action, EnvError, Environment, Obstacle, Warning};
 use driftworld_spec::{ActionModel, ActionSpace, EndCondition, Object, Shaping, StateFeature, Stimulus, WorldDraft};
@@ -15,7 +15,7 @@ fn coin(at: [f64; 2], reward: f64) -> Object {
     coin
 }
 
-/// What pays 1 for each interaction, right in front of the agent.
+/// An object directly in front of the agent that pays 1 per interaction.
 fn button() -> Object {
     Object {
         reward: 1.0,
@@ -24,7 +24,7 @@ fn button() -> Object {
     }
 }
 
-/// What so many steps ahead, or back below 0, pay in all.
+/// Total reward of this many steps ahead, or backwards for a negative speed.
 fn drive(environment: &mut Environment, speed: f64, steps: usize) -> f64 {
     let mut step = || environment.step(Action::Continuous([speed, 0.0, 0.0]));
     (0..steps).map(|_| step().expect("the episode goes on").reward).sum()
@@ -37,7 +37,7 @@ fn with_actions(actions: ActionSpace) -> WorldDraft {
 }
 
 #[test]
-fn normalised_actions_are_shares_of_the_limits() {
+fn normalised_actions_scale_to_the_agents_limits() {
     let mut environment = start(with_actions(ActionSpace::Normalized));
     environment
         .step(Action::Continuous([0.5, 1.0, -1.0]))
@@ -53,7 +53,7 @@ fn normalised_actions_are_shares_of_the_limits() {
 }
 
 #[test]
-fn normalised_waypoints_are_shares_of_the_arena() {
+fn normalised_waypoints_scale_to_the_arena() {
     let mut world = with_actions(ActionSpace::Normalized);
     world.agent_params.action_model = ActionModel::ByWaypoint;
     world.environment_params.map_size = [4.0, 20.0];
@@ -66,7 +66,7 @@ fn normalised_waypoints_are_shares_of_the_arena() {
 }
 
 #[test]
-fn the_default_table_has_six_moves_and_interact() {
+fn default_table_has_six_moves_and_interact() {
     let mut environment = start(with_actions(ActionSpace::DefaultDiscrete));
     for (row, turn) in [(1, -9.0), (2, 9.0), (3, -9.0), (4, 9.0)] {
         let before = environment.agent().heading_deg;
@@ -91,7 +91,7 @@ fn the_default_table_has_six_moves_and_interact() {
 }
 
 #[test]
-fn without_interact_the_third_number_does_nothing() {
+fn third_number_has_no_effect_without_interact() {
     let paid = |interact: bool| {
         let mut world = WorldDraft {
             objects: vec![button()],
@@ -107,7 +107,7 @@ fn without_interact_the_third_number_does_nothing() {
 }
 
 #[test]
-fn a_held_action_lasts_several_time_steps_and_is_one_step() {
+fn held_action_lasts_several_time_steps_of_one_step() {
     let run = |frame_skip: u32, steps: usize| {
         let mut world = WorldDraft {
             max_steps: 20,
@@ -139,7 +139,7 @@ fn a_held_action_lasts_several_time_steps_and_is_one_step() {
 }
 
 #[test]
-fn who_interacts_while_an_action_is_held_interacts_once() {
+fn held_action_interacts_once() {
     let mut world = WorldDraft {
         objects: vec![button()],
         ..WorldDraft::default()
@@ -152,7 +152,7 @@ fn who_interacts_while_an_action_is_held_interacts_once() {
 }
 
 #[test]
-fn what_is_touched_before_its_turn_costs_the_penalty() {
+fn touching_out_of_turn_costs_the_penalty() {
     let mut second = coin([0.0, 2.0], 5.0);
     second.order = Some(2);
     let mut first = coin([0.0, -2.0], 5.0);
@@ -169,7 +169,7 @@ fn what_is_touched_before_its_turn_costs_the_penalty() {
 }
 
 #[test]
-fn shaping_pays_the_same_in_all_whatever_way_an_episode_ends_by_itself() {
+fn total_shaping_does_not_depend_on_how_an_episode_terminates() {
     let total = |turn: f64, conditions: Vec<EndCondition>| {
         let mut world = WorldDraft {
             objects: vec![coin([0.0, 4.0], 1.0)],
@@ -213,7 +213,7 @@ fn shaping_pays_the_same_in_all_whatever_way_an_episode_ends_by_itself() {
 }
 
 #[test]
-fn the_state_vector_holds_what_was_asked_for() {
+fn state_vector_contains_the_requested_features() {
     let mut world = WorldDraft {
         max_steps: 10,
         objects: vec![coin([3.0, 0.0], 2.0), coin([-20.0, 0.0], 2.0)],
@@ -266,7 +266,7 @@ fn the_state_vector_holds_what_was_asked_for() {
 }
 
 #[test]
-fn who_starts_in_a_wall_is_told() {
+fn start_inside_a_wall_gives_a_warning() {
     let mut world = WorldDraft::default();
     world.agent_params.coordinates = [49.9, 0.0];
     let warnings = start(world).warnings();
@@ -283,7 +283,7 @@ fn who_starts_in_a_wall_is_told() {
 }
 
 #[test]
-fn a_place_beyond_all_measure_is_walked_towards() {
+fn huge_waypoints_are_walked_towards() {
     let mut world = WorldDraft::default();
     world.agent_params.action_model = ActionModel::ByWaypoint;
     let mut environment = start(world);
@@ -297,7 +297,7 @@ fn a_place_beyond_all_measure_is_walked_towards() {
 }
 
 #[test]
-fn a_key_that_is_destroyed_opens_the_door_and_a_door_before_its_turn_stays() {
+fn destroyed_key_opens_its_door_and_a_door_out_of_turn_stays_shut() {
     let mut key = Object::new("barrel", [0.0, 2.0]);
     (key.order, key.destroy_stimulus) = (Some(1), vec![Stimulus::AgentCollide]);
     let mut door = coin([0.0, -2.0], 5.0);
@@ -316,7 +316,7 @@ fn a_key_that_is_destroyed_opens_the_door_and_a_door_before_its_turn_stays() {
 }
 
 #[test]
-fn an_arm_that_did_not_pay_may_pay_later() {
+fn arm_that_did_not_pay_may_pay_later() {
     let mut arm = coin([0.0, 2.0], 1.0);
     arm.reward_probability = 0.3;
     let mut environment = start(WorldDraft {

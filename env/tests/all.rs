@@ -1,5 +1,5 @@
-//! All integration tests of this crate, as one program: it is linked once. Only `allocation` is a program of its own: it
-//! counts the memory of the whole process.
+//! All integration tests of this crate in one binary, to link once. `allocation` is separate because it counts the memory of
+//! the whole process.
 
 mod actions;
 mod batch;

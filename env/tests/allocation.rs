@@ -1,5 +1,5 @@
-//! Stepping a batch takes no memory from the heap, and heaps of bodies take no more than in proportion. A test of its
-//! own, because it counts for the whole process.
+//! Stepping a batch does not allocate, and heaps of bodies allocate only in proportion. A separate binary, because it counts
+//! for the whole process.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::Arc;
@@ -10,11 +10,11 @@ use driftworld_spec::{
     Door, Modality, MotionModel, Object, Portable, Pushable, StateFeature, Stimulus, Switch, World, WorldDraft,
 };
 
-/// The system's allocator, counting how often it is asked for memory.
+/// The system's allocator with counters.
 struct Counting;
 
 static TAKEN: AtomicU64 = AtomicU64::new(0);
-/// Bytes that are in use, and the most that have been.
+/// Bytes in use, and their maximum so far.
 static LIVE: AtomicU64 = AtomicU64::new(0);
 static PEAK: AtomicU64 = AtomicU64::new(0);
 
@@ -27,12 +27,12 @@ fn grows_by(bytes: usize) {
     unsafe_code,
     reason = "an allocator cannot be written without; this one adds to a number and asks the system"
 )]
-// SAFETY: every call goes to the system's allocator as it came.
+// SAFETY: every call is passed on to the system's allocator unchanged.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         TAKEN.fetch_add(1, Ordering::Relaxed);
         grows_by(layout.size());
-        // SAFETY: the caller's promise is the system's.
+        // SAFETY: the caller's guarantees are those of the system's allocator.
         unsafe { System.alloc(layout) }
     }
 
@@ -54,7 +54,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// The bench's scene, with something that moves, something that pays by the way, and a hunt without end.
+/// The benchmark's scene, with a moving object, one that pays in passing, and an endless hunt.
 fn world() -> World {
     let text = include_str!("../benches/scenes/arena_20.json");
     let scene = World::from_json("arena_20.json", text).expect("the bench's scene is sound");
@@ -67,7 +67,7 @@ fn world() -> World {
         Modality::Instance,
     ];
     world.agent_params.supersampling = 2;
-    // Ways on which no bodies come to overlap: that takes memory.
+    // On these paths no bodies overlap, which would allocate.
     world.seed = Some(1);
     for (index, object) in world.objects.iter_mut().enumerate() {
         object.tag = Some("group".to_owned());
@@ -81,7 +81,7 @@ fn world() -> World {
     world.check().expect("the world is sound")
 }
 
-/// The bench's scene, with something that could be pushed, at rest and out of reach.
+/// The benchmark's scene, with a pushable object at rest and out of reach.
 fn world_with_a_far_body() -> World {
     let text = include_str!("../benches/scenes/arena_20.json");
     let mut world = World::from_json("arena_20.json", text).expect("the bench's scene is sound");
@@ -94,7 +94,7 @@ fn world_with_a_far_body() -> World {
     world
 }
 
-/// Doors of all kinds, a switch and things to carry, in a room that is too small to miss them.
+/// Doors of all kinds, a switch and carriable things, in a room small enough to meet all of them.
 fn world_with_things() -> World {
     let both = || vec![Stimulus::AgentCollide, Stimulus::AgentInteract];
     let mut objects = Vec::new();
@@ -129,13 +129,13 @@ fn world_with_things() -> World {
     world.environment_params.map_size = [7.0, 7.0];
     (world.agent_params.agent_width, world.agent_params.carry_limit) = (0.4, 3);
     world.agent_params.modalities = Vec::new();
-    // In circles, past all of them.
+    // In circles past all of them.
     world.agent_params.max_linear_speed = 0.6;
     world.agent_params.state_features = vec![StateFeature::Position, StateFeature::Carrying];
     world.check().expect("the world is sound")
 }
 
-/// How often memory was taken in so many steps of a batch that has warmed up, and what these steps paid in all.
+/// Number of allocations in this many steps of a warmed-up batch, and the steps' total reward.
 fn taken(world: World, num_threads: usize, steps: usize) -> (u64, f64) {
     const NUM_ENVS: usize = 8;
     let source = Arc::new(move |_| Ok(world.clone()));
@@ -147,7 +147,7 @@ fn taken(world: World, num_threads: usize, steps: usize) -> (u64, f64) {
     let mut batch = Batch::new(NUM_ENVS, source, options).expect("the scene starts");
     let actions: [Action; NUM_ENVS] =
         std::array::from_fn(|env| Action::Continuous([4.0 + env as f64, 20.0 - 3.0 * env as f64, 1.0]));
-    // Lists grow to their size in the first rounds.
+    // Lists reach their final size in the first rounds.
     for _ in 0..300 {
         batch.step(&actions).expect("the batch goes on");
     }
@@ -161,7 +161,7 @@ fn taken(world: World, num_threads: usize, steps: usize) -> (u64, f64) {
 }
 
 #[test]
-fn steps_take_no_memory() {
+fn steps_do_not_allocate() {
     let (taken_alone, paid) = taken(world(), 1, 300);
     assert!(paid > 10.0, "things happen in these steps: {paid}");
     assert_eq!(taken_alone, 0, "on one thread");
@@ -176,14 +176,14 @@ fn steps_take_no_memory() {
     });
     let (taken_by_hands, _) = taken(seen.expect("the world is sound"), 1, 600);
     assert_eq!(taken_by_hands, 0, "pictures of what is carried");
-    // Handing work to other threads takes a block of the pool's queue for every 63 times, whatever the number of
+    // Passing work to other threads allocates a block of the pool's queue once in 63 times, whatever the number of
     // environments.
     let (taken_by_two, _) = taken(world(), 2, 300);
     assert!(taken_by_two <= 10, "on two threads: {taken_by_two} in 300 steps");
     heaps_take_memory_in_proportion();
 }
 
-/// A thousand cubes at one place took two gigabytes: contacts of each with all others.
+/// Regression test: a thousand cubes at one place took two gigabytes, for contacts of each with all others.
 fn heaps_take_memory_in_proportion() {
     for count in [250, 1000, 4000] {
         let body = |_| {
@@ -207,7 +207,7 @@ fn heaps_take_memory_in_proportion() {
                 .expect("the episode goes on");
         }
         let taken = PEAK.load(Ordering::Relaxed) - before;
-        // The contacts that a time step may have, and the lists of bodies.
+        // The most contacts in a time step, and the lists of bodies.
         assert!(taken < (48 << 20) + 2000 * count, "{count} cubes: {taken} bytes");
     }
 }

@@ -1,5 +1,4 @@
-//! A batch is so many environments: the same numbers and pixels as each alone, whatever the threads and the way of
-//! resetting.
+//! A batch gives the same numbers and pixels as separate environments, whatever the threads and the autoreset mode.
 
 use std::sync::Arc;
 
@@ -10,7 +9,7 @@ use driftworld_spec::{Modality, MotionModel, Object, Stimulus, World, WorldDraft
 
 const NUM_ENVS: usize = 5;
 
-/// A small world that depends on the episode: things to bump into, one that hunts, an end by limit or by touch.
+/// A small world that depends on the episode: obstacles, a hunter, and an end by limit or touch.
 fn draft(episode: Episode) -> WorldDraft {
     let shift = (episode.env * 3 + episode.index as usize * 7) as f64;
     let mut target = Object::new("cube", [0.0, 2.0 + shift % 5.0]);
@@ -63,14 +62,14 @@ fn batch(autoreset: Autoreset, num_threads: usize) -> Batch {
     .expect("the worlds are sound")
 }
 
-/// What an environment shows, drawn by itself.
+/// An environment's view, rendered separately.
 fn picture(environment: &Environment) -> Frame {
     let mut frame = Frame::new(24, 24);
     CpuRenderer::new().render(environment.scene(), &environment.camera(), &mut frame);
     frame
 }
 
-/// Holds one environment's images and state in `outputs` against the environment alone.
+/// Compares one environment's images and state in `outputs` with a separate environment.
 fn same(outputs: &driftworld_env::Outputs, env: usize, alone: &Environment) {
     let frame = picture(alone);
     let pixels = 24 * 24;
@@ -147,7 +146,7 @@ fn a_batch_is_so_many_environments() {
 }
 
 #[test]
-fn without_autoreset_an_ended_episode_waits_for_its_reset() {
+fn ended_episode_without_autoreset_waits_for_its_reset() {
     let mut batch = batch(Autoreset::Disabled, 1);
     let still = [Action::Continuous([0.0; 3]); NUM_ENVS];
     for _ in 0..9 {
@@ -196,7 +195,7 @@ fn one_bad_action_changes_no_environment() {
 }
 
 #[test]
-fn a_world_that_cannot_be_had_stops_its_environment_alone() {
+fn missing_world_stops_only_its_environment() {
     let source: WorldSource = Arc::new(|episode| match episode {
         Episode { env: 1, index: 1 } => Err("the well is dry".to_owned()),
         _ => Ok(world(episode)
@@ -222,7 +221,7 @@ fn a_world_that_cannot_be_had_stops_its_environment_alone() {
 }
 
 #[test]
-fn worlds_of_a_batch_make_the_same_images() {
+fn worlds_with_other_images_are_refused() {
     let source: WorldSource = Arc::new(|episode| {
         let mut world = draft(episode);
         world.agent_params.observation_size = 24 + episode.env as u32;
@@ -252,13 +251,13 @@ fn options(autoreset: Autoreset) -> BatchOptions {
 }
 
 #[test]
-fn outputs_that_take_too_much_are_refused_before_they_are_taken() {
+fn too_large_outputs_are_refused_before_allocating() {
     let large = |episode: Episode| {
         let mut world = draft(episode);
         world.agent_params.observation_size = 4096;
         world.check().expect("the world is sound")
     };
-    // Colour, metres, categories and objects: 12 bytes a pixel, 201 MB an environment; 85 of them are 17.1 GB, 16 GiB
+    // Colour, metres, categories and objects: 12 bytes per pixel, 201 MB per environment; 85 of them take 17.1 GB, and 16 GiB
     // are 17.18 GB.
     let made = |num_envs, autoreset| {
         let source: WorldSource = Arc::new(move |episode| {
@@ -286,7 +285,7 @@ fn outputs_that_take_too_much_are_refused_before_they_are_taken() {
 }
 
 #[test]
-fn a_reset_that_is_stopped_leaves_the_rest_where_they_were_and_the_next_begins_them() {
+fn stopped_reset_leaves_the_rest_to_the_next_reset() {
     let mut batch = batch(Autoreset::Disabled, 1);
     let left = std::sync::atomic::AtomicU32::new(2);
     let go_on = || {

@@ -1,4 +1,4 @@
-//! Worlds of a batch that ask for different images: each environment has those that its world asks for, and 0 in the others.
+//! Worlds of a batch may request different images: each environment has those of its world, and 0 in the others.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ const ALL: [Modality; 5] = [
 ];
 const SIDE: usize = 12;
 
-/// A world that shows these images, as bits.
+/// A world with the modalities of this bit mask.
 fn world(asked: u8) -> World {
     let mut world = WorldDraft {
         max_steps: 3,
@@ -30,7 +30,7 @@ fn world(asked: u8) -> World {
     world.check().expect("it is sound")
 }
 
-/// Every image of an environment as numbers; empty where there is none.
+/// Every image of an environment as numbers; empty if there is none.
 fn numbers(images: &Images, env: usize) -> [Vec<f64>; 5] {
     fn part<T: Copy + Into<f64>>(all: &[T], env: usize, per_pixel: usize) -> Vec<f64> {
         let length = per_pixel * SIDE * SIDE;
@@ -64,7 +64,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 32)))]
 
     #[test]
-    fn each_environment_has_what_its_world_asks_for(
+    fn each_environment_has_the_images_of_its_world(
         asked in prop::collection::vec(prop::array::uniform4(0_u8..32), 3), there in 0_u8..32, threads in 1_usize..3,
     ) {
         let there = asked.iter().flatten().fold(there, |all, one| all | one);
@@ -103,7 +103,7 @@ proptest! {
 }
 
 #[test]
-fn a_world_that_asks_for_what_is_not_there_is_refused() {
+fn world_with_a_modality_the_batch_lacks_is_refused() {
     let source: WorldSource = Arc::new(|episode| Ok(world(if episode.env == 0 { 1 } else { 3 })));
     let found = Batch::new(2, source, BatchOptions::default()).err();
     assert!(matches!(found, Some(EnvError::BatchImages { env: 1, .. })), "{found:?}");

@@ -1,4 +1,4 @@
-//! The three channels as a client meets them: the original's own messages, and hostile ones that must change nothing.
+//! The three channels from a client's side: the original's own messages, and hostile ones that must change nothing.
 
 use std::path::{Path, PathBuf};
 
@@ -29,7 +29,7 @@ fn ask(environment: &mut Environment, channels: &mut Channels, message: &Value) 
         .messages
 }
 
-/// The original's messages, or a visible skip.
+/// The original's messages; prints a note if they are skipped.
 fn original() -> Option<Value> {
     let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/reference");
     let root = std::env::var_os("DRIFTWORLD_REFERENCE").map_or(default, PathBuf::from);
@@ -88,7 +88,7 @@ fn every_message_of_the_original_is_understood() {
     assert!((y - 10.1).abs() < 1e-5, "1 m/s for 0.1 s from 10: {y}");
 }
 
-/// The original's client looks up `payload` in whatever comes on the State channel, and fails where it is missing.
+/// The original's client looks up `payload` in every message on the State channel, and fails if it is missing.
 #[test]
 fn answers_have_every_key_that_clients_look_up() {
     let (mut environment, mut channels) = start();
@@ -110,7 +110,7 @@ fn answers_have_every_key_that_clients_look_up() {
 }
 
 #[test]
-fn objects_that_are_told_are_there_and_have_names() {
+fn reported_objects_are_present_and_named() {
     let (mut environment, mut channels) = start();
     for _ in 0..2 {
         let spawn = json!({ "action": "object_create", "payload": { "class": "rock", "coordinates": [9, 9] } });
@@ -134,7 +134,7 @@ fn objects_that_are_told_are_there_and_have_names() {
     assert_eq!(names, ["oak", "object-2"]);
 }
 
-/// A message that must be answered by an error, and change nothing.
+/// Checks that a message is answered by an error and changes nothing.
 #[track_caller]
 fn check(channel: Channel, text: &str, expected: &str) {
     let (mut environment, mut channels) = start();
@@ -164,7 +164,7 @@ fn check(channel: Channel, text: &str, expected: &str) {
 }
 
 #[test]
-fn places_in_our_own_copy_are_not_told() {
+fn positions_in_our_own_copy_are_not_reported() {
     let (mut environment, mut channels) = start();
     let spawn =
         json!({ "action": "object_create", "unique_name": "", "payload": { "class": "rock", "coordinates": [9, 9] } });
@@ -223,7 +223,7 @@ fn hostile_resets_and_objects_change_nothing() {
 }
 
 #[test]
-fn hostile_watchers_change_nothing() {
+fn hostile_observer_requests_change_nothing() {
     check(State, r#"{ "action": "set_active_observers" }"#, "found no state");
     check(
         State,
@@ -238,7 +238,7 @@ fn hostile_watchers_change_nothing() {
 }
 
 #[test]
-fn hostile_debugging_changes_nothing() {
+fn hostile_debug_requests_change_nothing() {
     check(Debug, r#"{ "action": "save_screenshot", "payload": {} }"#, "filename");
     for factor in ["0", "49", "1.5", "\"2\"", "-1", "1e300"] {
         let text = format!(
@@ -264,7 +264,7 @@ fn hostile_debugging_changes_nothing() {
 }
 
 #[test]
-fn a_watched_world_is_told_at_each_step_without_what_is_gone() {
+fn observed_parts_are_sent_each_step_without_absent_objects() {
     let (mut environment, mut channels) = start();
     let told = |environment: &mut Environment, channels: &mut Channels| {
         let step = environment
@@ -289,7 +289,7 @@ fn a_watched_world_is_told_at_each_step_without_what_is_gone() {
 }
 
 #[test]
-fn tokens_look_like_uuids_never_repeat_and_are_the_same_each_time() {
+fn tokens_are_unique_deterministic_uuids() {
     let run = || {
         let (mut environment, mut channels) = start();
         let list = json!({ "token": "x", "action": "get_observers" });

@@ -1,5 +1,4 @@
-//! The laws of touching and coming near: what one pass sets off does not depend on speed, on the time step, or on how
-//! often one looks.
+//! Touching and coming near: the stimuli of one pass do not depend on speed, on the time step, or on the frame skip.
 
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 
@@ -12,8 +11,7 @@ fn start(world: WorldDraft) -> Environment {
     Environment::new(world)
 }
 
-/// How often each stimulus was set off on a way of legs (turn in degrees, metres), at a speed, in time steps of a
-/// length.
+/// Number of times that each stimulus occurs on a path of legs (turn in degrees, metres), at a speed, with this time step.
 fn count(mut world: WorldDraft, legs: &[(f64, f64)], speed: f64, seconds: f64) -> [usize; 2] {
     let agent = &mut world.agent_params;
     (agent.max_linear_speed, agent.max_angular_speed, agent.time_step) = (100.0, 3600.0, seconds);
@@ -52,7 +50,7 @@ fn touchable(class: &str, at: [f64; 2]) -> Object {
     object
 }
 
-/// Fast enough for a metre and more in a step, and slow enough for a centimetre.
+/// From more than a metre per step down to a centimetre.
 const PACES: [(f64, f64); 7] = [
     (1.0, 0.1),
     (2.0, 0.1),
@@ -67,7 +65,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 200)))]
 
     #[test]
-    fn one_pass_is_one_contact_at_any_pace(
+    fn one_pass_is_one_contact_at_any_speed(
         class in prop::sample::select(vec!["barrel", "ball", "rock", "tree", "cube", "bush"]),
         off in -0.9..0.9_f64,
         scale in 0.5..3.0_f64,
@@ -78,7 +76,7 @@ proptest! {
         (object.scale, object.heading, object.solid) = (scale, heading, solid);
         let mut world = WorldDraft { objects: vec![object], ..WorldDraft::default() };
         let reach = f64::from(start(world.clone()).scene().items[0].asset.collider.radius()) * scale;
-        // Walked into off the middle, and held until past it.
+        // Walked into off-centre, and held until past it.
         let room = if class == "cube" { reach / 1.5 } else { reach };
         world.agent_params.coordinates = [off * room, -reach - 4.0];
         for (speed, seconds) in PACES {
@@ -88,11 +86,11 @@ proptest! {
     }
 
     #[test]
-    fn what_a_way_sets_off_does_not_depend_on_the_pace(
+    fn stimuli_of_a_path_do_not_depend_on_the_speed(
         legs in prop::collection::vec((-180.0..180.0_f64, 0.5..12.0_f64), 1..12),
         places in prop::collection::vec((-8.0..8.0_f64, -8.0..8.0_f64, 0.3..4.0_f64), 1..8),
     ) {
-        // Ghosts hold nothing up: the way is the same at any pace.
+        // Ghosts stop nothing, so the path is the same at every speed.
         let objects = places.iter().map(|&(x, y, range)| {
             let mut object = touchable("ball", [x, y]);
             object.solid = false;
@@ -104,14 +102,14 @@ proptest! {
         for (speed, seconds) in PACES {
             let found = count(world.clone(), &legs, speed, seconds);
             let off = [0, 1].map(|kind| found[kind].abs_diff(slow[kind]));
-            // A way that leaves and comes back within millimetres of an edge may count once more.
+            // A path that leaves and comes back within millimetres of an edge may count once more.
             prop_assert!(off == [0, 0], "{found:?} beside {slow:?} at {speed} m/s in steps of {seconds} s");
         }
     }
 }
 
 #[test]
-fn a_range_that_is_crossed_within_a_step_is_entered() {
+fn range_crossed_within_a_step_is_entered() {
     let mut object = touchable("ball", [3.0, 5.0]);
     object.range_stimulus_distance = 3.5;
     let world = WorldDraft {
@@ -129,7 +127,7 @@ fn a_range_that_is_crossed_within_a_step_is_entered() {
 }
 
 #[test]
-fn what_surrounds_the_start_is_set_off_in_the_first_step_and_once() {
+fn stimuli_at_the_start_occur_once_in_the_first_step() {
     let mut zone = touchable("ball", [0.5, 0.0]);
     (zone.solid, zone.range_stimulus_distance) = (false, 4.0);
     let mut environment = start(WorldDraft {
@@ -145,12 +143,12 @@ fn what_surrounds_the_start_is_set_off_in_the_first_step_and_once() {
 }
 
 #[test]
-fn a_contact_ends_a_quarter_of_a_metre_away() {
+fn contact_ends_at_a_gap_of_a_quarter_metre() {
     let world = WorldDraft {
         objects: vec![touchable("cube", [0.0, 3.0])],
         ..WorldDraft::default()
     };
-    // There, back by so much, and there again.
+    // There, back by this much, and there again.
     for (back, expected) in [(0.1, 1), (0.2, 1), (0.3, 2), (1.0, 2)] {
         for (speed, seconds) in [(1.0, 0.1), (10.0, 0.1), (5.0, 0.02)] {
             let found = count(
@@ -168,7 +166,7 @@ fn a_contact_ends_a_quarter_of_a_metre_away() {
 }
 
 #[test]
-fn a_mover_that_rushes_past_touches_and_comes_near_once() {
+fn fast_mover_touches_and_comes_near_once() {
     for speed in [1.0, 5.0, 20.0, 60.0] {
         let mut ghost = touchable("ball", [-30.0, 0.2]);
         (ghost.solid, ghost.range_stimulus_distance) = (false, 1.0);
@@ -198,8 +196,7 @@ fn a_mover_that_rushes_past_touches_and_comes_near_once() {
     }
 }
 
-/// Ways of the agent and of a ball that moves at once, both straight, in time steps of a length: how often it is
-/// touched and near.
+/// Number of touches and approaches between an agent and a ball that move at the same time, both straight, with this time step.
 fn meeting(mut object: Object, agent: ([f64; 2], f64, f64), seconds: f64, total: f64) -> [usize; 2] {
     let (at, heading, speed) = agent;
     object.motion_model = driftworld_spec::MotionModel::Patrol;
@@ -228,7 +225,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 200)))]
 
     #[test]
-    fn two_that_go_past_each_other_meet_as_their_ways_do(
+    fn moving_bodies_meet_if_their_paths_do(
         from in -20.0..20.0_f64,
         off in -6.0..6.0_f64,
         heading in 0.0..360.0_f64,
@@ -240,7 +237,7 @@ proptest! {
         (ghost.solid, ghost.range_stimulus_distance, ghost.speed, ghost.heading) = (false, range, others, 90.0);
         ghost.waypoints = vec![[250.0, off]];
         let agent = ([0.0, -15.0], heading, own);
-        // The nearest that both come in 4 s, centre to centre on the ground.
+        // The smallest distance within 4 s, centre to centre on the ground.
         let (sine, cosine) = (heading.to_radians().sin(), heading.to_radians().cos());
         let nearest = (0..=40_000).map(|k| f64::from(k) * 1e-4).map(|time| {
             let x = from + others * time - sine * own * time;
@@ -263,7 +260,7 @@ proptest! {
 }
 
 #[test]
-fn who_follows_at_the_heels_touches_once() {
+fn following_closely_is_one_touch() {
     for others in [1.0, 2.4, 2.6, 4.0, 6.0, 9.0] {
         for seconds in [0.1, 0.05, 0.02, 0.01] {
             let mut ball = touchable("ball", [0.0, -45.0]);
@@ -276,7 +273,7 @@ fn who_follows_at_the_heels_touches_once() {
 }
 
 #[test]
-fn who_goes_beside_another_outside_its_range_is_never_near() {
+fn moving_alongside_outside_the_range_is_never_near() {
     let mut ball = touchable("ball", [0.0, -36.95]);
     (ball.speed, ball.range_stimulus_distance) = (2.0, 3.0);
     ball.waypoints = vec![[0.0, 40.0]];

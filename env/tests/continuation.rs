@@ -1,5 +1,5 @@
-//! A world that is written down in the middle of a puzzle goes on from its text as if nothing had been: the locked door
-//! stands open, the agent carries the key, and half of its energy is used up.
+//! A world that is saved in the middle of a puzzle resumes exactly: with the locked door open, the key in the agent's hands,
+//! and half of its energy used up.
 
 use driftworld_env::{Action, Agent, EndedBy, Environment, OnRailsAgent, RandomAgent, Step};
 use driftworld_spec::{
@@ -12,11 +12,11 @@ use crate::tagged::{key, thing};
 
 const MOST: f64 = 100.0;
 
-/// Number of the locked door, and of its key, among the objects.
+/// Indices of the locked door and its key among the objects.
 const LOCKED: usize = 0;
 const KEY: usize = 1;
 
-/// A corridor with rooms on both sides: the goal is behind a locked door, its key in one of the other rooms.
+/// A corridor with rooms on both sides: the goal is behind a locked door, and its key in one of the other rooms.
 fn corridor(start: usize, lies: usize, model: ActionModel, frame_skip: u32) -> WorldDraft {
     let rows = [
         "###########",
@@ -36,7 +36,7 @@ fn corridor(start: usize, lies: usize, model: ActionModel, frame_skip: u32) -> W
         legend,
         ..Layout::default()
     };
-    // Where the letter stands for the `number`th time, by rows from the north; cells are 2 m wide.
+    // Places of the letter, by rows from the north; cells are 2 m wide.
     let places = |letter: char| -> Vec<[f64; 2]> {
         let cells = rows.iter().enumerate().flat_map(|(row, text)| {
             let found = text.chars().enumerate().filter(move |(_, found)| *found == letter);
@@ -104,8 +104,7 @@ fn begin(world: &WorldDraft) -> Environment {
     Environment::new(world.clone().check().expect("the world is sound"))
 }
 
-/// Runs the expert until the locked door stands open while the agent carries the key; says how long that took, in
-/// seconds.
+/// Runs the expert until the locked door is open while the agent carries the key; returns the time in seconds.
 fn to_the_open_door(environment: &mut Environment) -> f64 {
     let mut expert = OnRailsAgent::new();
     loop {
@@ -123,7 +122,7 @@ fn to_the_open_door(environment: &mut Environment) -> f64 {
     }
 }
 
-/// The same world, with energy of which half is used up when the door stands open.
+/// The same world with energy, half of which is used up when the door opens.
 fn with_half_the_energy(mut world: WorldDraft) -> WorldDraft {
     let seconds = to_the_open_door(&mut begin(&world));
     world.agent_params.energy = Some(Energy {
@@ -135,7 +134,7 @@ fn with_half_the_energy(mut world: WorldDraft) -> WorldDraft {
     world
 }
 
-/// What a step says and what is seen after it: numbers to the bit.
+/// Results and observations of a step, to the bit.
 #[derive(Debug, PartialEq)]
 struct Moment {
     step: Step,
@@ -175,12 +174,12 @@ fn moment(environment: &mut Environment, step: Step) -> Moment {
     }
 }
 
-/// What the agent does after the world was written down.
+/// The agent's behaviour after the world was saved.
 #[derive(Clone, Copy, Debug)]
 enum Then {
-    /// The expert goes on to the goal, planning from what it finds.
+    /// The expert continues to the goal, planning from what it finds.
     Expert,
-    /// Whatever comes, until the energy is used up or the goal happens to be touched.
+    /// Random actions, until the energy is used up or the goal happens to be touched.
     Anything(u64),
 }
 
@@ -192,7 +191,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn a_puzzle_goes_on_from_its_text_to_the_last_bit(
+    fn puzzle_resumes_from_its_text_to_the_bit(
         start in 0usize..9,
         lies in 0usize..12,
         on_rails in any::<bool>(),
@@ -218,7 +217,7 @@ proptest! {
             Then::Anything(seed) => Box::new(RandomAgent::new(seed)),
         };
         loop {
-            // One agent acts in both: what is compared is the worlds.
+            // One agent acts in both: only the worlds are compared.
             let action = agent.act(&environment);
             let step = environment.step(action).expect("the episode goes on");
             let other = resumed.step(action).expect("the episode goes on");
@@ -236,9 +235,9 @@ proptest! {
     }
 }
 
-/// The law above would not hold if the text left out any of the three.
+/// The test above would fail if the saved text lacked any of the three.
 #[test]
-fn each_of_the_three_counts() {
+fn door_key_and_energy_each_affect_the_resumed_world() {
     let world = with_half_the_energy(corridor(0, 0, ActionModel::ByVelocity, 1));
     let mut environment = begin(&world);
     to_the_open_door(&mut environment);

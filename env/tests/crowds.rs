@@ -1,11 +1,10 @@
-//! Heaps and crowds: that they step at all, that nothing of them depends on how the world came to be, and that a heap
-//! is pointed out.
+//! Heaps and crowds can be stepped, do not depend on the world's history, and give a warning.
 
 use driftworld_env::{Action, Environment, Warning};
 use driftworld_spec::{MotionModel, Object, Pushable, Respawn, Stimulus, World, WorldDraft};
 use proptest::prelude::*;
 
-/// A way to make the body of a crowd.
+/// Makes one body of a crowd.
 type Make = fn([f64; 2]) -> Object;
 
 const MAKES: [Make; 5] = [pushable, predator, ghost, wanderer, returning];
@@ -39,7 +38,7 @@ fn wanderer(at: [f64; 2]) -> Object {
     object
 }
 
-/// Comes back near to where all others do.
+/// Respawns near the same place as all others.
 fn returning(at: [f64; 2]) -> Object {
     let mut object = Object::new("barrel", at);
     object.range_stimulus_distance = 50.0;
@@ -51,7 +50,7 @@ fn returning(at: [f64; 2]) -> Object {
     object
 }
 
-/// Bodies within so many metres of a place in front of the agent.
+/// Bodies within `spread` metres of a place in front of the agent.
 fn crowd(makes: &[Make], count: usize, spread: f64) -> WorldDraft {
     let at = |k: usize| {
         let share = |step: f64| spread * ((k as f64 * step).fract() - 0.5);
@@ -80,7 +79,7 @@ fn go(environment: &mut Environment, steps: u32) -> f64 {
     paid
 }
 
-/// All that is seen of a world.
+/// The visible state of a world.
 fn places(environment: &Environment) -> Vec<([f32; 2], f32, bool)> {
     let items = environment.scene().items.iter();
     items
@@ -88,9 +87,9 @@ fn places(environment: &Environment) -> Vec<([f32; 2], f32, bool)> {
         .collect()
 }
 
-/// A heap of two and a half thousand cubes did not get through its first step in a hundred seconds, and took gigabytes.
+/// Regression test: a heap of 2,500 cubes did not finish its first step in a hundred seconds, and took gigabytes.
 #[test]
-fn every_heap_of_ten_thousand_steps() {
+fn heaps_of_ten_thousand_can_be_stepped() {
     for make in MAKES {
         for spread in [0.0, 2.0] {
             go(&mut start(crowd(&[make], 10_000, spread)), 3);
@@ -99,7 +98,7 @@ fn every_heap_of_ten_thousand_steps() {
 }
 
 #[test]
-fn a_heap_is_pushed_apart_or_holds_and_the_agent_is_not_let_through() {
+fn heap_is_pushed_apart_or_holds_and_stops_the_agent() {
     let mut environment = start(crowd(&[pushable], 1000, 0.0));
     for _ in 0..30 {
         environment
@@ -111,7 +110,7 @@ fn a_heap_is_pushed_apart_or_holds_and_the_agent_is_not_let_through() {
 }
 
 #[test]
-fn a_heap_is_pointed_out_with_its_place_and_size() {
+fn heap_gives_a_warning_with_place_and_size() {
     let heaps = |count: usize| {
         let is_heap = |warning: &Warning| matches!(warning, Warning::Heap { .. });
         let warnings = start(crowd(&[pushable], count, 0.0)).warnings();
@@ -136,10 +135,10 @@ fn a_heap_is_pointed_out_with_its_place_and_size() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(5, 12)))]
 
-    /// What is over a limit is so by where things stand alone: a world that was written down in the midst of a crowd,
-    /// whose trees were built in another order, goes on to the last bit, and so does one that came back to a moment.
+    /// Limits depend only on where objects are: a world that was saved in the middle of a crowd, and whose trees were built in
+    /// another order, resumes to the bit, and so does one restored from a snapshot.
     #[test]
-    fn a_crowd_goes_on_from_its_state_and_from_a_snapshot(
+    fn crowd_resumes_from_its_state_and_from_a_snapshot(
         first in 0usize..5,
         second in 0usize..5,
         count in 300usize..1200,

@@ -1,4 +1,4 @@
-//! The last order of a door counts, whoever stands in it meanwhile: beside the simulator stands a door of a few lines.
+//! A door obeys its last order, whatever stands in it meanwhile: compares the simulator with a door of a few lines.
 
 use driftworld_env::{Action, Effect, Environment};
 use driftworld_spec::{Door, Object, Stimulus, Switch, SwitchAction, World, WorldDraft};
@@ -7,7 +7,7 @@ use proptest::prelude::*;
 const TIME_STEP: f64 = 0.1;
 const DOOR: usize = 0;
 
-/// Two cells, a doorway between them with a door, and around it pads that set it going when the agent comes near.
+/// Two cells with a door between them, and around it pads that move it when the agent comes near.
 fn doorway(door: Door, pads: &[([f64; 2], SwitchAction)]) -> World {
     let mut world = WorldDraft::default();
     world.environment_params.map_size = [2.0, 4.0];
@@ -29,7 +29,7 @@ fn doorway(door: Door, pads: &[([f64; 2], SwitchAction)]) -> World {
     world.check().expect("it is sound")
 }
 
-/// A door by its orders alone.
+/// A reference door, driven only by its orders.
 struct Orders {
     is_open: bool,
     due: Option<u64>,
@@ -61,7 +61,7 @@ impl Orders {
     }
 }
 
-/// How far the agent's body is from the leaf of the closed door, negative inside.
+/// Distance of the agent's body from the closed door's leaf, negative inside.
 fn to_leaf(environment: &Environment) -> f64 {
     let [x, y] = environment.agent().position.map(f64::from);
     libm::hypot((x.abs() - 1.0).max(0.0), (y.abs() - 0.195).max(0.0)) - 0.3
@@ -76,7 +76,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 200)))]
 
     #[test]
-    fn the_last_order_counts(
+    fn door_obeys_its_last_order(
         open in any::<bool>(), closes_after in prop::option::of(0.1..4.0_f64), period in prop::option::of(0.5..6.0_f64),
         (opens, closes) in (any::<bool>(), any::<bool>()),
         pads in prop::collection::vec(((-0.9..0.9_f64, -0.7..0.7_f64), 0..3_u8), 1..5),
@@ -109,7 +109,7 @@ proptest! {
             let found = environment.objects()[DOOR].open;
             let apart = to_leaf(&environment);
             if orders.is_open && orders.due.is_some_and(|due| due <= tick) {
-                // Where the leaf just touches the agent, either is right.
+                // If the leaf just touches the agent, either is correct.
                 let is_clear = if apart.abs() < 0.02 { !found } else { apart > 0.0 };
                 if is_clear {
                     (orders.is_open, orders.due) = (false, None);

@@ -1,4 +1,4 @@
-//! Changing a world from outside while it runs: spawning, destroying, teleporting, and going back to a moment.
+//! Changing a running world from outside: spawning, destroying, teleporting, and restoring a moment.
 
 use driftworld_env::{Action, EnvError, Environment, Obstacle};
 use driftworld_spec::{Object, Respawn, Stimulus, WorldDraft};
@@ -27,7 +27,7 @@ fn reward(environment: &mut Environment, action: Action) -> f64 {
 }
 
 #[test]
-fn what_is_spawned_stands_there_and_pays() {
+fn spawned_object_is_present_and_pays() {
     let mut environment = start(vec![Object::new("tree", [3.0, 12.0])]);
     let index = environment.spawn(coin(1.8)).expect("the coin is sound");
     assert_eq!((index, environment.find("coin 1.8")), (1, Some(1)));
@@ -36,14 +36,14 @@ fn what_is_spawned_stands_there_and_pays() {
 }
 
 #[test]
-fn what_is_spawned_onto_the_agent_is_a_new_contact() {
+fn spawning_onto_the_agent_is_a_new_contact() {
     let mut environment = start(Vec::new());
     environment.spawn(coin(0.0)).expect("the coin is sound");
     assert_eq!(reward(&mut environment, STAY), 3.0);
 }
 
 #[test]
-fn what_a_document_may_not_say_is_not_spawned() {
+fn invalid_objects_are_not_spawned() {
     let mut environment = start(vec![coin(1.8)]);
     let mut broken = coin(3.0);
     broken.scale = -1.0;
@@ -62,7 +62,7 @@ fn what_a_document_may_not_say_is_not_spawned() {
 }
 
 #[test]
-fn what_is_destroyed_is_gone_for_good_and_lets_a_sequence_go_on() {
+fn destroyed_object_is_gone_and_its_sequence_continues() {
     let mut first = coin(-5.0);
     first.order = Some(1);
     first.respawn = Some(Respawn {
@@ -84,7 +84,7 @@ fn what_is_destroyed_is_gone_for_good_and_lets_a_sequence_go_on() {
 }
 
 #[test]
-fn the_agent_is_put_only_where_there_is_room() {
+fn teleport_requires_room() {
     let mut environment = start(vec![coin(1.8)]);
     environment.teleport([10.0, -10.0], -90.0).expect("free ground");
     assert_eq!(
@@ -105,14 +105,14 @@ fn the_agent_is_put_only_where_there_is_room() {
 }
 
 #[test]
-fn arriving_beside_an_object_is_no_contact() {
+fn teleporting_beside_an_object_is_no_contact() {
     let mut environment = start(vec![coin(5.0)]);
     // 0.4 m of barrel and 0.5 m of agent.
     environment.teleport([0.0, 4.075], 0.0).expect("there is room");
     assert_eq!(reward(&mut environment, STAY), 0.0);
 }
 
-/// The same world from its start.
+/// A fresh environment of the same world.
 trait Again {
     fn clone_of_start(&self) -> Environment;
 }
@@ -124,7 +124,7 @@ impl Again for Environment {
 }
 
 #[test]
-fn a_moment_comes_back_with_what_was_spawned_and_destroyed_since() {
+fn restoring_a_moment_undoes_spawns_and_destructions() {
     let mut environment = start(vec![coin(1.8), Object::new("tree", [3.0, 12.0])]);
     let moment = environment.snapshot();
     environment.spawn(coin(1.0)).expect("the coin is sound");
@@ -140,7 +140,7 @@ fn a_moment_comes_back_with_what_was_spawned_and_destroyed_since() {
 }
 
 #[test]
-fn an_agent_that_something_was_put_on_walks_out_of_it() {
+fn agent_walks_out_of_an_object_spawned_onto_it() {
     let mut environment = start(Vec::new());
     let mut cube = Object::new("cube", [0.1, 0.3]);
     cube.scale = 3.0;

@@ -1,4 +1,4 @@
-//! The agent's energy: what uses it up, what gives it back, and the end that it brings. What sets objects off at every time step.
+//! The agent's energy: consumption, gains, and the end when it is used up; and stimuli that occur in every time step.
 
 use driftworld_env::{Action, Agent, EndedBy, Environment, RandomAgent, Step};
 use driftworld_spec::{EndCondition, Energy, Object, StateFeature, Stimulus, Trigger, WorldDraft, Zone, ZoneEnd};
@@ -31,7 +31,7 @@ fn has(environment: &Environment) -> f32 {
     environment.state_vector()[0]
 }
 
-/// A thing of 1 m that is no obstacle.
+/// An object of 1 m that is not solid.
 fn thing(at: [f64; 2]) -> Object {
     let mut thing = Object::new("cube", at);
     thing.solid = false;
@@ -41,9 +41,9 @@ fn thing(at: [f64; 2]) -> Object {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 64)))]
 
-    /// It falls by what the seconds and the metres take, however time is cut, and ends the episode at the same time.
+    /// Energy falls with seconds and metres, and ends the episode at the same time, whatever the time step.
     #[test]
-    fn energy_falls_with_time_and_way_and_ends_the_episode(
+    fn energy_falls_with_time_and_distance_and_ends_the_episode(
         begin in 1.0..50.0f64,
         per_second in -9.0..-1.0f64,
         per_metre in -2.0..0.0f64,
@@ -71,9 +71,9 @@ proptest! {
         prop_assert!((environment.seconds() - begin / used).abs() <= time_step + 1e-2);
     }
 
-    /// Whatever the agent does and finds, it has no less than nothing and no more than it can hold.
+    /// Whatever the agent does and finds, its energy stays between 0 and its capacity.
     #[test]
-    fn energy_is_never_more_than_the_most(
+    fn energy_never_exceeds_its_capacity(
         most in 1.0..20.0f64,
         gains in prop::collection::vec((-30.0..30.0f64, prop::array::uniform2(-6.0..6.0f64), any::<bool>()), 0..8),
         rates in prop::array::uniform2(-4.0..4.0f64),
@@ -98,9 +98,9 @@ proptest! {
         }
     }
 
-    /// At a level a stimulus sets an object off in each time step, at an edge in the first; who starts in range comes into it then.
+    /// A level-triggered stimulus acts in each time step, an edge-triggered one once; starting in range counts as entering it.
     #[test]
-    fn a_level_sets_off_at_every_time_step_and_an_edge_once(
+    fn level_stimuli_act_every_time_step_and_edge_stimuli_once(
         is_range in any::<bool>(),
         frame_skip in 1u32..5,
         steps in 1usize..9,
@@ -123,7 +123,7 @@ proptest! {
 }
 
 #[test]
-fn what_pays_gives_its_energy_and_what_pays_once_gives_it_once() {
+fn paying_objects_give_energy_as_often_as_they_pay() {
     let gained = |change: fn(&mut Object)| {
         let mut environment = start(|world| {
             world.agent_params.energy = Some(energy(10.0, 0.0, 0.0, 100.0));
@@ -155,7 +155,7 @@ fn what_pays_gives_its_energy_and_what_pays_once_gives_it_once() {
 }
 
 #[test]
-fn what_ended_an_episode_is_said() {
+fn step_reports_the_cause_of_the_end() {
     let ended_by = |change: fn(&mut WorldDraft)| {
         let mut environment = start(change);
         loop {

@@ -1,4 +1,4 @@
-//! The agent that knows the map in worlds with doors, keys, switches and things: it does what must be done first.
+//! The agent that knows the map, in worlds with doors, keys, switches and things: it finds out what has to be done first.
 
 use driftworld_env::{Agent, Environment, OnRailsAgent};
 use driftworld_spec::{
@@ -7,8 +7,8 @@ use driftworld_spec::{
 };
 use proptest::prelude::*;
 
-/// Three rooms in a row, 6 × 8 m each, with walls between them that have a doorway of 1.5 m: at x −3 and at x 3. The agent is in
-/// the middle one.
+/// Three rooms in a row, 6 × 8 m each, between walls with a doorway of 1.5 m, at x −3 and at x 3. The agent is in the middle
+/// one.
 fn rooms(doorways: [f64; 2]) -> WorldDraft {
     let mut world = WorldDraft {
         max_steps: 3000,
@@ -66,7 +66,7 @@ fn touch() -> EndCondition {
     EndCondition::Touch("goal".to_owned())
 }
 
-/// How many steps the expert takes to its success; `None` if it has none.
+/// Number of steps of the expert until success; `None` without success.
 fn solved(world: &World) -> Option<u32> {
     let mut environment = Environment::new(world.clone());
     let mut agent = OnRailsAgent::new();
@@ -80,11 +80,11 @@ fn solved(world: &World) -> Option<u32> {
     }
 }
 
-/// Checks that the expert has success wherever things are and however it acts.
+/// Checks that the expert succeeds wherever objects are and in every action space.
 fn check(name: &str, make: impl Fn([f64; 2], &dyn Fn(usize) -> f64) -> WorldDraft) {
     let mut failed = Vec::new();
     for number in 0..60_usize {
-        // Places that differ from world to world: fractions of √2, √3, √5.
+        // Places that differ from world to world: fractions of irrational numbers.
         let unit = |k: usize| ((number + 1) as f64 * [1.618_034, 1.732_05, 2.236_067, 2.645_751][k % 4]).fract();
         let doorways = [unit(0) * 4.0 - 2.0, unit(1) * 4.0 - 2.0];
         let mut world = make(doorways, &unit);
@@ -105,7 +105,7 @@ fn check(name: &str, make: impl Fn([f64; 2], &dyn Fn(usize) -> f64) -> WorldDraf
 }
 
 #[test]
-fn it_opens_the_one_door_on_its_way_by_hand_and_by_touch() {
+fn expert_opens_a_door_on_its_path_by_hand_and_by_touch() {
     for stimulus in [Stimulus::AgentInteract, Stimulus::AgentCollide] {
         check("one door", |ways, unit| {
             let mut world = rooms(ways);
@@ -124,7 +124,7 @@ fn it_opens_the_one_door_on_its_way_by_hand_and_by_touch() {
 }
 
 #[test]
-fn it_fetches_the_key_of_a_door_and_that_of_the_door_before_it() {
+fn expert_fetches_the_keys_of_successive_doors() {
     check("a locked door", |ways, unit| {
         let mut world = rooms(ways);
         world.objects = vec![
@@ -151,7 +151,7 @@ fn it_fetches_the_key_of_a_door_and_that_of_the_door_before_it() {
 }
 
 #[test]
-fn it_sets_off_switches_and_waits_for_clocks() {
+fn expert_uses_switches_and_waits_for_clocks() {
     check("a switch", |ways, unit| {
         let mut world = rooms(ways);
         let mut lever = thing("switch", "lever", [-6.0, unit(0) * 4.0 - 2.0]);
@@ -186,7 +186,7 @@ fn it_sets_off_switches_and_waits_for_clocks() {
 }
 
 #[test]
-fn it_opens_carries_and_delivers_where_a_rule_asks_for_it() {
+fn expert_opens_carries_and_delivers_as_rules_require() {
     check("opened", |ways, _| {
         let mut world = rooms(ways);
         world.objects = vec![door("a", [3.0, ways[1]], locked("red")), key("red", [0.0, -3.3])];
@@ -237,7 +237,7 @@ fn it_opens_carries_and_delivers_where_a_rule_asks_for_it() {
 }
 
 #[test]
-fn it_opens_doors_in_the_order_of_a_sequence_and_takes_what_pays_first() {
+fn expert_opens_doors_in_sequence_and_collects_rewards_first() {
     check("a sequence", |ways, _| {
         let mut world = rooms(ways);
         let mut red = door("red", [3.0, ways[1]], Door::default());
@@ -266,9 +266,9 @@ fn it_opens_doors_in_the_order_of_a_sequence_and_takes_what_pays_first() {
     });
 }
 
-/// The world of `docs/worlds.md` with a locked door is as the page says.
+/// The world with a locked door in `docs/worlds.md` behaves as described there.
 #[test]
-fn the_world_of_the_page_is_solved() {
+fn world_of_the_docs_is_solved() {
     let page = include_str!("../../docs/worlds.md");
     let text = page.split("```").find_map(|part| part.strip_prefix("json\n"));
     let world = World::from_json("docs/worlds.md", text.expect("the page has a world")).expect("it is sound");
@@ -276,9 +276,9 @@ fn the_world_of_the_page_is_solved() {
     assert!(solved(&world).is_some_and(|steps| steps < 300));
 }
 
-/// What cannot be done is not tried: the agent stands still, and the episode ends by its limit.
+/// The expert does not attempt the impossible: the agent stands still, and the episode ends by its limit.
 #[test]
-fn it_does_nothing_where_nothing_can_be_done() {
+fn expert_stands_still_if_nothing_can_be_done() {
     let stands = |change: &dyn Fn(&mut WorldDraft)| {
         let mut world = rooms([0.0, 0.0]);
         world.max_steps = 200;
@@ -287,7 +287,7 @@ fn it_does_nothing_where_nothing_can_be_done() {
             key("red", [7.0, 2.0]),
             goal([7.0, -2.0]),
         ];
-        // The other room is shut for good.
+        // The other room is permanently shut.
         world.objects.push(door(
             "b",
             [-3.0, 0.0],
@@ -341,7 +341,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(16))]
 
     #[test]
-    fn a_world_on_rails_goes_on_to_the_last_bit(written_at in 0..250_u32, unit in 0.0..1.0_f64) {
+    fn world_on_rails_resumes_to_the_bit(written_at in 0..250_u32, unit in 0.0..1.0_f64) {
         let mut world = rooms([unit * 3.0 - 1.5, 1.0 - unit]);
         world.agent_params.action_model = ActionModel::OnRails;
         world.agent_params.heading = unit * 300.0;

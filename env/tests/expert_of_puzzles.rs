@@ -1,5 +1,5 @@
-//! The agent that knows the map in puzzles in which a step can be a mistake for good: keys that open one door only. Whether a puzzle
-//! can be solved is found here by trying all there is to try.
+//! The agent that knows the map, in puzzles in which a step can be an irreversible mistake: keys that open only one door. The
+//! test determines by exhaustive search whether a puzzle is solvable.
 
 use driftworld_env::{Agent, EndedBy, Environment, OnRailsAgent};
 use driftworld_spec::{
@@ -13,7 +13,7 @@ const ROOM: f64 = 4.0;
 /// A puzzle of 2 × 3 rooms: between neighbours a wall, an open doorway, or a door with a lock.
 #[derive(Clone, Debug)]
 struct Puzzle {
-    /// What is between room 0 and 1, 2 and 3, 4 and 5, then between 0 and 2, 1 and 3, 2 and 4, 3 and 5.
+    /// Between rooms 0 and 1, 2 and 3, 4 and 5, then between 0 and 2, 1 and 3, 2 and 4, 3 and 5.
     between: [Between; 7],
     /// Room and lock of each key.
     keys: Vec<(usize, u8)>,
@@ -32,7 +32,7 @@ enum Between {
 const NEIGHBOURS: [[usize; 2]; 7] = [[0, 1], [2, 3], [4, 5], [0, 2], [1, 3], [2, 4], [3, 5]];
 
 impl Puzzle {
-    /// Whether the goal can be got to from room 0, by trying every door with every key, one after the other.
+    /// Whether the goal can be reached from room 0, by exhaustive search over doors and keys.
     fn can_be_solved(&self) -> bool {
         self.can_go_on([false; 7], &vec![false; self.keys.len()])
     }
@@ -138,7 +138,7 @@ fn thing(class: &str, tag: &str, [x, y]: [f64; 2], [dx, dy]: [f64; 2]) -> Object
     object
 }
 
-/// Lives an episode, and hands back whether it ended well. Never more is carried than may be.
+/// Runs an episode and returns whether it was a success. Checks the carry limit.
 fn lives(world: World) -> bool {
     let most = world.agent_params.carry_limit as usize;
     let mut environment = Environment::new(world);
@@ -174,8 +174,8 @@ fn puzzle() -> impl Strategy<Value = Puzzle> {
         })
 }
 
-/// What an agent earns that carries a ball through a ford in lava to a box, and what ends the episode. The lava ends
-/// the episode, or costs 20 on entering and 1 a second.
+/// The return and the cause of the end for an agent that carries a ball through a ford in lava to a box. The lava ends the
+/// episode, or costs 20 on entering and 1 per second.
 fn carried_past_lava([ford, key_x, thickness]: [f64; 3], fails: bool, is_discrete: bool) -> (f64, Option<EndedBy>) {
     let mut world = hall();
     world.agent_params.coordinates = [-key_x, -5.0];
@@ -219,9 +219,9 @@ fn carried_past_lava([ford, key_x, thickness]: [f64; 3], fails: bool, is_discret
 proptest! {
     #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 48), max_global_rejects: 4000, ..ProptestConfig::default() })]
 
-    /// Whatever the order of the list of objects is.
+    /// Whatever the order of the list of objects.
     #[test]
-    fn what_can_be_solved_is_solved(
+    fn solvable_puzzles_are_solved(
         puzzle in puzzle().prop_filter("solvable", Puzzle::can_be_solved),
         order in prop::collection::vec(0..100_usize, 12),
     ) {
@@ -229,10 +229,10 @@ proptest! {
     }
 }
 
-/// The search is worth having: some of these puzzles cannot be solved by whoever opens the first door that can be opened.
+/// Some of these puzzles require search: opening the first door that can be opened makes them unsolvable.
 #[test]
-fn a_key_is_not_spent_on_the_wrong_door() {
-    // The key in room 0 opens the doors to rooms 1 and 2; the goal is behind the latter, or behind the former.
+fn key_is_not_used_on_the_wrong_door() {
+    // The key in room 0 opens the doors to rooms 1 and 2; the goal is behind one of them.
     for goal in [1, 2] {
         let mut between = [Between::Wall; 7];
         (between[0], between[3]) = (Between::Lock(0), Between::Lock(0));
@@ -243,14 +243,14 @@ fn a_key_is_not_spent_on_the_wrong_door() {
             goal,
         };
         assert!(puzzle.can_be_solved() && lives(puzzle.world(&[])), "{goal}");
-        // What pays behind the other door is not worth the success.
+        // A reward behind the other door is worth less than the success.
         let coin_too = puzzle.world(&[]).edit(|world| {
             let mut coin = thing("geometric", "coin", middle(3 - goal), [0.0, 0.5]);
             (coin.reward, coin.reward_once_stimulus) = (1.0, vec![Stimulus::AgentCollide]);
             world.objects.insert(0, coin);
         });
         assert!(lives(coin_too.expect("the world is sound")), "{goal}");
-        // Two keys, the second of them behind one of the doors: that door comes first.
+        // Two keys, the second behind one of the doors: that door comes first.
         let more = Puzzle {
             keys: vec![(0, 0), (3 - goal, 0)],
             ..puzzle
@@ -273,9 +273,9 @@ fn hall() -> WorldDraft {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// Who can carry several things fetches them together: with a hand for each, the box is gone to once.
+    /// An agent that can carry several things collects them before it goes to the box, and then goes there only once.
     #[test]
-    fn things_are_gathered_before_they_are_brought(
+    fn things_are_collected_before_delivery(
         places in prop::collection::vec(prop::array::uniform2(-5.0..5.0_f64), 2..5),
         hands in 1..5_u32,
     ) {
@@ -311,10 +311,10 @@ proptest! {
         }
     }
 
-    /// Between the agent and its ball, and again before the box, lies lava with a ford: it is never entered, be it that it ends
-    /// the episode or that it costs, and that steps are those of a table.
+    /// Lava with a ford lies between the agent and its ball, and again in front of the box: it is never entered, whether it
+    /// ends the episode or costs, also with the steps of an action table.
     #[test]
-    fn errands_lead_around_what_fails_and_what_costs(
+    fn plans_avoid_zones_that_fail_or_cost(
         ford in -4.0..4.0_f64,
         key_x in -5.0..5.0_f64,
         thickness in 0.1..1.5_f64,
@@ -325,9 +325,9 @@ proptest! {
         prop_assert_eq!(came_of_it, (0.0, Some(EndedBy::Delivered)), "no zone was entered");
     }
 
-    /// Where nothing but a way through what costs is left, it is taken; through what fails, none.
+    /// If the only path leads through a zone that costs, it is taken; through one that fails, never.
     #[test]
-    fn errands_lead_through_what_costs_where_nothing_else_leads(
+    fn plans_cross_costly_zones_only_if_there_is_no_other_path(
         key_x in -5.0..5.0_f64,
         thickness in 0.1..3.0_f64,
         is_discrete in any::<bool>(),
@@ -338,9 +338,9 @@ proptest! {
         prop_assert_eq!(came_of_it, (0.0, Some(EndedBy::Steps)), "who is shut in stays there");
     }
 
-    /// Nothing is left but a zone: behind a door it is got to, and stayed in.
+    /// With only a zone as a goal, behind a door, the expert gets there and stays.
     #[test]
-    fn a_zone_behind_a_locked_door_is_got_to(x in -5.0..5.0_f64, ends in any::<bool>()) {
+    fn zone_behind_a_locked_door_is_reached(x in -5.0..5.0_f64, ends in any::<bool>()) {
         let mut between = [Between::Wall; 7];
         between[3] = Between::Lock(0);
         let puzzle = Puzzle { between, keys: vec![(0, 0)], consumed: true, goal: 5 };
@@ -364,9 +364,9 @@ proptest! {
     }
 }
 
-/// A world that was written down in mid-errand goes on to the last bit: a key in the hand, a door open, half the energy.
+/// A world that was saved in the middle of a plan resumes to the bit: with a key carried, a door open, and half the energy.
 #[test]
-fn a_saved_errand_goes_on_to_the_last_bit() {
+fn saved_plan_resumes_to_the_bit() {
     let mut between = [Between::Wall; 7];
     (between[0], between[3], between[1]) = (Between::Lock(0), Between::Lock(0), Between::Lock(1));
     let puzzle = Puzzle {

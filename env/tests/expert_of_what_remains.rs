@@ -1,5 +1,5 @@
-//! The expert does what can be done: what it cannot get to keeps it from nothing, and it touches nothing that ends the episode as a
-//! failure. With doors and things in the world it plans errands, without it tours; both are tried.
+//! The expert does what it can: unreachable objects do not keep it from others, and it touches nothing that ends the episode as
+//! a failure. With doors and things it uses the planner, otherwise the tour; both are tested.
 
 use driftworld_env::{Agent, EndedBy, Environment, OnRailsAgent};
 use driftworld_spec::{EndCondition, Object, Portable, Stimulus, Wall, World, WorldDraft};
@@ -14,7 +14,7 @@ fn cube(tag: &str, at: [f64; 2], reward: f64) -> Object {
     object
 }
 
-/// An arena of 24 m with a goal in the north, whose touch is a success and pays if that is said.
+/// An arena of 24 m with a goal in the north, whose touch is a success and may pay.
 fn field(pays: f64, has_things: bool) -> WorldDraft {
     let mut world = WorldDraft::default();
     world.environment_params.map_size = [24.0, 24.0];
@@ -50,7 +50,7 @@ fn cell([x, y]: [f64; 2]) -> Vec<Wall> {
     ]
 }
 
-/// How an episode of the expert ends, and what it pays.
+/// How an episode of the expert ends, and its return.
 fn lived(world: World) -> (Option<EndedBy>, bool, f64) {
     let mut environment = Environment::new(world);
     let mut expert = OnRailsAgent::new();
@@ -70,7 +70,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 60)))]
 
     #[test]
-    fn what_cannot_be_got_to_keeps_it_from_nothing(
+    fn unreachable_objects_do_not_keep_the_expert_from_others(
         has_things in any::<bool>(), pays in prop::sample::select(vec![0.0, 1.0]), is_layout in any::<bool>(),
         shut in prop::collection::vec(prop::array::uniform2(-7.0..7.0_f64), 1..3), open in prop::option::of(-9.0..-3.0_f64),
     ) {
@@ -84,7 +84,7 @@ proptest! {
             world.environment_params.walls = walls;
         }
         world.objects.extend(shut.iter().map(|at| cube("gem", *at, 5.0)));
-        // One more gem that can be got, far from all cells.
+        // One reachable gem, far from all cells.
         if let Some(x) = open {
             world.objects.push(cube("gem", [x, -9.0], 5.0));
         }
@@ -95,11 +95,11 @@ proptest! {
     }
 
     #[test]
-    fn it_touches_nothing_that_fails(
+    fn expert_touches_nothing_that_fails(
         has_things in any::<bool>(), gap in -8.0..8.0_f64, (solid, scale) in (any::<bool>(), 0.8..1.6_f64), heading in 0.0..360.0_f64,
     ) {
         let mut world = field(1.0, has_things);
-        // A row of lava through the arena, with one gap of 4 m.
+        // A row of lava across the arena, with one gap of 4 m.
         let places = (0..25).map(|number| f64::from(number) - 12.0).filter(|x| (x - gap).abs() > 2.0 + scale / 2.0);
         world.objects.extend(places.map(|x| {
             let mut lava = cube("lava", [x, 0.0], 0.0);
@@ -116,9 +116,9 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 60)))]
 
-    /// What bars no way stays where it lies, wherever that is on open ground, and however many lie there.
+    /// Things that block no path stay where they are, anywhere on open ground, however many there are.
     #[test]
-    fn a_thing_beside_its_way_is_left_alone(
+    fn thing_beside_the_path_is_left_alone(
         things in prop::collection::vec(prop::array::uniform2(-8.0..8.0_f64), 1..6), heading in 0.0..360.0_f64,
     ) {
         let mut world = field(1.0, false);
@@ -145,9 +145,9 @@ proptest! {
     }
 }
 
-/// A doorway, and a thing right behind it that leaves no way around: who may carry it takes it out of the way.
+/// A thing right behind a doorway that leaves no way around: an agent that may carry it takes it out of the way.
 #[test]
-fn a_thing_in_its_way_is_picked_up() {
+fn thing_in_the_way_is_picked_up() {
     let behind = |carry_limit: u32, at: f64| {
         let mut world = field(1.0, false);
         let wall = |x: [f64; 2]| Wall {

@@ -1,4 +1,4 @@
-//! The agent on rails knows the zones: it goes around those that cost, and to those that pay when nothing else does.
+//! The agent on rails knows the zones: it avoids those that cost, and visits those that pay when nothing else does.
 
 use driftworld_env::{Action, EndedBy, Environment};
 use driftworld_spec::{ActionModel, EndCondition, Object, Stimulus, WorldDraft, Zone, ZoneEnd};
@@ -17,7 +17,7 @@ fn start(zones: Vec<Zone>, at: [f64; 2], change: impl FnOnce(&mut WorldDraft)) -
     Environment::new(world.check().expect("the world is sound"))
 }
 
-/// Why the episode ended, whether well, and what it paid.
+/// The cause of the end, whether it was a success, and the return.
 fn live(environment: &mut Environment) -> (Option<EndedBy>, bool, f64) {
     loop {
         let step = environment
@@ -54,7 +54,7 @@ proptest! {
             lava([[ford + width / 2.0, -1.0], [15.0, 1.0]]),
         ];
         for ([x, y], radius) in pools {
-            // Not in the ford, and neither on the agent nor on the goal.
+            // Neither in the ford, nor on the agent or the goal.
             let y = if y > 0.0 { 6.0 + y / 5.0 } else { y / 5.0 - 5.0 };
             let mut pool = Zone::disc([x, y], radius);
             pool.reward_per_second = -10.0;
@@ -69,9 +69,9 @@ proptest! {
         prop_assert_eq!(live(&mut environment), (Some(EndedBy::AllCollected), true, 1.0));
     }
 
-    /// Where nothing else pays it goes to the zone that does, and stays there.
+    /// If nothing else pays, it goes to the zone that does, and stays there.
     #[test]
-    fn a_zone_that_pays_is_found(
+    fn zone_that_pays_is_visited(
         at in prop::array::uniform2(-13.0..13.0f64),
         zone in prop::array::uniform2(-11.0..11.0f64),
         radius in 1.0..3.0f64,

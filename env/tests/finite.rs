@@ -1,11 +1,11 @@
-//! Worlds of which any number may stand at an end of its range: whatever a step makes is finite, and goes on when it was written.
+//! Worlds in which any number may be at a limit of its range: everything in a step is finite, and the saved world resumes.
 
 use driftworld_env::{Action, Environment};
 use driftworld_spec::World;
 use proptest::prelude::*;
 use serde_json::{Map, Value, json};
 
-/// Numbers that follow from a seed.
+/// A deterministic source of numbers from a seed.
 struct Dice(u64);
 
 impl Dice {
@@ -20,7 +20,7 @@ impl Dice {
     }
 }
 
-/// The world's schema, and words that may stand where it asks for a text.
+/// Words for text values of the world's schema.
 const WORDS: [&str; 10] = [
     "a",
     "b",
@@ -41,7 +41,7 @@ fn resolved<'a>(root: &'a Value, mut node: &'a Value) -> &'a Value {
     node
 }
 
-/// A value that a schema may allow: numbers are often at an end of their range.
+/// A value that a schema allows; numbers are often at a limit of their range.
 fn value(root: &Value, node: &Value, dice: &mut Dice) -> Value {
     let node = resolved(root, node);
     if let Some(forms) = node["anyOf"].as_array().or_else(|| node["oneOf"].as_array()) {
@@ -89,7 +89,7 @@ fn value(root: &Value, node: &Value, dice: &mut Dice) -> Value {
     }
 }
 
-/// A world by itself: what is drawn for a key stays where the world is one with it.
+/// A random world: keeps each drawn value that leaves the world valid.
 fn world(dice: &mut Dice) -> World {
     let root = World::schema().json();
     let mut text = json!({});
@@ -111,7 +111,7 @@ fn world(dice: &mut Dice) -> World {
         let key = keys[dice.roll(keys.len())];
         let drawn = value(root, &properties[key], dice);
         match (&mut place[key.as_str()], drawn) {
-            // Lists grow, by what overlaps too.
+            // Lists grow, also by overlapping objects.
             (Value::Array(list), Value::Array(more)) if key != "modalities" => {
                 let times = [1, 1, 1, 25][dice.roll(4)];
                 list.extend(more.iter().flat_map(|one| std::iter::repeat_n(one.clone(), times)));
@@ -133,7 +133,7 @@ fn world(dice: &mut Dice) -> World {
     small.expect("looks are not what makes it sound")
 }
 
-/// How many worlds are tried; `DRIFTWORLD_FINITE` says another number.
+/// Number of worlds to try; `DRIFTWORLD_FINITE` overrides it.
 fn num_worlds() -> u32 {
     let asked = std::env::var("DRIFTWORLD_FINITE")
         .ok()
@@ -145,7 +145,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(num_worlds()))]
 
     #[test]
-    fn whatever_a_step_makes_is_finite_and_goes_on_when_it_was_written(seed in any::<u64>()) {
+    fn steps_are_finite_and_saved_worlds_resume(seed in any::<u64>()) {
         let dice = &mut Dice(seed);
         let world = world(dice);
         let shown = world.to_json();

@@ -1,9 +1,7 @@
-//! Files that mean harm, or that are merely broken: each is refused with its own message, within the limits, without a
-//! panic.
+//! Malicious or broken files: each is refused with its own message, within the limits, without a panic.
 //!
-//! The corpus lies in `tests/hostile/`: a file, and beside it the message. It is made here;
-//! `DRIFTWORLD_UPDATE_HOSTILE=1` writes it anew. A file that is not made here any more, or made differently, fails the
-//! test.
+//! The corpus is in `tests/hostile/`: each file with its message beside it. It is generated here; `DRIFTWORLD_UPDATE_HOSTILE=1`
+//! rewrites it. A file that is not generated any more, or differs, fails the test.
 #![cfg(feature = "gltf")]
 
 use std::collections::BTreeSet;
@@ -33,7 +31,7 @@ fn import(bytes: &[u8]) -> Result<Imported, EnvError> {
     })
 }
 
-/// A tetrahedron of 1 m whose front is glTF's: what every case is a broken form of.
+/// A tetrahedron of 1 m with glTF's front; every case is a broken variant of it.
 fn sound() -> Value {
     let corners: [[f32; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let indices: [u16; 12] = [0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3];
@@ -81,12 +79,12 @@ fn data_uri(bytes: &[u8]) -> String {
     uri
 }
 
-/// The sound document with one place changed.
+/// The valid document with one place changed.
 fn with(pointer: &str, value: Value) -> Vec<u8> {
     changed(&[(pointer, value)])
 }
 
-/// The sound document with several places changed; a place that is not there is made.
+/// The valid document with several places changed; missing places are created.
 fn changed(changes: &[(&str, Value)]) -> Vec<u8> {
     let mut document = sound();
     for (pointer, value) in changes {
@@ -123,7 +121,7 @@ fn glb(version: u32, json: &[u8], length_more: i64) -> Vec<u8> {
     bytes
 }
 
-/// A PNG file that says it has so many pixels, and nothing more.
+/// A PNG file with only a header of this size.
 fn png_header(width: u32, height: u32) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
@@ -155,7 +153,7 @@ fn textured(png: &[u8]) -> Vec<u8> {
     ])
 }
 
-/// The sound document with texture 1 on it, which is repeated as sampler 0 says, and one place changed.
+/// The valid document with texture 1, which repeats as sampler 0 says, and one place changed.
 fn textured_with(pointer: &str, value: Value) -> Vec<u8> {
     changed(&[
         (
@@ -173,7 +171,7 @@ fn uri(uri: &str) -> Vec<u8> {
     with("/buffers/0/uri", json!(uri))
 }
 
-/// Every case: the name of its file, and its bytes.
+/// All cases: file name and bytes.
 fn cases() -> Vec<(&'static str, Vec<u8>)> {
     let mut cases = containers();
     cases.extend(documents());
@@ -468,7 +466,7 @@ fn every_hostile_file_is_refused_with_its_message() {
 }
 
 #[test]
-fn what_the_cases_break_is_sound() {
+fn unbroken_document_is_valid() {
     let model = import(&text(&sound())).expect("the base of all cases is sound");
     assert_eq!(model.warnings, []);
     assert_eq!(model.model.level(0), Some((4, 0.0)));
@@ -488,7 +486,7 @@ fn what_the_cases_break_is_sound() {
 }
 
 #[test]
-fn large_things_are_refused_before_memory_is_taken_for_them() {
+fn large_input_is_refused_before_allocating() {
     #[track_caller]
     fn check(bytes: &[u8], expected: &str) {
         let error = import(bytes).expect_err("it is too large").to_string();
@@ -505,7 +503,7 @@ fn large_things_are_refused_before_memory_is_taken_for_them() {
         "/nodes: found 10001 nodes, expected at most 10000",
     );
     check(&vec![b' '; (64 << 20) + 1], "expected at most 67108864");
-    // A mesh of 900 triangles that stands 2,000 times in the scene.
+    // A mesh of 900 triangles with 2,000 instances in the scene.
     let corners: Vec<[f32; 3]> = (0..902).map(|k| [k as f32, (k % 2) as f32, 0.0]).collect();
     let indices: Vec<u16> = (0..900).flat_map(|k| [k, k + 1, k + 2]).collect();
     let mut crowd = document(&corners, &indices);
@@ -515,7 +513,7 @@ fn large_things_are_refused_before_memory_is_taken_for_them() {
 }
 
 #[test]
-fn options_that_make_no_sense_are_refused() {
+fn invalid_options_are_refused() {
     let long = "x".repeat(MAX_NAME_BYTES + 1);
     for (change, expected) in [
         (
@@ -543,9 +541,9 @@ fn options_that_make_no_sense_are_refused() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 512)))]
 
-    /// Any bytes of a sound file may be anything.
+    /// Any bytes of a valid file may change to anything.
     #[test]
-    fn changed_bytes_never_make_it_panic(changes in proptest::collection::vec((any::<usize>(), any::<u8>()), 1..12)) {
+    fn changed_bytes_never_panic(changes in proptest::collection::vec((any::<usize>(), any::<u8>()), 1..12)) {
         let mut bytes = text(&sound());
         for (at, byte) in changes {
             let at = at % bytes.len();
@@ -554,15 +552,15 @@ proptest! {
         let _ = import(&bytes);
     }
 
-    /// The same in a GLB file, whose lengths and numbers are bytes of their own.
+    /// The same in a GLB file, which also has binary lengths and numbers.
     #[test]
-    fn changed_bytes_of_a_glb_never_make_it_panic(
+    fn changed_bytes_of_a_glb_never_panic(
         changes in proptest::collection::vec((any::<usize>(), any::<u8>()), 1..8),
         cut in any::<usize>(),
     ) {
         let mut bytes = glb(2, &text(&sound()), 0);
         for (at, byte) in changes {
-            // Half of the changes meet the headers.
+            // Half of the changes are in the headers.
             let at = if at % 2 == 0 { at / 2 % 20 } else { at % bytes.len() };
             bytes[at] = byte;
         }
@@ -572,9 +570,9 @@ proptest! {
         let _ = import(&bytes);
     }
 
-    /// Any number of a sound file may be any number.
+    /// Any number of a valid file may change to any number.
     #[test]
-    fn changed_numbers_never_make_it_panic(
+    fn changed_numbers_never_panic(
         at in any::<prop::sample::Index>(),
         number in prop_oneof![Just(0_i64), Just(-1), Just(1), Just(i64::MAX), Just(65_536), any::<i64>(), 0_i64..200],
     ) {

@@ -1,5 +1,4 @@
-//! Sound glTF files become the models that they describe: the right way up, of the right size and colours; and worlds
-//! find them.
+//! Valid glTF files become the models that they describe: upright, with the right size and colours; and worlds find them.
 #![cfg(feature = "gltf")]
 
 use std::path::Path;
@@ -22,7 +21,7 @@ fn options(class: &str) -> ImportOptions {
     }
 }
 
-/// A GLB file of one mesh: a quad from (0, 0, 0) to (2, 1, 0) as glTF sees it, whose front faces +z.
+/// A GLB file of one mesh: a quad from (0, 0, 0) to (2, 1, 0) in glTF's axes, with its front towards +z.
 struct Quad {
     json: Value,
     binary: Vec<u8>,
@@ -55,7 +54,7 @@ impl Quad {
         quad
     }
 
-    /// Adds an accessor of these bytes; hands back its number.
+    /// Adds an accessor of these bytes; returns its index.
     fn add(&mut self, bytes: &[u8], mut accessor: Value) -> usize {
         let views = self.json["bufferViews"].as_array_mut().expect("views are a list");
         views.push(json!({"buffer": 0, "byteOffset": self.binary.len(), "byteLength": bytes.len()}));
@@ -109,14 +108,14 @@ fn colors(asset: &Asset) -> Vec<[i32; 3]> {
     asset.parts.iter().map(|part| color(&part.paint)).collect()
 }
 
-/// Which way all triangles of an asset face.
+/// Directions of an asset's triangles.
 fn facing(asset: &Asset) -> Vec<[i32; 3]> {
     let normals = asset.parts.iter().flat_map(|part| &part.normals);
     normals.map(|normal| normal.map(|part| part.round() as i32)).collect()
 }
 
 #[test]
-fn up_is_up_and_the_front_faces_north() {
+fn imported_models_are_upright_and_face_north() {
     let asset = Quad::new().asset();
     assert_eq!(facing(&asset), [[0, 1, 0]; 2]);
     let mut corners = asset.parts[0].mesh.corners.clone();
@@ -180,7 +179,7 @@ fn nested_nodes_multiply_and_height_is_kept() {
 }
 
 #[test]
-fn colours_are_light_from_the_factor_and_the_corners() {
+fn colours_combine_factor_and_corners_in_linear_light() {
     let factor = "/materials/0/pbrMetallicRoughness";
     let plain = Quad::new()
         .set(factor, json!({"baseColorFactor": [1.0, 0.5, 0.0, 1.0]}))
@@ -197,11 +196,11 @@ fn colours_are_light_from_the_factor_and_the_corners() {
     let asset = quad
         .set("/meshes/0/primitives/0/attributes/COLOR_0", json!(number))
         .asset();
-    // A triangle of red corners, and one whose light is a third blue.
+    // A triangle of red corners, and one with a third of linear blue.
     assert_eq!(colors(&asset), [[213, 0, 156], [255, 0, 0]]);
 }
 
-/// A picture of two pixels side by side.
+/// An image of two pixels side by side.
 fn two_pixels() -> Vec<u8> {
     let mut png = Vec::new();
     let mut encoder = png::Encoder::new(&mut png, 2, 1);
@@ -214,8 +213,8 @@ fn two_pixels() -> Vec<u8> {
     png
 }
 
-/// A quad whose material has a texture of two pixels. The first triangle lies in the left half, the second one in the
-/// right half, corners 0 and 3 on the border; then all of it is moved by so many pictures to the right.
+/// A quad with a texture of two pixels. The first triangle is in the left half, the second one in the right half, with corners
+/// 0 and 3 on the border; everything is shifted to the right by `pictures` images.
 fn textured(pictures: f32) -> Quad {
     let mut quad = Quad::new();
     let places: Vec<u8> = [[0.5_f32, 0.0], [0.0, 0.5], [1.0, 0.5], [0.5, 1.0]]
@@ -239,13 +238,13 @@ fn textured(pictures: f32) -> Quad {
 }
 
 #[test]
-fn each_triangle_takes_the_colour_of_its_place_in_the_texture() {
+fn triangles_take_their_colour_from_the_texture() {
     assert_eq!(colors(&textured(0.0).asset()), [[10, 200, 30], [200, 20, 30]]);
 }
 
 #[test]
-fn textures_go_on_beyond_their_sides_as_their_sampler_says() {
-    /// The colour of the first triangle, the only one with glTF's corner (2, 0, 0), then that of the second one.
+fn textures_wrap_as_their_sampler_says() {
+    /// The colour of the first triangle, the only one with glTF's corner (2, 0, 0), then that of the second.
     #[track_caller]
     fn check(wrap: u32, expected: [[i32; 3]; 2]) {
         let quad = textured(1.0)
@@ -268,7 +267,7 @@ fn textures_go_on_beyond_their_sides_as_their_sampler_says() {
 }
 
 #[test]
-fn textures_that_cannot_be_kept_are_warned_of() {
+fn unsupported_textures_give_a_warning() {
     #[track_caller]
     fn check(quad: Quad, warning: ImportWarning, place: &str, expected: &[[i32; 3]]) {
         let imported = quad.import(&options("quad"));
@@ -298,7 +297,7 @@ fn textures_that_cannot_be_kept_are_warned_of() {
 }
 
 #[test]
-fn the_main_material_takes_the_objects_colour() {
+fn main_material_takes_the_objects_colour() {
     let is_main = |quad: Quad, main: Option<&str>| {
         let main = main.map(str::to_owned);
         let asset = quad
@@ -315,7 +314,7 @@ fn the_main_material_takes_the_objects_colour() {
     assert!(is_main(Quad::new().set("/materials/0/name", json!("main")), None));
 }
 
-/// A library with a quad of this class, and the catalogue with it in front.
+/// A library with a quad of this class, and a catalogue that includes it.
 fn catalogue(class: &str) -> (Library, Catalogue) {
     let mut library = Library::default();
     let model = Quad::new().import(&options(class)).model;
@@ -325,7 +324,7 @@ fn catalogue(class: &str) -> (Library, Catalogue) {
 }
 
 #[test]
-fn libraries_stand_in_front_of_what_is_built_in() {
+fn libraries_override_built_in_models() {
     let (mut library, catalogue) = catalogue("Tree");
     let again = library.insert(Quad::new().import(&options("tree")).model);
     let said = again.expect_err("capitals do not matter").to_string();
@@ -363,7 +362,7 @@ fn batches_and_spawned_objects_use_the_library() {
         ..BatchOptions::default()
     };
     let mut batch = Batch::with_catalogue(2, source, options, &catalogue).expect("the worlds start");
-    // The quad is 2 m wide and stands in the way at 5 m: the agent's half metre and the skin before it.
+    // The quad is 2 m wide and in the way at 5 m: minus the agent's half metre and the skin.
     for _ in 0..20 {
         let ahead = Action::Continuous([10.0, 0.0, 0.0]);
         batch.step(&[ahead; 2]).expect("the episodes go on");
@@ -379,7 +378,7 @@ fn batches_and_spawned_objects_use_the_library() {
 }
 
 #[test]
-fn files_of_built_in_models_are_imported_without_a_warning() {
+fn built_in_model_files_are_imported_without_warnings() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/models");
     let files = std::fs::read_dir(folder).expect("it is part of the repository");
     let paths: Vec<_> = files.map(|file| file.expect("it can be listed").path()).collect();

@@ -1,4 +1,4 @@
-//! Worlds with layouts run as worlds whose walls are written one by one, and the expert finds its way through them.
+//! Worlds with layouts behave like worlds with separate walls, and the expert finds its way through them.
 
 use driftworld_env::{Action, Agent, Environment, OnRailsAgent, RandomAgent};
 use driftworld_spec::{Layout, Maze, Object, Rooms, Stimulus, Wall, World, WorldDraft};
@@ -53,7 +53,7 @@ fn layouts() -> impl Strategy<Value = Layout> {
     ]
 }
 
-/// A world of a layout: the agent starts in one of its cells, a goal that ends it stands in another.
+/// A world with a layout: the agent starts in one of its cells, and a goal in another ends the episode.
 fn world(layout: Layout, start: usize, goal: usize, change: impl FnOnce(&mut WorldDraft)) -> World {
     let plan = layout.plan(0);
     let cell = |number: usize| plan.cells[number % plan.cells.len()].center;
@@ -72,7 +72,7 @@ fn world(layout: Layout, start: usize, goal: usize, change: impl FnOnce(&mut Wor
     world.check().unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The same walls, each by itself.
+/// The same walls as separate walls.
 fn with_single_walls(world: &World) -> World {
     let plan = world.plan().expect("the world has a layout").clone();
     let walls = plan.walls.into_iter().map(|wall| Wall {
@@ -88,7 +88,7 @@ fn with_single_walls(world: &World) -> World {
     single.unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Everything that an agent can tell of a step.
+/// Everything that an agent can observe of a step.
 fn told(environment: &mut Environment, action: Action) -> (String, Vec<u8>, Vec<u32>) {
     let step = environment.step(action).expect("the action is sound");
     let said = format!("{:?} {} {}", environment.agent(), step.reward, step.terminated);
@@ -101,7 +101,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
 
     #[test]
-    fn a_layout_is_its_walls(layout in layouts(), start in 0_usize..99, goal in 0_usize..99, seed in 0_u64..99) {
+    fn layout_equals_its_separate_walls(layout in layouts(), start in 0_usize..99, goal in 0_usize..99, seed in 0_u64..99) {
         let whole = world(layout, start, goal, |_| {});
         let mut agents = [RandomAgent::new(0), RandomAgent::new(0)];
         let mut environments = [with_single_walls(&whole), whole].map(Environment::new);
@@ -118,8 +118,8 @@ proptest! {
     }
 
     #[test]
-    fn a_state_written_down_goes_on_in_its_layout(layout in layouts(), start in 0_usize..99, seed in 0_u64..99) {
-        // The layout is drawn by the world's own seed.
+    fn saved_world_resumes_in_its_layout(layout in layouts(), start in 0_usize..99, seed in 0_u64..99) {
+        // The layout uses the world's own seed.
         let mut layout = layout;
         let seeds = [
             layout.maze.as_mut().map(|maze| &mut maze.seed),
@@ -145,7 +145,7 @@ proptest! {
     }
 
     #[test]
-    fn the_agent_never_stands_in_a_wall(layout in layouts(), start in 0_usize..99, seed in 0_u64..99) {
+    fn agent_is_never_inside_a_wall(layout in layouts(), start in 0_usize..99, seed in 0_u64..99) {
         let world = world(layout, start, 0, |world| world.objects.clear());
         let radius = (world.agent_params.agent_width / 2.0) as f32;
         let walls: Vec<Vec<[f64; 2]>> = world.obstacles().map(<[_]>::to_vec).collect();
@@ -168,7 +168,7 @@ proptest! {
     }
 }
 
-/// Whether the on-rails agent collects the goal within what a walk of that length may take.
+/// Whether the on-rails agent collects the goal within the number of steps that a walk of that length may take.
 fn expert_arrives(world: World) -> bool {
     let mut environment = Environment::new(world);
     let mut agent = OnRailsAgent::new();
@@ -187,13 +187,13 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 30)))]
 
     #[test]
-    fn the_expert_finds_the_goal(layout in layouts(), start in 0_usize..99, goal in 0_usize..99) {
+    fn expert_finds_the_goal(layout in layouts(), start in 0_usize..99, goal in 0_usize..99) {
         let arrives = expert_arrives(world(layout, start, goal, |_| {}));
         prop_assert!(arrives);
     }
 
     #[test]
-    fn the_expert_walks_through_a_maze_of_narrow_cells(
+    fn expert_walks_through_a_maze_of_narrow_cells(
         side in 2_u32..13, braid in 0.0..=1.0, seed in 0_u64..1 << 40, start in 0_usize..999, goal in 0_usize..999,
     ) {
         let arrives = expert_arrives(world(maze([side, side], 2.0, braid, seed), start, goal, |_| {}));
@@ -202,7 +202,7 @@ proptest! {
 }
 
 #[test]
-fn a_wall_of_a_layout_hides_what_is_behind_it() {
+fn layout_walls_hide_objects_behind_them() {
     let layout = |standing| {
         let text = ["*****", "*.*.*", "*****"].map(str::to_owned).to_vec();
         Layout {

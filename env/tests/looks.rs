@@ -1,6 +1,5 @@
-//! What pictures of the natural style owe: the same things at the same places as in the plain one, the same pixels with every
-//! instruction set, and surfaces that are their colour from afar. What surfaces and light are by themselves is tested beside
-//! them.
+//! Images in the natural style: the same objects at the same places as in the plain style, the same pixels with every
+//! instruction set, and surfaces with their plain colour from a distance.
 
 use driftworld_env::{Camera, CpuRenderer, FAR_DEPTH, Frame, Scene, Target};
 use driftworld_spec::{Covering, Layout, Looks, Maze, Object, Rooms, Style, Surface, Wall, World, WorldDraft, Zone};
@@ -28,7 +27,7 @@ fn eyes(heading_deg: f32) -> Camera {
     Camera::first_person([0.3, -0.2], heading_deg, 1.0, 60.0)
 }
 
-/// Things of several forms, some covered, and zones.
+/// Objects of several shapes, some covered, and zones.
 fn park() -> WorldDraft {
     let mut world = WorldDraft::default();
     let environment = &mut world.environment_params;
@@ -49,7 +48,7 @@ fn park() -> WorldDraft {
     world
 }
 
-/// One world of each kind: under the sky, at dusk in fog, in rooms, in a maze.
+/// One world of each kind: outdoors, at dusk in fog, in rooms, in a maze.
 fn worlds() -> [WorldDraft; 4] {
     let mut dusk = park();
     dusk.environment_params.sun_direction = [0.9, 0.3, 0.2];
@@ -71,10 +70,10 @@ fn worlds() -> [WorldDraft; 4] {
     [park(), dusk, rooms, maze]
 }
 
-/// Every instruction set draws the same pixels, and without instances, where labels hold classes if there is room, what it draws
-/// with them.
+/// Every instruction set renders the same pixels. Without instance images, labels may store classes, which gives the same
+/// result as with instances.
 #[test]
-fn every_instruction_set_draws_the_same_pixels() {
+fn instruction_sets_render_the_same_natural_pixels() {
     let mut uncovered = worlds();
     let objects = uncovered.iter_mut().flat_map(|world| &mut world.objects);
     objects.for_each(|object| object.surface = Surface::Plain);
@@ -132,12 +131,12 @@ fn every_instruction_set_draws_the_same_pixels() {
     }
 }
 
-/// Where there is no ceiling, depth, categories and objects are those of the plain style, but for pixels on edges.
+/// Without a ceiling, depth, categories and objects are those of the plain style, except for pixels on edges.
 #[test]
 fn only_colours_differ_from_the_plain_style() {
     let [park, dusk, _, maze] = worlds();
     for mut world in [park, dusk, maze] {
-        // Others have a model of their own in each style.
+        // Other classes have different models in the two styles.
         world
             .objects
             .retain(|object| ["cube", "geometric"].contains(&object.class.as_str()));
@@ -157,7 +156,7 @@ fn only_colours_differ_from_the_plain_style() {
     }
 }
 
-/// The colour of these rows' pixels, on the whole.
+/// Mean colour of these rows' pixels.
 fn mean(frame: &Frame, rows: std::ops::Range<usize>) -> [f64; 3] {
     let width = frame.width as usize;
     let pixels = &frame.rgb[3 * width * rows.start..3 * width * rows.end];
@@ -182,7 +181,7 @@ fn surfaces() -> [Surface; 9] {
 }
 
 #[test]
-fn a_surface_is_its_colour_from_afar() {
+fn surface_has_its_plain_colour_from_a_distance() {
     let flat = draw(&ground(Surface::Plain), &eyes(20.0), [84, 84]);
     for surface in surfaces() {
         let covered = draw(&ground(surface), &eyes(20.0), [84, 84]);
@@ -198,9 +197,9 @@ fn a_surface_is_its_colour_from_afar() {
     }
 }
 
-/// Turning by a tenth of a pixel changes distant ground by next to nothing: surfaces do not shimmer.
+/// Turning by a tenth of a pixel hardly changes distant ground: surfaces do not shimmer.
 #[test]
-fn a_surface_does_not_shimmer() {
+fn surfaces_do_not_shimmer() {
     for surface in surfaces() {
         let world = ground(surface);
         let [a, b] = [20.0, 20.0 + 0.07].map(|heading| draw(&world, &eyes(heading), [84, 84]));
@@ -219,9 +218,9 @@ fn a_surface_does_not_shimmer() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 96)))]
 
-    /// Where a wall or a thing meets the ground, both are darker than a metre from there: in flat colours, without shadows.
+    /// Where a wall or an object meets the ground, both are darker than a metre away: in flat colours, without shadows.
     #[test]
-    fn what_meets_the_ground_has_a_dark_line(away in 2.6..3.6_f64, eye in 0.9..1.6_f32, is_wall in any::<bool>(), ceiling in any::<bool>()) {
+    fn ground_contacts_have_a_dark_line(away in 2.6..3.6_f64, eye in 0.9..1.6_f32, is_wall in any::<bool>(), ceiling in any::<bool>()) {
         let mut world = ground(Surface::Plain);
         let environment = &mut world.environment_params;
         environment.looks.walls = Some(Covering::of(Surface::Plain));
@@ -245,9 +244,10 @@ proptest! {
     }
 }
 
-/// Seen from above, the edge of a wall leans over ground that the wall does not meet: that stays as bright as without the wall.
+/// Seen from above, the edge of a wall overlaps ground that the wall does not touch: that ground stays as bright as without the
+/// wall.
 #[test]
-fn ground_under_the_leaning_edge_of_a_wall_is_not_dark() {
+fn ground_below_a_walls_leaning_edge_stays_bright() {
     let mut world = ground(Surface::Plain);
     world.environment_params.looks.shadows = Some(false);
     let camera = Camera {
@@ -270,15 +270,15 @@ fn ground_under_the_leaning_edge_of_a_wall_is_not_dark() {
             .filter(darker)
             .count()
     };
-    // The wall's corner stands in column 546.
+    // The wall's corner is in column 546.
     assert_eq!(count(550..672), 0);
     assert!(count(500..540) > 400);
 }
 
-/// Doors, keys, cubes and switches show a pattern, however many there are, and nothing but it: depth, categories and objects are
+/// Doors, keys, cubes and switches show a pattern, however many there are, and only that: depth, categories and objects are
 /// those of the plain style.
 #[test]
-fn doors_keys_cubes_and_switches_are_finished() {
+fn doors_keys_cubes_and_switches_have_a_finish() {
     for class in ["door", "key", "cube", "switch"] {
         let mut world = ground(Surface::Plain);
         for k in 0..10 {
@@ -297,7 +297,7 @@ fn doors_keys_cubes_and_switches_are_finished() {
         for number in 1..=10 {
             let colors = |frame: &Frame| {
                 let of = |place: usize| [0, 1, 2].map(|channel| frame.rgb[3 * place + channel]);
-                // Above the eye, and so far from the ground.
+                // Above eye height, and well above the ground.
                 let own = (0..504 * 84).filter(|place| frame.instance[*place] == number).map(of);
                 own.collect::<std::collections::BTreeSet<_>>().len()
             };
@@ -310,7 +310,7 @@ fn doors_keys_cubes_and_switches_are_finished() {
     }
 }
 
-/// A wall that the agent looks down on has a top in the natural style: what is seen within its outline is no ground.
+/// A wall below eye height has a top in the natural style: no ground is visible within its outline.
 #[test]
 fn low_walls_have_tops() {
     let mut world = ground(Surface::Plain);
@@ -333,7 +333,7 @@ fn low_walls_have_tops() {
 }
 
 #[test]
-fn shadows_darken_ground_and_nothing_else() {
+fn shadows_darken_only_the_ground() {
     let mut with = park();
     with.environment_params.sun_direction = [0.9, 0.1, 0.5];
     let mut without = with.clone();
@@ -353,7 +353,7 @@ fn shadows_darken_ground_and_nothing_else() {
     assert!(darker > 20, "{darker} pixels");
 }
 
-/// Whether the way from a to b comes into a convex polygon whose corners go around it, by cutting off what is outside each edge.
+/// Whether the segment from a to b enters a convex polygon, by clipping it at each edge.
 fn comes_into([a, b]: [[f32; 2]; 2], polygon: &[[f32; 2]]) -> bool {
     let (mut first, mut last) = (0.0_f32, 1.0_f32);
     for (k, from) in polygon.iter().enumerate() {
@@ -376,9 +376,9 @@ fn comes_into([a, b]: [[f32; 2]; 2], polygon: &[[f32; 2]]) -> bool {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 96)))]
 
-    /// Ground is in a wall's shadow where the way towards the sun, up to the wall's height, comes into the wall.
+    /// Ground is in a wall's shadow if the line towards the sun, up to the wall's height, enters the wall.
     #[test]
-    fn shadows_of_walls_lie_where_they_keep_the_sun_off(
+    fn shadows_of_walls_are_where_walls_block_the_sun(
         ((x, y), (long, thick)) in ((-4.0..4.0_f64, 5.0..9.0_f64), (0.3..6.0_f64, 0.2..4.0_f64)),
         (turn, height) in (0.0..360.0_f64, 0.3..3.0_f64),
         (azimuth, rise) in (0.0..360.0_f64, 0.5..2.0_f64),
@@ -404,7 +404,7 @@ proptest! {
         let polygon = corners.map(|corner| corner.map(|metres| metres as f32));
         let reach = [east, north].map(|part| (part / rise * height) as f32);
         let step = 2.0 * libm::tanf(30_f32.to_radians()) / SIDE as f32;
-        // What a pixel shows: not bare ground, ground in shadow, ground in the sun.
+        // Content of each pixel: no bare ground, ground in shadow, or ground in the sun.
         let expected: Vec<Option<bool>> = (0..SIDE * SIDE)
             .map(|pixel| {
                 let offset = |place: usize| (place as f32 + 0.5 - SIDE as f32 / 2.0) * step;
@@ -427,7 +427,7 @@ proptest! {
 }
 
 #[test]
-fn depth_sees_fog_only_if_told_to() {
+fn depth_includes_fog_only_if_enabled() {
     let mut clear = park();
     let mut foggy = park();
     foggy.environment_params.fog_distance = Some(15.0);

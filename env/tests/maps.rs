@@ -1,4 +1,4 @@
-//! Maps from above show what a layout is: filled walls, free cells, doors that are open or shut, and a way.
+//! Maps from above show a layout: filled walls, free cells, open and closed doors, and a path.
 
 use driftworld_env::{Camera, CpuRenderer, Environment, Frame, Image, Scene, top_down, top_down_with_way};
 use driftworld_spec::{Color, Door, Layout, Maze, Object, Rooms, World, WorldDraft};
@@ -36,7 +36,7 @@ fn layouts() -> impl Strategy<Value = Layout> {
     prop_oneof![maze, rooms, text]
 }
 
-/// A world of red walls.
+/// A world with red walls.
 fn world(layout: Layout) -> World {
     let mut world = WorldDraft::default();
     world.environment_params.layout = Some(layout);
@@ -46,7 +46,7 @@ fn world(layout: Layout) -> World {
     world.check().expect("the world is sound")
 }
 
-/// The pixel of a place on a square map.
+/// The pixel at a place on a square map.
 fn pixel(world: &World, image: &Image, place: [f64; 2]) -> [u8; 3] {
     let span = world
         .environment_params
@@ -67,7 +67,7 @@ fn middle(polygon: &[[f64; 2]]) -> [f64; 2] {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 32)))]
 
-    /// The middle of each wall is red, that of each free cell is not: a maze can be read.
+    /// The centre of each wall is red, and that of each free cell is not: a maze can be read.
     #[test]
     fn walls_are_filled_and_cells_are_free(layout in layouts()) {
         let world = world(layout);
@@ -83,7 +83,7 @@ proptest! {
         }
     }
 
-    /// A scene with tops looks the same to whoever is below them.
+    /// Tops of walls do not change the view from below them.
     #[test]
     fn tops_are_not_seen_from_below(layout in layouts(), cell in any::<prop::sample::Index>(), heading in 0.0..360.0_f32) {
         let world = world(layout);
@@ -101,7 +101,7 @@ proptest! {
 }
 
 #[test]
-fn a_door_is_a_bar_where_its_leaf_is() {
+fn door_is_a_bar_along_its_leaf() {
     let look = |open: bool| {
         let mut door = Object::new("door", [0.0, 0.0]);
         (door.scale, door.color) = (3.0, Some(Color([0.0, 0.0, 1.0])));
@@ -124,7 +124,7 @@ fn a_door_is_a_bar_where_its_leaf_is() {
 }
 
 #[test]
-fn a_way_is_a_line_over_its_places() {
+fn path_is_a_line_over_its_places() {
     let mut world = WorldDraft::default();
     world.environment_params.map_size = [12.0, 12.0];
     let world = world.check().expect("the world is sound");

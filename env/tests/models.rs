@@ -1,5 +1,5 @@
-//! The models of our own classes, by laws that hold for each of them: they stand on the ground, fill their bodies, face where they
-//! should, and are made of few triangles. What pictures of them show is in `pictures.rs`.
+//! Properties of the models of our own classes: they stand on the ground, fill their colliders, face the right way, and have
+//! few triangles.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ fn models(class: &str) -> Vec<(String, Arc<Asset>)> {
         .collect()
 }
 
-/// The least and the largest of all corners along an axis.
+/// Minimum and maximum of all corners along an axis.
 fn extent(asset: &Asset, axis: usize) -> (f32, f32) {
     let corners = asset.parts.iter().flat_map(|part| &part.mesh.corners);
     corners.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), corner| {
@@ -23,7 +23,7 @@ fn extent(asset: &Asset, axis: usize) -> (f32, f32) {
 }
 
 #[test]
-fn every_model_stands_on_the_ground_and_fills_its_body() {
+fn every_model_stands_on_the_ground_and_fills_its_collider() {
     for (name, asset) in OWN.iter().flat_map(|class| models(class)) {
         let (low, high) = extent(&asset, 2);
         assert!(low.abs() < 0.005, "{name} stands at {low} m");
@@ -42,12 +42,13 @@ fn every_model_stands_on_the_ground_and_fills_its_body() {
                 let (low, high) = extent(&asset, axis);
                 high.max(-low)
             };
-            // What has a round body may be flat, as a key is.
+            // Objects with a round collider may be flat, such as keys.
             let most = match asset.collider {
                 ColliderShape::Cylinder { .. } => seen(0).max(seen(1)),
                 _ => seen(axis),
             };
-            // No body beyond what is seen, and no more than a tail, a muzzle, antlers or a frame beyond the body.
+            // The collider does not extend beyond the visible model, and at most a tail, a muzzle, antlers or a frame extend
+            // beyond the collider.
             let beyond = most - half[axis];
             assert!(
                 beyond > -0.03 && beyond < 0.30 * most + 0.15,
@@ -59,7 +60,7 @@ fn every_model_stands_on_the_ground_and_fills_its_body() {
 }
 
 #[test]
-fn animals_face_their_heading_and_have_the_size_of_nature() {
+fn animals_face_their_heading_and_have_natural_sizes() {
     let height = |name: &str| asset("animal", &Model(name.into())).height;
     let [rabbit, wolf, deer] = ["rabbit", "wolf", "deer"].map(height);
     assert!((0.35..0.5).contains(&rabbit), "up to its ears: {rabbit}");
@@ -79,7 +80,7 @@ fn animals_face_their_heading_and_have_the_size_of_nature() {
 }
 
 #[test]
-fn few_triangles_make_each_model_and_fewer_its_coarse_form() {
+fn models_have_few_triangles_and_coarse_levels_fewer() {
     for (name, animal) in models("animal") {
         let levels: Vec<(usize, f32)> = animal.levels().collect();
         let [(fine, 0.0), (coarse, error)] = levels[..] else {
@@ -99,7 +100,7 @@ fn few_triangles_make_each_model_and_fewer_its_coarse_form() {
 }
 
 #[test]
-fn models_with_names_have_numbers_too() {
+fn named_models_have_numbers_as_well() {
     for class in ["animal", "sign", "furniture"] {
         for (place, name) in model_names(class).enumerate() {
             let by = |model: String| asset(class, &Model(model));

@@ -1,4 +1,4 @@
-//! Objects that move by themselves and objects that come back. What touching them does is tested in `simulation.rs`.
+//! Objects that move by themselves, and objects that respawn.
 
 use driftworld_env::{Action, Environment};
 use driftworld_spec::{MotionModel, Object, Respawn, Stimulus, Wall, WorldDraft};
@@ -39,7 +39,7 @@ fn step(environment: &mut Environment) -> driftworld_env::Step {
 }
 
 #[test]
-fn a_predator_comes_and_touches_the_agent_once() {
+fn predator_comes_and_touches_the_agent_once() {
     let mut predator = mover(MotionModel::Predator, [0.0, 10.0], 2.0);
     predator.reward = -5.0;
     predator.reward_stimulus = vec![Stimulus::AgentCollide];
@@ -55,7 +55,7 @@ fn a_predator_comes_and_touches_the_agent_once() {
 }
 
 #[test]
-fn a_predator_that_does_not_see_the_agent_stands_still() {
+fn predator_out_of_sight_stands_still() {
     let mut predator = mover(MotionModel::Predator, [0.0, 10.0], 2.0);
     predator.sight_range = Some(5.0);
     let mut environment = start(vec![predator]);
@@ -64,7 +64,7 @@ fn a_predator_that_does_not_see_the_agent_stands_still() {
 }
 
 #[test]
-fn prey_runs_from_the_agent_and_stays_in_the_arena() {
+fn prey_flees_from_the_agent_and_stays_in_the_arena() {
     let mut environment = start(vec![mover(MotionModel::Prey, [1.0, 5.0], 3.0)]);
     let before = distance(position(&environment, 0), [0.0, 0.0]);
     step(&mut environment);
@@ -79,7 +79,7 @@ fn prey_runs_from_the_agent_and_stays_in_the_arena() {
 }
 
 #[test]
-fn a_patrol_walks_its_points_in_order_round_and_round() {
+fn patrol_visits_its_points_in_order_repeatedly() {
     let mut guard = mover(MotionModel::Patrol, [-5.0, 5.0], 4.0);
     guard.waypoints = vec![[5.0, 5.0], [5.0, 10.0], [-5.0, 10.0]];
     let points: Vec<[f32; 2]> = guard
@@ -105,7 +105,7 @@ fn a_patrol_walks_its_points_in_order_round_and_round() {
 }
 
 #[test]
-fn a_turn_rate_makes_a_wide_bend() {
+fn turn_rate_limits_the_bend() {
     let mut slow = mover(MotionModel::Predator, [10.0, 0.0], 2.0);
     slow.turn_rate = Some(30.0);
     let mut environment = start(vec![slow]);
@@ -171,7 +171,7 @@ fn wanderers_cover_the_arena_stay_in_it_and_out_of_walls() {
 }
 
 #[test]
-fn what_was_destroyed_comes_back_after_its_delay_and_pays_again() {
+fn destroyed_object_respawns_after_its_delay_and_pays_again() {
     let mut coin = Object::new("barrel", [0.0, 1.2]);
     coin.reward = 1.0;
     coin.reward_once_stimulus = vec![Stimulus::AgentInRange];
@@ -184,7 +184,7 @@ fn what_was_destroyed_comes_back_after_its_delay_and_pays_again() {
     coin.coordinates = [0.0, 3.5];
     let mut environment = start(vec![coin]);
     assert!(environment.warnings().is_empty());
-    // A step ahead brings the coin into range; then the agent stands.
+    // A step ahead brings the coin into range; then the agent stands still.
     let reward = environment
         .step(Action::Continuous([10.0, 0.0, 0.0]))
         .unwrap_or_else(|error| panic!("{error}"))
@@ -208,7 +208,7 @@ fn what_was_destroyed_comes_back_after_its_delay_and_pays_again() {
 }
 
 #[test]
-fn nothing_that_moves_leaves_the_arena_or_passes_a_wall() {
+fn movers_never_leave_the_arena_or_pass_walls() {
     for (number, model) in [MotionModel::Prey, MotionModel::Predator, MotionModel::RandomWaypoint]
         .into_iter()
         .cycle()
@@ -240,7 +240,7 @@ fn nothing_that_moves_leaves_the_arena_or_passes_a_wall() {
 }
 
 #[test]
-fn what_comes_back_comes_back_outside_of_regions() {
+fn objects_respawn_outside_of_regions() {
     let mut coin = Object::new("geometric", [0.0, 3.0]);
     coin.destroy_stimulus = vec![Stimulus::AgentCollide];
     coin.respawn = Some(Respawn {
@@ -270,7 +270,7 @@ fn what_comes_back_comes_back_outside_of_regions() {
 }
 
 #[test]
-fn a_patrol_that_turns_slowly_arrives() {
+fn slowly_turning_patrol_arrives() {
     let mut patrol = mover(MotionModel::Patrol, [0.0, 10.0], 5.0);
     patrol.turn_rate = Some(45.0);
     patrol.waypoints = vec![[0.0, 10.0], [3.0, 10.0]];

@@ -1,5 +1,5 @@
-//! The natural looks of what has a plain one: the same bodies and about the same sizes, forms that differ, few triangles, and ways
-//! that do not change by a bit.
+//! Natural looks of classes with a plain one: the same colliders and similar sizes, distinct shapes, few triangles, and exactly
+//! the same trajectories.
 
 use driftworld_env::{Action, Camera, CpuRenderer, Environment, Frame, Scene, asset, asset_in, classes};
 use driftworld_spec::{Layout, Looks, Maze, Model, Object, Style, World, WorldDraft};
@@ -21,7 +21,7 @@ fn of_model(class: &str, number: u32, coordinates: [f64; 2]) -> Object {
 }
 
 #[test]
-fn bodies_are_those_of_the_plain_look_and_sizes_nearly() {
+fn natural_models_keep_colliders_and_nearly_keep_sizes() {
     let mut others = 0;
     for (class, models) in classes() {
         for number in 1..=models {
@@ -61,7 +61,7 @@ fn bodies_are_those_of_the_plain_look_and_sizes_nearly() {
 }
 
 #[test]
-fn a_natural_wood_has_few_more_triangles_near_by_and_half_as_many_far_off() {
+fn natural_trees_have_few_more_triangles_nearby_and_half_as_many_far_away() {
     let mean = |style: Style, level: usize| {
         let of = |number: u32| {
             let asset = asset_in(style, "tree", &Model(number.to_string()));
@@ -77,7 +77,7 @@ fn a_natural_wood_has_few_more_triangles_near_by_and_half_as_many_far_off() {
     );
 }
 
-/// Which pixels of a picture a tree takes, 84 pixels wide, as large as it fits in.
+/// The pixels that a tree covers in an image 84 pixels wide, scaled to fit.
 fn silhouette(number: u32) -> Vec<bool> {
     let mut tree = of_model("tree", number, [0.0, 0.0]);
     let asset = asset_in(Style::Natural, "tree", &tree.model);
@@ -93,8 +93,8 @@ fn silhouette(number: u32) -> Vec<bool> {
 }
 
 #[test]
-fn there_are_sixteen_kinds_of_trees_told_apart_by_their_outlines() {
-    // One of each kind, but those that are told apart by colour.
+fn sixteen_kinds_of_trees_have_distinct_outlines() {
+    // One of each kind, without those that differ only in colour.
     let kinds = [7, 14, 1, 8, 2, 9, 16, 3, 10, 4, 11, 18, 5, 12, 6, 13];
     let outlines = kinds.map(silhouette);
     for (k, mine) in outlines.iter().enumerate() {
@@ -113,8 +113,8 @@ fn there_are_sixteen_kinds_of_trees_told_apart_by_their_outlines() {
 }
 
 #[test]
-fn levels_of_detail_keep_outlines_where_they_take_over() {
-    // A coarse form is drawn from where it is off by half a pixel: an outline moves by a pixel at most, but for what is thinner.
+fn levels_of_detail_keep_outlines_at_their_distance() {
+    // A coarse level is used where its error is below half a pixel: outlines move by at most a pixel, except for thinner parts.
     for name in [
         "tree 1", "tree 2", "tree 9", "tree 10", "rock 5", "shrub 4", "animal 8", "animal 3",
     ] {
@@ -133,7 +133,7 @@ fn levels_of_detail_keep_outlines_where_they_take_over() {
             CpuRenderer::new().render(&Scene::from_world(&world), &camera, &mut frame);
             frame.instance.iter().map(|id| *id == 1).collect::<Vec<bool>>()
         };
-        // The fine form of the same view: a picture eight times as large takes it, one point in the middle of each pixel.
+        // The full level of the same view: a larger image uses it, sampled at the middle of each pixel.
         let (coarse, large) = (outline(1.02 * far, 84), outline(1.02 * far, 84 * 9));
         let fine = |x: usize, y: usize| large[(9 * y + 4) * 84 * 9 + 9 * x + 4];
         let pixels = |is: &dyn Fn(usize, usize) -> bool, x: usize, y: usize| {
@@ -157,7 +157,7 @@ fn levels_of_detail_keep_outlines_where_they_take_over() {
 }
 
 #[test]
-fn looks_change_no_way_by_a_bit() {
+fn looks_do_not_change_trajectories() {
     for layout in [
         None,
         Some(Maze {

@@ -1,4 +1,4 @@
-//! What pictures show: the right things at the right depth, the same pixels as ever, and no panic at odd sizes.
+//! Images show the right objects at the right depth, with unchanged pixels, and odd sizes do not panic.
 
 use driftworld_env::{
     CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE, CATEGORY_SKY, Camera,
@@ -25,20 +25,20 @@ fn centre<T: Copy>(values: &[T]) -> T {
 }
 
 #[test]
-fn a_box_is_as_far_as_it_stands() {
+fn box_has_its_actual_depth() {
     let mut object = Object::new("cube", [0.0, 10.0]);
     object.scale = 4.0;
     let frame = ahead(&WorldDraft {
         objects: vec![object],
         ..WorldDraft::default()
     });
-    // Its front face is half of 4 × 0.9 m before its centre.
+    // Its front face is half of 4 × 0.9 m in front of its centre.
     assert!((centre(&frame.depth) - 8.2).abs() < 1e-3, "{}", centre(&frame.depth));
     assert_eq!((centre(&frame.instance), centre(&frame.class)), (1, 9));
 }
 
 #[test]
-fn categories_are_those_of_the_reward() {
+fn categories_follow_rewards() {
     for (class, reward, category) in [
         ("cube", 1.0, CATEGORY_POSITIVE),
         ("cube", 0.0, CATEGORY_NEUTRAL),
@@ -58,7 +58,7 @@ fn categories_are_those_of_the_reward() {
 }
 
 #[test]
-fn sky_is_above_and_ground_below_and_walls_between() {
+fn sky_is_above_walls_and_ground_below() {
     let frame = ahead(&WorldDraft::default());
     assert_eq!((frame.category[32], frame.depth[32]), (CATEGORY_SKY, FAR_DEPTH));
     assert_eq!(frame.category[63 * 64 + 32], CATEGORY_MAP);
@@ -72,7 +72,7 @@ fn sky_is_above_and_ground_below_and_walls_between() {
 }
 
 #[test]
-fn a_wall_hides_what_is_behind_it() {
+fn wall_hides_objects_behind_it() {
     let mut world = WorldDraft {
         objects: vec![Object::new("cube", [0.0, 20.0])],
         ..WorldDraft::default()
@@ -100,7 +100,7 @@ fn dusk_is_darker_than_day() {
 }
 
 #[test]
-fn odd_sizes_and_odd_places_are_drawn_without_panic() {
+fn odd_sizes_and_places_never_panic() {
     let mut world = WorldDraft {
         objects: vec![Object::new("building", [0.0, 0.0]); 3],
         ..WorldDraft::default()
@@ -143,7 +143,7 @@ fn odd_sizes_and_odd_places_are_drawn_without_panic() {
 }
 
 #[test]
-fn every_asset_is_sound() {
+fn every_asset_is_valid() {
     for (class, models) in classes() {
         for number in 1..=models {
             let asset = asset(class, &Model(number.to_string()));
@@ -201,9 +201,9 @@ fn models_of_a_class_look_different() {
     }
 }
 
-/// One world with many things, 84 × 84, every modality. `DRIFTWORLD_UPDATE_GOLDEN=1` rewrites the file.
+/// One world with many objects, 84 × 84, every modality. `DRIFTWORLD_UPDATE_GOLDEN=1` rewrites the file.
 #[test]
-fn the_golden_picture_is_drawn_as_it_was() {
+fn golden_image_is_unchanged() {
     let places = [
         ("tree", 1, 2.0, 9.0),
         ("barrel", 1, -1.5, 4.0),
@@ -252,7 +252,7 @@ fn the_golden_picture_is_drawn_as_it_was() {
     );
 }
 
-/// Pixels that each object of the golden picture takes, and the bits of the sum of all depths.
+/// Number of pixels of each object in the golden image, and the bits of the sum of all depths.
 fn golden_numbers() -> ([usize; 5], u64) {
     ([443, 283, 338, 67, 524], 4_702_721_634_808_774_144)
 }
@@ -275,8 +275,7 @@ fn read_png(path: &std::path::Path) -> ((u32, u32), Vec<u8>) {
     ((info.width, info.height), rgb)
 }
 
-/// A scene with everything that is drawn in a way of its own: regions, a house cut by the near plane, fog and thin
-/// things.
+/// A scene with every special case of rendering: regions, a house cut by the near plane, fog and thin objects.
 fn crowded() -> Scene {
     let classes: Vec<_> = classes().collect();
     let place = |k: usize| [(k * 37 % 60) as f64 - 30.0, (k * 53 % 60) as f64 - 30.0];
@@ -297,7 +296,7 @@ fn crowded() -> Scene {
 }
 
 #[test]
-fn all_instruction_sets_draw_the_same_pixels() {
+fn instruction_sets_render_the_same_pixels() {
     let mut scene = crowded();
     let cameras = (0..24).map(|k| Camera {
         position: [k as f32 * 3.1 - 35.0, 20.0 - k as f32 * 2.3, [1.0, 0.3, 9.0][k % 3]],
@@ -313,7 +312,7 @@ fn all_instruction_sets_draw_the_same_pixels() {
             .map(|(name, mut renderer)| {
                 let mut frame = Frame::new(width, height);
                 renderer.render(&scene, &camera, &mut frame);
-                // Only what an agent asks for takes another way through the renderer.
+                // Agents' usual requests take a different path through the renderer.
                 let (mut rgb, mut category) = (vec![0; frame.rgb.len()], vec![0; frame.category.len()]);
                 let mut target = Target {
                     width,
@@ -346,7 +345,7 @@ fn all_instruction_sets_draw_the_same_pixels() {
 }
 
 #[test]
-fn a_target_of_the_wrong_size_is_an_error() {
+fn target_of_the_wrong_size_is_an_error() {
     let mut rgb = vec![0; 10];
     let mut target = Target {
         width: 4,
@@ -360,7 +359,7 @@ fn a_target_of_the_wrong_size_is_an_error() {
 }
 
 #[test]
-fn fog_turns_what_is_far_into_the_colour_of_the_horizon() {
+fn fog_gives_distant_objects_the_horizons_colour() {
     let mut scene = Scene::from_world(&World::default());
     let camera = Camera::first_person([0.0, 0.0], 0.0, 1.0, 60.0);
     let wall = |scene: &Scene| {
@@ -380,7 +379,7 @@ fn fog_turns_what_is_far_into_the_colour_of_the_horizon() {
 }
 
 #[test]
-fn supersampled_colours_are_means_and_the_rest_stays() {
+fn supersampling_averages_colours_and_nothing_else() {
     let scene = crowded();
     let camera = Camera::first_person([3.0, -20.0], 30.0, 1.0, 60.0);
     let draw = |width: u32, height: u32, supersampling: u32| {

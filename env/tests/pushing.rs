@@ -1,4 +1,4 @@
-//! Pushing things: how far they go, what holds them, and that nothing is pushed through a wall.
+//! Pushing objects: how far they go, what stops them, and that nothing is pushed through a wall.
 
 use driftworld_env::{Action, Environment, Warning};
 use driftworld_spec::{MotionModel, Object, Pushable, Stimulus, WorldDraft};
@@ -33,7 +33,7 @@ fn place(environment: &Environment, index: usize) -> [f32; 2] {
 }
 
 #[test]
-fn what_is_pushed_goes_with_the_agent_and_stays_where_it_is_left() {
+fn pushed_object_moves_with_the_agent_and_stays_where_it_is_left() {
     let mut environment = start(vec![body([0.0, 2.0], 10.0, 0.5)]);
     go(&mut environment, AHEAD, 25);
     let [x, y] = place(&environment, 0);
@@ -47,7 +47,7 @@ fn what_is_pushed_goes_with_the_agent_and_stays_where_it_is_left() {
 }
 
 #[test]
-fn what_is_heavy_or_stands_fast_holds_the_agent_up() {
+fn heavy_and_static_objects_stop_the_agent() {
     let reached = |mass: f64| {
         let mut environment = start(vec![body([0.0, 2.0], mass, 0.5)]);
         go(&mut environment, AHEAD, 25);
@@ -62,7 +62,7 @@ fn what_is_heavy_or_stands_fast_holds_the_agent_up() {
 }
 
 #[test]
-fn ice_slides_on() {
+fn object_on_ice_slides_on() {
     let slid = |friction: f64| {
         let mut environment = start(vec![body([0.0, 2.0], 10.0, friction)]);
         go(&mut environment, AHEAD, 8);
@@ -75,7 +75,7 @@ fn ice_slides_on() {
 }
 
 #[test]
-fn a_push_off_the_middle_turns_it() {
+fn off_centre_push_rotates_the_object() {
     let mut environment = start(vec![body([0.35, 2.0], 10.0, 0.3)]);
     go(&mut environment, AHEAD, 12);
     let turned = environment.scene().items[0].heading_deg;
@@ -86,7 +86,7 @@ fn a_push_off_the_middle_turns_it() {
 }
 
 #[test]
-fn one_pushes_the_next() {
+fn pushed_object_pushes_the_next() {
     let mut environment = start(vec![body([0.0, 2.0], 5.0, 0.3), body([0.0, 3.2], 5.0, 0.3)]);
     go(&mut environment, AHEAD, 25);
     assert!(place(&environment, 1)[1] > 4.0, "{:?}", place(&environment, 1));
@@ -103,7 +103,7 @@ fn pushing_is_a_contact() {
 }
 
 #[test]
-fn what_cannot_be_pushed_says_so() {
+fn unpushable_object_gives_a_warning() {
     let mut ghost = body([0.0, 2.0], 5.0, 0.5);
     ghost.solid = false;
     let mut mover = body([3.0, 2.0], 5.0, 0.5);
@@ -144,7 +144,7 @@ proptest! {
 }
 
 #[test]
-fn what_is_pushed_comes_as_far_at_any_time_step() {
+fn pushed_distance_does_not_depend_on_the_time_step() {
     for (class, speed) in [
         ("barrel", 0.5),
         ("barrel", 2.0),

@@ -1,4 +1,4 @@
-//! The chance inside a world: every object draws for itself, so that nothing else moves what it draws.
+//! Random numbers inside a world: every object has its own, unaffected by anything else.
 
 use driftworld_env::{Action, Environment};
 use driftworld_spec::{MotionModel, Object, Respawn, Stimulus, WorldDraft};
@@ -23,7 +23,7 @@ fn arm(at: [f64; 2], odds: f64) -> Object {
     arm
 }
 
-/// Which of the pulls of an arm in front of the agent pay.
+/// Which pulls of an arm in front of the agent pay.
 fn pulls(seed: u64, objects: Vec<Object>, count: usize) -> Vec<bool> {
     let mut environment = start(seed, objects);
     let mut pull = || environment.step(INTERACT).expect("it goes on").reward > 0.0;
@@ -41,20 +41,20 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn lower_odds_take_payments_away_and_add_none(seed in 0..1_u64 << 53, low in 0.0..1.0_f64, high in 0.0..=1.0_f64) {
+    fn lowering_odds_only_removes_payments(seed in 0..1_u64 << 53, low in 0.0..1.0_f64, high in 0.0..=1.0_f64) {
         let (low, high) = (low.min(high), low.max(high));
         let [few, many] = [low, high].map(|odds| pulls(seed, vec![arm([0.0, 1.0], odds)], 100));
         prop_assert!(few.iter().zip(&many).all(|(few, many)| !few || *many));
     }
 
     #[test]
-    fn what_an_arm_pays_and_what_others_do_changes_no_pull(seed in 0..1_u64 << 53, odds in 0.0..1.0_f64) {
+    fn pulls_do_not_depend_on_the_reward_or_on_other_objects(seed in 0..1_u64 << 53, odds in 0.0..1.0_f64) {
         let own = arm([0.0, 1.0], odds);
         let alone = pulls(seed, vec![own.clone()], 100);
         let mut dear = own.clone();
         (dear.reward, dear.tag, dear.unique_name) = (20.0, Some("dear".into()), Some("arm".into()));
         prop_assert_eq!(&pulls(seed, vec![dear], 100), &alone);
-        // Another arm that is pulled, too, but pays a cost, which is not counted.
+        // Another arm is pulled as well, but has a cost, which is not counted.
         let mut costs = arm([0.3, 1.0], 0.5);
         costs.reward = -1e-9;
         let others = vec![wanderer([9.0, 9.0], None), costs, own];
@@ -63,7 +63,7 @@ proptest! {
     }
 
     #[test]
-    fn a_wanderer_goes_its_way_whoever_is_added_taken_away_or_moved_in_the_list(
+    fn wanderers_path_does_not_depend_on_other_objects_or_list_order(
         seed in 0..1_u64 << 53,
         others in prop::collection::vec(([-40.0..40.0_f64, -40.0..40.0_f64], prop::option::of(1_u64..9)), 0..6),
         place in any::<prop::sample::Index>(),
@@ -86,7 +86,7 @@ proptest! {
 }
 
 #[test]
-fn an_object_with_a_seed_keeps_its_chance_wherever_it_starts() {
+fn seeded_object_keeps_its_random_numbers_at_any_place() {
     let first_goal = |at| {
         let mut environment = start(4, vec![wanderer(at, Some(11))]);
         environment.step(STAND).expect("it goes on");
@@ -97,7 +97,7 @@ fn an_object_with_a_seed_keeps_its_chance_wherever_it_starts() {
 }
 
 #[test]
-fn what_comes_back_comes_back_to_the_same_places_whatever_it_pays_and_who_else_comes_back() {
+fn respawn_places_do_not_depend_on_rewards_or_other_objects() {
     let coin = |reward: f64, at: [f64; 2]| {
         let mut coin = Object::new("geometric", at);
         (coin.reward, coin.solid, coin.range_stimulus_distance) = (reward, false, 900.0);

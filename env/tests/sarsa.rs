@@ -1,9 +1,9 @@
-//! The learner that comes with the environment: it learns, repeats itself to the bit, and its frozen copies stay as they are.
+//! The built-in learner learns, is reproducible to the bit, and its frozen copies never change.
 
 use driftworld_env::{Agent, Environment, RandomAgent, SarsaAgent};
 use driftworld_spec::{Color, Object, Stimulus, World, WorldDraft};
 
-/// A field with blue cubes that pay, in other places for each number.
+/// A field with blue cubes that pay, at places that depend on the number.
 fn field(number: u64) -> World {
     let mut draft = WorldDraft {
         max_steps: 100,
@@ -51,7 +51,7 @@ fn taught(episodes: u64) -> SarsaAgent {
 }
 
 #[test]
-fn it_learns_to_find_what_pays() {
+fn learner_learns_to_find_rewards() {
     let floor = mean(&mut RandomAgent::new(0));
     let before = mean(SarsaAgent::new().frozen().expect("it has copies").as_mut());
     let after = mean(taught(600).frozen().expect("it has copies").as_mut());
@@ -62,7 +62,7 @@ fn it_learns_to_find_what_pays() {
 }
 
 #[test]
-fn the_same_seeds_teach_the_same() {
+fn same_seeds_give_the_same_learner() {
     let [mut first, mut second] = [taught(10), taught(10)];
     for number in 50..60 {
         assert_eq!(episode(&mut first, number, true), episode(&mut second, number, true));
@@ -70,11 +70,11 @@ fn the_same_seeds_teach_the_same() {
 }
 
 #[test]
-fn evaluations_change_neither_the_copy_nor_the_learner() {
+fn evaluations_do_not_change_copy_or_learner() {
     let (mut evaluated, mut left_alone) = (taught(10), taught(10));
     let mut copy = evaluated.frozen().expect("it has copies");
     let earned = mean(copy.as_mut());
-    // Even where somebody lets a copy learn.
+    // Even if a caller lets a copy learn.
     episode(copy.as_mut(), 5, true);
     assert_eq!(mean(copy.as_mut()), earned);
     for number in 50..60 {

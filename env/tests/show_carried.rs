@@ -1,4 +1,4 @@
-//! What the agent carries is shown at the lower edge of its colours, where the world says so, and nowhere else.
+//! Carried things are shown at the lower edge of the agent's colours, if the world enables it, and nowhere else.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::tagged::{key, thing};
 
 const USE: Action = Action::Continuous([0.0, 0.0, 1.0]);
 
-/// Things of several classes within reach, and room for some of them in the agent's hands.
+/// Things of several classes within reach, and a carry limit for some of them.
 fn draft(size: [u32; 2], limit: u32, colors: &[[f64; 3]]) -> WorldDraft {
     let mut world = WorldDraft::default();
     let place = |number: usize| [0.25 * number as f64 - 0.4, 1.1 + 0.1 * number as f64];
@@ -51,7 +51,7 @@ fn num_carried(environment: &Environment) -> usize {
     environment.objects().iter().filter(|own| own.carried).count()
 }
 
-/// The rows and columns of the pixels that differ.
+/// Rows and columns of the pixels that differ.
 fn changed(one: &Frame, other: &Frame) -> Vec<[u32; 2]> {
     let pixels = one.rgb.chunks(3).zip(other.rgb.chunks(3)).enumerate();
     let unlike = pixels.filter(|(_, (own, their))| own != their);
@@ -63,10 +63,9 @@ fn changed(one: &Frame, other: &Frame) -> Vec<[u32; 2]> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 40)))]
 
-    /// Only colours change, only in the lowest fifth (or eight rows), only while something is carried; and nothing else
-    /// does.
+    /// Only colours change, only in the lowest fifth (or eight rows), and only while something is carried.
     #[test]
-    fn only_the_lower_edge_of_the_colours_shows_it(
+    fn carried_things_change_only_the_lower_edge_of_colours(
         size in prop::array::uniform2(8u32..90),
         supersampling in 1u32..3,
         limit in 0u32..5,
@@ -94,16 +93,16 @@ proptest! {
                 *row >= size[1] - side && (left..left + side * count).contains(column)
             }), "outside of {count} squares of {side}: {changed:?}");
             prop_assert_eq!(changed.is_empty(), count == 0, "{} are carried", count);
-            // Nobody else sees it.
+            // Other cameras do not show it.
             let camera = Camera::overview(bare.scene());
             let [a, b] = [&mut bare, &mut shows].map(|each| each.render(&camera, 40, 30).expect("the size is sound"));
             prop_assert_eq!(a.rgb, b.rgb);
         }
     }
 
-    /// A batch draws what single environments draw, whatever draws it and at whatever size it is asked for.
+    /// A batch shows the same as single environments, with any renderer and at any size.
     #[test]
-    fn everybody_who_draws_it_draws_the_same(colors in prop::collection::vec(prop::array::uniform3(0.0..1.0f64), 1..4)) {
+    fn batches_and_renderers_show_carried_things_alike(colors in prop::collection::vec(prop::array::uniform3(0.0..1.0f64), 1..4)) {
         let world = draft([60, 50], 3, &colors);
         let [_, mut environment] = pair(&world);
         for _ in 0..colors.len().min(2) {
@@ -134,7 +133,7 @@ proptest! {
 }
 
 #[test]
-fn a_thing_has_its_own_colour_there_and_comes_and_goes() {
+fn carried_thing_appears_in_its_colour_and_disappears() {
     let seen = |color: [f64; 3]| {
         let [mut bare, mut shows] = pair(&draft([84, 84], 1, &[color]));
         let mut differences = Vec::new();
@@ -163,7 +162,7 @@ fn a_thing_has_its_own_colour_there_and_comes_and_goes() {
 }
 
 #[test]
-fn a_written_world_shows_what_it_shows() {
+fn saved_world_shows_the_same_things() {
     let [_, mut environment] = pair(&draft([50, 50], 2, &[[0.9, 0.1, 0.1], [0.1, 0.9, 0.1]]));
     for _ in 0..2 {
         environment.step(USE).expect("the episode goes on");

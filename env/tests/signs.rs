@@ -1,17 +1,17 @@
-//! What signs say can be read from pictures of the size that agents see, and is left out where it would only flicker.
+//! Texts on signs are readable in images of agents' usual size, and are left out where they would flicker.
 
 use driftworld_env::{Camera, CpuRenderer, Frame, Scene};
 use driftworld_spec::{Color, Object, World, WorldDraft};
 
-/// The agent's pictures are this wide and high.
+/// Width and height of the agent's images.
 const SIDE: u32 = 84;
 
-/// Letters of a text, and squares of a letter across and down.
+/// Letters of a text, and squares per letter across and down.
 const LETTERS: usize = 3;
 const COLUMNS: usize = 5;
 const ROWS: usize = 7;
 
-/// A sign that faces −y, so many metres ahead of the origin, turned by some degrees.
+/// A sign that faces −y, `metres` ahead of the origin, rotated by `turn` degrees.
 fn world(text: &str, metres: f64, turn: f64, color: Option<&str>) -> World {
     let mut sign = Object::new("sign", [0.0, metres]);
     sign.text = Some(text.to_owned());
@@ -37,7 +37,7 @@ fn luminance(frame: &Frame, x: usize, y: usize) -> i32 {
     frame.rgb[at..at + 3].iter().map(|byte| i32::from(*byte)).sum()
 }
 
-/// The board in a picture: columns and rows, from the first to behind the last. The post below it is narrower.
+/// The board in an image: columns and rows, half-open. The post below it is narrower.
 fn board(frame: &Frame) -> [[usize; 2]; 2] {
     let (width, height) = (frame.width as usize, frame.height as usize);
     let in_row = |y: usize| {
@@ -52,10 +52,10 @@ fn board(frame: &Frame) -> [[usize; 2]; 2] {
     [columns, [rows[0], rows[rows.len() - 1] + 1]]
 }
 
-/// Which squares of each letter are darker than the board half-way to the darkest.
+/// Which squares of each letter are darker than half-way between the board and the darkest square.
 fn squares(frame: &Frame) -> Vec<Vec<bool>> {
     let [[left, right], [top, bottom]] = board(frame);
-    // One square beside each letter, and one above and below.
+    // A margin of one square beside each letter, above and below.
     let across = (right - left) as f32 / (LETTERS * (COLUMNS + 1) + 1) as f32;
     let down = (bottom - top) as f32 / (ROWS + 2) as f32;
     let at = |letter: usize, k: usize| {
@@ -70,15 +70,15 @@ fn squares(frame: &Frame) -> Vec<Vec<bool>> {
     (0..LETTERS).map(letter).collect()
 }
 
-/// Letters by three, so that each stands on one sign.
+/// All letters in groups of three, one group per sign.
 fn texts() -> Vec<String> {
     let letters: Vec<char> = ('A'..='Z').chain('0'..='9').collect();
     letters.chunks(LETTERS).map(|text| text.iter().collect()).collect()
 }
 
 #[test]
-fn three_letters_are_read_at_84_pixels_from_a_few_metres() {
-    // What each letter looks like from near by, in a large picture.
+fn three_letters_are_readable_at_84_pixels_from_a_few_metres() {
+    // Reference shapes of the letters from a nearby, large image.
     let templates: Vec<(char, Vec<bool>)> = texts()
         .iter()
         .flat_map(|text| {
@@ -108,7 +108,7 @@ fn three_letters_are_read_at_84_pixels_from_a_few_metres() {
 }
 
 #[test]
-fn letters_stand_out_from_boards_of_every_colour() {
+fn letters_contrast_with_boards_of_every_colour() {
     for color in ["white", "black", "red", "gold", "blue", "grey", "forestgreen", "pink"] {
         let frame = |text: &str| picture(&world(text, 3.0, 0.0, Some(color)), 0.0, SIDE);
         let (written, bare) = (frame("H8X"), frame(" "));
@@ -134,7 +134,7 @@ fn letters_stand_out_from_boards_of_every_colour() {
 }
 
 #[test]
-fn from_afar_a_sign_is_drawn_without_its_letters() {
+fn distant_sign_has_no_letters() {
     let differ = |metres: f64, text: &str| {
         let frame = |text: &str| picture(&world(text, metres, 0.0, None), 0.0, SIDE).rgb;
         frame(text) != frame(" ")
@@ -148,7 +148,7 @@ fn from_afar_a_sign_is_drawn_without_its_letters() {
 }
 
 #[test]
-fn the_back_of_a_sign_is_bare_and_other_classes_say_nothing() {
+fn signs_have_text_only_in_front_and_other_classes_have_none() {
     let back = |text: &str| picture(&world(text, 3.0, 180.0, None), 0.0, SIDE).rgb;
     assert_eq!(back("ABC"), back(" "));
     let of_class = |text: Option<&str>| {

@@ -1,5 +1,4 @@
-//! What touching, interacting and coming near do; what walls do; what ends an episode; and that all of it repeats
-//! exactly.
+//! Touching, interacting and coming near; walls; ends of episodes; and exact reproducibility.
 
 use driftworld_env::{Action, Agent, EnvError, Environment, OnRailsAgent, RandomAgent, Step, Warning};
 use driftworld_spec::{
@@ -12,7 +11,7 @@ const BACK: Action = Action::Continuous([-10.0, 0.0, 0.0]);
 const STAY: Action = Action::Continuous([0.0, 0.0, 0.0]);
 const INTERACT: Action = Action::Continuous([0.0, 0.0, 1.0]);
 
-/// A cube that pays 5, some metres ahead of the agent.
+/// A cube that pays 5, `metres` ahead of the agent.
 fn cube(metres: f64) -> Object {
     let mut object = Object::new("cube", [0.0, metres]);
     object.reward = 5.0;
@@ -38,13 +37,13 @@ fn step(environment: &mut Environment, action: Action) -> Step {
         .expect("the episode is not over and the action is sound")
 }
 
-/// The rewards of some actions, one after the other.
+/// The rewards of a sequence of actions.
 fn rewards(environment: &mut Environment, actions: &[Action]) -> Vec<f64> {
     actions.iter().map(|action| step(environment, *action).reward).collect()
 }
 
 #[test]
-fn a_touch_pays_on_each_new_contact_and_not_while_it_lasts() {
+fn touch_pays_once_per_contact() {
     let mut object = cube(2.2);
     object.reward_stimulus = vec![Stimulus::AgentCollide];
     let mut environment = environment(vec![object]);
@@ -55,7 +54,7 @@ fn a_touch_pays_on_each_new_contact_and_not_while_it_lasts() {
 }
 
 #[test]
-fn what_pays_once_pays_once_and_is_worth_nothing_then() {
+fn reward_paid_once_is_worth_nothing_afterwards() {
     let mut object = cube(2.2);
     object.reward_once_stimulus = vec![Stimulus::AgentCollide];
     let mut environment = environment(vec![object]);
@@ -68,7 +67,7 @@ fn what_pays_once_pays_once_and_is_worth_nothing_then() {
 }
 
 #[test]
-fn a_destroyed_object_is_out_of_the_way_and_out_of_sight() {
+fn destroyed_object_neither_blocks_nor_shows() {
     let mut object = cube(2.2);
     object.destroy_stimulus = vec![Stimulus::AgentCollide];
     let mut environment = environment(vec![object]);
@@ -84,7 +83,7 @@ fn a_destroyed_object_is_out_of_the_way_and_out_of_sight() {
 }
 
 #[test]
-fn interacting_reaches_the_metre_ahead_and_no_farther() {
+fn interaction_reaches_one_metre_ahead() {
     for (metres, reward) in [(1.5, 5.0), (1.9, 5.0), (2.1, 0.0)] {
         let mut object = cube(metres);
         object.reward_stimulus = vec![Stimulus::AgentInteract];
@@ -109,7 +108,7 @@ fn interacting_reaches_the_metre_ahead_and_no_farther() {
 }
 
 #[test]
-fn coming_near_pays_on_entering_the_range() {
+fn range_reward_is_paid_on_entering() {
     let mut object = cube(5.0);
     object.reward_stimulus = vec![Stimulus::AgentInRange];
     object.range_stimulus_distance = 3.5;
@@ -121,7 +120,7 @@ fn coming_near_pays_on_entering_the_range() {
 }
 
 #[test]
-fn what_is_not_solid_is_touched_in_passing_at_any_speed() {
+fn ghost_is_touched_in_passing_at_any_speed() {
     let mut object = cube(5.0);
     object.solid = false;
     object.reward_stimulus = vec![Stimulus::AgentCollide];
@@ -136,14 +135,14 @@ fn what_is_not_solid_is_touched_in_passing_at_any_speed() {
 }
 
 #[test]
-fn a_scavenger_hunt_pays_in_its_order_only() {
+fn scavenger_hunt_pays_only_in_order() {
     let mut hunt = [cube(2.2), cube(-2.2)];
     for (object, order) in hunt.iter_mut().zip([2, 1]) {
         object.order = Some(order);
         object.reward_once_stimulus = vec![Stimulus::AgentCollide];
     }
     let mut environment = environment(hunt.to_vec());
-    // Second first: nothing. Then the first, then the second.
+    // The second one first: no reward. Then the first, then the second.
     let path = [AHEAD, AHEAD, BACK, BACK, BACK, AHEAD, AHEAD, AHEAD];
     let paid = rewards(&mut environment, &path);
     assert_eq!(paid.iter().filter(|reward| **reward == 5.0).count(), 2, "{paid:?}");
@@ -151,7 +150,7 @@ fn a_scavenger_hunt_pays_in_its_order_only() {
 }
 
 #[test]
-fn a_bandit_arm_pays_at_its_odds_and_the_same_each_time() {
+fn bandit_arm_pays_at_its_odds_and_reproducibly() {
     let arm = |odds: f64| {
         let mut object = cube(1.2);
         object.reward_stimulus = vec![Stimulus::AgentInteract];
@@ -167,7 +166,7 @@ fn a_bandit_arm_pays_at_its_odds_and_the_same_each_time() {
 }
 
 #[test]
-fn shaping_pays_the_way_that_was_won_and_nothing_over_a_round_trip() {
+fn shaping_pays_progress_and_nothing_over_a_round_trip() {
     let mut world = WorldDraft {
         objects: vec![cube(10.0)],
         ..WorldDraft::default()
@@ -184,7 +183,7 @@ fn shaping_pays_the_way_that_was_won_and_nothing_over_a_round_trip() {
 }
 
 #[test]
-fn endings_are_told_apart() {
+fn ends_have_distinct_causes() {
     let touch = |success: Vec<EndCondition>, failure: Vec<EndCondition>| {
         let mut object = cube(2.2);
         object.reward_once_stimulus = vec![Stimulus::AgentCollide];
@@ -217,14 +216,14 @@ fn endings_are_told_apart() {
 }
 
 #[test]
-fn a_world_without_targets_is_not_a_success_from_the_start() {
+fn world_without_targets_does_not_start_as_a_success() {
     let mut world = WorldDraft::default();
     world.rules.success = vec![EndCondition::AllCollected];
     assert!(!step(&mut start(world), STAY).terminated);
 }
 
 #[test]
-fn an_action_that_cannot_be_is_refused_and_changes_nothing() {
+fn invalid_action_is_refused_and_changes_nothing() {
     let mut continuous = environment(vec![]);
     let before = continuous.agent();
     let nan = continuous
@@ -253,7 +252,7 @@ fn an_action_that_cannot_be_is_refused_and_changes_nothing() {
 }
 
 #[test]
-fn every_action_model_moves_as_it_says() {
+fn every_action_model_moves_as_documented() {
     let after = |model, numbers| {
         let mut world = WorldDraft::default();
         world.agent_params.action_model = model;
@@ -271,7 +270,7 @@ fn every_action_model_moves_as_it_says() {
 }
 
 #[test]
-fn on_rails_the_agent_tours_by_itself() {
+fn agent_on_rails_tours_by_itself() {
     let mut object = cube(6.0);
     object.reward_once_stimulus = vec![Stimulus::AgentCollide];
     let mut world = WorldDraft {
@@ -285,7 +284,7 @@ fn on_rails_the_agent_tours_by_itself() {
 }
 
 #[test]
-fn warnings_name_what_is_not_as_its_author_may_think() {
+fn warnings_name_unintended_settings() {
     let mut odd = Object::new("dragon", [3.0, 3.0]);
     odd.motion_model = MotionModel::Prey;
     let environment = environment(vec![odd]);
@@ -299,7 +298,7 @@ fn warnings_name_what_is_not_as_its_author_may_think() {
 }
 
 #[test]
-fn the_agent_slides_along_a_wall() {
+fn agent_slides_along_a_wall() {
     let mut world = WorldDraft::default();
     world.agent_params.coordinates = [0.0, 48.0];
     world.agent_params.heading = 45.0;
@@ -314,7 +313,7 @@ fn the_agent_slides_along_a_wall() {
 }
 
 #[test]
-fn a_start_inside_a_body_or_outside_the_arena_is_survived() {
+fn start_inside_a_body_or_outside_the_arena_does_not_panic() {
     for coordinates in [[0.0, 0.0], [300.0, 300.0], [49.9, 49.9]] {
         let mut world = WorldDraft {
             objects: vec![Object::new("building", [0.0, 0.0])],
@@ -333,7 +332,7 @@ fn a_start_inside_a_body_or_outside_the_arena_is_survived() {
 }
 
 #[test]
-fn ten_thousand_objects_start_and_step() {
+fn ten_thousand_objects_can_be_stepped() {
     let objects = (0..10_000)
         .map(|k| Object::new("rock", [f64::from(k % 100) - 50.0, f64::from(k / 100) - 50.0]))
         .collect();
@@ -346,7 +345,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 128)))]
 
     #[test]
-    fn no_wall_is_ever_passed(
+    fn agent_never_passes_a_wall(
         heading in 0.0..360.0_f64,
         turns in prop::collection::vec(-400.0..400.0_f64, 1..30),
         speed in 0.1..100.0_f64,
@@ -378,7 +377,7 @@ proptest! {
     }
 
     #[test]
-    fn the_same_actions_lead_to_the_same_bits(seed in any::<u64>()) {
+    fn same_actions_give_the_same_bits(seed in any::<u64>()) {
         let run = || {
             let mut environment = start(arena());
             let mut agent = RandomAgent::new(seed);
@@ -435,7 +434,7 @@ fn resetting_is_starting_anew() {
 
 /// Actions in, rewards and poses out. `DRIFTWORLD_UPDATE_GOLDEN=1` rewrites the file: a value-breaking change.
 #[test]
-fn the_golden_episode_is_lived_as_it_was() {
+fn golden_episode_is_unchanged() {
     let mut environment = start(arena());
     let mut agent = OnRailsAgent::new();
     let mut lines = vec!["action; reward; x y heading".to_owned()];

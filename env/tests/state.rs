@@ -1,5 +1,4 @@
-//! A running world that is written down, or kept in memory, goes on as if nothing had been: to the last bit, pictures
-//! included.
+//! A running world that was saved as a document, or kept in memory, resumes to the bit, including its images.
 
 use driftworld_env::{Action, Agent, EnvError, Environment, RandomAgent};
 use driftworld_spec::{
@@ -8,7 +7,7 @@ use driftworld_spec::{
 };
 use proptest::prelude::*;
 
-/// A small world with something of everything that has a course.
+/// A small world with something of everything that has progress.
 fn world(action_model: ActionModel, frame_skip: u32) -> World {
     let object = |class: &str, at: [f64; 2]| Object::new(class, at);
     let mut coin = object("geometric", [2.0, 2.5]);
@@ -95,10 +94,10 @@ fn start(world: World) -> Environment {
     Environment::new(world)
 }
 
-/// All that can be told of a step and of the moment after it; numbers as they are written, which is exact.
+/// Everything observable of a step and of the moment after it, as exact text.
 type Trace = Vec<Vec<String>>;
 
-/// The first step in which two courses differ, and how.
+/// The first step in which two traces differ, and how.
 fn difference(a: &Trace, b: &Trace) -> Option<String> {
     if a.len() != b.len() {
         return Some(format!("{} and {} steps", a.len(), b.len()));
@@ -108,7 +107,7 @@ fn difference(a: &Trace, b: &Trace) -> Option<String> {
     Some(format!("step {number}: {apart:?}"))
 }
 
-/// The scene has nothing of its own to say about an object.
+/// The scene is fully determined by the objects' states.
 fn expect_scene_of_state(environment: &Environment) {
     let items = &environment.scene().items;
     for (item, object) in items.iter().zip(environment.objects()) {
@@ -151,7 +150,7 @@ fn actions(seed: u64, environment: &Environment, count: usize) -> Vec<Action> {
         let Action::Continuous([a, b, c]) = agent.act(environment) else {
             panic!("the space is continuous");
         };
-        // Now and then to a place, for agents that walk to places.
+        // Sometimes to a place, for agents that walk to places.
         actions.push(Action::Continuous([a, b, if number % 3 == 0 { 1.0 } else { c }]));
     }
     actions
@@ -169,7 +168,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 48)))]
 
     #[test]
-    fn a_world_goes_on_from_its_state_and_from_a_snapshot(
+    fn world_resumes_from_its_state_and_from_a_snapshot(
         seed in any::<u64>(),
         before in 0usize..70,
         after in 1usize..60,
@@ -209,7 +208,7 @@ proptest! {
 }
 
 #[test]
-fn a_state_says_what_is_now_and_keeps_what_was_at_the_start() {
+fn state_has_current_values_and_keeps_initial_ones() {
     let mut environment = start(world(ActionModel::ByVelocity, 1));
     let begun = environment.world().clone();
     for action in actions(7, &environment, 60) {
@@ -231,7 +230,7 @@ fn a_state_says_what_is_now_and_keeps_what_was_at_the_start() {
 }
 
 #[test]
-fn an_ended_episode_stays_ended() {
+fn ended_episode_stays_ended() {
     let short = world(ActionModel::ByVelocity, 1).edit(|world| world.max_steps = 1);
     let mut environment = start(short.expect("one step is sound"));
     environment
@@ -242,7 +241,7 @@ fn an_ended_episode_stays_ended() {
 }
 
 #[test]
-fn what_stands_far_outside_can_be_written_down_and_read() {
+fn objects_far_outside_round_trip_through_a_state() {
     let mut prey = Object::new("barrel", [290.0, 0.0]);
     (prey.motion_model, prey.speed) = (MotionModel::Prey, 50.0);
     let mut outside = WorldDraft {
@@ -262,7 +261,7 @@ fn what_stands_far_outside_can_be_written_down_and_read() {
 }
 
 #[test]
-fn counters_at_their_ends_do_not_run_over() {
+fn counters_at_their_limits_do_not_overflow() {
     let text = r#"{ "agent_params": { "action_model": "onrails" }, "progress": { "steps": 4294967295, "ticks": 4503599627370496, "rails": { "patience": 4294967295 }, "objects": [] } }"#;
     let mut environment = start(World::from_json("end", text).expect("the counters are in range"));
     environment
@@ -272,7 +271,7 @@ fn counters_at_their_ends_do_not_run_over() {
 }
 
 #[test]
-fn a_state_without_its_seed_takes_that_of_its_world() {
+fn state_without_a_seed_takes_its_worlds() {
     let heading = |tag: &str, seed: Option<u64>| {
         let mut wanderer = Object::new("barrel", [3.0, 3.0]);
         (wanderer.motion_model, wanderer.speed) = (MotionModel::RandomWaypoint, 1.0);
@@ -296,7 +295,7 @@ fn a_state_without_its_seed_takes_that_of_its_world() {
 }
 
 #[test]
-fn a_state_of_the_time_before_objects_had_chance_of_their_own_is_read_and_goes_on() {
+fn old_state_without_per_object_random_numbers_resumes() {
     let text = r#"{ "objects": [{ "class": "barrel", "coordinates": [3, 3], "motion_model": "random_waypoint", "speed": 1 }],
         "progress": { "seed": "SEED", "steps": 2, "ticks": 2, "chance": 14, "objects": [{ "chance": 6, "goal": [1, 2] }] } }"#
         .replace("SEED", &"3a".repeat(32));
@@ -307,8 +306,8 @@ fn a_state_of_the_time_before_objects_had_chance_of_their_own_is_read_and_goes_o
 }
 
 #[test]
-fn a_world_whose_progress_is_a_seed_alone_is_at_its_start() {
-    // The agent stands in the barrel: at a start that is no news, and pays nothing.
+fn world_with_only_a_seed_as_progress_is_at_its_start() {
+    // The agent stands in the barrel: a start is no contact, and pays nothing.
     let touched = || {
         let mut barrel = Object::new("barrel", [0.0, 0.5]);
         barrel.reward = 5.0;
@@ -346,7 +345,7 @@ fn a_world_whose_progress_is_a_seed_alone_is_at_its_start() {
 }
 
 #[test]
-fn an_instruction_is_the_end_of_the_state_vector() {
+fn instruction_is_at_the_end_of_the_state_vector() {
     let world = world(ActionModel::ByVelocity, 1);
     let mut environment = start(world.clone());
     for _ in 0..3 {

@@ -1,4 +1,4 @@
-//! Doors, switches and things that are carried: what opens when, what is put down where, and that a written world goes on.
+//! Doors, switches and carriable things: opening, picking up and putting down, and saved worlds that resume.
 
 use driftworld_env::{Action, Effect, Environment, Event};
 use driftworld_spec::{
@@ -11,7 +11,7 @@ const AHEAD: Action = Action::Continuous([2.0, 0.0, 0.0]);
 const USE: Action = Action::Continuous([0.0, 0.0, 1.0]);
 const WAIT: Action = Action::Continuous([0.0, 0.0, 0.0]);
 
-/// A door 2 m wide in a wall from west to east through the arena, 4 m north of the agent, which looks at it.
+/// A door 2 m wide in a wall from west to east through the arena, 4 m north of the agent, which faces it.
 fn draft(door: Door) -> WorldDraft {
     let mut world = WorldDraft::default();
     world.environment_params.map_size = [20.0, 20.0];
@@ -41,7 +41,7 @@ fn steps(environment: &mut Environment, action: Action, count: usize) -> Vec<Eve
     events
 }
 
-/// What the events say that objects did.
+/// Reactions of objects, from the events.
 fn effects(events: &[Event]) -> Vec<(usize, Effect)> {
     events
         .iter()
@@ -54,7 +54,7 @@ fn north(environment: &Environment) -> f32 {
 }
 
 #[test]
-fn a_closed_door_stops_the_agent_and_an_interaction_opens_it() {
+fn closed_door_stops_the_agent_and_opens_by_interaction() {
     let mut environment = start(draft(Door::default()));
     steps(&mut environment, AHEAD, 40);
     assert!(
@@ -74,7 +74,7 @@ fn a_closed_door_stops_the_agent_and_an_interaction_opens_it() {
 }
 
 #[test]
-fn a_touch_opens_a_door_that_opens_on_touch_and_it_closes_after_its_time_behind_the_agent() {
+fn door_that_opens_on_touch_closes_after_its_time_behind_the_agent() {
     let door = Door {
         opens_on: vec![Stimulus::AgentCollide],
         closes_after: Some(1.0),
@@ -97,7 +97,7 @@ fn a_touch_opens_a_door_that_opens_on_touch_and_it_closes_after_its_time_behind_
 }
 
 #[test]
-fn a_door_that_closes_on_a_stimulus_is_a_toggle() {
+fn door_that_closes_on_a_stimulus_is_a_toggle() {
     let stimuli = || vec![Stimulus::AgentInteract];
     let door = Door {
         opens_on: stimuli(),
@@ -117,7 +117,7 @@ fn a_door_that_closes_on_a_stimulus_is_a_toggle() {
 }
 
 #[test]
-fn a_key_is_picked_up_unlocks_its_door_and_is_gone_if_it_is_consumed() {
+fn key_unlocks_its_door_and_disappears_if_consumed() {
     for consumed in [false, true] {
         let mut world = draft(Door {
             key: Some("red".to_owned()),
@@ -165,7 +165,7 @@ fn a_key_is_picked_up_unlocks_its_door_and_is_gone_if_it_is_consumed() {
 }
 
 #[test]
-fn what_the_agent_may_not_carry_stays_and_only_one_thing_answers_an_interaction() {
+fn carry_limit_holds_and_an_interaction_moves_one_thing() {
     let mut world = draft(Door::default());
     world.objects = vec![key("a", [0.2, 1.2]), key("b", [-0.1, 1.0]), key("c", [0.0, -3.0])];
     world.agent_params.carry_limit = 0;
@@ -186,7 +186,7 @@ fn what_the_agent_may_not_carry_stays_and_only_one_thing_answers_an_interaction(
 }
 
 #[test]
-fn switches_move_all_doors_of_their_target_locked_ones_too() {
+fn switches_move_all_target_doors_including_locked_ones() {
     for (action, open, expected) in [
         (SwitchAction::Toggle, [false, true], [true, false]),
         (SwitchAction::Open, [false, true], [true, true]),
@@ -220,7 +220,7 @@ fn switches_move_all_doors_of_their_target_locked_ones_too() {
 }
 
 #[test]
-fn a_held_action_interacts_once_and_rules_end_episodes() {
+fn held_action_interacts_once_and_rules_end_the_episode() {
     let mut world = draft(Door {
         closes_on: vec![Stimulus::AgentInteract],
         ..Door::default()
@@ -244,7 +244,7 @@ fn a_held_action_interacts_once_and_rules_end_episodes() {
 }
 
 #[test]
-fn a_delivery_is_done_when_all_of_the_tag_lie_there() {
+fn delivery_requires_all_objects_of_the_tag() {
     let mut world = draft(Door::default());
     world.objects = vec![
         key("ball", [0.0, 1.0]),
@@ -264,7 +264,7 @@ fn a_delivery_is_done_when_all_of_the_tag_lie_there() {
 }
 
 #[test]
-fn a_carried_target_is_none_until_it_is_put_down() {
+fn carried_target_counts_only_once_put_down() {
     let mut world = draft(Door::default());
     let mut coin = key("coin", [0.0, 1.0]);
     coin.reward = 2.0;

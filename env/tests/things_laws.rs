@@ -1,5 +1,5 @@
-//! Laws of doors and of things that are carried, over drawn actions: nothing is lost, nothing is put into walls, no door closes
-//! on the agent, and a written world goes on.
+//! Properties of doors and carriable things under random actions: nothing is lost, nothing is put into walls, no door closes on
+//! the agent, and a saved world resumes.
 
 use driftworld_env::{Action, Effect, Environment};
 use driftworld_spec::{Door, Portable, Pushable, StateFeature, Stimulus, Switch, Wall, World, WorldDraft};
@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 use crate::tagged::{key, thing};
 
-/// A house of four rooms with doors of all kinds, keys, a switch, a box that is pushed and somebody who wanders.
+/// A house of four rooms with doors of all kinds, keys, a switch, a pushable box and a wanderer.
 fn house() -> WorldDraft {
     let mut world = WorldDraft::default();
     world.environment_params.map_size = [16.0, 16.0];
@@ -99,13 +99,13 @@ fn house() -> WorldDraft {
     world
 }
 
-/// Mostly ahead, with turns and a hand that is never still.
+/// Mostly ahead, with turns and frequent interactions.
 fn action() -> impl Strategy<Value = Action> {
     (-1.0..4.0_f64, -90.0..90.0_f64, 0..3_u8)
         .prop_map(|(speed, turn, hand)| Action::Continuous([speed, turn, f64::from(u8::from(hand == 0))]))
 }
 
-/// How far a point is from the nearest wall of the house, negative inside.
+/// Distance of a point from the nearest wall of the house, negative inside.
 fn room_at(world: &World, [x, y]: [f32; 2]) -> f64 {
     let (x, y) = (f64::from(x), f64::from(y));
     let walls = world.environment_params.walls.iter().map(|wall| {
@@ -121,7 +121,7 @@ fn room_at(world: &World, [x, y]: [f32; 2]) -> f64 {
     walls.fold((8.0 - x.abs()).min(8.0 - y.abs()), f64::min)
 }
 
-/// How far the agent's middle is from a door's leaf as it is when closed, or a little more.
+/// A lower bound on the distance of the agent's centre from a closed door's leaf.
 fn to_leaf(world: &World, environment: &Environment, door: usize) -> f64 {
     let [x, y] = environment.agent().position.map(f64::from);
     let [dx, dy] = [
@@ -137,7 +137,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn nothing_is_lost_nor_put_into_walls_and_no_door_closes_on_the_agent(actions in prop::collection::vec(action(), 200..500)) {
+    fn things_are_never_lost_or_in_walls_and_doors_never_close_on_the_agent(actions in prop::collection::vec(action(), 200..500)) {
         let world = house().check().expect("it is sound");
         let mut environment = Environment::new(world.clone());
         for action in actions {
@@ -171,7 +171,7 @@ proptest! {
     }
 
     #[test]
-    fn a_written_house_goes_on_to_the_last_bit(
+    fn saved_house_resumes_to_the_bit(
         actions in prop::collection::vec(action(), 50..300),
         share in 0.0..1.0_f64,
     ) {

@@ -1,6 +1,6 @@
-//! A thousand straight walks among walls and objects, beside those of a frictionless disc that is computed by other
-//! means: in steps of two millimetres, each put back to the skin of what it overlaps, with distances of boxes and discs
-//! in their own frames.
+//! Compares a thousand straight walks among walls and objects with those of a frictionless disc computed independently: in
+//! steps of two millimetres, each moved back to the skin of what it overlaps, with distances of boxes and discs in their own
+//! frames.
 
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 
@@ -13,7 +13,7 @@ const SKIN: f64 = 0.01;
 const STEPS: usize = 120;
 const SPEED: f64 = 5.0;
 
-/// Something upright: a box in its own frame, or a disc, which is a box without sides.
+/// An upright body: a box in its own frame, or a disc, which is a box without sides.
 struct Upright {
     middle: [f64; 2],
     /// The unit vector of its own x axis.
@@ -55,7 +55,7 @@ fn edge(from: [f64; 2], to: [f64; 2]) -> Upright {
     }
 }
 
-/// All that stands in a world.
+/// All bodies of a world.
 fn uprights(environment: &Environment) -> Vec<Upright> {
     let world = environment.world();
     let mut all = Vec::new();
@@ -179,7 +179,7 @@ fn world(rng: &mut ChaCha8Rng, number: usize) -> World {
 }
 
 #[test]
-fn a_thousand_walks_end_where_a_frictionless_disc_does() {
+fn thousand_walks_end_where_a_frictionless_disc_does() {
     const WALKS: usize = 1000;
     let mut rng = ChaCha8Rng::seed_from_u64(16);
     let (mut done, mut number, mut far, mut slid) = (0, 0, Vec::new(), 0);
@@ -190,7 +190,7 @@ fn a_thousand_walks_end_where_a_frictionless_disc_does() {
         let mut environment = Environment::new(world);
         let radius = agent.agent_width / 2.0;
         let all = uprights(&environment);
-        // A walk that begins free, and not in a closed region either.
+        // Only walks that start in the open, outside closed regions.
         let is_free = all.iter().all(|body| body.distance(agent.coordinates).0 > radius + 0.1);
         if !is_free || all.iter().any(|body| body.bound() < 1e-3) {
             continue;

@@ -1,5 +1,5 @@
-//! The laws of sliding: along anything the agent, a mover or a pushed body keeps the part of its speed that leads along
-//! it, and nothing is passed.
+//! Sliding: along any obstacle the agent, a mover or a pushed body keeps the component of its velocity parallel to it, and
+//! passes nothing.
 
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 
@@ -7,7 +7,7 @@ use driftworld_env::{Action, Environment};
 use driftworld_spec::{MotionModel, Object, Pushable, Wall, WorldDraft};
 use proptest::prelude::*;
 
-/// A wall of this length in metres through a point, turned by degrees clockwise from +y.
+/// A wall of this length in metres through a point, rotated by degrees clockwise from +y.
 fn wall(through: [f64; 2], bearing_deg: f64, length: f64) -> Wall {
     let along = direction(bearing_deg).map(|part| part * length / 2.0);
     let across = direction(bearing_deg + 90.0).map(|part| part * 0.1);
@@ -59,7 +59,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 1000)))]
 
     #[test]
-    fn along_a_wall_the_agent_keeps_what_leads_along_it(
+    fn agent_keeps_the_parallel_velocity_along_a_wall(
         bearing in 0.0..360.0_f64,
         // From the wall's normal: 0 leads straight into it.
         angle in prop_oneof![-89.9..-0.5_f64, 0.5..89.9_f64],
@@ -76,7 +76,7 @@ proptest! {
         agent.agent_width = width;
         agent.max_linear_speed = speed;
         agent.time_step = seconds;
-        // Before the wall, driven into it: its outer side is 0.12 m from its middle.
+        // In front of the wall, driven into it: its outer side is 0.12 m from its centre line.
         let distance = 0.12 + width / 2.0 + 0.01;
         let sign = angle.signum();
         let behind = sign * length * 0.4;
@@ -101,7 +101,7 @@ proptest! {
     }
 
     #[test]
-    fn along_a_wall_a_mover_keeps_what_leads_along_it(
+    fn mover_keeps_the_parallel_velocity_along_a_wall(
         bearing in 0.0..360.0_f64,
         angle in prop_oneof![-85.0..-3.0_f64, 3.0..85.0_f64],
         length in 10.0..120.0_f64,
@@ -117,7 +117,7 @@ proptest! {
         mover.motion_model = MotionModel::Patrol;
         mover.speed = speed;
         mover.heading = (bearing - 90.0 + angle).rem_euclid(360.0);
-        // Far behind the wall: the way there changes by less than a degree.
+        // Far behind the wall: the direction to it changes by less than a degree.
         let far = direction(bearing - 90.0 + angle).map(|part| part * 2e4);
         let from = mover.coordinates;
         mover.waypoints = vec![[from[0] + far[0], from[1] + far[1]].map(|metres| metres.clamp(-290.0, 290.0))];
@@ -147,14 +147,14 @@ proptest! {
     }
 
     #[test]
-    fn a_wedge_and_a_gap_as_wide_as_the_body_stop_it(
+    fn wedges_and_tight_gaps_stop_the_body(
         bearing in 0.0..360.0_f64,
         opening in 1.0..60.0_f64,
         off in -0.4..0.4_f64,
         width in 0.2..2.0_f64,
         speed in 0.5..30.0_f64,
     ) {
-        // Two walls from one point, the agent between them on its way to it.
+        // Two walls from one point, with the agent between them on its way to it.
         let mut world = arena(300.0);
         let axis = direction(bearing);
         let polygon = |turn: f64| {
@@ -177,7 +177,7 @@ proptest! {
         for _ in 0..((room + 20.0) / speed * 10.0 * 2.0) as usize + 200 {
             last = go(&mut environment, speed);
             prop_assert!(dot(last, axis) > 0.0, "through the point");
-            // The distance to each wall, by the angle.
+            // The distance to each wall, from the angle.
             let (x, y) = (dot(last, axis), dot(last, direction(bearing + 90.0)));
             let half = (opening / 2.0).to_radians();
             let least = x * half.sin() - y.abs() * half.cos();
@@ -185,14 +185,14 @@ proptest! {
         }
         let again = go(&mut environment, speed);
         prop_assert!(dot(minus(again, last), minus(again, last)).sqrt() < 1e-3, "at rest in the wedge");
-        // As deep as it can come: as far from the point as its width says.
+        // As deep as possible: the width determines the distance from the point.
         let expected = (width / 2.0 + 0.03) / (opening / 2.0).to_radians().sin();
         prop_assert!(dot(again, axis) < expected + 0.2, "{again:?} {expected}");
     }
 }
 
 #[test]
-fn the_walks_of_the_audit_go_on() {
+fn walks_from_the_audit_do_not_get_stuck() {
     let mut world = arena(200.0);
     world.environment_params.walls = vec![Wall {
         polygon: vec![[-30.0, -30.0], [30.0, 30.0], [29.0, 31.0], [-31.0, -29.0]],
@@ -217,7 +217,7 @@ fn the_walks_of_the_audit_go_on() {
 }
 
 #[test]
-fn a_body_that_slides_into_a_wall_keeps_what_leads_along_it() {
+fn sliding_body_keeps_the_parallel_velocity_at_a_wall() {
     for (class, friction) in [("ball", 0.0), ("cube", 0.0), ("barrel", 0.0)] {
         for heading in [10.0_f64, 30.0, 45.0, 60.0, 80.0] {
             let mut world = arena(300.0);
@@ -238,7 +238,7 @@ fn a_body_that_slides_into_a_wall_keeps_what_leads_along_it() {
             for _ in 0..4 {
                 go(&mut environment, 8.0);
             }
-            // From here on it slides by itself, until it has met the wall and for a while after.
+            // From here on it slides by itself, until some time after it has met the wall.
             go(&mut environment, 0.0);
             let before = place(&environment);
             go(&mut environment, 0.0);
@@ -257,15 +257,15 @@ fn a_body_that_slides_into_a_wall_keeps_what_leads_along_it() {
                 "{class} {heading}°: {won} of {}",
                 120.0 * meant
             );
-            // A cube swings off again when its second corner slaps down.
+            // A cube swings away again when its second corner hits.
             assert!(nearest > 4.0, "{class} {heading}°: it came to the wall: {nearest}");
         }
     }
 }
 
 #[test]
-fn a_pushed_body_slides_along_a_wall() {
-    // A body that the agent pushes slantwise at a wall goes on along it.
+fn pushed_body_slides_along_a_wall() {
+    // A body that is pushed obliquely at a wall moves on along it.
     for (class, friction) in [("ball", 0.0), ("cube", 0.0), ("ball", 0.5), ("cube", 0.5)] {
         for heading in [20.0_f64, 35.0, 60.0, 75.0] {
             let mut world = arena(300.0);
@@ -286,7 +286,7 @@ fn a_pushed_body_slides_along_a_wall() {
             for step in 0..300 {
                 go(&mut environment, 5.0);
                 let [x, y] = environment.scene().items[0].position.map(f64::from);
-                // A cube turns where it is pushed at a corner, and its middle swings back.
+                // A cube turns where a corner is pushed, and its centre swings back.
                 let swing = if class == "cube" { 0.3 } else { 1e-3 };
                 assert!(
                     x >= last - swing || last == f64::NEG_INFINITY,
@@ -307,7 +307,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 300)))]
 
     #[test]
-    fn a_mover_with_corners_comes_round_a_wall(
+    fn mover_with_corners_gets_around_a_wall(
         class in prop::sample::select(vec!["cube", "car", "fence", "ball", "bench"]),
         across in -8.0..8.0_f64,
         beyond in 16.5..22.0_f64,
@@ -323,7 +323,7 @@ proptest! {
         }];
         let mut mover = Object::new(class, [across, 3.5]);
         (mover.motion_model, mover.speed, mover.scale) = (MotionModel::Patrol, speed, scale);
-        // Beyond the wall's end and a little below its side: the way there leads along it.
+        // Beyond the wall's end and slightly below its side: the path there leads along it.
         mover.waypoints = vec![[beyond + 2.0, -0.5], [42.0, -0.5]];
         world.objects = vec![mover];
         let mut environment = start(world);
@@ -344,7 +344,7 @@ proptest! {
     }
 
     #[test]
-    fn the_tip_of_a_wall_holds_nobody(
+    fn tip_of_a_wall_stops_nobody(
         half in prop_oneof![Just(2.5), Just(10.0), Just(22.5), Just(45.0), Just(60.0), 2.0..75.0_f64],
         off in prop_oneof![-0.02..-0.002_f64, 0.002..0.02_f64],
         turn in 0.0..360.0_f64,
@@ -370,7 +370,7 @@ proptest! {
 }
 
 #[test]
-fn rolling_round_a_body_takes_its_time_at_any_time_step() {
+fn sliding_around_a_disc_takes_the_same_time_at_any_time_step() {
     // In closed form: the tangent of half the angle from head-on grows with exp(v t / r).
     for share in [0.01_f64, 0.05, 0.1, 0.3] {
         for seconds in [1.0, 0.1, 0.01] {

@@ -1,4 +1,4 @@
-//! What zones do to the agent that is in them: what they pay, how they slow it, how they end an episode, where they put it.
+//! Effects of zones on the agent inside: rewards, speed, ends of the episode, and teleports.
 
 use driftworld_env::{Action, Agent, Environment, RandomAgent, Step};
 use driftworld_spec::{ActionModel, Object, World, WorldDraft, Zone, ZoneEnd};
@@ -18,7 +18,7 @@ fn step(environment: &mut Environment, action: Action) -> Step {
     environment.step(action).expect("the episode goes on")
 }
 
-/// A square around a middle.
+/// A square around a centre.
 fn square([x, y]: [f64; 2], half: f64) -> Zone {
     Zone::polygon(vec![
         [x - half, y - half],
@@ -63,7 +63,7 @@ fn zone() -> impl Strategy<Value = Zone> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 64)))]
 
-    /// Who stands in zones gets what their seconds pay, however time is cut, and what entering pays once: at the first step.
+    /// Standing in zones pays per second, whatever the time step, and once for entering, in the first step.
     #[test]
     fn standing_in_zones_pays_by_the_second(
         zones in prop::collection::vec(zone(), 0..5),
@@ -86,7 +86,7 @@ proptest! {
         }
     }
 
-    /// Who walks through a disc is paid for the time that the chord takes, but for a time step at either end, and for one entry.
+    /// Walking through a disc pays for the time on the chord, up to one time step at either end, and for one entry.
     #[test]
     fn crossing_a_zone_pays_for_the_time_in_it(
         offset in -2.5..2.5f64,
@@ -109,9 +109,9 @@ proptest! {
         prop_assert!((earned - expected).abs() <= rate.abs() * time_step * 1.001 + 1e-6, "{earned} for {expected}");
     }
 
-    /// The order of the list says nothing about pay and speed: to the bit.
+    /// Rewards and speed do not depend on the order of the list: to the bit.
     #[test]
-    fn the_order_of_zones_does_not_matter(
+    fn order_of_zones_does_not_matter(
         zones in prop::collection::vec(zone(), 1..7),
         turned in any::<prop::sample::Index>(),
         seed in any::<u64>(),
@@ -131,7 +131,7 @@ proptest! {
         }
     }
 
-    /// The speed where the agent is at the beginning of a time step is the largest one times all factors there.
+    /// The speed is the largest one times all factors at the agent's place at the beginning of a time step.
     #[test]
     fn factors_on_the_speed_are_multiplied(zones in prop::collection::vec(zone(), 0..5), heading in 0.0..360.0f64) {
         let factor: f64 = zones.iter().filter(|zone| zone.contains([0.0; 2])).map(|zone| zone.speed_factor).product();
@@ -146,7 +146,7 @@ proptest! {
         }
     }
 
-    /// No lava is so thin, and nobody so fast, that it is jumped over.
+    /// No lava is thin enough, and no agent fast enough, to jump over it.
     #[test]
     fn no_zone_is_jumped_over(width in 0.001..0.5f64, speed in 1.0..100.0f64, heading in -60.0..60.0f64) {
         let lava = Zone::polygon(vec![[-60.0, 2.0], [60.0, 2.0], [60.0, 2.0 + width], [-60.0, 2.0 + width]]);
@@ -163,7 +163,7 @@ proptest! {
 }
 
 #[test]
-fn an_end_by_a_zone_is_a_success_or_a_failure_and_success_comes_first() {
+fn zone_ends_are_success_or_failure_and_success_takes_precedence() {
     let end = |ends: &[ZoneEnd]| {
         let zones = ends.iter().map(|end| self::ends(Zone::disc([0.0, 1.0], 0.5), *end));
         let mut environment = start(zones.collect(), |_| ());
@@ -174,13 +174,13 @@ fn an_end_by_a_zone_is_a_success_or_a_failure_and_success_comes_first() {
     assert_eq!(end(&[ZoneEnd::Failure]), (true, false));
     assert_eq!(end(&[ZoneEnd::Success]), (true, true));
     assert_eq!(end(&[ZoneEnd::Failure, ZoneEnd::Success]), (true, true));
-    // Who starts in it has entered it.
+    // An agent that starts in a zone has entered it.
     let mut environment = start(vec![ends(Zone::disc([0.0; 2], 2.0), ZoneEnd::Failure)], |_| ());
     assert!(step(&mut environment, REST).terminated);
 }
 
 #[test]
-fn zones_that_lead_to_each_other_are_a_way_there_and_back() {
+fn zones_that_teleport_to_each_other_work_both_ways() {
     let (here, there) = ([0.0, 3.0], [0.0, -20.0]);
     let zones = vec![
         pays(teleports(Zone::disc(here, 1.0), there), 0.0, 1.0),
@@ -192,7 +192,7 @@ fn zones_that_lead_to_each_other_are_a_way_there_and_back() {
         0.0,
         "at its edge"
     );
-    // Into it at the first time steps, and with the others on from the middle of the second.
+    // Into the first zone in the first time steps, and on with the others from the middle of the second.
     let into = step(&mut environment, Action::Continuous([0.9, 0.0, 0.0]));
     assert_eq!(into.reward, 11.0, "arriving is entering");
     assert!((-19.5..-19.0).contains(&environment.agent().position[1]));
@@ -206,7 +206,7 @@ fn zones_that_lead_to_each_other_are_a_way_there_and_back() {
 }
 
 #[test]
-fn a_teleport_leads_beside_what_stands_there_and_of_several_the_first_counts() {
+fn teleport_avoids_objects_and_the_first_of_several_counts() {
     let target = [10.0, 10.0];
     let zones = vec![
         teleports(Zone::disc([0.0, 1.0], 0.9), target),
@@ -225,7 +225,7 @@ fn a_teleport_leads_beside_what_stands_there_and_of_several_the_first_counts() {
 }
 
 #[test]
-fn who_is_put_into_a_zone_from_outside_has_not_entered_it() {
+fn agent_placed_into_a_zone_from_outside_has_not_entered_it() {
     let mut environment = start(vec![pays(Zone::disc([20.0, 0.0], 3.0), 2.0, 50.0)], |_| ());
     environment.teleport([20.0, 0.0], 0.0).expect("there is room");
     let mut other = Environment::new(environment.state());
@@ -235,7 +235,7 @@ fn who_is_put_into_a_zone_from_outside_has_not_entered_it() {
 }
 
 #[test]
-fn the_worlds_of_the_page_are_sound() {
+fn worlds_of_the_docs_are_valid() {
     let page = include_str!("../../docs/worlds.md");
     let texts: Vec<&str> = page
         .split("```json\n")

@@ -1,4 +1,4 @@
-//! How zones look: they colour the ground, and change neither how far anything is nor what it is called.
+//! Rendering of zones: they colour the ground, and change neither depths nor labels.
 
 use driftworld_env::{Camera, CpuRenderer, Environment, Frame, Scene, top_down};
 use driftworld_spec::{Color, Object, WorldDraft, Zone};
@@ -31,7 +31,7 @@ fn zone() -> impl Strategy<Value = Zone> {
         if is_disc {
             Zone::disc([x, y], size)
         } else {
-            // A bent one.
+            // A concave one.
             Zone::polygon(vec![
                 [x, y],
                 [x + size, y - size],
@@ -45,9 +45,9 @@ fn zone() -> impl Strategy<Value = Zone> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// A pixel of the ground is red where the zone is, and nothing but the colour of the ground depends on zones.
+    /// A pixel of the ground is red where the zone is, and only the colour of the ground depends on zones.
     #[test]
-    fn a_zone_colours_its_ground_and_nothing_else(
+    fn zone_colours_only_its_ground(
         zone in zone(),
         at in prop::array::uniform2(-8.0..8.0f32),
         heading in 0.0..360.0f32,
@@ -70,7 +70,7 @@ proptest! {
                 f64::from(at[0]) + metres * (sin + right * cos),
                 f64::from(at[1]) + metres * (cos - right * sin),
             ];
-            // Not at the border, which a disc has a little further in, and where pixels are large.
+            // Not at the border, where a disc's polygon is slightly smaller, and where pixels are large.
             let margin = 0.02 + 0.04 * metres * metres / f64::from(height) * step;
             let around = [[0.0, 0.0], [0.0, margin], [margin, 0.0], [0.0, -margin], [-margin, 0.0]]
                 .map(|by| zone.contains([place[0] + by[0], place[1] + by[1]]));
@@ -85,14 +85,15 @@ proptest! {
                 wrong.push((place, before, now, old.to_vec(), new.to_vec()));
             }
         }
-        // A pixel on the seam of two triangles may be in neither, by how they round, and a seam may run along a row of pixels: seen
-        // once in thousands of pictures. And the foot of an object is as far away as the ground, which is a little lifted here.
+        // A pixel on the seam of two triangles may be in neither because of rounding, and a seam may run along a row of pixels:
+        // this happens once in thousands of images. And the foot of an object is as far away as the ground, which is slightly
+        // raised here.
         prop_assert!(wrong.len() <= 14, "{} pixels: {:?}", wrong.len(), &wrong[..3]);
     }
 
-    /// With any instructions: to the bit.
+    /// With any instruction set: to the bit.
     #[test]
-    fn all_instruction_sets_draw_zones_alike(
+    fn instruction_sets_render_zones_alike(
         zones in prop::collection::vec(zone(), 1..6),
         at in prop::array::uniform2(-8.0..8.0f32),
         heading in 0.0..360.0f32,
@@ -110,7 +111,7 @@ proptest! {
 }
 
 #[test]
-fn the_later_zone_lies_on_top_and_an_invisible_one_nowhere() {
+fn later_zone_is_on_top_and_invisible_zones_are_not_drawn() {
     let under = Zone::disc([0.0, 3.0], 3.0);
     let mut over = Zone::disc([0.0, 3.0], 2.0);
     over.color = Some(Color([0.0, 0.0, 1.0]));
@@ -129,7 +130,7 @@ fn the_later_zone_lies_on_top_and_an_invisible_one_nowhere() {
 }
 
 #[test]
-fn a_map_shows_the_zones() {
+fn map_shows_the_zones() {
     let mut world = WorldDraft::default();
     world.environment_params.map_size = [60.0, 60.0];
     world.environment_params.zones = vec![red(Zone::disc([15.0, 15.0], 5.0))];

@@ -1,4 +1,4 @@
-//! How alike two pictures of the same are, and the renderer on this machine's adapter that draws one of them.
+//! Measures how similar two images of the same view are, and creates a renderer on this machine's adapter.
 
 use std::io::Write as _;
 use std::path::Path;
@@ -15,14 +15,14 @@ pub(crate) fn gpu() -> Option<GpuRenderer> {
             panic!("DRIFTWORLD_REQUIRE_GPU=1: {error}")
         }
         Err(error) => {
-            // Not by println, which the test harness keeps to itself where tests pass.
+            // Not by println, which the test harness hides for passing tests.
             let _ = writeln!(std::io::stderr(), "skipped: {error}");
             None
         }
     }
 }
 
-/// How much of two pictures is alike.
+/// Similarity of two images.
 #[derive(Debug)]
 pub(crate) struct Likeness {
     pub(crate) colors: f64,
@@ -50,7 +50,7 @@ pub(crate) fn likeness(found: &Frame, expected: &Frame) -> Likeness {
     }
 }
 
-/// Whether depth changes by more than 3 % between a pixel and one beside it.
+/// Whether depth changes by more than 3 % between a pixel and a neighbour.
 fn is_silhouette(frame: &Frame, pixel: usize) -> bool {
     let (width, height) = (frame.width as usize, frame.height as usize);
     let (x, y) = (pixel % width, pixel / width);
@@ -64,7 +64,7 @@ fn is_silhouette(frame: &Frame, pixel: usize) -> bool {
     })
 }
 
-/// Writes a picture, the other, and where they differ, beside each other: for looking at after a failure.
+/// Writes an image, the expected one, and their difference, side by side, for inspection after a failure.
 pub(crate) fn write_difference(name: &str, found: &Frame, expected: &Frame) -> std::path::PathBuf {
     let (width, height) = (expected.width as usize, expected.height as usize);
     let mut rgb = Vec::with_capacity(9 * width * height);

@@ -1,7 +1,7 @@
-//! The graphics card draws what the processor draws: colours, depths and labels of the same scenes, pixel by pixel.
+//! The GPU renders what the CPU renders: colours, depths and labels of the same scenes, pixel by pixel.
 //!
-//! A pixel may differ at an edge: the card snaps corners to a grid within the pixel, the processor does not. Where
-//! there is no adapter the tests say that they are skipped; with `DRIFTWORLD_REQUIRE_GPU=1` they fail there.
+//! Pixels at edges may differ, because the GPU snaps corners to a subpixel grid and the CPU does not. Without an adapter, the
+//! tests print that they are skipped; with `DRIFTWORLD_REQUIRE_GPU=1` they fail.
 
 #![cfg(feature = "gpu")]
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
@@ -24,7 +24,7 @@ fn world(file: &str) -> World {
     World::from_json(file, &text).expect("it holds a world")
 }
 
-/// Worlds of all kinds: many objects, walls that are not the arena's, fog, dusk, more classes than fit into a label.
+/// Worlds of all kinds: many objects, additional walls, fog, dusk, more classes than fit into a label.
 fn worlds() -> Vec<(String, World)> {
     let files = [
         "env/benches/scenes/arena_8.json",
@@ -67,7 +67,7 @@ fn worlds() -> Vec<(String, World)> {
     worlds
 }
 
-/// What agents see from several places, something askew, and the arena from outside.
+/// Views of agents from several places, a tilted view, and the arena from outside.
 fn cameras(world: &World, scene: &Scene) -> Vec<Camera> {
     let agent = &world.agent_params;
     let start = agent.coordinates.map(|metres| metres as f32);
@@ -121,16 +121,16 @@ fn check_likeness(size: u32) {
 }
 
 #[test]
-fn pictures_of_84_pixels_are_alike() {
+fn images_of_84_pixels_are_similar() {
     check_likeness(84);
 }
 
 #[test]
-fn pictures_of_256_pixels_are_alike() {
+fn images_of_256_pixels_are_similar() {
     check_likeness(256);
 }
 
-/// A batch on the graphics card, after so many steps.
+/// A batch on this renderer after several steps.
 fn stepped(autoreset: Autoreset, num_threads: usize, renderer: RendererKind) -> Batch {
     let world = world("generator/tests/golden/find_objects-huddle-7-1.json");
     let source = Arc::new(move |episode: Episode| {
@@ -162,7 +162,7 @@ fn stepped(autoreset: Autoreset, num_threads: usize, renderer: RendererKind) -> 
     batch
 }
 
-/// Share of values that are alike.
+/// Share of values that are similar.
 fn alike<T: Copy>(found: &[T], expected: &[T], near: impl Fn(T, T) -> bool) -> f64 {
     assert_eq!(found.len(), expected.len());
     share(
@@ -183,7 +183,7 @@ fn check_images(found: &Images, expected: &Images) {
 }
 
 #[test]
-fn a_batch_on_the_card_is_as_one_on_the_processor() {
+fn gpu_batch_matches_a_cpu_batch() {
     let Some(_) = gpu() else { return };
     for autoreset in [Autoreset::NextStep, Autoreset::SameStep] {
         for num_threads in [1, 2] {
@@ -201,7 +201,7 @@ fn a_batch_on_the_card_is_as_one_on_the_processor() {
             );
             check_images(&out.images, &wanted.images);
             if let (Some(out), Some(wanted)) = (found.final_outputs(), expected.final_outputs()) {
-                // What ended in step 5: a limit of 5 steps, or a second episode.
+                // Episodes that ended in step 5: by a limit of 5 steps, or in a second episode.
                 assert_eq!((&out.truncated, &out.states), (&wanted.truncated, &wanted.states));
                 check_images(&out.images, &wanted.images);
             }
@@ -210,12 +210,12 @@ fn a_batch_on_the_card_is_as_one_on_the_processor() {
 }
 
 #[test]
-fn pictures_drawn_together_are_those_drawn_alone() {
+fn images_rendered_together_match_those_rendered_separately() {
     let Some(mut gpu) = gpu() else { return };
     let world = world("env/benches/scenes/arena_20.json");
     let scene = Scene::from_world(&world);
     let cameras = cameras(&world, &scene);
-    // Of two sizes, so that they need two passes.
+    // Two sizes, so that two passes are needed.
     let size = |k: usize| if k.is_multiple_of(3) { 60 } else { 84 };
     let mut together: Vec<Frame> = (0..cameras.len()).map(|k| Frame::new(size(k), size(k))).collect();
     let pictures = together.iter_mut().zip(&cameras);
@@ -230,14 +230,14 @@ fn pictures_drawn_together_are_those_drawn_alone() {
     for (k, (frame, camera)) in together.iter().zip(&cameras).enumerate() {
         let mut alone = Frame::new(size(k), size(k));
         gpu.render(&scene, camera, &mut alone).expect("the adapter draws");
-        // A corner on the edge of a pixel may fall to either side, depending on where in the target the picture lies.
+        // A corner on the edge of a pixel may fall on either side, depending on the image's position in the target.
         let like = likeness(frame, &alone);
         assert!(like.colors >= 0.999 && like.instances >= 0.999, "picture {k}: {like:?}");
     }
 }
 
 #[test]
-fn what_cannot_be_drawn_is_an_error() {
+fn impossible_images_are_errors() {
     let Some(mut gpu) = gpu() else { return };
     let scene = Scene::from_world(&World::default());
     let camera = Camera::overview(&scene);
@@ -250,7 +250,7 @@ fn what_cannot_be_drawn_is_an_error() {
     };
     let error = gpu.draw(&scene, &camera, &mut target).expect_err("too short");
     assert_eq!(error, EnvError::PictureSize { width: 4, height: 4 });
-    // And it goes on drawing.
+    // Rendering still works afterwards.
     gpu.render(&scene, &camera, &mut Frame::new(1, 300))
         .expect("an odd size");
     gpu.render(&scene, &camera, &mut Frame::new(0, 0))
@@ -259,7 +259,7 @@ fn what_cannot_be_drawn_is_an_error() {
 }
 
 #[test]
-fn an_environment_draws_with_the_card_that_was_asked_for() {
+fn environment_renders_on_the_requested_gpu() {
     let Some(gpu) = gpu() else { return };
     let world = world("env/benches/scenes/arena_8.json");
     let mut environment = Environment::with_renderer(world, RendererKind::Gpu).expect("there is an adapter");
@@ -286,7 +286,7 @@ fn an_environment_draws_with_the_card_that_was_asked_for() {
     );
 }
 
-/// A world in which the first interaction picks up a red thing; what is carried is shown or not.
+/// A world in which the first interaction picks up a red thing; carried things are shown or not.
 fn carrying(shown: bool) -> World {
     let mut thing = Object::new("cube", [0.0, 1.0]);
     (thing.scale, thing.color) = (0.3, Some(Color([0.9, 0.1, 0.1])));
@@ -301,7 +301,7 @@ fn carrying(shown: bool) -> World {
 }
 
 #[test]
-fn what_is_carried_is_drawn_alike_alone_and_in_a_batch() {
+fn carried_things_look_the_same_alone_and_in_a_batch() {
     if gpu().is_none() {
         return;
     }
@@ -343,9 +343,9 @@ fn what_is_carried_is_drawn_alike_alone_and_in_a_batch() {
     assert!(like.colors >= 0.99 && like.instances >= 0.99, "{like:?}");
 }
 
-/// Plain and natural worlds in one batch: the processor draws the natural ones, to the bit.
+/// Plain and natural worlds in one batch: the natural ones are rendered on the CPU, to the bit.
 #[test]
-fn natural_pictures_of_a_batch_are_the_processors() {
+fn natural_images_of_a_batch_are_rendered_on_the_cpu() {
     let Some(mut gpu) = gpu() else { return };
     let styles = [Style::Natural, Style::Plain, Style::Natural];
     let scenes = styles.map(|style| {

@@ -1,4 +1,4 @@
-//! Objects with tags, for worlds of doors and of things that are carried.
+//! Objects with tags, for worlds with doors and carriable things.
 
 use driftworld_spec::{Object, Portable};
 
