@@ -1,4 +1,4 @@
-//! Touching and coming near: the stimuli of one pass do not depend on speed, on the time step, or on the frame skip.
+//! Touching and coming near: the stimuli of one pass do not depend on speed or time step.
 
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 

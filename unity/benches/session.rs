@@ -1,4 +1,4 @@
-//! How long a session takes for a command, without a network: a step with its pictures in both forms, a reset, a state message.
+//! Time of a session's commands, without a network: a step with its images in both forms, a reset, a state message.
 
 #![expect(clippy::disallowed_methods, reason = "only its speed is measured")]
 
@@ -11,7 +11,7 @@ use driftworld_unity::protocol::{
 };
 use driftworld_unity::{BEHAVIOR, PictureForm, Screenshots, Session, Setup};
 
-/// Twenty objects in a ring, around which the agent drives in a circle.
+/// Twenty objects in a ring, around which the agent drives.
 fn ring() -> World {
     let kinds = ["tree", "barrel", "chair", "rock", "geometric"];
     let object = |number: u32| {

@@ -1,5 +1,4 @@
-//! The arguments: ours, and those that clients give to any Unity executable, which must do no harm. What they lead to is in
-//! `serve.rs`.
+//! Parses the arguments: our own, and those that clients give to any Unity executable, which are ignored.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -9,10 +8,10 @@ use driftworld_spec::nearest;
 use crate::error::UnityError;
 use crate::observation::PictureForm;
 
-/// What this executable is.
+/// The text by which the executable identifies itself.
 pub const MARK: &str = "driftworld-unity: a stand-in for the L2Explorer executable";
 
-/// What `--help` prints.
+/// The output of `--help`.
 pub const HELP: &str = "\
 Runs Driftworld's worlds in place of L2Explorer's Unity executable, for clients that speak the ML-Agents protocol.
 
@@ -40,7 +39,7 @@ Options:
 -nographics, -batchmode and what else Unity knows are accepted and mean nothing: no display and no graphics card are needed.
 Exit codes: 0 the client is done, 1 an error, 2 arguments that cannot be, 3 no client came.";
 
-/// What the arguments ask for.
+/// The request in the arguments.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Request {
     /// A session with a client.
@@ -51,28 +50,28 @@ pub enum Request {
     Version,
 }
 
-/// How a session is to be.
+/// Options of a session.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// The client's machine.
     pub host: String,
     /// The client's port.
     pub port: u16,
-    /// How long to look for a client.
+    /// How long to wait for a client.
     pub wait: Duration,
-    /// The world at the start, if not the default one.
+    /// The initial world; the default world if absent.
     pub world: Option<PathBuf>,
-    /// Layouts of predefined maps, if not the built-in ones.
+    /// Layouts of predefined maps; the built-in ones if absent.
     pub maps: Option<PathBuf>,
-    /// Libraries of models, the last one in front.
+    /// Libraries of models; later ones take precedence.
     pub assets: Vec<PathBuf>,
     /// The folder for screenshots.
     pub screenshots: PathBuf,
-    /// The form of pictures.
+    /// The form of images.
     pub pictures: PictureForm,
-    /// The file that episodes are recorded in, if they are.
+    /// The file for recorded episodes, if they are recorded.
     pub record: Option<PathBuf>,
-    /// The file that remarks go to; the terminal if absent.
+    /// The log file; the terminal if absent.
     pub log: Option<PathBuf>,
 }
 
@@ -93,7 +92,7 @@ impl Default for Options {
     }
 }
 
-/// Options of ours.
+/// Our own options.
 const OURS: [&str; 11] = [
     "--assets",
     "--mlagents-port",
@@ -108,7 +107,7 @@ const OURS: [&str; 11] = [
     "--version",
 ];
 
-/// Options of Unity's that clients are known to give, in lower case, without meaning here.
+/// Unity options that clients are known to use, in lower case, without effect here.
 const UNITYS: [&str; 9] = [
     "-nographics",
     "-batchmode",
@@ -121,19 +120,19 @@ const UNITYS: [&str; 9] = [
     "-force-vulkan",
 ];
 
-/// The shortest wait, in which a client that is there can be met, and the longest: a day.
+/// The shortest wait, long enough to reach a running client, and the longest: a day.
 const SHORTEST_WAIT_SECS: f64 = 0.1;
 const LONGEST_WAIT_SECS: f64 = 86_400.0;
 
 impl Request {
-    /// Reads the arguments, without the program's name; hands back remarks on those that mean nothing here.
+    /// Parses the arguments, without the program's name; returns remarks on those without effect.
     ///
     /// # Errors
-    /// [`UnityError::Arguments`] where an option of ours has no value, or none that can be.
+    /// [`UnityError::Arguments`] if one of our options has no value, or an invalid one.
     pub fn parse(arguments: &[String]) -> Result<(Self, Vec<String>), UnityError> {
         let mut options = Options::default();
         let mut remarks = Vec::new();
-        // A word behind an option that we do not know is its value, as far as we can know.
+        // A word after an unknown option may be its value.
         let mut after_foreign = false;
         let mut rest = arguments.iter().peekable();
         while let Some(argument) = rest.next() {
@@ -175,7 +174,7 @@ impl Request {
                     }
                 },
                 other if other.eq_ignore_ascii_case("-logfile") => {
-                    // As in Unity: without a file it is the terminal.
+                    // As in Unity: without a file, the log goes to the terminal.
                     let file = rest.next_if(|next| !is_option(next));
                     let file = file.filter(|file| !file.is_empty() && *file != "-");
                     options.log = file.map(PathBuf::from);
@@ -196,14 +195,14 @@ impl Request {
     }
 }
 
-/// Whether a word is an option rather than the value of the one before it.
+/// Whether a word is an option rather than the value of the previous one.
 fn is_option(word: &str) -> bool {
     word.len() > 1 && word.starts_with('-') && word.parse::<f64>().is_err()
 }
 
-/// The option of ours that a word may stand for.
+/// Our own option that a word may stand for.
 fn meant(word: &str) -> Option<String> {
-    // What most programs call it.
+    // Most programs use this name.
     if word.trim_start_matches('-').eq_ignore_ascii_case("port") {
         return Some("--mlagents-port".to_owned());
     }
@@ -246,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn clients_say_the_port_among_unitys_options() {
+    fn port_is_read_among_unity_options() {
         let (found, remarks) = options("-nographics -batchmode --mlagents-port 5007 -logFile a.log");
         assert_eq!(found.port, 5007);
         assert_eq!(found.log, Some(PathBuf::from("a.log")));
@@ -255,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn a_log_file_without_a_name_is_the_terminal() {
+    fn log_file_without_a_name_is_the_terminal() {
         for text in [
             "-logfile -",
             "-logFile",
@@ -273,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_known_is_ignored_with_a_remark() {
+    fn unknown_options_are_ignored_with_a_remark() {
         let (found, remarks) =
             options("-screen-width 640 -popupwindow --mlagents-scene-name A --screenshot b c d --port 5007");
         assert_eq!(found, Options::default());
@@ -291,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn ours_take_their_values_either_way() {
+    fn own_options_accept_both_value_forms() {
         let (found, _) = options(
             "--screenshots=out --world w.json --wait 2.5 --assets a --raw-observations --maps=m --host ::1 --assets=b",
         );
@@ -309,7 +308,7 @@ mod tests {
     }
 
     #[test]
-    fn values_that_cannot_be_are_refused() {
+    fn invalid_values_are_refused() {
         let check = |text: &str, expected: &str| {
             let error = parse(text).expect_err("the value cannot be");
             assert_eq!(error.to_string(), expected);
@@ -346,7 +345,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_behind_an_equals_sign_may_begin_as_an_option_does() {
+    fn value_after_an_equals_sign_may_look_like_an_option() {
         assert_eq!(options("--world=-odd.json").0.world, Some("-odd.json".into()));
         assert_eq!(options("--screenshots -").0.screenshots, PathBuf::from("-"));
     }

@@ -1,21 +1,20 @@
-//! What can be done in a world, as clients of each generation are told: one behaviour, of three continuous numbers or one
-//! discrete. What they mean is the world's action model's, and its table's.
+//! The behaviour of a world's agent, as each generation of clients expects it: three continuous numbers or one discrete one.
 
 use driftworld_spec::{ActionModel, ActionSpace, AgentParams};
 
 use crate::client::Client;
 use crate::protocol::{ActionSpecProto, BrainParametersProto, SpaceTypeProto};
 
-/// The behaviour's name. Clients take what stands behind the question mark for its team.
+/// The behaviour's name. Clients take the part after the question mark as its team.
 pub const BEHAVIOR: &str = "L2Explorer?team=0";
 
-/// How many numbers an action has.
+/// Number of continuous numbers in an action.
 pub(crate) const ACTION_LENGTH: usize = 3;
 
-/// What an action is where the world has a table of them.
+/// Description of an action in worlds with an action table.
 const ROW: &str = "a row of the world's table of actions";
 
-/// The behaviour as a client understands it: three continuous numbers, or one discrete, the row of the world's table.
+/// The behaviour for a client: three continuous numbers, or one discrete one, the row of the world's action table.
 pub(crate) fn behavior(agent: &AgentParams, client: Client) -> BrainParametersProto {
     let num_rows = agent.num_actions().map(|rows| rows as i32);
     let (words, kind) = match num_rows {
@@ -38,7 +37,7 @@ pub(crate) fn behavior(agent: &AgentParams, client: Client) -> BrainParametersPr
     }
 }
 
-/// What the numbers mean, in words.
+/// Descriptions of the numbers.
 pub(crate) fn words(agent: &AgentParams) -> [&'static str; ACTION_LENGTH] {
     let is_normalized = agent.actions == ActionSpace::Normalized;
     match (agent.action_model, is_normalized) {
@@ -62,7 +61,7 @@ pub(crate) fn words(agent: &AgentParams) -> [&'static str; ACTION_LENGTH] {
     }
 }
 
-/// The third number where the agent goes by velocity.
+/// Description of the third number, for agents that move by velocity.
 fn interact(agent: &AgentParams, words: &'static str) -> &'static str {
     if agent.interact { words } else { "ignored" }
 }
@@ -72,7 +71,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_table_of_actions_is_one_choice_for_every_generation() {
+    fn action_table_is_one_discrete_choice_for_every_client() {
         let mut agent = AgentParams {
             actions: ActionSpace::DefaultDiscrete,
             ..AgentParams::default()
@@ -91,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_told_as_the_world_takes_them() {
+    fn descriptions_match_the_worlds_actions() {
         let mut agent = AgentParams::default();
         assert_eq!(words(&agent)[0], "speed in m/s");
         agent.interact = false;

@@ -1,20 +1,20 @@
-//! [`Client`]: what a client says of itself, and what that means for how it is spoken to.
+//! [`Client`]: a client's capabilities, from its first message.
 
 use crate::error::UnityError;
 use crate::protocol::UnityRlInitializationInputProto;
 
-/// Which of the protocol's ways a client understands.
+/// The protocol features that a client understands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Client {
-    /// Continuous numbers have a list of their own, and behaviours an `action_spec` (from 1.3 of the protocol on).
+    /// Continuous numbers have their own list, and behaviours an `action_spec` (since 1.3 of the protocol).
     pub(crate) hybrid_actions: bool,
-    /// Pictures are (channels, height, width) instead of (height, width, channels). The protocol has no flag for it: packages
+    /// Images are (channels, height, width) instead of (height, width, channels). The protocol has no flag for this: packages
     /// from 1.0 on expect it.
     pub(crate) channels_first: bool,
 }
 
 impl Client {
-    /// Reads what a client says of itself.
+    /// Reads a client's first message.
     ///
     /// # Errors
     /// [`UnityError::ClientVersion`] unless it speaks version 1 of the protocol.
@@ -31,7 +31,7 @@ impl Client {
     }
 }
 
-/// The first number of a version.
+/// The major number of a version.
 fn major(version: &str) -> Option<u32> {
     version.split('.').next()?.parse().ok()
 }
@@ -54,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn each_generation_of_clients_is_spoken_to_in_its_own_way() {
+    fn capabilities_follow_the_clients_generation() {
         let check = |communication: &str, package: &str, hybrid: bool, expected: (bool, bool)| {
             let client = Client::new(&said(communication, package, hybrid)).expect("the client is of version 1");
             assert_eq!((client.hybrid_actions, client.channels_first), expected, "{package}");

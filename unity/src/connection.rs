@@ -1,4 +1,4 @@
-//! [`Connection`]: one client's gRPC server, called again and again. What is said is decided in `session/mod.rs`.
+//! [`Connection`]: calls a client's gRPC server.
 
 use std::time::Duration;
 
@@ -12,35 +12,35 @@ use tonic_prost::ProstCodec;
 use crate::error::UnityError;
 use crate::protocol::UnityMessageProto;
 
-/// The longest message that is read, in bytes: far more than the texts of the channels may hold in values.
+/// Longest message that is read, in bytes: far more than the limits on texts and values allow.
 pub const MAX_INCOMING_BYTES: usize = 48 << 20;
 
-/// How long a connection may be silent before the network is asked whether there is somebody still.
+/// Time of silence after which TCP checks whether the other side is still there.
 const KEEPALIVE: Duration = Duration::from_secs(30);
 
-/// How long to wait before looking again for a client that is not there yet.
+/// Time between attempts to reach a client.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
 
-/// The protocol's one call: Python is the server, the world is the client. Each call carries what the world has to say, and is
-/// answered by what it is to do next.
+/// The protocol's only call: Python is the server, the world the client. Each call carries the world's output, and the response
+/// is the next input.
 const CALL: &str = "/communicator_objects.UnityToExternalProto/Exchange";
 
-/// A client, found.
+/// A connection to a client.
 pub(crate) struct Connection {
     client: Grpc<Channel>,
     address: String,
 }
 
-/// What comes of a call.
+/// The result of a call.
 pub(crate) enum Reply {
     /// The client's next message.
     Message(Box<UnityMessageProto>),
-    /// It is gone, with what the network says.
+    /// The client is gone, with the network's message.
     Gone(String),
 }
 
 impl Connection {
-    /// Looks for a client for so long.
+    /// Tries to connect to a client until `wait` is over.
     pub(crate) async fn open(host: &str, port: u16, wait: Duration) -> Result<Self, UnityError> {
         let deadline = Instant::now() + wait;
         let host = if host.contains(':') {
@@ -53,7 +53,7 @@ impl Connection {
         let endpoint = Endpoint::from_shared(format!("http://{address}"))
             .map_err(no_address)?
             .tcp_nodelay(true)
-            // Another machine may lose its power without a word.
+            // Another machine may lose power silently.
             .tcp_keepalive(Some(KEEPALIVE));
         loop {
             match timeout_at(deadline, endpoint.connect()).await {
@@ -70,12 +70,12 @@ impl Connection {
         }
     }
 
-    /// Machine and port.
+    /// Host and port.
     pub(crate) fn address(&self) -> &str {
         &self.address
     }
 
-    /// The first call, by which a stranger is known: whoever listens there has as long again to answer as a client does.
+    /// The first call, which detects servers that are not clients: they have to answer within `wait`.
     pub(crate) async fn greet(&mut self, greeting: UnityMessageProto, wait: Duration) -> Result<Reply, UnityError> {
         let address = self.address.clone();
         match timeout(wait, self.call(greeting)).await {
@@ -91,7 +91,7 @@ impl Connection {
         }
     }
 
-    /// Says something, and waits for the answer: as long as the client likes.
+    /// Sends a message and waits for the answer without a time limit.
     pub(crate) async fn exchange(&mut self, message: UnityMessageProto) -> Result<Reply, UnityError> {
         reply(self.call(message).await)
     }
@@ -108,25 +108,25 @@ impl Connection {
 fn reply(answer: Result<UnityMessageProto, Status>) -> Result<Reply, UnityError> {
     match answer {
         Ok(message) => Ok(Reply::Message(Box::new(message))),
-        // Our reading of a message failed: it is too long, or no protobuf.
+        // We could not decode a message: it is too long, or not valid protobuf.
         Err(status)
             if matches!(status.code(), Code::OutOfRange | Code::Internal | Code::DataLoss)
                 && !is_transport(&status) =>
         {
             Err(UnityError::Unreadable(status.message().to_owned()))
         }
-        // A client that closes cancels the call, one that is killed breaks the connection, and one that ends within its handler
-        // says that this failed: all of them are gone.
+        // A client that closes cancels the call, a client that is killed breaks the connection, and one that exits within its
+        // handler reports a failure: all of them are gone.
         Err(status) => Ok(Reply::Gone(reason(&status))),
     }
 }
 
-/// Whether the network failed rather than somebody answered.
+/// Whether the network failed, rather than the server returned an error.
 fn is_transport(status: &Status) -> bool {
     std::error::Error::source(status).is_some()
 }
 
-/// A status in words, with the innermost cause.
+/// A status as text, with the innermost cause.
 fn reason(status: &Status) -> String {
     let mut cause: &dyn std::error::Error = status;
     while let Some(inner) = cause.source() {

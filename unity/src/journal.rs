@@ -1,4 +1,4 @@
-//! [`Journal`]: remarks, line by line, on the terminal or in a file. What is remarked is decided elsewhere.
+//! [`Journal`]: writes remarks, line by line, to the terminal or a file.
 
 use std::fs::File;
 use std::io::Write;
@@ -8,17 +8,17 @@ use driftworld_text::printable_lines;
 
 use crate::error::UnityError;
 
-/// Where remarks go.
+/// The destination of remarks.
 #[derive(Debug)]
 pub struct Journal {
     file: Option<File>,
 }
 
 impl Journal {
-    /// A journal at the end of a file, or on the terminal.
+    /// Opens a journal that appends to a file, or writes to the terminal.
     ///
     /// # Errors
-    /// [`UnityError::Writing`] where the file cannot be opened for writing.
+    /// [`UnityError::Writing`] if the file cannot be opened for writing.
     pub fn open(path: Option<&Path>) -> Result<Self, UnityError> {
         let open = |path: &Path| {
             driftworld_files::append(path).map_err(|source| UnityError::Writing {
@@ -32,8 +32,8 @@ impl Journal {
         })
     }
 
-    /// Notes one remark, in which characters that a terminal would obey or hide are shown. A file that cannot be
-    /// written any more is left for the terminal.
+    /// Writes one remark, with control and invisible characters escaped. If writing to the file fails, switches to the
+    /// terminal.
     pub fn note(&mut self, remark: &str) {
         let remark = printable_lines(remark);
         let written = self
@@ -42,7 +42,7 @@ impl Journal {
             .map(|file| writeln!(file, "driftworld-unity: {remark}"));
         if !matches!(written, Some(Ok(()))) {
             self.file = None;
-            // A terminal that is gone is no reason to end.
+            // A closed terminal is no reason to stop.
             let _ = writeln!(std::io::stderr(), "driftworld-unity: {remark}");
         }
     }

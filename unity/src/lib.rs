@@ -1,7 +1,7 @@
-//! Takes the place of L2Explorer's Unity executable: runs worlds for clients that speak the ML-Agents protocol.
+//! Replaces L2Explorer's Unity executable: runs worlds for clients that speak the ML-Agents protocol.
 //!
-//! A [`Session`] turns what a client says into what a world answers, without network or clock; [`run`] carries it over gRPC. What
-//! messages of L2Explorer do is decided in `driftworld-env`.
+//! A [`Session`] turns a client's messages into a world's answers, without network or clock; [`run`] connects it over gRPC.
+//! L2Explorer's messages are implemented in `driftworld-env`.
 
 mod arguments;
 mod behavior;

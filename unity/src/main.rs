@@ -1,4 +1,4 @@
-//! The executable: reads its arguments, runs a session, sets the exit status. Everything else is in the library.
+//! The executable: parses its arguments, runs a session, sets the exit status.
 
 use std::fmt::Display;
 use std::io::{Write, stderr, stdout};
@@ -8,7 +8,7 @@ use driftworld_text::printable_lines;
 use driftworld_unity::{HELP, Journal, MARK, Request, UnityError, run};
 
 fn main() -> ExitCode {
-    // Without a thread signals do what they always do.
+    // Without this thread, signals keep their default effect.
     #[cfg(unix)]
     let _ = std::thread::Builder::new()
         .name("signals".to_owned())
@@ -21,7 +21,7 @@ fn main() -> ExitCode {
         Ok((Request::Help, _)) => say(stdout(), HELP),
         Ok((Request::Version, _)) => say(stdout(), format_args!("{MARK}, {}", env!("CARGO_PKG_VERSION"))),
         Ok((Request::Run(options), remarks)) => {
-            // Without a log file there is the terminal still.
+            // Without a log file there is still the terminal.
             let journal = Journal::open(options.log.as_deref())
                 .inspect_err(|error| say(stderr(), format_args!("driftworld-unity: {error}")));
             let ending = journal.and_then(|mut journal| {
@@ -41,7 +41,7 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Ends the process at the first signal, as if nobody looked for it, but with nothing half written left.
+/// Ends the process at the first signal, after removing unfinished files.
 #[cfg(unix)]
 fn follow_signals() {
     use driftworld_atomic_files::remove_unfinished;
@@ -59,7 +59,7 @@ fn follow_signals() {
     }
 }
 
-/// A terminal that is gone, or a full disk behind it, does not change how we end.
+/// Writes to the terminal. A closed terminal, or a full disk behind it, does not change the exit status.
 fn say(mut terminal: impl Write, words: impl Display) {
     let _ = writeln!(terminal, "{}", printable_lines(&words.to_string()));
 }

@@ -1,5 +1,4 @@
-//! What an agent sees, as clients understand it: depth, colours, segmentation, then a list of numbers. What there is to see is
-//! drawn by `driftworld-env`.
+//! Converts observations to the protocol's form: depth, colours, segmentation, then a list of numbers.
 
 use driftworld_env::{Frame, category_color, depth_to_gray};
 
@@ -7,7 +6,7 @@ use crate::client::Client;
 use crate::error::UnityError;
 use crate::protocol::{CompressionTypeProto, FloatData, ObservationData, ObservationProto};
 
-/// How pictures travel.
+/// The form in which images are sent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PictureForm {
     /// As PNG files, as Unity sends them.
@@ -17,19 +16,19 @@ pub enum PictureForm {
     Floats,
 }
 
-/// What a dimension means to clients from 1.5 of the protocol on.
+/// Properties of a dimension, for clients from 1.5 of the protocol on.
 const NO_NEIGHBOURS: i32 = 1;
 const NEIGHBOURS: i32 = 2;
 
-/// The channels of a picture: red, green, blue.
+/// The channels of an image: red, green, blue.
 const CHANNELS: usize = 3;
 
-/// Where depth is white, in metres, as [`depth_to_gray`] has it: far nearer than the sky.
+/// Distance in metres at which depth is white, as in [`depth_to_gray`]: much nearer than the sky's.
 const WHITE_DEPTH: f32 = 100.0;
 
 /// The observations of a frame and a state, in the original's order.
 ///
-/// `state` is what goes behind the number of the object that was collected.
+/// `state` follows the number of the collected object.
 pub(crate) fn observations(
     frame: &Frame,
     state: Vec<f32>,
@@ -64,12 +63,12 @@ pub(crate) fn observations(
     ])
 }
 
-/// A picture of one channel as one of three.
+/// Repeats a single-channel image in three channels.
 fn tripled<T: Copy>(values: impl IntoIterator<Item = T>) -> Vec<T> {
     values.into_iter().flat_map(|value| [value; CHANNELS]).collect()
 }
 
-/// Floats row by row as the client wants them: channels last, or first.
+/// Orders floats as the client expects them: channels last, or first.
 fn ordered(floats: Vec<f32>, client: Client) -> Vec<f32> {
     if !client.channels_first {
         return floats;
@@ -109,7 +108,7 @@ fn vector(state: Vec<f32>) -> ObservationProto {
     }
 }
 
-/// A PNG file of 8-bit RGB, made in a hurry: it lives for a millisecond.
+/// Encodes 8-bit RGB as PNG with fast compression, because it is used only for a millisecond.
 pub(crate) fn png([width, height]: [u32; 2], rgb: &[u8]) -> Result<Vec<u8>, UnityError> {
     let failed = |error: png::EncodingError| UnityError::Picture(error.to_string());
     let mut bytes = Vec::new();
@@ -127,7 +126,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn depth_in_floats_is_the_grey_of_png_files_with_its_fractions() {
+    fn float_depth_equals_png_grey_before_rounding() {
         let metres = vec![0.0, 0.1, 33.3, 99.9, 100.0, 1000.0];
         let mut frame = Frame::new(metres.len() as u32, 1);
         frame.depth.clone_from(&metres);

@@ -1,5 +1,4 @@
-//! [`Outbox`]: messages that wait to be sent, and no more of them in one go than a client accepts. What they say is decided
-//! elsewhere.
+//! [`Outbox`]: queued messages, sent in batches no larger than a client accepts.
 
 use std::collections::VecDeque;
 
@@ -7,22 +6,22 @@ use uuid::Uuid;
 
 use crate::side_channel::{RECORD_HEAD, write_record};
 
-/// The longest message that is sent, in bytes: what gRPC servers accept where nobody says otherwise.
+/// Longest message that is sent, in bytes: the default limit of gRPC servers.
 pub(crate) const MAX_OUTGOING_BYTES: usize = 4 << 20;
 
-/// The most records that may wait: who asks for more than it takes is told less.
+/// Most queued records: if a client requests more than it accepts, later ones are dropped.
 const MOST_WAITING: usize = 10_000;
 
-/// Messages to the client, in the order in which they go.
+/// Messages to the client, in sending order.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Outbox {
     waiting: VecDeque<(Uuid, Vec<u8>)>,
-    /// How many were left out since somebody asked.
+    /// Number of dropped messages since the last query.
     left_out: usize,
 }
 
 impl Outbox {
-    /// Puts a message at the end.
+    /// Appends a message.
     pub(crate) fn push(&mut self, channel: Uuid, payload: Vec<u8>) {
         if self.waiting.len() < MOST_WAITING {
             self.waiting.push_back((channel, payload));
@@ -31,7 +30,7 @@ impl Outbox {
         }
     }
 
-    /// Takes what fits into that many bytes; the rest waits. A message that would not fit alone is left out.
+    /// Takes messages that fit into `room` bytes; the rest stays queued. Drops messages too long to fit alone.
     pub(crate) fn take(&mut self, room: usize) -> Vec<u8> {
         let mut bytes = Vec::new();
         while let Some((channel, payload)) = self.waiting.front() {
@@ -48,7 +47,7 @@ impl Outbox {
         bytes
     }
 
-    /// How many messages were left out since this was asked last.
+    /// The number of messages dropped since the last call.
     pub(crate) fn take_left_out(&mut self) -> usize {
         std::mem::take(&mut self.left_out)
     }
@@ -66,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_waits_and_what_never_fits_is_left_out() {
+    fn oversized_messages_are_dropped_and_others_wait() {
         let mut outbox = Outbox::default();
         for length in [10, 200, 30, 40] {
             outbox.push(Uuid::nil(), vec![0; length]);
@@ -80,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn there_is_an_end_to_waiting() {
+    fn queue_length_is_limited() {
         let mut outbox = Outbox::default();
         for _ in 0..MOST_WAITING + 5 {
             outbox.push(Uuid::nil(), Vec::new());

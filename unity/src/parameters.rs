@@ -1,4 +1,4 @@
-//! [`Parameters`]: numbers that clients set by name, laid over each world at its reset. How they arrive is in `side_channel`.
+//! [`Parameters`]: numbers that clients set by name and that override each world at its reset.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use driftworld_spec::{World, WorldDraft, nearest};
 
 use crate::side_channel::Setting;
 
-/// What can be set: what L2Explorer's reset files cannot say, or what a client may want to change beside them.
+/// Known parameters: settings that L2Explorer's reset files lack, or that a client may want to change independently of them.
 const KNOWN: [&str; 8] = [
     "time_step",
     "frame_skip",
@@ -18,37 +18,37 @@ const KNOWN: [&str; 8] = [
     "max_angular_speed",
 ];
 
-/// Those that are whole numbers, and the least that each can be.
+/// The integer ones, with the least value of each.
 const WHOLE: [(&str, u32); 3] = [("frame_skip", 1), ("max_steps", 0), ("supersampling", 1)];
 
-/// The numbers that are set.
+/// The parameters that are set.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Parameters(BTreeMap<&'static str, f64>);
 
 impl Parameters {
-    /// Takes a number over, from the next reset on.
+    /// Sets a parameter, from the next reset on.
     ///
     /// # Errors
-    /// Why it means nothing, or cannot be; what was set before stays.
+    /// The reason why it is unknown or invalid; previous values stay.
     pub(crate) fn set(&mut self, setting: &Setting) -> Result<(), String> {
         let Setting { key, value } = setting;
         let Some(known) = KNOWN.into_iter().find(|known| known.eq_ignore_ascii_case(key)) else {
             let near = nearest(key, KNOWN).map_or_else(String::new, |near| format!("; did you mean {near:?}?"));
             return Err(format!("{key:?} = {value}: ignored, it has no meaning here{near}"));
         };
-        // By way of its digits, so that 0.1 is 0.1.
+        // Converts through decimal digits, so that 0.1 is exactly 0.1.
         let number = value.to_string().parse().unwrap_or(f64::NAN);
         check(known, number).map_err(|expected| format!("{known} = {value}: ignored, expected {expected}"))?;
         self.0.insert(known, number);
         Ok(())
     }
 
-    /// Whether a name means something.
+    /// Whether a name is known.
     pub(crate) fn knows(key: &str) -> bool {
         KNOWN.iter().any(|known| known.eq_ignore_ascii_case(key))
     }
 
-    /// Lays the numbers over a world.
+    /// Applies the parameters to a world.
     pub(crate) fn apply(&self, world: &mut WorldDraft) {
         for (key, number) in &self.0 {
             let agent = &mut world.agent_params;
@@ -66,12 +66,12 @@ impl Parameters {
         }
     }
 
-    /// Whether nothing is set.
+    /// Whether no parameter is set.
     pub(crate) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// The world with the numbers laid over it, checked as a document would be; else what is wrong with it.
+    /// The world with the parameters applied and checked; otherwise the problem.
     pub(crate) fn try_world(&self, world: World) -> Result<World, String> {
         world.edit(|world| self.apply(world)).map_err(|error| {
             let first = error.problems().first();
@@ -83,12 +83,12 @@ impl Parameters {
     }
 }
 
-/// Whether a world may have that number, as a document would be checked; else what was expected.
+/// Checks a number as in a document; the error is what was expected.
 fn check(known: &'static str, number: f64) -> Result<(), String> {
     let least = WHOLE.iter().find(|(key, _)| *key == known).map(|(_, least)| *least);
     match least {
         None if !number.is_finite() => return Err("a number".to_owned()),
-        // Before it becomes a whole number, which would round it.
+        // Checked before conversion to an integer, which would round it.
         Some(least) if number.fract() != 0.0 || number < f64::from(least) => {
             return Err(format!("a whole number from {least}"));
         }
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn every_known_number_changes_the_world_and_no_other() {
+    fn only_known_parameters_change_the_world() {
         for key in KNOWN {
             let mut parameters = Parameters::default();
             let value = if key == "max_steps" { 7.0 } else { 3.0 };
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_what_their_digits_say() {
+    fn numbers_keep_their_decimal_digits() {
         let mut parameters = Parameters::default();
         set(&mut parameters, "Time_Step", 0.1).expect("names are known in any case");
         let mut world = WorldDraft::default();
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_is_ignored_with_a_reason_and_changes_nothing() {
+    fn invalid_values_are_ignored_with_a_reason() {
         let mut parameters = Parameters::default();
         set(&mut parameters, "frame_skip", 4.0).expect("4 is sound");
         let before = parameters.clone();

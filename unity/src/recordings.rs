@@ -1,4 +1,4 @@
-//! [`RecordingFile`]: the file that a session's episodes are written into, one behind the other. What a line says is `driftworld-env`'s.
+//! [`RecordingFile`]: the file to which a session's episodes are appended.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{BufReader, Seek, Write};
@@ -8,29 +8,29 @@ use driftworld_env::{Recording, RecordingLines, RecordingReader};
 
 use crate::error::UnityError;
 
-/// A file of recordings that is added to. Clients that start this program again and again go on in the same file.
+/// A file of recordings opened for appending. A client that starts this program repeatedly extends the same file.
 #[derive(Debug)]
 pub struct RecordingFile {
     path: PathBuf,
     file: File,
     lines: RecordingLines,
-    /// The number of the next episode.
+    /// Index of the next episode.
     next: u64,
 }
 
 impl RecordingFile {
-    /// A new file, or one behind whose last whole episode it goes on.
+    /// Opens a new file, or an existing one after its last complete episode.
     ///
     /// # Errors
-    /// [`UnityError::Writing`] where it cannot be written, or another process writes it; [`UnityError::Recording`] where it holds
-    /// something else, or is damaged.
+    /// [`UnityError::Writing`] if it cannot be written, or another process writes it; [`UnityError::Recording`] if it has other
+    /// contents, or is damaged.
     pub fn open(path: &Path) -> Result<Self, UnityError> {
         let failed = |source: std::io::Error| UnityError::Writing {
             option: "--record",
             path: path.to_owned(),
             source,
         };
-        // To be read and written at once, not by driftworld-files: what is no regular file is refused here.
+        // Not through driftworld-files, because it is read and written; irregular files are refused here.
         let mut options = OpenOptions::new();
         let mut file = options
             .read(true)
@@ -47,12 +47,12 @@ impl RecordingFile {
                     "another driftworld-unity writes it; name another file",
                 )));
             }
-            // Where the system has no locks, there is none.
+            // Without file locks on this system, continue without one.
             Ok(()) | Err(TryLockError::Error(_)) => {}
         }
         let length = file.metadata().map_err(failed)?.len();
         let (mut kept, mut lines, mut next) = (0, RecordingLines::default(), 0);
-        // A shorter one holds no more than the beginning of the first line.
+        // A shorter file has at most a part of the first line.
         if length >= RecordingLines::header().len() as u64 {
             let damaged = |source| UnityError::Recording {
                 path: path.to_owned(),
@@ -84,7 +84,7 @@ impl RecordingFile {
         })
     }
 
-    /// Writes an episode down, under the next number.
+    /// Appends an episode, under the next index.
     ///
     /// # Errors
     /// [`UnityError::Writing`].

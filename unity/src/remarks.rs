@@ -1,24 +1,24 @@
-//! [`Remarks`]: what the user of the executable should know, each thing once. Where it is written is in `journal.rs`.
+//! [`Remarks`]: remarks for the user of the executable, each only once.
 
 use std::collections::BTreeSet;
 
 use driftworld_text::printable_lines;
 
-/// What a remark is about. Each kind has room of its own, so that none crowds out another.
+/// The subject of a remark. Each kind has its own limit, so that none crowds out another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum About {
-    /// Settings and messages that mean nothing here.
+    /// Settings and messages without effect.
     Settings,
-    /// What was made of worlds and objects.
+    /// Changes to worlds and objects while reading them.
     Worlds,
-    /// Messages that were refused, or left out.
+    /// Refused or dropped messages.
     Refusals,
 }
 
-/// The most remarks of a kind in a session: who sends rubbish at each step does not fill a disk.
+/// Most remarks of a kind per session: a client that sends garbage in every step must not fill the disk.
 const MOST: usize = 100;
 
-/// Remarks that were not taken yet, and which there have been.
+/// Remarks not yet taken, and the set of all that were made.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Remarks {
     made: BTreeSet<(About, String)>,
@@ -26,12 +26,12 @@ pub(crate) struct Remarks {
 }
 
 impl Remarks {
-    /// Makes a remark, unless the same was made before.
+    /// Makes a remark, unless the same one was made before.
     pub(crate) fn make(&mut self, about: About, remark: &str) {
         self.make_once(about, remark, remark);
     }
 
-    /// Makes a remark, unless one on the same thing was made before.
+    /// Makes a remark, unless one about the same thing was made before.
     pub(crate) fn make_once(&mut self, about: About, thing: &str, remark: &str) {
         let key = (about, thing.to_owned());
         let count = self.made.iter().filter(|(kind, _)| *kind == about).count();
@@ -40,7 +40,7 @@ impl Remarks {
         }
         self.made.insert(key);
         self.waiting.push(if count < MOST {
-            // What a client sent may stand in it.
+            // It may contain text from a client.
             printable_lines(remark).into_owned()
         } else {
             match about {
@@ -52,7 +52,7 @@ impl Remarks {
         });
     }
 
-    /// What has been remarked since the last time.
+    /// The remarks since the last call.
     pub(crate) fn take(&mut self) -> Vec<String> {
         std::mem::take(&mut self.waiting)
     }
@@ -63,7 +63,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_remark_is_made_once_and_each_kind_has_an_end() {
+    fn remarks_are_unique_and_limited_per_kind() {
         let mut remarks = Remarks::default();
         remarks.make(About::Worlds, "a");
         remarks.make(About::Worlds, "a");

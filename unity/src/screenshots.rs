@@ -1,4 +1,4 @@
-//! [`Screenshots`]: the one folder that messages can write into. What is drawn, and who asks, is in `session/messages.rs`.
+//! [`Screenshots`]: the only folder that messages can write to.
 
 use std::fs;
 use std::io::{Read, Write};
@@ -7,31 +7,31 @@ use std::path::{Component, Path, PathBuf};
 use driftworld_atomic_files::AtomicFile;
 use driftworld_text::ShownPath;
 
-/// The longest name of a file, in bytes.
+/// Longest file name, in bytes.
 const LONGEST_NAME: usize = 200;
 
 /// The first bytes of every PNG file.
 const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1a\n";
 
-/// A folder for pictures that are named by messages.
+/// A folder for images with names from messages.
 #[derive(Clone, Debug)]
 pub struct Screenshots {
     folder: PathBuf,
 }
 
 impl Screenshots {
-    /// Pictures go into this folder; it is made when the first one comes.
+    /// Uses this folder, which is created for the first image.
     pub fn new(folder: impl Into<PathBuf>) -> Self {
         Self { folder: folder.into() }
     }
 
-    /// Writes a PNG file inside the folder, whatever path the name says, and hands back where it is.
+    /// Writes a PNG file inside the folder, whatever path the name contains, and returns its path.
     ///
-    /// Folders in the name are kept where they lead further in; of a name that leads anywhere else only the last part counts. A
-    /// picture of that name is replaced; links are replaced themselves, and what they point to stays as it is.
+    /// Subfolders in the name are kept if they lead further into the folder; of any other path only the last part is used.
+    /// Replaces an existing image of that name; replaces a link itself, not the file that it points to.
     ///
     /// # Errors
-    /// Why there is no such file now: a name that is none, a folder of that name, what the system says.
+    /// The reason why the file could not be written: an invalid name, a folder of that name, or the system's error.
     pub(crate) fn write(&self, name: &str, png: &[u8]) -> Result<PathBuf, String> {
         let relative = inside(name)?;
         let path = self.folder.join(&relative);
@@ -65,7 +65,7 @@ impl Screenshots {
     }
 }
 
-/// Whether a file begins as PNG files do; one that cannot be read does not.
+/// Whether a file starts like a PNG file; false if it cannot be read.
 fn is_png(path: &Path) -> bool {
     let mut start = [0; SIGNATURE.len()];
     let Ok(mut opened) = driftworld_files::open(path, u64::MAX) else {
@@ -74,7 +74,7 @@ fn is_png(path: &Path) -> bool {
     opened.file.read_exact(&mut start).is_ok() && start == SIGNATURE
 }
 
-/// The path inside the folder that a name stands for.
+/// The path inside the folder for a name.
 fn inside(name: &str) -> Result<PathBuf, String> {
     let refuse = || {
         Err(format!(
@@ -82,7 +82,7 @@ fn inside(name: &str) -> Result<PathBuf, String> {
             name.chars().take(100).collect::<String>()
         ))
     };
-    // Clients on Windows name paths of Windows.
+    // Clients on Windows use Windows paths.
     let slashed = name.replace('\\', "/");
     let path = Path::new(&slashed);
     let leads_in = path.components().all(|part| matches!(part, Component::Normal(_))) && !slashed.contains(':');
@@ -98,7 +98,7 @@ fn inside(name: &str) -> Result<PathBuf, String> {
     if last.is_empty() || name.len() > 4 * LONGEST_NAME || !path.components().all(is_name) {
         return refuse();
     }
-    // As the original has it: another ending stays, and what is in the file is PNG all the same.
+    // As in the original: other extensions are kept, although the contents are PNG.
     if path.extension().is_none() {
         path.set_extension("png");
     }
@@ -110,7 +110,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_name_stays_inside() {
+    fn every_name_stays_inside_the_folder() {
         let check = |name: &str, expected: &str| assert_eq!(inside(name), Ok(PathBuf::from(expected)), "{name}");
         check("a.png", "a.png");
         check("a", "a.png");
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn pictures_replace_pictures_and_nothing_else() {
+    fn screenshots_replace_only_images() {
         let root = tempfile::tempdir().expect("the machine has a folder for temporary files");
         let screenshots = Screenshots::new(root.path().join("deep/out"));
         let path = screenshots
@@ -166,7 +166,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_picture_that_is_replaced_keeps_its_mode() {
+    fn replaced_screenshot_keeps_its_file_mode() {
         use std::os::unix::fs::PermissionsExt;
         let root = tempfile::tempdir().expect("the machine has a folder for temporary files");
         let screenshots = Screenshots::new(root.path());
@@ -181,7 +181,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn links_lead_nowhere() {
+    fn links_are_not_followed() {
         let root = tempfile::tempdir().expect("the machine has a folder for temporary files");
         let out = root.path().join("out");
         fs::create_dir(&out).expect("the folder can be made");

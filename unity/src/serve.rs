@@ -1,4 +1,4 @@
-//! [`run`]: a session over a connection, from the first look for a client to its end. What is said is decided in `session/mod.rs`.
+//! [`run`]: runs a session over a connection, from the first attempt to connect to its end.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -23,22 +23,22 @@ use crate::recordings::RecordingFile;
 use crate::screenshots::Screenshots;
 use crate::session::{Session, Setup, Turn};
 
-/// The states of a sender.
+/// Status codes of a sender.
 const WELL: i32 = 200;
 const END: i32 = 400;
 const FAILED: i32 = 500;
 
-/// The largest library of assets that is read, in bytes, as for the command.
+/// Largest asset library that is read, in bytes, as in the `driftworld` command.
 const MAX_LIBRARY_BYTES: u64 = 1 << 30;
 
-/// How long a client has to hear why we end.
+/// Time that a client has to receive the reason for the end.
 const FAREWELL: Duration = Duration::from_millis(500);
 
-/// Looks for a client, and does what it says until it ends.
+/// Connects to a client, and follows its commands until it ends.
 ///
 /// # Errors
-/// [`UnityError`] for files that cannot be used, without a client, and for a client that breaks the protocol, which is told so
-/// before. A client that ends or goes away is no error.
+/// [`UnityError`] for unusable files, without a client, and for a client that violates the protocol, which is told first. A
+/// client that quits or disconnects is no error.
 pub fn run(options: &Options, journal: &mut Journal) -> Result<(), UnityError> {
     let maps = match &options.maps {
         Some(path) => MapLibrary::from_json(&path.display().to_string(), &read("--maps", path)?)?,
@@ -53,7 +53,7 @@ pub fn run(options: &Options, journal: &mut Journal) -> Result<(), UnityError> {
         catalogue: catalogue(&options.assets)?,
         pictures: options.pictures,
     };
-    // Always with three digits of the second: readers of one fixed form do not take fewer.
+    // Always with milliseconds: parsers with a fixed format require them.
     let clock = || format!("{:.3}", jiff::Timestamp::now());
     let mut session = Session::new(setup, Screenshots::new(&options.screenshots), clock);
     let mut recordings = options.record.as_deref().map(RecordingFile::open).transpose()?;
@@ -68,15 +68,15 @@ pub fn run(options: &Options, journal: &mut Journal) -> Result<(), UnityError> {
         .build()
         .map_err(UnityError::Network)?;
     let ended = runtime.block_on(serve(&mut session, options, journal, recordings.as_mut()));
-    // However it ended: the episode under way is kept, too.
+    // However it ended, the current episode is kept as well.
     session.end_recording();
     let kept = write(&mut session, recordings.as_mut());
-    // What the network still has to do for a client that is gone is not waited for.
+    // Does not wait for remaining network work for a client that is gone.
     runtime.shutdown_background();
     ended.and(kept)
 }
 
-/// Writes down the episodes that are over.
+/// Writes finished episodes.
 fn write(session: &mut Session, recordings: Option<&mut RecordingFile>) -> Result<(), UnityError> {
     let Some(recordings) = recordings else { return Ok(()) };
     session
@@ -85,8 +85,8 @@ fn write(session: &mut Session, recordings: Option<&mut RecordingFile>) -> Resul
         .try_for_each(|recording| recordings.write(recording))
 }
 
-/// A world file, in our form or in the original's. What the original's reader made sense of is noted: a misspelt key reads as one
-/// that means nothing.
+/// Reads a world file, in our format or the original's. Notes the warnings of the original's reader, because there a misspelt
+/// key counts as unknown.
 fn world(path: &Path, maps: &MapLibrary, journal: &mut Journal) -> Result<World, UnityError> {
     let text = read("--world", path)?;
     let name = path.display().to_string();
@@ -94,7 +94,7 @@ fn world(path: &Path, maps: &MapLibrary, journal: &mut Journal) -> Result<World,
         Ok(world) => return Ok(world),
         Err(error) => error,
     };
-    // Only ours has a version; where neither form reads, the complaints of ours are the stricter ones.
+    // Only our format has a version; if neither format fits, our reader's errors are the stricter ones.
     let is_ours = serde_json::from_str::<Ours>(&text).is_ok_and(|ours| ours.version.is_some());
     match World::from_l2explorer_with(&name, &text, maps) {
         Ok((world, warnings)) if !is_ours => {
@@ -108,13 +108,13 @@ fn world(path: &Path, maps: &MapLibrary, journal: &mut Journal) -> Result<World,
     }
 }
 
-/// What only our form has; everything else is passed over, however much it is.
+/// The key that only our format has; ignores everything else, of any size.
 #[derive(Deserialize)]
 struct Ours {
     version: Option<IgnoredAny>,
 }
 
-/// The built-in models with those of libraries in front.
+/// The built-in models, overridden by those of libraries.
 fn catalogue(paths: &[PathBuf]) -> Result<Catalogue, UnityError> {
     let mut catalogue = Catalogue::default();
     for path in paths {
@@ -159,7 +159,7 @@ async fn serve(
     ));
     let mut next = session.begin(&said).map(|()| UnityOutputProto::default());
     if next.is_err() {
-        // Clients do not look at the answer to who they are; what comes before their first command is lost on them.
+        // Clients ignore the answer to their first message, so an error before their first command would be lost.
         let reply = connection.exchange(message(UnityOutputProto::default())).await?;
         if matches!(reply, Reply::Gone(_)) {
             return next.map(drop);
@@ -194,7 +194,7 @@ async fn serve(
     }
 }
 
-/// What the client says, or nothing at its end.
+/// The client's input, or `None` at its end.
 fn input(reply: Reply, journal: &mut Journal) -> Result<Option<UnityInputProto>, UnityError> {
     let message = match reply {
         Reply::Message(message) => message,
@@ -217,7 +217,7 @@ fn input(reply: Reply, journal: &mut Journal) -> Result<Option<UnityInputProto>,
     }
 }
 
-/// An output as a message that clients accept.
+/// Wraps an output in a message, and checks that clients accept its size.
 fn fitting(output: UnityOutputProto) -> Result<UnityMessageProto, UnityError> {
     let message = message(output);
     let found = message.encoded_len();
@@ -238,7 +238,7 @@ fn message(output: UnityOutputProto) -> UnityMessageProto {
     }
 }
 
-/// Tells the client why we end; whether it listens is its own affair.
+/// Tells the client the reason for the end; its answer does not matter.
 async fn farewell(connection: &mut Connection, error: &UnityError) {
     let last = UnityMessageProto {
         header: Some(HeaderProto {

@@ -1,4 +1,4 @@
-//! All integration tests of this crate, as one program: it is linked once.
+//! All integration tests of this crate in one binary, to link once.
 
 mod conversation;
 mod error_messages;

@@ -1,8 +1,7 @@
-//! Recorded conversations: what clients of three releases say, and all that is answered, down to pixels and texts. How the
-//! bytes travel is in `executable`.
+//! Recorded conversations: what clients of three releases send, and every answer, down to pixels and texts.
 //!
-//! `golden/record.py` records the clients; `INSTA_UPDATE=always` writes the answers anew. Pictures count by a checksum of their
-//! pixels: the bytes of a PNG file are the encoder's affair.
+//! `golden/record.py` records the clients; `INSTA_UPDATE=always` rewrites the answers. Images are compared by a checksum of
+//! their pixels, because the bytes of a PNG file depend on the encoder.
 
 use std::fmt::Write;
 
@@ -17,7 +16,7 @@ use serde_json::Value;
 
 use crate::recorded::{RELEASES, messages};
 
-/// The channels of L2Explorer, as their identifiers travel.
+/// L2Explorer's channels, by the first bytes of their encoded identifiers.
 const CHANNELS: [([u8; 4], &str); 3] = [
     ([0x70, 0x0a, 0x1f, 0x62], "Reset"),
     ([0x21, 0x51, 0x71, 0x37], "State"),
@@ -93,7 +92,7 @@ fn behavior(text: &mut String, known: &BrainParametersProto) -> std::fmt::Result
     )
 }
 
-/// The messages beside, each with its channel.
+/// The side channel messages, with their channels.
 fn beside(mut bytes: &[u8]) -> Vec<(&'static str, Value)> {
     let number = |bytes: &[u8]| i32::from_le_bytes(bytes.try_into().expect("four bytes")) as usize;
     let mut found = Vec::new();
@@ -130,7 +129,7 @@ fn output(text: &mut String, output: &UnityOutputProto) -> std::fmt::Result {
     Ok(())
 }
 
-/// Everything that is answered to a client of a release.
+/// All answers to the client of a release.
 fn answers(release: &str) -> Result<String, std::fmt::Error> {
     let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
     let mut session = session(folder.path());
@@ -173,14 +172,15 @@ fn each_release_is_answered_as_ever() {
 }
 
 #[test]
-fn the_same_conversation_has_the_same_answers() {
+fn same_conversation_gives_the_same_answers() {
     assert_eq!(answers("0.16"), answers("0.16"));
 }
 
-/// Field for field: what is read of a message is all that there is in it.
+/// Field by field: decoding a message loses nothing.
 #[test]
-fn nothing_that_clients_send_is_skipped_but_the_number_of_areas() {
-    // How many copies of its scene Unity is to build: there is one world here. It is the last field of a client's first message.
+fn only_the_number_of_areas_is_skipped_in_clients_messages() {
+    // The number of copies of its scene that Unity should build, which does not apply here. The last field of a client's first
+    // message.
     let areas = [5 << 3, 1];
     for release in RELEASES {
         for (about, mut bytes) in messages(release) {
@@ -189,7 +189,7 @@ fn nothing_that_clients_send_is_skipped_but_the_number_of_areas() {
             if release != "0.16" && about == "who the client is" {
                 assert!(bytes.ends_with(&areas), "{release}");
                 bytes.truncate(bytes.len() - areas.len());
-                // The lengths around it are shorter by as much.
+                // The enclosing lengths are shorter by the same amount.
                 kept[6] += areas.len() as u8;
                 kept[8] += areas.len() as u8;
             }
@@ -199,7 +199,7 @@ fn nothing_that_clients_send_is_skipped_but_the_number_of_areas() {
 }
 
 #[test]
-fn quit_ends_a_session_and_what_came_with_it_is_done() {
+fn quit_handles_its_messages_and_ends_the_session() {
     let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
     let mut session = session(folder.path());
     let asks = |(about, _): &(String, Vec<u8>)| about.contains("screenshot");

@@ -1,5 +1,5 @@
-//! Every error of this crate with its code, its exit status and its exact words. That the advice in them helps is shown where
-//! each comes about: in `executable`.
+//! Every error of this crate with its code, exit status and exact message. The tests in `executable` check that the advice in
+//! them helps.
 
 use std::collections::BTreeSet;
 use std::io;

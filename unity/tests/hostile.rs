@@ -1,5 +1,4 @@
-//! What a session is told by who means harm, or by who is merely broken: it is refused within limits, and the session goes on. How
-//! long a message may be on its way is in `executable`.
+//! Malicious or broken messages to a session are refused within limits, and the session continues.
 
 use driftworld_spec::World;
 use driftworld_unity::protocol::{
@@ -11,15 +10,15 @@ use prost::Message;
 
 use crate::recorded::{RELEASES, messages};
 
-/// The Reset channel's identifier, as it travels.
+/// The Reset channel's encoded identifier.
 const RESET: [u8; 16] = [
     0x70, 0x0a, 0x1f, 0x62, 0x87, 0x4f, 0xea, 0x11, 0xa6, 0xbf, 0x78, 0x4f, 0x43, 0x87, 0xd1, 0xf7,
 ];
 
-/// What gRPC servers accept where nobody says otherwise.
+/// The default limit of gRPC servers.
 const MOST_ANSWERED: usize = 4 << 20;
 
-/// A session in a small world, whose screenshots go nowhere that is kept.
+/// A session in a small world, with screenshots in a temporary folder.
 fn session() -> (Session, tempfile::TempDir) {
     let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
     let world = World::default().edit(|world| world.agent_params.observation_size = 8);
@@ -36,7 +35,7 @@ fn record(guid: [u8; 16], length: i32, payload: &[u8]) -> Vec<u8> {
     [guid.as_slice(), &length.to_le_bytes(), payload].concat()
 }
 
-/// A message on the Reset channel that is as long as it says.
+/// A message on the Reset channel with correct lengths.
 fn told(text: &str) -> Vec<u8> {
     let payload = [&(text.len() as i32).to_le_bytes(), text.as_bytes()].concat();
     record(RESET, payload.len() as i32, &payload)
@@ -74,7 +73,7 @@ fn actions(lists: &[(&str, &[&[f32]])]) -> UnityRlInputProto {
     }
 }
 
-/// The session answers a reset and a step, whatever it was told before.
+/// The session still answers a reset and a step.
 fn assert_well(session: &mut Session) {
     let reset = UnityRlInputProto {
         command: CommandProto::Reset.into(),
@@ -87,7 +86,7 @@ fn assert_well(session: &mut Session) {
     }
 }
 
-/// What the session answers to a message beside a step, and remarks; it goes on.
+/// The session's answer to a message sent with a step, and its remarks; the session must continue.
 fn check(bytes: Vec<u8>) -> (String, Vec<String>) {
     let (mut session, _folder) = session();
     let output = answer(&mut session, &step_with(bytes)).expect("a message does not end a session");
@@ -101,19 +100,19 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 200), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn any_bytes_are_survived(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
+    fn arbitrary_bytes_never_panic(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
         check(bytes);
     }
 
     #[test]
-    fn any_text_on_a_channel_is_answered(text in ".{0,200}") {
+    fn arbitrary_text_on_a_channel_is_answered(text in ".{0,200}") {
         let (sent, _) = check(told(&text));
         prop_assert!(sent.contains("\"action\":\"error\""), "{sent}");
     }
 
-    /// What is no message any more is refused by its reader; what still is one is answered or refused, and the session goes on.
+    /// Invalid messages are refused by the decoder; valid ones are answered or refused, and the session continues.
     #[test]
-    fn recorded_messages_that_were_tampered_with_are_survived(
+    fn tampered_recorded_messages_never_panic(
         release in 0..RELEASES.len(),
         number in 1_usize..14,
         changes in proptest::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
@@ -132,7 +131,7 @@ proptest! {
             && let Some(input) = message.unity_input.and_then(|input| input.rl_input)
         {
             let (mut session, _folder) = session();
-            // Either is an answer.
+            // Any answer is fine.
             let _ = answer(&mut session, &input);
             assert_well(&mut session);
         }
@@ -140,7 +139,7 @@ proptest! {
 }
 
 #[test]
-fn lengths_that_lie_are_refused_at_both_levels() {
+fn wrong_lengths_are_refused_at_both_levels() {
     for length in [-1, i32::MIN, 0x7fff_ffff, 100] {
         let (_, remarks) = check(record(RESET, length, b"abc"));
         assert!(
@@ -156,9 +155,9 @@ fn lengths_that_lie_are_refused_at_both_levels() {
     }
 }
 
-/// Longer ones do not come through: the transport refuses what is above 48 MiB.
+/// Longer ones do not arrive: the transport refuses more than 48 MiB.
 #[test]
-fn a_text_of_40_megabytes_is_answered_in_a_few_words() {
+fn text_of_40_megabytes_gets_a_short_answer() {
     let long = "x".repeat(40_000_000);
     for text in [
         long.clone(),
@@ -178,7 +177,7 @@ fn a_text_of_40_megabytes_is_answered_in_a_few_words() {
 }
 
 #[test]
-fn bombs_of_json_are_refused_before_they_go_off() {
+fn json_bombs_are_refused_before_parsing() {
     let list = |value: &str| {
         format!(
             "[{}{value}]",
@@ -200,9 +199,9 @@ fn bombs_of_json_are_refused_before_they_go_off() {
     }
 }
 
-/// As many as messages may have; each is remarked upon or refused, in one look at the text.
+/// As many as messages may have; each gets a remark or a refusal, in one pass over the text.
 #[test]
-fn texts_full_of_mistakes_are_looked_at_once() {
+fn texts_with_many_mistakes_are_read_once() {
     let keys: Vec<String> = (0..50_000).map(|key| format!("\"k{key}\":1")).collect();
     let (sent, _) = check(told(&format!(
         "{{\"action\":\"reset_environment\",\"payload\":{{{}}}}}",
@@ -228,7 +227,7 @@ fn texts_full_of_mistakes_are_looked_at_once() {
 }
 
 #[test]
-fn odd_json_is_refused_in_words() {
+fn odd_json_is_refused_with_a_message() {
     let reset = |payload: &str| format!("{{\"action\":\"reset_environment\",\"payload\":{payload}}}");
     for text in [
         "[".repeat(300_000),
@@ -246,7 +245,7 @@ fn odd_json_is_refused_in_words() {
 }
 
 #[test]
-fn many_small_messages_are_cut_off_and_said_so() {
+fn surplus_messages_are_refused_with_a_message() {
     let (sent, remarks) = check(told("{}").repeat(5000));
     assert_eq!(sent.matches("\"action\":\"error\"").count(), 5000);
     assert_eq!(sent.matches("found more than 1000 in one go").count(), 4000);
@@ -254,9 +253,9 @@ fn many_small_messages_are_cut_off_and_said_so() {
     assert!(remarks.iter().any(|remark| remark == cut), "{remarks:?}");
 }
 
-/// While texts are read, the end of a client is not seen: so they may not add up to more than one of the largest.
+/// While texts are being read, a disconnected client is not noticed, so together they may not exceed one of the largest.
 #[test]
-fn texts_in_one_go_are_read_up_to_a_limit() {
+fn texts_of_one_batch_are_limited() {
     let zeros = vec!["0"; 150_000].join(",");
     let text = format!(r#"{{"action":"reset_environment","payload":{{}},"beside":[{zeros}]}}"#);
     let (sent, _) = check(told(&text).repeat(4));
@@ -264,7 +263,7 @@ fn texts_in_one_go_are_read_up_to_a_limit() {
     assert_eq!(sent.matches("of the 400000 in one go").count(), 2, "{sent}");
 }
 
-/// The guids of the Debug channel and of environment parameters, as they travel.
+/// The encoded identifiers of the Debug channel and of environment parameters.
 const DEBUG: [u8; 16] = [
     0xb5, 0xa0, 0xfb, 0xc5, 0x92, 0x63, 0x33, 0x44, 0xa9, 0x5f, 0xcd, 0xec, 0x6b, 0x00, 0x61, 0xe1,
 ];
@@ -272,16 +271,16 @@ const PARAMETERS: [u8; 16] = [
     0x1e, 0x89, 0x4c, 0x53, 0x0f, 0x81, 0xea, 0x11, 0xa9, 0xd0, 0x82, 0x24, 0x85, 0x86, 0x04, 0x00,
 ];
 
-/// An environment parameter as it travels.
+/// An encoded environment parameter.
 fn parameter(name: &str, value: f32) -> Vec<u8> {
     let number = value.to_le_bytes();
     let payload = [&(name.len() as i32).to_le_bytes(), name.as_bytes(), &[0; 4], &number].concat();
     record(PARAMETERS, payload.len() as i32, &payload)
 }
 
-/// While pictures are drawn, the end of a client is not seen: so there are only few in one go.
+/// While images are drawn, a disconnected client is not noticed, so their number per batch is limited.
 #[test]
-fn only_so_many_large_screenshots_are_drawn_in_one_go() {
+fn large_screenshots_per_batch_are_limited() {
     let text = r#"{"action":"save_screenshot","payload":{"filename":"a.png","upscale_factor":512}}"#;
     let payload = [&(text.len() as i32).to_le_bytes(), text.as_bytes()].concat();
     let (sent, _) = check(record(DEBUG, payload.len() as i32, &payload).repeat(5));
@@ -310,7 +309,7 @@ fn remarks_on_settings_leave_room_for_those_on_refusals() {
 }
 
 #[test]
-fn parameters_that_do_not_suit_a_world_are_left_out_for_it() {
+fn parameters_invalid_in_a_world_are_skipped_for_it() {
     let (mut session, _folder) = session();
     let large = told(r#"{"action":"reset_environment","payload":{"agent_params":{"observation_size":2100}}}"#);
     let input = UnityRlInputProto {
@@ -327,7 +326,7 @@ fn parameters_that_do_not_suit_a_world_are_left_out_for_it() {
 }
 
 #[test]
-fn only_a_step_looks_at_actions() {
+fn only_step_reads_actions() {
     let (mut session, _folder) = session();
     for command in [CommandProto::Reset, CommandProto::Quit] {
         let input = UnityRlInputProto {
@@ -341,7 +340,7 @@ fn only_a_step_looks_at_actions() {
 }
 
 #[test]
-fn answers_that_pile_up_wait_for_the_next_turn_and_have_an_end() {
+fn surplus_answers_wait_for_the_next_turn_up_to_a_limit() {
     let debug = [
         0xb5, 0xa0, 0xfb, 0xc5, 0x92, 0x63, 0x33, 0x44, 0xa9, 0x5f, 0xcd, 0xec, 0x6b, 0x00, 0x61, 0xe1,
     ];
@@ -350,9 +349,9 @@ fn answers_that_pile_up_wait_for_the_next_turn_and_have_an_end() {
     let mut listen = told(listen);
     listen[..16].copy_from_slice(&debug);
     answer(&mut session, &step_with(listen)).expect("messages do not end a session");
-    // Each key is remarked upon, in more bytes than a client takes in one go, and more often than may wait.
+    // Each key gives a remark, with more bytes than a client takes at a time, and more messages than may be queued.
     let keys: Vec<String> = (0..12_000).map(|key| format!("\"{key:0>200}\":1")).collect();
-    // Of one message the first 300 are.
+    // Each message reports its first 300.
     let wide = keys.chunks(300).flat_map(|keys| {
         told(&format!(
             "{{\"action\":\"reset_environment\",\"payload\":{{{}}}}}",
@@ -377,7 +376,7 @@ fn answers_that_pile_up_wait_for_the_next_turn_and_have_an_end() {
 }
 
 #[test]
-fn commands_and_actions_that_cannot_be_change_nothing() {
+fn invalid_commands_and_actions_change_nothing() {
     let sound: &[f32] = &[0.0, 0.0, 0.0];
     let unknown = UnityRlInputProto {
         command: -1,

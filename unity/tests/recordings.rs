@@ -1,4 +1,4 @@
-//! What a client does is recorded: each episode comes out once more to the bit, also where the client changes the world while it runs.
+//! Recordings of a session replay each episode to the bit, even if the client changes the world during an episode.
 
 use std::collections::BTreeMap;
 use std::io::BufReader;
@@ -10,12 +10,12 @@ use driftworld_unity::protocol::{AgentActionProto, CommandProto, UnityRlInitiali
 use driftworld_unity::{BEHAVIOR, RecordingFile, Screenshots, Session, Setup, Turn};
 use proptest::prelude::*;
 
-/// The channel on which worlds are reset and objects are made, as it travels.
+/// The encoded identifier of the channel for resets and new objects.
 const RESET: [u8; 16] = [
     0x70, 0x0a, 0x1f, 0x62, 0x87, 0x4f, 0xea, 0x11, 0xa6, 0xbf, 0x78, 0x4f, 0x43, 0x87, 0xd1, 0xf7,
 ];
 
-/// A cube that pays, on the agent's way.
+/// A cube that pays, on the agent's path.
 fn cube(x: f64, y: f64) -> Object {
     let mut object = Object::new("cube", [x, y]);
     object.reward = 5.0;
@@ -43,17 +43,17 @@ fn session() -> Session {
     session
 }
 
-/// A message on the channel for resets.
+/// A message on the Reset channel.
 fn told(text: &str) -> Vec<u8> {
     let payload = [&(text.len() as i32).to_le_bytes(), text.as_bytes()].concat();
     [&RESET[..], &(payload.len() as i32).to_le_bytes(), &payload].concat()
 }
 
-/// What a client does.
+/// An action of the client.
 #[derive(Clone, Debug)]
 enum Act {
     Step([f32; 3]),
-    /// A step with an object that is made before it.
+    /// A step, with an object that is created before it.
     Create([f32; 3], f64, f64),
     Reset,
 }
@@ -67,7 +67,7 @@ fn act() -> impl Strategy<Value = Act> {
     ]
 }
 
-/// Does it; hands back what the steps paid, the last one of an episode first where another has begun.
+/// Carries it out; returns the rewards of its steps, with the last one of an episode first if another has begun.
 fn carry_out(session: &mut Session, act: &Act) -> Vec<(f32, bool)> {
     let (command, action, side_channel) = match act {
         Act::Step(action) => (CommandProto::Step, Some(action), Vec::new()),
@@ -110,7 +110,7 @@ fn read(path: &std::path::Path) -> Vec<Recording> {
     found
 }
 
-/// What each step of a recording pays when it is run once more.
+/// The rewards of each step when a recording is replayed.
 fn paid(recording: &Recording) -> Vec<f32> {
     let mut replay = Replay::new(recording, &Catalogue::default());
     let mut paid = Vec::new();
@@ -124,7 +124,7 @@ fn paid(recording: &Recording) -> Vec<f32> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
     #[test]
-    fn what_a_client_does_comes_out_once_more(acts in prop::collection::vec(act(), 1..60)) {
+    fn recorded_episodes_replay_to_the_bit(acts in prop::collection::vec(act(), 1..60)) {
         let mut session = session();
         carry_out(&mut session, &Act::Reset);
         let mut episodes: Vec<Vec<f32>> = vec![Vec::new()];
@@ -143,14 +143,14 @@ proptest! {
             }
         }
         session.end_recording();
-        // Episodes without a step are none.
+        // Episodes without a step are not recorded.
         episodes.retain(|rewards| !rewards.is_empty());
 
         let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
         let path = folder.path().join("episodes.jsonl");
         let recordings = session.take_recordings();
         let mut half = recordings.len() / 2;
-        // A client that starts the program again goes on in the same file.
+        // A client that restarts the program continues the same file.
         let mut file = RecordingFile::open(&path).expect("it can be made");
         for recording in recordings {
             if half == 0 {
@@ -174,7 +174,7 @@ proptest! {
 }
 
 #[test]
-fn two_programs_do_not_write_one_file() {
+fn file_is_locked_against_a_second_program() {
     let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
     let path = folder.path().join("episodes.jsonl");
     let first = RecordingFile::open(&path).expect("it can be made");

@@ -1,5 +1,4 @@
-//! The protocol's numbers, against bytes that are put together by hand: what each field's number and kind are, as published
-//! clients have them. What is said in the fields is in `conversation.rs`.
+//! Encodings of the protocol compared with bytes written by hand: each field's number and type, as in published clients.
 
 use driftworld_unity::Session;
 use driftworld_unity::protocol::{
@@ -10,7 +9,7 @@ use driftworld_unity::protocol::{
 };
 use prost::Message;
 
-/// A whole number below 128, or true.
+/// An integer below 128, or true.
 fn number(field: u8, value: u8) -> Vec<u8> {
     varint(field, &[value])
 }
@@ -36,7 +35,7 @@ fn floats(field: u8, values: &[f32]) -> Vec<u8> {
     block(field, bytes)
 }
 
-/// The value is written as those bytes, and read from them.
+/// The value encodes to these bytes and decodes from them.
 fn check<M: Message + Default + PartialEq + std::fmt::Debug>(message: &M, parts: &[Vec<u8>]) {
     let bytes = parts.concat();
     assert_eq!(message.encode_to_vec(), bytes, "{message:?} is written so");
@@ -48,7 +47,7 @@ fn check<M: Message + Default + PartialEq + std::fmt::Debug>(message: &M, parts:
 }
 
 #[test]
-fn the_envelope_has_its_numbers() {
+fn envelope_has_the_published_field_numbers() {
     let header = HeaderProto {
         status: 200,
         message: "m".to_owned(),
@@ -70,7 +69,7 @@ fn the_envelope_has_its_numbers() {
 }
 
 #[test]
-fn what_clients_say_has_its_numbers() {
+fn inputs_have_the_published_field_numbers() {
     let who = UnityRlInitializationInputProto {
         seed: 7,
         communication_version: "1.0.0".to_owned(),
@@ -98,7 +97,7 @@ fn what_clients_say_has_its_numbers() {
     check(&command, &[block(1, entry), number(4, 2), block(5, [9, 8])]);
     let numbers = [CommandProto::Step, CommandProto::Reset, CommandProto::Quit].map(i32::from);
     assert_eq!(numbers, [0, 1, 2]);
-    // A value function of the trainer's, which nobody here reads.
+    // The trainer's value function, which is ignored.
     let known = AgentActionProto::decode([floats(1, &[1.0]), float(4, 3.0)].concat().as_slice());
     assert_eq!(known.expect("it is sound").vector_actions, [1.0]);
 }
@@ -116,7 +115,7 @@ fn capabilities() -> UnityRlCapabilitiesProto {
 }
 
 #[test]
-fn what_is_answered_has_its_numbers() {
+fn outputs_have_the_published_field_numbers() {
     let agent = AgentInfoProto {
         reward: 0.5,
         done: true,
@@ -134,7 +133,7 @@ fn what_is_answered_has_its_numbers() {
 }
 
 #[test]
-fn observations_have_their_numbers() {
+fn observations_have_the_published_field_numbers() {
     let picture = ObservationProto {
         shape: vec![4, 5, 3],
         compression_type: CompressionTypeProto::Png.into(),
@@ -160,7 +159,7 @@ fn observations_have_their_numbers() {
 }
 
 #[test]
-fn behaviours_have_their_numbers() {
+fn behaviours_have_the_published_field_numbers() {
     let spec = ActionSpecProto {
         num_continuous_actions: 3,
         num_discrete_actions: 1,
@@ -189,7 +188,7 @@ fn behaviours_have_their_numbers() {
 }
 
 #[test]
-fn the_greeting_is_these_bytes() {
+fn greeting_has_the_expected_bytes() {
     let version = format!("driftworld {}", env!("CARGO_PKG_VERSION"));
     let capable = [number(1, 1), number(4, 1)].concat();
     let parts = [

@@ -1,5 +1,4 @@
-//! What worlds ask of a session beyond three continuous numbers and an agent that acts: tables of actions, photographs, models
-//! of one's own, and objects that nobody knows.
+//! Worlds with special demands on a session: action tables, photographs, custom models and unknown objects.
 
 use std::collections::BTreeMap;
 
@@ -63,7 +62,7 @@ fn floats(agent: &AgentInfoProto, place: usize) -> &[f32] {
     }
 }
 
-/// A row as clients of either generation say it.
+/// A row as clients of either generation send it.
 fn row(number: usize, is_new: bool) -> AgentActionProto {
     let (vector_actions, discrete_actions) = if is_new {
         (Vec::new(), vec![number as i32])
@@ -81,7 +80,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn rows_of_a_table_do_in_a_session_what_they_do_in_a_world(
+    fn action_rows_have_the_same_effect_as_in_the_environment(
         table in proptest::option::of(proptest::collection::vec([-10.0..=10.0f64, -90.0..=90.0, 0.0..=1.0], 1..5)),
         rows in proptest::collection::vec(any::<proptest::sample::Index>(), 1..12),
         is_new in any::<bool>(),
@@ -111,7 +110,7 @@ proptest! {
 }
 
 #[test]
-fn rows_that_are_not_there_and_other_lengths_are_refused() {
+fn unknown_rows_and_wrong_lengths_are_refused() {
     let mut world = WorldDraft::default();
     world.agent_params.actions = ActionSpace::DefaultDiscrete;
     let refused = |action: AgentActionProto| {
@@ -140,7 +139,7 @@ fn rows_that_are_not_there_and_other_lengths_are_refused() {
 }
 
 #[test]
-fn a_world_for_photographs_shows_one_a_step_and_ends_with_the_last() {
+fn photographs_are_shown_one_per_step_until_the_last() {
     let mut barrel = Object::new("barrel", [3.0, 4.0]);
     barrel.heading = 90.0;
     let mut world = WorldDraft {
@@ -167,7 +166,7 @@ fn a_world_for_photographs_shows_one_a_step_and_ends_with_the_last() {
             .take(view, &mut frame.target())
             .expect("the view is of this studio");
         let rgb = floats(agent, 1);
-        // Channels first, as the last generation has it.
+        // Channels first, as the last generation expects.
         let expected: Vec<f32> = (0..3)
             .flat_map(|channel| {
                 frame
@@ -192,7 +191,7 @@ fn a_world_for_photographs_shows_one_a_step_and_ends_with_the_last() {
         (2.0, 1.0),
         "then it begins anew"
     );
-    // The first photograph of the barrel, which faces east: the camera stands east of it and looks west.
+    // The first photograph of the barrel, which faces east: the camera is east of it and looks west.
     let mut again = answer(&mut session, CommandProto::Reset, None);
     for _ in 0..6 {
         again = answer(&mut session, CommandProto::Step, None);
@@ -205,7 +204,7 @@ fn a_world_for_photographs_shows_one_a_step_and_ends_with_the_last() {
 }
 
 #[test]
-fn nothing_to_photograph_is_remarked_and_the_world_runs() {
+fn world_without_objects_to_photograph_gives_a_remark_and_runs() {
     let world = WorldDraft {
         game_mode: GameMode::CollectImages,
         ..WorldDraft::default()
@@ -221,7 +220,7 @@ fn nothing_to_photograph_is_remarked_and_the_world_runs() {
 }
 
 #[test]
-fn models_of_a_library_are_drawn_and_what_nobody_knows_is_remarked() {
+fn library_models_are_drawn_and_unknown_ones_give_a_remark() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/assets/lighthouse.gltf");
     let bytes = std::fs::read(path).expect("the example is there");
     let options = ImportOptions {

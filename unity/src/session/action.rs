@@ -1,4 +1,4 @@
-//! The action that a client's messages ask for: three numbers, or a row of the world's table. What it does is in `mod.rs`.
+//! Extracts the action from a client's message: three numbers, or a row of the world's table.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use crate::behavior::{ACTION_LENGTH, BEHAVIOR};
 use crate::error::UnityError;
 use crate::protocol::{AgentActionProto, ListAgentActionProto};
 
-/// The one agent's action; without any, it does nothing.
+/// The only agent's action; without one, it does nothing.
 pub(super) fn action(
     actions: &BTreeMap<String, ListAgentActionProto>,
     agent: &AgentParams,
@@ -45,7 +45,7 @@ fn numbers(action: &AgentActionProto) -> Result<[f64; ACTION_LENGTH], UnityError
     Ok(std::array::from_fn(|place| f64::from(found[place])))
 }
 
-/// The row of a table that is asked for. Old clients say its number as a float.
+/// The requested row of a table. Old clients send its number as a float.
 fn row(action: &AgentActionProto, rows: usize) -> Result<usize, UnityError> {
     let found: Vec<f64> = if action.discrete_actions.is_empty() {
         action.vector_actions.iter().copied().map(f64::from).collect()

@@ -1,27 +1,26 @@
-//! [`Album`]: the photographs of a world's objects, one a step, for a world that is for them. How they are taken is in
-//! `driftworld-env`.
+//! [`Album`]: shows the photographs of a world's objects, one per step, for worlds that are meant for photographs.
 
 use driftworld_env::{Catalogue, Frame, Photograph, Studio};
 use driftworld_spec::World;
 
 use crate::error::UnityError;
 
-/// The photographs of a world, and the one that is looked at.
+/// The photographs of a world, and the current one.
 #[derive(Clone, Debug)]
 pub(super) struct Album {
     studio: Studio,
     /// Never empty.
     photographs: Vec<Photograph>,
-    /// An index of the photographs.
+    /// Index of the current photograph.
     now: usize,
     frame: Frame,
 }
 
 impl Album {
-    /// An album at its first photograph.
+    /// Opens an album at its first photograph.
     ///
     /// # Errors
-    /// Why there is none: no objects, or too many views of them.
+    /// The reason why there is none: no objects, or too many views of them.
     pub(super) fn open(world: &World, catalogue: &Catalogue) -> Result<Self, String> {
         let studio = Studio::with_catalogue(world, catalogue).map_err(|error| error.to_string())?;
         let photographs = studio.photographs();
@@ -37,14 +36,14 @@ impl Album {
         })
     }
 
-    /// Goes on to the next photograph; says whether there is one.
+    /// Turns to the next photograph; returns whether there is one.
     pub(super) fn turn(&mut self) -> bool {
         let is_there = self.now + 1 < self.photographs.len();
         self.now += usize::from(is_there);
         is_there
     }
 
-    /// The photograph that is looked at.
+    /// The current photograph.
     pub(super) fn picture(&mut self) -> Result<&Frame, UnityError> {
         let supersampling = self.studio.supersampling();
         let mut target = self.frame.target();
@@ -53,8 +52,8 @@ impl Album {
         Ok(&self.frame)
     }
 
-    /// What stands in the state vector: the number of the object from 1, then where the camera stands in the world, in metres, and
-    /// where it looks, in degrees.
+    /// The state vector: the object's number, from 1, then the camera's position in the world in metres, and its heading in
+    /// degrees.
     pub(super) fn state(&self, world: &World) -> Vec<f32> {
         let photograph = &self.photographs[self.now];
         let object = &world.objects[photograph.object];

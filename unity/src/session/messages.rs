@@ -1,5 +1,4 @@
-//! What a session does with messages beside commands. How they are packed is in `side_channel`, what L2Explorer's do in
-//! `driftworld-env`.
+//! Handles side channel messages of a session.
 
 use std::fmt::Write;
 
@@ -13,25 +12,25 @@ use crate::side_channel::{
     Payload, Setting, SideChannel, engine_setting, environment_parameter, float_property, id_of, records, text_payload,
 };
 
-/// The most messages that are taken in one go.
+/// Most messages handled at a time.
 const MOST_MESSAGES: usize = 1000;
 
-/// The most values in the JSON texts that come in one go: what a world of some twenty thousand objects has. A text of nothing but
-/// brackets that has that many takes half a gigabyte until it is found to say nothing; one of 4 MB took 2.8. While texts are read,
-/// the end of a client is not seen.
+/// Most values in the JSON texts of one batch of messages: those of a world with about twenty thousand objects. A text of only
+/// brackets with that many takes half a gigabyte before it is found to be meaningless; one of 4 MB took 2.8. While texts are
+/// being read, a disconnected client is not noticed.
 const MOST_VALUES: usize = 400_000;
 
-/// The most that are looked at, to refuse those beyond [`MOST_MESSAGES`].
+/// Most messages that are parsed, to refuse those beyond [`MOST_MESSAGES`].
 const MOST_LOOKED_AT: usize = 10_000;
 
-/// The most points of screenshots in one go, two of the largest: while they are drawn, the end of a client is not seen.
+/// Most pixels of screenshots per batch, two of the largest: while they are drawn, a disconnected client is not noticed.
 const MOST_POINTS: u64 = 2 << 24;
 
-/// A message of L2Explorer's: its channel, and its text or why there is none.
+/// An L2Explorer message: its channel, and its text or the reason why there is none.
 pub(super) type Told<'a> = (Channel, Result<&'a str, String>);
 
 impl Session {
-    /// Takes the settings among the messages, and hands back the others.
+    /// Applies the settings among the messages, and returns the others.
     pub(super) fn take_settings<'a>(&mut self, bytes: &'a [u8]) -> Vec<Told<'a>> {
         let mut responses = Vec::new();
         let mut values = MOST_VALUES;
@@ -95,7 +94,7 @@ impl Session {
             Ok(setting) => {
                 if let Err(reason) = self.parameters.set(&setting) {
                     let remark = format!("{what}: {reason}");
-                    // Of a name that means nothing another value is no news.
+                    // For an unknown name, another value is nothing new.
                     let thing = if Parameters::knows(&setting.key) {
                         remark.clone()
                     } else {
@@ -108,7 +107,7 @@ impl Session {
         }
     }
 
-    /// Does what messages ask for; says whether the world is at the start of another one.
+    /// Handles the requests in messages; returns whether the world was reset to another one.
     pub(super) fn receive(&mut self, messages: &[Told]) -> bool {
         let mut is_renewed = false;
         let mut points = 0;
@@ -149,7 +148,7 @@ impl Session {
         is_renewed
     }
 
-    /// Takes over the world that a message reset to, with what has been set.
+    /// Adopts the world of a reset message, with the current parameters.
     fn renew(&mut self) {
         self.start = self.environment.world().clone().with_maps(&self.maps);
         if !self.parameters.is_empty() || self.start != *self.environment.world() {
@@ -159,10 +158,10 @@ impl Session {
         }
     }
 
-    /// Draws and writes a picture; hands back where it is.
+    /// Renders and writes a screenshot; returns its path.
     fn draw(&mut self, screenshot: &Screenshot) -> Result<String, String> {
         let size = [screenshot.width, screenshot.height];
-        // At the size of observations it is one of them, as smooth as they are.
+        // At the observations' size it is an observation, with the same smoothing.
         let png = if size == self.environment.world().agent_params.picture_size() {
             png(size, &self.environment.observe().rgb)
         } else {
@@ -174,7 +173,7 @@ impl Session {
         Ok(path.display().to_string())
     }
 
-    /// Sends a message of L2Explorer's. What is refused is remarked, too: the original client does not look at answers.
+    /// Sends an L2Explorer message. Refusals also give a remark, because the original client ignores answers.
     pub(super) fn send(&mut self, message: &Outgoing) {
         if let ("error", Some(texts)) = (message.action, &message.payload) {
             let texts: Vec<&str> = texts
@@ -192,7 +191,7 @@ impl Session {
     }
 }
 
-/// The text, unless it has more values than are left. Commas and brackets within texts count, too.
+/// The text, unless it has more values than are left. Commas and brackets in strings count as well.
 fn bounded<'a>(text: &'a str, left: &mut usize) -> Result<&'a str, String> {
     let found = text.bytes().filter(|byte| matches!(byte, b',' | b'[' | b'{')).count();
     let Some(rest) = left.checked_sub(found) else {
@@ -204,7 +203,7 @@ fn bounded<'a>(text: &'a str, left: &mut usize) -> Result<&'a str, String> {
     Ok(text)
 }
 
-/// A JSON text without letters beyond ASCII, which old clients do not decode.
+/// Escapes non-ASCII characters of a JSON text, which old clients cannot decode.
 fn ascii(json: &str) -> String {
     let mut text = String::with_capacity(json.len());
     for letter in json.chars() {
@@ -225,7 +224,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn json_in_ascii_says_the_same() {
+    fn ascii_json_is_equivalent() {
         let json = r#"{"a":"20° – 𝄞\n"}"#;
         let text = ascii(json);
         assert!(text.is_ascii(), "{text}");

@@ -1,5 +1,4 @@
-//! [`Session`]: what a world answers to what a client says. How messages beside commands are taken is in `messages.rs`; how all
-//! of it travels, in `serve.rs`.
+//! [`Session`]: a world's answers to a client's messages.
 
 mod action;
 mod album;
@@ -28,36 +27,36 @@ use crate::protocol::{
 use crate::remarks::{About, Remarks};
 use crate::screenshots::Screenshots;
 
-/// The version of the protocol: every client of version 1 accepts the first, and what newer ones can do beyond it they say.
+/// The version of the protocol: every client of version 1 accepts the first one; newer features are announced as capabilities.
 const COMMUNICATION_VERSION: &str = "1.0.0";
 
-/// Bytes of a message that are neither observations nor messages beside them.
+/// Bytes of a message besides observations and side channel messages.
 const ENVELOPE: usize = 4096;
 
-/// What a session begins with.
+/// Initial settings of a session.
 #[derive(Clone, Debug, Default)]
 pub struct Setup {
-    /// The world until the client resets to one of its own.
+    /// The world until the client resets to another one.
     pub world: World,
-    /// Layouts that take the place of the built-in ones.
+    /// Layouts that replace the built-in ones.
     pub maps: MapLibrary,
     /// The models that worlds may refer to.
     pub catalogue: Catalogue,
-    /// How pictures travel.
+    /// The form of images.
     pub pictures: PictureForm,
 }
 
-/// What comes of a command.
+/// The result of a command.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Turn {
-    /// What happened.
+    /// The world's output.
     Output(Box<UnityOutputProto>),
-    /// The client is done.
+    /// The client quits.
     Quit,
 }
 
-/// What a client is told of the behaviour once, and again when it is not so any more: what the numbers of an action mean, and how
-/// many numbers observations have.
+/// The parts of the behaviour that a client is told once, and again when they change: descriptions of the numbers of an action,
+/// and the length of observations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Announced {
     words: [&'static str; ACTION_LENGTH],
@@ -66,7 +65,7 @@ struct Announced {
     state_len: usize,
 }
 
-/// One client's world.
+/// A world for one client.
 ///
 /// # Example
 /// ```
@@ -86,10 +85,10 @@ struct Announced {
 /// ```
 pub struct Session {
     environment: Environment,
-    /// The photographs of the world's objects, if it is for them.
+    /// The photographs of the world's objects, if the world is meant for them.
     album: Option<Album>,
     channels: Channels,
-    /// What a reset begins.
+    /// The world that a reset starts.
     start: World,
     maps: MapLibrary,
     parameters: Parameters,
@@ -97,21 +96,21 @@ pub struct Session {
     pictures: PictureForm,
     screenshots: Screenshots,
     clock: Box<dyn Fn() -> String>,
-    /// Episodes since the start of the session.
+    /// Number of episodes since the start of the session.
     episodes: i32,
     outbox: Outbox,
     remarks: Remarks,
-    /// What the client knows of the behaviour.
+    /// The behaviour as announced to the client.
     announced: Option<Announced>,
-    /// Takes the episode down, if that is wanted, and the episodes that are over.
+    /// Records episodes if requested, and the finished ones.
     recorder: Option<Recorder>,
     recordings: Vec<Recording>,
 }
 
 impl Session {
-    /// A session whose world is at its start. `clock` tells the time in ISO 8601, for messages.
+    /// A session with its world at its start. `clock` returns the time in ISO 8601, for messages.
     pub fn new(setup: Setup, screenshots: Screenshots, clock: impl Fn() -> String + 'static) -> Self {
-        // A world that was written down while it ran is taken back to its start: clients begin episodes.
+        // A world that was saved while running is taken back to its start: clients begin episodes.
         let start = Environment::new(setup.world).world().clone().with_maps(&setup.maps);
         let mut session = Self {
             environment: Environment::with_catalogue(start.clone(), setup.catalogue),
@@ -131,7 +130,7 @@ impl Session {
             recorder: None,
             recordings: Vec::new(),
         };
-        // Of worlds that messages reset to, the channels have remarks of their own.
+        // The channels give their own warnings about worlds that messages reset to.
         for warning in session.environment.warnings() {
             if warning != Warning::ForPhotographs {
                 session.remarks.make(About::Worlds, &format!("world: {warning}"));
@@ -141,7 +140,7 @@ impl Session {
         session
     }
 
-    /// The first thing said to a client.
+    /// The first message to a client.
     pub fn greeting() -> UnityOutputProto {
         UnityOutputProto {
             rl_output: None,
@@ -159,7 +158,7 @@ impl Session {
         }
     }
 
-    /// Hears who the client is.
+    /// Reads the client's first message.
     ///
     /// # Errors
     /// [`UnityError::ClientVersion`] for a client of another major version of the protocol.
@@ -175,15 +174,15 @@ impl Session {
         Ok(())
     }
 
-    /// Does what the client says.
+    /// Carries out a client's command.
     ///
-    /// Settings come first, then the command RESET, then messages, then the command STEP: what is set counts for the reset beside
-    /// it, and what is put into a world goes into the new one. A STEP whose messages reset to another world shows its start; the
-    /// action was meant for the old one.
+    /// The order is settings, the command RESET, messages, the command STEP: settings apply to the reset in the same input, and
+    /// objects are created in the new world. A STEP whose messages reset to another world shows the new world's start, because
+    /// the action was meant for the old one.
     ///
     /// # Errors
-    /// [`UnityError`] for commands and actions that there are not, and for actions that cannot be carried out. Messages that
-    /// cannot be understood are answered, or remarked.
+    /// [`UnityError`] for unknown commands and actions, and for actions that cannot be carried out. Messages that cannot be
+    /// understood get an answer or a remark.
     pub fn answer(&mut self, input: &UnityRlInputProto) -> Result<Turn, UnityError> {
         let Ok(command) = CommandProto::try_from(input.command) else {
             return Err(UnityError::UnknownCommand(input.command));
@@ -215,22 +214,22 @@ impl Session {
         Ok(Turn::Output(Box::new(self.output(agents))))
     }
 
-    /// Takes down what is done from now on; [`Session::take_recordings`] has it. Photographs are no episode.
+    /// Starts recording, for [`Session::take_recordings`]. Photographs are not episodes.
     pub fn record(&mut self) {
         self.recorder = Some(Recorder::from_now(&self.environment));
     }
 
-    /// The episodes that are over since the last time.
+    /// The episodes finished since the last call.
     pub fn take_recordings(&mut self) -> Vec<Recording> {
         std::mem::take(&mut self.recordings)
     }
 
-    /// Ends the episode that is under way, where no step follows.
+    /// Ends the current episode, when no step follows.
     pub fn end_recording(&mut self) {
         self.keep_recording(None);
     }
 
-    /// Notes what messages did to the world: nothing, a change in the midst of the episode, or another world.
+    /// Records what messages did to the world: nothing, a change during the episode, or another world.
     fn note_change(&mut self, recording: Recording, before: &World, is_renewed: bool) {
         if is_renewed {
             if !recording.actions.is_empty() {
@@ -244,7 +243,7 @@ impl Session {
         }
     }
 
-    /// Keeps the episode that is under way, if it has a step, and begins the next one in the world as it is now.
+    /// Stores the current episode if it has a step, and begins the next one in the current world.
     fn keep_recording(&mut self, ended_by: Option<EndedBy>) {
         let Some(recorder) = &self.recorder else { return };
         if recorder.num_steps() > 0 {
@@ -253,18 +252,18 @@ impl Session {
         self.recorder = Some(Recorder::from_now(&self.environment));
     }
 
-    /// What the user of the executable should know since the last time, a line each.
+    /// Remarks for the user of the executable since the last call, one per line.
     pub fn take_remarks(&mut self) -> Vec<String> {
         self.remarks.take()
     }
 
-    /// Begins the world anew, with what has been set.
+    /// Restarts the world with the current parameters.
     fn restart(&mut self) {
-        // An episode that is left before its end; of one that has ended nothing is left.
+        // Keeps an episode that is left before its end; a finished one has already been stored.
         self.keep_recording(None);
         let mut world = self.start.clone();
         if !self.parameters.is_empty() {
-            // Each number alone is sound; together with this world they may not be.
+            // Each number is valid by itself, but may be invalid in this world.
             match self.parameters.try_world(world.clone()) {
                 Ok(changed) => world = changed,
                 Err(problem) => {
@@ -281,7 +280,7 @@ impl Session {
         self.open_album();
     }
 
-    /// Photographs from the first one on, if the world is for photographs.
+    /// Starts with the first photograph, if the world is meant for photographs.
     pub(super) fn open_album(&mut self) {
         let world = self.environment.world();
         self.album = None;
@@ -297,7 +296,7 @@ impl Session {
         }
     }
 
-    /// Carries out an action; an episode that it ends is followed by the start of the next one, as Unity has it.
+    /// Carries out an action; if it ends the episode, the start of the next one follows, as in Unity.
     fn step(&mut self, action: Action) -> Result<Vec<AgentInfoProto>, UnityError> {
         let mut agent;
         if let Some(album) = &mut self.album {
@@ -327,8 +326,8 @@ impl Session {
         Ok(vec![agent, self.decision(0.0, 0)?])
     }
 
-    /// The end of an episode and the start of the next travel in one message. Floats are always as many: where two of them will not
-    /// fit, that is said at the start, not in the midst of a training.
+    /// The end of an episode and the start of the next are in one message. Floats always have the same size: if two of them do
+    /// not fit, the error comes at the start and not during training.
     fn check_end_fits(&self, agent: &AgentInfoProto) -> Result<(), UnityError> {
         let world = self.environment.world();
         let can_end = self.album.is_some()
@@ -342,12 +341,12 @@ impl Session {
         Ok(())
     }
 
-    /// The agent as it is now, before its next action.
+    /// The agent's current state, before its next action.
     fn decision(&mut self, reward: f64, collected: usize) -> Result<AgentInfoProto, UnityError> {
         let (pictures, client) = (self.pictures, self.client);
         let observations = if let Some(album) = &mut self.album {
             let mut state = album.state(self.environment.world());
-            // Clients were told of so many numbers.
+            // Clients were told this length.
             state.resize(1 + self.environment.world().agent_params.state_len(), 0.0);
             observations(album.picture()?, state, pictures, client)?
         } else {
@@ -356,7 +355,7 @@ impl Session {
             observations(self.environment.observe(), state, pictures, client)?
         };
         Ok(AgentInfoProto {
-            // Clients take no infinity.
+            // Clients do not accept infinity.
             reward: (reward as f32).clamp(f32::MIN, f32::MAX),
             done: false,
             max_step_reached: false,
@@ -396,7 +395,7 @@ impl Session {
     }
 }
 
-/// The object that a step collected, by its number from 1: the last that paid or was destroyed; 0 for none.
+/// The object that a step collected, by its number from 1: the last one that paid or was destroyed; 0 for none.
 fn collected(step: &Step) -> usize {
     let is_collected = |event: &&Event| event.destroyed || event.reward != 0.0;
     let last = step.events.iter().rfind(is_collected);

@@ -1,9 +1,9 @@
-//! Messages on the engine's configuration, read. None of them changes a world: there is no window, and time goes as fast as it
-//! can.
+//! Reads messages about the engine's configuration. None of them has an effect: there is no window, and simulation is always as
+//! fast as possible.
 
 use super::Payload;
 
-/// What a setting of Unity's is called, and what is said of it: none of them means anything here.
+/// The name of a Unity setting, and a remark that it has no effect.
 pub(crate) fn engine_setting(bytes: &[u8]) -> Result<(&'static str, String), String> {
     let mut payload = Payload::new(bytes);
     let (name, remark) = match payload.int()? {
@@ -42,7 +42,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn settings_are_read_as_clients_write_them() {
+    fn engine_settings_are_read_as_clients_write_them() {
         let words = |words: &[i32]| words.iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<u8>>();
         let check = |bytes: &[i32], name: &str, begins: &str| {
             let (found, remark) = engine_setting(&words(bytes)).expect("the setting is one");

@@ -1,5 +1,4 @@
-//! Messages beside actions and observations: how they are packed one after the other, and which channels there are. What the
-//! messages of each channel say is read in the files beside this one.
+//! Side channel messages: their packing, and the channels.
 
 mod engine;
 mod payload;
@@ -12,26 +11,26 @@ pub(crate) use settings::{Setting, environment_parameter, float_property};
 use driftworld_env::Channel;
 use uuid::{Uuid, uuid};
 
-/// Bytes of a record before its payload: the identifier and the length.
+/// Bytes of a record before its payload: identifier and length.
 pub(crate) const RECORD_HEAD: usize = 20;
 
-/// The channels that mean something here.
+/// The known channels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SideChannel {
-    /// One of L2Explorer's three.
+    /// One of L2Explorer's three channels.
     L2Explorer(Channel),
-    /// Window size, quality, speed of time.
+    /// Window size, quality, time scale.
     Engine,
-    /// Numbers by name, for the world.
+    /// Named numbers for the world.
     Parameters,
-    /// The same in the form of older clients.
+    /// Named numbers in the form of older clients.
     Properties,
-    /// Notes on trainings for the maker of the engine.
+    /// Training analytics for the engine's maker.
     Analytics,
 }
 
 impl SideChannel {
-    /// The channel of that identifier, if it is known.
+    /// The channel with this identifier, if it is known.
     pub(crate) fn from_id(id: Uuid) -> Option<Self> {
         const OTHERS: [(Uuid, SideChannel); 4] = [
             (uuid!("e951342c-4f7e-11ea-b238-784f4387d1f7"), SideChannel::Engine),
@@ -59,7 +58,7 @@ pub(crate) struct Record<'a> {
     pub(crate) payload: &'a [u8],
 }
 
-/// The records in a run of bytes, up to the first that is not as it says: what follows it cannot be found.
+/// The records in a sequence of bytes, up to the first malformed one: what follows it cannot be located.
 pub(crate) fn records(mut bytes: &[u8]) -> impl Iterator<Item = Result<Record<'_>, String>> {
     std::iter::from_fn(move || {
         if bytes.is_empty() {
@@ -70,7 +69,7 @@ pub(crate) fn records(mut bytes: &[u8]) -> impl Iterator<Item = Result<Record<'_
             bytes = &[];
             return Some(Err(format!("found {found} bytes, expected at least {RECORD_HEAD}")));
         };
-        // The head is 16 bytes of the identifier, whose first groups travel reversed, and 4 of the length.
+        // The head is 16 bytes of identifier, with its first groups in little-endian order, and 4 of length.
         let (id, length) = head.split_at(16);
         let id = Uuid::from_bytes_le(std::array::from_fn(|place| id[place]));
         let length = i32::from_le_bytes(std::array::from_fn(|place| length[place]));
@@ -89,14 +88,14 @@ pub(crate) fn records(mut bytes: &[u8]) -> impl Iterator<Item = Result<Record<'_
     })
 }
 
-/// Adds a record. Its payload is far shorter than the 2 GiB that a length can say.
+/// Appends a record. Its payload is far shorter than the 2 GiB limit of the length field.
 pub(crate) fn write_record(bytes: &mut Vec<u8>, id: Uuid, payload: &[u8]) {
     bytes.extend_from_slice(&id.to_bytes_le());
     bytes.extend_from_slice(&(payload.len() as i32).to_le_bytes());
     bytes.extend_from_slice(payload);
 }
 
-/// A text as a payload: its length in bytes, and its bytes.
+/// Encodes a text as a payload: its length in bytes, then its bytes.
 pub(crate) fn text_payload(text: &str) -> Vec<u8> {
     let mut payload = Vec::with_capacity(text.len() + 4);
     payload.extend_from_slice(&(text.len() as i32).to_le_bytes());
@@ -109,7 +108,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn identifiers_travel_with_their_first_groups_reversed() {
+    fn identifiers_are_encoded_in_little_endian_groups() {
         for &channel in Channel::ALL {
             assert_eq!(
                 SideChannel::from_id(id_of(channel)),
@@ -119,7 +118,7 @@ mod tests {
         assert_eq!(SideChannel::from_id(Uuid::nil()), None);
         let mut bytes = Vec::new();
         write_record(&mut bytes, id_of(Channel::Reset), b"");
-        // As `uuid.UUID("621f0a70-4f87-11ea-a6bf-784f4387d1f7").bytes_le` of Python has them.
+        // Python's `uuid.UUID("621f0a70-4f87-11ea-a6bf-784f4387d1f7").bytes_le`.
         let expected = [
             0x70, 0x0a, 0x1f, 0x62, 0x87, 0x4f, 0xea, 0x11, 0xa6, 0xbf, 0x78, 0x4f, 0x43, 0x87, 0xd1, 0xf7,
         ];
@@ -127,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_read_again() {
+    fn records_round_trip() {
         let mut bytes = Vec::new();
         write_record(&mut bytes, Uuid::from_bytes([7; 16]), b"abc");
         write_record(&mut bytes, Uuid::from_bytes([8; 16]), b"");
@@ -148,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn lengths_that_lie_end_the_run() {
+    fn wrong_lengths_end_the_sequence() {
         let check = |length: i32, expected: &str| {
             let mut bytes = Vec::new();
             write_record(&mut bytes, Uuid::from_bytes([7; 16]), b"abc");

@@ -1,6 +1,6 @@
-//! [`Payload`]: reads numbers and texts out of a message's bytes, and never past their end.
+//! [`Payload`]: reads numbers and texts from a message's bytes, never past their end.
 
-/// What is left to read of a message.
+/// The unread rest of a message.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Payload<'a>(&'a [u8]);
 
@@ -9,17 +9,17 @@ impl<'a> Payload<'a> {
         Self(bytes)
     }
 
-    /// A whole number.
+    /// Reads an integer.
     pub(crate) fn int(&mut self) -> Result<i32, String> {
         self.word().map(i32::from_le_bytes)
     }
 
-    /// A number.
+    /// Reads a float.
     pub(crate) fn float(&mut self) -> Result<f32, String> {
         self.word().map(f32::from_le_bytes)
     }
 
-    /// A text: its length in bytes, and its bytes.
+    /// Reads a text: its length in bytes, then its bytes.
     pub(crate) fn text(&mut self) -> Result<&'a str, String> {
         let length = self.int()?;
         let split = usize::try_from(length)
@@ -50,7 +50,7 @@ mod tests {
     use crate::side_channel::text_payload;
 
     #[test]
-    fn what_is_written_is_read_again() {
+    fn payloads_round_trip() {
         let mut bytes = text_payload("häuser");
         bytes.extend_from_slice(&(-3_i32).to_le_bytes());
         bytes.extend_from_slice(&0.5_f32.to_le_bytes());
@@ -62,7 +62,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_read_past_the_end() {
+    fn payload_is_never_read_past_its_end() {
         let check = |bytes: &[u8], expected: &str| {
             let error = Payload::new(bytes).text().expect_err("the text is not there");
             assert!(error.starts_with(expected), "{error}");

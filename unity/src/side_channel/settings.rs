@@ -1,19 +1,18 @@
-//! Numbers by name, read: environment parameters, and the float properties of older clients. What they change is in
-//! `parameters.rs`.
+//! Reads named numbers: environment parameters, and the float properties of older clients.
 
 use super::Payload;
 
-/// A number for the world.
+/// A named number for the world.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Setting {
     pub(crate) key: String,
     pub(crate) value: f32,
 }
 
-/// The longest name, in bytes.
+/// Longest name, in bytes.
 const LONGEST_KEY: usize = 200;
 
-/// Reads an environment parameter; one that is to be drawn is refused.
+/// Reads an environment parameter; samplers are refused.
 pub(crate) fn environment_parameter(bytes: &[u8]) -> Result<Setting, String> {
     let mut payload = Payload::new(bytes);
     let key = key(&mut payload)?;

@@ -1,4 +1,4 @@
-//! What the executable is told when it starts, and what it says of it.
+//! The executable's arguments, and its output about them.
 
 use std::fs;
 use std::path::Path;
@@ -23,7 +23,7 @@ fn run(arguments: &[&str]) -> Ended {
     Executable::start(arguments, folder().path()).ended()
 }
 
-/// What a client sees of a world at its start.
+/// A client's view of a world at its start.
 #[derive(Debug, PartialEq)]
 struct Seen {
     shape: Vec<i32>,
@@ -31,7 +31,7 @@ struct Seen {
     state: Vec<f32>,
 }
 
-/// A client that looks at a world once, and quits.
+/// Runs a client that observes a world once and quits.
 fn look(arguments: &[&str], folder: &Path) -> (Ended, Option<Seen>) {
     let client = Client::new([who("1.0.0"), command(CommandProto::Reset), command(CommandProto::Quit)]);
     let ended = start(&client, arguments, folder).ended();
@@ -69,7 +69,7 @@ fn help_and_version_go_to_standard_output() {
 }
 
 #[test]
-fn values_that_cannot_be_end_it_with_2_and_name_the_help() {
+fn invalid_values_exit_with_2_and_mention_help() {
     for (arguments, expected) in [
         (
             ["--mlagents-port", "65536"].as_slice(),
@@ -100,7 +100,7 @@ fn values_that_cannot_be_end_it_with_2_and_name_the_help() {
 }
 
 #[test]
-fn options_of_unitys_do_no_harm_and_unknown_ones_are_remarked() {
+fn unity_options_are_ignored_and_unknown_ones_give_a_remark() {
     let folder = folder();
     let arguments = [
         "-nographics",
@@ -122,13 +122,13 @@ fn options_of_unitys_do_no_harm_and_unknown_ones_are_remarked() {
             "driftworld-unity: \"--raw-observation\" is not known here and ignored; did you mean --raw-observations?",
         ]
     );
-    // The advice, taken.
+    // Follows the advice.
     let (ended, _) = look(&["--raw-observations"], folder.path());
     assert!(!ended.stderr.contains("not known"), "{ended:?}");
 }
 
 #[test]
-fn a_world_file_of_either_kind_is_the_world_at_the_start() {
+fn world_file_of_either_format_is_the_initial_world() {
     let folder = folder();
     let ours = World::default().edit(|world| {
         world.agent_params.observation_size = 16;
@@ -159,7 +159,7 @@ fn a_world_file_of_either_kind_is_the_world_at_the_start() {
 }
 
 #[test]
-fn files_that_cannot_be_used_are_named_with_the_place_and_no_client_is_looked_for() {
+fn unusable_files_are_reported_before_connecting() {
     let folder = folder();
     let broken = "{\n  \"max_steps\": -3\n}";
     fs::write(folder.path().join("broken.json"), broken).expect("the folder can be written");
@@ -184,10 +184,10 @@ fn files_that_cannot_be_used_are_named_with_the_place_and_no_client_is_looked_fo
     }
 }
 
-/// Neither a device without an end nor a pipe that nobody uses holds the executable up.
+/// Neither an endless device nor an unused pipe blocks the executable.
 #[cfg(unix)]
 #[test]
-fn what_is_no_regular_file_is_named_and_not_waited_for() {
+fn irregular_files_are_reported_without_blocking() {
     let folder = folder();
     std::os::unix::fs::symlink("/dev/zero", folder.path().join("zeros")).expect("the folder can be written");
     let made = std::process::Command::new("mkfifo")
@@ -209,7 +209,7 @@ fn what_is_no_regular_file_is_named_and_not_waited_for() {
 }
 
 #[test]
-fn a_key_that_only_the_original_lets_pass_is_remarked() {
+fn key_that_only_the_original_accepts_gives_a_remark() {
     let folder = folder();
     let broken = "{\n  \"max_stepz\": 3\n}";
     fs::write(folder.path().join("world.json"), broken).expect("the folder can be written");
@@ -229,7 +229,7 @@ fn a_key_that_only_the_original_lets_pass_is_remarked() {
 }
 
 #[test]
-fn what_others_wrote_does_not_work_the_terminal() {
+fn untrusted_text_does_not_control_the_terminal() {
     const HOSTILE: &str = "\u{1b}]0;owned\u{7}\u{202e}\u{9b}2J\r\ndriftworld-unity: FAKE\u{200b}";
     let folder = folder();
     let json = serde_json::json!({ "max_steps": HOSTILE, HOSTILE: 1, "objects": [{ HOSTILE: HOSTILE }] }).to_string();
@@ -237,7 +237,7 @@ fn what_others_wrote_does_not_work_the_terminal() {
     let lenient = serde_json::json!({ HOSTILE: 1, "max_steps": 3 }).to_string();
     fs::write(folder.path().join("lenient.json"), &lenient).expect("the folder can be written");
     let mut said = vec![look(&["--world", "lenient.json"], folder.path()).0];
-    // Windows has no such names.
+    // Such names are not allowed on Windows.
     if cfg!(unix) {
         fs::write(folder.path().join(HOSTILE), json).expect("the folder can be written");
         said.push(look(&["--world", HOSTILE], folder.path()).0);
@@ -268,12 +268,12 @@ fn what_others_wrote_does_not_work_the_terminal() {
 }
 
 #[test]
-fn a_maps_file_takes_the_place_of_the_built_in_layouts() {
+fn maps_file_replaces_the_built_in_layouts() {
     let folder = folder();
     let world = World::default().edit(|world| world.environment_params.predefined_map = 1);
     let world = world.expect("map 1 is built in");
     fs::write(folder.path().join("world.json"), world.to_json()).expect("the folder can be written");
-    // A block right before the agent's eyes.
+    // A block directly in front of the agent.
     let maps = r#"{ "maps": [{ "id": 1, "name": "block", "x_limits": [-100, 100], "y_limits": [-100, 100],
         "excluded_regions": [[[-9, 5], [9, 5], [9, 8], [-9, 8]]] }] }"#;
     fs::write(folder.path().join("maps.json"), maps).expect("the folder can be written");
@@ -287,7 +287,7 @@ fn a_maps_file_takes_the_place_of_the_built_in_layouts() {
 }
 
 #[test]
-fn remarks_go_into_the_log_file_and_after_those_that_are_there() {
+fn remarks_are_appended_to_the_log_file() {
     let folder = folder();
     let log = folder.path().join("run.log");
     fs::write(&log, "before\n").expect("the folder can be written");
@@ -303,7 +303,7 @@ fn remarks_go_into_the_log_file_and_after_those_that_are_there() {
         lines[2].starts_with("driftworld-unity: a client at 127.0.0.1:"),
         "{said}"
     );
-    // An error goes there, too.
+    // Errors go there as well.
     let ended = Executable::start(&["-logFile", "run.log", "--world", "none.json"], folder.path()).ended();
     assert_eq!((ended.code, ended.stderr.as_str()), (Some(1), ""));
     let said = fs::read_to_string(&log).expect("it is there");
@@ -314,7 +314,7 @@ fn remarks_go_into_the_log_file_and_after_those_that_are_there() {
 }
 
 #[test]
-fn a_log_file_in_a_folder_that_there_is_not_is_an_error() {
+fn log_file_in_a_missing_folder_is_an_error() {
     let ended = run(&["-logFile", "none/run.log"]);
     assert_eq!(ended.code, Some(1), "{ended:?}");
     assert_eq!(
@@ -324,7 +324,7 @@ fn a_log_file_in_a_folder_that_there_is_not_is_an_error() {
 }
 
 #[test]
-fn a_log_file_without_a_name_is_the_terminal() {
+fn log_file_without_a_name_is_the_terminal() {
     let (ended, seen) = look(&["-logFile", "-nographics"], folder().path());
     assert_eq!(ended.code, Some(0), "{ended:?}");
     assert!(seen.is_some());
@@ -336,7 +336,7 @@ fn a_log_file_without_a_name_is_the_terminal() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_terminal_that_takes_nothing_does_not_change_the_exit_status() {
+fn broken_terminal_does_not_change_the_exit_status() {
     for (argument, expected) in [
         ("--help", 0),
         ("--version", 0),
@@ -357,7 +357,7 @@ fn a_terminal_that_takes_nothing_does_not_change_the_exit_status() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn what_a_full_disk_does_not_take_is_said_on_the_terminal() {
+fn full_disk_redirects_remarks_to_the_terminal() {
     let (ended, seen) = look(&["-logFile", "/dev/full"], folder().path());
     assert_eq!(ended.code, Some(0), "{ended:?}");
     assert!(seen.is_some());

@@ -1,4 +1,4 @@
-//! Clients that break the protocol: they are told why before the end, and so is the terminal.
+//! Clients that violate the protocol: they and the terminal get the reason before the end.
 
 use driftworld_spec::World;
 use driftworld_unity::protocol::ListAgentActionProto;
@@ -10,7 +10,7 @@ use driftworld_unity::{BEHAVIOR, MAX_INCOMING_BYTES};
 use super::played::{Answer, command, says, status, who};
 use super::session;
 
-/// A client that is sound up to its last answer is told these words, and so is the terminal.
+/// Checks that a client whose last answers are invalid gets this message, and the terminal as well.
 fn check(last: Vec<Answer>, expected: &str) {
     let (ended, client) = session([vec![who("1.0.0")], last].concat(), &[]);
     assert_eq!(ended.code, Some(1), "{ended:?}");
@@ -42,7 +42,7 @@ fn step(actions: &[(&str, &[&[f32]])]) -> Answer {
 }
 
 #[test]
-fn a_client_that_has_failed_is_believed() {
+fn failure_reported_by_the_client_ends_the_session() {
     check(vec![status(500)], "client: it ended with status 500: \"words\"");
     check(
         vec![command(CommandProto::Reset), status(503)],
@@ -51,7 +51,7 @@ fn a_client_that_has_failed_is_believed() {
 }
 
 #[test]
-fn messages_without_what_they_have_to_say_are_refused() {
+fn incomplete_messages_are_refused() {
     let check = |message: UnityMessageProto, missing: &str| {
         check(
             vec![message.into()],
@@ -73,7 +73,7 @@ fn messages_without_what_they_have_to_say_are_refused() {
 }
 
 #[test]
-fn bytes_that_are_no_message_are_refused() {
+fn malformed_messages_are_refused() {
     check(
         vec![Answer::Bytes(b"\x0a\xff\xff\xff".to_vec())],
         "client: a message cannot be read: failed to decode Protobuf message: UnityMessageProto.header: invalid varint",
@@ -81,7 +81,7 @@ fn bytes_that_are_no_message_are_refused() {
 }
 
 #[test]
-fn messages_that_are_too_long_are_refused_before_they_are_read() {
+fn too_long_messages_are_refused_before_reading() {
     for length in [MAX_INCOMING_BYTES + 1, 100_000_000] {
         let expected = format!(
             "client: a message cannot be read: Error, decoded message length too large: found {length} bytes, the limit is: 50331648 bytes"
@@ -91,10 +91,10 @@ fn messages_that_are_too_long_are_refused_before_they_are_read() {
 }
 
 #[test]
-fn a_client_of_another_version_is_told_so_when_it_listens() {
+fn client_of_another_version_is_told_if_it_listens() {
     let expected =
         "client: found version \"2.0.0\" of the protocol, expected 1.x, which mlagents-envs 0.16 to 1.1 speak";
-    // Who is gone before its first command does not listen; the terminal knows why.
+    // A client that quits before its first command does not listen; the terminal gets the reason.
     for (first_command, is_told) in [
         (command(CommandProto::Reset), true),
         (status(400), true),
@@ -115,7 +115,7 @@ fn a_client_of_another_version_is_told_so_when_it_listens() {
 }
 
 #[test]
-fn commands_and_actions_that_there_are_not_are_refused() {
+fn unknown_commands_and_actions_are_refused() {
     let unknown = says(UnityRlInputProto {
         command: 7,
         ..UnityRlInputProto::default()
@@ -140,7 +140,7 @@ fn commands_and_actions_that_there_are_not_are_refused() {
 }
 
 #[test]
-fn actions_that_are_no_numbers_are_refused() {
+fn non_finite_actions_are_refused() {
     for number in [f32::NAN, f32::INFINITY] {
         let numbers: &[f32] = &[0.0, number, 0.0];
         let expected = format!(
@@ -154,7 +154,7 @@ fn actions_that_are_no_numbers_are_refused() {
     }
 }
 
-/// The folder with a world of a certain size of pictures in it.
+/// A folder with a world of this observation size.
 fn world(observation_size: u32) -> (tempfile::TempDir, String) {
     let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
     let file = folder.path().join("world.json");
@@ -166,7 +166,7 @@ fn world(observation_size: u32) -> (tempfile::TempDir, String) {
 }
 
 #[test]
-fn pictures_that_no_client_accepts_are_refused_and_the_advice_helps() {
+fn too_large_observations_are_refused_with_helpful_advice() {
     let (_folder, large) = world(512);
     let asks = || vec![who("1.0.0"), command(CommandProto::Reset), command(CommandProto::Quit)];
     let (ended, client) = session(asks(), &["--raw-observations", "--world", &large]);

@@ -1,4 +1,4 @@
-//! Ends that are none of our making and no error: the client is done, or gone.
+//! Ends that are not errors: the client quits or disconnects.
 
 use driftworld_unity::protocol::{CommandProto, HeaderProto, UnityInputProto, UnityMessageProto, UnityOutputProto};
 use driftworld_unity::{Screenshots, Session, Setup, Turn};
@@ -14,7 +14,7 @@ fn input(bytes: &[u8]) -> UnityInputProto {
     message.unity_input.expect("clients say something")
 }
 
-/// The message's bytes, with the clock at its start wherever it was looked at.
+/// The message's bytes, with every time reset.
 fn timeless(message: &UnityMessageProto) -> Vec<u8> {
     let mut bytes = message.encode_to_vec();
     let key = br#""msg_time":""#;
@@ -28,7 +28,7 @@ fn timeless(message: &UnityMessageProto) -> Vec<u8> {
 }
 
 #[test]
-fn what_a_session_answers_is_what_recorded_clients_get() {
+fn executable_sends_the_sessions_answers() {
     for release in RELEASES {
         let said = messages(release);
         let client = Client::new(said.iter().map(|(_, bytes)| Answer::Bytes(bytes.clone())));
@@ -77,7 +77,7 @@ fn what_a_session_answers_is_what_recorded_clients_get() {
 }
 
 #[test]
-fn quit_ends_it() {
+fn quit_ends_the_executable() {
     let (ended, client) = session(
         vec![who("1.0.0"), command(CommandProto::Reset), command(CommandProto::Quit)],
         &[],
@@ -87,7 +87,7 @@ fn quit_ends_it() {
 }
 
 #[test]
-fn a_client_may_end_before_its_first_command_and_before_it_said_who_it_is() {
+fn client_may_quit_before_its_first_command_or_message() {
     for answers in [vec![status(400)], vec![who("1.0.0"), status(400)]] {
         let (ended, _) = session(answers, &[]);
         assert_eq!(ended.code, Some(0), "{ended:?}");
@@ -95,7 +95,7 @@ fn a_client_may_end_before_its_first_command_and_before_it_said_who_it_is() {
 }
 
 #[test]
-fn a_client_that_is_killed_while_it_thinks_is_remarked_and_is_no_error() {
+fn killed_client_gives_a_remark_and_no_error() {
     for calls in 2..5 {
         let before = [who("1.0.0"), command(CommandProto::Reset), command(CommandProto::Step)];
         let mut client = Client::new(before.into_iter().take(calls - 1));
@@ -112,9 +112,9 @@ fn a_client_that_is_killed_while_it_thinks_is_remarked_and_is_no_error() {
     }
 }
 
-/// As Python's servers answer while they are being closed, or when somebody interrupts them.
+/// As Python's servers answer while they are being closed, or on an interrupt.
 #[test]
-fn a_call_that_the_client_gives_up_is_its_end() {
+fn call_cancelled_by_the_client_ends_the_session() {
     for given_up in [
         Status::cancelled("CANCELLED"),
         Status::unknown("Exception calling application: handle is closed"),

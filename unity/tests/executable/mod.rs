@@ -1,5 +1,4 @@
-//! The built executable against clients that are played by the tests: how it begins, and how it ends. What a session answers is in
-//! `conversation.rs`; real clients are driven by `cargo xtask unity`.
+//! The built executable against simulated clients: how sessions begin and end. `cargo xtask unity` tests real clients.
 
 mod arguments;
 mod breaches;
@@ -20,7 +19,7 @@ fn start(client: &Client, arguments: &[&str], folder: &Path) -> Executable {
     Executable::start(&all, folder)
 }
 
-/// A whole session with a client that gives these answers, one after the other; how it ended, and the client.
+/// A whole session with a client that gives these answers in order; returns how it ended, and the client.
 fn session(answers: Vec<Answer>, arguments: &[&str]) -> (Ended, Client) {
     let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
     let client = Client::new(answers);

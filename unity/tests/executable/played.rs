@@ -1,5 +1,5 @@
-//! [`Client`]: a client played by a test: the gRPC server that Python is, byte by byte, so that it can also say what no client
-//! should. Which process it speaks with is in `process.rs`.
+//! [`Client`]: a simulated client: the gRPC server that Python is, at the byte level, so that it can also send invalid
+//! messages.
 
 use std::convert::Infallible;
 use std::net::TcpListener;
@@ -22,7 +22,7 @@ use tonic::transport::Server;
 use tonic::transport::server::TcpIncoming;
 use tonic::{Request, Response, Status};
 
-/// What a client does with a call.
+/// A client's reaction to a call.
 #[derive(Clone, Debug)]
 pub(crate) enum Answer {
     Bytes(Vec<u8>),
@@ -35,7 +35,7 @@ impl From<UnityMessageProto> for Answer {
     }
 }
 
-/// A client that answers one call after the other, and is silent when it has nothing more to say.
+/// A client that answers calls in order, and stays silent once it has no more answers.
 pub(crate) struct Client {
     pub(crate) port: u16,
     calls: Receiver<Vec<u8>>,
@@ -54,7 +54,7 @@ impl Client {
         Self::serving(listener, answers, Played::new)
     }
 
-    /// A client on a free port that offers another service.
+    /// A client on a free port with a different service.
     pub(crate) fn of_another_kind() -> Self {
         Self::serving(free_port(), [], |answers, calls| Stranger(Played::new(answers, calls)))
     }
@@ -93,7 +93,7 @@ impl Client {
                     _ = left => {}
                 }
             });
-            // With the runtime go the connections, in the middle of whatever they were at.
+            // Dropping the runtime closes connections, whatever their state.
         });
         Self {
             port,
@@ -103,13 +103,13 @@ impl Client {
         }
     }
 
-    /// The next call, when it comes.
+    /// Waits for the next call.
     pub(crate) fn call(&self) -> UnityMessageProto {
         let bytes = self.calls.recv_timeout(Duration::from_mins(1)).expect("a call comes");
         UnityMessageProto::decode(bytes.as_slice()).expect("what is said is a message")
     }
 
-    /// All calls that have come since the last one that was looked at.
+    /// All calls since the last query.
     pub(crate) fn calls(&self) -> Vec<UnityMessageProto> {
         let calls = self.calls.try_iter();
         calls
@@ -117,9 +117,9 @@ impl Client {
             .collect()
     }
 
-    /// Goes away, in the middle of a call if there is one.
+    /// Disconnects, even during a call.
     pub(crate) fn leave(&mut self) {
-        // Who was told already is gone already.
+        // May already have been told to leave.
         let _ = self.leave.take().map(|leave| leave.send(()));
         if let Some(thread) = self.thread.take() {
             thread.join().expect("the client does not panic");
@@ -133,7 +133,7 @@ impl Drop for Client {
     }
 }
 
-/// A port that nobody else has.
+/// Binds a free port.
 pub(crate) fn free_port() -> TcpListener {
     TcpListener::bind("127.0.0.1:0").expect("the machine has a free port")
 }
@@ -147,7 +147,7 @@ fn input(status: i32, input: Option<UnityInputProto>) -> UnityMessageProto {
     }
 }
 
-/// What a client of that version of the protocol says first.
+/// The first message of a client with this version of the protocol.
 pub(crate) fn who(communication_version: &str) -> Answer {
     let who = UnityRlInitializationInputProto {
         communication_version: communication_version.to_owned(),
@@ -176,12 +176,12 @@ pub(crate) fn command(command: CommandProto) -> Answer {
     })
 }
 
-/// A message without anything but its status.
+/// A message with only a status.
 pub(crate) fn status(status: i32) -> Answer {
     input(status, None).into()
 }
 
-/// The service that clients offer.
+/// The service of clients.
 #[derive(Clone)]
 struct Played {
     answers: Arc<Mutex<std::vec::IntoIter<Answer>>>,
@@ -223,7 +223,7 @@ impl UnaryService<Vec<u8>> for Played {
     type Future = BoxFuture<Response<Vec<u8>>, Status>;
 
     fn call(&mut self, request: Request<Vec<u8>>) -> Self::Future {
-        // A test that looks at no calls any more has let go of the other end.
+        // The test may have dropped the other end.
         let _ = self.calls.send(request.into_inner());
         let answer = self.answers.lock().expect("nobody panics here").next();
         Box::pin(async move {
@@ -236,7 +236,7 @@ impl UnaryService<Vec<u8>> for Played {
     }
 }
 
-/// A service of which nobody here knows.
+/// An unknown service.
 #[derive(Clone)]
 struct Stranger(Played);
 
@@ -258,7 +258,7 @@ impl Service<http::Request<tonic::body::Body>> for Stranger {
     }
 }
 
-/// Messages as bytes.
+/// Passes messages through as bytes.
 struct Raw;
 
 impl Codec for Raw {

@@ -1,4 +1,4 @@
-//! [`Executable`]: the built executable, running. It does not outlive the test that started it.
+//! [`Executable`]: the built executable as a process, which is killed when its test ends.
 
 use std::io::Read;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
-/// How long a process may take to end that has every reason to.
+/// How long to wait for a process that should end.
 const PATIENCE: Duration = Duration::from_mins(1);
 
 /// A running process.
@@ -16,7 +16,7 @@ pub(crate) struct Executable {
     stderr: Receiver<String>,
 }
 
-/// What is left of a process.
+/// The result of a process.
 #[derive(Debug)]
 pub(crate) struct Ended {
     pub(crate) code: Option<i32>,
@@ -51,20 +51,20 @@ impl Executable {
 
 impl Drop for Executable {
     fn drop(&mut self) {
-        // One that has ended cannot be killed, and need not be.
+        // Killing a process that has ended fails harmlessly.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }
 
-/// Reads to the end, which comes with the process's.
+/// Reads to the end, which comes when the process ends.
 fn reading(mut pipe: impl Read + Send + 'static) -> Receiver<String> {
     let (done, text) = channel();
     std::thread::spawn(move || {
         let mut bytes = Vec::new();
         let read = pipe.read_to_end(&mut bytes);
         let text = String::from_utf8_lossy(&bytes).into_owned();
-        // A test that has failed meanwhile does not listen any more.
+        // A test that has failed meanwhile has dropped the receiver.
         let _ = done.send(read.map_or_else(|error| error.to_string(), |_| text));
     });
     text

@@ -1,4 +1,4 @@
-//! Who listens where the client should be, and is none; and nobody.
+//! Servers at the client's address that are not clients, and no server at all.
 
 use std::io::{Read, Write};
 use std::net::TcpListener;
@@ -23,7 +23,7 @@ fn assert_no_client(ended: &Ended, reason: &str) {
 }
 
 #[test]
-fn where_nobody_listens_the_wait_has_an_end() {
+fn waiting_without_a_server_times_out() {
     let listener = free_port();
     let port = listener.local_addr().expect("it is bound").port().to_string();
     drop(listener);
@@ -38,7 +38,7 @@ fn where_nobody_listens_the_wait_has_an_end() {
 }
 
 #[test]
-fn a_client_that_comes_later_is_found() {
+fn client_that_starts_later_is_found() {
     let listener = free_port();
     let port = listener.local_addr().expect("it is bound").port();
     drop(listener);
@@ -51,28 +51,28 @@ fn a_client_that_comes_later_is_found() {
 }
 
 #[test]
-fn a_listener_that_never_speaks_is_no_client() {
+fn silent_listener_is_no_client() {
     let listener = free_port();
     let ended = run(&listener, &["--wait", "0.5"]).ended();
     assert_no_client(&ended, "silence for 0.5 s");
 }
 
 #[test]
-fn a_client_that_says_nothing_at_first_is_none() {
+fn client_without_a_first_answer_is_no_client() {
     let (ended, client) = session(vec![], &["--wait", "0.5"]);
     assert_no_client(&ended, "silence for 0.5 s");
     assert_eq!(client.calls().len(), 1, "it was asked");
 }
 
 #[test]
-fn a_server_of_another_service_is_no_client() {
+fn server_of_another_service_is_no_client() {
     let client = Client::of_another_kind();
     let ended = start(&client, &[], &std::env::temp_dir()).ended();
     assert_no_client(&ended, "Unimplemented");
 }
 
 #[test]
-fn a_web_server_is_no_client() {
+fn web_server_is_no_client() {
     let listener = free_port();
     let executable = run(&listener, &[]);
     let (mut stream, _) = listener.accept().expect("somebody calls");
@@ -86,7 +86,7 @@ fn a_web_server_is_no_client() {
 }
 
 #[test]
-fn a_listener_that_hangs_up_is_no_client() {
+fn listener_that_hangs_up_is_no_client() {
     let listener = free_port();
     let executable = run(&listener, &[]);
     let (mut stream, _) = listener.accept().expect("somebody calls");
@@ -98,13 +98,13 @@ fn a_listener_that_hangs_up_is_no_client() {
 }
 
 #[test]
-fn a_host_that_is_none_is_said_so() {
+fn invalid_host_is_reported() {
     let ended = Executable::start(&["--host", "not a machine"], &std::env::temp_dir()).ended();
     assert_eq!(ended.code, Some(2), "{ended:?}");
     let expected =
         "driftworld-unity: not a machine:5004: expected the name or address of a machine, such as 127.0.0.1\n";
     assert_eq!(ended.stderr, expected);
-    // The advice, taken.
+    // Follows the advice.
     let client = Client::new([who("1.0.0"), command(CommandProto::Quit)]);
     let ended = start(&client, &["--host", "127.0.0.1"], &std::env::temp_dir()).ended();
     assert_eq!(ended.code, Some(0), "{ended:?}");
